@@ -1,0 +1,302 @@
+//! The channel map: which signal is on which pin, how fast it is read, and which voltages it can honestly have.
+//!
+//! This table is the only place that knows the wiring. The firmware programs its converter from [`SCAN`], the logic
+//! names what it reads by the index constants, a recording's columns are called [`Channel::name`], and
+//! `docs/wiring.md` is printed from it (`tenax wiring`).
+
+use crate::front_end;
+
+/// Scans in one frame: four 12-bit codes add up to one 14-bit sample (Prosthesis, section 3).
+pub const SCANS_PER_FRAME: usize = 4;
+/// Rate of the timer that starts each scan, Hz.
+pub const SCAN_HZ: u32 = 8_000;
+/// Rate of frames, Hz: the rate of every pin that is not behind a switch.
+pub const FRAME_HZ: u32 = SCAN_HZ / SCANS_PER_FRAME as u32;
+/// Frames in one slow frame: each switched signal is read once in it.
+pub const FRAMES_PER_SLOW_FRAME: u8 = 25;
+/// Rate of slow frames, Hz: the rate of each switched signal.
+pub const SLOW_HZ: u32 = FRAME_HZ / FRAMES_PER_SLOW_FRAME as u32;
+/// Inputs of one analogue switch (CD74HC4067).
+pub const SWITCH_INPUTS: u8 = 16;
+
+/// The largest 12-bit code of one conversion.
+pub const CODE_MAX: u16 = 4_095;
+/// The largest sample: the sum of four largest codes.
+pub const SAMPLE_MAX: u16 = CODE_MAX * SCANS_PER_FRAME as u16;
+/// The converter's reference, mV.
+pub const REFERENCE_MV: u32 = 3_300;
+
+/// The sample (0 to [`SAMPLE_MAX`]) that a steady voltage at the pin gives, rounded to nearest.
+#[must_use]
+pub const fn sample_from_mv(mv: u32) -> u16 {
+    let mv = if mv > REFERENCE_MV { REFERENCE_MV } else { mv };
+    ((mv * SAMPLE_MAX as u32 + REFERENCE_MV / 2) / REFERENCE_MV) as u16
+}
+
+/// The voltage at the pin that a sample stands for, mV, rounded to nearest.
+#[must_use]
+pub const fn mv_from_sample(sample: u16) -> u32 {
+    (sample as u32 * REFERENCE_MV + SAMPLE_MAX as u32 / 2) / SAMPLE_MAX as u32
+}
+
+/// How a signal reaches the converter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Input {
+    /// On a pin of its own: read in every scan, at this rank of it.
+    Direct {
+        /// Place in the scan, 0 to 11.
+        rank: u8,
+    },
+    /// Behind switch A: read while the select lines show `select`.
+    SwitchA {
+        /// S0 to S3 as a number.
+        select: u8,
+    },
+    /// Behind switch B: read while the select lines show `select`.
+    SwitchB {
+        /// S0 to S3 as a number.
+        select: u8,
+    },
+}
+
+/// One signal of the fingertip.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Channel {
+    /// What it is called in recordings, scene files, reports and faults.
+    pub name: &'static str,
+    /// Where it comes in.
+    pub input: Input,
+    /// Voltage at the pin when nothing happens, mV. Never 0: a cut wire must not look like a sensor at rest.
+    pub rest_mv: u32,
+    /// The lowest voltage that a working sensor can give, mV: below is a cut wire or a lost supply.
+    pub low_mv: u32,
+    /// The highest voltage that a working sensor can give, mV: above is a short or a sensor pressed out of range.
+    pub high_mv: u32,
+}
+
+impl Channel {
+    /// How often it is read, Hz.
+    #[must_use]
+    pub const fn rate_hz(&self) -> u32 {
+        match self.input {
+            Input::Direct { .. } => FRAME_HZ,
+            Input::SwitchA { .. } | Input::SwitchB { .. } => SLOW_HZ,
+        }
+    }
+}
+
+/// Number of PVDF films.
+pub const PVDF_COUNT: usize = 12;
+/// Number of strain gauges.
+pub const STRAIN_COUNT: usize = 12;
+/// Number of quadrants of the force sensing resistor.
+pub const FSR_COUNT: usize = 4;
+/// Number of elements of the normal-force array.
+pub const ARRAY_COUNT: usize = 10;
+
+/// Index of PVDF film 1.
+pub const PVDF: usize = 0;
+/// Index of strain gauge 1.
+pub const STRAIN: usize = PVDF + PVDF_COUNT;
+/// Index of FSR quadrant A; B, C and D follow.
+pub const FSR: usize = STRAIN + STRAIN_COUNT;
+/// Index of normal-force element 1.
+pub const ARRAY: usize = FSR + FSR_COUNT;
+/// Index of the flexor's myoelectric envelope.
+pub const MYO_FLEXOR: usize = ARRAY + ARRAY_COUNT;
+/// Index of the extensor's myoelectric envelope.
+pub const MYO_EXTENSOR: usize = MYO_FLEXOR + 1;
+/// Index of the finger's opening.
+pub const OPENING: usize = MYO_EXTENSOR + 1;
+/// Index of the motor's current.
+pub const MOTOR_CURRENT: usize = OPENING + 1;
+/// Number of signals.
+pub const COUNT: usize = MOTOR_CURRENT + 1;
+
+/// First select of the FSR quadrants on switch A.
+pub const FSR_SELECT: u8 = 12;
+/// Select of the flexor's envelope on switch B; the extensor's is the next one.
+pub const MYO_SELECT: u8 = 10;
+
+/// Every signal, in the order of the index constants.
+pub const CHANNELS: [Channel; COUNT] = [
+    pvdf("pvdf_1", 0),
+    pvdf("pvdf_2", 1),
+    pvdf("pvdf_3", 2),
+    pvdf("pvdf_4", 3),
+    pvdf("pvdf_5", 4),
+    pvdf("pvdf_6", 5),
+    pvdf("pvdf_7", 6),
+    pvdf("pvdf_8", 7),
+    pvdf("pvdf_9", 8),
+    pvdf("pvdf_10", 9),
+    pvdf("pvdf_11", 10),
+    pvdf("pvdf_12", 11),
+    strain("strain_1", 0),
+    strain("strain_2", 1),
+    strain("strain_3", 2),
+    strain("strain_4", 3),
+    strain("strain_5", 4),
+    strain("strain_6", 5),
+    strain("strain_7", 6),
+    strain("strain_8", 7),
+    strain("strain_9", 8),
+    strain("strain_10", 9),
+    strain("strain_11", 10),
+    strain("strain_12", 11),
+    fsr("fsr_a", FSR_SELECT),
+    fsr("fsr_b", FSR_SELECT + 1),
+    fsr("fsr_c", FSR_SELECT + 2),
+    fsr("fsr_d", FSR_SELECT + 3),
+    slow("array_1", 0, 200),
+    slow("array_2", 1, 200),
+    slow("array_3", 2, 200),
+    slow("array_4", 3, 200),
+    slow("array_5", 4, 200),
+    slow("array_6", 5, 200),
+    slow("array_7", 6, 200),
+    slow("array_8", 7, 200),
+    slow("array_9", 8, 200),
+    slow("array_10", 9, 200),
+    slow("myo_flexor", MYO_SELECT, front_end::MYO_REST_MV),
+    slow("myo_extensor", MYO_SELECT + 1, front_end::MYO_REST_MV),
+    slow("opening", 12, 300),
+    slow("motor_current", 13, 300),
+];
+
+const fn pvdf(name: &'static str, rank: u8) -> Channel {
+    Channel {
+        name,
+        input: Input::Direct { rank },
+        rest_mv: front_end::PVDF_REST_MV,
+        low_mv: 0,
+        high_mv: REFERENCE_MV,
+    }
+}
+
+const fn strain(name: &'static str, select: u8) -> Channel {
+    Channel {
+        name,
+        input: Input::SwitchA { select },
+        rest_mv: 1_650,
+        low_mv: 50,
+        high_mv: 3_250,
+    }
+}
+
+const fn fsr(name: &'static str, select: u8) -> Channel {
+    Channel {
+        name,
+        input: Input::SwitchA { select },
+        rest_mv: front_end::FSR_REST_MV,
+        low_mv: 100,
+        high_mv: 3_250,
+    }
+}
+
+const fn slow(name: &'static str, select: u8, rest_mv: u32) -> Channel {
+    Channel {
+        name,
+        input: Input::SwitchB { select },
+        rest_mv,
+        low_mv: 100,
+        high_mv: 3_250,
+    }
+}
+
+/// Index of the channel called `name`.
+#[must_use]
+pub fn by_name(name: &str) -> Option<usize> {
+    CHANNELS.iter().position(|channel| channel.name == name)
+}
+
+/// One rank of the scan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rank {
+    /// The pin's name.
+    pub pin: &'static str,
+    /// The converter's channel number of that pin.
+    pub adc: u8,
+}
+
+/// Number of inputs in one scan.
+pub const SCAN_LEN: usize = 14;
+/// The rank of switch A's output. The switches come last, so they have had a whole scan to settle.
+pub const RANK_SWITCH_A: usize = 12;
+/// The rank of switch B's output.
+pub const RANK_SWITCH_B: usize = 13;
+
+/// What one scan converts, in order: the twelve PVDF pins, then the outputs of switches A and B.
+pub const SCAN: [Rank; SCAN_LEN] = [
+    Rank { pin: "PA0", adc: 0 },
+    Rank { pin: "PA1", adc: 1 },
+    Rank { pin: "PA4", adc: 4 },
+    Rank { pin: "PA5", adc: 5 },
+    Rank { pin: "PA6", adc: 6 },
+    Rank { pin: "PA7", adc: 7 },
+    Rank { pin: "PB0", adc: 8 },
+    Rank { pin: "PB1", adc: 9 },
+    Rank { pin: "PC0", adc: 10 },
+    Rank { pin: "PC1", adc: 11 },
+    Rank { pin: "PC2", adc: 12 },
+    Rank { pin: "PC3", adc: 13 },
+    Rank { pin: "PC4", adc: 14 },
+    Rank { pin: "PC5", adc: 15 },
+];
+
+/// What the select lines show during the frame at this place (0 to 24) in the slow frame.
+///
+/// The sixteen inputs take the first sixteen frames; in the nine left over the lines rest on input 0, so it has long
+/// settled when its turn comes.
+#[must_use]
+pub const fn select_of_place(place: u8) -> u8 {
+    if place < SWITCH_INPUTS { place } else { 0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn indices_and_names_agree() {
+        for (index, name) in [
+            (PVDF, "pvdf_1"),
+            (STRAIN, "strain_1"),
+            (FSR, "fsr_a"),
+            (ARRAY, "array_1"),
+            (MYO_FLEXOR, "myo_flexor"),
+            (MYO_EXTENSOR, "myo_extensor"),
+            (OPENING, "opening"),
+            (MOTOR_CURRENT, "motor_current"),
+        ] {
+            assert_eq!(by_name(name), Some(index));
+        }
+        assert_eq!(by_name("pvdf_13"), None);
+    }
+
+    #[test]
+    fn no_two_channels_share_an_input_and_every_rest_is_honest() {
+        for (i, a) in CHANNELS.iter().enumerate() {
+            assert!(a.low_mv <= a.rest_mv && a.rest_mv <= a.high_mv, "{}", a.name);
+            for b in &CHANNELS[i + 1..] {
+                assert_ne!(a.input, b.input, "{} and {}", a.name, b.name);
+                assert_ne!(a.name, b.name);
+            }
+        }
+    }
+
+    #[test]
+    fn millivolts_survive_the_converter() {
+        for mv in 0..=REFERENCE_MV {
+            assert_eq!(mv_from_sample(sample_from_mv(mv)), mv);
+        }
+        assert_eq!(sample_from_mv(9_999), SAMPLE_MAX);
+    }
+
+    #[test]
+    fn every_input_has_its_frame() {
+        for select in 0..SWITCH_INPUTS {
+            assert!((0..FRAMES_PER_SLOW_FRAME).any(|place| select_of_place(place) == select));
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! What a board hands to the logic every 0.5 ms.
+
+use crate::channel::{
+    CHANNELS, COUNT, FRAMES_PER_SLOW_FRAME, Input, PVDF_COUNT, RANK_SWITCH_A, RANK_SWITCH_B, SCAN_LEN,
+    SCANS_PER_FRAME, select_of_place,
+};
+
+/// One scan's codes, 12 bits each, in the order of [`SCAN`](crate::channel::SCAN).
+pub type Scan = [u16; SCAN_LEN];
+
+/// One frame: four scans added up, 0.5 ms, each sample 0 to [`SAMPLE_MAX`](crate::channel::SAMPLE_MAX).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Frame {
+    /// Frames since the scan was started, gaps included.
+    pub sequence: u32,
+    /// Whether all four scans are of this frame. After an overrun the samples mean nothing until this is true again.
+    pub valid: bool,
+    /// The PVDF films.
+    pub pvdf: [u16; PVDF_COUNT],
+    /// The output of switch A at [`Frame::select`].
+    pub switch_a: u16,
+    /// The output of switch B at [`Frame::select`].
+    pub switch_b: u16,
+}
+
+impl Frame {
+    /// Adds up a frame's scans.
+    #[must_use]
+    pub fn from_scans(sequence: u32, scans: &[Scan; SCANS_PER_FRAME]) -> Self {
+        let mut sum = [0u16; SCAN_LEN];
+        for scan in scans {
+            for (total, code) in sum.iter_mut().zip(scan) {
+                *total += code;
+            }
+        }
+        let mut pvdf = [0; PVDF_COUNT];
+        pvdf.copy_from_slice(&sum[..PVDF_COUNT]);
+        Self {
+            sequence,
+            valid: true,
+            pvdf,
+            switch_a: sum[RANK_SWITCH_A],
+            switch_b: sum[RANK_SWITCH_B],
+        }
+    }
+
+    /// A frame that was lost: its samples say nothing.
+    #[must_use]
+    pub const fn lost(sequence: u32) -> Self {
+        Self {
+            sequence,
+            valid: false,
+            pvdf: [0; PVDF_COUNT],
+            switch_a: 0,
+            switch_b: 0,
+        }
+    }
+
+    /// Place in the slow frame, 0 to 24.
+    #[must_use]
+    pub const fn place(&self) -> u8 {
+        (self.sequence % FRAMES_PER_SLOW_FRAME as u32) as u8
+    }
+
+    /// What the select lines showed while it was taken.
+    #[must_use]
+    pub const fn select(&self) -> u8 {
+        select_of_place(self.place())
+    }
+
+    /// Whether it is the last one of its slow frame.
+    #[must_use]
+    pub const fn ends_slow_frame(&self) -> bool {
+        self.place() == FRAMES_PER_SLOW_FRAME - 1
+    }
+}
+
+/// The codes that one scan reads when every channel's pin has the code in `pins`, and the select lines show `select`.
+///
+/// This is the wiring seen from outside: an emulated or simulated board uses it to put pins on the converter.
+#[must_use]
+pub fn scan_of_pins(pins: &[u16; COUNT], select: u8) -> Scan {
+    let mut scan = [0; SCAN_LEN];
+    for (channel, &code) in CHANNELS.iter().zip(pins) {
+        match channel.input {
+            Input::Direct { rank } => scan[usize::from(rank)] = code,
+            Input::SwitchA { select: own } if own == select => scan[RANK_SWITCH_A] = code,
+            Input::SwitchB { select: own } if own == select => scan[RANK_SWITCH_B] = code,
+            Input::SwitchA { .. } | Input::SwitchB { .. } => {}
+        }
+    }
+    scan
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::channel::{FSR, MYO_EXTENSOR, MYO_SELECT, SAMPLE_MAX};
+
+    #[test]
+    fn four_full_scale_codes_are_full_scale() {
+        let frame = Frame::from_scans(7, &[[4_095; SCAN_LEN]; SCANS_PER_FRAME]);
+        assert_eq!(frame.pvdf, [SAMPLE_MAX; PVDF_COUNT]);
+        assert_eq!(
+            (frame.switch_a, frame.switch_b, frame.place()),
+            (SAMPLE_MAX, SAMPLE_MAX, 7)
+        );
+    }
+
+    #[test]
+    fn a_switch_shows_the_selected_channel_only() {
+        let mut pins = [0; COUNT];
+        pins[MYO_EXTENSOR] = 123;
+        pins[FSR] = 45;
+        assert_eq!(scan_of_pins(&pins, MYO_SELECT + 1)[RANK_SWITCH_B], 123);
+        assert_eq!(scan_of_pins(&pins, MYO_SELECT)[RANK_SWITCH_B], 0);
+        assert_eq!(scan_of_pins(&pins, 12)[RANK_SWITCH_A], 45);
+    }
+
+    #[test]
+    fn one_frame_in_twenty_five_ends_a_slow_frame() {
+        assert_eq!((0..100).filter(|&n| Frame::lost(n).ends_slow_frame()).count(), 4);
+    }
+}

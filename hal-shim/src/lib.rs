@@ -1,0 +1,18 @@
+//! The line between Tenax's logic and its hardware.
+//!
+//! What crosses it, in the order in which data goes: [`channel`] says which signal is on which pin, [`frame`] is what a
+//! board hands to the logic every 0.5 ms, [`motor`] is what the logic hands back, [`words`] are the states and faults
+//! that both sides and a person watching name alike, and [`wire`] is how all of it travels over the serial line.
+//! Nothing here decides anything.
+#![no_std]
+#![forbid(unsafe_code)]
+
+#[cfg(test)]
+extern crate std;
+
+pub mod channel;
+pub mod frame;
+pub mod front_end;
+pub mod motor;
+pub mod wire;
+pub mod words;

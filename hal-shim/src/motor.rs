@@ -1,0 +1,75 @@
+//! What the logic hands back: how to drive the motor that closes and opens the hand.
+
+use serde::{Deserialize, Serialize};
+
+/// Part of the full supply on the motor, 0 to 1000 per mille.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(from = "u16", into = "u16")]
+pub struct Duty(u16);
+
+impl Duty {
+    /// The whole supply.
+    pub const FULL: Self = Self(1_000);
+
+    /// This many per mille; more than 1000 is 1000.
+    #[must_use]
+    pub const fn per_mille(value: u16) -> Self {
+        Self(if value > 1_000 { 1_000 } else { value })
+    }
+
+    /// Per mille of the full supply, 0 to 1000.
+    #[must_use]
+    pub const fn as_per_mille(self) -> u16 {
+        self.0
+    }
+}
+
+impl From<u16> for Duty {
+    fn from(value: u16) -> Self {
+        Self::per_mille(value)
+    }
+}
+
+impl From<Duty> for u16 {
+    fn from(duty: Duty) -> Self {
+        duty.0
+    }
+}
+
+/// How the motor is driven for the next 0.5 ms.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum MotorDrive {
+    /// Not driven. The gear does not run backwards, so the hand keeps what it holds.
+    #[default]
+    Coast,
+    /// Closing.
+    Close(Duty),
+    /// Opening.
+    Open(Duty),
+}
+
+impl MotorDrive {
+    /// Whether it opens the hand.
+    #[must_use]
+    pub const fn opens(self) -> bool {
+        matches!(self, Self::Open(_))
+    }
+
+    /// Whether it closes the hand.
+    #[must_use]
+    pub const fn closes(self) -> bool {
+        matches!(self, Self::Close(_))
+    }
+}
+
+/// A board's motor bridge.
+///
+/// Whoever implements it promises:
+/// - [`drive`](Self::drive) takes effect at once, never blocks, and never drives both sides at the same time, not even
+///   between two calls;
+/// - before the first call, after [`MotorDrive::Coast`], and after a panic or a reset by the watchdog, neither side is
+///   driven.
+pub trait MotorBridge {
+    /// Drives the motor as told until the next call.
+    fn drive(&mut self, drive: MotorDrive);
+}

@@ -1,0 +1,403 @@
+//! The messages of the serial line, both ways, and the frames that carry them.
+//!
+//! A frame is `COBS(postcard(version, sequence, message) ++ CRC-32)` and a zero byte. The version and the sequence number
+//! come first, so that a receiver of another version can say so, and a receiver that missed frames can count them.
+//! Variants are only ever added at the end. `tests/golden.rs` holds the bytes of one of each: if those change, the
+//! version must.
+
+use core::ops::RangeInclusive;
+
+use crc::{CRC_32_ISO_HDLC, Crc};
+use postcard::de_flavors::crc::from_bytes_u32;
+use postcard::ser_flavors::{Cobs, Flavor, Slice, crc::CrcModifier};
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+
+use crate::channel::{COUNT, FRAMES_PER_SLOW_FRAME};
+use crate::motor::MotorDrive;
+use crate::words::{Cause, DriveSource, Fault, GripMode};
+
+/// The version of every message below. A receiver refuses frames of another.
+pub const VERSION: u8 = 1;
+/// The serial line's rate, baud, 8N1.
+pub const BAUD: u32 = 921_600;
+/// The longest frame, bytes, the final zero included: what a sender's and a receiver's buffer must hold.
+pub const FRAME_MAX: usize = 512;
+
+static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+
+/// What one tick (0.5 ms) decided.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TickRecord {
+    /// The largest vibration envelope of all films, in samples (14 bits).
+    pub vibration: u16,
+    /// Whether it is above S1.
+    pub s1: bool,
+    /// What drives the motor.
+    pub drive: MotorDrive,
+    /// Who drives it.
+    pub source: DriveSource,
+}
+
+/// The force sensor's readings of a slow frame (Prosthesis, section 4).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Forces {
+    /// The paper's Fn, mN: see `tenax_logic::forces` for what it is not.
+    pub fn_mn: i32,
+    /// Shear along x, mN.
+    pub fx_mn: i32,
+    /// Shear along y, mN.
+    pub fy_mn: i32,
+    /// Shear, mN.
+    pub ft_mn: i32,
+    /// Ft/Fn, per mille. None while the finger is not loaded enough for the ratio to mean anything.
+    pub ratio_permille: Option<u16>,
+}
+
+/// Everything a slow frame (12.5 ms) decided.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Slow {
+    /// Sequence number of its last frame.
+    pub frame: u32,
+    /// Its ticks.
+    pub ticks: [TickRecord; FRAMES_PER_SLOW_FRAME as usize],
+    /// The mode after its last tick.
+    pub mode: GripMode,
+    /// Forces, None while the force sensor gives no number.
+    pub forces: Option<Forces>,
+    /// Whether Ft/Fn is above S2.
+    pub s2: bool,
+    /// The S2 in force, per mille.
+    pub s2_permille: u16,
+    /// The flexor's envelope above rest, mV. None while the sensor gives no number.
+    pub flexor_mv: Option<i16>,
+    /// The extensor's.
+    pub extensor_mv: Option<i16>,
+    /// Whether a myosensor is active, its hold time included.
+    pub wearer_active: bool,
+    /// CRC-32 of every valid sample that the slow frame's ticks were given: the two ends agree on the input too.
+    pub samples_crc: u32,
+}
+
+/// What the board counted since it was switched on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Counters {
+    /// Frames taken.
+    pub frames: u32,
+    /// Frames lost.
+    pub frames_lost: u32,
+    /// Times the converter or its DMA overran and was restarted.
+    pub overruns: u32,
+    /// Control ticks run.
+    pub ticks: u32,
+    /// Ticks that ended after the next frame had begun.
+    pub ticks_late: u32,
+    /// Telemetry messages dropped so as not to delay control.
+    pub telemetry_dropped: u32,
+    /// Frames received that were no valid message.
+    pub bad_frames: u32,
+}
+
+/// Something that happened once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Event {
+    /// Sequence number of the frame in which it happened.
+    pub frame: u32,
+    /// What.
+    pub kind: EventKind,
+}
+
+/// What can happen once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum EventKind {
+    /// The mode changed.
+    Mode {
+        /// From.
+        from: GripMode,
+        /// To.
+        to: GripMode,
+        /// Why.
+        cause: Cause,
+    },
+    /// Something went wrong, or came back.
+    Fault(Fault),
+    /// A stroke ended with this estimate, from which S2 follows.
+    Stroke {
+        /// The peak of Ft/Fn before it slid, per mille.
+        mu_s_permille: u16,
+        /// The new S2, per mille.
+        s2_permille: u16,
+    },
+    /// More events happened in one tick than are kept; this many were lost.
+    EventsLost(u16),
+}
+
+/// Why a command was not carried out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Refusal {
+    /// The value is outside what [`Setting::allowed`] gives.
+    OutOfRange,
+    /// A finger that is loaded cannot be zeroed.
+    Loaded,
+    /// The sensor that it needs gives no number.
+    SensorLost,
+    /// Not while the wearer's muscles are active.
+    WearerActive,
+}
+
+/// From the board.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Up {
+    /// The board has started.
+    Hello {
+        /// Samples a second on every direct pin.
+        frame_hz: u16,
+        /// Why it started, if not because it was switched on.
+        after: Option<Fault>,
+    },
+    /// A slow frame.
+    Slow(Slow),
+    /// Something that happened once.
+    Event(Event),
+    /// The counters, ten times a second.
+    Counters(Counters),
+    /// A command was carried out, or was not.
+    Ack {
+        /// Sequence number of the command's frame.
+        of: u16,
+        /// Why not.
+        refused: Option<Refusal>,
+    },
+    /// The last samples of every channel, on request.
+    Samples {
+        /// Sequence number of the last frame in it.
+        frame: u32,
+        /// In the order of [`CHANNELS`](crate::channel::CHANNELS).
+        #[serde(with = "samples")]
+        samples: [u16; COUNT],
+    },
+}
+
+/// A number that can be set from outside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Setting {
+    /// S1: vibration envelope that means slip, mV at the pin.
+    S1Mv(u16),
+    /// S2: Ft/Fn that means incipient slip, per mille.
+    S2Permille(u16),
+    /// Envelope above rest at which a myosensor is active, mV.
+    MyoOnMv(u16),
+    /// Normal force above which the reflex closes no further, mN.
+    ForceCeilingMn(u32),
+}
+
+impl Setting {
+    /// Name, unit, value, and the values that are accepted.
+    #[must_use]
+    pub const fn describe(self) -> (&'static str, &'static str, u32, RangeInclusive<u32>) {
+        match self {
+            Self::S1Mv(value) => ("S1", "mV", value as u32, 5..=1_500),
+            Self::S2Permille(value) => ("S2", "per mille", value as u32, 50..=1_500),
+            Self::MyoOnMv(value) => ("myo on", "mV", value as u32, 20..=2_000),
+            Self::ForceCeilingMn(value) => ("force ceiling", "mN", value, 500..=140_000),
+        }
+    }
+
+    /// Whether the value is accepted.
+    #[must_use]
+    pub fn is_allowed(self) -> bool {
+        let (_, _, value, allowed) = self.describe();
+        allowed.contains(&value)
+    }
+}
+
+/// The longest that one [`Down::Drive`] may hold, ms: a lost link stops the motor after that.
+pub const DRIVE_HOLD_MAX_MS: u16 = 250;
+
+/// To the board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Down {
+    /// Answer with [`Up::Ack`].
+    Ping,
+    /// Drive the motor for `hold_ms`, at most [`DRIVE_HOLD_MAX_MS`]; sent again and again while a key is held.
+    Drive {
+        /// How.
+        drive: MotorDrive,
+        /// For how long, ms.
+        hold_ms: u16,
+    },
+    /// Change a setting.
+    Set(Setting),
+    /// Begin (true) or end (false) a stroke that measures the friction of a surface.
+    Stroke(bool),
+    /// Take the force sensor's readings as zero. Refused while the finger is loaded.
+    Zero,
+    /// Send [`Up::Samples`] once.
+    Samples,
+}
+
+/// A frame's contents.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Received<T> {
+    /// The sender's sequence number.
+    pub sequence: u16,
+    /// The message.
+    pub message: T,
+}
+
+/// Why a frame was skipped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BadFrame {
+    /// Not COBS, or its CRC is wrong, or it is no message.
+    Garbled,
+    /// Of another version of this protocol.
+    Version(u8),
+    /// Longer than [`FRAME_MAX`].
+    TooLong,
+}
+
+/// Writes `message` as one frame into `buffer`; returns the frame, its zero byte included.
+///
+/// None if the buffer is too small; [`FRAME_MAX`] bytes are always enough.
+pub fn encode<'a, T: Serialize>(sequence: u16, message: &T, buffer: &'a mut [u8]) -> Option<&'a mut [u8]> {
+    let cobs = Cobs::try_new(Slice::new(buffer)).ok()?;
+    let mut serializer = postcard::Serializer {
+        output: CrcModifier::new(cobs, CRC.digest()),
+    };
+    (VERSION, sequence, message).serialize(&mut serializer).ok()?;
+    serializer.output.finalize().ok()
+}
+
+/// Takes bytes as they come and gives messages. Survives anything; counts nothing itself, says what it skipped.
+#[derive(Debug)]
+pub struct Receiver {
+    buffer: [u8; FRAME_MAX],
+    length: usize,
+    overlong: bool,
+}
+
+impl Default for Receiver {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Receiver {
+    /// One that has heard nothing yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            buffer: [0; FRAME_MAX],
+            length: 0,
+            overlong: false,
+        }
+    }
+
+    /// Takes one byte. Some when it ends a frame.
+    pub fn push<T: DeserializeOwned>(&mut self, byte: u8) -> Option<Result<Received<T>, BadFrame>> {
+        if byte != 0 {
+            match self.buffer.get_mut(self.length) {
+                Some(slot) => {
+                    *slot = byte;
+                    self.length += 1;
+                }
+                None => self.overlong = true,
+            }
+            return None;
+        }
+        let (length, overlong) = (self.length, self.overlong);
+        self.length = 0;
+        self.overlong = false;
+        if overlong {
+            return Some(Err(BadFrame::TooLong));
+        }
+        // A zero byte on its own is a sender clearing its throat.
+        (length > 0).then(|| decode(&mut self.buffer[..length]))
+    }
+}
+
+fn decode<T: DeserializeOwned>(bytes: &mut [u8]) -> Result<Received<T>, BadFrame> {
+    let length = cobs::decode_in_place(bytes).map_err(|_| BadFrame::Garbled)?;
+    let bytes = &bytes[..length];
+    let parsed = from_bytes_u32::<(u8, u16, T)>(bytes, CRC.digest());
+    match parsed {
+        Ok((VERSION, sequence, message)) => Ok(Received { sequence, message }),
+        Ok((version, ..)) => Err(BadFrame::Version(version)),
+        // A message of another version need not parse, but its CRC still covers its version byte.
+        Err(_) => match bytes.split_last_chunk::<4>() {
+            Some((body, crc)) if CRC.checksum(body) == u32::from_le_bytes(*crc) => match body.first() {
+                Some(&version) if version != VERSION => Err(BadFrame::Version(version)),
+                _ => Err(BadFrame::Garbled),
+            },
+            _ => Err(BadFrame::Garbled),
+        },
+    }
+}
+
+/// Running CRC-32 over a slow frame's samples, for [`Slow::samples_crc`].
+#[derive(Clone)]
+pub struct SamplesCrc(crc::Digest<'static, u32>);
+
+impl Default for SamplesCrc {
+    fn default() -> Self {
+        Self(CRC.digest())
+    }
+}
+
+impl core::fmt::Debug for SamplesCrc {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("SamplesCrc")
+    }
+}
+
+impl SamplesCrc {
+    /// Takes a frame's samples in.
+    pub fn update(&mut self, frame: &crate::frame::Frame) {
+        for sample in frame.pvdf.iter().chain([&frame.switch_a, &frame.switch_b]) {
+            self.0.update(&sample.to_le_bytes());
+        }
+    }
+
+    /// The CRC so far; starts anew.
+    pub fn take(&mut self) -> u32 {
+        core::mem::take(self).0.finalize()
+    }
+}
+
+/// Arrays of more than 32 elements, which serde does not know.
+mod samples {
+    use super::COUNT;
+    use core::fmt;
+    use serde::de::{Error, SeqAccess, Visitor};
+    use serde::ser::SerializeTuple;
+    use serde::{Deserializer, Serializer};
+
+    pub fn serialize<S: Serializer>(samples: &[u16; COUNT], serializer: S) -> Result<S::Ok, S::Error> {
+        let mut tuple = serializer.serialize_tuple(COUNT)?;
+        for sample in samples {
+            tuple.serialize_element(sample)?;
+        }
+        tuple.end()
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[u16; COUNT], D::Error> {
+        struct Samples;
+        impl<'de> Visitor<'de> for Samples {
+            type Value = [u16; COUNT];
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(f, "{COUNT} samples")
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Self::Value, A::Error> {
+                let mut samples = [0; COUNT];
+                for (index, sample) in samples.iter_mut().enumerate() {
+                    *sample = seq
+                        .next_element()?
+                        .ok_or_else(|| A::Error::invalid_length(index, &self))?;
+                }
+                Ok(samples)
+            }
+        }
+        deserializer.deserialize_tuple(COUNT, Samples)
+    }
+}

@@ -1,0 +1,119 @@
+//! The states, causes and faults that the fingertip, the wire and a person watching call by the same names.
+//!
+//! New ones are added at the end: their place is their number on the wire.
+
+use serde::{Deserialize, Serialize};
+
+/// What the grip reflex is doing (Prosthesis, figure 9).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum GripMode {
+    /// Something that the reflex cannot do without is missing (at boot: not yet seen). It commands nothing; the wearer
+    /// still drives the hand.
+    #[default]
+    Standby,
+    /// A myosensor is active or a drive command holds: the hand is theirs, the reflex commands nothing.
+    Wearer,
+    /// Nobody else drives the hand: vibration and Ft/Fn are watched.
+    Watch,
+    /// Vibration passed S1: the object slips, the hand closes.
+    Slip,
+    /// Ft/Fn passed S2: it is about to slip, the hand tightens.
+    Incipient,
+    /// After closing: the object settles in the grasp, and what the films hear of that is not slip.
+    Settle,
+    /// A stroke over a surface, to measure its friction: slip is expected and answered by nothing.
+    Explore,
+}
+
+/// Why the mode changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Cause {
+    /// Every sensor that the reflex needs gives readings.
+    SensorsReady,
+    /// One that it needs does not.
+    SensorsLost,
+    /// A myosensor became active, or a drive command came.
+    TakenOver,
+    /// Both myosensors are inactive and no drive command holds.
+    Released,
+    /// Vibration above S1.
+    S1,
+    /// Ft/Fn above S2.
+    S2,
+    /// The closing pulse is over, or the force ceiling is reached.
+    PulseOver,
+    /// The object has settled.
+    Settled,
+    /// A stroke was asked for.
+    StrokeBegun,
+    /// The stroke is over.
+    StrokeOver,
+}
+
+/// Why a sensor gives no number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Reason {
+    /// Below its live zero: a cut wire, a lost supply.
+    Dead,
+    /// Against the upper end of its range: a short, or loaded beyond what it can tell.
+    Saturated,
+    /// The same code for longer than the noise of any working sensor allows.
+    Stuck,
+    /// Loaded when the hand was switched on, so that its zero is not known.
+    PressedAtBoot,
+}
+
+/// What the fingertip can no longer do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Capability {
+    /// Feel vibration: S1.
+    Vibration,
+    /// Measure force: S2, and the force ceiling.
+    Force,
+    /// Know that the wearer's muscles are at rest: the whole reflex.
+    WearerIntent,
+}
+
+/// Who drives the motor in a tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum DriveSource {
+    /// Nobody: the motor is not driven.
+    #[default]
+    Nobody,
+    /// The wearer's muscles.
+    Wearer,
+    /// A drive command from the serial line.
+    Link,
+    /// The slip reflex.
+    Reflex,
+}
+
+/// What went wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Fault {
+    /// A sensor gives no number any more.
+    SensorLost {
+        /// Index in [`CHANNELS`](crate::channel::CHANNELS).
+        channel: u8,
+        /// Why.
+        reason: Reason,
+    },
+    /// A lost sensor gives numbers again.
+    SensorBack {
+        /// Index in [`CHANNELS`](crate::channel::CHANNELS).
+        channel: u8,
+    },
+    /// Too few sensors are left for this.
+    CapabilityLost(Capability),
+    /// Enough of them are back.
+    CapabilityBack(Capability),
+    /// Frames were lost: the converter or its DMA fell behind and was restarted.
+    FramesLost {
+        /// How many.
+        count: u32,
+    },
+    /// The last run ended with the watchdog's reset.
+    WatchdogReset,
+    /// The last run ended in a panic.
+    PanicReset,
+}

@@ -1,0 +1,1 @@
+//! Closed loops, properties and published results: see `tests/`.
