@@ -1,0 +1,1 @@
+//! The host's own build of the logic, wired to a plant directly: no converter, no line, no core.
