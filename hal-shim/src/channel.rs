@@ -244,13 +244,43 @@ pub const SCAN: [Rank; SCAN_LEN] = [
     Rank { pin: "PC5", adc: 15 },
 ];
 
-/// What the select lines show during the frame at this place (0 to 24) in the slow frame.
+/// What the select lines show during the frame at each place (0 to 24) in the slow frame.
 ///
-/// The sixteen inputs take the first sixteen frames; in the nine left over the lines rest on input 0, so it has long
-/// settled when its turn comes.
+/// The sixteen inputs take the first sixteen frames. The wearer comes first, so the nine frames left over read the
+/// myosensors twice more: their readings are never more than 6.5 ms apart. In between the lines rest on input 0, which
+/// has long settled when its turn comes.
+const SELECTS: [u8; FRAMES_PER_SLOW_FRAME as usize] = [
+    0,
+    1,
+    2,
+    3,
+    4,
+    5,
+    6,
+    7,
+    8,
+    9,
+    10,
+    11,
+    12,
+    13,
+    14,
+    15,
+    MYO_SELECT,
+    MYO_SELECT + 1,
+    0,
+    0,
+    0,
+    0,
+    MYO_SELECT,
+    MYO_SELECT + 1,
+    0,
+];
+
+/// What the select lines show during the frame at this place in the slow frame. A place above 24 is taken modulo 25.
 #[must_use]
 pub const fn select_of_place(place: u8) -> u8 {
-    if place < SWITCH_INPUTS { place } else { 0 }
+    SELECTS[(place % FRAMES_PER_SLOW_FRAME) as usize]
 }
 
 #[cfg(test)]

@@ -59,8 +59,6 @@ pub enum Reason {
     Saturated,
     /// The same code for longer than the noise of any working sensor allows.
     Stuck,
-    /// Loaded when the hand was switched on, so that its zero is not known.
-    PressedAtBoot,
 }
 
 /// What the fingertip can no longer do.
@@ -116,4 +114,10 @@ pub enum Fault {
     WatchdogReset,
     /// The last run ended in a panic.
     PanicReset,
+    /// The force sensor was loaded when the hand was switched on. Its readings still count from the calibrated zero,
+    /// which is never taken by itself, but whoever relies on them should know.
+    PressedAtBoot {
+        /// Index in [`CHANNELS`](crate::channel::CHANNELS).
+        channel: u8,
+    },
 }
