@@ -1,31 +1,284 @@
 //! The whole fingertip: a frame goes in, a motor drive comes out.
+//!
+//! In each tick the senses take the frame, the machine of figure 9 asks them its questions in the paper's order (first
+//! the wearer, then S1, then S2), and the arbiter says who drives the motor.
 
+use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{Down, Event, Refusal, Slow};
+use tenax_hal_shim::wire::{DRIVE_HOLD_MAX_MS, Down, Event, EventKind, Refusal, Setting, Slow, TickRecord};
+use tenax_hal_shim::words::{Cause, GripMode};
+
+use crate::arbiter::{Wishes, arbitrate};
+use crate::config::Config;
+use crate::friction::FrictionDetector;
+use crate::grip::Reflex;
+use crate::journal::Journal;
+use crate::mode;
+use crate::senses::Senses;
+
+/// A drive command that holds for some frames more.
+#[derive(Clone, Copy, Debug)]
+struct LinkDrive {
+    drive: MotorDrive,
+    frames_left: u32,
+}
+
+/// The detectors' verdict of one tick.
+#[derive(Clone, Copy, Debug, Default)]
+struct Verdict {
+    slip: bool,
+    incipient: bool,
+}
 
 /// The fingertip's memory between ticks.
-#[derive(Debug, Default)]
-pub struct Fingertip {}
+#[derive(Clone, Debug, Default)]
+pub struct Fingertip {
+    config: Config,
+    senses: Senses,
+    friction: FrictionDetector,
+    s2: bool,
+    mode: GripMode,
+    reflex: Reflex,
+    link: Option<LinkDrive>,
+    journal: Journal,
+    slow: Option<Slow>,
+}
 
 impl Fingertip {
-    /// Takes one frame, decides, says how to drive the motor until the next.
-    pub fn tick(&mut self, _frame: &Frame) -> MotorDrive {
-        MotorDrive::Coast
+    /// A fingertip with these thresholds and limits.
+    #[must_use]
+    pub fn new(config: Config) -> Self {
+        Self {
+            config,
+            ..Self::default()
+        }
     }
 
-    /// Carries out a command, or says why not.
-    pub fn command(&mut self, _command: &Down) -> Result<(), Refusal> {
-        Ok(())
+    /// Takes one frame, decides, and says how to drive the motor until the next.
+    ///
+    /// Frames come one by one, lost ones included ([`Frame::lost`]): time is counted by them.
+    pub fn tick(&mut self, frame: &Frame) -> MotorDrive {
+        self.sense(frame);
+        let verdict = Verdict {
+            slip: self.senses.vibration.s1,
+            incipient: self.s2,
+        };
+        self.act(frame, verdict)
+    }
+
+    /// The oracle's tick: the same fingertip, told by somebody who knows whether the object slips.
+    pub fn tick_told(&mut self, frame: &Frame, slips: bool) -> MotorDrive {
+        self.sense(frame);
+        self.act(
+            frame,
+            Verdict {
+                slip: slips,
+                incipient: false,
+            },
+        )
+    }
+
+    /// Carries out a command.
+    ///
+    /// # Errors
+    /// Says why it was not carried out; then nothing has changed.
+    pub fn command(&mut self, command: &Down) -> Result<(), Refusal> {
+        match *command {
+            Down::Ping | Down::Samples => Ok(()),
+            Down::Drive { hold_ms, .. } if hold_ms > DRIVE_HOLD_MAX_MS => Err(Refusal::OutOfRange),
+            Down::Drive {
+                drive: MotorDrive::Close(_),
+                ..
+            } if self.senses.gate.is_active() => Err(Refusal::WearerActive),
+            Down::Drive { drive, hold_ms } => {
+                let frames_left = u32::from(hold_ms) * FRAME_HZ / 1_000;
+                self.link = Some(LinkDrive { drive, frames_left });
+                Ok(())
+            }
+            Down::Set(setting) => {
+                if self.config.set(setting) {
+                    Ok(())
+                } else {
+                    Err(Refusal::OutOfRange)
+                }
+            }
+            Down::Stroke(true) => self.begin_stroke(),
+            Down::Stroke(false) => {
+                self.end_stroke();
+                Ok(())
+            }
+            Down::Zero if self.senses.forces.is_none() => Err(Refusal::SensorLost),
+            Down::Zero => {
+                if self.senses.zero() {
+                    Ok(())
+                } else {
+                    Err(Refusal::Loaded)
+                }
+            }
+        }
     }
 
     /// The slow frame that the last tick ended, if it ended one.
     pub fn take_slow(&mut self) -> Option<Slow> {
-        None
+        self.slow.take()
     }
 
     /// The oldest thing that happened and has not been taken yet.
     pub fn next_event(&mut self) -> Option<Event> {
-        None
+        self.journal.next_event()
+    }
+
+    /// What the reflex is doing.
+    #[must_use]
+    pub const fn mode(&self) -> GripMode {
+        self.mode
+    }
+
+    /// Whether a myosensor is active, its hold time included.
+    #[must_use]
+    pub const fn wearer_active(&self) -> bool {
+        self.senses.gate.is_active()
+    }
+
+    fn sense(&mut self, frame: &Frame) {
+        self.journal.begin(frame);
+        if frame.valid {
+            self.senses.take(&self.config, frame, &mut self.journal);
+        } else {
+            self.senses.lose(&self.config, &mut self.journal);
+        }
+        if self.senses.forces.is_none() {
+            self.s2 = self.friction.process(&self.config.friction, None);
+        } else if self.senses.forces_are_new {
+            let ratio = self.senses.forces.and_then(|forces| forces.ratio_permille);
+            self.s2 = self.friction.process(&self.config.friction, ratio);
+        }
+    }
+
+    fn act(&mut self, frame: &Frame, verdict: Verdict) -> MotorDrive {
+        self.link = self.link.and_then(|link| {
+            let frames_left = link.frames_left.checked_sub(1)?;
+            Some(LinkDrive { frames_left, ..link })
+        });
+        self.step_mode(verdict);
+        let wishes = Wishes {
+            wearer_active: self.senses.gate.is_active(),
+            wearer: self.senses.gate.wish(&self.config.gate),
+            link: self.link.map(|link| link.drive),
+            reflex: Reflex::drive(&self.config.grip, self.mode),
+        };
+        // A lost frame says nothing about anybody's wish, so nobody's is carried out.
+        let (drive, source) = if frame.valid {
+            arbitrate(wishes)
+        } else {
+            Default::default()
+        };
+        self.reflex.tick(self.mode, self.senses.grip(&self.config));
+        let listens = mode::listens(self.mode);
+        self.journal.tick(
+            frame.place(),
+            TickRecord {
+                vibration: self.senses.vibration.level,
+                s1: listens && self.senses.vibration.s1,
+                drive,
+                source,
+            },
+        );
+        if frame.ends_slow_frame() {
+            self.slow = Some(self.end_slow_frame(frame));
+        }
+        drive
+    }
+
+    /// The flow chart, asked from the top in every tick.
+    fn step_mode(&mut self, verdict: Verdict) {
+        let grip = self.senses.grip(&self.config);
+        let config = self.config.grip;
+        let taken_over = self.senses.gate.is_active() || self.link.is_some();
+        self.cause(if self.senses.ready() {
+            Cause::SensorsReady
+        } else {
+            Cause::SensorsLost
+        });
+        self.cause(if taken_over {
+            Cause::TakenOver
+        } else {
+            Cause::Released
+        });
+        let may_close = self.reflex.may_close(&config, grip);
+        if verdict.slip && may_close {
+            self.cause(Cause::S1);
+        }
+        if verdict.incipient && may_close {
+            self.cause(Cause::S2);
+        }
+        if mode::closes(self.mode) && self.reflex.pulse_over(&config, self.mode, verdict.slip, grip) {
+            self.cause(Cause::PulseOver);
+        }
+        if self.mode == GripMode::Settle && self.reflex.settled(&config) {
+            self.cause(Cause::Settled);
+        }
+    }
+
+    /// Lets a cause do what the table says, if it says anything.
+    fn cause(&mut self, cause: Cause) {
+        let Some(to) = mode::next(self.mode, cause) else {
+            return;
+        };
+        let from = core::mem::replace(&mut self.mode, to);
+        self.reflex.enter(to);
+        self.journal.mode(from, to, cause);
+        if from == GripMode::Explore {
+            self.measured();
+        }
+    }
+
+    fn begin_stroke(&mut self) -> Result<(), Refusal> {
+        if self.senses.gate.is_active() {
+            return Err(Refusal::WearerActive);
+        }
+        if self.senses.forces.is_none() {
+            return Err(Refusal::SensorLost);
+        }
+        self.cause(Cause::StrokeBegun);
+        if self.mode != GripMode::Explore {
+            return Err(Refusal::SensorLost);
+        }
+        self.friction.begin_stroke();
+        Ok(())
+    }
+
+    fn end_stroke(&mut self) {
+        self.cause(Cause::StrokeOver);
+    }
+
+    /// A stroke is over, by command or because somebody took over: what it measured becomes S2, if that is allowed.
+    fn measured(&mut self) {
+        let Some(measured) = self.friction.end_stroke(&self.config.friction) else {
+            return;
+        };
+        if self.config.set(Setting::S2Permille(measured.s2_permille)) {
+            self.journal.event(EventKind::Stroke {
+                mu_s_permille: measured.mu_s_permille,
+                s2_permille: measured.s2_permille,
+            });
+        }
+    }
+
+    fn end_slow_frame(&mut self, frame: &Frame) -> Slow {
+        let (ticks, samples_crc) = self.journal.take_slow();
+        Slow {
+            frame: frame.sequence,
+            ticks,
+            mode: self.mode,
+            forces: self.senses.forces,
+            s2: mode::listens(self.mode) && self.s2,
+            s2_permille: self.config.friction.s2_permille,
+            flexor_mv: self.senses.gate.flexor.mv(),
+            extensor_mv: self.senses.gate.extensor.mv(),
+            wearer_active: self.senses.gate.is_active(),
+            samples_crc,
+        }
     }
 }

@@ -1,5 +1,25 @@
 //! What the fingertip decides. No heap, no I/O, no clock of its own: time arrives as frames.
+//!
+//! Data goes one way, and so do the modules: [`health`] says which readings can be believed; [`vibration`] (S1),
+//! [`fsr`], [`forces`] and [`friction`] (S2) and [`gate`] (the wearer's muscles) say what they mean; [`senses`] puts a
+//! frame through all of them; [`mode`], [`grip`] and [`arbiter`] decide; [`fingertip`] is the whole, and [`journal`] is
+//! what it tells. [`config`] holds every number that can be chosen.
 #![no_std]
 #![forbid(unsafe_code)]
 
+#[cfg(test)]
+extern crate std;
+
+pub mod arbiter;
+pub mod config;
 pub mod fingertip;
+pub mod forces;
+pub mod friction;
+pub mod fsr;
+pub mod gate;
+pub mod grip;
+pub mod health;
+pub mod journal;
+pub mod mode;
+pub mod senses;
+pub mod vibration;

@@ -1,0 +1,135 @@
+//! Every number that can be chosen. Plain values, apart from all state, so that a whole set can be swapped at once.
+
+use tenax_hal_shim::channel::sample_from_mv;
+use tenax_hal_shim::wire::Setting;
+
+/// Frames in this many milliseconds.
+#[must_use]
+pub const fn frames(ms: u32) -> u32 {
+    ms * tenax_hal_shim::channel::FRAME_HZ / 1_000
+}
+
+/// Thresholds of the vibration detector.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct VibrationConfig {
+    /// S1: envelope that means slip, in samples (14 bits).
+    pub s1: u16,
+    /// A vibration whose envelope above the slip band is more than this part of the one inside it, per mille, is a
+    /// knock. On real recordings slip onsets stay below 300, a shaken rig reaches 2500.
+    pub knock_permille: u16,
+    /// A knock is over after this long, in frames; what lasts longer is slip whatever it sounds like.
+    pub knock_frames: u32,
+}
+
+/// Thresholds of the friction detector.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrictionConfig {
+    /// S2: Ft/Fn that means incipient slip, per mille, until a stroke has measured it.
+    pub s2_permille: u16,
+    /// The part of a measured mu_s that becomes S2, per mille.
+    pub s2_of_mu_s_permille: u16,
+    /// Fn from which the finger counts as loaded, mN: below, noise divided by a small Fn would be a large ratio.
+    pub loaded_mn: i32,
+}
+
+/// Thresholds of the myoelectric gate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GateConfig {
+    /// Envelope above rest at which a myosensor becomes active, mV.
+    pub on_mv: u16,
+    /// Part of `on_mv` below which it becomes inactive, per mille.
+    pub off_permille: u16,
+    /// How long a muscle counts as active after its last activity, in frames: the pause between two contractions is
+    /// not an invitation to the reflex.
+    pub hold_frames: u32,
+    /// Envelope above rest that asks for the full speed, mV.
+    pub full_mv: u16,
+    /// Duty asked for by an envelope at `on_mv`, per mille.
+    pub slowest_permille: u16,
+}
+
+/// Limits and pulses of the grip reflex.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GripConfig {
+    /// Duty of the pulse that answers slip, per mille.
+    pub slip_duty_permille: u16,
+    /// Its length, in frames.
+    pub slip_frames: u32,
+    /// Its length at most while the vibration goes on, in frames.
+    pub slip_frames_max: u32,
+    /// Duty of the pulse that answers incipient slip, per mille.
+    pub incipient_duty_permille: u16,
+    /// Its length, in frames.
+    pub incipient_frames: u32,
+    /// How long the object is given to settle after a pulse, in frames: longer than the motor's dead time, so that the
+    /// noise of the hand's own closing is not answered by more closing.
+    pub settle_frames: u32,
+    /// Fn above which the reflex closes no further, mN.
+    pub ceiling_mn: i32,
+    /// How long the reflex may close altogether while no force is known, in frames, until the wearer takes over once.
+    pub blind_frames: u32,
+}
+
+/// All of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Config {
+    /// S1.
+    pub vibration: VibrationConfig,
+    /// S2.
+    pub friction: FrictionConfig,
+    /// The wearer's muscles.
+    pub gate: GateConfig,
+    /// The reflex.
+    pub grip: GripConfig,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self {
+            vibration: VibrationConfig {
+                s1: sample_from_mv(100),
+                knock_permille: 500,
+                knock_frames: frames(30),
+            },
+            friction: FrictionConfig {
+                s2_permille: 300,
+                s2_of_mu_s_permille: 800,
+                loaded_mn: 600,
+            },
+            gate: GateConfig {
+                on_mv: 160,
+                off_permille: 700,
+                hold_frames: frames(200),
+                full_mv: 1_000,
+                slowest_permille: 300,
+            },
+            grip: GripConfig {
+                slip_duty_permille: 1_000,
+                slip_frames: frames(30),
+                slip_frames_max: frames(90),
+                incipient_duty_permille: 400,
+                incipient_frames: frames(15),
+                settle_frames: frames(80),
+                ceiling_mn: 40_000,
+                blind_frames: frames(200),
+            },
+        }
+    }
+}
+
+impl Config {
+    /// Changes one setting; false, and nothing changed, if its value is not allowed.
+    #[must_use]
+    pub fn set(&mut self, setting: Setting) -> bool {
+        if !setting.is_allowed() {
+            return false;
+        }
+        match setting {
+            Setting::S1Mv(mv) => self.vibration.s1 = sample_from_mv(u32::from(mv)),
+            Setting::S2Permille(permille) => self.friction.s2_permille = permille,
+            Setting::MyoOnMv(mv) => self.gate.on_mv = mv,
+            Setting::ForceCeilingMn(mn) => self.grip.ceiling_mn = i32::try_from(mn).unwrap_or(i32::MAX),
+        }
+        true
+    }
+}

@@ -1,0 +1,141 @@
+//! The grip reflex: how much to close, once slip or incipient slip is known.
+//!
+//! Slip is answered by a short pulse at full speed, prolonged while the vibration goes on; incipient slip by a shorter,
+//! slower one. After each, the object settles for longer than the motor's dead time before the detectors are asked
+//! again. No pulse begins on a finger that is known to hold nothing or to press as hard as it may; without a known
+//! force, the pulses share a small budget that only the wearer can renew.
+
+use tenax_hal_shim::motor::{Duty, MotorDrive};
+use tenax_hal_shim::words::GripMode;
+
+use crate::config::GripConfig;
+
+/// What the reflex knows about force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Grip {
+    /// The force sensor gives no number.
+    Unknown,
+    /// The finger touches nothing, or hardly.
+    Unloaded,
+    /// It holds with this Fn, mN.
+    Holds(i32),
+}
+
+/// The reflex's memory.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Reflex {
+    elapsed: u32,
+    blind: u32,
+}
+
+impl Reflex {
+    /// Whether a pulse may begin or go on.
+    #[must_use]
+    pub const fn may_close(&self, config: &GripConfig, grip: Grip) -> bool {
+        match grip {
+            Grip::Unknown => self.blind < config.blind_frames,
+            Grip::Unloaded => false,
+            Grip::Holds(mn) => mn < config.ceiling_mn,
+        }
+    }
+
+    /// The mode has changed: what is timed begins now.
+    pub fn enter(&mut self, mode: GripMode) {
+        self.elapsed = 0;
+        if mode == GripMode::Wearer {
+            self.blind = 0;
+        }
+    }
+
+    /// Goes on by one frame.
+    pub fn tick(&mut self, mode: GripMode, grip: Grip) {
+        self.elapsed = self.elapsed.saturating_add(1);
+        if crate::mode::closes(mode) && grip == Grip::Unknown {
+            self.blind = self.blind.saturating_add(1);
+        }
+    }
+
+    /// Whether the pulse of this mode is over. `s1`: the vibration goes on.
+    #[must_use]
+    pub const fn pulse_over(&self, config: &GripConfig, mode: GripMode, s1: bool, grip: Grip) -> bool {
+        let length = match mode {
+            GripMode::Slip if s1 => config.slip_frames_max,
+            GripMode::Slip => config.slip_frames,
+            GripMode::Incipient => config.incipient_frames,
+            _ => 0,
+        };
+        self.elapsed >= length || !self.may_close(config, grip)
+    }
+
+    /// Whether the object has had its time to settle.
+    #[must_use]
+    pub const fn settled(&self, config: &GripConfig) -> bool {
+        self.elapsed >= config.settle_frames
+    }
+
+    /// How the reflex drives the motor in this mode.
+    #[must_use]
+    pub const fn drive(config: &GripConfig, mode: GripMode) -> MotorDrive {
+        match mode {
+            GripMode::Slip => MotorDrive::Close(Duty::per_mille(config.slip_duty_permille)),
+            GripMode::Incipient => MotorDrive::Close(Duty::per_mille(config.incipient_duty_permille)),
+            _ => MotorDrive::Coast,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::Config;
+
+    fn pulse_frames(mode: GripMode, s1: bool, grip: Grip) -> u32 {
+        let config = Config::default().grip;
+        let mut reflex = Reflex::default();
+        reflex.enter(mode);
+        (0..10_000)
+            .take_while(|_| {
+                let over = reflex.pulse_over(&config, mode, s1, grip);
+                reflex.tick(mode, grip);
+                !over
+            })
+            .count() as u32
+    }
+
+    #[test]
+    fn pulses_have_their_lengths_and_end_at_the_ceiling() {
+        let config = Config::default().grip;
+        assert_eq!(
+            pulse_frames(GripMode::Slip, false, Grip::Holds(5_000)),
+            config.slip_frames
+        );
+        assert_eq!(
+            pulse_frames(GripMode::Slip, true, Grip::Holds(5_000)),
+            config.slip_frames_max
+        );
+        assert_eq!(
+            pulse_frames(GripMode::Incipient, true, Grip::Holds(5_000)),
+            config.incipient_frames
+        );
+        assert_eq!(
+            pulse_frames(GripMode::Slip, true, Grip::Holds(config.ceiling_mn)),
+            0
+        );
+        assert_eq!(pulse_frames(GripMode::Slip, true, Grip::Unloaded), 0);
+    }
+
+    #[test]
+    fn without_a_force_the_budget_runs_out_and_the_wearer_renews_it() {
+        let config = Config::default().grip;
+        let mut reflex = Reflex::default();
+        for _ in 0..config.blind_frames {
+            assert!(reflex.may_close(&config, Grip::Unknown));
+            reflex.tick(GripMode::Slip, Grip::Unknown);
+        }
+        assert!(!reflex.may_close(&config, Grip::Unknown));
+        reflex.enter(GripMode::Watch);
+        assert!(!reflex.may_close(&config, Grip::Unknown));
+        reflex.enter(GripMode::Wearer);
+        assert!(reflex.may_close(&config, Grip::Unknown));
+    }
+}

@@ -1,0 +1,170 @@
+//! Whether a sensor's readings can be believed: a reading is a value, or a reason why there is none.
+
+use tenax_hal_shim::channel::{Channel, sample_from_mv};
+use tenax_hal_shim::words::Reason;
+
+/// What an honest sensor's readings look like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Lowest sample.
+    pub low: u16,
+    /// Highest sample.
+    pub high: u16,
+    /// Equal readings in a row that no working sensor gives, given the noise of its front end and of the converter.
+    pub stuck_after: u32,
+    /// Bad readings in a row after which it is reported as lost. A single one already has no value.
+    pub lost_after: u32,
+    /// Good readings in a row after which a lost sensor is believed again.
+    pub back_after: u32,
+}
+
+impl Limits {
+    /// For a channel read `per_second` times a second: lost after 25 ms, back after a second, stuck after two.
+    #[must_use]
+    pub const fn of(channel: &Channel, per_second: u32) -> Self {
+        let lost_after = per_second / 40;
+        Self {
+            low: sample_from_mv(channel.low_mv),
+            high: sample_from_mv(channel.high_mv),
+            stuck_after: 2 * per_second,
+            lost_after: if lost_after == 0 { 1 } else { lost_after },
+            back_after: per_second,
+        }
+    }
+}
+
+/// A change that somebody should hear of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Change {
+    /// It gives no number any more.
+    Lost(Reason),
+    /// It does again.
+    Back,
+}
+
+/// Watches one sensor.
+#[derive(Clone, Debug, Default)]
+pub struct SensorHealth {
+    last: Option<u16>,
+    same: u32,
+    bad: u32,
+    good: u32,
+    lost: Option<Reason>,
+}
+
+impl SensorHealth {
+    /// Takes a reading: its value, or why it has none; and what changed with it.
+    pub fn take(&mut self, limits: &Limits, sample: u16) -> (Result<u16, Reason>, Option<Change>) {
+        self.same = if self.last == Some(sample) {
+            self.same.saturating_add(1)
+        } else {
+            0
+        };
+        self.last = Some(sample);
+        let verdict = if sample < limits.low {
+            Err(Reason::Dead)
+        } else if sample > limits.high {
+            Err(Reason::Saturated)
+        } else if self.same >= limits.stuck_after {
+            Err(Reason::Stuck)
+        } else {
+            Ok(sample)
+        };
+        match (verdict, self.lost) {
+            (Ok(_), None) => {
+                self.bad = 0;
+                (verdict, None)
+            }
+            (Ok(_), Some(reason)) => {
+                self.good += 1;
+                if self.good < limits.back_after {
+                    return (Err(reason), None);
+                }
+                *self = Self {
+                    last: self.last,
+                    ..Self::default()
+                };
+                (verdict, Some(Change::Back))
+            }
+            (Err(reason), None) => {
+                self.bad += 1;
+                // Being stuck has been waited for already.
+                if self.bad < limits.lost_after && reason != Reason::Stuck {
+                    return (verdict, None);
+                }
+                self.lost = Some(reason);
+                self.good = 0;
+                (verdict, Some(Change::Lost(reason)))
+            }
+            (Err(_), Some(_)) => {
+                self.good = 0;
+                (verdict, None)
+            }
+        }
+    }
+
+    /// Readings in a row that were equal to the one before.
+    #[must_use]
+    pub const fn same(&self) -> u32 {
+        self.same
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LIMITS: Limits = Limits {
+        low: 100,
+        high: 16_000,
+        stuck_after: 20,
+        lost_after: 3,
+        back_after: 5,
+    };
+
+    fn run(samples: impl IntoIterator<Item = u16>) -> (Result<u16, Reason>, std::vec::Vec<Change>) {
+        let mut health = SensorHealth::default();
+        let mut changes = std::vec::Vec::new();
+        let mut last = Err(Reason::Dead);
+        for sample in samples {
+            let (reading, change) = health.take(&LIMITS, sample);
+            last = reading;
+            changes.extend(change);
+        }
+        (last, changes)
+    }
+
+    #[test]
+    fn one_bad_reading_has_no_value_but_is_no_lost_sensor() {
+        assert_eq!(run([500, 501, 0]), (Err(Reason::Dead), std::vec![]));
+        assert_eq!(run([500, 501, 0, 502]), (Ok(502), std::vec![]));
+    }
+
+    #[test]
+    fn each_fault_is_named_once() {
+        assert_eq!(
+            run([0; 9]),
+            (Err(Reason::Dead), std::vec![Change::Lost(Reason::Dead)])
+        );
+        assert_eq!(
+            run([16_380; 9]),
+            (Err(Reason::Saturated), std::vec![Change::Lost(Reason::Saturated)])
+        );
+        assert_eq!(
+            run([700; 30]),
+            (Err(Reason::Stuck), std::vec![Change::Lost(Reason::Stuck)])
+        );
+    }
+
+    #[test]
+    fn a_sensor_that_comes_back_has_to_prove_it() {
+        let mut samples = std::vec![0; 9];
+        samples.extend([500, 501, 502, 503]);
+        assert_eq!(run(samples.clone()).0, Err(Reason::Dead));
+        samples.push(504);
+        assert_eq!(
+            run(samples),
+            (Ok(504), std::vec![Change::Lost(Reason::Dead), Change::Back])
+        );
+    }
+}

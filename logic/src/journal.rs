@@ -1,0 +1,84 @@
+//! What is told about every tick: the record of a slow frame, and the events in between.
+
+use heapless::Deque;
+use tenax_hal_shim::frame::Frame;
+use tenax_hal_shim::wire::{Event, EventKind, SamplesCrc, TickRecord};
+use tenax_hal_shim::words::{Cause, Fault, GripMode};
+
+/// Events kept until they are taken: more than all sensors failing at once.
+const EVENTS: usize = 32;
+
+/// The fingertip's memory of what it has to tell.
+#[derive(Clone, Debug, Default)]
+pub struct Journal {
+    frame: u32,
+    ticks: [TickRecord; tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME as usize],
+    crc: SamplesCrc,
+    events: Deque<Event, EVENTS>,
+    events_lost: u16,
+}
+
+impl Journal {
+    /// A frame begins: what is told from now on happened in it.
+    pub fn begin(&mut self, frame: &Frame) {
+        self.frame = frame.sequence;
+        if frame.place() == 0 {
+            self.ticks = Default::default();
+        }
+        if frame.valid {
+            self.crc.update(frame);
+        }
+    }
+
+    /// The tick of this frame.
+    pub fn tick(&mut self, place: u8, record: TickRecord) {
+        if let Some(slot) = self.ticks.get_mut(usize::from(place)) {
+            *slot = record;
+        }
+    }
+
+    /// The ticks of the slow frame, and the CRC of what they were given; a new one begins.
+    pub fn take_slow(
+        &mut self,
+    ) -> (
+        [TickRecord; tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME as usize],
+        u32,
+    ) {
+        (self.ticks, self.crc.take())
+    }
+
+    /// The mode changed.
+    pub fn mode(&mut self, from: GripMode, to: GripMode, cause: Cause) {
+        self.event(EventKind::Mode { from, to, cause });
+    }
+
+    /// Something went wrong, or came back.
+    pub fn fault(&mut self, fault: Fault) {
+        self.event(EventKind::Fault(fault));
+    }
+
+    /// Something happened.
+    pub fn event(&mut self, kind: EventKind) {
+        if self
+            .events
+            .push_back(Event {
+                frame: self.frame,
+                kind,
+            })
+            .is_err()
+        {
+            self.events_lost = self.events_lost.saturating_add(1);
+        }
+    }
+
+    /// The oldest event not yet taken.
+    pub fn next_event(&mut self) -> Option<Event> {
+        self.events.pop_front().or_else(|| {
+            let lost = core::mem::take(&mut self.events_lost);
+            (lost > 0).then_some(Event {
+                frame: self.frame,
+                kind: EventKind::EventsLost(lost),
+            })
+        })
+    }
+}

@@ -1,0 +1,105 @@
+//! The flow chart of Prosthesis, figure 9, as a machine whose every legal step is one row of a table.
+
+use tenax_hal_shim::words::{Cause, GripMode};
+
+use Cause::{
+    PulseOver, Released, S1, S2, SensorsLost, SensorsReady, Settled, StrokeBegun, StrokeOver, TakenOver,
+};
+use GripMode::{Explore, Incipient, Settle, Slip, Standby, Watch, Wearer};
+
+/// Every legal step: from, why, to. A cause that has no row for the mode changes nothing.
+///
+/// Who may enter: [`Slip`] and [`Incipient`], the only two that close the hand, are entered from [`Watch`] alone (and
+/// [`Slip`] from [`Incipient`]), and [`Watch`] is left for [`Wearer`] or [`Standby`] before a detector is asked.
+pub const TRANSITIONS: [(GripMode, Cause, GripMode); 22] = [
+    (Standby, SensorsReady, Watch),
+    (Wearer, SensorsLost, Standby),
+    (Wearer, Released, Settle),
+    (Watch, SensorsLost, Standby),
+    (Watch, TakenOver, Wearer),
+    (Watch, S1, Slip),
+    (Watch, S2, Incipient),
+    (Watch, StrokeBegun, Explore),
+    (Slip, SensorsLost, Standby),
+    (Slip, TakenOver, Wearer),
+    (Slip, PulseOver, Settle),
+    (Incipient, SensorsLost, Standby),
+    (Incipient, TakenOver, Wearer),
+    (Incipient, S1, Slip),
+    (Incipient, PulseOver, Settle),
+    (Settle, SensorsLost, Standby),
+    (Settle, TakenOver, Wearer),
+    (Settle, Settled, Watch),
+    (Settle, StrokeBegun, Explore),
+    (Explore, SensorsLost, Standby),
+    (Explore, TakenOver, Wearer),
+    (Explore, StrokeOver, Settle),
+];
+
+/// Where a cause leads, None where it changes nothing.
+#[must_use]
+pub fn next(from: GripMode, cause: Cause) -> Option<GripMode> {
+    TRANSITIONS
+        .iter()
+        .find(|row| row.0 == from && row.1 == cause)
+        .map(|row| row.2)
+}
+
+/// Whether the reflex may drive the motor in this mode.
+#[must_use]
+pub const fn closes(mode: GripMode) -> bool {
+    matches!(mode, Slip | Incipient)
+}
+
+/// Whether the detectors are listened to in this mode.
+#[must_use]
+pub const fn listens(mode: GripMode) -> bool {
+    matches!(mode, Watch | Slip | Incipient | Explore)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MODES: [GripMode; 7] = [Standby, Wearer, Watch, Slip, Incipient, Settle, Explore];
+
+    #[test]
+    fn the_table_is_a_function_and_reaches_every_mode() {
+        for (n, a) in TRANSITIONS.iter().enumerate() {
+            assert!(
+                !TRANSITIONS[n + 1..].iter().any(|b| (a.0, a.1) == (b.0, b.1)),
+                "{a:?} stands twice"
+            );
+        }
+        for mode in MODES {
+            assert!(
+                mode == Standby || TRANSITIONS.iter().any(|row| row.2 == mode && row.0 != mode),
+                "{mode:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn every_mode_yields_to_the_wearer_and_to_lost_sensors() {
+        for mode in MODES {
+            assert!(
+                matches!(mode, Standby | Wearer) || next(mode, TakenOver) == Some(Wearer),
+                "{mode:?}"
+            );
+            assert!(
+                mode == Standby || next(mode, SensorsLost) == Some(Standby),
+                "{mode:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn closing_is_entered_by_a_detector_alone() {
+        for (_, cause, _) in TRANSITIONS.iter().filter(|row| closes(row.2)) {
+            assert!(matches!(cause, S1 | S2));
+        }
+        for (from, ..) in TRANSITIONS.iter().filter(|row| closes(row.2)) {
+            assert!(matches!(from, Watch | Incipient));
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! From frames to what the fingertip knows: which sensors can be believed, and what they say.
+
+use tenax_hal_shim::channel::{
+    CHANNELS, FRAME_HZ, FSR, FSR_COUNT, FSR_SELECT, MYO_EXTENSOR, MYO_FLEXOR, MYO_SELECT, PVDF, PVDF_COUNT,
+    SLOW_HZ,
+};
+use tenax_hal_shim::frame::Frame;
+use tenax_hal_shim::front_end::FSR_REST_MV;
+use tenax_hal_shim::wire::Forces;
+use tenax_hal_shim::words::{Capability, Fault};
+
+use crate::config::{Config, frames};
+use crate::forces::ForceSensor;
+use crate::fsr;
+use crate::gate::Gate;
+use crate::grip::Grip;
+use crate::health::{Change, Limits, SensorHealth};
+use crate::journal::Journal;
+use crate::vibration::{Vibration, VibrationDetector};
+
+/// How long the filters and the switches are given after the start, in frames.
+const WARM_UP_FRAMES: u32 = frames(200);
+/// Frames lost in a row after which the last readings of the switched sensors are no longer believed: one slow frame.
+const STALE_FRAMES: u32 = tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME as u32;
+/// Readings of each myosensor a second: three places in every slow frame.
+const MYO_HZ: u32 = 3 * SLOW_HZ;
+/// Equal readings of an active muscle in a row that no muscle gives: 50 ms. At rest, the general limit holds.
+const MYO_FROZEN_AFTER: u32 = MYO_HZ / 20;
+/// A quadrant this far above its zero when the hand is switched on is pressed, mV.
+const PRESSED_MV: i32 = 100;
+
+static PVDF_LIMITS: Limits = Limits::of(&CHANNELS[PVDF], FRAME_HZ);
+static FSR_LIMITS: Limits = Limits::of(&CHANNELS[FSR], SLOW_HZ);
+static MYO_LIMITS: Limits = Limits::of(&CHANNELS[MYO_FLEXOR], MYO_HZ);
+
+/// What the fingertip knows.
+#[derive(Clone, Debug, Default)]
+pub struct Senses {
+    pvdf: [SensorHealth; PVDF_COUNT],
+    fsr: [SensorHealth; FSR_COUNT],
+    myo: [SensorHealth; 2],
+    fsr_readings: [Option<u16>; FSR_COUNT],
+    fsr_seen: bool,
+    force_sensor: ForceSensor,
+    detector: VibrationDetector,
+    frames_seen: u32,
+    frames_lost: u32,
+    films_usable: bool,
+    lost: [bool; 3],
+    /// What the films say.
+    pub vibration: Vibration,
+    /// What the force sensor says, None while it gives no number.
+    pub forces: Option<Forces>,
+    /// Whether this frame brought new forces.
+    pub forces_are_new: bool,
+    /// What the muscles say.
+    pub gate: Gate,
+}
+
+impl Senses {
+    /// Takes a frame that came in whole.
+    pub fn take(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
+        if self.frames_lost > 0 {
+            journal.fault(Fault::FramesLost {
+                count: self.frames_lost,
+            });
+            self.frames_lost = 0;
+        }
+        self.frames_seen = self.frames_seen.saturating_add(1);
+        self.films(config, frame, journal);
+        self.forces_are_new = false;
+        let select = frame.select();
+        if let Some(quadrant) = select.checked_sub(FSR_SELECT).map(usize::from) {
+            self.quadrant(config, quadrant, frame.switch_a, journal);
+        }
+        if let Some(muscle @ 0..=1) = select.checked_sub(MYO_SELECT).map(usize::from) {
+            self.muscle(config, muscle, frame.switch_b, journal);
+        }
+        self.gate.tick(&config.gate);
+        self.capabilities(journal);
+    }
+
+    /// A frame was lost: the films say nothing, and after a while the rest is too old to be believed.
+    pub fn lose(&mut self, config: &Config, journal: &mut Journal) {
+        self.frames_lost = self.frames_lost.saturating_add(1);
+        self.vibration = Vibration::default();
+        self.forces_are_new = false;
+        if self.frames_lost == STALE_FRAMES {
+            journal.fault(Fault::FramesLost {
+                count: self.frames_lost,
+            });
+            self.forces = None;
+            self.fsr_readings = [None; FSR_COUNT];
+            self.films_usable = false;
+            self.gate.flexor.take(&config.gate, None);
+            self.gate.extensor.take(&config.gate, None);
+        }
+        self.gate.tick(&config.gate);
+        self.capabilities(journal);
+    }
+
+    /// Takes the force sensor's last readings as its zero; false if it is loaded.
+    #[must_use]
+    pub fn zero(&mut self) -> bool {
+        self.force_sensor.zero()
+    }
+
+    /// Whether the reflex has all that it cannot do without: both muscles known, and a way to feel slip.
+    #[must_use]
+    pub fn ready(&self) -> bool {
+        self.frames_seen >= WARM_UP_FRAMES
+            && self.gate.is_known()
+            && (self.films_usable || self.forces.is_some())
+    }
+
+    /// What is known about force.
+    #[must_use]
+    pub fn grip(&self, config: &Config) -> Grip {
+        match self.forces {
+            None => Grip::Unknown,
+            Some(forces) if forces.fn_mn < config.friction.loaded_mn => Grip::Unloaded,
+            Some(forces) => Grip::Holds(forces.fn_mn),
+        }
+    }
+
+    fn films(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
+        let mut usable = [false; PVDF_COUNT];
+        for (n, health) in self.pvdf.iter_mut().enumerate() {
+            let (reading, change) = health.take(&PVDF_LIMITS, frame.pvdf[n]);
+            usable[n] = reading.is_ok();
+            report(journal, PVDF + n, change);
+        }
+        self.films_usable = usable.contains(&true);
+        self.vibration = self.detector.process(&config.vibration, &frame.pvdf, &usable);
+    }
+
+    fn quadrant(&mut self, config: &Config, quadrant: usize, sample: u16, journal: &mut Journal) {
+        let (reading, change) = self.fsr[quadrant].take(&FSR_LIMITS, sample);
+        report(journal, FSR + quadrant, change);
+        self.fsr_readings[quadrant] = reading.ok();
+        if quadrant + 1 < FSR_COUNT {
+            return;
+        }
+        self.forces_are_new = true;
+        let [Some(a), Some(b), Some(c), Some(d)] = self.fsr_readings else {
+            self.forces = None;
+            return;
+        };
+        if !self.fsr_seen {
+            self.fsr_seen = true;
+            for (n, sample) in [a, b, c, d].into_iter().enumerate() {
+                if fsr::uv_above_rest(sample) > PRESSED_MV * 1_000 {
+                    journal.fault(Fault::PressedAtBoot {
+                        channel: (FSR + n) as u8,
+                    });
+                }
+            }
+        }
+        self.forces = Some(self.force_sensor.process([a, b, c, d], config.friction.loaded_mn));
+    }
+
+    fn muscle(&mut self, config: &Config, muscle: usize, sample: u16, journal: &mut Journal) {
+        let sensor = if muscle == 0 {
+            &mut self.gate.flexor
+        } else {
+            &mut self.gate.extensor
+        };
+        let channel = if muscle == 0 { MYO_FLEXOR } else { MYO_EXTENSOR };
+        let limits = if sensor.is_active() {
+            Limits {
+                stuck_after: MYO_FROZEN_AFTER,
+                ..MYO_LIMITS
+            }
+        } else {
+            MYO_LIMITS
+        };
+        let (reading, change) = self.myo[muscle].take(&limits, sample);
+        report(journal, channel, change);
+        sensor.take(&config.gate, reading.ok());
+    }
+
+    fn capabilities(&mut self, journal: &mut Journal) {
+        // Before every sensor has been read once, none is missed.
+        if self.frames_seen < WARM_UP_FRAMES {
+            return;
+        }
+        let now = [
+            (Capability::Vibration, !self.films_usable),
+            (Capability::Force, self.forces.is_none()),
+            (Capability::WearerIntent, !self.gate.is_known()),
+        ];
+        for (was, (capability, is)) in self.lost.iter_mut().zip(now) {
+            if *was != is {
+                *was = is;
+                journal.fault(if is {
+                    Fault::CapabilityLost(capability)
+                } else {
+                    Fault::CapabilityBack(capability)
+                });
+            }
+        }
+    }
+}
+
+/// Says what changed with a sensor. A converter has far fewer channels than a `u8` has values.
+fn report(journal: &mut Journal, channel: usize, change: Option<Change>) {
+    let channel = channel as u8;
+    match change {
+        Some(Change::Lost(reason)) => journal.fault(Fault::SensorLost { channel, reason }),
+        Some(Change::Back) => journal.fault(Fault::SensorBack { channel }),
+        None => {}
+    }
+}
+
+// The front end's rest must read as unloaded, or every hand would report that it was pressed at boot.
+const _: () = assert!(FSR_REST_MV > CHANNELS[FSR].low_mv && CHANNELS[FSR].rest_mv == FSR_REST_MV);

@@ -1,0 +1,250 @@
+//! S1: slip heard by the PVDF films (Prosthesis, sections 4 and 5).
+//!
+//! Each film's sample goes through a high-pass (offset, drift and slow contact go), a low-pass, a rectifier (the sign of
+//! a film means nothing: Tada 2006, section 2) and a second low-pass: the envelope of the slip band, 20 to 150 Hz. What
+//! the low-pass took away goes through the same rectifier and low-pass: the envelope above the band. The bands are those
+//! of real slip onsets, which have 83 to 94 % of their energy below 100 Hz and 1 to 3 % above 200 Hz.
+//!
+//! A knock is as loud as slip or louder, but rings above the band, and is over soon. So S1 needs a loud band, and a
+//! quieter sound above it, or a sound that stays.
+//!
+//! Fixed point: samples (14 bits, offset binary) are taken around mid-scale and shifted to Q16, 2^16 a sample; filters
+//! are idsp's saturating first-order low-passes with 64-bit state, exact to the last bit of Q16. Nothing here can
+//! overflow: a difference of two values within +-2^13 samples is within +-2^14, and 2^30 in Q16.
+
+use dsp_process::SplitProcess;
+use idsp::{Lowpass, LowpassState};
+use tenax_hal_shim::channel::{FRAME_HZ, PVDF_COUNT};
+
+use crate::config::VibrationConfig;
+
+/// Lower edge of the slip band, Hz.
+pub const BAND_LOW_HZ: u32 = 20;
+/// Upper edge of the slip band, Hz.
+pub const BAND_HIGH_HZ: u32 = 150;
+/// Time constant of the envelope, us.
+pub const ENVELOPE_US: u32 = 8_000;
+
+/// Fraction bits of a conditioned sample.
+const Q: u32 = 16;
+/// The sample in the middle of the converter's range.
+const MIDDLE: i32 = 1 << 13;
+
+/// Gain of idsp's first-order low-pass for a corner: `pi * 2^31 * f / (fs / 2)`.
+const fn corner(hz: f64) -> Lowpass<1> {
+    Lowpass([(core::f64::consts::PI * 2_147_483_648.0 * hz * 2.0 / FRAME_HZ as f64) as i32])
+}
+
+static HIGH_PASS: Lowpass<1> = corner(BAND_LOW_HZ as f64);
+static LOW_PASS: Lowpass<1> = corner(BAND_HIGH_HZ as f64);
+static ENVELOPE: Lowpass<1> = corner(1e6 / (2.0 * core::f64::consts::PI * ENVELOPE_US as f64));
+
+/// The state of one film's conditioning.
+#[derive(Clone, Debug, Default)]
+pub struct Film {
+    offset: LowpassState<1>,
+    band: LowpassState<1>,
+    inside: LowpassState<1>,
+    above: LowpassState<1>,
+    primed: bool,
+}
+
+/// Envelopes of one film, Q16 samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Envelope {
+    /// In the slip band.
+    pub inside: i32,
+    /// Above it.
+    pub above: i32,
+}
+
+impl Film {
+    /// Takes a 14-bit sample. The first one is taken as the offset, so that being switched on is no vibration.
+    pub fn process(&mut self, sample: u16) -> Envelope {
+        let x = (i32::from(sample) - MIDDLE) << Q;
+        if !self.primed {
+            self.offset.0[0] = i64::from(x) << 32;
+            self.primed = true;
+        }
+        let ac = x - HIGH_PASS.process(&mut self.offset, x);
+        let low = LOW_PASS.process(&mut self.band, ac);
+        let high = ac - low;
+        Envelope {
+            inside: ENVELOPE.process(&mut self.inside, low.abs()),
+            above: ENVELOPE.process(&mut self.above, high.abs()),
+        }
+    }
+}
+
+/// What the films say in one tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Vibration {
+    /// Envelope of the loudest film, samples (14 bits).
+    pub level: u16,
+    /// Whether it is slip: above S1 and no knock.
+    pub s1: bool,
+}
+
+/// The detector.
+#[derive(Clone, Debug, Default)]
+pub struct VibrationDetector {
+    films: [Film; PVDF_COUNT],
+    loud_frames: u32,
+    s1: bool,
+}
+
+impl VibrationDetector {
+    /// Takes one sample of each film; `usable` are those that give numbers.
+    pub fn process(
+        &mut self,
+        config: &VibrationConfig,
+        samples: &[u16; PVDF_COUNT],
+        usable: &[bool; PVDF_COUNT],
+    ) -> Vibration {
+        let mut loudest = Envelope::default();
+        for ((film, &sample), &usable) in self.films.iter_mut().zip(samples).zip(usable) {
+            if !usable {
+                // Primed anew when it comes back: its jump back is no vibration.
+                *film = Film::default();
+                continue;
+            }
+            let envelope = film.process(sample);
+            if envelope.inside > loudest.inside {
+                loudest = envelope;
+            }
+        }
+        let on = i32::from(config.s1) << Q;
+        // Once on, half the threshold keeps it on: the envelope of one slip has dips.
+        let loud = loudest.inside > if self.s1 { on / 2 } else { on };
+        self.loud_frames = if loud {
+            self.loud_frames.saturating_add(1)
+        } else {
+            0
+        };
+        let knock = i64::from(loudest.above) * 1_000
+            > i64::from(loudest.inside) * i64::from(config.knock_permille)
+            && self.loud_frames < config.knock_frames;
+        self.s1 = loud && (self.s1 || !knock);
+        Vibration {
+            level: (loudest.inside >> Q).clamp(0, i32::from(u16::MAX)) as u16,
+            s1: self.s1,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::f64::consts::PI;
+    use std::vec::Vec;
+    use tenax_hal_shim::channel::SAMPLE_MAX;
+
+    /// The same conditioning in `f64`, from the same transfer function (bilinear, unwarped gain k).
+    #[derive(Default)]
+    struct Reference([f64; 4], bool);
+
+    impl Reference {
+        fn low_pass(state: &mut f64, hz: f64, x: f64) -> f64 {
+            let d = (x - *state) * PI * hz / f64::from(FRAME_HZ);
+            let y = *state + d;
+            *state = y + d;
+            y
+        }
+
+        fn process(&mut self, sample: u16) -> (f64, f64) {
+            let x = f64::from(sample) - f64::from(MIDDLE);
+            if !self.1 {
+                self.0[0] = x;
+                self.1 = true;
+            }
+            let ac = x - Self::low_pass(&mut self.0[0], 20.0, x);
+            let low = Self::low_pass(&mut self.0[1], 150.0, ac);
+            let envelope_hz = 1e6 / (2.0 * PI * 8_000.0);
+            (
+                Self::low_pass(&mut self.0[2], envelope_hz, low.abs()),
+                Self::low_pass(&mut self.0[3], envelope_hz, (ac - low).abs()),
+            )
+        }
+    }
+
+    fn worst_error(samples: impl Iterator<Item = u16>) -> f64 {
+        let (mut film, mut reference) = (Film::default(), Reference::default());
+        samples.fold(0.0f64, |worst, sample| {
+            let fixed = film.process(sample);
+            let (inside, above) = reference.process(sample);
+            worst
+                .max((f64::from(fixed.inside) / 65_536.0 - inside).abs())
+                .max((f64::from(fixed.above) / 65_536.0 - above).abs())
+        })
+    }
+
+    #[test]
+    fn conditioning_is_within_a_hundredth_of_a_sample_of_f64() {
+        for hz in [1.0, 20.0, 60.0, 150.0, 400.0, 990.0] {
+            let tone = (0..20_000).map(|n| {
+                (8_192.0 + 8_000.0 * (2.0 * PI * hz * f64::from(n) / f64::from(FRAME_HZ)).sin()) as u16
+            });
+            assert!(worst_error(tone) < 0.01, "{hz} Hz");
+        }
+        let extremes = (0..20_000).map(|n| if n / 7 % 2 == 0 { 0 } else { SAMPLE_MAX });
+        assert!(worst_error(extremes) < 0.01);
+        assert!(worst_error((0..20_000).map(|n| if n < 9 { 0 } else { SAMPLE_MAX })) < 0.01);
+    }
+
+    fn levels(samples: &[u16]) -> Vec<Vibration> {
+        let mut detector = VibrationDetector::default();
+        let config = crate::config::Config::default().vibration;
+        samples
+            .iter()
+            .map(|&sample| detector.process(&config, &[sample; PVDF_COUNT], &[true; PVDF_COUNT]))
+            .collect()
+    }
+
+    fn tone(hz: f64, amplitude: f64, decay_s: f64, frames: u32) -> Vec<u16> {
+        (0..frames)
+            .map(|n| {
+                let t = f64::from(n) / f64::from(FRAME_HZ);
+                (8_192.0 + amplitude * (-t / decay_s).exp() * (2.0 * PI * hz * t).sin()) as u16
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_tone_in_the_band_is_slip_and_any_steady_voltage_is_not() {
+        assert!(levels(&tone(60.0, 3_000.0, 1e9, 400)).iter().any(|v| v.s1));
+        for steady in [0, 1, 8_192, SAMPLE_MAX] {
+            assert!(levels(&[steady; 4_000]).iter().all(|v| !v.s1 && v.level == 0));
+        }
+    }
+
+    #[test]
+    fn a_knock_is_not_slip_though_it_is_louder() {
+        let knock = levels(&tone(300.0, 7_000.0, 0.006, 400));
+        assert!(knock.iter().map(|v| v.level).max() > Some(crate::config::Config::default().vibration.s1));
+        assert!(knock.iter().all(|v| !v.s1));
+    }
+
+    #[test]
+    fn a_high_tone_that_stays_is_slip_after_the_time_that_a_knock_lasts() {
+        let seen = levels(&tone(300.0, 7_000.0, 1e9, 400));
+        let first_loud = seen.iter().position(|v| v.level > 600).unwrap();
+        let first_s1 = seen.iter().position(|v| v.s1).unwrap();
+        assert!(
+            (50..=70).contains(&(first_s1 - first_loud)),
+            "{first_loud} {first_s1}"
+        );
+    }
+
+    #[test]
+    fn a_film_that_comes_back_is_primed_anew() {
+        let mut detector = VibrationDetector::default();
+        let config = crate::config::Config::default().vibration;
+        for usable in [true, false, true] {
+            for _ in 0..200 {
+                let sample = if usable { 12_000 } else { 0 };
+                let v = detector.process(&config, &[sample; PVDF_COUNT], &[usable; PVDF_COUNT]);
+                assert_eq!(v, Vibration::default());
+            }
+        }
+    }
+}
