@@ -175,13 +175,7 @@ const fn pvdf(name: &'static str, rank: u8) -> Channel {
 }
 
 const fn strain(name: &'static str, select: u8) -> Channel {
-    Channel {
-        name,
-        input: Input::SwitchA { select },
-        rest_mv: 1_650,
-        low_mv: 50,
-        high_mv: 3_250,
-    }
+    Channel { name, input: Input::SwitchA { select }, rest_mv: 1_650, low_mv: 50, high_mv: 3_250 }
 }
 
 const fn fsr(name: &'static str, select: u8) -> Channel {
@@ -195,13 +189,7 @@ const fn fsr(name: &'static str, select: u8) -> Channel {
 }
 
 const fn slow(name: &'static str, select: u8, rest_mv: u32) -> Channel {
-    Channel {
-        name,
-        input: Input::SwitchB { select },
-        rest_mv,
-        low_mv: 100,
-        high_mv: 3_250,
-    }
+    Channel { name, input: Input::SwitchB { select }, rest_mv, low_mv: 100, high_mv: 3_250 }
 }
 
 /// Index of the channel called `name`.

@@ -35,25 +35,13 @@ impl Frame {
         }
         let mut pvdf = [0; PVDF_COUNT];
         pvdf.copy_from_slice(&sum[..PVDF_COUNT]);
-        Self {
-            sequence,
-            valid: true,
-            pvdf,
-            switch_a: sum[RANK_SWITCH_A],
-            switch_b: sum[RANK_SWITCH_B],
-        }
+        Self { sequence, valid: true, pvdf, switch_a: sum[RANK_SWITCH_A], switch_b: sum[RANK_SWITCH_B] }
     }
 
     /// A frame that was lost: its samples say nothing.
     #[must_use]
     pub const fn lost(sequence: u32) -> Self {
-        Self {
-            sequence,
-            valid: false,
-            pvdf: [0; PVDF_COUNT],
-            switch_a: 0,
-            switch_b: 0,
-        }
+        Self { sequence, valid: false, pvdf: [0; PVDF_COUNT], switch_a: 0, switch_b: 0 }
     }
 
     /// Place in the slow frame, 0 to 24.
@@ -101,10 +89,7 @@ mod tests {
     fn four_full_scale_codes_are_full_scale() {
         let frame = Frame::from_scans(7, &[[4_095; SCAN_LEN]; SCANS_PER_FRAME]);
         assert_eq!(frame.pvdf, [SAMPLE_MAX; PVDF_COUNT]);
-        assert_eq!(
-            (frame.switch_a, frame.switch_b, frame.place()),
-            (SAMPLE_MAX, SAMPLE_MAX, 7)
-        );
+        assert_eq!((frame.switch_a, frame.switch_b, frame.place()), (SAMPLE_MAX, SAMPLE_MAX, 7));
     }
 
     #[test]

@@ -260,9 +260,7 @@ pub enum BadFrame {
 /// None if the buffer is too small; [`FRAME_MAX`] bytes are always enough.
 pub fn encode<'a, T: Serialize>(sequence: u16, message: &T, buffer: &'a mut [u8]) -> Option<&'a mut [u8]> {
     let cobs = Cobs::try_new(Slice::new(buffer)).ok()?;
-    let mut serializer = postcard::Serializer {
-        output: CrcModifier::new(cobs, CRC.digest()),
-    };
+    let mut serializer = postcard::Serializer { output: CrcModifier::new(cobs, CRC.digest()) };
     (VERSION, sequence, message).serialize(&mut serializer).ok()?;
     serializer.output.finalize().ok()
 }
@@ -285,11 +283,7 @@ impl Receiver {
     /// One that has heard nothing yet.
     #[must_use]
     pub const fn new() -> Self {
-        Self {
-            buffer: [0; FRAME_MAX],
-            length: 0,
-            overlong: false,
-        }
+        Self { buffer: [0; FRAME_MAX], length: 0, overlong: false }
     }
 
     /// Takes one byte. Some when it ends a frame.
@@ -391,9 +385,7 @@ mod samples {
             fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Self::Value, A::Error> {
                 let mut samples = [0; COUNT];
                 for (index, sample) in samples.iter_mut().enumerate() {
-                    *sample = seq
-                        .next_element()?
-                        .ok_or_else(|| A::Error::invalid_length(index, &self))?;
+                    *sample = seq.next_element()?.ok_or_else(|| A::Error::invalid_length(index, &self))?;
                 }
                 Ok(samples)
             }

@@ -91,11 +91,7 @@ impl Default for Config {
                 knock_permille: 500,
                 knock_frames: frames(30),
             },
-            friction: FrictionConfig {
-                s2_permille: 300,
-                s2_of_mu_s_permille: 800,
-                loaded_mn: 600,
-            },
+            friction: FrictionConfig { s2_permille: 300, s2_of_mu_s_permille: 800, loaded_mn: 600 },
             gate: GateConfig {
                 on_mv: 160,
                 off_permille: 700,

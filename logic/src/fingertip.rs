@@ -49,10 +49,7 @@ impl Fingertip {
     /// A fingertip with these thresholds and limits.
     #[must_use]
     pub fn new(config: Config) -> Self {
-        Self {
-            config,
-            ..Self::default()
-        }
+        Self { config, ..Self::default() }
     }
 
     /// Takes one frame, decides, and says how to drive the motor until the next.
@@ -60,23 +57,14 @@ impl Fingertip {
     /// Frames come one by one, lost ones included ([`Frame::lost`]): time is counted by them.
     pub fn tick(&mut self, frame: &Frame) -> MotorDrive {
         self.sense(frame);
-        let verdict = Verdict {
-            slip: self.senses.vibration.s1,
-            incipient: self.s2,
-        };
+        let verdict = Verdict { slip: self.senses.vibration.s1, incipient: self.s2 };
         self.act(frame, verdict)
     }
 
     /// The oracle's tick: the same fingertip, told by somebody who knows whether the object slips.
     pub fn tick_told(&mut self, frame: &Frame, slips: bool) -> MotorDrive {
         self.sense(frame);
-        self.act(
-            frame,
-            Verdict {
-                slip: slips,
-                incipient: false,
-            },
-        )
+        self.act(frame, Verdict { slip: slips, incipient: false })
     }
 
     /// Carries out a command.
@@ -87,10 +75,9 @@ impl Fingertip {
         match *command {
             Down::Ping | Down::Samples => Ok(()),
             Down::Drive { hold_ms, .. } if hold_ms > DRIVE_HOLD_MAX_MS => Err(Refusal::OutOfRange),
-            Down::Drive {
-                drive: MotorDrive::Close(_),
-                ..
-            } if self.senses.gate.is_active() => Err(Refusal::WearerActive),
+            Down::Drive { drive: MotorDrive::Close(_), .. } if self.senses.gate.is_active() => {
+                Err(Refusal::WearerActive)
+            }
             Down::Drive { drive, hold_ms } => {
                 let frames_left = u32::from(hold_ms) * FRAME_HZ / 1_000;
                 self.link = Some(LinkDrive { drive, frames_left });
@@ -169,11 +156,7 @@ impl Fingertip {
             reflex: Reflex::drive(&self.config.grip, self.mode),
         };
         // A lost frame says nothing about anybody's wish, so nobody's is carried out.
-        let (drive, source) = if frame.valid {
-            arbitrate(wishes)
-        } else {
-            Default::default()
-        };
+        let (drive, source) = if frame.valid { arbitrate(wishes) } else { Default::default() };
         self.reflex.tick(self.mode, self.senses.grip(&self.config));
         let listens = mode::listens(self.mode);
         self.journal.tick(
@@ -196,16 +179,8 @@ impl Fingertip {
         let grip = self.senses.grip(&self.config);
         let config = self.config.grip;
         let taken_over = self.senses.gate.is_active() || self.link.is_some();
-        self.cause(if self.senses.ready() {
-            Cause::SensorsReady
-        } else {
-            Cause::SensorsLost
-        });
-        self.cause(if taken_over {
-            Cause::TakenOver
-        } else {
-            Cause::Released
-        });
+        self.cause(if self.senses.ready() { Cause::SensorsReady } else { Cause::SensorsLost });
+        self.cause(if taken_over { Cause::TakenOver } else { Cause::Released });
         let may_close = self.reflex.may_close(&config, grip);
         if verdict.slip && may_close {
             self.cause(Cause::S1);

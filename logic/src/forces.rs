@@ -53,21 +53,12 @@ pub fn forces([a, b, c, d]: [i32; FSR_COUNT], loaded_mn: i32) -> Forces {
     let ft_mn = root([fx_mn, fy_mn]);
     let ratio_permille = (fn_mn >= loaded_mn.max(1))
         .then(|| (i64::from(ft_mn) * 1_000 / i64::from(fn_mn)).min(i64::from(u16::MAX)) as u16);
-    Forces {
-        fn_mn,
-        fx_mn,
-        fy_mn,
-        ft_mn,
-        ratio_permille,
-    }
+    Forces { fn_mn, fx_mn, fy_mn, ft_mn, ratio_permille }
 }
 
 /// Root of the sum of squares, rounded down: core's integer root, exact, where micromath's is off by up to 3.7 %.
 fn root<const N: usize>(values: [i32; N]) -> i32 {
-    let squares: i64 = values
-        .iter()
-        .map(|&value| i64::from(value) * i64::from(value))
-        .sum();
+    let squares: i64 = values.iter().map(|&value| i64::from(value) * i64::from(value)).sum();
     squares.isqrt() as i32
 }
 
@@ -79,14 +70,9 @@ mod tests {
 
     #[test]
     fn formulas_against_f64() {
-        for quadrants in [
-            [0; 4],
-            [1, 0, 0, 0],
-            [1_000; 4],
-            [23_630, 0, 0, 23_630],
-            [23_630; 4],
-            [7, 11, 13, 17],
-        ] {
+        for quadrants in
+            [[0; 4], [1, 0, 0, 0], [1_000; 4], [23_630, 0, 0, 23_630], [23_630; 4], [7, 11, 13, 17]]
+        {
             let [a, b, c, d] = quadrants.map(f64::from);
             let f = forces(quadrants, 600);
             let exact_fn = 2.0 * (a * a + b * b + c * c + d * d).sqrt();
@@ -102,18 +88,10 @@ mod tests {
         for (normal, shear) in [(4.0, 0.4), (4.0, 1.2), (12.0, 6.0), (2.0, 1.4)] {
             let samples = fsr_quadrants_n(normal, shear, 0.0)
                 .map(|f| sample_from_mv(fsr_mv(f, f64::powf).round() as u32));
-            let read = f64::from(
-                ForceSensor::default()
-                    .process(samples, 600)
-                    .ratio_permille
-                    .unwrap(),
-            ) / 1e3;
+            let read = f64::from(ForceSensor::default().process(samples, 600).ratio_permille.unwrap()) / 1e3;
             let true_ratio: f64 = shear / normal;
             let expected = true_ratio / true_ratio.hypot(1.0);
-            assert!(
-                (read - expected).abs() < 0.02,
-                "{normal} N, {shear} N: {read} for {expected}"
-            );
+            assert!((read - expected).abs() < 0.02, "{normal} N, {shear} N: {read} for {expected}");
         }
     }
 

@@ -73,10 +73,7 @@ impl FrictionDetector {
     pub fn end_stroke(&mut self, config: &FrictionConfig) -> Option<Measured> {
         let mu_s_permille = self.stroke.take()?.mu_s?;
         let s2 = u32::from(mu_s_permille) * u32::from(config.s2_of_mu_s_permille) / 1_000;
-        Some(Measured {
-            mu_s_permille,
-            s2_permille: s2.min(u32::from(u16::MAX)) as u16,
-        })
+        Some(Measured { mu_s_permille, s2_permille: s2.min(u32::from(u16::MAX)) as u16 })
     }
 }
 
@@ -84,26 +81,14 @@ impl FrictionDetector {
 mod tests {
     use super::*;
 
-    const CONFIG: FrictionConfig = FrictionConfig {
-        s2_permille: 300,
-        s2_of_mu_s_permille: 800,
-        loaded_mn: 600,
-    };
+    const CONFIG: FrictionConfig =
+        FrictionConfig { s2_permille: 300, s2_of_mu_s_permille: 800, loaded_mn: 600 };
 
     #[test]
     fn it_warns_above_s2_with_hysteresis_and_never_without_a_load() {
         let mut detector = FrictionDetector::default();
-        let seen = [
-            Some(300),
-            Some(301),
-            Some(280),
-            Some(270),
-            Some(280),
-            None,
-            Some(900),
-            None,
-        ]
-        .map(|ratio| detector.process(&CONFIG, ratio));
+        let seen = [Some(300), Some(301), Some(280), Some(270), Some(280), None, Some(900), None]
+            .map(|ratio| detector.process(&CONFIG, ratio));
         assert_eq!(seen, [false, true, true, false, false, false, true, false]);
     }
 
@@ -115,13 +100,7 @@ mod tests {
         for ratio in [20, 200, 400, 510, 350, 360, 440, 490, 300, 310] {
             detector.process(&CONFIG, Some(ratio));
         }
-        assert_eq!(
-            detector.end_stroke(&CONFIG),
-            Some(Measured {
-                mu_s_permille: 490,
-                s2_permille: 392
-            })
-        );
+        assert_eq!(detector.end_stroke(&CONFIG), Some(Measured { mu_s_permille: 490, s2_permille: 392 }));
         assert_eq!(detector.end_stroke(&CONFIG), None);
     }
 

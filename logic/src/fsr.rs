@@ -71,10 +71,7 @@ mod tests {
     fn between_knots_the_error_is_below_two_percent_and_six_millinewtons() {
         for uv in (0..3_000_000).step_by(997) {
             let error = (f64::from(force_mn(uv)) - exact_mn(f64::from(uv))).abs();
-            assert!(
-                error < 6.0_f64.max(0.02 * exact_mn(f64::from(uv))),
-                "{error} mN at {uv} uV"
-            );
+            assert!(error < 6.0_f64.max(0.02 * exact_mn(f64::from(uv))), "{error} mN at {uv} uV");
         }
     }
 
@@ -84,19 +81,13 @@ mod tests {
             let force_n = f64::from(tenths) / 10.0;
             let sample = sample_from_mv(fsr_mv(force_n, f64::powf).round() as u32);
             let back = f64::from(force_mn(uv_above_rest(sample))) / 1e3;
-            assert!(
-                (back - force_n).abs() < 0.02 * force_n + 0.01,
-                "{force_n} N read as {back} N"
-            );
+            assert!((back - force_n).abs() < 0.02 * force_n + 0.01, "{force_n} N read as {back} N");
         }
     }
 
     #[test]
     fn outside_the_table_it_saturates() {
-        assert_eq!(
-            (force_mn(i32::MIN), force_mn(-1), force_mn(i32::MAX)),
-            (0, 0, 23_628)
-        );
+        assert_eq!((force_mn(i32::MIN), force_mn(-1), force_mn(i32::MAX)), (0, 0, 23_628));
         assert_eq!(uv_above_rest(0), -200_000);
         assert_eq!(uv_above_rest(SAMPLE_MAX), 3_100_000);
     }

@@ -33,12 +33,7 @@ impl Muscle {
         let mv = mv_from_sample(sample) as i32 - MYO_REST_MV as i32;
         let on = i32::from(config.on_mv);
         let was_active = self.active;
-        self.active = mv
-            >= if was_active {
-                on * i32::from(config.off_permille) / 1_000
-            } else {
-                on
-            };
+        self.active = mv >= if was_active { on * i32::from(config.off_permille) / 1_000 } else { on };
         self.confirmed = self.active && (self.confirmed || (was_active && sample != self.sample));
         self.sample = sample;
         self.mv = Some(mv as i16);
@@ -58,11 +53,7 @@ impl Muscle {
 
     /// How strongly it is meant, mV: 0 unless active.
     fn strength(&self) -> i32 {
-        if self.active {
-            i32::from(self.mv.unwrap_or(0))
-        } else {
-            0
-        }
+        if self.active { i32::from(self.mv.unwrap_or(0)) } else { 0 }
     }
 }
 
@@ -128,13 +119,8 @@ mod tests {
     use crate::config::Config;
     use tenax_hal_shim::channel::sample_from_mv;
 
-    const CONFIG: GateConfig = GateConfig {
-        on_mv: 160,
-        off_permille: 700,
-        hold_frames: 400,
-        full_mv: 1_000,
-        slowest_permille: 300,
-    };
+    const CONFIG: GateConfig =
+        GateConfig { on_mv: 160, off_permille: 700, hold_frames: 400, full_mv: 1_000, slowest_permille: 300 };
 
     fn at(mv: u32) -> Option<u16> {
         Some(sample_from_mv(MYO_REST_MV + mv))
@@ -158,15 +144,9 @@ mod tests {
     #[test]
     fn each_muscle_has_its_direction_and_the_duty_follows_it() {
         assert_eq!(gate([40, 45], [40, 45]).wish(&CONFIG), MotorDrive::Coast);
-        assert_eq!(
-            gate([990, 1_000], [40, 45]).wish(&CONFIG),
-            MotorDrive::Close(Duty::FULL)
-        );
+        assert_eq!(gate([990, 1_000], [40, 45]).wish(&CONFIG), MotorDrive::Close(Duty::FULL));
         assert!(gate([40, 45], [180, 170]).wish(&CONFIG).opens());
-        let (slow, fast) = (
-            gate([170, 171], [0; 2]).wish(&CONFIG),
-            gate([500, 510], [0; 2]).wish(&CONFIG),
-        );
+        let (slow, fast) = (gate([170, 171], [0; 2]).wish(&CONFIG), gate([500, 510], [0; 2]).wish(&CONFIG));
         match (slow, fast) {
             (MotorDrive::Close(slow), MotorDrive::Close(fast)) => assert!(slow < fast),
             other => panic!("{other:?}"),
@@ -191,10 +171,7 @@ mod tests {
     fn hysteresis_and_hold() {
         let mut gate = gate([40, 45], [200, 201]);
         gate.extensor.take(&CONFIG, at(120));
-        assert!(
-            gate.wish(&CONFIG).opens(),
-            "above the lower threshold it stays active"
-        );
+        assert!(gate.wish(&CONFIG).opens(), "above the lower threshold it stays active");
         gate.extensor.take(&CONFIG, at(100));
         assert_eq!(gate.wish(&CONFIG), MotorDrive::Coast);
         for _ in 0..399 {

@@ -105,22 +105,10 @@ mod tests {
     #[test]
     fn pulses_have_their_lengths_and_end_at_the_ceiling() {
         let config = Config::default().grip;
-        assert_eq!(
-            pulse_frames(GripMode::Slip, false, Grip::Holds(5_000)),
-            config.slip_frames
-        );
-        assert_eq!(
-            pulse_frames(GripMode::Slip, true, Grip::Holds(5_000)),
-            config.slip_frames_max
-        );
-        assert_eq!(
-            pulse_frames(GripMode::Incipient, true, Grip::Holds(5_000)),
-            config.incipient_frames
-        );
-        assert_eq!(
-            pulse_frames(GripMode::Slip, true, Grip::Holds(config.ceiling_mn)),
-            0
-        );
+        assert_eq!(pulse_frames(GripMode::Slip, false, Grip::Holds(5_000)), config.slip_frames);
+        assert_eq!(pulse_frames(GripMode::Slip, true, Grip::Holds(5_000)), config.slip_frames_max);
+        assert_eq!(pulse_frames(GripMode::Incipient, true, Grip::Holds(5_000)), config.incipient_frames);
+        assert_eq!(pulse_frames(GripMode::Slip, true, Grip::Holds(config.ceiling_mn)), 0);
         assert_eq!(pulse_frames(GripMode::Slip, true, Grip::Unloaded), 0);
     }
 

@@ -55,11 +55,7 @@ pub struct SensorHealth {
 impl SensorHealth {
     /// Takes a reading: its value, or why it has none; and what changed with it.
     pub fn take(&mut self, limits: &Limits, sample: u16) -> (Result<u16, Reason>, Option<Change>) {
-        self.same = if self.last == Some(sample) {
-            self.same.saturating_add(1)
-        } else {
-            0
-        };
+        self.same = if self.last == Some(sample) { self.same.saturating_add(1) } else { 0 };
         self.last = Some(sample);
         let verdict = if sample < limits.low {
             Err(Reason::Dead)
@@ -80,10 +76,7 @@ impl SensorHealth {
                 if self.good < limits.back_after {
                     return (Err(reason), None);
                 }
-                *self = Self {
-                    last: self.last,
-                    ..Self::default()
-                };
+                *self = Self { last: self.last, ..Self::default() };
                 (verdict, Some(Change::Back))
             }
             (Err(reason), None) => {
@@ -114,13 +107,7 @@ impl SensorHealth {
 mod tests {
     use super::*;
 
-    const LIMITS: Limits = Limits {
-        low: 100,
-        high: 16_000,
-        stuck_after: 20,
-        lost_after: 3,
-        back_after: 5,
-    };
+    const LIMITS: Limits = Limits { low: 100, high: 16_000, stuck_after: 20, lost_after: 3, back_after: 5 };
 
     fn run(samples: impl IntoIterator<Item = u16>) -> (Result<u16, Reason>, std::vec::Vec<Change>) {
         let mut health = SensorHealth::default();
@@ -142,18 +129,9 @@ mod tests {
 
     #[test]
     fn each_fault_is_named_once() {
-        assert_eq!(
-            run([0; 9]),
-            (Err(Reason::Dead), std::vec![Change::Lost(Reason::Dead)])
-        );
-        assert_eq!(
-            run([16_380; 9]),
-            (Err(Reason::Saturated), std::vec![Change::Lost(Reason::Saturated)])
-        );
-        assert_eq!(
-            run([700; 30]),
-            (Err(Reason::Stuck), std::vec![Change::Lost(Reason::Stuck)])
-        );
+        assert_eq!(run([0; 9]), (Err(Reason::Dead), std::vec![Change::Lost(Reason::Dead)]));
+        assert_eq!(run([16_380; 9]), (Err(Reason::Saturated), std::vec![Change::Lost(Reason::Saturated)]));
+        assert_eq!(run([700; 30]), (Err(Reason::Stuck), std::vec![Change::Lost(Reason::Stuck)]));
     }
 
     #[test]
@@ -162,9 +140,6 @@ mod tests {
         samples.extend([500, 501, 502, 503]);
         assert_eq!(run(samples.clone()).0, Err(Reason::Dead));
         samples.push(504);
-        assert_eq!(
-            run(samples),
-            (Ok(504), std::vec![Change::Lost(Reason::Dead), Change::Back])
-        );
+        assert_eq!(run(samples), (Ok(504), std::vec![Change::Lost(Reason::Dead), Change::Back]));
     }
 }

@@ -40,10 +40,7 @@ impl Journal {
     /// The ticks of the slow frame, and the CRC of what they were given; a new one begins.
     pub fn take_slow(
         &mut self,
-    ) -> (
-        [TickRecord; tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME as usize],
-        u32,
-    ) {
+    ) -> ([TickRecord; tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME as usize], u32) {
         (self.ticks, self.crc.take())
     }
 
@@ -59,14 +56,7 @@ impl Journal {
 
     /// Something happened.
     pub fn event(&mut self, kind: EventKind) {
-        if self
-            .events
-            .push_back(Event {
-                frame: self.frame,
-                kind,
-            })
-            .is_err()
-        {
+        if self.events.push_back(Event { frame: self.frame, kind }).is_err() {
             self.events_lost = self.events_lost.saturating_add(1);
         }
     }
@@ -75,10 +65,7 @@ impl Journal {
     pub fn next_event(&mut self) -> Option<Event> {
         self.events.pop_front().or_else(|| {
             let lost = core::mem::take(&mut self.events_lost);
-            (lost > 0).then_some(Event {
-                frame: self.frame,
-                kind: EventKind::EventsLost(lost),
-            })
+            (lost > 0).then_some(Event { frame: self.frame, kind: EventKind::EventsLost(lost) })
         })
     }
 }

@@ -39,10 +39,7 @@ pub const TRANSITIONS: [(GripMode, Cause, GripMode); 22] = [
 /// Where a cause leads, None where it changes nothing.
 #[must_use]
 pub fn next(from: GripMode, cause: Cause) -> Option<GripMode> {
-    TRANSITIONS
-        .iter()
-        .find(|row| row.0 == from && row.1 == cause)
-        .map(|row| row.2)
+    TRANSITIONS.iter().find(|row| row.0 == from && row.1 == cause).map(|row| row.2)
 }
 
 /// Whether the reflex may drive the motor in this mode.
@@ -66,10 +63,7 @@ mod tests {
     #[test]
     fn the_table_is_a_function_and_reaches_every_mode() {
         for (n, a) in TRANSITIONS.iter().enumerate() {
-            assert!(
-                !TRANSITIONS[n + 1..].iter().any(|b| (a.0, a.1) == (b.0, b.1)),
-                "{a:?} stands twice"
-            );
+            assert!(!TRANSITIONS[n + 1..].iter().any(|b| (a.0, a.1) == (b.0, b.1)), "{a:?} stands twice");
         }
         for mode in MODES {
             assert!(
@@ -82,14 +76,8 @@ mod tests {
     #[test]
     fn every_mode_yields_to_the_wearer_and_to_lost_sensors() {
         for mode in MODES {
-            assert!(
-                matches!(mode, Standby | Wearer) || next(mode, TakenOver) == Some(Wearer),
-                "{mode:?}"
-            );
-            assert!(
-                mode == Standby || next(mode, SensorsLost) == Some(Standby),
-                "{mode:?}"
-            );
+            assert!(matches!(mode, Standby | Wearer) || next(mode, TakenOver) == Some(Wearer), "{mode:?}");
+            assert!(mode == Standby || next(mode, SensorsLost) == Some(Standby), "{mode:?}");
         }
     }
 

@@ -61,9 +61,7 @@ impl Senses {
     /// Takes a frame that came in whole.
     pub fn take(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
         if self.frames_lost > 0 {
-            journal.fault(Fault::FramesLost {
-                count: self.frames_lost,
-            });
+            journal.fault(Fault::FramesLost { count: self.frames_lost });
             self.frames_lost = 0;
         }
         self.frames_seen = self.frames_seen.saturating_add(1);
@@ -86,9 +84,7 @@ impl Senses {
         self.vibration = Vibration::default();
         self.forces_are_new = false;
         if self.frames_lost == STALE_FRAMES {
-            journal.fault(Fault::FramesLost {
-                count: self.frames_lost,
-            });
+            journal.fault(Fault::FramesLost { count: self.frames_lost });
             self.forces = None;
             self.fsr_readings = [None; FSR_COUNT];
             self.films_usable = false;
@@ -150,9 +146,7 @@ impl Senses {
             self.fsr_seen = true;
             for (n, sample) in [a, b, c, d].into_iter().enumerate() {
                 if fsr::uv_above_rest(sample) > PRESSED_MV * 1_000 {
-                    journal.fault(Fault::PressedAtBoot {
-                        channel: (FSR + n) as u8,
-                    });
+                    journal.fault(Fault::PressedAtBoot { channel: (FSR + n) as u8 });
                 }
             }
         }
@@ -160,17 +154,10 @@ impl Senses {
     }
 
     fn muscle(&mut self, config: &Config, muscle: usize, sample: u16, journal: &mut Journal) {
-        let sensor = if muscle == 0 {
-            &mut self.gate.flexor
-        } else {
-            &mut self.gate.extensor
-        };
+        let sensor = if muscle == 0 { &mut self.gate.flexor } else { &mut self.gate.extensor };
         let channel = if muscle == 0 { MYO_FLEXOR } else { MYO_EXTENSOR };
         let limits = if sensor.is_active() {
-            Limits {
-                stuck_after: MYO_FROZEN_AFTER,
-                ..MYO_LIMITS
-            }
+            Limits { stuck_after: MYO_FROZEN_AFTER, ..MYO_LIMITS }
         } else {
             MYO_LIMITS
         };

@@ -116,19 +116,12 @@ impl VibrationDetector {
         let on = i32::from(config.s1) << Q;
         // Once on, half the threshold keeps it on: the envelope of one slip has dips.
         let loud = loudest.inside > if self.s1 { on / 2 } else { on };
-        self.loud_frames = if loud {
-            self.loud_frames.saturating_add(1)
-        } else {
-            0
-        };
+        self.loud_frames = if loud { self.loud_frames.saturating_add(1) } else { 0 };
         let knock = i64::from(loudest.above) * 1_000
             > i64::from(loudest.inside) * i64::from(config.knock_permille)
             && self.loud_frames < config.knock_frames;
         self.s1 = loud && (self.s1 || !knock);
-        Vibration {
-            level: (loudest.inside >> Q).clamp(0, i32::from(u16::MAX)) as u16,
-            s1: self.s1,
-        }
+        Vibration { level: (loudest.inside >> Q).clamp(0, i32::from(u16::MAX)) as u16, s1: self.s1 }
     }
 }
 
@@ -229,10 +222,7 @@ mod tests {
         let seen = levels(&tone(300.0, 7_000.0, 1e9, 400));
         let first_loud = seen.iter().position(|v| v.level > 600).unwrap();
         let first_s1 = seen.iter().position(|v| v.s1).unwrap();
-        assert!(
-            (50..=70).contains(&(first_s1 - first_loud)),
-            "{first_loud} {first_s1}"
-        );
+        assert!((50..=70).contains(&(first_s1 - first_loud)), "{first_loud} {first_s1}");
     }
 
     #[test]
