@@ -1,1 +1,122 @@
-//! Closed loops, properties and published results: see `tests/`.
+//! What the tests in `tests/` share: a fingertip on a bench, with a knob for the voltage of every pin.
+#![forbid(unsafe_code)]
+
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+use tenax_hal_shim::channel::{
+    CHANNELS, COUNT, FSR, MYO_EXTENSOR, MYO_FLEXOR, PVDF, PVDF_COUNT, SAMPLE_MAX, sample_from_mv,
+};
+use tenax_hal_shim::frame::Frame;
+use tenax_hal_shim::front_end::{MYO_REST_MV, fsr_mv, fsr_quadrants_n};
+use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::wire::{Event, EventKind, Slow};
+use tenax_hal_shim::words::{Cause, GripMode};
+use tenax_logic::fingertip::Fingertip;
+
+/// A fingertip whose pins are set by hand. The converter's noise is +-2 of a 14-bit sample, from a seed.
+#[derive(Debug)]
+pub struct Bench {
+    /// The logic under test.
+    pub fingertip: Fingertip,
+    /// Voltage of every pin, mV.
+    pub pins_mv: [f64; COUNT],
+    /// Every event so far.
+    pub events: Vec<Event>,
+    /// Every slow frame so far.
+    pub slows: Vec<Slow>,
+    /// Amplitude of a 60 Hz vibration on all films, mV.
+    pub vibration_mv: f64,
+    /// Frames given so far.
+    pub frames: u32,
+    noise: ChaCha8Rng,
+}
+
+impl Bench {
+    /// Everything at rest.
+    #[must_use]
+    pub fn new(seed: u64) -> Self {
+        Self {
+            fingertip: Fingertip::default(),
+            pins_mv: CHANNELS.map(|channel| f64::from(channel.rest_mv)),
+            events: Vec::new(),
+            slows: Vec::new(),
+            vibration_mv: 0.0,
+            frames: 0,
+            noise: ChaCha8Rng::seed_from_u64(seed),
+        }
+    }
+
+    /// At rest, holding something with 4 N and a shear of 0.4 N, long enough for the reflex to watch.
+    #[must_use]
+    pub fn holding(seed: u64) -> Self {
+        let mut bench = Self::new(seed);
+        bench.load(4.0, 0.4);
+        bench.run(1_000);
+        assert_eq!(bench.fingertip.mode(), GripMode::Watch);
+        bench
+    }
+
+    /// Loads the force sensor.
+    pub fn load(&mut self, normal_n: f64, shear_n: f64) {
+        for (n, force_n) in fsr_quadrants_n(normal_n, shear_n, 0.0).into_iter().enumerate() {
+            self.pins_mv[FSR + n] = fsr_mv(force_n, f64::powf).min(3_200.0);
+        }
+    }
+
+    /// Sets both muscles, mV above rest.
+    pub fn muscles(&mut self, flexor_mv: f64, extensor_mv: f64) {
+        self.pins_mv[MYO_FLEXOR] = f64::from(MYO_REST_MV) + flexor_mv;
+        self.pins_mv[MYO_EXTENSOR] = f64::from(MYO_REST_MV) + extensor_mv;
+    }
+
+    /// The frame that the pins give now.
+    pub fn frame(&mut self) -> Frame {
+        let sequence = self.frames;
+        self.frames += 1;
+        let phase = f64::from(sequence) * 60.0 / 2_000.0 * std::f64::consts::TAU;
+        let shake_mv = self.vibration_mv * phase.sin();
+        let mut samples = [0; COUNT];
+        for (n, sample) in samples.iter_mut().enumerate() {
+            let shake_mv = if (PVDF..PVDF + PVDF_COUNT).contains(&n) { shake_mv } else { 0.0 };
+            let exact =
+                i32::from(sample_from_mv((self.pins_mv[n] + shake_mv).clamp(0.0, 3_300.0).round() as u32));
+            *sample = (exact + self.noise.random_range(-2..=2)).clamp(0, i32::from(SAMPLE_MAX)) as u16;
+        }
+        let mut frame = Frame { valid: true, ..Frame::lost(sequence) };
+        frame.pvdf.copy_from_slice(&samples[PVDF..PVDF + PVDF_COUNT]);
+        let wired = tenax_hal_shim::frame::scan_of_pins(&samples, frame.select());
+        frame.switch_a = wired[tenax_hal_shim::channel::RANK_SWITCH_A];
+        frame.switch_b = wired[tenax_hal_shim::channel::RANK_SWITCH_B];
+        frame
+    }
+
+    /// Gives one frame to the fingertip.
+    pub fn step(&mut self) -> MotorDrive {
+        let frame = self.frame();
+        self.give(&frame)
+    }
+
+    /// Gives this frame to the fingertip, and collects what it tells.
+    pub fn give(&mut self, frame: &Frame) -> MotorDrive {
+        let drive = self.fingertip.tick(frame);
+        self.slows.extend(self.fingertip.take_slow());
+        while let Some(event) = self.fingertip.next_event() {
+            self.events.push(event);
+        }
+        drive
+    }
+
+    /// Gives many frames; how the motor was driven in each.
+    pub fn run(&mut self, frames: u32) -> Vec<MotorDrive> {
+        (0..frames).map(|_| self.step()).collect()
+    }
+
+    /// How the reflex came into the mode it is in.
+    #[must_use]
+    pub fn last_cause(&self) -> Option<Cause> {
+        self.events.iter().rev().find_map(|event| match event.kind {
+            EventKind::Mode { cause, .. } => Some(cause),
+            _ => None,
+        })
+    }
+}

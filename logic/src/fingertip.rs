@@ -179,7 +179,7 @@ impl Fingertip {
         let grip = self.senses.grip(&self.config);
         let config = self.config.grip;
         let taken_over = self.senses.gate.is_active() || self.link.is_some();
-        self.cause(if self.senses.ready() { Cause::SensorsReady } else { Cause::SensorsLost });
+        self.cause(if self.senses.ready(&self.config) { Cause::SensorsReady } else { Cause::SensorsLost });
         self.cause(if taken_over { Cause::TakenOver } else { Cause::Released });
         let may_close = self.reflex.may_close(&config, grip);
         if verdict.slip && may_close {

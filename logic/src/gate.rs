@@ -65,6 +65,7 @@ pub struct Gate {
     /// Opens it.
     pub extensor: Muscle,
     hold: u32,
+    known_frames: u32,
 }
 
 impl Gate {
@@ -75,6 +76,7 @@ impl Gate {
         } else {
             self.hold = self.hold.saturating_sub(1);
         }
+        self.known_frames = if self.is_known() { self.known_frames.saturating_add(1) } else { 0 };
     }
 
     /// Whether a muscle is active or was within the hold time. Call after [`tick`](Self::tick).
@@ -87,6 +89,12 @@ impl Gate {
     #[must_use]
     pub const fn is_known(&self) -> bool {
         self.flexor.mv.is_some() && self.extensor.mv.is_some()
+    }
+
+    /// Whether both have given numbers for as long as a muscle's activity is held: before, it could have ended unseen.
+    #[must_use]
+    pub const fn is_certain(&self, config: &GateConfig) -> bool {
+        self.known_frames >= config.hold_frames
     }
 
     /// What the muscles ask for.

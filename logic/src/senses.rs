@@ -103,9 +103,9 @@ impl Senses {
 
     /// Whether the reflex has all that it cannot do without: both muscles known, and a way to feel slip.
     #[must_use]
-    pub fn ready(&self) -> bool {
+    pub fn ready(&self, config: &Config) -> bool {
         self.frames_seen >= WARM_UP_FRAMES
-            && self.gate.is_known()
+            && self.gate.is_certain(&config.gate)
             && (self.films_usable || self.forces.is_some())
     }
 

@@ -1,0 +1,278 @@
+//! The contract with the wearer, against random hands. A failing case prints its seed.
+
+use proptest::prelude::*;
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+use tenax_hal_shim::channel::{
+    CHANNELS, COUNT, FSR, MYO_EXTENSOR, MYO_FLEXOR, MYO_SELECT, SAMPLE_MAX, mv_from_sample,
+};
+use tenax_hal_shim::frame::Frame;
+use tenax_hal_shim::front_end::MYO_REST_MV;
+use tenax_hal_shim::motor::{Duty, MotorDrive};
+use tenax_hal_shim::wire::{DRIVE_HOLD_MAX_MS, Down, Setting};
+use tenax_hal_shim::words::{Cause, DriveSource, GripMode};
+use tenax_host_tests::Bench;
+use tenax_logic::config::Config;
+
+const STEPS: u32 = 1_000_000;
+/// Two slow frames.
+const OPEN_WITHIN_FRAMES: u32 = 50;
+
+/// What a bystander knows of one muscle from the same samples, without any of the logic's code.
+#[derive(Default)]
+struct Bystander {
+    last_mv: Option<i32>,
+    active_at: Option<u32>,
+}
+
+impl Bystander {
+    fn see(&mut self, frame: u32, sample: u16) {
+        let channel = CHANNELS[MYO_FLEXOR];
+        let mv = mv_from_sample(sample);
+        self.last_mv =
+            (channel.low_mv + 1..channel.high_mv).contains(&mv).then(|| mv as i32 - MYO_REST_MV as i32);
+        if self.last_mv >= Some(i32::from(Config::default().gate.on_mv)) {
+            self.active_at = Some(frame);
+        }
+    }
+
+    fn is_active(&self, frame: u32) -> bool {
+        self.active_at.is_some_and(|at| frame - at < Config::default().gate.hold_frames)
+    }
+}
+
+fn disturb(bench: &mut Bench, rng: &mut ChaCha8Rng) {
+    match rng.random_range(0..12) {
+        0 => bench.load(rng.random_range(0.0..60.0), rng.random_range(0.0..20.0)),
+        1 => bench.vibration_mv = if rng.random_bool(0.5) { 0.0 } else { rng.random_range(0.0..1_500.0) },
+        2 | 3 => bench.muscles(rng.random_range(0.0..100.0), rng.random_range(0.0..100.0)),
+        4 => bench.muscles(rng.random_range(0.0..2_500.0), rng.random_range(0.0..100.0)),
+        5 => bench.muscles(rng.random_range(0.0..100.0), rng.random_range(0.0..2_500.0)),
+        6 => bench.muscles(rng.random_range(0.0..2_500.0), rng.random_range(0.0..2_500.0)),
+        7 => bench.pins_mv[rng.random_range(0..COUNT)] = [0.0, 3_300.0][rng.random_range(0..2)],
+        8 | 9 => {
+            let n = rng.random_range(0..COUNT);
+            bench.pins_mv[n] = f64::from(CHANNELS[n].rest_mv);
+        }
+        _ => bench.load(rng.random_range(3.0..8.0), rng.random_range(0.0..4.0)),
+    }
+}
+
+fn random_command(rng: &mut ChaCha8Rng) -> Down {
+    let duty = Duty::per_mille(rng.random_range(0..=1_000));
+    let drive = [MotorDrive::Coast, MotorDrive::Close(duty), MotorDrive::Open(duty)][rng.random_range(0..3)];
+    match rng.random_range(0..5) {
+        0 => Down::Drive { drive, hold_ms: rng.random_range(0..=400) },
+        1 => Down::Set(Setting::S1Mv(rng.random())),
+        2 => Down::Set(Setting::S2Permille(rng.random())),
+        3 => Down::Stroke(rng.random()),
+        _ => Down::Zero,
+    }
+}
+
+#[test]
+fn a_million_random_steps() {
+    const SEED: u64 = 0x7E4A;
+    println!("seed {SEED:#x}");
+    let mut rng = ChaCha8Rng::seed_from_u64(SEED);
+    let mut bench = Bench::new(SEED);
+    let (mut flexor, mut extensor) = (Bystander::default(), Bystander::default());
+    let mut link_open_until = 0;
+    let (mut reflexes, mut opens, mut silenced) = (0u32, 0u32, 0u32);
+    let mut active = [false; 25];
+    for step in 0..STEPS {
+        if rng.random_ratio(1, 300) {
+            disturb(&mut bench, &mut rng);
+        }
+        if rng.random_ratio(1, 2_000) {
+            let command = random_command(&mut rng);
+            let accepted = bench.fingertip.command(&command).is_ok();
+            if let Down::Drive { drive, hold_ms } = command {
+                assert!(!accepted || hold_ms <= DRIVE_HOLD_MAX_MS);
+                if accepted {
+                    link_open_until = if drive.opens() { step + u32::from(hold_ms) * 2 } else { 0 };
+                }
+            }
+        }
+        let whole = bench.frame();
+        let frame = if rng.random_ratio(1, 500) { Frame::lost(whole.sequence) } else { whole };
+        if frame.valid && frame.select() == MYO_SELECT {
+            flexor.see(step, frame.switch_b);
+        }
+        if frame.valid && frame.select() == MYO_SELECT + 1 {
+            extensor.see(step, frame.switch_b);
+        }
+        let drive = bench.give(&frame);
+        active[usize::from(frame.place())] = flexor.is_active(step) || extensor.is_active(step);
+        if drive.opens() {
+            opens += 1;
+            let muscle = extensor.last_mv >= Some(100);
+            assert!(muscle || step < link_open_until, "step {step}: opened, and nobody asked");
+        }
+        let Some(slow) = bench.slows.pop() else { continue };
+        for (place, tick) in slow.ticks.iter().enumerate() {
+            let reflex = tick.source == DriveSource::Reflex;
+            reflexes += u32::from(reflex);
+            silenced += u32::from(active[place] && tick.s1);
+            assert!(
+                !(reflex && active[place]),
+                "step {step}, place {place}: reflex while a muscle is active"
+            );
+            assert!(!reflex || tick.drive.closes());
+        }
+    }
+    println!("{reflexes} reflex ticks, {opens} opening ticks");
+    assert!(
+        reflexes > 5_000 && opens > 5_000,
+        "the silence is worth nothing unless both happen at other times"
+    );
+    assert_eq!(silenced, 0, "while the wearer is active no detector is even listened to");
+}
+
+#[test]
+fn the_same_vibration_fires_without_a_muscle_and_is_silent_with_one() {
+    for (flexor_mv, fires) in [(50.0, true), (400.0, false)] {
+        let mut bench = Bench::holding(1);
+        bench.muscles(flexor_mv, 50.0);
+        bench.run(30);
+        bench.vibration_mv = 800.0;
+        bench.slows.clear();
+        bench.run(1_000);
+        let reflex =
+            bench.slows.iter().flat_map(|slow| slow.ticks).any(|tick| tick.source == DriveSource::Reflex);
+        assert_eq!(reflex, fires, "flexor at {flexor_mv} mV");
+    }
+}
+
+#[test]
+fn only_slip_moves_a_hand_that_nobody_commands() {
+    let mut bench = Bench::holding(2);
+    assert!(bench.run(20_000).iter().all(|drive| *drive == MotorDrive::Coast));
+    bench.load(4.0, 2.0);
+    let drives = bench.run(200);
+    assert!(drives.iter().any(|drive| drive.closes()));
+    assert!(bench.events.iter().any(|event| matches!(
+        event.kind,
+        tenax_hal_shim::wire::EventKind::Mode { cause: Cause::S2, to: GripMode::Incipient, .. }
+    )));
+}
+
+#[test]
+fn the_reflex_stops_at_the_force_ceiling() {
+    let mut bench = Bench::holding(3);
+    bench.fingertip.command(&Down::Set(Setting::ForceCeilingMn(3_000))).unwrap();
+    bench.vibration_mv = 800.0;
+    assert!(
+        bench.run(4_000).iter().all(|drive| *drive == MotorDrive::Coast),
+        "4 N are held, 3 N are allowed"
+    );
+}
+
+#[test]
+fn a_lost_link_stops_the_motor() {
+    let mut bench = Bench::holding(4);
+    bench.fingertip.command(&Down::Drive { drive: MotorDrive::Close(Duty::FULL), hold_ms: 100 }).unwrap();
+    let driven = bench.run(4_000).iter().filter(|drive| drive.closes()).count();
+    assert!((199..=201).contains(&driven), "{driven} frames");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    #[test]
+    fn open_takes_effect_within_two_slow_frames(
+        seed in any::<u64>(),
+        before in 0..60u32,
+        flexor_mv in 0.0..150.0f64,
+        extensor_mv in 170.0..2_400.0f64,
+        vibration_mv in 0.0..1_500.0f64,
+        dead in proptest::collection::vec(0..MYO_FLEXOR, 0..6),
+        closing in any::<bool>(),
+    ) {
+        let mut bench = Bench::holding(seed);
+        for &channel in &dead {
+            bench.pins_mv[channel] = 0.0;
+        }
+        bench.vibration_mv = vibration_mv;
+        bench.run(before);
+        if closing {
+            let _ = bench.fingertip.command(&Down::Drive { drive: MotorDrive::Close(Duty::FULL), hold_ms: 250 });
+        }
+        bench.muscles(flexor_mv, extensor_mv);
+        let drives = bench.run(OPEN_WITHIN_FRAMES);
+        prop_assert!(drives.last().unwrap().opens(), "dead {dead:?}, seed {seed}");
+    }
+
+    #[test]
+    fn no_fault_opens_the_hand(
+        seed in any::<u64>(),
+        volts in proptest::collection::vec((0..COUNT, prop_oneof![Just(0.0), Just(3_300.0), 0.0..3_300.0f64]), 1..12),
+        active_before in any::<bool>(),
+    ) {
+        let mut bench = Bench::holding(seed);
+        if active_before {
+            // The sensors fail while the wearer closes: the worst moment.
+            bench.muscles(800.0, 60.0);
+            bench.run(100);
+        }
+        for &(channel, mv) in &volts {
+            let myo_in_range = matches!(channel, MYO_FLEXOR | MYO_EXTENSOR)
+                && (100.0..=3_250.0).contains(&mv);
+            // A voltage in range is what a muscle gives; a frozen one is tested below.
+            if !myo_in_range {
+                bench.pins_mv[channel] = mv;
+            }
+        }
+        prop_assert!(bench.run(3_000).iter().all(|drive| !drive.opens()));
+    }
+
+    #[test]
+    fn a_frozen_myosensor_opens_nothing(seed in any::<u64>(), frozen in 0..=SAMPLE_MAX) {
+        let mut bench = Bench::holding(seed);
+        for _ in 0..3_000 {
+            let mut frame = bench.frame();
+            if frame.select() == MYO_SELECT + 1 {
+                frame.switch_b = frozen;
+            }
+            prop_assert!(!bench.give(&frame).opens());
+        }
+    }
+
+    #[test]
+    fn any_samples_whatever_are_survived(
+        frames in proptest::collection::vec((any::<[u16; 14]>(), any::<bool>()), 1..200),
+    ) {
+        // Not even samples that no converter can give.
+        let mut bench = Bench::new(0);
+        for (n, (samples, valid)) in frames.iter().enumerate() {
+            let mut frame = Frame { valid: *valid, ..Frame::lost(n as u32) };
+            frame.pvdf.copy_from_slice(&samples[..12]);
+            frame.switch_a = samples[12];
+            frame.switch_b = samples[13];
+            bench.give(&frame);
+        }
+    }
+}
+
+#[test]
+fn a_dead_quadrant_leaves_the_films_with_a_budget_that_ends() {
+    let mut bench = Bench::holding(5);
+    bench.pins_mv[FSR + 1] = 0.0;
+    bench.run(200);
+    bench.vibration_mv = 800.0;
+    let closing = bench.run(40_000).iter().filter(|drive| drive.closes()).count();
+    let budget = Config::default().grip.blind_frames as usize;
+    assert!(closing > 0 && closing <= budget + 1, "{closing} frames of closing, {budget} allowed");
+}
+
+#[test]
+fn a_dead_myosensor_silences_the_reflex_and_the_other_still_commands() {
+    let mut bench = Bench::holding(6);
+    bench.pins_mv[MYO_FLEXOR] = 0.0;
+    bench.run(100);
+    assert_eq!(bench.fingertip.mode(), GripMode::Standby);
+    bench.vibration_mv = 800.0;
+    assert!(bench.run(4_000).iter().all(|drive| *drive == MotorDrive::Coast));
+    bench.pins_mv[MYO_EXTENSOR] = f64::from(MYO_REST_MV) + 800.0;
+    assert!(bench.run(OPEN_WITHIN_FRAMES).last().unwrap().opens());
+}
