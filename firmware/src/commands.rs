@@ -1,0 +1,30 @@
+//! The commands task: bytes come down the serial line, commands go to control. Anything else is counted and skipped.
+
+use embassy_stm32::usart::RingBufferedUartRx;
+use tenax_hal_shim::wire::{Down, Receiver};
+
+use crate::{counts, mail};
+
+/// Bytes that DMA writes around in: 11 ms of a full line, and this task needs far less to get its turn.
+pub const RING_LEN: usize = 1024;
+
+/// Listens for ever.
+#[embassy_executor::task]
+pub async fn commands(mut line: RingBufferedUartRx<'static>) -> ! {
+    let mut receiver = Receiver::new();
+    let mut bytes = [0; 64];
+    loop {
+        // After an error of the line the next read starts it anew; the frame it fell into fails its CRC.
+        let Ok(count) = line.read(&mut bytes).await else {
+            counts::BAD_FRAMES.add_one();
+            continue;
+        };
+        for &byte in &bytes[..count] {
+            match receiver.push::<Down>(byte) {
+                None => {}
+                Some(Ok(command)) => mail::hand_over(command).await,
+                Some(Err(_)) => counts::BAD_FRAMES.add_one(),
+            }
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! What the image counts about itself. Every task adds to its own counts; telemetry reads them all.
+
+use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
+
+use tenax_hal_shim::wire::Counters;
+
+/// A number that only grows.
+pub struct Count(AtomicU32);
+
+impl Count {
+    const fn new() -> Self {
+        Self(AtomicU32::new(0))
+    }
+
+    /// Counts one more.
+    pub fn add_one(&self) {
+        self.add(1);
+    }
+
+    /// Counts `n` more.
+    pub fn add(&self, n: u32) {
+        self.0.fetch_add(n, Relaxed);
+    }
+
+    fn get(&self) -> u32 {
+        self.0.load(Relaxed)
+    }
+}
+
+/// Frames taken whole.
+pub static FRAMES: Count = Count::new();
+/// Frames lost.
+pub static FRAMES_LOST: Count = Count::new();
+/// Times the converter or its DMA overran or fell silent, and was restarted.
+pub static OVERRUNS: Count = Count::new();
+/// Control ticks run.
+pub static TICKS: Count = Count::new();
+/// Control ticks that ended after the next frame had begun.
+pub static TICKS_LATE: Count = Count::new();
+/// Messages dropped because the line was behind.
+pub static TELEMETRY_DROPPED: Count = Count::new();
+/// Frames received that were no message, and errors of the line itself.
+pub static BAD_FRAMES: Count = Count::new();
+
+/// All of them, as they go up the line.
+pub fn counters() -> Counters {
+    Counters {
+        frames: FRAMES.get(),
+        frames_lost: FRAMES_LOST.get(),
+        overruns: OVERRUNS.get(),
+        ticks: TICKS.get(),
+        ticks_late: TICKS_LATE.get(),
+        telemetry_dropped: TELEMETRY_DROPPED.get(),
+        bad_frames: BAD_FRAMES.get(),
+    }
+}

@@ -1,0 +1,77 @@
+//! What happens when the image can go on no longer, and how the next start knows.
+//!
+//! First the bridge goes off; everything else comes after. Then a mark is left in RAM, which a reset does not clear, and
+//! the chip is reset.
+
+use core::mem::MaybeUninit;
+use core::panic::PanicInfo;
+use core::ptr::{addr_of, addr_of_mut};
+
+use cortex_m::peripheral::SCB;
+use cortex_m_rt::{ExceptionFrame, exception};
+use embassy_stm32::pac;
+use tenax_hal_shim::words::Fault;
+
+use crate::bridge;
+
+/// What the mark is when it was left by a panic or a fault. Any other value is what RAM held at power-on.
+const PANICKED: u32 = 0x7E4A_C0DE;
+
+/// Not initialised by the runtime, so it outlives a reset.
+#[unsafe(link_section = ".uninit.mark")]
+static mut MARK: MaybeUninit<u32> = MaybeUninit::uninit();
+
+/// Why the last run ended, if not by switching off. Asked once, before anything else is set up: it forgets the answer.
+pub fn of_last_run() -> Option<Fault> {
+    let csr = pac::RCC.csr().read();
+    pac::RCC.csr().modify(|w| w.set_rmvf(true));
+    // SAFETY: nothing runs yet that could write the mark at the same time, and any bits are a u32.
+    let mark = unsafe { addr_of!(MARK).cast::<u32>().read_volatile() };
+    set_mark(0);
+    if csr.porrstf() {
+        None
+    } else if csr.wdgrstf() {
+        Some(Fault::WatchdogReset)
+    } else {
+        (csr.sftrstf() && mark == PANICKED).then_some(Fault::PanicReset)
+    }
+}
+
+fn set_mark(mark: u32) {
+    // SAFETY: called at start-up and with interrupts off, so never twice at a time.
+    unsafe { addr_of_mut!(MARK).cast::<u32>().write_volatile(mark) }
+}
+
+/// Turns the bridge off, leaves the mark, resets.
+fn end() -> ! {
+    cortex_m::interrupt::disable();
+    bridge::off();
+    set_mark(PANICKED);
+    SCB::sys_reset()
+}
+
+#[panic_handler]
+fn on_panic(info: &PanicInfo) -> ! {
+    cortex_m::interrupt::disable();
+    bridge::off();
+    defmt::error!("{}", defmt::Display2Format(info));
+    end()
+}
+
+/// A fault of the core: as a panic.
+///
+/// # Safety
+/// Called by the core only.
+#[exception]
+unsafe fn HardFault(_frame: &ExceptionFrame) -> ! {
+    end()
+}
+
+/// An interrupt that nobody bound: as a panic.
+///
+/// # Safety
+/// Called by the core only.
+#[exception]
+unsafe fn DefaultHandler(_irq: i16) -> ! {
+    end()
+}

@@ -1,0 +1,113 @@
+//! The image of the fingertip's microcontroller (STM32F411RE).
+//!
+//! Tasks move data; what it means is decided in `tenax-logic`. Who runs where, the most urgent first:
+//!
+//! | who | runs in | priority | worst if it were wrong |
+//! |---|---|---|---|
+//! | `bridge::off` in a panic or fault | the faulting context | all interrupts off | the motor stays driven |
+//! | scan's DMA, time driver | their interrupts | 1 | a deadline is noticed late: a lost frame stays unnoticed |
+//! | [`control`]: frame, logic, bridge, watchdog | executor in interrupt SPI5 | 2 | switches step late, ticks run late |
+//! | the serial line's interrupts | USART2, DMA1 | 6 | below control or control jitters by them |
+//! | [`telemetry`], [`commands`] | thread executor | none | messages are dropped and counted, control goes on |
+//! | idle | thread executor | none | sleeps in WFE until an interrupt |
+//!
+//! Control never waits for the others: what it hands over goes into a bounded box ([`mail`]) or is dropped. If it stops,
+//! the watchdog, which only it feeds, resets the chip after 0.1 s and the bridge is off from that instant.
+#![no_std]
+#![no_main]
+
+mod bridge;
+mod clock;
+mod commands;
+mod control;
+mod counts;
+mod last_words;
+mod mail;
+mod samples;
+mod scan;
+mod switches;
+mod telemetry;
+
+use defmt_rtt as _;
+use embassy_executor::{InterruptExecutor, Spawner};
+use embassy_stm32::adc::AdcChannel;
+use embassy_stm32::interrupt;
+use embassy_stm32::interrupt::{InterruptExt, Priority};
+use embassy_stm32::usart::{self, Uart};
+use embassy_stm32::wdg::IndependentWatchdog;
+use embassy_stm32::{bind_interrupts, dma, peripherals};
+use static_cell::ConstStaticCell;
+use tenax_hal_shim::wire::BAUD;
+
+bind_interrupts!(struct Irqs {
+    DMA2_STREAM0 => dma::InterruptHandler<peripherals::DMA2_CH0>;
+    DMA1_STREAM5 => dma::InterruptHandler<peripherals::DMA1_CH5>;
+    DMA1_STREAM6 => dma::InterruptHandler<peripherals::DMA1_CH6>;
+    USART2 => usart::InterruptHandler<peripherals::USART2>;
+});
+
+/// Runs control, above the thread executor. SPI5 itself is not used.
+static URGENT: InterruptExecutor = InterruptExecutor::new();
+
+#[interrupt]
+unsafe fn SPI5() {
+    // SAFETY: this is that interrupt, and it is enabled by `start` only.
+    unsafe { URGENT.on_interrupt() }
+}
+
+/// The box that a DMA ring stands in for as long as the image runs.
+static SCAN_RING: ConstStaticCell<[u16; scan::RING_LEN]> = ConstStaticCell::new([0; scan::RING_LEN]);
+static COMMAND_RING: ConstStaticCell<[u8; commands::RING_LEN]> = ConstStaticCell::new([0; commands::RING_LEN]);
+
+#[embassy_executor::main]
+async fn main(spawner: Spawner) {
+    let after = last_words::of_last_run();
+    let mut config = clock::config();
+    config.dma_interrupt_priority = Priority::P6;
+    let p = embassy_stm32::init(config);
+    // Before anything that could take time: from here on both sides are held low.
+    let bridge = bridge::Bridge::new(p.TIM1, p.PA8, p.PA9);
+    interrupt::DMA2_STREAM0.set_priority(Priority::P1);
+    interrupt::TIM5.set_priority(Priority::P1);
+    interrupt::SPI5.set_priority(Priority::P2);
+    interrupt::USART2.set_priority(Priority::P6);
+    defmt::info!("tenax: started, after {}", after.is_some());
+
+    let pins = [
+        p.PA0.degrade_adc(),
+        p.PA1.degrade_adc(),
+        p.PA4.degrade_adc(),
+        p.PA5.degrade_adc(),
+        p.PA6.degrade_adc(),
+        p.PA7.degrade_adc(),
+        p.PB0.degrade_adc(),
+        p.PB1.degrade_adc(),
+        p.PC0.degrade_adc(),
+        p.PC1.degrade_adc(),
+        p.PC2.degrade_adc(),
+        p.PC3.degrade_adc(),
+        p.PC4.degrade_adc(),
+        p.PC5.degrade_adc(),
+    ];
+    let scan = scan::Scan::new(
+        p.ADC1,
+        p.TIM3,
+        dma::Channel::new(p.DMA2_CH0, Irqs),
+        SCAN_RING.take(),
+        pins,
+    );
+    let switches = switches::Switches::new(p.PB12, p.PB13, p.PB14, p.PB15);
+    let watchdog = IndependentWatchdog::new(p.IWDG, control::WATCHDOG_US);
+
+    let mut line = usart::Config::default();
+    line.baudrate = BAUD;
+    let uart = Uart::new(p.USART2, p.PA3, p.PA2, p.DMA1_CH6, p.DMA1_CH5, Irqs, line)
+        .expect("921 600 baud divides 50 MHz");
+    let (up, down) = uart.split();
+
+    spawner.spawn(telemetry::telemetry(up, after).expect("one telemetry task"));
+    spawner.spawn(commands::commands(down.into_ring_buffered(COMMAND_RING.take())).expect("one commands task"));
+    let control = control::Control::new(bridge, switches, watchdog);
+    let urgent = URGENT.start(interrupt::SPI5);
+    urgent.spawn(control::control(scan, control).expect("one control task"));
+}

@@ -1,0 +1,209 @@
+//! The 14-channel scan: TIM3 starts it in hardware 8000 times a second, DMA carries it, one interrupt a frame.
+//!
+//! embassy's own ring-buffered converter cannot do this: it writes every rank into SQR3, which holds six; it never looks
+//! at OVR, after which the converter is silent for ever; and it starts one scan by software ahead of the first timed one.
+//! So the sequence is written here, through the PAC, and the DMA is embassy's public ring buffer.
+//!
+//! The scan's timer and the time driver count the same clock, so the two never drift apart and the instant of every
+//! frame is known without asking the converter: a frame that does not come in time is lost, and after a restart the
+//! sequence numbers go on where time has got to.
+
+use embassy_stm32::adc::{Adc, AnyAdcChannel};
+use embassy_stm32::dma::{self, ReadableRingBuffer};
+use embassy_stm32::pac;
+use embassy_stm32::pac::adc::vals::{Dds, Exten, SampleTime};
+use embassy_stm32::peripherals::{ADC1, TIM3};
+use embassy_stm32::time::Hertz;
+use embassy_stm32::timer::low_level::{MasterMode, RoundTo, Timer as HardwareTimer};
+use embassy_stm32::Peri;
+use embassy_time::{Duration, Instant, Timer, with_deadline};
+use tenax_hal_shim::channel::{FRAME_HZ, SCAN, SCAN_HZ, SCAN_LEN, SCANS_PER_FRAME};
+use tenax_hal_shim::frame::{Frame, Scan as Codes};
+
+use crate::counts;
+
+/// Codes in one frame.
+const FRAME_LEN: usize = SCAN_LEN * SCANS_PER_FRAME;
+/// Two frames: one is read while the other is written.
+pub const RING_LEN: usize = 2 * FRAME_LEN;
+
+const SCAN_PERIOD: Duration = Duration::from_hz(SCAN_HZ as u64);
+const FRAME_PERIOD: Duration = Duration::from_hz(FRAME_HZ as u64);
+/// EXTSEL of the regular group: TIM3's TRGO (RM0383, section 11.12.3).
+const EXTSEL_TIM3_TRGO: u8 = 0b1000;
+/// ADC1 on DMA2 stream 0 (RM0383, table 28).
+const DMA_REQUEST_ADC1: dma::Request = 0;
+/// 84 + 12 cycles at 25 MHz: a scan takes 53.8 us of its 125, and 10 kohm sources settle to half a code.
+const SAMPLE_TIME: SampleTime = SampleTime::CYCLES84;
+
+/// Why a recording ended.
+#[derive(defmt::Format)]
+enum Trouble {
+    /// The converter had a code that DMA did not fetch (OVR); its requests have stopped.
+    Overrun,
+    /// A frame did not come in time.
+    Silent,
+    /// A frame was read only after the following one had begun, or was written over before it was read.
+    Behind,
+}
+
+/// The converter, its timer and its DMA.
+pub struct Scan {
+    adc: Peri<'static, ADC1>,
+    channel: dma::Channel<'static>,
+    ring: &'static mut [u16; RING_LEN],
+    timer: HardwareTimer<'static, TIM3>,
+    due: Due,
+}
+
+/// The frame to come.
+struct Due {
+    sequence: u32,
+    /// When its first scan is triggered.
+    begins: Instant,
+}
+
+impl Due {
+    fn step(&mut self) {
+        self.sequence = self.sequence.wrapping_add(1);
+        self.begins += FRAME_PERIOD;
+    }
+}
+
+impl Scan {
+    /// Takes the hardware; nothing is converted before [`run`](Self::run).
+    ///
+    /// `pins` are proof that nobody else uses them, and must be those of the channel map.
+    pub fn new(
+        adc: Peri<'static, ADC1>,
+        timer: Peri<'static, TIM3>,
+        channel: dma::Channel<'static>,
+        ring: &'static mut [u16; RING_LEN],
+        pins: [AnyAdcChannel<'static, ADC1>; SCAN_LEN],
+    ) -> Self {
+        for (pin, rank) in pins.iter().zip(&SCAN) {
+            assert!(pin.get_hw_channel() == rank.adc, "{} is not wired as the channel map says", rank.pin);
+        }
+        let timer = HardwareTimer::new(timer);
+        timer.set_frequency(Hertz(SCAN_HZ), RoundTo::Faster);
+        timer.set_master_mode(MasterMode::UPDATE);
+        Self {
+            adc,
+            channel,
+            ring,
+            timer,
+            due: Due {
+                sequence: 0,
+                begins: Instant::MAX,
+            },
+        }
+    }
+
+    /// Hands every frame to `on_frame` as soon as its last code has been converted, for ever. Frames that are lost are
+    /// handed over as such, so that whoever counts time by frames keeps time.
+    ///
+    /// `on_frame` has until the next frame begins, 71 us, to step the switches for it.
+    pub async fn run(mut self, mut on_frame: impl FnMut(&Frame)) -> ! {
+        self.timer.start();
+        // The first trigger comes one period after the start.
+        self.due.begins = Instant::now() + SCAN_PERIOD;
+        loop {
+            self.catch_up(&mut on_frame).await;
+            let trouble = self.record(&mut on_frame).await;
+            counts::OVERRUNS.add_one();
+            defmt::warn!("scan: {} at frame {}, restarting", trouble, self.due.sequence);
+        }
+    }
+
+    /// Gives up the frames that have begun, and waits until the scan before the next one has been triggered.
+    async fn catch_up(&mut self, on_frame: &mut impl FnMut(&Frame)) {
+        loop {
+            let arm_at = self.due.begins - SCAN_PERIOD / 2;
+            if Instant::now() <= arm_at {
+                Timer::at(arm_at).await;
+                return;
+            }
+            counts::FRAMES_LOST.add_one();
+            on_frame(&Frame::lost(self.due.sequence));
+            self.due.step();
+        }
+    }
+
+    /// Sets the converter and its DMA up from reset, and hands over frames until something goes wrong.
+    async fn record(&mut self, on_frame: &mut impl FnMut(&Frame)) -> Trouble {
+        let Self { adc, channel, ring, due, .. } = self;
+        // Resets the converter: whatever it was doing is over.
+        let _adc = Adc::new(adc.reborrow());
+        let converter = pac::ADC1;
+        // SAFETY: the stream is ours (`channel`), DR is the address that its requests belong to, and the ring is
+        // borrowed for as long as the stream writes to it.
+        let mut ring = unsafe {
+            ReadableRingBuffer::new(
+                channel.reborrow(),
+                DMA_REQUEST_ADC1,
+                converter.dr().as_ptr().cast(),
+                &mut ring[..],
+                dma::TransferOptions::default(),
+            )
+        };
+        ring.set_alignment(SCAN_LEN);
+        ring.start();
+        listen(converter);
+
+        loop {
+            let mut codes = [0; FRAME_LEN];
+            let following_begins = due.begins + FRAME_PERIOD;
+            // The frame is due 71 us before the following one begins.
+            let deadline = following_begins + SCAN_PERIOD / 2;
+            match with_deadline(deadline, ring.read_exact(&mut codes)).await {
+                Ok(Ok(_)) => {}
+                Ok(Err(_)) => return Trouble::Behind,
+                Err(_) if converter.sr().read().ovr() => return Trouble::Overrun,
+                Err(_) => return Trouble::Silent,
+            }
+            // Then the switches do not show yet what the following frame is reading.
+            let behind = Instant::now() > following_begins;
+            on_frame(&frame_of(due.sequence, &codes));
+            counts::FRAMES.add_one();
+            if Instant::now() > following_begins {
+                counts::TICKS_LATE.add_one();
+            }
+            due.step();
+            if behind {
+                return Trouble::Behind;
+            }
+        }
+    }
+}
+
+/// Lets TIM3 trigger scans of all ranks.
+fn listen(converter: pac::adc::Adc) {
+    converter.sqr1().modify(|w| w.set_l(SCAN_LEN as u8 - 1));
+    for (index, rank) in SCAN.iter().enumerate() {
+        match index {
+            0..=5 => converter.sqr3().modify(|w| w.set_sq(index, rank.adc)),
+            6..=11 => converter.sqr2().modify(|w| w.set_sq(index - 6, rank.adc)),
+            _ => converter.sqr1().modify(|w| w.set_sq(index - 12, rank.adc)),
+        }
+        let channel = usize::from(rank.adc);
+        match channel {
+            0..=9 => converter.smpr2().modify(|w| w.set_smp(channel, SAMPLE_TIME)),
+            _ => converter.smpr1().modify(|w| w.set_smp(channel - 10, SAMPLE_TIME)),
+        }
+    }
+    converter.cr1().modify(|w| w.set_scan(true));
+    converter.cr2().modify(|w| {
+        w.set_dma(true);
+        w.set_dds(Dds::CONTINUOUS);
+        w.set_extsel(EXTSEL_TIM3_TRGO);
+        w.set_exten(Exten::RISING_EDGE);
+    });
+}
+
+fn frame_of(sequence: u32, codes: &[u16; FRAME_LEN]) -> Frame {
+    let mut scans = [Codes::default(); SCANS_PER_FRAME];
+    for (scan, codes) in scans.iter_mut().zip(codes.chunks_exact(SCAN_LEN)) {
+        scan.copy_from_slice(codes);
+    }
+    Frame::from_scans(sequence, &scans)
+}
