@@ -2,3 +2,12 @@
 #![forbid(unsafe_code)]
 
 pub mod board;
+pub mod cli;
+pub mod image;
+pub mod monitor;
+pub mod plot;
+pub mod replay;
+pub mod report;
+pub mod session;
+pub mod timeline;
+pub mod wiring;

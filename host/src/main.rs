@@ -1,1 +1,8 @@
-fn main() {}
+//! `tenax`: see `tenax --help`.
+#![forbid(unsafe_code)]
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    tenax::cli::main()
+}

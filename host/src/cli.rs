@@ -1,0 +1,88 @@
+//! The command line: one file a subcommand.
+
+mod check;
+mod flash;
+mod monitor;
+mod progress;
+mod run;
+mod scenes;
+mod size;
+mod test;
+mod wiring;
+mod workspace;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+const EXAMPLES: &str = "\
+Examples:
+  tenax run                                 the default scene on the emulated board, with the flashed image
+  tenax run --host --scene knock            another scene, on the host's build of the logic
+  tenax run --replay touch.csv              a recording, with the recipe that its name calls for
+  tenax run --replay my.csv --recipe my.toml
+  tenax run --report json > report.json     for programs
+  tenax scenes                              what there is to run
+  tenax check                               every promise, measured
+  tenax monitor --port /dev/ttyACM0         watch a real board";
+
+/// Runs, replays, watches and charts the Tenax fingertip.
+#[derive(Debug, Parser)]
+#[command(name = "tenax", version, after_help = EXAMPLES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a scene or a recording on a board; report and draw it
+    Run(run::Args),
+    /// List the scenes
+    Scenes,
+    /// Run every test of the workspace, the emulated ones included
+    Test(test::Args),
+    /// Measure every promise of the project, one line each; fails if one is not kept
+    Check(check::Args),
+    /// Flash a NUCLEO-F411RE through probe-rs
+    Flash(flash::Args),
+    /// Watch a board's serial line, one line a message
+    Monitor(monitor::Args),
+    /// Flash, RAM and worst stack of the image
+    Size,
+    /// Print the channel map as a Markdown table
+    Wiring,
+}
+
+/// Runs the command line. 0: done. 1: something measured is not as promised. 2: it could not be run.
+#[must_use]
+pub fn main() -> ExitCode {
+    let done = match Cli::parse().command {
+        Command::Run(args) => run::main(&args),
+        Command::Scenes => scenes::main(),
+        Command::Test(args) => test::main(&args),
+        Command::Check(args) => check::main(&args),
+        Command::Flash(args) => flash::main(&args),
+        Command::Monitor(args) => monitor::main(&args),
+        Command::Size => size::main(),
+        Command::Wiring => wiring::main(),
+    };
+    match done {
+        Ok(code) => code,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        Cli::command().debug_assert();
+    }
+}

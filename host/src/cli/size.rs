@@ -1,0 +1,7 @@
+//! `tenax size`: what the image takes.
+
+use std::process::ExitCode;
+
+pub fn main() -> anyhow::Result<ExitCode> {
+    anyhow::bail!("not yet")
+}

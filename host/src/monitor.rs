@@ -1,0 +1,244 @@
+//! A board's serial line for people: one line a message, what is missing counted, whatever comes.
+
+use std::fmt::{self, Display};
+use std::io::{self, ErrorKind, Read, Write};
+
+use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ, mv_from_sample};
+use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::wire::{BadFrame, Event, EventKind, Receiver, Slow, Up, VERSION};
+
+use crate::report::in_words;
+
+/// What has been heard so far.
+#[derive(Debug, Default)]
+pub struct Monitor {
+    receiver: Receiver,
+    expected: Option<u16>,
+    counts: Counts,
+}
+
+/// What came, and what should have come.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Messages.
+    pub messages: u64,
+    /// Frames that were no message.
+    pub bad_frames: u64,
+    /// Messages missing by their sequence numbers.
+    pub missed: u64,
+}
+
+impl Display for Counts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { messages, bad_frames, missed } = self;
+        write!(f, "{messages} messages, {bad_frames} bad frames skipped, {missed} messages missed")
+    }
+}
+
+impl Monitor {
+    /// Takes bytes as they come and prints what they say.
+    pub fn take(&mut self, bytes: &[u8], out: &mut dyn Write) -> io::Result<()> {
+        for &byte in bytes {
+            match self.receiver.push::<Up>(byte) {
+                None => {}
+                Some(Ok(received)) => {
+                    self.counts.messages += 1;
+                    // A board that starts counts from its first message again: that is not a loss.
+                    let restarted = matches!(received.message, Up::Hello { .. });
+                    let missed = match self.expected {
+                        Some(expected) if !restarted => received.sequence.wrapping_sub(expected),
+                        _ => 0,
+                    };
+                    if missed > 0 {
+                        self.counts.missed += u64::from(missed);
+                        writeln!(out, "# {missed} messages missed")?;
+                    }
+                    self.expected = Some(received.sequence.wrapping_add(1));
+                    writeln!(out, "{:>5} {}", received.sequence, Words(&received.message))?;
+                }
+                Some(Err(bad)) => {
+                    self.counts.bad_frames += 1;
+                    writeln!(out, "# frame skipped: {}", why(bad))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// What has been counted.
+    #[must_use]
+    pub fn counts(&self) -> Counts {
+        self.counts
+    }
+
+    /// Reads until the source ends, printing as it goes. Silence is waited out; an end says why it ended.
+    pub fn watch(&mut self, source: &mut dyn Read, out: &mut dyn Write) -> io::Result<End> {
+        let mut buffer = [0; 4096];
+        loop {
+            match source.read(&mut buffer) {
+                Ok(0) => return Ok(End::Over),
+                Ok(length) => {
+                    self.take(&buffer[..length], out)?;
+                    out.flush()?;
+                }
+                Err(error) if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => {}
+                Err(error) => return Ok(End::Unplugged(error)),
+            }
+        }
+    }
+}
+
+/// Why a source ended.
+#[derive(Debug)]
+pub enum End {
+    /// There is no more of it.
+    Over,
+    /// The port went away.
+    Unplugged(io::Error),
+}
+
+fn why(bad: BadFrame) -> String {
+    match bad {
+        BadFrame::Garbled => "garbled".to_owned(),
+        BadFrame::Version(version) => {
+            format!(
+                "of version {version}, and this tool speaks {VERSION}: flash the board anew, or use its own tool"
+            )
+        }
+        BadFrame::TooLong => "longer than any message".to_owned(),
+    }
+}
+
+/// A message for a person.
+struct Words<'a>(&'a Up);
+
+impl Display for Words<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Up::Hello { frame_hz, after: None } => {
+                write!(f, "hello: switched on, {frame_hz} frames a second")
+            }
+            Up::Hello { frame_hz, after: Some(fault) } => {
+                write!(f, "hello: {}, {frame_hz} frames a second", in_words(fault))
+            }
+            Up::Slow(slow) => slow_words(f, slow),
+            Up::Event(event) => event_words(f, event),
+            Up::Counters(counters) => write!(
+                f,
+                "counters: {} frames, {} lost, {} overruns; {} ticks, {} late; {} messages dropped, {} bad frames heard",
+                counters.frames,
+                counters.frames_lost,
+                counters.overruns,
+                counters.ticks,
+                counters.ticks_late,
+                counters.telemetry_dropped,
+                counters.bad_frames
+            ),
+            Up::Ack { of, refused: None } => write!(f, "done: command {of}"),
+            Up::Ack { of, refused: Some(refusal) } => write!(f, "refused: command {of}: {refusal:?}"),
+            Up::Samples { frame, samples } => {
+                write!(f, "{:10.4} s samples, mV:", seconds(*frame))?;
+                for (channel, &sample) in CHANNELS.iter().zip(samples) {
+                    write!(f, " {}={}", channel.name, mv_from_sample(sample))?;
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+fn seconds(frame: u32) -> f64 {
+    (f64::from(frame) + 1.0) / f64::from(FRAME_HZ)
+}
+
+fn slow_words(f: &mut fmt::Formatter<'_>, slow: &Slow) -> fmt::Result {
+    write!(f, "{:10.4} s {:<9}", seconds(slow.frame), format!("{:?}", slow.mode))?;
+    match slow.forces {
+        Some(forces) => {
+            write!(
+                f,
+                " Fn {:6.2} N Ft {:6.2} N",
+                f64::from(forces.fn_mn) / 1e3,
+                f64::from(forces.ft_mn) / 1e3
+            )?;
+            match forces.ratio_permille {
+                Some(ratio) => write!(f, " Ft/Fn {:5.3}", f64::from(ratio) / 1e3)?,
+                None => write!(f, " Ft/Fn     -")?,
+            }
+        }
+        None => write!(f, " no force")?,
+    }
+    let vibration = slow.ticks.iter().map(|tick| tick.vibration).max().unwrap_or(0);
+    write!(f, " vibration {:4} mV", mv_from_sample(vibration))?;
+    for (name, mv) in [("flexor", slow.flexor_mv), ("extensor", slow.extensor_mv)] {
+        match mv {
+            Some(mv) => write!(f, " {name} {mv:5} mV")?,
+            None => write!(f, " {name} lost")?,
+        }
+    }
+    let last = slow.ticks.last();
+    match last.map(|tick| tick.drive) {
+        Some(MotorDrive::Close(duty)) => write!(f, " closing {}", duty.as_per_mille())?,
+        Some(MotorDrive::Open(duty)) => write!(f, " opening {}", duty.as_per_mille())?,
+        Some(MotorDrive::Coast) | None => {}
+    }
+    for (spoke, name) in
+        [(slow.ticks.iter().any(|tick| tick.s1), " S1"), (slow.s2, " S2"), (slow.wearer_active, " wearer")]
+    {
+        if spoke {
+            f.write_str(name)?;
+        }
+    }
+    Ok(())
+}
+
+fn event_words(f: &mut fmt::Formatter<'_>, event: &Event) -> fmt::Result {
+    write!(f, "{:10.4} s ", seconds(event.frame))?;
+    match event.kind {
+        EventKind::Mode { from, to, cause } => write!(f, "mode: {from:?} -> {to:?} because of {cause:?}"),
+        EventKind::Fault(fault) => write!(f, "fault: {}", in_words(&fault)),
+        EventKind::Stroke { mu_s_permille, s2_permille } => write!(
+            f,
+            "stroke: mu_s {:.3}, S2 is now {:.3}",
+            f64::from(mu_s_permille) / 1e3,
+            f64::from(s2_permille) / 1e3
+        ),
+        EventKind::EventsLost(count) => write!(f, "{count} events lost"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tenax_hal_shim::wire::{FRAME_MAX, encode};
+
+    fn frame(sequence: u16) -> Vec<u8> {
+        let mut buffer = [0; FRAME_MAX];
+        let message = Up::Ack { of: 7, refused: None };
+        encode(sequence, &message, &mut buffer).expect("it fits").to_vec()
+    }
+
+    fn heard(bytes: &[u8]) -> (Counts, String) {
+        let (mut monitor, mut out) = (Monitor::default(), Vec::new());
+        monitor.take(bytes, &mut out).unwrap();
+        (monitor.counts(), String::from_utf8(out).unwrap())
+    }
+
+    #[test]
+    fn gaps_in_the_sequence_are_counted_across_its_wrap() {
+        let (counts, text) = heard(&[frame(65_534), frame(1), frame(2)].concat());
+        assert_eq!(counts, Counts { messages: 3, bad_frames: 0, missed: 2 });
+        assert_eq!(
+            text,
+            "65534 done: command 7\n# 2 messages missed\n    1 done: command 7\n    2 done: command 7\n"
+        );
+    }
+
+    #[test]
+    fn garbage_is_skipped_and_the_next_message_is_heard() {
+        let mut torn = frame(0);
+        torn[3] ^= 0x40;
+        let (counts, _) = heard(&[torn, vec![0xff; 2_000], vec![0], frame(0)].concat());
+        assert_eq!(counts, Counts { messages: 1, bad_frames: 2, missed: 0 });
+    }
+}

@@ -1,0 +1,9 @@
+//! One figure a run: stacked panels over one time axis, as SVG and, drawn from that, as PNG.
+
+pub mod draw;
+pub mod figure;
+pub mod panels;
+pub mod png;
+pub mod thin;
+
+pub use figure::Figure;

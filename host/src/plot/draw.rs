@@ -1,0 +1,154 @@
+//! Draws a figure as SVG.
+
+use anyhow::anyhow;
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use super::figure::{Figure, Panel};
+
+/// Size, pixels.
+pub const SIZE: (u32, u32) = (1_200, 1_180);
+/// The font of every word; the first is the one that the PNG is drawn with.
+pub const FONTS: &str = "DejaVu Sans, Verdana, sans-serif";
+
+const TITLE_HEIGHT: i32 = 62;
+const FOOT_HEIGHT: i32 = 46;
+const LEFT: i32 = 84;
+const RIGHT: i32 = 170;
+const GAP: i32 = 14;
+/// Height of a strip of states, in parts of its panel.
+const STRIP: f64 = 0.09;
+const SLIP: RGBColor = super::figure::colour::PURPLE;
+const INK: RGBColor = RGBColor(40, 40, 40);
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// The figure as SVG.
+pub fn svg(figure: &Figure) -> anyhow::Result<String> {
+    let mut svg = String::new();
+    {
+        let root = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
+        drawn(root.fill(&WHITE))?;
+        title(&root, figure)?;
+        let parts: f64 = figure.panels.iter().map(|panel| panel.height).sum();
+        let height = f64::from(SIZE.1 as i32 - TITLE_HEIGHT - FOOT_HEIGHT) / parts;
+        let mut top = f64::from(TITLE_HEIGHT);
+        for (n, panel) in figure.panels.iter().enumerate() {
+            let bottom = top + height * panel.height;
+            let last = n + 1 == figure.panels.len();
+            let foot = if last { FOOT_HEIGHT } else { 0 };
+            let all = root.clone().shrink((0, top as i32), (SIZE.0, (bottom - top) as u32 + foot as u32));
+            draw_panel(&all, figure, panel, foot)?;
+            top = bottom;
+        }
+        drawn(root.present())?;
+    }
+    Ok(svg)
+}
+
+fn draw_panel(area: &Area, figure: &Figure, panel: &Panel, foot: i32) -> anyhow::Result<()> {
+    let (from_s, to_s) = figure.span_s;
+    let (low, high) = range(panel);
+    let mut chart = drawn(
+        ChartBuilder::on(area)
+            .margin_top(GAP)
+            .margin_right(RIGHT)
+            .set_label_area_size(LabelAreaPosition::Left, LEFT)
+            .set_label_area_size(LabelAreaPosition::Bottom, foot)
+            .build_cartesian_2d(from_s..to_s, low..high),
+    )?;
+    for &(from_s, to_s) in &figure.slips {
+        drawn(chart.draw_series([Rectangle::new([(from_s, low), (to_s, high)], SLIP.mix(0.35).filled())]))?;
+    }
+    let mut mesh = chart.configure_mesh();
+    mesh.light_line_style(TRANSPARENT)
+        .bold_line_style(BLACK.mix(0.10))
+        .axis_style(INK)
+        .y_labels(5)
+        .x_labels(10)
+        .label_style((FONTS, 14).into_font().color(&INK))
+        .y_desc(panel.label.as_str())
+        .axis_desc_style((FONTS, 15).into_font().color(&INK));
+    if foot > 0 {
+        mesh.x_desc("time, s");
+    }
+    drawn(mesh.draw())?;
+    let strip_top = low + (high - low) * STRIP;
+    for stretch in &panel.strip {
+        let corners = [(stretch.from_s, low), (stretch.to_s, strip_top)];
+        drawn(chart.draw_series([Rectangle::new(corners, stretch.colour.filled())]))?;
+    }
+    for level in &panel.levels {
+        let style = super::figure::colour::VERMILLION.stroke_width(1);
+        let line = [(from_s, level.value), (to_s, level.value)];
+        drawn(chart.draw_series(DashedLineSeries::new(line, 6, 4, style)))?;
+    }
+    for curve in &panel.curves {
+        // A gap in a curve is a value that is no number: each stretch between gaps is a line of its own.
+        for stretch in curve.points.split(|point| point.1.is_nan()) {
+            let line = stretch.iter().copied();
+            drawn(chart.draw_series(LineSeries::new(line, curve.colour.stroke_width(2))))?;
+        }
+    }
+    legend(area, panel)
+}
+
+/// Names at the panel's right, each in its colour.
+fn legend(area: &Area, panel: &Panel) -> anyhow::Result<()> {
+    let mut entries: Vec<(&str, RGBColor, bool)> = Vec::new();
+    let curves = panel.curves.iter().map(|curve| (curve.name.as_str(), curve.colour, false));
+    let levels =
+        panel.levels.iter().map(|level| (level.name.as_str(), super::figure::colour::VERMILLION, false));
+    let strip = panel.strip.iter().map(|stretch| (stretch.name.as_str(), stretch.colour, true));
+    for entry in curves.chain(levels).chain(strip) {
+        if !entries.contains(&entry) {
+            entries.push(entry);
+        }
+    }
+    let left = SIZE.0 as i32 - RIGHT + 14;
+    for (n, (name, colour, filled)) in entries.into_iter().enumerate() {
+        let y = GAP + 10 + 19 * n as i32;
+        if filled {
+            drawn(area.draw(&Rectangle::new([(left, y - 6), (left + 20, y + 6)], colour.filled())))?;
+        } else {
+            drawn(area.draw(&PathElement::new([(left, y), (left + 20, y)], colour.stroke_width(3))))?;
+        }
+        let style = (FONTS, 14).into_font().color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
+        drawn(area.draw(&Text::new(name.to_owned(), (left + 27, y), style)))?;
+    }
+    Ok(())
+}
+
+fn title(root: &Area, figure: &Figure) -> anyhow::Result<()> {
+    let style = |size: i32| (FONTS, size).into_font().color(&INK).pos(Pos::new(HPos::Left, VPos::Top));
+    drawn(root.draw(&Text::new(figure.title.clone(), (LEFT, 10), style(22))))?;
+    drawn(root.draw(&Text::new(figure.subtitle.clone(), (LEFT, 40), style(14))))?;
+    if !figure.slips.is_empty() {
+        let left = SIZE.0 as i32 - RIGHT + 14;
+        drawn(root.draw(&Rectangle::new([(left, 42), (left + 20, 54)], SLIP.mix(0.35).filled())))?;
+        drawn(root.draw(&Text::new("the object slips".to_owned(), (left + 27, 41), style(14))))?;
+    }
+    Ok(())
+}
+
+/// The axis of a panel: everything in it, with a little air, and room for its strip.
+fn range(panel: &Panel) -> (f64, f64) {
+    let values = panel.curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.1));
+    let (mut low, mut high) = panel.at_least;
+    for value in values.filter(|value| value.is_finite()) {
+        low = low.min(value);
+        high = high.max(value);
+    }
+    let air = (high - low) * 0.05;
+    let low = if low < 0.0 { low - air } else { low };
+    if panel.strip.is_empty() {
+        return (low, high + air);
+    }
+    (low - (high - low) * STRIP * 1.5, high + air)
+}
+
+/// plotters' error as ours; it does not go through `?` because it borrows.
+fn drawn<T, E: std::fmt::Display>(result: Result<T, E>) -> anyhow::Result<T> {
+    result.map_err(|error| anyhow!("the plot cannot be drawn: {error}"))
+}

@@ -1,0 +1,95 @@
+//! The stages of an analogue front end, in `f64`, settled before the first sample.
+
+use biquad::{Biquad, Coefficients, DirectForm2Transposed, Q_BUTTERWORTH_F64, ToHertz, Type};
+
+/// A second-order Butterworth filter at a fixed rate.
+#[derive(Clone, Debug)]
+pub struct Filter(DirectForm2Transposed<f64>);
+
+/// Which side of the corner passes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pass {
+    /// Below it.
+    Low,
+    /// Above it.
+    High,
+}
+
+impl Filter {
+    /// A filter with this corner. None if the corner is not below half the rate: then there is nothing to filter.
+    #[must_use]
+    pub fn new(pass: Pass, corner_hz: f64, rate_hz: f64) -> Option<Self> {
+        let kind = match pass {
+            Pass::Low => Type::LowPass,
+            Pass::High => Type::HighPass,
+        };
+        let valid = corner_hz > 0.0 && corner_hz < rate_hz / 2.0;
+        let coefficients = valid.then(|| {
+            Coefficients::<f64>::from_params(kind, rate_hz.hz(), corner_hz.hz(), Q_BUTTERWORTH_F64)
+        })?;
+        Some(Self(DirectForm2Transposed::new(coefficients.ok()?)))
+    }
+
+    /// Filters in place, as if the first value had been there for ever before: no transient at the start.
+    pub fn apply(mut self, corner_hz: f64, rate_hz: f64, values: &mut [f64]) {
+        let Some(&first) = values.first() else { return };
+        // A Butterworth pair has forgotten all but e^-40 of its past after ten periods of its corner.
+        let settle = (10.0 * rate_hz / corner_hz) as usize;
+        for _ in 0..settle {
+            self.0.run(first);
+        }
+        for value in values {
+            *value = self.0.run(*value);
+        }
+    }
+}
+
+/// Filters in place; a corner that the rate cannot hold filters nothing.
+pub fn pass(pass: Pass, corner_hz: f64, rate_hz: f64, values: &mut [f64]) {
+    if let Some(filter) = Filter::new(pass, corner_hz, rate_hz) {
+        filter.apply(corner_hz, rate_hz, values);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    fn tone(hz: f64, rate_hz: f64) -> Vec<f64> {
+        (0..rate_hz as usize).map(|n| (TAU * hz * n as f64 / rate_hz).sin()).collect()
+    }
+
+    fn rms_of_second_half(values: &[f64]) -> f64 {
+        let half = &values[values.len() / 2..];
+        (half.iter().map(|v| v * v).sum::<f64>() / half.len() as f64).sqrt()
+    }
+
+    #[test]
+    fn the_corner_is_three_decibels_down() {
+        for kind in [Pass::Low, Pass::High] {
+            let mut values = tone(100.0, 16_000.0);
+            pass(kind, 100.0, 16_000.0, &mut values);
+            let gain = rms_of_second_half(&values) * 2f64.sqrt();
+            assert!((gain - 0.5f64.sqrt()).abs() < 1e-3, "{kind:?}: {gain}");
+        }
+    }
+
+    #[test]
+    fn a_constant_makes_no_transient() {
+        let mut low = vec![0.7; 100];
+        pass(Pass::Low, 4.0, 8_000.0, &mut low);
+        assert!(low.iter().all(|v| (v - 0.7).abs() < 1e-9));
+        let mut high = vec![0.7; 100];
+        pass(Pass::High, 4.0, 8_000.0, &mut high);
+        assert!(high.iter().all(|v| v.abs() < 1e-9));
+    }
+
+    #[test]
+    fn a_corner_beyond_half_the_rate_changes_nothing() {
+        let mut values = tone(100.0, 1_000.0);
+        let before = values.clone();
+        pass(Pass::Low, 500.0, 1_000.0, &mut values);
+        assert_eq!(values, before);
+    }
+}

@@ -1,0 +1,205 @@
+//! What a run tells: for programs as JSON with stable keys, for people as text.
+
+pub mod fate;
+pub mod oracle;
+pub mod replay;
+pub mod scores;
+pub mod text;
+pub mod wearer;
+
+use serde::Serialize;
+use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ};
+use tenax_hal_shim::wire::EventKind;
+use tenax_hal_shim::words::Fault;
+
+use crate::board::{Run, TickCost};
+use crate::timeline::Timeline;
+
+/// The core's clock, Hz.
+const CORE_HZ: f64 = 100e6;
+/// Cycles an instruction takes at least and at most, on average over a tick: a Cortex-M4 runs most instructions in one
+/// cycle, loads in two and taken branches in two to four, and the flash's prefetch hides most of its three wait states.
+/// The emulated core counts instructions, not cycles, so the load is a bracket.
+pub const CYCLES_PER_INSTRUCTION: [f64; 2] = [1.0, 3.0];
+
+/// A report. The keys of issue 2 are stable; null where a thing did not happen.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// The scene's name, or the recording's file.
+    pub scene: String,
+    /// "emulated" or "host".
+    pub board: &'static str,
+    /// Seed of every noise.
+    pub seed: u64,
+    /// Virtual time run, s.
+    pub virtual_s: f64,
+    /// Time it took, s.
+    pub wall_s: f64,
+    /// Times the converter or its DMA overran.
+    pub overruns: u32,
+    /// Control ticks.
+    pub ticks: Ticks,
+    /// The first macro slip, and the object's whole fate.
+    pub slip: scores::Slip,
+    /// The same controller told the true onset without delay: the gripper's physical limit in this scene.
+    pub oracle: oracle::Oracle,
+    /// Grip force.
+    pub grip: Grip,
+    /// The wearer's part.
+    pub wearer: wearer::Wearer,
+    /// Each detector's.
+    pub detectors: scores::Detectors,
+    /// Everything that went wrong, as it was reported.
+    pub faults: Vec<FaultLine>,
+    /// Other counts of the line and the board.
+    pub line: Line,
+    /// What only a recording has.
+    pub replay: Option<replay::Replay>,
+}
+
+/// Control ticks.
+#[derive(Clone, Debug, Serialize)]
+pub struct Ticks {
+    /// Run.
+    pub count: u32,
+    /// Frames that had no tick in time: lost ones and late ones.
+    pub dropped: u32,
+    /// Instructions of one tick, mean.
+    pub instructions_mean: Option<f64>,
+    /// Instructions of one tick, worst.
+    pub instructions_max: Option<u64>,
+    /// Part of the core at 100 MHz that mean ticks take, per cent, with [`CYCLES_PER_INSTRUCTION`] at its two ends.
+    pub load_percent: Option<[f64; 2]>,
+}
+
+impl Ticks {
+    fn of(run: &Run) -> Self {
+        let cost = run.tick_cost;
+        Self {
+            count: run.counters.ticks,
+            dropped: run.counters.frames_lost + run.counters.ticks_late,
+            instructions_mean: cost.map(|cost| cost.instructions_mean),
+            instructions_max: cost.map(|cost| cost.instructions_max),
+            load_percent: cost.map(|cost| load_percent(&cost)),
+        }
+    }
+}
+
+/// Per cent of the core at 100 MHz, as a bracket.
+#[must_use]
+pub fn load_percent(cost: &TickCost) -> [f64; 2] {
+    CYCLES_PER_INSTRUCTION
+        .map(|cycles| cost.instructions_mean * cycles * f64::from(FRAME_HZ) / CORE_HZ * 100.0)
+}
+
+/// Grip force, per finger.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Grip {
+    /// The greatest, N.
+    pub peak_force_n: Option<f64>,
+    /// The least that would have held the object at its heaviest, N.
+    pub needed_force_n: Option<f64>,
+}
+
+/// A fault and when it was noticed.
+#[derive(Clone, Debug, Serialize)]
+pub struct FaultLine {
+    /// When, s. Null for the reason of a restart.
+    pub at_s: Option<f64>,
+    /// What, in words.
+    pub what: String,
+}
+
+/// What the serial line and the board counted.
+#[derive(Clone, Debug, Serialize)]
+pub struct Line {
+    /// Bytes that came up.
+    pub bytes: usize,
+    /// Messages missing by their sequence numbers.
+    pub messages_missed: u64,
+    /// Messages that the board dropped so as not to delay control.
+    pub telemetry_dropped: u32,
+    /// Frames the board received that were no message.
+    pub bad_frames: u32,
+}
+
+/// What a report is made from.
+#[derive(Clone, Copy, Debug)]
+pub struct Subject<'a> {
+    /// The scene's name, or the recording's file.
+    pub scene: &'a str,
+    /// "emulated" or "host".
+    pub board: &'static str,
+    /// Seed of every noise.
+    pub seed: u64,
+    /// The run.
+    pub run: &'a Run,
+    /// What to add to virtual time to get the report's, s.
+    pub zero_s: f64,
+    /// What really happened, where it is known.
+    pub truth: Option<&'a fate::Fate>,
+    /// The oracle's run, where there is one.
+    pub oracle: Option<&'a fate::Fate>,
+}
+
+impl Report {
+    /// Makes a report; [`Report::replay`] is for whoever played a recording.
+    #[must_use]
+    pub fn new(subject: &Subject) -> Self {
+        let run = subject.run;
+        let timeline = Timeline::new(run, subject.zero_s);
+        Self {
+            scene: subject.scene.to_owned(),
+            board: subject.board,
+            seed: subject.seed,
+            virtual_s: run.virtual_s,
+            wall_s: run.wall_s,
+            overruns: run.counters.overruns,
+            ticks: Ticks::of(run),
+            slip: scores::Slip::of(timeline, subject.truth),
+            oracle: oracle::Oracle::of(subject.truth, subject.oracle),
+            grip: subject.truth.map_or_else(Grip::default, |truth| Grip {
+                peak_force_n: truth.peak_grip_n,
+                needed_force_n: truth.needed_force_n,
+            }),
+            wearer: wearer::Wearer::of(run, timeline),
+            detectors: scores::Detectors::of(timeline, subject.truth),
+            faults: faults(run, timeline),
+            line: Line {
+                bytes: run.line.len(),
+                messages_missed: run.messages_missed,
+                telemetry_dropped: run.counters.telemetry_dropped,
+                bad_frames: run.counters.bad_frames,
+            },
+            replay: None,
+        }
+    }
+}
+
+fn faults(run: &Run, timeline: Timeline) -> Vec<FaultLine> {
+    let starts = run.starts.iter().flatten().map(|fault| FaultLine { at_s: None, what: in_words(fault) });
+    let events = run.events.iter().filter_map(|event| match event.kind {
+        EventKind::Fault(fault) => {
+            Some(FaultLine { at_s: Some(timeline.time_s(event.frame)), what: in_words(&fault) })
+        }
+        _ => None,
+    });
+    starts.chain(events).collect()
+}
+
+/// A fault for a person.
+#[must_use]
+pub fn in_words(fault: &Fault) -> String {
+    let name =
+        |channel: u8| CHANNELS.get(usize::from(channel)).map_or("unknown channel", |channel| channel.name);
+    match *fault {
+        Fault::SensorLost { channel, reason } => format!("{} gives no number: {reason:?}", name(channel)),
+        Fault::SensorBack { channel } => format!("{} gives numbers again", name(channel)),
+        Fault::CapabilityLost(capability) => format!("lost: {capability:?}"),
+        Fault::CapabilityBack(capability) => format!("back: {capability:?}"),
+        Fault::FramesLost { count } => format!("{count} frames lost"),
+        Fault::PressedAtBoot { channel } => format!("{} was loaded when the board started", name(channel)),
+        Fault::WatchdogReset => "restarted by the watchdog".to_owned(),
+        Fault::PanicReset => "restarted after a panic".to_owned(),
+    }
+}

@@ -1,0 +1,149 @@
+//! What only a recording has to tell: its own peak and onset beside the fingertip's detections.
+
+use serde::Serialize;
+
+use super::wearer::Wearer;
+use crate::replay::facts::{Crest, crest, muscle_onset_s};
+use crate::replay::library::Named;
+use crate::replay::{Recipe, Recording};
+use crate::timeline::Timeline;
+
+/// The recording's part of a report. Times are the recording's own.
+#[derive(Clone, Debug, Serialize)]
+pub struct Replay {
+    /// The file.
+    pub recording: String,
+    /// The recipe's name or file. Null where the columns were channels already.
+    pub recipe: Option<String>,
+    /// Time stamp of the first row, s.
+    pub first_s: f64,
+    /// From the first to the last row, s.
+    pub duration_s: f64,
+    /// How long the first row was held before, s.
+    pub lead_in_s: f64,
+    /// The longest time between two rows, ms: within it the signal is a straight line.
+    pub longest_gap_ms: f64,
+    /// Columns that nothing listens to.
+    pub unused_columns: Vec<String>,
+    /// What was assumed of signals that the recording lacks, and why.
+    pub assumed: Vec<String>,
+    /// Force recordings: the crest of Ft/Fn and who saw it coming.
+    pub force: Option<Force>,
+    /// Myoelectric recordings: the muscle and when the gate noticed.
+    pub muscle: Option<Muscle>,
+}
+
+/// A force recording's crest of Ft/Fn, where sticking ends, and the detectors before it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Force {
+    /// Ft/Fn at the crest. Null where it has none.
+    pub peak_ratio: Option<f64>,
+    /// When, s.
+    pub peak_s: Option<f64>,
+    /// When S2 first spoke, s.
+    pub s2_first_s: Option<f64>,
+    /// How long before the crest, ms: negative is after it.
+    pub s2_before_peak_ms: Option<f64>,
+    /// When S1 first spoke, s.
+    pub s1_first_s: Option<f64>,
+    /// How long before the crest, ms.
+    pub s1_before_peak_ms: Option<f64>,
+}
+
+/// A myoelectric recording's activity.
+#[derive(Clone, Debug, Serialize)]
+pub struct Muscle {
+    /// When the muscle became active in the recording itself, s: the 50 ms centred mean of the rectified signal, at the
+    /// recipe's gain, passes the gate's threshold.
+    pub onset_s: Option<f64>,
+    /// When the gate first noticed activity, s.
+    pub noticed_s: Option<f64>,
+    /// Noticed minus onset, ms: the front end's low-pass and the gate together.
+    pub onset_delay_ms: Option<f64>,
+    /// Part of the recording in which the gate was active, hold time included.
+    pub active_part: f64,
+    /// Ticks in which the reflex drove the motor while a muscle was active.
+    pub reflex_while_active: u64,
+}
+
+impl Replay {
+    /// Holds a run's detections against its recording.
+    pub fn new(
+        recording: &Recording,
+        named: Option<&Named>,
+        lead_in_s: f64,
+        timeline: Timeline,
+        wearer: &Wearer,
+    ) -> anyhow::Result<Self> {
+        let recipe = named.map(|named| &named.recipe);
+        let used = |column: &str| recipe.is_none_or(|recipe| recipe.uses(column));
+        Ok(Self {
+            recording: recording.file().to_owned(),
+            recipe: named.map(|named| named.name.clone()),
+            first_s: recording.first_s(),
+            duration_s: recording.duration_s(),
+            lead_in_s,
+            longest_gap_ms: recording.longest_gap_s() * 1e3,
+            unused_columns: recording.signals().filter(|column| !used(column)).map(str::to_owned).collect(),
+            assumed: recipe.map_or_else(Vec::new, assumed),
+            force: match recipe {
+                Some(recipe) if recipe.force.is_some() => {
+                    Some(Force::new(crest(recording, recipe)?, timeline))
+                }
+                _ => None,
+            },
+            muscle: match recipe {
+                Some(recipe) if recipe.maps_a_muscle() => {
+                    Some(Muscle::new(muscle_onset_s(recording, recipe)?, recording, timeline, wearer))
+                }
+                _ => None,
+            },
+        })
+    }
+}
+
+impl Force {
+    fn new(crest: Option<Crest>, timeline: Timeline) -> Self {
+        let (s1, s2) = (timeline.s1().first().copied(), timeline.s2().first().copied());
+        let before_ms = |first: Option<f64>| Some((crest?.peak_s - first?) * 1e3);
+        Self {
+            peak_ratio: crest.map(|crest| crest.peak_ratio),
+            peak_s: crest.map(|crest| crest.peak_s),
+            s2_first_s: s2,
+            s2_before_peak_ms: before_ms(s2),
+            s1_first_s: s1,
+            s1_before_peak_ms: before_ms(s1),
+        }
+    }
+}
+
+impl Muscle {
+    fn new(onset_s: Option<f64>, recording: &Recording, timeline: Timeline, wearer: &Wearer) -> Self {
+        let noticed_s = wearer.active_first_s;
+        let within = |t: f64| t >= recording.first_s() && t <= recording.first_s() + recording.duration_s();
+        let (mut all, mut active) = (0u32, 0u32);
+        for (_, slow) in timeline.slows().filter(|&(t, _)| within(t)) {
+            all += 1;
+            active += u32::from(slow.wearer_active);
+        }
+        Self {
+            onset_s,
+            noticed_s,
+            onset_delay_ms: onset_s.zip(noticed_s).map(|(onset, noticed)| (noticed - onset) * 1e3),
+            active_part: f64::from(active) / f64::from(all.max(1)),
+            reflex_while_active: wearer.reflex_while_active,
+        }
+    }
+}
+
+fn assumed(recipe: &Recipe) -> Vec<String> {
+    let force = recipe.hold.force.iter().map(|hold| {
+        let hold = hold.get_ref();
+        format!("force sensor: {} N, shear {} N: {}", hold.normal_n, hold.shear_n, hold.why)
+    });
+    let pins = recipe.hold.pins.iter().map(|hold| {
+        let names: Vec<&str> = hold.channels.iter().map(|name| name.get_ref().as_str()).collect();
+        format!("{}: {} V: {}", names.join(", "), hold.volts.get_ref(), hold.why)
+    });
+    force.chain(pins).collect()
+}

@@ -1,0 +1,133 @@
+//! Event scores (DESIGN.md, "Words"): a macro slip is caught if a detection falls between its micro onset and 50 ms after
+//! its macro onset; a detection outside every slip is a false alarm. A detection is a rising edge of a detector.
+
+use serde::Serialize;
+
+use super::fate::{Fate, SlipSpan};
+use crate::timeline::Timeline;
+
+/// How long after macro onset a detection still catches it, s.
+pub const CAUGHT_WITHIN_S: f64 = 0.050;
+
+/// The first macro slip, and the object's fate over the whole run.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Slip {
+    /// When some of the contact began to slide, s.
+    pub micro_onset_s: Option<f64>,
+    /// When all of it did, s.
+    pub macro_onset_s: Option<f64>,
+    /// Whether S1 or S2 caught it.
+    pub caught: Option<bool>,
+    /// Detection minus macro onset, ms: negative is early.
+    pub latency_ms: Option<f64>,
+    /// How far the object slid in the whole run, mm.
+    pub distance_mm: Option<f64>,
+    /// Whether it was dropped.
+    pub dropped: Option<bool>,
+    /// Macro slips in the whole run.
+    pub macro_slips: Option<usize>,
+    /// How many of them were caught.
+    pub macro_slips_caught: Option<usize>,
+}
+
+impl Slip {
+    /// Scores a run.
+    #[must_use]
+    pub fn of(timeline: Timeline, truth: Option<&Fate>) -> Self {
+        let Some(truth) = truth else {
+            return Self::default();
+        };
+        let mut detections = [timeline.s1(), timeline.s2()].concat();
+        detections.sort_by(f64::total_cmp);
+        let macro_slips: Vec<&SlipSpan> =
+            truth.slips.iter().filter(|slip| slip.macro_onset_s.is_some()).collect();
+        let latency_s = |slip: &SlipSpan| {
+            let onset = slip.macro_onset_s?;
+            let window = slip.micro_onset_s..=onset + CAUGHT_WITHIN_S;
+            detections.iter().find(|t| window.contains(t)).map(|t| t - onset)
+        };
+        let caught = macro_slips.iter().filter(|slip| latency_s(slip).is_some()).count();
+        let first = macro_slips.first().copied();
+        Self {
+            micro_onset_s: first.or(truth.slips.first()).map(|slip| slip.micro_onset_s),
+            macro_onset_s: first.and_then(|slip| slip.macro_onset_s),
+            caught: first.map(|slip| latency_s(slip).is_some()),
+            latency_ms: first.and_then(latency_s).map(|s| s * 1e3),
+            distance_mm: Some(truth.distance_mm),
+            dropped: Some(truth.dropped),
+            macro_slips: Some(macro_slips.len()),
+            macro_slips_caught: Some(caught),
+        }
+    }
+}
+
+/// One detector's part.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Detector {
+    /// When it first spoke, s.
+    pub first_s: Option<f64>,
+    /// How often it began to speak.
+    pub detections: usize,
+    /// How often outside every slip. Null where nobody knows when it slipped.
+    pub false_alarms: Option<usize>,
+}
+
+/// Every detector's.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Detectors {
+    /// Vibration.
+    pub s1: Detector,
+    /// Ft/Fn.
+    pub s2: Detector,
+    /// The myoelectric gate; it has no false alarms here, since its truth is not slip.
+    pub wearer: Detector,
+}
+
+impl Detectors {
+    /// Scores a run.
+    #[must_use]
+    pub fn of(timeline: Timeline, truth: Option<&Fate>) -> Self {
+        let slips = truth.map(|truth| truth.slips.as_slice());
+        Self {
+            s1: detector(&timeline.s1(), slips),
+            s2: detector(&timeline.s2(), slips),
+            wearer: detector(&timeline.wearer(), None),
+        }
+    }
+}
+
+fn detector(detections: &[f64], slips: Option<&[SlipSpan]>) -> Detector {
+    let outside = |slips: &[SlipSpan]| {
+        let in_slip = |t: f64| slips.iter().any(|slip| (slip.micro_onset_s..=last_s(slip)).contains(&t));
+        detections.iter().filter(|&&t| !in_slip(t)).count()
+    };
+    Detector {
+        first_s: detections.first().copied(),
+        detections: detections.len(),
+        false_alarms: slips.map(outside),
+    }
+}
+
+/// Until when a detection belongs to this slip, s.
+fn last_s(slip: &SlipSpan) -> f64 {
+    slip.macro_onset_s.map_or(slip.end_s, |onset| slip.end_s.max(onset + CAUGHT_WITHIN_S))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SLIP: SlipSpan =
+        SlipSpan { micro_onset_s: 1.0, macro_onset_s: Some(1.1), end_s: 1.12, distance_mm: 1.0 };
+
+    #[test]
+    fn a_detection_belongs_to_a_slip_from_its_micro_onset_to_50_ms_after_its_macro_onset() {
+        let scored = detector(&[0.99, 1.0, 1.1499, 1.16], Some(&[SLIP]));
+        assert_eq!(scored, Detector { first_s: Some(0.99), detections: 4, false_alarms: Some(2) });
+    }
+
+    #[test]
+    fn nobody_knows_of_false_alarms_without_a_truth() {
+        assert_eq!(detector(&[1.0], None).false_alarms, None);
+    }
+}

@@ -1,0 +1,184 @@
+//! The report for people.
+
+use std::fmt::{self, Display};
+
+use super::replay::{Force, Muscle, Replay};
+use super::scores::Detector;
+use super::{CYCLES_PER_INSTRUCTION, Report};
+
+/// Prints as text.
+#[derive(Clone, Copy, Debug)]
+pub struct Text<'a>(pub &'a Report);
+
+/// A value with its unit, or a dash.
+struct Or<T>(Option<T>, &'static str);
+
+impl Display for Or<f64> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Some(value) => write!(f, "{value:.*} {}", f.precision().unwrap_or(3), self.1),
+            None => f.write_str("-"),
+        }
+    }
+}
+
+/// One line: a label in a column of its own, then what there is to say.
+macro_rules! line {
+    ($f:expr, $label:expr, $($what:tt)*) => {
+        writeln!($f, "  {:<14}{}", $label, format_args!($($what)*))
+    };
+}
+
+impl Display for Text<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let report = self.0;
+        writeln!(f, "{} on the {} board", report.scene, report.board)?;
+        let speed = report.virtual_s / report.wall_s.max(1e-9);
+        line!(
+            f,
+            "time",
+            "{:.2} s virtual in {:.2} s, {speed:.1} times real time",
+            report.virtual_s,
+            report.wall_s
+        )?;
+        ticks(f, report)?;
+        slip(f, report)?;
+        wearer(f, report)?;
+        detector(f, "S1 vibration", &report.detectors.s1)?;
+        detector(f, "S2 Ft/Fn", &report.detectors.s2)?;
+        if let Some(recorded) = &report.replay {
+            replay(f, recorded)?;
+        }
+        if report.faults.is_empty() {
+            line!(f, "faults", "none")?;
+        }
+        for fault in &report.faults {
+            line!(f, "fault", "{:.4} {}", Or(fault.at_s, "s"), fault.what)?;
+        }
+        Ok(())
+    }
+}
+
+fn ticks(f: &mut fmt::Formatter<'_>, report: &Report) -> fmt::Result {
+    let ticks = &report.ticks;
+    line!(f, "ticks", "{} run, {} dropped, {} overruns", ticks.count, ticks.dropped, report.overruns)?;
+    if let (Some(mean), Some(max), Some([low, high])) =
+        (ticks.instructions_mean, ticks.instructions_max, ticks.load_percent)
+    {
+        let [few, many] = CYCLES_PER_INSTRUCTION;
+        line!(
+            f,
+            "load",
+            "{mean:.0} instructions a tick, {max} at worst: {low:.1} to {high:.1} % of 100 MHz at {few:.0} to {many:.0} \
+             cycles an instruction"
+        )?;
+    }
+    Ok(())
+}
+
+fn slip(f: &mut fmt::Formatter<'_>, report: &Report) -> fmt::Result {
+    let slip = &report.slip;
+    let (Some(dropped), Some(distance_mm)) = (slip.dropped, slip.distance_mm) else {
+        return Ok(());
+    };
+    let fate = if dropped { "DROPPED" } else { "kept" };
+    line!(
+        f,
+        "object",
+        "{fate}; slid {distance_mm:.2} mm, the oracle {:.2} ({:.2})",
+        Or(report.oracle.distance_mm, "mm"),
+        Or(report.oracle.distance_ratio, "times")
+    )?;
+    line!(
+        f,
+        "grip force",
+        "peak {:.2}, needed {:.2}, the oracle {:.2} ({:.2})",
+        Or(report.grip.peak_force_n, "N"),
+        Or(report.grip.needed_force_n, "N"),
+        Or(report.oracle.peak_force_n, "N"),
+        Or(report.oracle.peak_force_ratio, "times")
+    )?;
+    let caught = match (slip.macro_slips, slip.macro_slips_caught) {
+        (Some(0) | None, _) => "no macro slip".to_owned(),
+        (Some(all), caught) => format!("{} of {all} macro slips caught", caught.unwrap_or(0)),
+    };
+    line!(
+        f,
+        "slip",
+        "{caught}; first micro onset {:.4}, macro onset {:.4}, latency {:.1}",
+        Or(slip.micro_onset_s, "s"),
+        Or(slip.macro_onset_s, "s"),
+        Or(slip.latency_ms, "ms")
+    )
+}
+
+fn wearer(f: &mut fmt::Formatter<'_>, report: &Report) -> fmt::Result {
+    let wearer = &report.wearer;
+    line!(
+        f,
+        "wearer",
+        "first active {:.4}; {} reflex ticks while active, {} at other times; slowest open {:.1}",
+        Or(wearer.active_first_s, "s"),
+        wearer.reflex_while_active,
+        wearer.reflex_ticks - wearer.reflex_while_active,
+        Or(wearer.open_latency_ms, "ms")
+    )
+}
+
+fn detector(f: &mut fmt::Formatter<'_>, label: &str, detector: &Detector) -> fmt::Result {
+    let false_alarms = detector.false_alarms.map_or(String::new(), |count| format!(", {count} false alarms"));
+    line!(
+        f,
+        label,
+        "first {:.4}, {} detections{false_alarms}",
+        Or(detector.first_s, "s"),
+        detector.detections
+    )
+}
+
+fn replay(f: &mut fmt::Formatter<'_>, replay: &Replay) -> fmt::Result {
+    let recipe = replay.recipe.as_deref().unwrap_or("none: columns are channels");
+    line!(
+        f,
+        "recording",
+        "{:.3} to {:.3} s, longest gap {:.2} ms; recipe {recipe}; first row held for {} s before",
+        replay.first_s,
+        replay.first_s + replay.duration_s,
+        replay.longest_gap_ms,
+        replay.lead_in_s
+    )?;
+    for assumption in &replay.assumed {
+        line!(f, "assumed", "{assumption}")?;
+    }
+    if let Some(force) = &replay.force {
+        crest(f, force)?;
+    }
+    if let Some(muscle) = &replay.muscle {
+        activity(f, muscle)?;
+    }
+    Ok(())
+}
+
+fn crest(f: &mut fmt::Formatter<'_>, force: &Force) -> fmt::Result {
+    line!(
+        f,
+        "Ft/Fn crest",
+        "{:.3} at {:.4}; S2 spoke {:.1} before it, S1 {:.1} before it",
+        Or(force.peak_ratio, ""),
+        Or(force.peak_s, "s"),
+        Or(force.s2_before_peak_ms, "ms"),
+        Or(force.s1_before_peak_ms, "ms")
+    )
+}
+
+fn activity(f: &mut fmt::Formatter<'_>, muscle: &Muscle) -> fmt::Result {
+    line!(
+        f,
+        "muscle",
+        "active in the recording from {:.4}, noticed at {:.4}, {:.1} later; active for {:.0} % of it",
+        Or(muscle.onset_s, "s"),
+        Or(muscle.noticed_s, "s"),
+        Or(muscle.onset_delay_ms, "ms"),
+        100.0 * muscle.active_part
+    )
+}

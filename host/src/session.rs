@@ -1,0 +1,85 @@
+//! One run: from what is to be run, on which board, to its report and its figure.
+
+use std::path::Path;
+
+use anyhow::Context;
+use tenax_scene::plant::Plant;
+
+use crate::board::{Run, simulated};
+use crate::plot::{Figure, panels};
+use crate::replay::{Recording, ReplayPlant, library};
+use crate::report::replay::Replay;
+use crate::report::{Report, Subject};
+use crate::timeline::Timeline;
+
+/// Who runs the logic.
+#[derive(Clone, Debug)]
+pub enum Board {
+    /// The host's own build of it.
+    Host,
+}
+
+impl Board {
+    /// What it is called in reports.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Host => "host",
+        }
+    }
+
+    /// Connects a plant and runs it to its end. `progress` hears of the virtual time that has gone by, s.
+    pub fn run<P: Plant>(&self, plant: P, progress: &mut dyn FnMut(f64)) -> anyhow::Result<(Run, P)> {
+        match self {
+            Self::Host => Ok(simulated::run(plant, progress)),
+        }
+    }
+}
+
+/// What a run leaves.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// What the board left behind.
+    pub run: Run,
+    /// The report.
+    pub report: Report,
+    /// The figure.
+    pub figure: Figure,
+}
+
+/// Plays a recording. Without a recipe, the one that its name calls for.
+pub fn replay(
+    path: &Path,
+    recipe: Option<&str>,
+    seed: u64,
+    board: &Board,
+    progress: &mut dyn FnMut(f64),
+) -> anyhow::Result<Outcome> {
+    let recording = Recording::read(path)?;
+    let named = library::choose(&recording, path, recipe)?;
+    let plant = match &named {
+        Some(named) => ReplayPlant::new(&recording, &named.recipe, seed)
+            .with_context(|| format!("recipe {}", named.name))?,
+        None => ReplayPlant::plain(&recording, seed)?,
+    };
+    let (zero_s, end_s) = (plant.time_zero_s(), plant.time_zero_s() + plant.duration_s());
+    let (run, _) = board.run(plant, progress)?;
+    let scene = path
+        .file_name()
+        .map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned());
+    let subject =
+        Subject { scene: &scene, board: board.name(), seed, run: &run, zero_s, truth: None, oracle: None };
+    let mut report = Report::new(&subject);
+    let lead_in_s = recording.first_s() - zero_s;
+    let timeline = Timeline::new(&run, zero_s);
+    report.replay = Some(Replay::new(&recording, named.as_ref(), lead_in_s, timeline, &report.wearer)?);
+    // Of the rows held before and after, as much as shows where the recording begins and ends.
+    let margin_s = (0.05 * recording.duration_s()).max(0.02);
+    let last_s = recording.first_s() + recording.duration_s();
+    let span_s = (zero_s.max(recording.first_s() - margin_s), end_s.min(last_s + margin_s));
+    let mut figure = panels::figure(&subject, span_s);
+    if let Some(named) = &named {
+        figure.subtitle = format!("{} ({}), {}", named.recipe.title, named.name, figure.subtitle);
+    }
+    Ok(Outcome { run, report, figure })
+}
