@@ -1,5 +1,29 @@
 //! The smallest worlds in which the fingertip can be tried: an object, a gripper, a wearer, and what the sensors make
 //! of them. No detector lives here.
+//!
+//! A [`SceneFile`] is parsed from TOML, a [`World`] is built from it and a seed, and whoever owns a fingertip steps the
+//! world one scan at a time through [`plant::Plant`]. The same file and seed give the same bytes, on every machine and
+//! in every build: noise is ChaCha8, and the functions that platforms disagree about are `libm`'s, in plain Rust.
+//!
+//! | module | one type with one step function for each of |
+//! |---|---|
+//! | [`physics`] | contact, gripper, grasped object, stroked surface, hand, wearer |
+//! | `sensor` | PVDF, FSR, myoelectric, opening, motor current, and the faults of all of them |
+//! | [`truth`] | nothing of the world: it writes down what really happened |
 #![forbid(unsafe_code)]
 
+pub mod builtin;
+mod commands;
+pub mod file;
+pub mod physics;
 pub mod plant;
+mod random;
+mod schedule;
+mod sensor;
+pub mod truth;
+pub mod world;
+
+pub use builtin::builtin;
+pub use file::{SceneError, SceneFile};
+pub use truth::Truth;
+pub use world::World;

@@ -1,0 +1,13 @@
+//! The scenes of `scenes/`, carried inside the program, so that `tenax scenes` lists them anywhere.
+
+macro_rules! scenes {
+    ($($name:literal),* $(,)?) => {
+        &[$(($name, include_str!(concat!("../../scenes/", $name, ".toml")))),*]
+    };
+}
+
+/// Name and text of every scene in the repository, the default one first.
+#[must_use]
+pub const fn builtin() -> &'static [(&'static str, &'static str)] {
+    scenes!["glass",]
+}

@@ -1,0 +1,111 @@
+//! What somebody types on the serial line during a scene.
+
+use std::collections::VecDeque;
+
+use tenax_hal_shim::motor::{Duty, MotorDrive};
+use tenax_hal_shim::wire::{DRIVE_HOLD_MAX_MS, Down, Setting};
+
+use crate::file::sections::{Command, CommandKind};
+
+/// How often a tool repeats a drive while its key is held, s: well inside [`DRIVE_HOLD_MAX_MS`].
+const REPEAT_S: f64 = 0.1;
+
+/// The setting that a command of this kind makes of `value`. None if it is no setting or the value does not fit.
+pub(crate) fn setting(kind: CommandKind, value: u32) -> Option<Setting> {
+    let small = u16::try_from(value);
+    match kind {
+        CommandKind::SetS1Mv => small.ok().map(Setting::S1Mv),
+        CommandKind::SetS2Permille => small.ok().map(Setting::S2Permille),
+        CommandKind::SetMyoOnMv => small.ok().map(Setting::MyoOnMv),
+        CommandKind::SetForceCeilingMn => Some(Setting::ForceCeilingMn(value)),
+        _ => None,
+    }
+}
+
+/// The commands of a scene, in the order in which they are sent.
+#[derive(Clone, Debug)]
+pub(crate) struct Script(VecDeque<(f64, Down)>);
+
+impl Script {
+    pub(crate) fn new(commands: &[Command]) -> Self {
+        let mut sent: Vec<(f64, Down)> = commands.iter().flat_map(expand).collect();
+        sent.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        Self(sent.into())
+    }
+
+    /// Those that are due at `t_s` and were not taken yet.
+    pub(crate) fn take(&mut self, t_s: f64) -> Vec<Down> {
+        let due = self.0.iter().take_while(|(at_s, _)| *at_s <= t_s).count();
+        self.0.drain(..due).map(|(_, down)| down).collect()
+    }
+}
+
+fn expand(command: &Command) -> Vec<(f64, Down)> {
+    let at_s = command.at_s.get_ref().get();
+    let kind = *command.kind.get_ref();
+    let duty = Duty::per_mille(command.duty_permille.as_ref().map_or(0, |duty| *duty.get_ref()));
+    let once = |down| vec![(at_s, down)];
+    match kind {
+        CommandKind::StrokeBegin => once(Down::Stroke(true)),
+        CommandKind::StrokeEnd => once(Down::Stroke(false)),
+        CommandKind::Zero => once(Down::Zero),
+        CommandKind::Close => held(at_s, command, MotorDrive::Close(duty)),
+        CommandKind::Open => held(at_s, command, MotorDrive::Open(duty)),
+        _ => {
+            let value = command.value.as_ref().map_or(0, |value| *value.get_ref());
+            setting(kind, value).map_or(Vec::new(), |setting| once(Down::Set(setting)))
+        }
+    }
+}
+
+/// A drive is repeated while its key is held, and the last one holds for just what is left.
+fn held(at_s: f64, command: &Command, drive: MotorDrive) -> Vec<(f64, Down)> {
+    let for_s = command.for_s.map_or(0.0, |duration| duration.get());
+    let repeats = (for_s / REPEAT_S).ceil() as u32;
+    let one = |n| {
+        let since_s = f64::from(n) * REPEAT_S;
+        let left_ms = ((for_s - since_s) * 1e3).round() as u16;
+        (at_s + since_s, Down::Drive { drive, hold_ms: left_ms.min(DRIVE_HOLD_MAX_MS) })
+    };
+    (0..repeats).map(one).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::SceneFile;
+
+    #[test]
+    fn a_held_key_is_repeated_and_let_go_in_time() {
+        let text = r#"
+            name = "n"
+            title = "t"
+            from = "assumed"
+            duration_s = 2
+            slip_floor_mm_s = 1
+            [contact]
+            mu_s = 0.5
+            mu_d = 0.4
+            pad_length_mm = 18
+            pitch_mm = 1
+            [robot]
+            [[command]]
+            at_s = 1
+            kind = "close"
+            duty_permille = 300
+            for_s = 0.32
+            [[command]]
+            at_s = 0.5
+            kind = "set-s2-permille"
+            value = 400
+        "#;
+        let scene = SceneFile::parse(text, "t.toml").unwrap();
+        let mut script = Script::new(&scene.command);
+        assert_eq!(script.take(0.499), []);
+        assert_eq!(script.take(0.5), [Down::Set(Setting::S2Permille(400))]);
+        let drive = MotorDrive::Close(Duty::per_mille(300));
+        assert_eq!(script.take(1.0), [Down::Drive { drive, hold_ms: 250 }]);
+        assert_eq!(script.take(1.25).len(), 2);
+        assert_eq!(script.take(9.0), [Down::Drive { drive, hold_ms: 20 }]);
+    }
+}

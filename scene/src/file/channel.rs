@@ -1,0 +1,46 @@
+//! A channel called by its name.
+
+use serde::Deserialize;
+use tenax_hal_shim::channel::{CHANNELS, by_name};
+
+/// Index of a channel in the channel map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(try_from = "String")]
+pub struct ChannelName(usize);
+
+/// No channel is called so.
+#[derive(Debug, thiserror::Error)]
+#[error("no channel is called `{name}`; near it: {near}")]
+pub struct NoSuchChannel {
+    name: String,
+    near: String,
+}
+
+/// How many near matches are offered.
+const OFFERED: usize = 4;
+
+impl ChannelName {
+    /// Index in [`CHANNELS`].
+    #[must_use]
+    pub const fn index(self) -> usize {
+        self.0
+    }
+
+    /// Its name.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        CHANNELS[self.0].name
+    }
+}
+
+impl TryFrom<String> for ChannelName {
+    type Error = NoSuchChannel;
+
+    fn try_from(name: String) -> Result<Self, NoSuchChannel> {
+        by_name(&name).map(Self).ok_or_else(|| {
+            let mut near = CHANNELS.map(|channel| channel.name);
+            near.sort_by(|a, b| strsim::jaro_winkler(b, &name).total_cmp(&strsim::jaro_winkler(a, &name)));
+            NoSuchChannel { near: near[..OFFERED].join(", "), name }
+        })
+    }
+}

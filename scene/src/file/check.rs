@@ -1,0 +1,170 @@
+//! What no single number can know: whether the numbers of a scene fit each other.
+
+use std::ops::Range;
+
+use tenax_hal_shim::channel::{FSR, FSR_COUNT, MYO_EXTENSOR, MYO_FLEXOR};
+use toml::Spanned;
+
+use super::SceneFile;
+use super::quantity::{Instant, Mu};
+use super::sections::{Command, CommandKind, FaultKind, SensorFault};
+use crate::commands;
+
+/// The first thing that does not fit.
+pub(super) struct Wrong {
+    pub(super) span: Range<usize>,
+    pub(super) what: String,
+}
+
+type Checked = Result<(), Wrong>;
+
+fn demand(fits: bool, span: Range<usize>, what: impl FnOnce() -> String) -> Checked {
+    if fits { Ok(()) } else { Err(Wrong { span, what: what() }) }
+}
+
+pub(super) fn check(scene: &SceneFile) -> Checked {
+    friction(scene)?;
+    instants(scene)?;
+    one_story(scene)?;
+    let opening = &scene.gripper.opening_mm;
+    demand(opening.get_ref().get() <= scene.gripper.range_mm.get(), opening.span(), || {
+        format!(
+            "opening_mm = {} is wider than range_mm = {}",
+            opening.get_ref().get(),
+            scene.gripper.range_mm.get()
+        )
+    })?;
+    for lift in &scene.electrode_lift {
+        let channel = lift.channel.get_ref();
+        demand([MYO_FLEXOR, MYO_EXTENSOR].contains(&channel.index()), lift.channel.span(), || {
+            format!("channel = \"{}\" has no electrode; allowed: myo_flexor, myo_extensor", channel.name())
+        })?;
+    }
+    scene.fault.iter().try_for_each(fault)?;
+    scene.command.iter().try_for_each(command)
+}
+
+fn friction(scene: &SceneFile) -> Checked {
+    let pairs = scene.wet.iter().map(|wet| (wet.mu_s, &wet.mu_d));
+    for (mu_s, mu_d) in pairs.chain([(scene.contact.mu_s, &scene.contact.mu_d)]) {
+        let mu_d_value = Mu::get(*mu_d.get_ref());
+        demand(mu_d_value <= mu_s.get(), mu_d.span(), || {
+            format!(
+                "mu_d = {mu_d_value} is greater than mu_s = {}; a contact cannot slide harder than it sticks",
+                mu_s.get()
+            )
+        })?;
+    }
+    Ok(())
+}
+
+/// Everything happens within the scene.
+fn instants(scene: &SceneFile) -> Checked {
+    let mut all: Vec<&Spanned<Instant>> = Vec::new();
+    all.extend(scene.wet.iter().flat_map(|wet| [Some(&wet.at_s), wet.until_s.as_ref()]).flatten());
+    all.extend(scene.fill.iter().map(|fill| &fill.at_s));
+    all.extend(scene.moves.iter().map(|step| &step.at_s));
+    all.extend(scene.swing.iter().map(|swing| &swing.at_s));
+    all.extend(scene.press.iter().map(|press| &press.at_s));
+    all.extend(scene.sweep.iter().map(|sweep| &sweep.at_s));
+    all.extend(scene.knock.iter().map(|knock| &knock.at_s));
+    all.extend(scene.muscle.iter().map(|muscle| &muscle.at_s));
+    all.extend(scene.electrode_lift.iter().map(|lift| &lift.at_s));
+    all.extend(scene.fault.iter().flat_map(|fault| [Some(&fault.at_s), fault.until_s.as_ref()]).flatten());
+    all.extend(scene.command.iter().map(|command| &command.at_s));
+    for instant in all {
+        let at_s = instant.get_ref().get();
+        demand(at_s <= scene.duration_s(), instant.span(), || {
+            format!("{at_s} s is after the scene's end at duration_s = {}", scene.duration_s())
+        })?;
+    }
+    let mut poured_kg = scene.object.as_ref().map_or(0.0, |object| object.mass_kg.get());
+    for fill in &scene.fill {
+        poured_kg += fill.add_kg.get_ref().get();
+        demand(poured_kg > 0.0, fill.add_kg.span(), || {
+            format!("add_kg leaves {poured_kg} kg of the object; it must stay above 0")
+        })?;
+    }
+    Ok(())
+}
+
+/// A scene grasps an object or strokes a surface, and says only what belongs to its own.
+fn one_story(scene: &SceneFile) -> Checked {
+    match (&scene.object, &scene.robot) {
+        (Some(_), Some(robot)) => Err(Wrong {
+            span: robot.span(),
+            what: "a scene has [object] (grasped) or [robot] (strokes a surface), not both".to_owned(),
+        }),
+        (None, None) => Err(Wrong {
+            span: 0..0,
+            what: "a scene needs [object] (something to grasp) or [robot] (strokes a surface)".to_owned(),
+        }),
+        (Some(_), None) => {
+            let foreign = scene
+                .press
+                .iter()
+                .map(|press| &press.at_s)
+                .chain(scene.sweep.iter().map(|sweep| &sweep.at_s));
+            refuse(foreign, "[[press]] and [[sweep]] are the robot's; this scene has an [object]")
+        }
+        (None, Some(_)) => {
+            let foreign = scene.fill.iter().map(|fill| &fill.at_s);
+            let foreign = foreign.chain(scene.moves.iter().map(|step| &step.at_s));
+            let foreign = foreign.chain(scene.swing.iter().map(|swing| &swing.at_s));
+            refuse(foreign, "[[fill]], [[move]] and [[swing]] need an [object]; this scene has a [robot]")
+        }
+    }
+}
+
+fn refuse<'a>(mut foreign: impl Iterator<Item = &'a Spanned<Instant>>, what: &str) -> Checked {
+    foreign.next().map_or(Ok(()), |instant| Err(Wrong { span: instant.span(), what: what.to_owned() }))
+}
+
+fn fault(fault: &SensorFault) -> Checked {
+    let channel = fault.channel.get_ref();
+    match (fault.kind, &fault.press_n) {
+        (FaultKind::Pressed, press_n) => {
+            demand((FSR..FSR + FSR_COUNT).contains(&channel.index()), fault.channel.span(), || {
+                format!("channel = \"{}\" cannot be pressed; allowed: fsr_a to fsr_d", channel.name())
+            })?;
+            demand(press_n.is_some(), fault.channel.span(), || "kind = \"pressed\" needs press_n".to_owned())
+        }
+        (_, Some(press_n)) => {
+            Err(Wrong { span: press_n.span(), what: "press_n belongs to kind = \"pressed\" only".to_owned() })
+        }
+        (_, None) => Ok(()),
+    }
+}
+
+fn command(command: &Command) -> Checked {
+    let kind = *command.kind.get_ref();
+    let wrong = |span, what: String| Err(Wrong { span, what });
+    match kind {
+        CommandKind::Close | CommandKind::Open => {
+            let Some(duty) = &command.duty_permille else {
+                return wrong(command.kind.span(), "a drive needs duty_permille and for_s".to_owned());
+            };
+            demand(*duty.get_ref() <= 1_000, duty.span(), || {
+                format!("duty_permille = {} is outside 0..=1000", duty.get_ref())
+            })?;
+            demand(command.for_s.is_some(), command.kind.span(), || "a drive needs for_s".to_owned())
+        }
+        CommandKind::StrokeBegin | CommandKind::StrokeEnd | CommandKind::Zero => Ok(()),
+        _ => {
+            let Some(value) = &command.value else {
+                return wrong(command.kind.span(), "a setting needs value".to_owned());
+            };
+            let Some(setting) = commands::setting(kind, *value.get_ref()) else {
+                return wrong(value.span(), format!("value = {} does not fit the setting", value.get_ref()));
+            };
+            let (name, unit, number, allowed) = setting.describe();
+            demand(setting.is_allowed(), value.span(), || {
+                format!(
+                    "value = {number} {unit} is outside {}..={} of {name}",
+                    allowed.start(),
+                    allowed.end()
+                )
+            })
+        }
+    }
+}

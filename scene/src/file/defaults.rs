@@ -1,0 +1,98 @@
+//! What a scene file need not say: the hand and its sensors, each number with its source.
+
+use toml::Spanned;
+
+use super::quantity::{
+    Damping, DeadTime, Duration, Gain, Hertz, Kilograms, Millimetres, Milliseconds, Millivolts, NewtonsMax,
+    Part, Speed, Stiffness,
+};
+use super::sections::{Fsr, Gripper, Myo, Pvdf, Robot, Table};
+
+impl Default for Gripper {
+    fn default() -> Self {
+        Self {
+            // Prosthesis, section 1: "average speed of 120 mm/s", "maximum force 140 N".
+            speed_mm_s: Speed::of(120.0),
+            force_n: NewtonsMax::of(140.0),
+            // SCENES.md: 20 to 50 ms.
+            dead_time_ms: DeadTime::of(30.0),
+            // Assumed: the Ottobock's opening width is about 100 mm.
+            range_mm: Millimetres::of(100.0),
+            opening_mm: Spanned::new(0..0, Millimetres::of(90.0)),
+        }
+    }
+}
+
+impl Default for Table {
+    fn default() -> Self {
+        // Assumed: a thin felt mat that gives 1 mm under 2 N and rings little.
+        Self { mat_n_per_mm: Stiffness::of(2.0), damping: Damping::of(0.7) }
+    }
+}
+
+impl Default for Robot {
+    fn default() -> Self {
+        Self {
+            // Assumed: the cylindrical probe of Prosthesis, figure 3.
+            probe_kg: Kilograms::of(0.2),
+            // Assumed: a PUMA 560 along one axis is stiffer; probe and skin in series are not.
+            stiffness_n_per_mm: Stiffness::of(1.0),
+            damping: Damping::of(0.7),
+            ramp_ms: Milliseconds::of(80.0),
+        }
+    }
+}
+
+impl Default for Pvdf {
+    fn default() -> Self {
+        Self {
+            // The board: 30 mV at the film are 600 mV at the pin.
+            gain: Gain::of(20.0),
+            // Recordings: two films of one fingertip differ by 1.7 times (37 and 61 mV peak to peak at slip onset).
+            spread: Part::of(0.3),
+            // Recordings: after the bump of 25 ms the film is back within another 10 ms.
+            high_pass_hz: Hertz::of(12.0),
+            skin_ms: Milliseconds::of(3.5),
+            // Recordings: contact gives 7 to 13 mV peak to peak, slowly.
+            normal_mv_per_n: Gain::of(5.0),
+            shear_mv_per_n: Gain::of(6.0),
+            // Recordings: slip onset gives 37 to 61 mV peak to peak; that it lets go of about 0.5 N is assumed.
+            release_mv_per_n: Gain::of(150.0),
+            // Recordings (friction rig): steady sliding at 40 mm/s has 0.24 to 0.39 of the onset's rms.
+            texture_mv_per_n: Gain::of(40.0),
+            texture_half_mm_s: Speed::of(20.0),
+            // Assumed: closing at 100 N/s is heard at 2 mV rms, below sliding.
+            adjust_mv_per_n_s: Gain::of(0.02),
+            // Assumed: a worm gear at 18 000 turns a minute.
+            motor_mv: Millivolts::of(1.0),
+            motor_hz: Hertz::of(300.0),
+            // Assumed: as large as the noise.
+            mains_mv: Millivolts::of(0.4),
+            mains_hz: Hertz::of(50.0),
+            // Recordings: quiet is 0.3 mV rms, white.
+            noise_mv: Millivolts::of(0.3),
+        }
+    }
+}
+
+impl Default for Fsr {
+    fn default() -> Self {
+        // Interlink's integration guide gives 10 % of hysteresis and 5 % of drift in a log decade at most; half of each
+        // is assumed to be left under a tilting element that always presses the same spots.
+        Self { hysteresis: Part::of(0.03), creep: Part::of(0.03), creep_s: Duration::of(10.0) }
+    }
+}
+
+impl Default for Myo {
+    fn default() -> Self {
+        Self {
+            // Assumed, as all of these: an Ottobock-like electrode with its own rectifier and low-pass.
+            rise_ms: Milliseconds::of(60.0),
+            tone_mv: Millivolts::of(50.0),
+            noise_mv: Millivolts::of(8.0),
+            ripple: Part::of(0.06),
+            crosstalk: Part::of(0.05),
+            mains_mv: Millivolts::of(5.0),
+        }
+    }
+}

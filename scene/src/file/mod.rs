@@ -1,0 +1,94 @@
+//! Scene files: TOML in, a checked [`SceneFile`] out, or one message that says where and what is allowed.
+
+pub mod channel;
+mod check;
+mod defaults;
+mod error;
+pub mod quantity;
+pub mod sections;
+
+use serde::Deserialize;
+use toml::Spanned;
+
+pub use error::SceneError;
+use quantity::{Duration, Speed};
+use sections::{
+    Command, Contact, ElectrodeLift, Fill, Fsr, Gripper, Knock, Move, Muscle, Myo, Object, Press, Pvdf,
+    Robot, SensorFault, Sweep, Swing, Table, Wet,
+};
+
+/// A whole scene, every number in it checked.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SceneFile {
+    /// What it is called on the command line.
+    pub name: String,
+    /// What happens, in one line.
+    pub title: String,
+    /// The paper and section that it is made after.
+    pub from: String,
+    /// How long it lasts.
+    duration_s: Duration,
+    /// The relative speed above which the object counts as slipping.
+    slip_floor_mm_s: Speed,
+    pub(crate) contact: Contact,
+    pub(crate) object: Option<Object>,
+    #[serde(default)]
+    pub(crate) table: Table,
+    pub(crate) robot: Option<Spanned<Robot>>,
+    #[serde(default)]
+    pub(crate) gripper: Gripper,
+    #[serde(default)]
+    pub(crate) pvdf: Pvdf,
+    #[serde(default)]
+    pub(crate) fsr: Fsr,
+    #[serde(default)]
+    pub(crate) myo: Myo,
+    #[serde(default)]
+    pub(crate) wet: Vec<Wet>,
+    #[serde(default)]
+    pub(crate) fill: Vec<Fill>,
+    #[serde(default, rename = "move")]
+    pub(crate) moves: Vec<Move>,
+    #[serde(default)]
+    pub(crate) swing: Vec<Swing>,
+    #[serde(default)]
+    pub(crate) press: Vec<Press>,
+    #[serde(default)]
+    pub(crate) sweep: Vec<Sweep>,
+    #[serde(default)]
+    pub(crate) knock: Vec<Knock>,
+    #[serde(default)]
+    pub(crate) muscle: Vec<Muscle>,
+    #[serde(default)]
+    pub(crate) electrode_lift: Vec<ElectrodeLift>,
+    #[serde(default)]
+    pub(crate) fault: Vec<SensorFault>,
+    #[serde(default)]
+    pub(crate) command: Vec<Command>,
+}
+
+impl SceneFile {
+    /// Reads a scene. `file_name` is what errors call it.
+    ///
+    /// # Errors
+    /// Says the file, the line, the key, and what is allowed there.
+    pub fn parse(text: &str, file_name: &str) -> Result<Self, SceneError> {
+        let scene: Self =
+            toml::from_str(text).map_err(|error| SceneError::from_toml(&error, text, file_name))?;
+        check::check(&scene).map_err(|wrong| SceneError::at(wrong.span, wrong.what, text, file_name))?;
+        Ok(scene)
+    }
+
+    /// How long it lasts, s.
+    #[must_use]
+    pub const fn duration_s(&self) -> f64 {
+        self.duration_s.get()
+    }
+
+    /// The relative speed above which the object counts as slipping, mm/s.
+    #[must_use]
+    pub const fn slip_floor_mm_s(&self) -> f64 {
+        self.slip_floor_mm_s.get()
+    }
+}

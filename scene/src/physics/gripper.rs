@@ -1,0 +1,135 @@
+//! The motor-driven hand: two opposing fingers, after the Ottobock gripper of Prosthesis, section 1.
+
+use std::collections::VecDeque;
+
+use tenax_hal_shim::motor::MotorDrive;
+
+use crate::file::sections;
+use crate::schedule::STEP_S;
+
+/// Fingers, motor and gear.
+///
+/// The duty sets the finger speed, less what the load takes: `v = v_max (duty - F / F_max)`, so the fingers stall at
+/// `duty F_max`. The gear does not run backwards: a load never opens the hand, driven or not. What the bridge is told
+/// reaches the fingers one dead time later, starting and stopping alike (gear play, friction, the motor's inertia).
+#[derive(Clone, Debug)]
+pub struct Gripper {
+    speed_max_mm_s: f64,
+    force_max_n: f64,
+    range_mm: f64,
+    pipeline: VecDeque<MotorDrive>,
+    opening_mm: f64,
+    speed_mm_s: f64,
+    current: f64,
+}
+
+impl Gripper {
+    pub(crate) fn new(parameters: &sections::Gripper) -> Self {
+        let dead_steps = (parameters.dead_time_ms.get() / 1e3 / STEP_S).round() as usize;
+        Self {
+            speed_max_mm_s: parameters.speed_mm_s.get(),
+            force_max_n: parameters.force_n.get(),
+            range_mm: parameters.range_mm.get(),
+            pipeline: vec![MotorDrive::Coast; dead_steps].into(),
+            opening_mm: parameters.opening_mm.get_ref().get(),
+            speed_mm_s: 0.0,
+            current: 0.0,
+        }
+    }
+
+    /// Goes on by one scan under `drive`, while each finger presses with `grip_n`.
+    pub fn step(&mut self, drive: MotorDrive, grip_n: f64) {
+        self.pipeline.push_back(drive);
+        let load = grip_n / self.force_max_n;
+        let (speed, current) = match self.pipeline.pop_front().unwrap_or(drive) {
+            MotorDrive::Coast => (0.0, 0.0),
+            MotorDrive::Close(duty) => {
+                let duty = f64::from(duty.as_per_mille()) / 1e3;
+                let speed = (duty - load).max(0.0);
+                (-speed, duty - speed)
+            }
+            // The load pushes the fingers the way they go; it takes nothing from their speed and adds nothing.
+            MotorDrive::Open(duty) => (f64::from(duty.as_per_mille()) / 1e3, 0.0),
+        };
+        let before_mm = self.opening_mm;
+        self.opening_mm = (before_mm + speed * self.speed_max_mm_s * STEP_S).clamp(0.0, self.range_mm);
+        self.speed_mm_s = (self.opening_mm - before_mm) / STEP_S;
+        self.current = current;
+    }
+
+    /// Distance between the pads when nothing is compressed, mm.
+    #[must_use]
+    pub const fn opening_mm(&self) -> f64 {
+        self.opening_mm
+    }
+
+    /// The opening as a part of the whole range.
+    #[must_use]
+    pub fn opening_part(&self) -> f64 {
+        self.opening_mm / self.range_mm
+    }
+
+    /// How fast the opening grows, mm/s.
+    #[must_use]
+    pub const fn speed_mm_s(&self) -> f64 {
+        self.speed_mm_s
+    }
+
+    /// The speed as a part of the fastest, 0 to 1.
+    #[must_use]
+    pub fn speed_part(&self) -> f64 {
+        (self.speed_mm_s / self.speed_max_mm_s).abs()
+    }
+
+    /// The motor's current that makes torque, as a part of the stall current at the whole supply.
+    #[must_use]
+    pub const fn current_part(&self) -> f64 {
+        self.current
+    }
+
+    /// Force of each finger on something `width_mm` wide, N: the pads and what they press on are one spring.
+    #[must_use]
+    pub fn grip_n(&self, width_mm: f64, stiffness_n_per_mm: f64) -> f64 {
+        (stiffness_n_per_mm * (width_mm - self.opening_mm) / 2.0).max(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tenax_hal_shim::motor::Duty;
+
+    const WIDTH_MM: f64 = 70.0;
+    const STIFFNESS_N_PER_MM: f64 = 3.0;
+
+    fn run(gripper: &mut Gripper, drive: MotorDrive, for_s: f64) {
+        for _ in 0..(for_s / STEP_S).round() as u32 {
+            let grip_n = gripper.grip_n(WIDTH_MM, STIFFNESS_N_PER_MM);
+            gripper.step(drive, grip_n);
+        }
+    }
+
+    #[test]
+    fn it_moves_one_dead_time_late_at_both_ends() {
+        let mut gripper = Gripper::new(&sections::Gripper::default());
+        let open_mm = gripper.opening_mm();
+        run(&mut gripper, MotorDrive::Close(Duty::per_mille(500)), 0.030);
+        assert_eq!(gripper.opening_mm(), open_mm);
+        run(&mut gripper, MotorDrive::Coast, 0.030);
+        assert!((open_mm - gripper.opening_mm() - 0.030 * 60.0).abs() < 0.01);
+        run(&mut gripper, MotorDrive::Coast, 0.1);
+        assert!((open_mm - gripper.opening_mm() - 0.030 * 60.0).abs() < 0.01);
+    }
+
+    #[test]
+    fn it_stalls_at_its_part_of_140_n_and_a_load_never_opens_it() {
+        let mut gripper = Gripper::new(&sections::Gripper::default());
+        run(&mut gripper, MotorDrive::Close(Duty::per_mille(500)), 20.0);
+        let grip_n = gripper.grip_n(WIDTH_MM, STIFFNESS_N_PER_MM);
+        assert!((grip_n - 70.0).abs() < 0.5, "{grip_n} N");
+        run(&mut gripper, MotorDrive::Coast, 10.0);
+        assert_eq!(gripper.grip_n(WIDTH_MM, STIFFNESS_N_PER_MM), grip_n);
+        run(&mut gripper, MotorDrive::Close(Duty::per_mille(100)), 1.0);
+        assert_eq!(gripper.grip_n(WIDTH_MM, STIFFNESS_N_PER_MM), grip_n);
+    }
+}

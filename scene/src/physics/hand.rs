@@ -1,0 +1,81 @@
+//! How the wearer's arm carries the hand: up, down, and swinging.
+
+use crate::file::sections::{Move, Swing};
+use crate::schedule::{STEP_S, Span};
+
+/// The hand's height over where it grasps, and how it moves. The arm is strong: what the hand holds does not move it.
+#[derive(Clone, Debug, Default)]
+pub struct Hand {
+    moves: Vec<(Span, f64)>,
+    swings: Vec<(Span, Swing)>,
+    aim_m: f64,
+    height_m: f64,
+    speed_m_s: f64,
+    acceleration_m_s2: f64,
+}
+
+impl Hand {
+    pub(crate) fn new(moves: &[Move], swings: &[Swing]) -> Self {
+        let mut from_m = 0.0;
+        let moves = moves.iter().map(|step| {
+            let by_m = step.to_mm.get() / 1e3 - from_m;
+            from_m += by_m;
+            (Span::new(step.at_s.get_ref().get(), step.for_s.get()), by_m)
+        });
+        let moves = moves.collect();
+        let swings = swings.iter().map(|swing| {
+            let for_s = f64::from(swing.cycles.get()) / swing.rate_hz.get();
+            (Span::new(swing.at_s.get_ref().get(), for_s), swing.clone())
+        });
+        Self { moves, swings: swings.collect(), ..Self::default() }
+    }
+
+    /// Goes on by one scan to `t_s`. `table_part` is the part of the object's weight that stands on the table: a person
+    /// who puts something down slows as they feel it touch, and does not push it through the table.
+    pub fn step(&mut self, t_s: f64, table_part: f64) {
+        let aim_m =
+            self.moves.iter().map(|(span, by_m)| by_m * minimum_jerk(span.progress(t_s))).sum::<f64>();
+        let aimed_m_s = (aim_m - self.aim_m) / STEP_S;
+        self.aim_m = aim_m;
+        let felt_m_s =
+            if aimed_m_s < 0.0 { aimed_m_s * (1.0 - table_part).clamp(0.0, 1.0) } else { aimed_m_s };
+        let speed_m_s =
+            felt_m_s + self.swings.iter().map(|(span, swing)| swing_m_s(span, swing, t_s)).sum::<f64>();
+        self.acceleration_m_s2 = (speed_m_s - self.speed_m_s) / STEP_S;
+        self.speed_m_s = speed_m_s;
+        self.height_m += speed_m_s * STEP_S;
+    }
+
+    /// Over where it grasps, m.
+    #[must_use]
+    pub const fn height_m(&self) -> f64 {
+        self.height_m
+    }
+
+    /// Upwards, m/s.
+    #[must_use]
+    pub const fn speed_m_s(&self) -> f64 {
+        self.speed_m_s
+    }
+
+    /// Upwards, m/s^2.
+    #[must_use]
+    pub const fn acceleration_m_s2(&self) -> f64 {
+        self.acceleration_m_s2
+    }
+}
+
+/// How a person reaches: 10 p^3 - 15 p^4 + 6 p^5 (Flash and Hogan 1985).
+fn minimum_jerk(p: f64) -> f64 {
+    p * p * p * (10.0 + p * (6.0 * p - 15.0))
+}
+
+/// A whole number of cycles under a Hann window: the arm ends where it began.
+fn swing_m_s(span: &Span, swing: &Swing, t_s: f64) -> f64 {
+    if !span.contains(t_s) {
+        return 0.0;
+    }
+    let omega = std::f64::consts::TAU * swing.rate_hz.get();
+    let window = (1.0 - libm::cos(std::f64::consts::TAU * span.progress(t_s))) / 2.0;
+    swing.peak_m_s2.get() / omega * window * libm::sin(omega * (t_s - span.begin_s))
+}

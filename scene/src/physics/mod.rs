@@ -1,0 +1,33 @@
+//! What moves, and what makes it move.
+
+pub mod contact;
+pub mod friction;
+pub mod grasp;
+pub mod gripper;
+pub mod hand;
+pub mod stroke;
+pub mod wearer;
+
+/// Standard gravity, m/s^2.
+pub const GRAVITY_M_S2: f64 = 9.80665;
+
+/// A pad that is pressed with less than this touches nothing worth the name, N.
+pub const TOUCH_N: f64 = 0.05;
+
+/// What the sensed fingertip feels of the world in one step: all that the sensors are told.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Touch {
+    /// Normal force on the pad, N.
+    pub normal_n: f64,
+    /// Shear on the pad, N, positive where the object pulls the fingertip down (or along the stroke).
+    pub shear_n: f64,
+    /// Speed of the object over the pad, m/s, in the direction of the shear.
+    pub slide_m_s: f64,
+    /// Whether the contact sticks.
+    pub sticks: bool,
+    /// The shear that the contact let go of in this step, because it began to slide, N: (mu_s - mu_d) times the normal
+    /// force. This is the micro-slip event that the PVDF hears.
+    pub released_n: f64,
+    /// The shear that sliding lacks of sticking, N: what the texture's vibration grows with.
+    pub drop_n: f64,
+}

@@ -1,0 +1,93 @@
+//! A probe stroked over a surface by a robot's arm (Prosthesis, figures 3 to 7).
+
+use super::contact::RigidCoulomb;
+use super::friction::Surface;
+use super::{TOUCH_N, Touch};
+use crate::file::sections::{Press, Robot, Sweep};
+use crate::schedule::{STEP_S, Span, smooth};
+
+/// The fingertip on a carriage: pressed with a set load, pulled along through the arm's compliance.
+///
+/// `m v' = k (x_carriage - x) + c (v_carriage - v) - friction`. The arm is the spring that makes Ft/Fn climb to mu_s
+/// before anything slides, as in figure 7a.
+#[derive(Clone, Debug)]
+pub struct Stroke {
+    presses: Vec<(Span, f64)>,
+    ramp_s: f64,
+    sweeps: Vec<(Span, f64)>,
+    mass_kg: f64,
+    stiffness_n_per_m: f64,
+    damping_ns_per_m: f64,
+    surface: Surface,
+    contact: RigidCoulomb,
+    carriage_m: f64,
+    probe_m: f64,
+    speed_m_s: f64,
+}
+
+impl Stroke {
+    pub(crate) fn new(robot: &Robot, presses: &[Press], sweeps: &[Sweep], surface: Surface) -> Self {
+        let mass_kg = robot.probe_kg.get();
+        let stiffness_n_per_m = robot.stiffness_n_per_mm.get() * 1e3;
+        Self {
+            presses: presses
+                .iter()
+                .map(|press| (Span::new(press.at_s.get_ref().get(), press.for_s.get()), press.load_n.get()))
+                .collect(),
+            ramp_s: robot.ramp_ms.get() / 1e3,
+            sweeps: sweeps
+                .iter()
+                .map(|sweep| {
+                    (Span::new(sweep.at_s.get_ref().get(), sweep.for_s.get()), sweep.speed_mm_s.get() / 1e3)
+                })
+                .collect(),
+            mass_kg,
+            stiffness_n_per_m,
+            damping_ns_per_m: 2.0 * robot.damping.get() * (stiffness_n_per_m * mass_kg).sqrt(),
+            surface,
+            contact: RigidCoulomb::default(),
+            carriage_m: 0.0,
+            probe_m: 0.0,
+            speed_m_s: 0.0,
+        }
+    }
+
+    /// Goes on by one scan to `t_s`.
+    pub fn step(&mut self, t_s: f64) -> Touch {
+        let load_n = self.load_n(t_s);
+        let friction = self.surface.at(t_s);
+        let carriage_m_s: f64 =
+            self.sweeps.iter().filter(|(span, _)| span.contains(t_s)).map(|(_, speed)| speed).sum();
+        self.carriage_m += carriage_m_s * STEP_S;
+        let pull_n = self.stiffness_n_per_m * (self.carriage_m - self.probe_m)
+            + self.damping_ns_per_m * (carriage_m_s - self.speed_m_s);
+        let free_m_s = self.speed_m_s + pull_n / self.mass_kg * STEP_S;
+        let outcome = self.contact.step(load_n, friction, self.mass_kg, free_m_s, STEP_S);
+        self.speed_m_s = outcome.speed_m_s;
+        self.probe_m += self.speed_m_s * STEP_S;
+        let drop_n = (friction.mu_s - friction.mu_d) * load_n;
+        Touch {
+            normal_n: load_n,
+            shear_n: -outcome.force_n,
+            slide_m_s: self.speed_m_s,
+            sticks: self.contact.sticks(),
+            released_n: if outcome.onset && load_n > TOUCH_N { drop_n } else { 0.0 },
+            drop_n,
+        }
+    }
+
+    /// Where the probe is, m.
+    #[must_use]
+    pub const fn probe_m(&self) -> f64 {
+        self.probe_m
+    }
+
+    fn load_n(&self, t_s: f64) -> f64 {
+        let part = |span: &Span| {
+            let up = ((t_s - span.begin_s) / self.ramp_s).clamp(0.0, 1.0);
+            let down = ((span.end_s - t_s) / self.ramp_s).clamp(0.0, 1.0);
+            smooth(up.min(down))
+        };
+        self.presses.iter().map(|(span, load_n)| load_n * part(span)).sum()
+    }
+}

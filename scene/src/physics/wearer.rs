@@ -1,0 +1,63 @@
+//! The wearer: what their two forearm muscles want, over the line of the scene.
+
+use crate::file::sections::{Intent, Muscle};
+use crate::schedule::Span;
+
+/// A person who contracts as the scene says, and lets go early once the hand grips as they wanted: they watch it.
+#[derive(Clone, Debug)]
+pub struct Wearer {
+    contractions: Vec<Contraction>,
+}
+
+#[derive(Clone, Debug)]
+struct Contraction {
+    span: Span,
+    intent: Intent,
+    level_mv: f64,
+    until_grip_n: f64,
+}
+
+/// What they do at an instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Effort {
+    /// What they want; None is rest.
+    pub intent: Option<Intent>,
+    /// Contraction of the flexor, mV of envelope above rest once it has risen.
+    pub flexor_mv: f64,
+    /// Contraction of the extensor, likewise.
+    pub extensor_mv: f64,
+}
+
+impl Wearer {
+    pub(crate) fn new(muscles: &[Muscle]) -> Self {
+        let contractions = muscles.iter().map(|muscle| Contraction {
+            span: Span::new(muscle.at_s.get_ref().get(), muscle.for_s.get()),
+            intent: muscle.intent,
+            level_mv: muscle.level_mv.get(),
+            until_grip_n: muscle.until_grip_n.map_or(f64::INFINITY, |newtons| newtons.get()),
+        });
+        Self { contractions: contractions.collect() }
+    }
+
+    /// Goes on to `t_s`, while each finger presses with `grip_n`.
+    pub fn step(&mut self, t_s: f64, grip_n: f64) -> Effort {
+        let Some(now) = self.contractions.iter_mut().find(|contraction| contraction.span.contains(t_s))
+        else {
+            return Effort::default();
+        };
+        if grip_n >= now.until_grip_n {
+            now.span.end_s = t_s;
+            return Effort::default();
+        }
+        let (flexor, extensor) = match now.intent {
+            Intent::Close => (1.0, 0.0),
+            Intent::Open => (0.0, 1.0),
+            Intent::Both => (1.0, 1.0),
+        };
+        Effort {
+            intent: Some(now.intent),
+            flexor_mv: flexor * now.level_mv,
+            extensor_mv: extensor * now.level_mv,
+        }
+    }
+}

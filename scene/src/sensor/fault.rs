@@ -1,0 +1,60 @@
+//! Sensors that break, when and how the scene says.
+
+use tenax_hal_shim::channel::{COUNT, FSR, FSR_COUNT, REFERENCE_MV};
+
+use crate::file::sections::{FaultKind, SensorFault};
+use crate::schedule::Span;
+
+/// All faults of a scene.
+#[derive(Clone, Debug)]
+pub(crate) struct Faults(Vec<Fault>);
+
+#[derive(Clone, Debug)]
+struct Fault {
+    span: Span,
+    channel: usize,
+    kind: FaultKind,
+    press_n: f64,
+    stuck_v: Option<f64>,
+}
+
+impl Faults {
+    pub(crate) fn new(faults: &[SensorFault]) -> Self {
+        let faults = faults.iter().map(|fault| {
+            let begin_s = fault.at_s.get_ref().get();
+            let end_s = fault.until_s.as_ref().map_or(f64::INFINITY, |until| until.get_ref().get());
+            Fault {
+                span: Span { begin_s, end_s },
+                channel: fault.channel.get_ref().index(),
+                kind: fault.kind,
+                press_n: fault.press_n.as_ref().map_or(0.0, |press| press.get_ref().get()),
+                stuck_v: None,
+            }
+        });
+        Self(faults.collect())
+    }
+
+    /// What presses on the quadrants of the force sensor besides the object, N.
+    pub(crate) fn pressed_n(&self, t_s: f64) -> [f64; FSR_COUNT] {
+        let mut pressed_n = [0.0; FSR_COUNT];
+        for fault in &self.0 {
+            if fault.kind == FaultKind::Pressed && fault.span.contains(t_s) {
+                pressed_n[fault.channel - FSR] += fault.press_n;
+            }
+        }
+        pressed_n
+    }
+
+    /// Puts on the pins what broken sensors put there. After the noise: a dead or stuck pin has none.
+    pub(crate) fn apply(&mut self, t_s: f64, pins_v: &mut [f64; COUNT]) {
+        for fault in self.0.iter_mut().filter(|fault| fault.span.contains(t_s)) {
+            let pin_v = &mut pins_v[fault.channel];
+            *pin_v = match fault.kind {
+                FaultKind::Dead => 0.0,
+                FaultKind::Saturated => f64::from(REFERENCE_MV) / 1e3,
+                FaultKind::Stuck => *fault.stuck_v.get_or_insert(*pin_v),
+                FaultKind::Pressed => *pin_v,
+            };
+        }
+    }
+}

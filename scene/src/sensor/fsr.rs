@@ -1,0 +1,78 @@
+//! The force sensing resistor with its four quadrants under the tilting element (Prosthesis, figures 1 and 2).
+
+use tenax_hal_shim::channel::FSR_COUNT;
+use tenax_hal_shim::front_end::{fsr_mv, fsr_quadrants_n};
+
+use super::front_end_v;
+use super::pole::LowPass;
+use crate::file::sections::Fsr;
+use crate::physics::Touch;
+
+/// Four quadrants: tilt, hysteresis, creep, and the power law between force and conductance.
+#[derive(Clone, Debug)]
+pub(crate) struct Quadrants {
+    hysteresis: f64,
+    creep: f64,
+    quadrants: [Quadrant; FSR_COUNT],
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Quadrant {
+    /// Hysteresis is play: the reading follows the force at a distance.
+    followed_n: f64,
+    crept: LowPass,
+}
+
+impl Quadrants {
+    pub(crate) fn new(parameters: &Fsr) -> Self {
+        let crept = LowPass::with_tau_s(parameters.creep_s.get());
+        Self {
+            hysteresis: parameters.hysteresis.get(),
+            creep: parameters.creep.get(),
+            quadrants: [Quadrant { followed_n: 0.0, crept }; FSR_COUNT],
+        }
+    }
+
+    /// Voltages at the pins after one scan. `pressed_n` is what a fault presses on each quadrant besides.
+    pub(crate) fn step(&mut self, touch: &Touch, pressed_n: [f64; FSR_COUNT]) -> [f64; FSR_COUNT] {
+        let loads_n = fsr_quadrants_n(touch.normal_n, touch.shear_n, 0.0);
+        let mut pins = [0.0; FSR_COUNT];
+        for (n, quadrant) in self.quadrants.iter_mut().enumerate() {
+            let force_n = loads_n[n] + pressed_n[n];
+            let play_n = self.hysteresis * force_n;
+            quadrant.followed_n = quadrant.followed_n.clamp(force_n - play_n, force_n + play_n);
+            let read_n = quadrant.followed_n + self.creep * quadrant.crept.step(quadrant.followed_n);
+            pins[n] = front_end_v(fsr_mv(read_n, libm::pow));
+        }
+        pins
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn settled(quadrants: &mut Quadrants, normal_n: f64) -> f64 {
+        quadrants.step(&Touch { normal_n, ..Touch::default() }, [0.0; FSR_COUNT])[0]
+    }
+
+    #[test]
+    fn unloading_reads_more_than_loading_at_the_same_force() {
+        let mut quadrants = Quadrants::new(&Fsr::default());
+        let loading = settled(&mut quadrants, 5.0);
+        settled(&mut quadrants, 20.0);
+        let unloading = settled(&mut quadrants, 5.0);
+        assert!(unloading > loading * 1.02 && unloading < loading * 1.08, "{loading} V, then {unloading} V");
+    }
+
+    #[test]
+    fn a_lasting_load_creeps_up_and_the_unloaded_sensor_comes_back() {
+        let mut quadrants = Quadrants::new(&Fsr::default());
+        let first = settled(&mut quadrants, 5.0);
+        (0..8_000 * 20).for_each(|_| _ = settled(&mut quadrants, 5.0));
+        let later = settled(&mut quadrants, 5.0);
+        assert!(later > first * 1.015 && later < first * 1.03, "{first} V, then {later} V");
+        (0..8_000 * 100).for_each(|_| _ = settled(&mut quadrants, 0.0));
+        assert!((settled(&mut quadrants, 0.0) - 0.2).abs() < 1e-3);
+    }
+}

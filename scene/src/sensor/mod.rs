@@ -1,0 +1,17 @@
+//! What the sensors make of the world, in volts at the pins.
+
+pub(crate) mod converter;
+pub(crate) mod fault;
+pub(crate) mod fsr;
+pub(crate) mod hand;
+pub(crate) mod myo;
+pub(crate) mod pole;
+pub(crate) mod pvdf;
+
+/// Supply of the analogue front ends less what their outputs cannot reach, V.
+const CLIP_V: std::ops::RangeInclusive<f64> = 0.05..=3.2;
+
+/// What a working front end can put on its pin, V: it clips just inside its supply.
+pub(crate) fn front_end_v(mv: f64) -> f64 {
+    (mv / 1e3).clamp(*CLIP_V.start(), *CLIP_V.end())
+}

@@ -1,0 +1,31 @@
+//! One resistor and one capacitor.
+
+use crate::schedule::STEP_S;
+
+/// First-order low-pass, stepped exactly for an input that is constant during a scan. What it takes away from its input
+/// is the high-pass of the same corner.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LowPass {
+    part: f64,
+    state: f64,
+}
+
+impl LowPass {
+    pub(crate) fn with_tau_s(tau_s: f64) -> Self {
+        Self { part: -libm::expm1(-STEP_S / tau_s), state: 0.0 }
+    }
+
+    pub(crate) fn with_corner_hz(corner_hz: f64) -> Self {
+        Self::with_tau_s(1.0 / (std::f64::consts::TAU * corner_hz))
+    }
+
+    pub(crate) fn step(&mut self, input: f64) -> f64 {
+        self.state += self.part * (input - self.state);
+        self.state
+    }
+
+    /// Standard deviation of what it makes of white noise of standard deviation 1.
+    pub(crate) fn noise_gain(&self) -> f64 {
+        (self.part / (2.0 - self.part)).sqrt()
+    }
+}

@@ -1,0 +1,134 @@
+//! PVDF films in the skin: piezoelectric, so they hear change, not load.
+
+use std::f64::consts::TAU;
+
+use tenax_hal_shim::channel::{PVDF_COUNT, SCANS_PER_FRAME};
+use tenax_hal_shim::front_end::PVDF_REST_MV;
+
+use super::front_end_v;
+use super::pole::LowPass;
+use crate::file::sections::{Knock, Pvdf};
+use crate::physics::{TOUCH_N, Touch};
+use crate::random::{Noise, Source};
+use crate::schedule::STEP_S;
+
+/// A knock is forgotten after this many times its decay: e^-12 of millivolts is below any code.
+const KNOCK_DECAYS: f64 = 12.0;
+
+/// Twelve films, each with its own gain, sign, depth and place.
+///
+/// What deforms the skin as a whole (load, shear, and the shear let go at a slip's onset) reaches a film through the
+/// skin, two poles, and the charge amplifier's high-pass: a step becomes the bump of about 25 ms that the recordings
+/// show. What the film hears directly (texture, settling, gear, knocks, hum, noise) is added at the film.
+#[derive(Debug)]
+pub(crate) struct Films {
+    parameters: Pvdf,
+    knocks: Vec<Knock>,
+    pitch_m: f64,
+    films: [Film; PVDF_COUNT],
+    noise: Noise,
+    released_n: f64,
+    last_normal_n: f64,
+    texture_phase: f64,
+    motor_phase: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Film {
+    gain: f64,
+    /// Of the texture and of a knock's ring: where the film lies. In turns.
+    phase: f64,
+    skin: [LowPass; 2],
+    amplifier: LowPass,
+}
+
+impl Films {
+    pub(crate) fn new(parameters: &Pvdf, knocks: &[Knock], pitch_mm: f64, seed: u64) -> Self {
+        let mut making = Noise::new(seed, Source::FilmMaking);
+        let spread = parameters.spread.get();
+        let skin_s = parameters.skin_ms.get() / 1e3;
+        let film = |_| {
+            let gain = making.sign() * making.between(1.0 - spread, 1.0 + spread);
+            let skin = LowPass::with_tau_s(skin_s * making.between(0.67, 1.5));
+            Film {
+                gain,
+                phase: making.between(0.0, 1.0),
+                skin: [skin; 2],
+                amplifier: LowPass::with_corner_hz(parameters.high_pass_hz.get()),
+            }
+        };
+        Self {
+            parameters: parameters.clone(),
+            knocks: knocks.to_vec(),
+            pitch_m: pitch_mm / 1e3,
+            films: std::array::from_fn(film),
+            noise: Noise::new(seed, Source::Film),
+            released_n: 0.0,
+            last_normal_n: 0.0,
+            texture_phase: 0.0,
+            motor_phase: 0.0,
+        }
+    }
+
+    /// Voltages at the pins after one scan that ends at `t_s`. `motor_speed` is a part of the fastest.
+    pub(crate) fn step(&mut self, t_s: f64, touch: &Touch, motor_speed: f64) -> [f64; PVDF_COUNT] {
+        let p = &self.parameters;
+        self.released_n += touch.released_n;
+        let load_mv = p.normal_mv_per_n.get() * touch.normal_n
+            + p.shear_mv_per_n.get() * touch.shear_n
+            + p.release_mv_per_n.get() * self.released_n;
+
+        let change_n_per_s = (touch.normal_n - self.last_normal_n).abs() / STEP_S;
+        self.last_normal_n = touch.normal_n;
+        let adjust_mv = p.adjust_mv_per_n_s.get() * change_n_per_s;
+        // White over the whole scan rate, so that the sum of a frame's scans has the rms that was asked for.
+        let noise_mv = p.noise_mv.get().hypot(adjust_mv) * (SCANS_PER_FRAME as f64).sqrt();
+
+        let speed_m_s = touch.slide_m_s.abs();
+        self.texture_phase = (self.texture_phase + speed_m_s / self.pitch_m * STEP_S).fract();
+        let half_m_s = p.texture_half_mm_s.get() / 1e3;
+        let texture_mv = if touch.normal_n > TOUCH_N && speed_m_s > 0.0 {
+            p.texture_mv_per_n.get() * touch.drop_n * speed_m_s / (speed_m_s + half_m_s)
+        } else {
+            0.0
+        };
+
+        self.motor_phase = (self.motor_phase + p.motor_hz.get() * motor_speed * STEP_S).fract();
+        let everywhere_mv = if motor_speed > 0.0 {
+            p.motor_mv.get() * motor_speed.sqrt() * libm::sin(TAU * self.motor_phase)
+        } else {
+            0.0
+        } + p.mains_mv.get() * libm::sin(TAU * p.mains_hz.get() * t_s);
+
+        let mut pins = [0.0; PVDF_COUNT];
+        for (film, pin) in self.films.iter_mut().zip(&mut pins) {
+            let deformed_mv = film.skin.iter_mut().fold(load_mv, |mv, pole| pole.step(mv));
+            let mut film_mv = deformed_mv - film.amplifier.step(deformed_mv);
+            if texture_mv > 0.0 {
+                film_mv += texture_mv * spike(self.texture_phase + film.phase);
+            }
+            for knock in &self.knocks {
+                film_mv += ring_mv(knock, t_s, film.phase);
+            }
+            film_mv = film.gain * (film_mv + everywhere_mv) + noise_mv * self.noise.normal();
+            *pin = front_end_v(f64::from(PVDF_REST_MV) + p.gain.get() * film_mv);
+        }
+        pins
+    }
+}
+
+/// One spike a turn over one pitch, mean 0, peak about 1: `((1 + cos) / 2)^4` less its mean of 35/128.
+fn spike(turns: f64) -> f64 {
+    let hump = (1.0 + libm::cos(TAU * turns)) / 2.0;
+    hump * hump * hump * hump - 35.0 / 128.0
+}
+
+fn ring_mv(knock: &Knock, t_s: f64, phase: f64) -> f64 {
+    let since_s = t_s - knock.at_s.get_ref().get();
+    let decay_s = knock.decay_ms.get() / 1e3;
+    if !(0.0..KNOCK_DECAYS * decay_s).contains(&since_s) {
+        return 0.0;
+    }
+    let ring = libm::sin(TAU * (knock.ring_hz.get() * since_s + phase));
+    knock.peak_mv.get() * libm::exp(-since_s / decay_s) * ring
+}

@@ -1,0 +1,213 @@
+//! What really happened in a world, exactly: what a report compares the fingertip with. Nothing here reaches a pin.
+
+use tenax_hal_shim::channel::{CHANNELS, COUNT, MYO_EXTENSOR, MYO_FLEXOR};
+
+use crate::file::sections::Intent;
+use crate::physics::{TOUCH_N, Touch};
+use crate::schedule::STEP_S;
+
+/// Rows of the trace a second.
+pub const TRACE_HZ: u32 = 200;
+/// A myosensor becomes active this far above rest, mV (the firmware's default).
+pub const MYO_ON_MV: f64 = 160.0;
+/// And inactive below this, mV.
+pub const MYO_OFF_MV: f64 = 110.0;
+
+/// One slip of the object through the fingers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slip {
+    /// When some of the contact let go, s. With rigid contact (L0) this is the macro onset.
+    pub micro_onset_s: f64,
+    /// When all of it slid, s.
+    pub macro_onset_s: f64,
+    /// When it stuck again or was lost, s. None while it goes on.
+    pub end_s: Option<f64>,
+    /// How far, mm.
+    pub distance_mm: f64,
+    /// Whether the wearer was opening the hand, so that it was meant.
+    pub meant: bool,
+}
+
+/// A wish of the wearer, from its first instant to its last.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Phase {
+    /// What they wanted; None is rest.
+    pub intent: Option<Intent>,
+    /// From, s.
+    pub begin_s: f64,
+    /// To, s. None while it goes on.
+    pub end_s: Option<f64>,
+}
+
+/// A myosensor's pin over its threshold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Activity {
+    /// Index in [`CHANNELS`].
+    pub channel: usize,
+    /// When the pin rose over [`MYO_ON_MV`] above rest, s.
+    pub on_s: f64,
+    /// When it fell under [`MYO_OFF_MV`], s. None while it is over.
+    pub off_s: Option<f64>,
+}
+
+/// One row of the trace.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    /// When, s.
+    pub t_s: f64,
+    /// Normal force of each finger, N.
+    pub grip_n: f64,
+    /// Shear on the sensed fingertip, N.
+    pub shear_n: f64,
+    /// Mass of the object, kg; 0 while a surface is stroked.
+    pub mass_kg: f64,
+    /// Height of the object over where it stood, mm; while a surface is stroked, the way of the probe.
+    pub position_mm: f64,
+    /// Speed of the object over the pad, mm/s.
+    pub slide_mm_s: f64,
+    /// Whether the contact sticks.
+    pub sticks: bool,
+    /// The least grip force of each finger that would hold at this instant, N; 0 while the hand does not carry.
+    pub needed_n: f64,
+}
+
+/// The log.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Truth {
+    /// Every slip, in order.
+    pub slips: Vec<Slip>,
+    /// Way of all slips that were not meant, mm.
+    pub slip_distance_mm: f64,
+    /// Whether the object left the pads after it was lifted.
+    pub dropped: bool,
+    /// The greatest grip force of a finger, N.
+    pub peak_grip_n: f64,
+    /// The greatest grip force that was ever needed while the hand carried the object, N.
+    pub needed_grip_n: f64,
+    /// The wearer's wishes, one after the other.
+    pub phases: Vec<Phase>,
+    /// When each myosensor's pin was over its threshold.
+    pub activity: Vec<Activity>,
+    /// The trace, [`TRACE_HZ`] rows a second.
+    pub trace: Vec<Row>,
+    slide: Option<Slide>,
+}
+
+/// The contact slides at this moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Slide {
+    begin_s: f64,
+    way_mm: f64,
+    /// Whether it was ever faster than the floor, so that it stands in [`Truth::slips`] as the last one.
+    counts: bool,
+}
+
+/// What the world tells its log about one step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Step<'a> {
+    pub(crate) t_s: f64,
+    pub(crate) touch: &'a Touch,
+    /// The object's part.
+    pub(crate) state: State,
+    /// Faster than this is slip, mm/s.
+    pub(crate) floor_mm_s: f64,
+    /// Whether the fingers open.
+    pub(crate) opens: bool,
+    /// Whether a row of the trace is due.
+    pub(crate) trace: bool,
+}
+
+/// What a model of the object or the surface knows of itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct State {
+    /// Whether a slide that begins now is slip: the hand carries the object, or strokes the surface.
+    pub(crate) carried: bool,
+    pub(crate) dropped: bool,
+    pub(crate) needed_n: f64,
+    pub(crate) mass_kg: f64,
+    pub(crate) position_mm: f64,
+}
+
+impl Truth {
+    pub(crate) fn step(&mut self, step: &Step<'_>) {
+        self.slip(step);
+        let (touch, state) = (step.touch, &step.state);
+        self.dropped |= state.dropped;
+        self.peak_grip_n = self.peak_grip_n.max(touch.normal_n);
+        self.needed_grip_n = self.needed_grip_n.max(state.needed_n);
+        if step.trace {
+            self.trace.push(Row {
+                t_s: step.t_s,
+                grip_n: touch.normal_n,
+                shear_n: touch.shear_n,
+                mass_kg: state.mass_kg,
+                position_mm: state.position_mm,
+                slide_mm_s: touch.slide_m_s * 1e3,
+                sticks: touch.sticks,
+                needed_n: state.needed_n,
+            });
+        }
+    }
+
+    /// Whether the object moves over the pad faster than the floor.
+    pub(crate) fn slipping(&self, touch: &Touch, floor_mm_s: f64) -> bool {
+        self.slide.is_some() && touch.slide_m_s.abs() * 1e3 > floor_mm_s
+    }
+
+    /// A slip begins when the contact lets go, and counts once it is faster than the floor: what settles more slowly
+    /// is no slip, and what slides while the table carries the object is none either.
+    fn slip(&mut self, step: &Step<'_>) {
+        let touch = step.touch;
+        let slides = !touch.sticks && touch.normal_n > TOUCH_N;
+        let Some(mut slide) = self.slide.or_else(|| {
+            (slides && step.state.carried).then_some(Slide { begin_s: step.t_s, way_mm: 0.0, counts: false })
+        }) else {
+            return;
+        };
+        let way_mm = touch.slide_m_s.abs() * 1e3 * STEP_S;
+        slide.way_mm += way_mm;
+        if !slide.counts && touch.slide_m_s.abs() * 1e3 > step.floor_mm_s {
+            slide.counts = true;
+            self.slips.push(Slip {
+                micro_onset_s: slide.begin_s,
+                macro_onset_s: slide.begin_s,
+                end_s: None,
+                distance_mm: 0.0,
+                meant: step.opens,
+            });
+        }
+        if slide.counts
+            && let Some(slip) = self.slips.last_mut()
+        {
+            if !slip.meant {
+                self.slip_distance_mm += slide.way_mm - slip.distance_mm;
+            }
+            slip.distance_mm = slide.way_mm;
+            slip.end_s = (!slides).then_some(step.t_s);
+        }
+        self.slide = slides.then_some(slide);
+    }
+
+    pub(crate) fn wearer(&mut self, t_s: f64, intent: Option<Intent>, pins_v: &[f64; COUNT]) {
+        match self.phases.last_mut() {
+            Some(last) if last.intent == intent => {}
+            last => {
+                if let Some(last) = last {
+                    last.end_s = Some(t_s);
+                }
+                self.phases.push(Phase { intent, begin_s: t_s, end_s: None });
+            }
+        }
+        for channel in [MYO_FLEXOR, MYO_EXTENSOR] {
+            let above_mv = pins_v[channel] * 1e3 - f64::from(CHANNELS[channel].rest_mv);
+            let open = self.activity.iter_mut().rev().find(|a| a.channel == channel && a.off_s.is_none());
+            match open {
+                Some(activity) if above_mv < MYO_OFF_MV => activity.off_s = Some(t_s),
+                None if above_mv > MYO_ON_MV => {
+                    self.activity.push(Activity { channel, on_s: t_s, off_s: None })
+                }
+                _ => {}
+            }
+        }
+    }
+}
