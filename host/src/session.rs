@@ -2,12 +2,14 @@
 
 use std::path::Path;
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 use tenax_scene::plant::Plant;
+use tenax_scene::{SceneFile, World, builtin};
 
 use crate::board::{Run, simulated};
 use crate::plot::{Figure, panels};
 use crate::replay::{Recording, ReplayPlant, library};
+use crate::report::fate::Fate;
 use crate::report::replay::Replay;
 use crate::report::{Report, Subject};
 use crate::timeline::Timeline;
@@ -45,6 +47,46 @@ pub struct Outcome {
     pub report: Report,
     /// The figure.
     pub figure: Figure,
+}
+
+/// A scene by its name in the repository, or by its file.
+pub fn load_scene(asked: &str) -> anyhow::Result<SceneFile> {
+    if let Some((name, text)) = builtin().iter().find(|(name, _)| *name == asked) {
+        return Ok(SceneFile::parse(text, &format!("scenes/{name}.toml"))?);
+    }
+    let path = Path::new(asked);
+    if !path.exists() {
+        let names: Vec<&str> = builtin().iter().map(|(name, _)| *name).collect();
+        bail!("no scene is called {asked}, and there is no such file; the scenes are {}", names.join(", "));
+    }
+    let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {asked}"))?;
+    Ok(SceneFile::parse(&text, asked)?)
+}
+
+/// Runs a scene, and its oracle beside it.
+pub fn scene(
+    file: &SceneFile,
+    seed: u64,
+    board: &Board,
+    progress: &mut dyn FnMut(f64),
+) -> anyhow::Result<Outcome> {
+    let (run, world) = board.run(World::new(file, seed), progress)?;
+    // The oracle's is always the host's: it is a bound on the gripper, not on the image.
+    let (_, oracle) = simulated::run_oracle(World::new(file, seed), &mut |_| {});
+    let (truth, oracle) = (Fate::of(world.truth()), Fate::of(oracle.truth()));
+    let subject = Subject {
+        scene: &file.name,
+        board: board.name(),
+        seed,
+        run: &run,
+        zero_s: 0.0,
+        truth: Some(&truth),
+        oracle: Some(&oracle),
+    };
+    let report = Report::new(&subject);
+    let mut figure = panels::figure(&subject, (0.0, run.virtual_s));
+    figure.subtitle = format!("{} ({}), {}", file.title, file.from, figure.subtitle);
+    Ok(Outcome { run, report, figure })
 }
 
 /// Plays a recording. Without a recipe, the one that its name calls for.

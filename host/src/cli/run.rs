@@ -9,6 +9,7 @@ use clap::ValueEnum;
 
 use super::progress::Progress;
 use crate::plot::{draw, png};
+use crate::replay::Recording;
 use crate::report::text::Text;
 use crate::session::{self, Board, Outcome};
 
@@ -50,10 +51,15 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let board = Board::Host;
     let outcome = match &args.replay {
         Some(path) => {
-            let mut progress = Progress::new("replay", 1.0);
+            let recording = Recording::read(path)?;
+            let mut progress = Progress::new("replay", recording.duration_s());
             session::replay(path, args.recipe.as_deref(), args.seed, &board, &mut |s| progress.at(s))?
         }
-        None => anyhow::bail!("not yet"),
+        None => {
+            let file = session::load_scene(&args.scene)?;
+            let mut progress = Progress::new(&file.name, file.duration_s());
+            session::scene(&file, args.seed, &board, &mut |s| progress.at(s))?
+        }
     };
     let files = write(&args.out, &outcome)?;
     match args.report {

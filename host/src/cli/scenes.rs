@@ -2,6 +2,12 @@
 
 use std::process::ExitCode;
 
+use tenax_scene::{SceneFile, builtin};
+
 pub fn main() -> anyhow::Result<ExitCode> {
-    anyhow::bail!("not yet")
+    for (name, text) in builtin() {
+        let scene = SceneFile::parse(text, &format!("scenes/{name}.toml"))?;
+        println!("{name:<20} {:>4.0} s  {}\n{:<28} from {}", scene.duration_s(), scene.title, "", scene.from);
+    }
+    Ok(ExitCode::SUCCESS)
 }

@@ -1,5 +1,7 @@
 //! What really happened in a scene, as far as the scores need it.
 
+use tenax_scene::Truth;
+
 /// One slip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlipSpan {
@@ -11,6 +13,8 @@ pub struct SlipSpan {
     pub end_s: f64,
     /// How far the object slid, mm.
     pub distance_mm: f64,
+    /// Whether the wearer was letting go, so that it was meant: nothing is to be caught.
+    pub meant: bool,
 }
 
 /// What really happened.
@@ -18,7 +22,7 @@ pub struct SlipSpan {
 pub struct Fate {
     /// Every slip, in order.
     pub slips: Vec<SlipSpan>,
-    /// How far the object slid altogether, mm.
+    /// How far the object slid altogether when it was not meant to, mm.
     pub distance_mm: f64,
     /// Whether it was dropped.
     pub dropped: bool,
@@ -30,4 +34,33 @@ pub struct Fate {
     pub grip_n: Vec<(f64, f64)>,
     /// The least force that holds the object, over time, s and N.
     pub needed_n: Vec<(f64, f64)>,
+}
+
+impl Fate {
+    /// A world's log, as far as it goes.
+    #[must_use]
+    pub fn of(truth: &Truth) -> Self {
+        let slip = |slip: &tenax_scene::truth::Slip| SlipSpan {
+            micro_onset_s: slip.micro_onset_s,
+            macro_onset_s: Some(slip.macro_onset_s),
+            end_s: slip.end_s.unwrap_or(f64::INFINITY),
+            distance_mm: slip.distance_mm,
+            meant: slip.meant,
+        };
+        let held = truth.needed_grip_n > 0.0;
+        Self {
+            slips: truth.slips.iter().map(slip).collect(),
+            distance_mm: truth.slip_distance_mm,
+            dropped: truth.dropped,
+            peak_grip_n: (truth.peak_grip_n > 0.0).then_some(truth.peak_grip_n),
+            needed_force_n: held.then_some(truth.needed_grip_n),
+            grip_n: truth.trace.iter().map(|row| (row.t_s, row.grip_n)).collect(),
+            // While the hand carries nothing, nothing is needed: a gap in the curve.
+            needed_n: truth
+                .trace
+                .iter()
+                .map(|row| (row.t_s, if row.needed_n > 0.0 { row.needed_n } else { f64::NAN }))
+                .collect(),
+        }
+    }
 }

@@ -24,7 +24,7 @@ pub struct Slip {
     pub distance_mm: Option<f64>,
     /// Whether it was dropped.
     pub dropped: Option<bool>,
-    /// Macro slips in the whole run.
+    /// Macro slips in the whole run that the wearer did not mean.
     pub macro_slips: Option<usize>,
     /// How many of them were caught.
     pub macro_slips_caught: Option<usize>,
@@ -49,7 +49,7 @@ impl Slip {
         let caught = macro_slips.iter().filter(|slip| latency_s(slip).is_some()).count();
         let first = macro_slips.first().copied();
         Self {
-            micro_onset_s: first.or(truth.slips.first()).map(|slip| slip.micro_onset_s),
+            micro_onset_s: first.map(|slip| slip.micro_onset_s),
             macro_onset_s: first.and_then(|slip| slip.macro_onset_s),
             caught: first.map(|slip| latency_s(slip).is_some()),
             latency_ms: first.and_then(latency_s).map(|s| s * 1e3),
