@@ -17,6 +17,7 @@ mod commands;
 pub mod file;
 pub mod physics;
 pub mod plant;
+mod pole;
 mod random;
 mod schedule;
 mod sensor;

@@ -51,13 +51,13 @@ impl Default for Pvdf {
             // Recordings: two films of one fingertip differ by 1.7 times (37 and 61 mV peak to peak at slip onset).
             spread: Part::of(0.3),
             // Recordings: after the bump of 25 ms the film is back within another 10 ms.
-            high_pass_hz: Hertz::of(12.0),
+            high_pass_hz: Hertz::of(16.0),
             skin_ms: Milliseconds::of(3.5),
-            // Recordings: contact gives 7 to 13 mV peak to peak, slowly.
-            normal_mv_per_n: Gain::of(5.0),
-            shear_mv_per_n: Gain::of(6.0),
-            // Recordings: slip onset gives 37 to 61 mV peak to peak; that it lets go of about 0.5 N is assumed.
-            release_mv_per_n: Gain::of(150.0),
+            // Recordings: contact gives 7 to 13 mV peak to peak, slowly; that it loads a film with some 5 N is assumed.
+            normal_mv_per_n: Gain::of(2.0),
+            shear_mv_per_n: Gain::of(3.0),
+            // Recordings: slip onset gives 37 to 61 mV peak to peak; that it lets go of about 0.3 N is assumed.
+            release_mv_per_n: Gain::of(200.0),
             // Recordings (friction rig): steady sliding at 40 mm/s has 0.24 to 0.39 of the onset's rms.
             texture_mv_per_n: Gain::of(40.0),
             texture_half_mm_s: Speed::of(20.0),

@@ -1,13 +1,18 @@
 //! How the wearer's arm carries the hand: up, down, and swinging.
 
 use crate::file::sections::{Move, Swing};
+use crate::pole::LowPass;
 use crate::schedule::{STEP_S, Span};
 
+/// How fast a person notices that the table begins to carry, s (assumed).
+const FEEL_S: f64 = 0.030;
+
 /// The hand's height over where it grasps, and how it moves. The arm is strong: what the hand holds does not move it.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Hand {
     moves: Vec<(Span, f64)>,
     swings: Vec<(Span, Swing)>,
+    felt: LowPass,
     aim_m: f64,
     height_m: f64,
     speed_m_s: f64,
@@ -27,18 +32,27 @@ impl Hand {
             let for_s = f64::from(swing.cycles.get()) / swing.rate_hz.get();
             (Span::new(swing.at_s.get_ref().get(), for_s), swing.clone())
         });
-        Self { moves, swings: swings.collect(), ..Self::default() }
+        Self {
+            moves,
+            swings: swings.collect(),
+            felt: LowPass::with_tau_s(FEEL_S),
+            aim_m: 0.0,
+            height_m: 0.0,
+            speed_m_s: 0.0,
+            acceleration_m_s2: 0.0,
+        }
     }
 
     /// Goes on by one scan to `t_s`. `table_part` is the part of the object's weight that stands on the table: a person
     /// who puts something down slows as they feel it touch, and does not push it through the table.
     pub fn step(&mut self, t_s: f64, table_part: f64) {
+        let felt_part = self.felt.step(table_part);
         let aim_m =
             self.moves.iter().map(|(span, by_m)| by_m * minimum_jerk(span.progress(t_s))).sum::<f64>();
         let aimed_m_s = (aim_m - self.aim_m) / STEP_S;
         self.aim_m = aim_m;
         let felt_m_s =
-            if aimed_m_s < 0.0 { aimed_m_s * (1.0 - table_part).clamp(0.0, 1.0) } else { aimed_m_s };
+            if aimed_m_s < 0.0 { aimed_m_s * (1.0 - felt_part).clamp(0.0, 1.0) } else { aimed_m_s };
         let speed_m_s =
             felt_m_s + self.swings.iter().map(|(span, swing)| swing_m_s(span, swing, t_s)).sum::<f64>();
         self.acceleration_m_s2 = (speed_m_s - self.speed_m_s) / STEP_S;

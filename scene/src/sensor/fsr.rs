@@ -4,9 +4,9 @@ use tenax_hal_shim::channel::FSR_COUNT;
 use tenax_hal_shim::front_end::{fsr_mv, fsr_quadrants_n};
 
 use super::front_end_v;
-use super::pole::LowPass;
 use crate::file::sections::Fsr;
 use crate::physics::Touch;
+use crate::pole::LowPass;
 
 /// Four quadrants: tilt, hysteresis, creep, and the power law between force and conductance.
 #[derive(Clone, Debug)]

@@ -5,7 +5,6 @@ pub(crate) mod fault;
 pub(crate) mod fsr;
 pub(crate) mod hand;
 pub(crate) mod myo;
-pub(crate) mod pole;
 pub(crate) mod pvdf;
 
 /// Supply of the analogue front ends less what their outputs cannot reach, V.

@@ -6,9 +6,9 @@ use tenax_hal_shim::channel::{MYO_EXTENSOR, MYO_FLEXOR};
 use tenax_hal_shim::front_end::MYO_REST_MV;
 
 use super::front_end_v;
-use super::pole::LowPass;
 use crate::file::sections::{ElectrodeLift, Myo};
 use crate::physics::wearer::Effort;
+use crate::pole::LowPass;
 use crate::random::{Noise, Source};
 use crate::schedule::Span;
 

@@ -6,9 +6,9 @@ use tenax_hal_shim::channel::{PVDF_COUNT, SCANS_PER_FRAME};
 use tenax_hal_shim::front_end::PVDF_REST_MV;
 
 use super::front_end_v;
-use super::pole::LowPass;
 use crate::file::sections::{Knock, Pvdf};
 use crate::physics::{TOUCH_N, Touch};
+use crate::pole::LowPass;
 use crate::random::{Noise, Source};
 use crate::schedule::STEP_S;
 
