@@ -85,7 +85,7 @@ pub fn scene(
     };
     let report = Report::new(&subject);
     let mut figure = panels::figure(&subject, (0.0, run.virtual_s));
-    figure.subtitle = format!("{} ({}), {}", file.title, file.from, figure.subtitle);
+    figure.subtitle = format!("{}; {}", file.title, figure.subtitle);
     Ok(Outcome { run, report, figure })
 }
 

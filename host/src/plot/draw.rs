@@ -20,6 +20,7 @@ const GAP: i32 = 14;
 /// Height of a strip of states, in parts of its panel.
 const STRIP: f64 = 0.09;
 const SLIP: RGBColor = super::figure::colour::PURPLE;
+const LEVEL: RGBColor = super::figure::colour::VERMILLION;
 const INK: RGBColor = RGBColor(40, 40, 40);
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -58,7 +59,10 @@ fn draw_panel(area: &Area, figure: &Figure, panel: &Panel, foot: i32) -> anyhow:
             .set_label_area_size(LabelAreaPosition::Bottom, foot)
             .build_cartesian_2d(from_s..to_s, low..high),
     )?;
-    for &(from_s, to_s) in &figure.slips {
+    // A slip is shorter than a pixel in a long run, and is what the figure is about.
+    let visible_s = (to_s - from_s) / 400.0;
+    for &(begin_s, end_s) in &figure.slips {
+        let (from_s, to_s) = (begin_s, end_s.max(begin_s + visible_s).min(to_s));
         drawn(chart.draw_series([Rectangle::new([(from_s, low), (to_s, high)], SLIP.mix(0.35).filled())]))?;
     }
     let mut mesh = chart.configure_mesh();
@@ -68,7 +72,8 @@ fn draw_panel(area: &Area, figure: &Figure, panel: &Panel, foot: i32) -> anyhow:
         .y_labels(5)
         .x_labels(10)
         .label_style((FONTS, 14).into_font().color(&INK))
-        .y_desc(panel.label.as_str())
+        .y_label_formatter(&plain)
+        .x_label_formatter(&plain)
         .axis_desc_style((FONTS, 15).into_font().color(&INK));
     if foot > 0 {
         mesh.x_desc("time, s");
@@ -80,9 +85,8 @@ fn draw_panel(area: &Area, figure: &Figure, panel: &Panel, foot: i32) -> anyhow:
         drawn(chart.draw_series([Rectangle::new(corners, stretch.colour.filled())]))?;
     }
     for level in &panel.levels {
-        let style = super::figure::colour::VERMILLION.stroke_width(1);
-        let line = [(from_s, level.value), (to_s, level.value)];
-        drawn(chart.draw_series(DashedLineSeries::new(line, 6, 4, style)))?;
+        let line = level.points.iter().copied();
+        drawn(chart.draw_series(DashedLineSeries::new(line, 6, 4, LEVEL.stroke_width(2))))?;
     }
     for curve in &panel.curves {
         // A gap in a curve is a value that is no number: each stretch between gaps is a line of its own.
@@ -91,31 +95,47 @@ fn draw_panel(area: &Area, figure: &Figure, panel: &Panel, foot: i32) -> anyhow:
             drawn(chart.draw_series(LineSeries::new(line, curve.colour.stroke_width(2))))?;
         }
     }
+    let middle = (area.dim_in_pixel().1 as i32 - foot + GAP) / 2;
+    let label = (FONTS, 15).into_font().transform(FontTransform::Rotate270).color(&INK);
+    let label = label.pos(Pos::new(HPos::Center, VPos::Center));
+    drawn(area.draw(&Text::new(panel.label.clone(), (20, middle), label)))?;
     legend(area, panel)
 }
 
-/// Names at the panel's right, each in its colour.
+/// A number on an axis, without zeros that say nothing.
+fn plain(value: &f64) -> String {
+    // Adding zero turns -0 into 0.
+    format!("{}", (value * 1e6).round() / 1e6 + 0.0)
+}
+
+/// Names at the panel's right, each beside what it names.
 fn legend(area: &Area, panel: &Panel) -> anyhow::Result<()> {
-    let mut entries: Vec<(&str, RGBColor, bool)> = Vec::new();
-    let curves = panel.curves.iter().map(|curve| (curve.name.as_str(), curve.colour, false));
-    let levels =
-        panel.levels.iter().map(|level| (level.name.as_str(), super::figure::colour::VERMILLION, false));
-    let strip = panel.strip.iter().map(|stretch| (stretch.name.as_str(), stretch.colour, true));
-    for entry in curves.chain(levels).chain(strip) {
-        if !entries.contains(&entry) {
-            entries.push(entry);
+    let left = SIZE.0 as i32 - RIGHT + 14;
+    let mut y = GAP + 10;
+    let mut name = |name: &str| {
+        let style = (FONTS, 14).into_font().color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
+        let drew = drawn(area.draw(&Text::new(name.to_owned(), (left + 27, y), style)));
+        y += 19;
+        drew.map(|()| y - 19)
+    };
+    for curve in &panel.curves {
+        let y = name(&curve.name)?;
+        drawn(area.draw(&PathElement::new([(left, y), (left + 20, y)], curve.colour.stroke_width(3))))?;
+    }
+    for level in &panel.levels {
+        let y = name(&level.name)?;
+        for dash in [0, 8, 16] {
+            let line = [(left + dash, y), (left + dash + 5, y)];
+            drawn(area.draw(&PathElement::new(line, LEVEL.stroke_width(2))))?;
         }
     }
-    let left = SIZE.0 as i32 - RIGHT + 14;
-    for (n, (name, colour, filled)) in entries.into_iter().enumerate() {
-        let y = GAP + 10 + 19 * n as i32;
-        if filled {
-            drawn(area.draw(&Rectangle::new([(left, y - 6), (left + 20, y + 6)], colour.filled())))?;
-        } else {
-            drawn(area.draw(&PathElement::new([(left, y), (left + 20, y)], colour.stroke_width(3))))?;
+    let mut named: Vec<&str> = Vec::new();
+    for stretch in &panel.strip {
+        if !named.contains(&stretch.name.as_str()) {
+            named.push(&stretch.name);
+            let y = name(&stretch.name)?;
+            drawn(area.draw(&Rectangle::new([(left, y - 6), (left + 20, y + 6)], stretch.colour.filled())))?;
         }
-        let style = (FONTS, 14).into_font().color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
-        drawn(area.draw(&Text::new(name.to_owned(), (left + 27, y), style)))?;
     }
     Ok(())
 }
@@ -126,8 +146,8 @@ fn title(root: &Area, figure: &Figure) -> anyhow::Result<()> {
     drawn(root.draw(&Text::new(figure.subtitle.clone(), (LEFT, 40), style(14))))?;
     if !figure.slips.is_empty() {
         let left = SIZE.0 as i32 - RIGHT + 14;
-        drawn(root.draw(&Rectangle::new([(left, 42), (left + 20, 54)], SLIP.mix(0.35).filled())))?;
-        drawn(root.draw(&Text::new("the object slips".to_owned(), (left + 27, 41), style(14))))?;
+        drawn(root.draw(&Rectangle::new([(left, 16), (left + 20, 28)], SLIP.mix(0.35).filled())))?;
+        drawn(root.draw(&Text::new("the object slips".to_owned(), (left + 27, 15), style(14))))?;
     }
     Ok(())
 }

@@ -35,13 +35,13 @@ pub struct Curve {
     pub points: Vec<(f64, f64)>,
 }
 
-/// A horizontal line.
+/// A threshold.
 #[derive(Clone, Debug)]
 pub struct Level {
     /// What it is.
     pub name: String,
-    /// Where.
-    pub value: f64,
+    /// Where it is, from one end to the other.
+    pub points: Vec<(f64, f64)>,
 }
 
 /// A stretch of time with a colour.

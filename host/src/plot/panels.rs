@@ -51,6 +51,24 @@ fn slow<'a>(
     timeline.slows().map(move |(t, slow)| (t, value(slow).unwrap_or(f64::NAN)))
 }
 
+fn constant(name: &str, value: f64, (from_s, to_s): (f64, f64)) -> Level {
+    Level { name: name.to_owned(), points: vec![(from_s, value), (to_s, value)] }
+}
+
+/// Only the points where the value changes, from one end of the span to the other.
+fn steps(points: impl Iterator<Item = (f64, f64)>, (from_s, to_s): (f64, f64)) -> Vec<(f64, f64)> {
+    let mut steps: Vec<(f64, f64)> = Vec::new();
+    for (t, value) in points.filter(|point| point.0 <= to_s) {
+        match steps.last() {
+            Some(&(_, before)) if before == value => {}
+            Some(&(_, before)) => steps.extend([(t.max(from_s), before), (t.max(from_s), value)]),
+            None => steps.push((from_s, value)),
+        }
+    }
+    steps.extend(steps.last().map(|&(_, value)| (to_s, value)));
+    steps
+}
+
 fn forces(subject: &Subject, timeline: Timeline, span_s: (f64, f64)) -> Panel {
     let newtons = |mn: i32| f64::from(mn) / 1e3;
     let mut curves = Vec::new();
@@ -68,13 +86,12 @@ fn forces(subject: &Subject, timeline: Timeline, span_s: (f64, f64)) -> Panel {
 fn ratio(timeline: Timeline, span_s: (f64, f64)) -> Panel {
     let per_mille = |value: u16| f64::from(value) / 1e3;
     let ratio = slow(timeline, move |slow| Some(per_mille(slow.forces?.ratio_permille?)));
-    let s2 = slow(timeline, move |slow| Some(per_mille(slow.s2_permille)));
+    // A stroke changes it.
+    let s2 = timeline.slows().map(move |(t, slow)| (t, per_mille(slow.s2_permille)));
     Panel {
         label: "Ft/Fn".to_owned(),
-        curves: vec![
-            curve("Ft/Fn", colour::BLUE, ratio, span_s),
-            curve("S2", colour::VERMILLION, s2, span_s),
-        ],
+        curves: vec![curve("Ft/Fn", colour::BLUE, ratio, span_s)],
+        levels: vec![Level { name: "S2".to_owned(), points: steps(s2, span_s) }],
         at_least: (0.0, 0.5),
         height: 1.0,
         ..Panel::default()
@@ -87,7 +104,7 @@ fn vibration(timeline: Timeline, span_s: (f64, f64)) -> Panel {
     Panel {
         label: "vibration, mV".to_owned(),
         curves: vec![curve("PVDF envelope", colour::BLUE, envelope, span_s)],
-        levels: vec![Level { name: "S1".to_owned(), value: mv(Config::default().vibration.s1) }],
+        levels: vec![constant("S1", mv(Config::default().vibration.s1), span_s)],
         at_least: (0.0, 150.0),
         height: 1.0,
         ..Panel::default()
@@ -103,7 +120,7 @@ fn muscles(timeline: Timeline, span_s: (f64, f64)) -> Panel {
             curve("flexor", colour::GREEN, flexor, span_s),
             curve("extensor", colour::ORANGE, extensor, span_s),
         ],
-        levels: vec![Level { name: "gate".to_owned(), value: f64::from(Config::default().gate.on_mv) }],
+        levels: vec![constant("gate", f64::from(Config::default().gate.on_mv), span_s)],
         at_least: (-50.0, 250.0),
         height: 1.0,
         ..Panel::default()
