@@ -8,7 +8,7 @@ pub mod text;
 pub mod wearer;
 
 use serde::Serialize;
-use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ};
+use tenax_hal_shim::channel::CHANNELS;
 use tenax_hal_shim::wire::EventKind;
 use tenax_hal_shim::words::Fault;
 
@@ -39,6 +39,8 @@ pub struct Report {
     pub overruns: u32,
     /// Control ticks.
     pub ticks: Ticks,
+    /// The deepest that the stack was, bytes. Null where it cannot be measured.
+    pub stack_bytes: Option<u64>,
     /// The first macro slip, and the object's whole fate.
     pub slip: scores::Slip,
     /// The same controller told the true onset without delay: the gripper's physical limit in this scene.
@@ -68,7 +70,7 @@ pub struct Ticks {
     pub instructions_mean: Option<f64>,
     /// Instructions of one tick, worst.
     pub instructions_max: Option<u64>,
-    /// Part of the core at 100 MHz that mean ticks take, per cent, with [`CYCLES_PER_INSTRUCTION`] at its two ends.
+    /// Part of the core at 100 MHz that everything takes (ticks, interrupts, telemetry), per cent, with [`CYCLES_PER_INSTRUCTION`] at its two ends.
     pub load_percent: Option<[f64; 2]>,
 }
 
@@ -88,8 +90,7 @@ impl Ticks {
 /// Per cent of the core at 100 MHz, as a bracket.
 #[must_use]
 pub fn load_percent(cost: &TickCost) -> [f64; 2] {
-    CYCLES_PER_INSTRUCTION
-        .map(|cycles| cost.instructions_mean * cycles * f64::from(FRAME_HZ) / CORE_HZ * 100.0)
+    CYCLES_PER_INSTRUCTION.map(|cycles| cost.instructions_per_s * cycles / CORE_HZ * 100.0)
 }
 
 /// Grip force, per finger.
@@ -156,6 +157,7 @@ impl Report {
             wall_s: run.wall_s,
             overruns: run.counters.overruns,
             ticks: Ticks::of(run),
+            stack_bytes: run.stack_bytes,
             slip: scores::Slip::of(timeline, subject.truth),
             oracle: oracle::Oracle::of(subject.truth, subject.oracle),
             grip: subject.truth.map_or_else(Grip::default, |truth| Grip {

@@ -14,6 +14,9 @@ use crate::report::replay::Replay;
 use crate::report::{Report, Subject};
 use crate::timeline::Timeline;
 
+/// The scene that is run when none is asked for.
+pub const DEFAULT_SCENE: &str = "glass";
+
 /// Who runs the logic.
 #[derive(Clone, Debug)]
 pub enum Board {
@@ -22,6 +25,13 @@ pub enum Board {
 }
 
 impl Board {
+    /// The emulated board with the image of this checkout, built if it is not yet.
+    pub fn emulated() -> anyhow::Result<Self> {
+        bail!(
+            "this `tenax` was built without the emulator: use `cargo tenax ...` in a checkout, or add --host"
+        )
+    }
+
     /// What it is called in reports.
     #[must_use]
     pub const fn name(&self) -> &'static str {

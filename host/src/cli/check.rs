@@ -1,11 +1,53 @@
-//! `tenax check`: every promise, measured.
+//! `tenax check`: every promise, measured, one line each.
 
-use std::process::ExitCode;
+use std::path::PathBuf;
+use std::process::{Command, ExitCode};
 
-/// Measure every promise.
+use super::progress::Progress;
+use super::workspace;
+use crate::check::{Bar, Verdict, default_scene, mistakes, recordings, wearer};
+use crate::session::{self, Board};
+
+/// Measure every promise of the project, one line each; fails if one is not kept.
 #[derive(Debug, clap::Args)]
-pub struct Args {}
+pub struct Args {
+    /// Where the recordings are [default: shared/data beside the checkout]
+    #[arg(long, value_name = "DIR")]
+    data: Option<PathBuf>,
+    /// On the host's build of the logic: no image, no emulator, and so not every promise
+    #[arg(long)]
+    host: bool,
+}
 
-pub fn main(_args: &Args) -> anyhow::Result<ExitCode> {
-    anyhow::bail!("not yet")
+pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
+    let data = match &args.data {
+        Some(data) => data.clone(),
+        None => workspace::root()?.join("../shared/data"),
+    };
+    let board = if args.host { Board::Host } else { Board::emulated()? };
+    let (mut failed, mut skipped, mut passed) = (0, 0, 0);
+    let mut print = |bar: Bar| {
+        println!("{bar}");
+        match bar.verdict {
+            Verdict::Pass => passed += 1,
+            Verdict::Fail => failed += 1,
+            Verdict::Skipped => skipped += 1,
+        }
+    };
+
+    let file = session::load_scene(session::DEFAULT_SCENE)?;
+    let mut progress = Progress::new(&file.name, file.duration_s());
+    let outcome = session::scene(&file, 1, &board, &mut |s| progress.at(s))?;
+    drop(progress);
+    default_scene::bars(&outcome, !args.host).into_iter().for_each(&mut print);
+    wearer::scenes()?.into_iter().for_each(&mut print);
+    print(wearer::random(
+        Command::new("cargo")
+            .args(["test", "--quiet", "--release", "--package", "tenax-host-tests", "--test", "wearer"])
+            .current_dir(workspace::root()?),
+    ));
+    recordings::bars(&data, &board, &mut print)?;
+    mistakes::bars().into_iter().for_each(&mut print);
+    println!("{passed} kept, {failed} not kept, {skipped} skipped");
+    Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

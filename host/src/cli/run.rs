@@ -20,7 +20,7 @@ pub struct Args {
     #[arg(long)]
     host: bool,
     /// A scene file, or the name of one that `tenax scenes` lists
-    #[arg(long, value_name = "FILE.toml|NAME", default_value = "glass", conflicts_with = "replay")]
+    #[arg(long, value_name = "FILE.toml|NAME", default_value = session::DEFAULT_SCENE, conflicts_with = "replay")]
     scene: String,
     /// Play a recording (CSV) instead of a scene
     #[arg(long, value_name = "RECORDING.csv")]
@@ -48,7 +48,7 @@ enum Format {
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    let board = Board::Host;
+    let board = if args.host { Board::Host } else { Board::emulated()? };
     let outcome = match &args.replay {
         Some(path) => {
             let recording = Recording::read(path)?;

@@ -1,0 +1,58 @@
+//! Every promise of issue 2 as a bar: what is promised, what was measured, whether it holds.
+
+pub mod agreement;
+pub mod default_scene;
+pub mod mistakes;
+pub mod recordings;
+pub mod wearer;
+
+use std::fmt::{self, Display};
+
+/// Whether a promise holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// It does.
+    Pass,
+    /// It does not.
+    Fail,
+    /// It could not be measured here.
+    Skipped,
+}
+
+/// One promise, measured.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Bar {
+    /// What is promised.
+    pub promise: String,
+    /// What was measured.
+    pub figure: String,
+    /// Whether it holds.
+    pub verdict: Verdict,
+}
+
+impl Bar {
+    /// A promise that was measured.
+    pub fn new(promise: impl Into<String>, figure: impl Into<String>, holds: bool) -> Self {
+        Self {
+            promise: promise.into(),
+            figure: figure.into(),
+            verdict: if holds { Verdict::Pass } else { Verdict::Fail },
+        }
+    }
+
+    /// A promise that cannot be measured here.
+    pub fn skipped(promise: impl Into<String>, why: impl Into<String>) -> Self {
+        Self { promise: promise.into(), figure: why.into(), verdict: Verdict::Skipped }
+    }
+}
+
+impl Display for Bar {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let verdict = match self.verdict {
+            Verdict::Pass => "PASS",
+            Verdict::Fail => "FAIL",
+            Verdict::Skipped => "skipped",
+        };
+        write!(f, "{verdict:<8}{}: {}", self.promise, self.figure)
+    }
+}

@@ -1,0 +1,73 @@
+//! The default scene on a board: nothing lost, the glass kept, close to the oracle, in time, in budget.
+
+use super::{Bar, agreement};
+use crate::report::CYCLES_PER_INSTRUCTION;
+use crate::session::Outcome;
+
+/// Slip distance and peak force may be so many times the oracle's.
+const OF_ORACLE: f64 = 2.0;
+/// The logic may take so much of the core, per cent.
+const LOAD_PERCENT: f64 = 10.0;
+
+/// The bars of one run of the default scene.
+#[must_use]
+pub fn bars(outcome: &Outcome, emulated: bool) -> Vec<Bar> {
+    let report = &outcome.report;
+    let name = &report.scene;
+    let mut bars = vec![
+        Bar::new(
+            format!("{name}: 60 s, no overrun, no dropped control tick"),
+            format!(
+                "{:.1} s, {} ticks, {} dropped, {} overruns",
+                report.virtual_s, report.ticks.count, report.ticks.dropped, report.overruns
+            ),
+            report.virtual_s >= 60.0 && report.ticks.dropped == 0 && report.overruns == 0,
+        ),
+        Bar::new(
+            format!("{name}: kept"),
+            format!("dropped: {:?}", report.slip.dropped),
+            report.slip.dropped == Some(false),
+        ),
+        of_oracle(name, "slip distance", "mm", report.slip.distance_mm, report.oracle.distance_mm),
+        of_oracle(name, "peak force", "N", report.grip.peak_force_n, report.oracle.peak_force_n),
+    ];
+    if !emulated {
+        bars.push(Bar::skipped("emulated image: real time, bit-exactness, load", "run on the host's logic"));
+        return bars;
+    }
+    bars.push(Bar::new(
+        format!("{name}: faster than real time"),
+        format!("{:.1} s virtual in {:.1} s", report.virtual_s, report.wall_s),
+        report.wall_s < report.virtual_s,
+    ));
+    bars.push(agreement::bar(&outcome.run));
+    bars.push(load(outcome));
+    bars
+}
+
+fn of_oracle(scene: &str, what: &str, unit: &str, run: Option<f64>, oracle: Option<f64>) -> Bar {
+    let promise = format!("{scene}: {what} within {OF_ORACLE} times the oracle's");
+    match (run, oracle) {
+        (Some(run), Some(oracle)) => Bar::new(
+            promise,
+            format!("{run:.2} {unit} against {oracle:.2} {unit}"),
+            run <= OF_ORACLE * oracle,
+        ),
+        _ => Bar::new(promise, "nothing was held", false),
+    }
+}
+
+fn load(outcome: &Outcome) -> Bar {
+    let promise = format!("load at 100 MHz under {LOAD_PERCENT} %");
+    let ticks = &outcome.report.ticks;
+    let (Some(mean), Some(max), Some([low, high])) =
+        (ticks.instructions_mean, ticks.instructions_max, ticks.load_percent)
+    else {
+        return Bar::new(promise, "no instructions were counted", false);
+    };
+    let [few, many] = CYCLES_PER_INSTRUCTION;
+    let figure = format!(
+        "{mean:.0} instructions a tick, {max} at worst: {low:.1} to {high:.1} % at {few:.0} to {many:.0} cycles each"
+    );
+    Bar::new(promise, figure, high < LOAD_PERCENT)
+}

@@ -1,0 +1,131 @@
+//! Real input: what each kind of recording must and must not set off.
+//!
+//! The recordings are not part of the project. Every recording in the folder whose name has a rule here is played, so more
+//! of the same kinds can simply be put there.
+
+use std::fs;
+use std::path::Path;
+
+use super::Bar;
+use crate::report::Report;
+use crate::session::{self, Board};
+
+/// On the rig nothing slides before this, s.
+const RIG_STILL_UNTIL_S: f64 = 1.5;
+
+/// A kind of recording, known by its name.
+struct Rule {
+    pattern: &'static str,
+    promise: &'static str,
+    judge: fn(&Report) -> (String, bool),
+}
+
+const RULES: [Rule; 7] = [
+    Rule {
+        pattern: "friction_rig*.csv",
+        promise: "S2 warns before the peak of Ft/Fn, no alarm before 1.50 s",
+        judge: rig,
+    },
+    Rule { pattern: "emg_*rest*.csv", promise: "relaxed muscles give no activity", judge: relaxed },
+    Rule {
+        pattern: "emg_*fist*.csv",
+        promise: "a fist is noticed, the reflex is silent throughout",
+        judge: contracted,
+    },
+    Rule {
+        pattern: "emg_*extension*.csv",
+        promise: "extended fingers are noticed, the reflex is silent throughout",
+        judge: contracted,
+    },
+    Rule {
+        pattern: "emg_bursts*.csv",
+        promise: "contractions are noticed, the reflex is silent throughout",
+        judge: contracted,
+    },
+    Rule {
+        pattern: "pvdf_*onset*.csv",
+        promise: "S1 sees the onset of slip",
+        judge: |report| s1(report, true),
+    },
+    Rule {
+        pattern: "pvdf_[qc]*.csv",
+        promise: "S1 is silent: quiet, or contact's slow drift",
+        judge: |report| s1(report, false),
+    },
+];
+
+/// The bars of every recording in `folder`.
+pub fn bars(folder: &Path, board: &Board, each: &mut dyn FnMut(Bar)) -> anyhow::Result<()> {
+    let mut files: Vec<_> = fs::read_dir(folder)
+        .map(|entries| entries.filter_map(|entry| Some(entry.ok()?.path())).collect())
+        .unwrap_or_default();
+    files.sort();
+    for rule in &RULES {
+        let pattern = glob::Pattern::new(rule.pattern)?;
+        let mut any = false;
+        for file in &files {
+            let Some(name) = file.file_name().map(|name| name.to_string_lossy()) else {
+                continue;
+            };
+            if !pattern.matches(&name) {
+                continue;
+            }
+            any = true;
+            let outcome = session::replay(file, None, 1, board, &mut |_| {})?;
+            let (figure, holds) = (rule.judge)(&outcome.report);
+            each(Bar::new(format!("{name}: {}", rule.promise), figure, holds));
+        }
+        if !any {
+            let promise = format!("{}: {}", rule.pattern, rule.promise);
+            each(Bar::skipped(promise, "recording not present"));
+        }
+    }
+    Ok(())
+}
+
+fn rig(report: &Report) -> (String, bool) {
+    let Some(force) = report.replay.as_ref().and_then(|replay| replay.force.as_ref()) else {
+        return ("no force in it".to_owned(), false);
+    };
+    let (Some(ratio), Some(peak_s)) = (force.peak_ratio, force.peak_s) else {
+        return ("no peak of Ft/Fn in it".to_owned(), false);
+    };
+    let Some(before_ms) = force.s2_before_peak_ms else {
+        return (format!("peak {ratio:.3} at {peak_s:.4} s, S2 never spoke"), false);
+    };
+    let first_alarm_s =
+        [force.s1_first_s, force.s2_first_s].into_iter().flatten().fold(f64::INFINITY, f64::min);
+    let figure = format!(
+        "peak {ratio:.3} at {peak_s:.4} s, S2 {before_ms:.1} ms before it, first alarm of all at {first_alarm_s:.4} s"
+    );
+    (figure, before_ms > 0.0 && first_alarm_s >= RIG_STILL_UNTIL_S)
+}
+
+fn relaxed(report: &Report) -> (String, bool) {
+    let detections = report.detectors.wearer.detections;
+    (format!("{detections} activities"), detections == 0)
+}
+
+fn contracted(report: &Report) -> (String, bool) {
+    let Some(muscle) = report.replay.as_ref().and_then(|replay| replay.muscle.as_ref()) else {
+        return ("no muscle in it".to_owned(), false);
+    };
+    let (Some(noticed_s), Some(delay_ms)) = (muscle.noticed_s, muscle.onset_delay_ms) else {
+        return ("never noticed".to_owned(), false);
+    };
+    let figure = format!(
+        "noticed at {noticed_s:.4} s, {delay_ms:.1} ms after its onset; active for {:.0} %, {} reflex commands meanwhile",
+        100.0 * muscle.active_part,
+        muscle.reflex_while_active
+    );
+    (figure, muscle.reflex_while_active == 0)
+}
+
+fn s1(report: &Report, speaks: bool) -> (String, bool) {
+    let s1 = &report.detectors.s1;
+    let figure = match s1.first_s {
+        Some(first_s) => format!("S1 spoke at {first_s:.4} s, {} times in all", s1.detections),
+        None => "S1 did not speak".to_owned(),
+    };
+    (figure, s1.first_s.is_some() == speaks)
+}
