@@ -19,6 +19,7 @@ pub mod fsr;
 pub mod gate;
 pub mod grip;
 pub mod health;
+pub mod hebbian;
 pub mod journal;
 pub mod mode;
 pub mod senses;

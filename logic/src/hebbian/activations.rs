@@ -1,0 +1,227 @@
+//! Activations of the tactile nodes: "the outputs of vibration and pressure receptors are normalized by their maximum
+//! values" (Tada 2006, section II.C).
+//!
+//! A receptor's raw reading may have any unit; dividing by the largest one seen takes the unit and the gain out. The sign
+//! of a vibration means nothing and is dropped, the sign of a pressure is the direction of shear and is kept. A constant
+//! offset would be an activation of 1 for ever, so the reading of an unloaded finger can be taken as zero.
+
+use dsp_fixedpoint::Q32;
+
+use super::arithmetic::Reciprocal;
+
+/// An activation: 2^24 is 1, and no activation is beyond +-1.
+pub type Activation = Q32<24>;
+
+/// Fraction bits between a ratio (Q30) and an activation.
+const RATIO_SHIFT: u32 = 30 - 24;
+/// Half a unit of an activation, in units of a ratio.
+const RATIO_HALF: u32 = 1 << (RATIO_SHIFT - 1);
+const ONE: i32 = 1 << 24;
+
+/// What a receptor's sign means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sense {
+    /// Vibration: nothing. The activation is 0 to 1.
+    Vibration,
+    /// Pressure: which way it is pressed or sheared. The activation is -1 to 1.
+    Pressure,
+}
+
+/// Activations of `N` receptors, each within +-1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Activations<const N: usize>([i32; N]);
+
+impl<const N: usize> Activations<N> {
+    /// These; what is beyond +-1 is taken as +-1.
+    #[must_use]
+    pub fn new(activations: [Activation; N]) -> Self {
+        Self(activations.map(|activation| activation.into_bits().clamp(-ONE, ONE)))
+    }
+
+    /// As integers, 2^24 is 1.
+    #[must_use]
+    pub const fn as_bits(&self) -> &[i32; N] {
+        &self.0
+    }
+}
+
+/// How `N` receptors become activations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NormaliserConfig<const N: usize> {
+    /// What each receptor is.
+    pub senses: [Sense; N],
+    /// The smallest maximum of each, in its raw unit: what is quieter all its life is a dead receptor's noise and stays
+    /// small. 0 is taken as 1.
+    pub floors: [u32; N],
+    /// The largest maximum of any, in raw units: what its front end can give. Above, the activation clips.
+    pub ceiling: u32,
+    /// A maximum rises by the part `2^-rise_shift` of what exceeds it, at each reading: one spike does not make a receptor
+    /// deaf. 0 takes the whole excess at once.
+    pub rise_shift: u32,
+}
+
+/// One receptor's zero and maximum, and the maximum's reciprocal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Scale {
+    zero: i32,
+    largest: u32,
+    reciprocal: Reciprocal,
+}
+
+impl Scale {
+    const fn new(zero: i32, largest: u32) -> Self {
+        let largest = if largest == 0 { 1 } else { largest };
+        Self { zero, largest, reciprocal: Reciprocal::of(largest) }
+    }
+
+    fn size(&self, raw: i32) -> u32 {
+        raw.saturating_sub(self.zero).unsigned_abs()
+    }
+}
+
+/// The running maxima.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Normaliser<const N: usize> {
+    scales: [Scale; N],
+}
+
+impl<const N: usize> Normaliser<N> {
+    /// One that has seen nothing: every maximum at its floor.
+    #[must_use]
+    pub fn new(config: &NormaliserConfig<N>) -> Self {
+        Self { scales: config.floors.map(|floor| Scale::new(0, floor.min(config.ceiling))) }
+    }
+
+    /// Forgets the maxima, keeps the zeros. Weights learned with other maxima mean something else afterwards.
+    pub fn reset(&mut self, config: &NormaliserConfig<N>) {
+        let fresh = Self::new(config);
+        for (scale, fresh) in self.scales.iter_mut().zip(fresh.scales) {
+            *scale = Scale { zero: scale.zero, ..fresh };
+        }
+    }
+
+    /// Takes these readings as zero. For the caller to allow: only while the finger is known to be unloaded, never during
+    /// a grasp.
+    pub fn zero(&mut self, raw: &[i32; N]) {
+        for (scale, &raw) in self.scales.iter_mut().zip(raw) {
+            scale.zero = raw;
+        }
+    }
+
+    /// Lets the maxima rise. For the caller to allow: as learning is, so that a knock or a noisy motor makes no receptor
+    /// deaf. One division for each maximum that rises.
+    pub fn observe(&mut self, config: &NormaliserConfig<N>, raw: &[i32; N]) {
+        for (scale, &raw) in self.scales.iter_mut().zip(raw) {
+            let size = scale.size(raw).min(config.ceiling);
+            if size > scale.largest {
+                let rise = ((size - scale.largest) >> config.rise_shift.min(31)).max(1);
+                *scale = Scale::new(scale.zero, scale.largest + rise);
+            }
+        }
+    }
+
+    /// The activations of these readings. Within 2^-24 of the exact quotient, rounded to nearest; no division.
+    #[must_use]
+    pub fn activations(&self, config: &NormaliserConfig<N>, raw: &[i32; N]) -> Activations<N> {
+        let mut activations = [0; N];
+        for (((activation, scale), &raw), sense) in
+            activations.iter_mut().zip(&self.scales).zip(raw).zip(&config.senses)
+        {
+            let size = scale.size(raw);
+            let ratio = if size < scale.largest {
+                ((scale.reciprocal.ratio(size) + RATIO_HALF) >> RATIO_SHIFT) as i32
+            } else {
+                ONE
+            };
+            *activation = match sense {
+                Sense::Pressure if raw < scale.zero => -ratio,
+                Sense::Pressure | Sense::Vibration => ratio,
+            };
+        }
+        Activations(activations)
+    }
+
+    /// The running maxima, raw units.
+    #[must_use]
+    pub fn maxima(&self) -> [u32; N] {
+        self.scales.map(|scale| scale.largest)
+    }
+
+    /// One with these maxima and zeros; each maximum is brought between its floor and the ceiling.
+    #[must_use]
+    pub fn from_maxima(config: &NormaliserConfig<N>, maxima: &[u32; N]) -> Self {
+        let mut normaliser = Self::new(config);
+        for (scale, &largest) in normaliser.scales.iter_mut().zip(maxima) {
+            *scale = Scale::new(0, largest.max(scale.largest).min(config.ceiling));
+        }
+        normaliser
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CONFIG: NormaliserConfig<2> = NormaliserConfig {
+        senses: [Sense::Vibration, Sense::Pressure],
+        floors: [100, 100],
+        ceiling: 1 << 30,
+        rise_shift: 0,
+    };
+
+    fn seen(normaliser: &Normaliser<2>, raw: [i32; 2]) -> [f64; 2] {
+        normaliser.activations(&CONFIG, &raw).as_bits().map(|t| f64::from(t) / f64::from(ONE))
+    }
+
+    #[test]
+    fn a_quotient_is_within_one_unit_of_f64() {
+        for largest in [100, 101, 255, 256, 65_535, 1_000_003, 1 << 30] {
+            let normaliser = Normaliser::from_maxima(&CONFIG, &[largest; 2]);
+            for part in 0..=1_000u64 {
+                let raw = (u64::from(largest) * part / 1_000) as i32;
+                let exact = f64::from(raw) / f64::from(largest);
+                for (t, sign) in seen(&normaliser, [-raw, -raw]).iter().zip([1.0, -1.0]) {
+                    assert!((t - sign * exact).abs() <= 0.6 / f64::from(ONE), "{raw} / {largest}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_is_beyond_one_and_a_dead_receptor_stays_quiet() {
+        let mut normaliser = Normaliser::new(&CONFIG);
+        assert_eq!(
+            seen(&normaliser, [5, -5]),
+            [0.05, -0.05].map(|t| (t * f64::from(ONE)).round() / f64::from(ONE))
+        );
+        assert_eq!(seen(&normaliser, [i32::MIN, i32::MIN]), [1.0, -1.0]);
+        normaliser.zero(&[i32::MIN, i32::MAX]);
+        normaliser.observe(&CONFIG, &[i32::MAX, i32::MIN]);
+        assert_eq!(normaliser.maxima(), [1 << 30; 2]);
+        assert_eq!(seen(&normaliser, [i32::MAX, i32::MIN]), [1.0, -1.0]);
+    }
+
+    #[test]
+    fn a_spike_makes_no_receptor_deaf_and_a_level_is_learned() {
+        let config = NormaliserConfig { rise_shift: 3, ..CONFIG };
+        let mut normaliser = Normaliser::new(&config);
+        normaliser.observe(&config, &[8_100, 0]);
+        assert_eq!(normaliser.maxima(), [1_100, 100]);
+        for _ in 0..200 {
+            normaliser.observe(&config, &[8_100, 0]);
+        }
+        assert_eq!(normaliser.maxima(), [8_100, 100]);
+        normaliser.reset(&config);
+        assert_eq!(normaliser.maxima(), [100, 100]);
+    }
+
+    #[test]
+    fn an_offset_taken_as_zero_is_gone() {
+        let mut normaliser = Normaliser::new(&CONFIG);
+        normaliser.zero(&[7_000, -7_000]);
+        normaliser.observe(&CONFIG, &[7_200, -7_200]);
+        assert_eq!(normaliser.maxima(), [200, 200]);
+        assert_eq!(seen(&normaliser, [7_000, -7_000]), [0.0, 0.0]);
+        assert_eq!(seen(&normaliser, [6_900, -7_100]), [0.5, -0.5]);
+    }
+}

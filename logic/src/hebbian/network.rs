@@ -1,0 +1,210 @@
+//! The network itself: outputs (equations 3 and 4) and learning (equations 5 and 6).
+//!
+//! | quantity | format | range | rounding |
+//! |---|---|---|---|
+//! | activation t | `i32` Q24 | +-1 | by the normaliser |
+//! | weight w, as used | `i32` Q27 | +-8 | the upper word of the next line |
+//! | weight w, as kept | `i64` Q59 | +-8 | none: products of the next lines are exact |
+//! | sum of t w | `i64` Q51 | 62 inputs: below 2^60 | none |
+//! | output o | `i32` Q24 | +-1 | down |
+//! | \|w\| + delta, for r | `u32` Q23 | 0..=16 | down |
+//! | their sum | `u32` Q23 | 62 inputs: below 512 | none |
+//! | alpha / sum | `u32` Q35, shifted | 0..2^-3 | down, 2^-27 of itself |
+//! | alpha r | `u32` Q35 | 0..2^-4, since r <= 1 | down |
+//! | alpha r t v, beta w | `i64` Q59 | 2^55, 2^58 | none |
+//!
+//! A step of the smallest useful size is therefore never lost: with alpha = 1e-3, the weakest r at the default delta and
+//! t at one bit of the converter, it is 2^31 units of a kept weight.
+
+use dsp_fixedpoint::Q32;
+
+use super::activations::Activations;
+use super::arithmetic::{Reciprocal, high_product};
+use super::rule::Rule;
+use super::teacher::Code;
+
+/// A weight: 2^27 is 1.
+pub type Weight = Q32<27>;
+/// An output: 2^24 is 1.
+pub type Output = Q32<24>;
+
+/// Largest weight (and its negative, less one unit, the smallest) in units of [`Weight`]: a little less than 8.
+const LIMIT: i32 = (1 << 30) - 1;
+/// Fraction bits from a weight to the magnitude that r is made of.
+const MAGNITUDE_SHIFT: u32 = 27 - 23;
+/// More inputs could overflow the sums.
+const INPUTS_MAX: usize = 62;
+
+/// Weights from `INPUTS` receptors to `OUTPUTS` outputs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Network<const INPUTS: usize, const OUTPUTS: usize> {
+    /// Q59.
+    weights: [[i64; INPUTS]; OUTPUTS],
+}
+
+impl<const INPUTS: usize, const OUTPUTS: usize> Default for Network<INPUTS, OUTPUTS> {
+    /// The network before learning: all weights 0, so its outputs are what the teacher says.
+    fn default() -> Self {
+        const { assert!(INPUTS >= 1 && INPUTS <= INPUTS_MAX, "a network has 1 to 62 inputs") }
+        Self { weights: [[0; INPUTS]; OUTPUTS] }
+    }
+}
+
+impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
+    /// Equations 3 and 4. Codes of [`Code::Zero`] give what touch alone says.
+    pub fn output(&self, activations: &Activations<INPUTS>, codes: &[Code; OUTPUTS]) -> [Output; OUTPUTS] {
+        let mut outputs = [Output::default(); OUTPUTS];
+        for ((output, weights), &code) in outputs.iter_mut().zip(&self.weights).zip(codes) {
+            let sum: i64 = weights
+                .iter()
+                .zip(activations.as_bits())
+                .map(|(&weight, &t)| i64::from(in_use(weight)) * i64::from(t))
+                .sum();
+            // Below 2^60, and 2^60 >> 27 is 2^33: the code is added before the sum is cut to 32 bits.
+            let with_code = (sum >> 27) + (i64::from(code.sign()) << 24);
+            *output = Output::from_bits(with_code.clamp(-(1 << 24), 1 << 24) as i32);
+        }
+        outputs
+    }
+
+    /// Equations 5 and 6, once. Two divisions for two outputs.
+    ///
+    /// An output whose code is [`Code::Zero`] only forgets; whether there is anything to learn from at all is for
+    /// [`Teacher::lesson`](super::Teacher::lesson) to say.
+    pub fn learn(&mut self, rule: &Rule, activations: &Activations<INPUTS>, codes: &[Code; OUTPUTS]) {
+        for (weights, &code) in self.weights.iter_mut().zip(codes) {
+            let sum = weights.iter().fold(rule.delta, |sum, &weight| sum + magnitude(weight));
+            let reciprocal = Reciprocal::of(sum);
+            // alpha < 2^31 and the mantissa <= 2^31: below 2^32.
+            let scaled_alpha = ((u64::from(rule.alpha) * u64::from(reciprocal.mantissa)) >> 30) as u32;
+            match code {
+                Code::Plus => learn_output(weights, activations, rule, reciprocal.shift, |share| {
+                    high_product(share, scaled_alpha) as i32
+                }),
+                Code::Minus => learn_output(weights, activations, rule, reciprocal.shift, |share| {
+                    -(high_product(share, scaled_alpha) as i32)
+                }),
+                Code::Zero => learn_output(weights, activations, rule, 0, |_| 0),
+            }
+        }
+    }
+
+    /// A weight. None outside the network.
+    #[must_use]
+    pub fn weight(&self, output: usize, input: usize) -> Option<Weight> {
+        Some(Weight::from_bits(in_use(*self.weights.get(output)?.get(input)?)))
+    }
+
+    /// Every weight: a row for each output.
+    pub fn weights(&self) -> [[Weight; INPUTS]; OUTPUTS] {
+        self.weights.map(|row| row.map(|weight| Weight::from_bits(in_use(weight))))
+    }
+
+    /// A network with these weights; what is beyond +-8 is taken as the limit.
+    #[must_use]
+    pub fn from_weights(weights: &[[Weight; INPUTS]; OUTPUTS]) -> Self {
+        let mut network = Self::default();
+        for (row, from) in network.weights.iter_mut().zip(weights) {
+            for (weight, from) in row.iter_mut().zip(from) {
+                *weight = limited(i64::from(from.into_bits()) << 32);
+            }
+        }
+        network
+    }
+}
+
+/// The part of a kept weight that is used, Q27. Rounds down.
+const fn in_use(weight: i64) -> i32 {
+    (weight >> 32) as i32
+}
+
+/// |w|, Q23. At most 2^26.
+const fn magnitude(weight: i64) -> u32 {
+    in_use(weight).unsigned_abs() >> MAGNITUDE_SHIFT
+}
+
+/// Saturates a kept weight in its upper word, which is one SSAT; the lower word is far below a unit in use.
+fn limited(weight: i64) -> i64 {
+    let upper = in_use(weight).clamp(-LIMIT - 1, LIMIT);
+    (i64::from(upper) << 32) | (weight & 0xFFFF_FFFF)
+}
+
+/// The update of one output. `step` gives alpha r v, Q35, from a connection's share: |w| + delta, shifted so that their
+/// sum is in 2^31..2^32.
+#[inline(always)]
+fn learn_output<const INPUTS: usize>(
+    weights: &mut [i64; INPUTS],
+    activations: &Activations<INPUTS>,
+    rule: &Rule,
+    shift: u32,
+    step: impl Fn(u32) -> i32,
+) {
+    for (weight, &t) in weights.iter_mut().zip(activations.as_bits()) {
+        let gain = step((magnitude(*weight) + rule.delta) << shift);
+        let learned = *weight + i64::from(gain) * i64::from(t);
+        *weight = limited(learned - i64::from(rule.beta) * i64::from(in_use(*weight)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hebbian::activations::Activation;
+    use crate::hebbian::rule::Config;
+
+    fn activations<const N: usize>(t: [f64; N]) -> Activations<N> {
+        Activations::new(t.map(Activation::from_f64))
+    }
+
+    #[test]
+    fn before_learning_it_repeats_the_teacher() {
+        let network = Network::<3, 2>::default();
+        let t = activations([1.0, -1.0, 0.5]);
+        let one = 1 << 24;
+        let said = |codes| network.output(&t, &codes).map(Output::into_bits);
+        assert_eq!(said([Code::Zero, Code::Zero]), [0, 0]);
+        assert_eq!(said([Code::Minus, Code::Plus]), [-one, one]);
+    }
+
+    #[test]
+    fn the_first_step_is_alpha_and_has_the_sign_of_t_v() {
+        let rule = Rule::new(&Config { alpha_ppb: 1_000_000, beta_ppb: 0, delta_ppm: 100_000 }).unwrap();
+        let mut network = Network::<3, 2>::default();
+        network.learn(&rule, &activations([1.0, -0.5, 0.0]), &[Code::Plus, Code::Minus]);
+        // All weights are 0, so r is delta / delta = 1 for every connection.
+        for (output, expected) in [[1e-3, -0.5e-3, 0.0], [-1e-3, 0.5e-3, 0.0]].iter().enumerate() {
+            for (input, expected) in expected.iter().enumerate() {
+                let found = network.weight(output, input).unwrap().as_f64();
+                assert!((found - expected).abs() < 1e-8, "{output} {input}: {found}");
+            }
+        }
+        assert_eq!(network.weight(2, 0), None);
+    }
+
+    #[test]
+    fn without_forgetting_weights_stop_at_their_limit() {
+        let rule = Rule::new(&Config { alpha_ppb: 60_000_000, beta_ppb: 0, delta_ppm: 8_000_000 }).unwrap();
+        let mut network = Network::<62, 2>::default();
+        let t = activations([1.0; 62]);
+        for _ in 0..20_000 {
+            network.learn(&rule, &t, &[Code::Plus, Code::Minus]);
+        }
+        assert!(network.weights()[0].iter().all(|w| w.into_bits() == LIMIT));
+        assert!(network.weights()[1].iter().all(|w| w.into_bits() == -LIMIT - 1));
+        assert_eq!(
+            network.output(&t, &[Code::Minus, Code::Plus]).map(Output::into_bits),
+            [1 << 24, -(1 << 24)]
+        );
+    }
+
+    #[test]
+    fn forgetting_ends_at_nothing_and_needs_no_activation() {
+        let rule = Rule::new(&Config { alpha_ppb: 0, beta_ppb: 60_000_000, delta_ppm: 1_000 }).unwrap();
+        let mut network =
+            Network::<2, 1>::from_weights(&[[Weight::from_bits(LIMIT), Weight::from_bits(-LIMIT)]]);
+        for _ in 0..2_000 {
+            network.learn(&rule, &activations([0.0; 2]), &[Code::Zero]);
+        }
+        assert!(network.weights()[0].iter().all(|w| w.into_bits().abs() <= 16), "{:?}", network.weights());
+    }
+}

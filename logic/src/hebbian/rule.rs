@@ -1,0 +1,111 @@
+//! What can be chosen about learning, and the fixed-point numbers that follow from it.
+
+use core::ops::RangeInclusive;
+
+/// The rates of equations 5 and 6, for one update. At 1 kHz, a beta of 50 000 ppb forgets in 20 s of being taught.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Config {
+    /// alpha: learning rate, parts per billion.
+    pub alpha_ppb: u32,
+    /// beta: forgetting rate, parts per billion. With 0, weights only ever stop at their limit.
+    pub beta_ppb: u32,
+    /// delta: the weight that every connection has for the variable rate, parts per million of a weight of 1. The smaller
+    /// it is against the weights, the more one connection takes all. Never 0: a weight of 0 would then stay 0.
+    pub delta_ppm: u32,
+}
+
+impl Config {
+    /// Accepted alpha, ppb. Below 1/16, so that a step fits its format.
+    pub const ALPHA_PPB: RangeInclusive<u32> = 0..=60_000_000;
+    /// Accepted beta, ppb.
+    pub const BETA_PPB: RangeInclusive<u32> = 0..=60_000_000;
+    /// Accepted delta, ppm: from a thousand times the resolution of r to the largest weight.
+    pub const DELTA_PPM: RangeInclusive<u32> = 125..=8_000_000;
+}
+
+/// The middle of the useful region of the map in `docs/hebbian.md`.
+impl Default for Config {
+    fn default() -> Self {
+        Self { alpha_ppb: 1_000_000, beta_ppb: 50_000, delta_ppm: 1_000_000 }
+    }
+}
+
+/// The setting that is outside its range (see [`Config`]'s constants).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NotAllowed {
+    /// `alpha_ppb`.
+    Alpha,
+    /// `beta_ppb`.
+    Beta,
+    /// `delta_ppm`.
+    Delta,
+}
+
+/// A [`Config`] in the formats of the update.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rule {
+    /// alpha, Q35, below 2^31. Rounded down.
+    pub(super) alpha: u32,
+    /// beta, Q32, below 2^28. Rounded to nearest.
+    pub(super) beta: i32,
+    /// delta, Q23, in 2^10..=2^26. Rounded to nearest.
+    pub(super) delta: u32,
+}
+
+impl Rule {
+    /// In the update's formats; or which setting is out of range.
+    pub fn new(config: &Config) -> Result<Self, NotAllowed> {
+        if !Config::ALPHA_PPB.contains(&config.alpha_ppb) {
+            return Err(NotAllowed::Alpha);
+        }
+        if !Config::BETA_PPB.contains(&config.beta_ppb) {
+            return Err(NotAllowed::Beta);
+        }
+        if !Config::DELTA_PPM.contains(&config.delta_ppm) {
+            return Err(NotAllowed::Delta);
+        }
+        // 60e6 < 2^26, so nothing below leaves 64 bits, and the ranges above keep each result in its type.
+        let beta = ((u64::from(config.beta_ppb) << 32) + 500_000_000) / 1_000_000_000;
+        let delta = ((u64::from(config.delta_ppm) << 23) + 500_000) / 1_000_000;
+        Ok(Self {
+            alpha: ((u64::from(config.alpha_ppb) << 35) / 1_000_000_000) as u32,
+            beta: beta as i32,
+            delta: delta as u32,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_setting_out_of_range_is_named() {
+        let good = Config::default();
+        assert!(Rule::new(&good).is_ok());
+        assert_eq!(Rule::new(&Config { alpha_ppb: 60_000_001, ..good }), Err(NotAllowed::Alpha));
+        assert_eq!(Rule::new(&Config { beta_ppb: u32::MAX, ..good }), Err(NotAllowed::Beta));
+        assert_eq!(Rule::new(&Config { delta_ppm: 0, ..good }), Err(NotAllowed::Delta));
+    }
+
+    #[test]
+    fn the_ends_of_the_ranges_fit_their_formats() {
+        let ends = |range: RangeInclusive<u32>| [*range.start(), *range.end()];
+        for alpha_ppb in ends(Config::ALPHA_PPB) {
+            for beta_ppb in ends(Config::BETA_PPB) {
+                for delta_ppm in ends(Config::DELTA_PPM) {
+                    let rule = Rule::new(&Config { alpha_ppb, beta_ppb, delta_ppm }).unwrap();
+                    assert!(rule.alpha < 1 << 31 && (0..1 << 28).contains(&rule.beta));
+                    assert!((1 << 10..=1 << 26).contains(&rule.delta));
+                    assert!(
+                        (f64::from(rule.alpha) / 2f64.powi(35) * 1e9 - f64::from(alpha_ppb)).abs() < 0.03
+                    );
+                    assert!((f64::from(rule.beta) / 2f64.powi(32) * 1e9 - f64::from(beta_ppb)).abs() < 0.12);
+                    assert!(
+                        (f64::from(rule.delta) / 2f64.powi(23) * 1e6 - f64::from(delta_ppm)).abs() < 0.06
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! What was learned, as bytes that survive a power cut: the weights, and the maxima without which they mean nothing.
+//!
+//! ```text
+//! 0  version         1  inputs        2  outputs        3  0
+//! 4  maxima          u32 each, little-endian, raw units
+//!    weights         i32 Q27 each, little-endian, a row for each output
+//!    CRC-32          u32, little-endian, of everything before it (the wire's: ISO-HDLC)
+//! ```
+//!
+//! The lower words of the kept weights are left out: they are below the resolution of an output, so a restored network
+//! gives the same outputs bit for bit and goes on learning from within 2^-27 of each weight.
+
+use crc::{CRC_32_ISO_HDLC, Crc};
+
+use super::activations::{Normaliser, NormaliserConfig};
+use super::network::{Network, Weight};
+
+/// The version of the layout above. A snapshot of another is refused.
+pub const VERSION: u8 = 1;
+
+const HEADER: usize = 4;
+const WORD: usize = 4;
+
+static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+
+/// Why a snapshot is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Damaged {
+    /// It has fewer or more bytes than a snapshot of this network.
+    Length,
+    /// Its CRC does not fit: cut off in writing, worn flash, or never written.
+    Checksum,
+    /// Of another version of the layout.
+    Version(u8),
+    /// Of a network of another size.
+    Shape {
+        /// Its inputs.
+        inputs: u8,
+        /// Its outputs.
+        outputs: u8,
+    },
+}
+
+/// Bytes of a snapshot.
+#[must_use]
+pub const fn length(inputs: usize, outputs: usize) -> usize {
+    HEADER + WORD * (inputs + inputs * outputs + 1)
+}
+
+/// Writes a snapshot to the beginning of `buffer` and gives it. None if the buffer is shorter than [`length`].
+pub fn save<'a, const I: usize, const O: usize>(
+    normaliser: &Normaliser<I>,
+    network: &Network<I, O>,
+    buffer: &'a mut [u8],
+) -> Option<&'a [u8]> {
+    let snapshot = buffer.get_mut(..length(I, O))?;
+    let (body, crc) = snapshot.split_last_chunk_mut::<WORD>()?;
+    let (header, words) = body.split_first_chunk_mut::<HEADER>()?;
+    // A network has at most 62 inputs; the outputs' count only has to differ for another shape.
+    *header = [VERSION, I as u8, O as u8, 0];
+    let maxima = normaliser.maxima().map(u32::to_le_bytes);
+    let weights = network.weights().map(|row| row.map(|weight| weight.into_bits().to_le_bytes()));
+    let (slots, _) = words.as_chunks_mut::<WORD>();
+    for (slot, word) in slots.iter_mut().zip(maxima.iter().chain(weights.as_flattened())) {
+        *slot = *word;
+    }
+    *crc = CRC.checksum(body).to_le_bytes();
+    Some(snapshot)
+}
+
+/// What a snapshot holds, or why it is refused. The zeros of the receptors are not in it: they are taken anew.
+pub fn restore<const I: usize, const O: usize>(
+    config: &NormaliserConfig<I>,
+    snapshot: &[u8],
+) -> Result<(Normaliser<I>, Network<I, O>), Damaged> {
+    let (body, crc) = snapshot.split_last_chunk::<WORD>().ok_or(Damaged::Length)?;
+    let (header, words) = body.split_first_chunk::<HEADER>().ok_or(Damaged::Length)?;
+    if CRC.checksum(body) != u32::from_le_bytes(*crc) {
+        return Err(Damaged::Checksum);
+    }
+    let [version, inputs, outputs, _] = *header;
+    if version != VERSION {
+        return Err(Damaged::Version(version));
+    }
+    if (usize::from(inputs), usize::from(outputs)) != (I, O) {
+        return Err(Damaged::Shape { inputs, outputs });
+    }
+    if snapshot.len() != length(I, O) {
+        return Err(Damaged::Length);
+    }
+    let mut maxima = [0; I];
+    let mut weights = [[Weight::default(); I]; O];
+    let (slots, _) = words.as_chunks::<WORD>();
+    let (maxima_slots, weight_slots) = slots.split_at(I);
+    for (largest, slot) in maxima.iter_mut().zip(maxima_slots) {
+        *largest = u32::from_le_bytes(*slot);
+    }
+    for (weight, slot) in weights.as_flattened_mut().iter_mut().zip(weight_slots) {
+        *weight = Weight::from_bits(i32::from_le_bytes(*slot));
+    }
+    Ok((Normaliser::from_maxima(config, &maxima), Network::from_weights(&weights)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hebbian::activations::{Activation, Activations, Sense};
+    use crate::hebbian::rule::{Config, Rule};
+    use crate::hebbian::teacher::Code;
+
+    const LENGTH: usize = length(3, 2);
+    const CONFIG: NormaliserConfig<3> =
+        NormaliserConfig { senses: [Sense::Pressure; 3], floors: [10; 3], ceiling: 1 << 20, rise_shift: 0 };
+
+    fn learned() -> (Normaliser<3>, Network<3, 2>, [u8; LENGTH]) {
+        let mut normaliser = Normaliser::new(&CONFIG);
+        normaliser.observe(&CONFIG, &[5, -7_000, 123_456]);
+        let mut network = Network::default();
+        let rule = Rule::new(&Config::default()).unwrap();
+        let t = Activations::new([0.3, -0.7, 1.0].map(Activation::from_f64));
+        for _ in 0..1_000 {
+            network.learn(&rule, &t, &[Code::Minus, Code::Plus]);
+        }
+        let mut bytes = [0; LENGTH];
+        assert_eq!(save(&normaliser, &network, &mut bytes).map(<[u8]>::len), Some(LENGTH));
+        (normaliser, network, bytes)
+    }
+
+    fn resealed(mut bytes: [u8; LENGTH]) -> [u8; LENGTH] {
+        let (body, crc) = bytes.split_last_chunk_mut::<WORD>().unwrap();
+        *crc = CRC.checksum(body).to_le_bytes();
+        bytes
+    }
+
+    #[test]
+    fn what_comes_back_gives_the_same_outputs() {
+        let (normaliser, network, bytes) = learned();
+        let (normaliser_back, network_back) = restore::<3, 2>(&CONFIG, &bytes).unwrap();
+        assert_eq!(normaliser_back, normaliser);
+        assert_eq!(network_back.weights(), network.weights());
+        assert_ne!(network.weights(), Network::<3, 2>::default().weights());
+        let mut again = [0; LENGTH];
+        assert_eq!(save(&normaliser_back, &network_back, &mut again), Some(&bytes[..]));
+    }
+
+    #[test]
+    fn every_damaged_bit_is_found() {
+        let (.., bytes) = learned();
+        for bit in 0..8 * LENGTH {
+            let mut damaged = bytes;
+            damaged[bit / 8] ^= 1 << (bit % 8);
+            assert_eq!(restore::<3, 2>(&CONFIG, &damaged).unwrap_err(), Damaged::Checksum, "bit {bit}");
+        }
+        for length in 0..LENGTH {
+            assert!(restore::<3, 2>(&CONFIG, &bytes[..length]).is_err(), "{length} bytes");
+        }
+        assert_eq!(restore::<3, 2>(&CONFIG, &[0xFF; LENGTH]).unwrap_err(), Damaged::Checksum);
+        assert_eq!(restore::<3, 2>(&CONFIG, &[]).unwrap_err(), Damaged::Length);
+    }
+
+    #[test]
+    fn a_whole_snapshot_of_something_else_is_refused_and_says_why() {
+        let (normaliser, network, mut bytes) = learned();
+        bytes[0] = 2;
+        assert_eq!(restore::<3, 2>(&CONFIG, &resealed(bytes)).unwrap_err(), Damaged::Version(2));
+        bytes[0] = VERSION;
+        bytes[1] = 4;
+        let shape = Damaged::Shape { inputs: 4, outputs: 2 };
+        assert_eq!(restore::<3, 2>(&CONFIG, &resealed(bytes)).unwrap_err(), shape);
+        assert_eq!(save(&normaliser, &network, &mut [0; LENGTH - 1]), None);
+    }
+
+    #[test]
+    fn sealed_nonsense_is_brought_into_range() {
+        let (.., mut bytes) = learned();
+        bytes[4..LENGTH - WORD].fill(0xFF);
+        bytes[LENGTH - 2 * WORD..LENGTH - WORD].copy_from_slice(&i32::MIN.to_le_bytes());
+        let (normaliser, network) = restore::<3, 2>(&CONFIG, &resealed(bytes)).unwrap();
+        assert_eq!(normaliser.maxima(), [CONFIG.ceiling; 3]);
+        assert_eq!(network.weight(1, 2).map(Weight::into_bits), Some(-(1 << 30)));
+    }
+}

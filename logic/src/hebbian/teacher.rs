@@ -1,0 +1,255 @@
+//! The camera as a teacher (Tada 2006, equations 1 and 2), and when it is believed.
+//!
+//! The paper learns in one phase and works in another. Here both go on at once, so somebody has to say when there is
+//! something to learn: only while the finger holds something, nothing disturbs it, and a teacher that is fresh and agrees
+//! with itself says that something moves. At any other time the weights stay as they are: they are not forgotten either,
+//! so a year without a camera costs nothing.
+//!
+//! The codes chatter, because slow motion is less than a pixel in some frames (section III.B). So each is the median of
+//! the last three messages: a single stray zero or code is dropped, at the cost of one message's delay. Two opposite codes
+//! among the three are a contradiction, or a change of direction; neither teaches anything for two messages.
+
+use core::cmp::Ordering;
+
+/// What the teacher says about one output.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Code {
+    /// v1: object and hand move against each other, it slips. v2: the hand moves down.
+    Minus,
+    /// v1: neither moves. v2: the hand does not move.
+    #[default]
+    Zero,
+    /// v1: object and hand move as one. v2: the hand moves up.
+    Plus,
+}
+
+impl Code {
+    /// -1, 0 or 1.
+    #[must_use]
+    pub const fn sign(self) -> i32 {
+        match self {
+            Self::Minus => -1,
+            Self::Zero => 0,
+            Self::Plus => 1,
+        }
+    }
+
+    /// From any number's sign.
+    #[must_use]
+    pub fn from_sign(number: i32) -> Self {
+        match number.cmp(&0) {
+            Ordering::Less => Self::Minus,
+            Ordering::Equal => Self::Zero,
+            Ordering::Greater => Self::Plus,
+        }
+    }
+}
+
+/// Relative motion (v1, equation 1) and direction (v2, equation 2).
+pub type Codes = [Code; 2];
+
+/// Messages that a code is the median of.
+const MEMORY: usize = 3;
+
+/// When a teacher is believed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TeacherConfig {
+    /// Age of the picture beyond which its codes teach nothing, ms: what the receptors feel now is something else.
+    pub fresh_ms: u16,
+}
+
+impl Default for TeacherConfig {
+    /// A camera's two frames of 33 ms, one more to be replaced in, and 20 ms on the way.
+    fn default() -> Self {
+        Self { fresh_ms: 120 }
+    }
+}
+
+/// What the rest of the fingertip knows about now.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Situation {
+    /// The finger is loaded: what it feels comes from an object.
+    pub grasp: bool,
+    /// The motor runs, the hand is knocked or swung, or a receptor has just been lost: what it feels is not slip.
+    pub disturbed: bool,
+}
+
+/// Why there is nothing to learn at the moment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoLesson {
+    /// No teacher, or it has said less than it takes to believe it.
+    Absent,
+    /// Its last picture is older than [`TeacherConfig::fresh_ms`].
+    Late,
+    /// It has said opposite things in a short time, or that the hand moves while nothing does.
+    Contradicting,
+    /// It says that neither hand nor object moves.
+    NothingMoves,
+    /// Nothing is held.
+    NoGrasp,
+    /// The receptors feel something else.
+    Disturbed,
+}
+
+/// What a teacher has said of late.
+#[derive(Clone, Debug, Default)]
+pub struct Teacher {
+    /// The newest first.
+    said: [Codes; MEMORY],
+    heard: usize,
+    age_ms: u16,
+}
+
+impl Teacher {
+    /// Takes a message, and the age of the picture that it was made from, ms. A message from an older picture than the
+    /// last one, one that overtook it, is dropped.
+    pub fn hear(&mut self, config: &TeacherConfig, codes: Codes, age_ms: u16) {
+        if self.age_ms > config.fresh_ms {
+            // After a silence it has to be believed anew.
+            self.heard = 0;
+        }
+        if self.heard > 0 && age_ms > self.age_ms {
+            return;
+        }
+        self.said.rotate_right(1);
+        self.said[0] = codes;
+        self.heard = (self.heard + 1).min(MEMORY);
+        self.age_ms = age_ms;
+    }
+
+    /// A millisecond passes.
+    pub fn tick_ms(&mut self) {
+        self.age_ms = self.age_ms.saturating_add(1);
+    }
+
+    /// Age of the newest picture, ms. None before the first.
+    #[must_use]
+    pub fn age_ms(&self) -> Option<u16> {
+        (self.heard > 0).then_some(self.age_ms)
+    }
+
+    /// What to learn now, or why nothing.
+    pub fn lesson(&self, config: &TeacherConfig, situation: Situation) -> Result<Codes, NoLesson> {
+        if self.heard == 0 {
+            return Err(NoLesson::Absent);
+        }
+        if self.age_ms > config.fresh_ms {
+            return Err(NoLesson::Late);
+        }
+        if self.heard < MEMORY {
+            return Err(NoLesson::Absent);
+        }
+        let codes = [self.median(0)?, self.median(1)?];
+        match codes {
+            [Code::Zero, Code::Zero] => Err(NoLesson::NothingMoves),
+            // "Both the hand and the object do not move", and the hand moves.
+            [Code::Zero, _] => Err(NoLesson::Contradicting),
+            _ if !situation.grasp => Err(NoLesson::NoGrasp),
+            _ if situation.disturbed => Err(NoLesson::Disturbed),
+            _ => Ok(codes),
+        }
+    }
+
+    fn median(&self, output: usize) -> Result<Code, NoLesson> {
+        let signs = self.said.map(|codes| codes[output].sign());
+        if signs.contains(&1) && signs.contains(&-1) {
+            return Err(NoLesson::Contradicting);
+        }
+        // Without opposites the sum is the number of codes that are not zero, with their sign.
+        let sum: i32 = signs.iter().sum();
+        Ok(Code::from_sign(sum / 2))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use Code::{Minus, Plus, Zero};
+
+    const CONFIG: TeacherConfig = TeacherConfig { fresh_ms: 120 };
+    const HELD: Situation = Situation { grasp: true, disturbed: false };
+
+    fn after(messages: &[Codes]) -> Teacher {
+        let mut teacher = Teacher::default();
+        for &codes in messages {
+            teacher.hear(&CONFIG, codes, 40);
+            for _ in 0..33 {
+                teacher.tick_ms();
+            }
+        }
+        teacher
+    }
+
+    fn lesson(messages: &[Codes]) -> Result<Codes, NoLesson> {
+        after(messages).lesson(&CONFIG, HELD)
+    }
+
+    #[test]
+    fn a_teacher_has_to_say_it_three_times_and_may_stumble_once() {
+        const SLIPS: Codes = [Minus, Plus];
+        const STILL: Codes = [Zero, Zero];
+        assert_eq!(lesson(&[]), Err(NoLesson::Absent));
+        assert_eq!(lesson(&[SLIPS; 2]), Err(NoLesson::Absent));
+        assert_eq!(lesson(&[SLIPS; 3]), Ok(SLIPS));
+        for stumble in 0..3 {
+            let mut messages = [SLIPS; 3];
+            messages[stumble] = STILL;
+            assert_eq!(lesson(&messages), Ok(SLIPS));
+            let mut messages = [STILL; 3];
+            messages[stumble] = SLIPS;
+            assert_eq!(lesson(&messages), Err(NoLesson::NothingMoves));
+        }
+    }
+
+    #[test]
+    fn opposite_codes_teach_nothing_until_they_are_forgotten() {
+        let (slips, holds) = ([Minus, Plus], [Plus, Plus]);
+        assert_eq!(lesson(&[slips, slips, holds]), Err(NoLesson::Contradicting));
+        assert_eq!(lesson(&[slips, holds, holds]), Err(NoLesson::Contradicting));
+        assert_eq!(lesson(&[slips, holds, holds, holds]), Ok(holds));
+        for n in 3..40 {
+            let alternating: std::vec::Vec<_> = (0..n).map(|n| [slips, holds][n % 2]).collect();
+            assert_eq!(lesson(&alternating), Err(NoLesson::Contradicting));
+        }
+        assert_eq!(lesson(&[[Zero, Plus]; 3]), Err(NoLesson::Contradicting));
+    }
+
+    #[test]
+    fn a_late_teacher_teaches_nothing_and_has_to_be_believed_anew() {
+        let mut teacher = after(&[[Minus, Plus]; 3]);
+        // 40 ms old when it came, 33 ms since.
+        for _ in 73..120 {
+            teacher.tick_ms();
+        }
+        assert!(teacher.lesson(&CONFIG, HELD).is_ok());
+        teacher.tick_ms();
+        assert_eq!(teacher.lesson(&CONFIG, HELD), Err(NoLesson::Late));
+        for _ in 0..100_000 {
+            teacher.tick_ms();
+        }
+        assert_eq!(teacher.lesson(&CONFIG, HELD), Err(NoLesson::Late));
+        teacher.hear(&CONFIG, [Minus, Plus], 40);
+        assert_eq!(teacher.lesson(&CONFIG, HELD), Err(NoLesson::Absent));
+        let mut late = Teacher::default();
+        for _ in 0..9 {
+            late.hear(&CONFIG, [Minus, Plus], 121);
+        }
+        assert_eq!(late.lesson(&CONFIG, HELD), Err(NoLesson::Late));
+    }
+
+    #[test]
+    fn a_picture_that_was_overtaken_is_dropped() {
+        let mut teacher = after(&[[Minus, Plus]; 3]);
+        teacher.hear(&CONFIG, [Plus, Plus], 110);
+        assert_eq!(teacher.lesson(&CONFIG, HELD), Ok([Minus, Plus]));
+        assert_eq!(teacher.age_ms(), Some(73));
+    }
+
+    #[test]
+    fn only_an_undisturbed_grasp_is_a_lesson() {
+        let teacher = after(&[[Minus, Zero]; 3]);
+        assert_eq!(teacher.lesson(&CONFIG, HELD), Ok([Minus, Zero]));
+        assert_eq!(teacher.lesson(&CONFIG, Situation { grasp: false, ..HELD }), Err(NoLesson::NoGrasp));
+        assert_eq!(teacher.lesson(&CONFIG, Situation { disturbed: true, ..HELD }), Err(NoLesson::Disturbed));
+    }
+}
