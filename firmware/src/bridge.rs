@@ -33,11 +33,7 @@ impl Bridge {
             PWM_HZ,
             CountingMode::EdgeAlignedUp,
         );
-        let SimplePwmChannels {
-            ch1: mut close,
-            ch2: mut open,
-            ..
-        } = pwm.split();
+        let SimplePwmChannels { ch1: mut close, ch2: mut open, .. } = pwm.split();
         for side in [&mut close, &mut open] {
             side.set_duty_cycle_fully_off();
             side.enable();

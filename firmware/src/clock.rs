@@ -13,10 +13,7 @@ use embassy_stm32::time::Hertz;
 pub fn config() -> Config {
     let mut config = Config::default();
     config.rcc.hsi = false;
-    config.rcc.hse = Some(Hse {
-        freq: Hertz(8_000_000),
-        mode: HseMode::Bypass,
-    });
+    config.rcc.hse = Some(Hse { freq: Hertz(8_000_000), mode: HseMode::Bypass });
     config.rcc.pll_src = PllSource::HSE;
     config.rcc.pll = Some(Pll {
         prediv: PllPreDiv::DIV4,

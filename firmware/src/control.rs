@@ -32,13 +32,7 @@ pub struct Control {
 impl Control {
     /// A hand at rest.
     pub fn new(bridge: Bridge, switches: Switches, watchdog: IndependentWatchdog<'static, IWDG>) -> Self {
-        Self {
-            fingertip: Fingertip::default(),
-            bridge,
-            switches,
-            watchdog,
-            samples: LastSamples::default(),
-        }
+        Self { fingertip: Fingertip::default(), bridge, switches, watchdog, samples: LastSamples::default() }
     }
 
     /// Everything that a frame causes, the most urgent first.
@@ -67,10 +61,7 @@ impl Control {
             if command.message == Down::Samples && refused.is_none() {
                 mail::post(self.samples.message());
             }
-            mail::post(Up::Ack {
-                of: command.sequence,
-                refused,
-            });
+            mail::post(Up::Ack { of: command.sequence, refused });
         }
     }
 }

@@ -57,7 +57,8 @@ unsafe fn SPI5() {
 
 /// The box that a DMA ring stands in for as long as the image runs.
 static SCAN_RING: ConstStaticCell<[u16; scan::RING_LEN]> = ConstStaticCell::new([0; scan::RING_LEN]);
-static COMMAND_RING: ConstStaticCell<[u8; commands::RING_LEN]> = ConstStaticCell::new([0; commands::RING_LEN]);
+static COMMAND_RING: ConstStaticCell<[u8; commands::RING_LEN]> =
+    ConstStaticCell::new([0; commands::RING_LEN]);
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
@@ -89,13 +90,7 @@ async fn main(spawner: Spawner) {
         p.PC4.degrade_adc(),
         p.PC5.degrade_adc(),
     ];
-    let scan = scan::Scan::new(
-        p.ADC1,
-        p.TIM3,
-        dma::Channel::new(p.DMA2_CH0, Irqs),
-        SCAN_RING.take(),
-        pins,
-    );
+    let scan = scan::Scan::new(p.ADC1, p.TIM3, dma::Channel::new(p.DMA2_CH0, Irqs), SCAN_RING.take(), pins);
     let switches = switches::Switches::new(p.PB12, p.PB13, p.PB14, p.PB15);
     let watchdog = IndependentWatchdog::new(p.IWDG, control::WATCHDOG_US);
 
@@ -106,7 +101,8 @@ async fn main(spawner: Spawner) {
     let (up, down) = uart.split();
 
     spawner.spawn(telemetry::telemetry(up, after).expect("one telemetry task"));
-    spawner.spawn(commands::commands(down.into_ring_buffered(COMMAND_RING.take())).expect("one commands task"));
+    spawner
+        .spawn(commands::commands(down.into_ring_buffered(COMMAND_RING.take())).expect("one commands task"));
     let control = control::Control::new(bridge, switches, watchdog);
     let urgent = URGENT.start(interrupt::SPI5);
     urgent.spawn(control::control(scan, control).expect("one control task"));

@@ -12,10 +12,7 @@ pub struct LastSamples {
 
 impl Default for LastSamples {
     fn default() -> Self {
-        Self {
-            frame: 0,
-            samples: [0; COUNT],
-        }
+        Self { frame: 0, samples: [0; COUNT] }
     }
 }
 
@@ -39,9 +36,6 @@ impl LastSamples {
 
     /// The answer to [`Down::Samples`](tenax_hal_shim::wire::Down::Samples).
     pub fn message(&self) -> Up {
-        Up::Samples {
-            frame: self.frame,
-            samples: self.samples,
-        }
+        Up::Samples { frame: self.frame, samples: self.samples }
     }
 }

@@ -8,6 +8,7 @@
 //! frame is known without asking the converter: a frame that does not come in time is lost, and after a restart the
 //! sequence numbers go on where time has got to.
 
+use embassy_stm32::Peri;
 use embassy_stm32::adc::{Adc, AnyAdcChannel};
 use embassy_stm32::dma::{self, ReadableRingBuffer};
 use embassy_stm32::pac;
@@ -15,7 +16,6 @@ use embassy_stm32::pac::adc::vals::{Dds, Exten, SampleTime};
 use embassy_stm32::peripherals::{ADC1, TIM3};
 use embassy_stm32::time::Hertz;
 use embassy_stm32::timer::low_level::{MasterMode, RoundTo, Timer as HardwareTimer};
-use embassy_stm32::Peri;
 use embassy_time::{Duration, Instant, Timer, with_deadline};
 use tenax_hal_shim::channel::{FRAME_HZ, SCAN, SCAN_HZ, SCAN_LEN, SCANS_PER_FRAME};
 use tenax_hal_shim::frame::{Frame, Scan as Codes};
@@ -87,16 +87,7 @@ impl Scan {
         let timer = HardwareTimer::new(timer);
         timer.set_frequency(Hertz(SCAN_HZ), RoundTo::Faster);
         timer.set_master_mode(MasterMode::UPDATE);
-        Self {
-            adc,
-            channel,
-            ring,
-            timer,
-            due: Due {
-                sequence: 0,
-                begins: Instant::MAX,
-            },
-        }
+        Self { adc, channel, ring, timer, due: Due { sequence: 0, begins: Instant::MAX } }
     }
 
     /// Hands every frame to `on_frame` as soon as its last code has been converted, for ever. Frames that are lost are

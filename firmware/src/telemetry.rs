@@ -16,10 +16,7 @@ const COUNTERS_PERIOD: Duration = Duration::from_hz(10);
 #[embassy_executor::task]
 pub async fn telemetry(mut line: UartTx<'static, Async>, after: Option<Fault>) -> ! {
     let mut counters_due = Ticker::every(COUNTERS_PERIOD);
-    let mut message = Up::Hello {
-        frame_hz: FRAME_HZ as u16,
-        after,
-    };
+    let mut message = Up::Hello { frame_hz: FRAME_HZ as u16, after };
     let mut sequence = 0u16;
     let mut buffer = [0; FRAME_MAX];
     loop {

@@ -1,21 +1,26 @@
 //! The boards that a plant can be connected to, and what a run on one leaves behind.
 
+#[cfg(feature = "emulator")]
+pub mod emulated;
+pub mod line_log;
 pub mod simulated;
 
 use tenax_hal_shim::frame::Scan;
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{Counters, Event, Slow};
+use tenax_hal_shim::wire::{Counters, Event, Refusal, Slow};
 use tenax_hal_shim::words::Fault;
 
-/// What the core spent on ticks, in instructions of the emulated Cortex-M4.
+/// What the core spent, in instructions of the emulated Cortex-M4.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TickCost {
     /// Ticks counted.
     pub count: u64,
-    /// Mean.
+    /// Mean of one tick of the logic, what interrupted it included.
     pub instructions_mean: f64,
     /// Worst.
     pub instructions_max: u64,
+    /// Everything that the core executed in a second: ticks, interrupts, telemetry. It sleeps for the rest.
+    pub instructions_per_s: f64,
 }
 
 /// What a run leaves behind.
@@ -25,7 +30,7 @@ pub struct Run {
     pub virtual_s: f64,
     /// Time it took, s.
     pub wall_s: f64,
-    /// The codes of every scan that the converter was triggered for, in order: four make a frame.
+    /// The codes at the converter's inputs at every trigger of a scan, in order: four make a frame.
     pub scans: Vec<Scan>,
     /// How the motor was driven when each scan period ended, as the plant saw it.
     pub drives: Vec<MotorDrive>,
@@ -35,14 +40,20 @@ pub struct Run {
     pub slows: Vec<Slow>,
     /// Events, as they came up the line.
     pub events: Vec<Event>,
+    /// Commands that were answered: the sequence number of each, and why it was not carried out.
+    pub acks: Vec<(u16, Option<Refusal>)>,
     /// Why the board started, each time it did.
     pub starts: Vec<Option<Fault>>,
     /// The last counters.
     pub counters: Counters,
     /// Messages missing from the line by their sequence numbers.
     pub messages_missed: u64,
+    /// Frames that came up the line and were no message.
+    pub bad_frames: u64,
     /// Every byte that came up the line: what `tenax monitor` would have read.
     pub line: Vec<u8>,
     /// None where instructions cannot be counted.
     pub tick_cost: Option<TickCost>,
+    /// The deepest that the stack was, bytes. None where it cannot be measured.
+    pub stack_bytes: Option<u64>,
 }

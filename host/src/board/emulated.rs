@@ -1,0 +1,130 @@
+//! The emulated board: the real image, instruction by instruction, with a plant at its pins.
+
+mod cost;
+mod line;
+mod nucleo;
+mod wires;
+mod world;
+
+use std::num::NonZeroU64;
+use std::path::Path;
+use std::sync::mpsc;
+use std::time::Instant;
+
+use anyhow::{Context, Result, anyhow};
+use rigless::emulator::{self, Finished, Start, Watch};
+use rigless::image::Image;
+use rigless::session::Session;
+use rigless::time::VirtualNanos;
+use tenax_hal_shim::channel::SCAN_HZ;
+use tenax_scene::plant::Plant;
+
+use self::cost::CostMeter;
+use self::line::Line;
+use self::nucleo::Nucleo;
+use self::world::World;
+use super::simulated::frames_in;
+use super::{Run, line_log};
+use crate::image::symbols::Symbols;
+
+/// How to run.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Instructions that the core executes in a second. At 100 MHz a Cortex-M4 takes one to two cycles for most, so
+    /// 100 and 50 millions are the ends of the bracket.
+    pub instructions_per_second: NonZeroU64,
+    /// What goes wrong on the way, and when, s.
+    pub mishaps: Vec<(f64, Mishap)>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { instructions_per_second: NonZeroU64::new(100_000_000).expect("not zero"), mishaps: Vec::new() }
+    }
+}
+
+/// Something that a board must survive.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Mishap {
+    /// The DMA stream of the converter switches off: the converter overruns.
+    DmaStalls,
+    /// Bytes that are no message come down the line.
+    Garbage(Vec<u8>),
+    /// The core executes nothing more until something resets it.
+    CoreHangs,
+}
+
+/// Why a run has no result.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum Broken {
+    /// The image drove both sides of the motor bridge.
+    #[error(
+        "the image drove both sides of the motor bridge at {at_s} s: on a real board this shorts the supply"
+    )]
+    BothSides {
+        /// When, s.
+        at_s: f64,
+    },
+    /// The image never triggered a scan.
+    #[error("the image had not begun to scan one second after its start")]
+    NeverScanned,
+}
+
+/// Boots `image` and runs the plant to its end.
+///
+/// `progress` is told the virtual time now and then, s.
+///
+/// # Errors
+/// If the image cannot be read or placed, or what it does would destroy a real board.
+pub fn run<P: Plant + 'static>(
+    image: &Path,
+    plant: P,
+    options: &Options,
+    progress: &mut dyn FnMut(f64),
+) -> Result<(Run, P)> {
+    let began = Instant::now();
+    let symbols = Symbols::read(image)?;
+    let frames = frames_in(plant.duration_s());
+    let (sender, reports) = mpsc::channel();
+    let cost = CostMeter::new(&symbols);
+    let watched = cost.watched();
+    let world = World::new(plant, frames, &options.mishaps, cost, symbols.stack.clone(), sender);
+    let images = [Image::read(image, None).context("reading the image")?, cost::paint(&symbols.stack)?];
+    let rate = options.instructions_per_second;
+
+    // The emulator keeps its driver for itself, so it runs on a thread of its own and reports to this one.
+    let finished = std::thread::scope(|scope| {
+        let emulator = scope.spawn(move || execute(&images, rate, watched, world));
+        for virtual_s in reports {
+            progress(virtual_s);
+        }
+        emulator.join().map_err(|_| anyhow!("the emulator panicked; its message is above"))?
+    })?;
+
+    let world = finished.driver;
+    if let Some(broken) = world.broken {
+        return Err(broken.into());
+    }
+    let mut run = world.run;
+    line_log::decode(&mut run);
+    run.slows.retain(|slow| slow.frame < frames);
+    run.virtual_s = run.scans.len() as f64 / f64::from(SCAN_HZ);
+    run.wall_s = began.elapsed().as_secs_f64();
+    Ok((run, world.plant))
+}
+
+fn execute<P: Plant + 'static>(
+    images: &[Image],
+    rate: NonZeroU64,
+    watched: [u64; 2],
+    world: World<P>,
+) -> Result<Finished<Nucleo, World<P>>> {
+    let board = Nucleo::new(rate, Line::default())?;
+    let mut session = Session::new(Box::new(board), 0, VirtualNanos(1))?;
+    for address in watched {
+        session.watch(Watch::Instruction(address));
+    }
+    let mut finished = emulator::run(session, &Start::new(images), world).context("the emulator")?;
+    finished.driver.progress = None;
+    Ok(finished)
+}

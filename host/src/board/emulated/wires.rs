@@ -1,0 +1,103 @@
+//! The wires between the chip's pins and the world: what a plant puts in, what it takes out.
+
+use rigless::mcu::Operate;
+use rigless::soc::Width;
+use rigless::soc::stm32f427::Stm32f427;
+use rigless::soc::stm32f427::peripherals::adc::Channel;
+use rigless::time::VirtualNanos;
+use tenax_hal_shim::channel::SCAN;
+use tenax_hal_shim::frame::Scan;
+use tenax_hal_shim::motor::{Duty, MotorDrive};
+
+/// TIM3, in the order of the chip's general timers.
+const TIM3: usize = 1;
+
+const GPIOA_MODER: u64 = 0x4002_0000;
+const GPIOB_ODR: u64 = 0x4002_0414;
+const TIM1_CCER: u64 = 0x4001_0020;
+const TIM1_ARR: u64 = 0x4001_002C;
+const TIM1_CCR1: u64 = 0x4001_0034;
+const TIM1_CCR2: u64 = 0x4001_0038;
+const TIM1_BDTR: u64 = 0x4001_0044;
+const TIM3_CNT: u64 = 0x4000_0424;
+const ADC1_CR2: u64 = 0x4001_2008;
+
+const BDTR_MOE: u32 = 1 << 15;
+const CCER_CC1E: u32 = 1;
+const CCER_CC2E: u32 = 1 << 4;
+const CR2_ADON: u32 = 1;
+const CR2_EXTSEL: u32 = 0xF << 24;
+const CR2_EXTSEL_TIM3_TRGO: u32 = 0x8 << 24;
+const CR2_EXTEN: u32 = 0x3 << 28;
+const CR2_SWSTART: u32 = 1 << 30;
+const MODER_ALTERNATE: u32 = 0b10;
+
+/// The chip at one instant.
+pub struct Wires<'a> {
+    mcu: &'a mut Stm32f427,
+    now: VirtualNanos,
+}
+
+impl<'a> Wires<'a> {
+    /// The wires as they are at `now`, to which the chip has advanced.
+    pub fn new(mcu: &'a mut Stm32f427, now: VirtualNanos) -> Self {
+        Self { mcu, now }
+    }
+
+    /// Reads a register as a debugger does. An unmapped address is a mistake in this file; it reads as reset.
+    fn peek(&mut self, address: u64) -> u32 {
+        self.mcu.peek(self.now, address, Width::W32).unwrap_or(0) as u32
+    }
+
+    /// How many pulses TIM3 has sent on its TRGO.
+    pub fn trigger_pulses(&mut self) -> u64 {
+        // The timer's model catches up on what is due when it is read.
+        let _ = self.mcu.read(self.now, TIM3_CNT, Width::W32);
+        self.mcu.tim[TIM3].trigger_output().1
+    }
+
+    /// What the select lines S0 to S3 show.
+    pub fn select(&mut self) -> u8 {
+        (self.peek(GPIOB_ODR) >> 12 & 0xF) as u8
+    }
+
+    /// How the bridge drives the motor. Both sides at once is a short of the supply, so it is an answer of its own.
+    pub fn motor(&mut self) -> Result<MotorDrive, BothSides> {
+        let (close, open) = (self.side(8, TIM1_CCR1, CCER_CC1E), self.side(9, TIM1_CCR2, CCER_CC2E));
+        match (close, open) {
+            (None, None) => Ok(MotorDrive::Coast),
+            (Some(duty), None) => Ok(MotorDrive::Close(duty)),
+            (None, Some(duty)) => Ok(MotorDrive::Open(duty)),
+            (Some(_), Some(_)) => Err(BothSides),
+        }
+    }
+
+    /// How one side is driven: its pin belongs to the timer, the timer's outputs are on, and its pulse is not empty.
+    fn side(&mut self, pin: u32, compare: u64, enable: u32) -> Option<Duty> {
+        let alternate = self.peek(GPIOA_MODER) >> (2 * pin) & 0b11 == MODER_ALTERNATE;
+        let on = self.peek(TIM1_BDTR) & BDTR_MOE != 0 && self.peek(TIM1_CCER) & enable != 0;
+        let (compare, period) = (self.peek(compare), self.peek(TIM1_ARR) + 1);
+        let per_mille = (compare * 1_000).div_ceil(period);
+        (alternate && on && compare > 0).then_some(Duty::per_mille(per_mille as u16))
+    }
+
+    /// Puts codes on the converter's pins.
+    pub fn put(&mut self, scan: &Scan) {
+        for (rank, &code) in SCAN.iter().zip(scan) {
+            let channel = Channel::new(rank.adc).expect("the channel map has pin channels");
+            self.mcu.adc[0].set_input(channel, u32::from(code));
+        }
+    }
+
+    /// Draws the one wire that the emulator leaves out: a pulse of TIM3's TRGO starts the converter's sequence if the
+    /// converter listens to it. Says whether it did.
+    pub fn trigger(&mut self) -> bool {
+        let cr2 = self.peek(ADC1_CR2);
+        let listens = cr2 & CR2_ADON != 0 && cr2 & CR2_EXTEN != 0 && cr2 & CR2_EXTSEL == CR2_EXTSEL_TIM3_TRGO;
+        listens && self.mcu.write(self.now, ADC1_CR2, Width::W32, u64::from(cr2 | CR2_SWSTART)).is_ok()
+    }
+}
+
+/// Both sides of the bridge are driven.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BothSides;

@@ -1,0 +1,216 @@
+//! What goes on around the chip while the emulator runs it: every 125 us a plant's scan goes in, and what the chip does
+//! comes out.
+
+use std::ops::Range;
+use std::sync::mpsc::Sender;
+
+use rigless::emulator::{Driver, Host, Settled, Stop};
+use rigless::mcu::Operate;
+use rigless::session::Session;
+use rigless::soc::Width;
+use rigless::time::VirtualNanos;
+use tenax_hal_shim::channel::{SCAN_HZ, SCANS_PER_FRAME};
+use tenax_hal_shim::frame::{Scan, scan_of_pins};
+use tenax_hal_shim::wire::{FRAME_MAX, encode};
+use tenax_scene::plant::Plant;
+
+use super::cost::{CostMeter, stack_used};
+use super::line::Line;
+use super::nucleo::{Nucleo, USART2};
+use super::wires::Wires;
+use super::{Broken, Mishap};
+use crate::board::Run;
+
+const SCAN_NS: u64 = 1_000_000_000 / SCAN_HZ as u64;
+/// While the timer's phase is not known, every this often it is looked for.
+const SEEK_NS: u64 = 5_000;
+/// An image that has not begun to scan by now never will.
+const BOOT_NS: u64 = 1_000_000_000;
+/// Scans after the plant's last, so that what they led to comes up the line.
+const DRAIN_SCANS: u32 = 64;
+/// Scans between two reports of progress: a tenth of a virtual second.
+const PROGRESS_SCANS: usize = 800;
+
+/// The world and the record of it.
+pub struct World<P> {
+    /// The plant.
+    pub plant: P,
+    /// What happened so far; the line is decoded afterwards.
+    pub run: Run,
+    /// Why the run ended early, if it did.
+    pub broken: Option<Broken>,
+    /// What the ticks cost.
+    pub cost: CostMeter,
+    /// Whole scans that the plant lasts.
+    scans: usize,
+    drained: u32,
+    pulses: u64,
+    stepped_at: Option<VirtualNanos>,
+    codes: Scan,
+    command_sequence: u16,
+    mishaps: Vec<(usize, Mishap)>,
+    resets: usize,
+    executed: Option<(VirtualNanos, u64)>,
+    stack: Range<u64>,
+    /// Who is told the virtual time. Given up when the run is over.
+    pub progress: Option<Sender<f64>>,
+}
+
+impl<P: Plant> World<P> {
+    /// A world that has not begun.
+    pub fn new(
+        plant: P,
+        frames: u32,
+        mishaps: &[(f64, Mishap)],
+        cost: CostMeter,
+        stack: Range<u64>,
+        progress: Sender<f64>,
+    ) -> Self {
+        let mishaps = mishaps
+            .iter()
+            .map(|(at_s, mishap)| ((at_s * f64::from(SCAN_HZ)) as usize, mishap.clone()))
+            .collect();
+        Self {
+            plant,
+            run: Run::default(),
+            broken: None,
+            cost,
+            scans: frames as usize * SCANS_PER_FRAME,
+            drained: 0,
+            pulses: 0,
+            stepped_at: None,
+            codes: Scan::default(),
+            command_sequence: 0,
+            mishaps,
+            resets: 0,
+            executed: None,
+            stack,
+            progress: Some(progress),
+        }
+    }
+
+    /// One scan period of the world. None when it is over.
+    fn step(
+        &mut self,
+        session: &mut Session<Nucleo>,
+        stop: Stop,
+        host: &mut dyn Host,
+        pulse: bool,
+    ) -> Option<()> {
+        let mut wires = Wires::new(&mut session.board_mut().mcu, stop.at);
+        if self.run.scans.len() < self.scans {
+            let Ok(drive) = wires.motor() else {
+                self.broken = Some(Broken::BothSides { at_s: seconds(stop.at) });
+                return None;
+            };
+            let pins = self.plant.scan(drive).codes();
+            self.codes = scan_of_pins(&pins, wires.select());
+            self.run.scans.push(self.codes);
+            self.run.drives.push(drive);
+            self.run.slipping.push(self.plant.slipping());
+        } else {
+            self.drained += 1;
+        }
+        wires.put(&self.codes);
+        if pulse {
+            wires.trigger();
+        }
+        let scan = self.run.scans.len();
+        if let Some(line) = session.board_mut().mcu.usart[USART2].chip_mut::<Line>() {
+            for command in self.plant.commands() {
+                let mut buffer = [0; FRAME_MAX];
+                line.down.extend(
+                    encode(self.command_sequence, &command, &mut buffer)
+                        .into_iter()
+                        .flat_map(|frame| frame.iter()),
+                );
+                self.command_sequence = self.command_sequence.wrapping_add(1);
+            }
+        }
+        self.mishaps.retain(|(at, mishap)| {
+            let due = *at <= scan;
+            if due {
+                mishap.happen(session, stop.at, host);
+            }
+            !due
+        });
+        if let Some(progress) = self.progress.as_ref().filter(|_| scan % PROGRESS_SCANS == 0) {
+            // Nobody listening is no reason to stop.
+            let _ = progress.send(scan as f64 / f64::from(SCAN_HZ));
+        }
+        (self.drained < DRAIN_SCANS).then_some(())
+    }
+
+    fn end(&mut self, session: &mut Session<Nucleo>, stop: Stop, host: &mut dyn Host) {
+        let (began, executed) = self.executed.unwrap_or((stop.at, stop.instruction_count));
+        let lasted_s = seconds(stop.at) - seconds(began);
+        self.run.tick_cost = self.cost.cost((stop.instruction_count - executed) as f64 / lasted_s);
+        self.run.stack_bytes = Some(stack_used(&self.stack, host));
+        if let Some(line) = session.board_mut().mcu.usart[USART2].chip_mut::<Line>() {
+            self.run.line = std::mem::take(&mut line.up);
+        }
+    }
+}
+
+impl<P: Plant> Driver<Nucleo> for World<P> {
+    fn on_settled(&mut self, _session: &mut Session<Nucleo>, _host: &mut dyn Host, settled: Settled) {
+        if let Settled::Hit(hit) = settled {
+            self.cost.hit(hit);
+        }
+    }
+
+    fn on_stop(
+        &mut self,
+        session: &mut Session<Nucleo>,
+        stop: Stop,
+        host: &mut dyn Host,
+    ) -> Option<VirtualNanos> {
+        if session.resets().len() > self.resets {
+            self.resets = session.resets().len();
+            self.pulses = 0;
+            host.hold(false);
+        }
+        let pulses = Wires::new(&mut session.board_mut().mcu, stop.at).trigger_pulses();
+        let pulse = pulses > self.pulses;
+        self.pulses = pulses;
+        let due = self.stepped_at.is_some_and(|at| stop.at.0 >= at.0 + SCAN_NS);
+        if self.stepped_at.is_none() && pulse {
+            self.executed = Some((stop.at, stop.instruction_count));
+        }
+        if pulse || due {
+            self.stepped_at = Some(stop.at);
+            if self.step(session, stop, host, pulse).is_none() {
+                self.end(session, stop, host);
+                return None;
+            }
+        } else if self.stepped_at.is_none() && stop.at.0 > BOOT_NS {
+            self.broken = Some(Broken::NeverScanned);
+            return None;
+        }
+        Some(VirtualNanos(stop.at.0 + if pulse { SCAN_NS } else { SEEK_NS }))
+    }
+}
+
+fn seconds(at: VirtualNanos) -> f64 {
+    at.0 as f64 / 1e9
+}
+
+const DMA2_S0CR: u64 = 0x4002_6410;
+
+impl Mishap {
+    fn happen(&self, session: &mut Session<Nucleo>, now: VirtualNanos, host: &mut dyn Host) {
+        let mcu = &mut session.board_mut().mcu;
+        match self {
+            Self::DmaStalls => {
+                let control = mcu.peek(now, DMA2_S0CR, Width::W32).unwrap_or(0);
+                let _ = mcu.write(now, DMA2_S0CR, Width::W32, control & !1);
+            }
+            Self::Garbage(bytes) => {
+                if let Some(line) = mcu.usart[USART2].chip_mut::<Line>() {
+                    line.down.extend(bytes);
+                }
+            }
+            Self::CoreHangs => host.hold(true),
+        }
+    }
+}

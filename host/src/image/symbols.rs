@@ -1,0 +1,100 @@
+//! What an image's symbol table says: where its tick is, and which memory is nobody's but the stack's.
+
+use std::ops::Range;
+use std::path::Path;
+
+use anyhow::{Context, Result, bail, ensure};
+use object::{File, Object, ObjectSection, ObjectSymbol};
+
+/// The name of the tick of the logic in the image.
+const TICK: &str = "tenax_control_tick";
+
+/// Addresses in an image.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Symbols {
+    /// The first instruction of a tick.
+    pub tick: u64,
+    /// The instruction that the tick returns to.
+    pub after_tick: u64,
+    /// RAM above the image's variables: the stack grows down into it.
+    pub stack: Range<u64>,
+}
+
+impl Symbols {
+    /// Reads them from an ELF file.
+    pub fn read(elf: &Path) -> Result<Self> {
+        let bytes = std::fs::read(elf).with_context(|| format!("reading the image {}", elf.display()))?;
+        Self::parse(&bytes).with_context(|| format!("the image {}", elf.display()))
+    }
+
+    fn parse(elf: &[u8]) -> Result<Self> {
+        let file = File::parse(elf).context("not an ELF file")?;
+        // Bit 0 of a function's address says that it is Thumb code.
+        let tick = address_of(&file, TICK)? & !1;
+        let text = file.section_by_name(".text").context("has no .text section")?;
+        let after_tick = only_return_address(text.data()?, text.address(), tick)?;
+        let stack = address_of(&file, "__sheap")?..address_of(&file, "_stack_start")?;
+        ensure!(stack.start < stack.end, "leaves no RAM for the stack");
+        Ok(Self { tick, after_tick, stack })
+    }
+}
+
+fn address_of(file: &File<'_>, name: &str) -> Result<u64> {
+    file.symbols()
+        .find(|symbol| symbol.name() == Ok(name))
+        .map(|symbol| symbol.address())
+        .with_context(|| format!("has no symbol `{name}`"))
+}
+
+/// The address behind the only call of `target` in `text`, which begins at `base`.
+fn only_return_address(text: &[u8], base: u64, target: u64) -> Result<u64> {
+    let mut found = text.windows(4).enumerate().step_by(2).filter_map(|(offset, bytes)| {
+        let after = base + offset as u64 + 4;
+        let first = u16::from_le_bytes([bytes[0], bytes[1]]);
+        let second = u16::from_le_bytes([bytes[2], bytes[3]]);
+        let reached = after.wrapping_add_signed(branch_with_link(first, second)?);
+        (reached == target).then_some(after)
+    });
+    match (found.next(), found.next()) {
+        (Some(after), None) => Ok(after),
+        (None, _) => bail!("never calls `{TICK}`"),
+        (Some(_), Some(_)) => bail!("calls `{TICK}` from more than one place: its cost cannot be told"),
+    }
+}
+
+/// The offset of a BL (immediate) in encoding T1, from the instruction behind it. (ARMv7-M manual, A7.7.18)
+fn branch_with_link(first: u16, second: u16) -> Option<i64> {
+    if first >> 11 != 0b11110 || second & 0xD000 != 0xD000 {
+        return None;
+    }
+    let (first, second) = (u32::from(first), u32::from(second));
+    let sign = first >> 10 & 1;
+    let i1 = !(second >> 13 ^ sign) & 1;
+    let i2 = !(second >> 11 ^ sign) & 1;
+    let magnitude = i1 << 23 | i2 << 22 | (first & 0x3FF) << 12 | (second & 0x7FF) << 1;
+    Some(i64::from(magnitude) - (i64::from(sign) << 24))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_call_is_told_from_its_encoding() {
+        // `bl .+4` and `bl .` as an assembler writes them.
+        assert_eq!(branch_with_link(0xF000, 0xF800), Some(0));
+        assert_eq!(branch_with_link(0xF7FF, 0xFFFE), Some(-4));
+        // `b.w` is no call.
+        assert_eq!(branch_with_link(0xF000, 0xB800), None);
+        assert_eq!(branch_with_link(0x4770, 0x4770), None);
+    }
+
+    #[test]
+    fn only_one_call_will_do() {
+        let call_next = [0x00, 0xF0, 0x00, 0xF8];
+        let mut text = call_next.to_vec();
+        text.extend([0x70, 0x47]);
+        assert_eq!(only_return_address(&text, 0x100, 0x104).unwrap(), 0x104);
+        assert!(only_return_address(&text, 0x100, 0x200).is_err());
+    }
+}
