@@ -123,6 +123,6 @@ fn the_longest_message_fits_a_frame() {
     let bits_a_second = length * 10 * 80;
     assert!(bits_a_second < 921_600 / 2, "slow frames may use at most half of the line: {bits_a_second}");
     let counters = Counters { frames: u32::MAX, ..Counters::default() };
-    assert!(encode(0, &Up::Counters(counters), &mut [0; 16]).is_some());
+    assert!(encode(0, &Up::Counters(counters), &mut [0; 40]).is_some());
     assert!(encode(0, &Up::Counters(counters), &mut [0; 8]).is_none(), "too small a buffer is no panic");
 }
