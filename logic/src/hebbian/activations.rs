@@ -9,14 +9,14 @@ use dsp_fixedpoint::Q32;
 
 use super::arithmetic::Reciprocal;
 
-/// An activation: 2^24 is 1, and no activation is beyond +-1.
-pub type Activation = Q32<24>;
+/// An activation: 2^26 is 1, and no activation is beyond +-1.
+pub type Activation = Q32<26>;
 
 /// Fraction bits between a ratio (Q30) and an activation.
-const RATIO_SHIFT: u32 = 30 - 24;
+const RATIO_SHIFT: u32 = 30 - 26;
 /// Half a unit of an activation, in units of a ratio.
 const RATIO_HALF: u32 = 1 << (RATIO_SHIFT - 1);
-const ONE: i32 = 1 << 24;
+const ONE: i32 = 1 << 26;
 
 /// What a receptor's sign means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,7 +38,7 @@ impl<const N: usize> Activations<N> {
         Self(activations.map(|activation| activation.into_bits().clamp(-ONE, ONE)))
     }
 
-    /// As integers, 2^24 is 1.
+    /// As integers, 2^26 is 1.
     #[must_use]
     pub const fn as_bits(&self) -> &[i32; N] {
         &self.0
@@ -76,6 +76,17 @@ impl Scale {
 
     fn size(&self, raw: i32) -> u32 {
         raw.saturating_sub(self.zero).unsigned_abs()
+    }
+
+    /// Units of [`Activation`].
+    fn activation(&self, sense: Sense, raw: i32) -> i32 {
+        let ratio = self.reciprocal.ratio(self.size(raw).min(self.largest));
+        // At most 1, Q30, and the rounding of the largest makes it exactly 1.
+        let size = ((ratio + RATIO_HALF) >> RATIO_SHIFT) as i32;
+        match sense {
+            Sense::Pressure if raw < self.zero => -size,
+            Sense::Pressure | Sense::Vibration => size,
+        }
     }
 }
 
@@ -123,22 +134,7 @@ impl<const N: usize> Normaliser<N> {
     /// The activations of these readings. Within 2^-24 of the exact quotient, rounded to nearest; no division.
     #[must_use]
     pub fn activations(&self, config: &NormaliserConfig<N>, raw: &[i32; N]) -> Activations<N> {
-        let mut activations = [0; N];
-        for (((activation, scale), &raw), sense) in
-            activations.iter_mut().zip(&self.scales).zip(raw).zip(&config.senses)
-        {
-            let size = scale.size(raw);
-            let ratio = if size < scale.largest {
-                ((scale.reciprocal.ratio(size) + RATIO_HALF) >> RATIO_SHIFT) as i32
-            } else {
-                ONE
-            };
-            *activation = match sense {
-                Sense::Pressure if raw < scale.zero => -ratio,
-                Sense::Pressure | Sense::Vibration => ratio,
-            };
-        }
-        Activations(activations)
+        Activations(core::array::from_fn(|n| self.scales[n].activation(config.senses[n], raw[n])))
     }
 
     /// The running maxima, raw units.

@@ -2,38 +2,41 @@
 //!
 //! | quantity | format | range | rounding |
 //! |---|---|---|---|
-//! | activation t | `i32` Q24 | +-1 | by the normaliser |
+//! | activation t | `i32` Q26 | +-1 | by the normaliser, to nearest |
 //! | weight w, as used | `i32` Q27 | +-8 | the upper word of the next line |
-//! | weight w, as kept | `i64` Q59 | +-8 | none: products of the next lines are exact |
-//! | sum of t w | `i64` Q51 | 62 inputs: below 2^60 | none |
-//! | output o | `i32` Q24 | +-1 | down |
-//! | \|w\| + delta, for r | `u32` Q23 | 0..=16 | down |
-//! | their sum | `u32` Q23 | 62 inputs: below 512 | none |
-//! | alpha / sum | `u32` Q35, shifted | 0..2^-3 | down, 2^-27 of itself |
-//! | alpha r | `u32` Q35 | 0..2^-4, since r <= 1 | down |
-//! | alpha r t v, beta w | `i64` Q59 | 2^55, 2^58 | none |
+//! | weight w, as kept | `i64` Q59 | +-8 | none: the products below are exact |
+//! | sum of t w | `i64` Q53 | 31 inputs: below 2^61 | none |
+//! | output o | `i32` Q26 | +-1 | down |
+//! | \|w\| + delta, for r | `u32` Q23 | 0..16 | down |
+//! | (sum of \|w\|) + delta, the divisor | `u32` Q23 | 31 inputs: below 256, 2^31 | none |
+//! | alpha v / divisor, its exponent apart | `i32` Q34 | +-2^-3 | to zero, 2^-27 of itself |
+//! | alpha r v | `i32` Q33 | +-2^-4, since r <= 1 | down |
+//! | alpha r v t, beta w | `i64` Q59 | 2^55, 2^58 | none |
 //!
-//! A step of the smallest useful size is therefore never lost: with alpha = 1e-3, the weakest r at the default delta and
-//! t at one bit of the converter, it is 2^31 units of a kept weight.
+//! No update is too small for a kept weight: at alpha = 1e-3, t of one step of the converter and the r of an unused
+//! connection among weights of 8, which is 1e-10, it is still 2^25 units. An update lost to the rounding of alpha r
+//! needs alpha r below 2^-33, and then a million of them would have moved the weight by 1e-4.
 
 use dsp_fixedpoint::Q32;
 
 use super::activations::Activations;
-use super::arithmetic::{Reciprocal, high_product};
+use super::arithmetic::Reciprocal;
 use super::rule::Rule;
 use super::teacher::Code;
 
 /// A weight: 2^27 is 1.
 pub type Weight = Q32<27>;
-/// An output: 2^24 is 1.
-pub type Output = Q32<24>;
+/// An output: 2^26 is 1.
+pub type Output = Q32<26>;
 
+/// 1, as an output.
+const ONE: i64 = 1 << 26;
 /// Largest weight (and its negative, less one unit, the smallest) in units of [`Weight`]: a little less than 8.
 const LIMIT: i32 = (1 << 30) - 1;
 /// Fraction bits from a weight to the magnitude that r is made of.
 const MAGNITUDE_SHIFT: u32 = 27 - 23;
 /// More inputs could overflow the sums.
-const INPUTS_MAX: usize = 62;
+const INPUTS_MAX: usize = 31;
 
 /// Weights from `INPUTS` receptors to `OUTPUTS` outputs.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -45,7 +48,7 @@ pub struct Network<const INPUTS: usize, const OUTPUTS: usize> {
 impl<const INPUTS: usize, const OUTPUTS: usize> Default for Network<INPUTS, OUTPUTS> {
     /// The network before learning: all weights 0, so its outputs are what the teacher says.
     fn default() -> Self {
-        const { assert!(INPUTS >= 1 && INPUTS <= INPUTS_MAX, "a network has 1 to 62 inputs") }
+        const { assert!(INPUTS >= 1 && INPUTS <= INPUTS_MAX, "a network has 1 to 31 inputs") }
         Self { weights: [[0; INPUTS]; OUTPUTS] }
     }
 }
@@ -60,9 +63,9 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
                 .zip(activations.as_bits())
                 .map(|(&weight, &t)| i64::from(in_use(weight)) * i64::from(t))
                 .sum();
-            // Below 2^60, and 2^60 >> 27 is 2^33: the code is added before the sum is cut to 32 bits.
-            let with_code = (sum >> 27) + (i64::from(code.sign()) << 24);
-            *output = Output::from_bits(with_code.clamp(-(1 << 24), 1 << 24) as i32);
+            // The code is added before the sum is cut to 32 bits.
+            let with_code = (sum >> 27) + i64::from(code.sign()) * ONE;
+            *output = Output::from_bits(with_code.clamp(-ONE, ONE) as i32);
         }
         outputs
     }
@@ -73,18 +76,22 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
     /// [`Teacher::lesson`](super::Teacher::lesson) to say.
     pub fn learn(&mut self, rule: &Rule, activations: &Activations<INPUTS>, codes: &[Code; OUTPUTS]) {
         for (weights, &code) in self.weights.iter_mut().zip(codes) {
-            let sum = weights.iter().fold(rule.delta, |sum, &weight| sum + magnitude(weight));
-            let reciprocal = Reciprocal::of(sum);
-            // alpha < 2^31 and the mantissa <= 2^31: below 2^32.
-            let scaled_alpha = ((u64::from(rule.alpha) * u64::from(reciprocal.mantissa)) >> 30) as u32;
-            match code {
-                Code::Plus => learn_output(weights, activations, rule, reciprocal.shift, |share| {
-                    high_product(share, scaled_alpha) as i32
-                }),
-                Code::Minus => learn_output(weights, activations, rule, reciprocal.shift, |share| {
-                    -(high_product(share, scaled_alpha) as i32)
-                }),
-                Code::Zero => learn_output(weights, activations, rule, 0, |_| 0),
+            let divisor = weights.iter().fold(rule.delta, |sum, &weight| sum + magnitude(weight));
+            let reciprocal = Reciprocal::of(divisor);
+            // alpha <= 0.06 in Q35 and the mantissa <= 2 in Q30: at most 0.12 in Q34, below 2^31.
+            let scaled_alpha = ((u64::from(rule.alpha) * u64::from(reciprocal.mantissa)) >> 31) as i32;
+            let scaled_alpha_v = code.sign() * scaled_alpha;
+            // The divisor is below 2^31, so it has a leading zero to spare: a share of it stays a positive i32.
+            let shift = reciprocal.shift - 1;
+            for (weight, &t) in weights.iter_mut().zip(activations.as_bits()) {
+                let share = ((magnitude(*weight) + rule.delta) << shift) as i32;
+                let alpha_r_v = (i64::from(share) * i64::from(scaled_alpha_v)) >> 32;
+                // Two multiply-accumulates on the kept weight. Neither can leave 64 bits: 2^62 + 2^55 + 2^58.
+                *weight = limited(
+                    *weight
+                        + i64::from(alpha_r_v as i32) * i64::from(t)
+                        + i64::from(rule.minus_beta) * i64::from(in_use(*weight)),
+                );
             }
         }
     }
@@ -118,32 +125,16 @@ const fn in_use(weight: i64) -> i32 {
     (weight >> 32) as i32
 }
 
-/// |w|, Q23. At most 2^26.
+/// |w|, Q23, below 2^26. A negative number's complement is its magnitude less 2^-27, and takes one instruction.
 const fn magnitude(weight: i64) -> u32 {
-    in_use(weight).unsigned_abs() >> MAGNITUDE_SHIFT
+    let weight = in_use(weight);
+    ((weight ^ (weight >> 31)) as u32) >> MAGNITUDE_SHIFT
 }
 
 /// Saturates a kept weight in its upper word, which is one SSAT; the lower word is far below a unit in use.
 fn limited(weight: i64) -> i64 {
     let upper = in_use(weight).clamp(-LIMIT - 1, LIMIT);
     (i64::from(upper) << 32) | (weight & 0xFFFF_FFFF)
-}
-
-/// The update of one output. `step` gives alpha r v, Q35, from a connection's share: |w| + delta, shifted so that their
-/// sum is in 2^31..2^32.
-#[inline(always)]
-fn learn_output<const INPUTS: usize>(
-    weights: &mut [i64; INPUTS],
-    activations: &Activations<INPUTS>,
-    rule: &Rule,
-    shift: u32,
-    step: impl Fn(u32) -> i32,
-) {
-    for (weight, &t) in weights.iter_mut().zip(activations.as_bits()) {
-        let gain = step((magnitude(*weight) + rule.delta) << shift);
-        let learned = *weight + i64::from(gain) * i64::from(t);
-        *weight = limited(learned - i64::from(rule.beta) * i64::from(in_use(*weight)));
-    }
 }
 
 #[cfg(test)]
@@ -160,7 +151,7 @@ mod tests {
     fn before_learning_it_repeats_the_teacher() {
         let network = Network::<3, 2>::default();
         let t = activations([1.0, -1.0, 0.5]);
-        let one = 1 << 24;
+        let one = ONE as i32;
         let said = |codes| network.output(&t, &codes).map(Output::into_bits);
         assert_eq!(said([Code::Zero, Code::Zero]), [0, 0]);
         assert_eq!(said([Code::Minus, Code::Plus]), [-one, one]);
@@ -184,8 +175,8 @@ mod tests {
     #[test]
     fn without_forgetting_weights_stop_at_their_limit() {
         let rule = Rule::new(&Config { alpha_ppb: 60_000_000, beta_ppb: 0, delta_ppm: 8_000_000 }).unwrap();
-        let mut network = Network::<62, 2>::default();
-        let t = activations([1.0; 62]);
+        let mut network = Network::<31, 2>::default();
+        let t = activations([1.0; 31]);
         for _ in 0..20_000 {
             network.learn(&rule, &t, &[Code::Plus, Code::Minus]);
         }
@@ -193,7 +184,7 @@ mod tests {
         assert!(network.weights()[1].iter().all(|w| w.into_bits() == -LIMIT - 1));
         assert_eq!(
             network.output(&t, &[Code::Minus, Code::Plus]).map(Output::into_bits),
-            [1 << 24, -(1 << 24)]
+            [ONE as i32, -ONE as i32]
         );
     }
 

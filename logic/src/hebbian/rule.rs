@@ -46,8 +46,8 @@ pub enum NotAllowed {
 pub struct Rule {
     /// alpha, Q35, below 2^31. Rounded down.
     pub(super) alpha: u32,
-    /// beta, Q32, below 2^28. Rounded to nearest.
-    pub(super) beta: i32,
+    /// -beta, Q32, above -2^28. Rounded to nearest.
+    pub(super) minus_beta: i32,
     /// delta, Q23, in 2^10..=2^26. Rounded to nearest.
     pub(super) delta: u32,
 }
@@ -69,7 +69,7 @@ impl Rule {
         let delta = ((u64::from(config.delta_ppm) << 23) + 500_000) / 1_000_000;
         Ok(Self {
             alpha: ((u64::from(config.alpha_ppb) << 35) / 1_000_000_000) as u32,
-            beta: beta as i32,
+            minus_beta: -(beta as i32),
             delta: delta as u32,
         })
     }
@@ -95,12 +95,14 @@ mod tests {
             for beta_ppb in ends(Config::BETA_PPB) {
                 for delta_ppm in ends(Config::DELTA_PPM) {
                     let rule = Rule::new(&Config { alpha_ppb, beta_ppb, delta_ppm }).unwrap();
-                    assert!(rule.alpha < 1 << 31 && (0..1 << 28).contains(&rule.beta));
+                    assert!(rule.alpha < 1 << 31 && (0..1 << 28).contains(&-rule.minus_beta));
                     assert!((1 << 10..=1 << 26).contains(&rule.delta));
                     assert!(
                         (f64::from(rule.alpha) / 2f64.powi(35) * 1e9 - f64::from(alpha_ppb)).abs() < 0.03
                     );
-                    assert!((f64::from(rule.beta) / 2f64.powi(32) * 1e9 - f64::from(beta_ppb)).abs() < 0.12);
+                    assert!(
+                        (f64::from(rule.minus_beta) / 2f64.powi(32) * 1e9 + f64::from(beta_ppb)).abs() < 0.12
+                    );
                     assert!(
                         (f64::from(rule.delta) / 2f64.powi(23) * 1e6 - f64::from(delta_ppm)).abs() < 0.06
                     );
