@@ -9,5 +9,17 @@ macro_rules! scenes {
 /// Name and text of every scene in the repository, the default one first.
 #[must_use]
 pub const fn builtin() -> &'static [(&'static str, &'static str)] {
-    scenes!["glass",]
+    scenes![
+        "glass",
+        "glass-quiet",
+        "explore-wood",
+        "explore-glass",
+        "explore-card",
+        "knocks",
+        "arm-swing",
+        "wearer",
+        "wearer-control",
+        "dead-sensor",
+        "pressed-at-boot",
+    ]
 }

@@ -36,7 +36,7 @@ impl Default for Robot {
             // Assumed: the cylindrical probe of Prosthesis, figure 3.
             probe_kg: Kilograms::of(0.2),
             // Assumed: a PUMA 560 along one axis is stiffer; probe and skin in series are not.
-            stiffness_n_per_mm: Stiffness::of(1.0),
+            stiffness_n_per_mm: Stiffness::of(0.5),
             damping: Damping::of(0.7),
             ramp_ms: Milliseconds::of(80.0),
         }

@@ -114,7 +114,7 @@ pub struct Robot {
     pub stiffness_n_per_mm: Stiffness,
     /// Its damping.
     pub damping: Damping,
-    /// How long the load takes to come and to go.
+    /// How long load and speed take to come and to go.
     pub ramp_ms: Milliseconds,
 }
 

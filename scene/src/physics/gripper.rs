@@ -125,6 +125,7 @@ mod tests {
     fn it_stalls_at_its_part_of_140_n_and_a_load_never_opens_it() {
         let mut gripper = Gripper::new(&sections::Gripper::default());
         run(&mut gripper, MotorDrive::Close(Duty::per_mille(500)), 20.0);
+        run(&mut gripper, MotorDrive::Coast, 0.1);
         let grip_n = gripper.grip_n(WIDTH_MM, STIFFNESS_N_PER_MM);
         assert!((grip_n - 70.0).abs() < 0.5, "{grip_n} N");
         run(&mut gripper, MotorDrive::Coast, 10.0);

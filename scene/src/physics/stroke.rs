@@ -54,10 +54,9 @@ impl Stroke {
 
     /// Goes on by one scan to `t_s`.
     pub fn step(&mut self, t_s: f64) -> Touch {
-        let load_n = self.load_n(t_s);
+        let load_n = self.over_time(&self.presses, t_s);
         let friction = self.surface.at(t_s);
-        let carriage_m_s: f64 =
-            self.sweeps.iter().filter(|(span, _)| span.contains(t_s)).map(|(_, speed)| speed).sum();
+        let carriage_m_s = self.over_time(&self.sweeps, t_s);
         self.carriage_m += carriage_m_s * STEP_S;
         let pull_n = self.stiffness_n_per_m * (self.carriage_m - self.probe_m)
             + self.damping_ns_per_m * (carriage_m_s - self.speed_m_s);
@@ -82,12 +81,13 @@ impl Stroke {
         self.probe_m
     }
 
-    fn load_n(&self, t_s: f64) -> f64 {
+    /// What a list of spans and heights adds up to at `t_s`, each coming and going without a jerk.
+    fn over_time(&self, list: &[(Span, f64)], t_s: f64) -> f64 {
         let part = |span: &Span| {
             let up = ((t_s - span.begin_s) / self.ramp_s).clamp(0.0, 1.0);
             let down = ((span.end_s - t_s) / self.ramp_s).clamp(0.0, 1.0);
             smooth(up.min(down))
         };
-        self.presses.iter().map(|(span, load_n)| load_n * part(span)).sum()
+        list.iter().map(|(span, height)| height * part(span)).sum()
     }
 }

@@ -1,0 +1,113 @@
+//! Every mistake gets one message: file, line, key, and what is allowed.
+
+use tenax_scene::SceneFile;
+
+const GOOD: &str = r#"name = "n"
+title = "t"
+from = "assumed"
+duration_s = 10
+slip_floor_mm_s = 1
+[contact]
+mu_s = 0.5
+mu_d = 0.4
+pad_length_mm = 18
+pitch_mm = 1
+[object]
+mass_kg = 0.2
+width_mm = 60
+stiffness_n_per_mm = 3
+[[fault]]
+at_s = 1
+channel = "fsr_a"
+kind = "dead"
+reason = "wire"
+[[command]]
+at_s = 2
+kind = "set-s2-permille"
+value = 300
+[[muscle]]
+at_s = 3
+for_s = 1
+intent = "close"
+level_mv = 500
+"#;
+
+#[test]
+fn the_good_one_is_good() {
+    SceneFile::parse(GOOD, "good.toml").unwrap();
+}
+
+#[test]
+fn every_mistake_is_named_where_it_stands() {
+    let cases = [
+        ("mu_s = 0.5", "mu_s = 50", 7, &["mu_s", "50", "0.05..=1.5"][..]),
+        ("mu_s = 0.5", "mu_s = nan", 7, &["mu_s", "NaN", "0.05..=1.5"]),
+        ("mu_s = 0.5", "mu_s = \"much\"", 7, &["mu_s", "string", "f64"]),
+        ("mu_s = 0.5", "mu_s = ", 7, &["mu_s"]),
+        ("mu_s = 0.5\n", "", 6, &["missing", "mu_s"]),
+        ("mu_d = 0.4", "mu_d = 0.6", 8, &["mu_d = 0.6", "mu_s = 0.5"]),
+        ("mu_d = 0.4", "mu_dyn = 0.4", 8, &["mu_dyn", "expected", "mu_d"]),
+        ("mass_kg = 0.2", "mass_kg = -0.2", 12, &["mass_kg", "-0.2", "0.0005..=20"]),
+        ("mass_kg = 0.2", "mass_g = 200", 12, &["mass_g", "mass_kg"]),
+        ("duration_s = 10", "duration_s = inf", 4, &["duration_s", "inf", "3600"]),
+        ("duration_s = 10", "duration_s = 0", 4, &["duration_s", "0 is outside"]),
+        ("at_s = 3", "at_s = 30", 25, &["30 s", "duration_s = 10"]),
+        ("\"fsr_a\"", "\"fsr_e\"", 17, &["fsr_e", "fsr_a", "fsr_b"]),
+        ("\"dead\"", "\"gone\"", 18, &["gone", "dead", "stuck"]),
+        ("\"dead\"", "\"pressed\"", 17, &["press_n"]),
+        ("value = 300", "value = 9000", 23, &["9000", "50..=1500", "S2"]),
+        ("value = 300", "value = -1", 23, &["value"]),
+        ("value = 300\n", "", 22, &["needs value"]),
+        ("\"close\"", "\"shut\"", 27, &["shut", "close", "open", "both"]),
+        ("[object]", "[objekt]", 11, &["objekt", "object"]),
+        (
+            "[[muscle]]",
+            "[[press]]\nat_s = 1\nfor_s = 1\nload_n = 1\n[[muscle]]",
+            25,
+            &["[[press]]", "[object]"],
+        ),
+        ("[[muscle]]", "[robot]\n[[muscle]]", 24, &["[robot]", "[object]"]),
+        (
+            "[[muscle]]",
+            "[gripper]\nopening_mm = 120\n[[muscle]]",
+            25,
+            &["opening_mm = 120", "range_mm = 100"],
+        ),
+        (
+            "[[muscle]]",
+            "[[electrode_lift]]\nat_s = 1\nfor_s = 1\nchannel = \"pvdf_1\"\npickup_mv = 1\n[[muscle]]",
+            27,
+            &["pvdf_1", "myo_flexor"],
+        ),
+        ("[[muscle]]", "[[fill]]\nat_s = 1\nfor_s = 1\nadd_kg = -1\n[[muscle]]", 27, &["add_kg", "above 0"]),
+    ];
+    for (good, bad, line, said) in cases {
+        let text = GOOD.replacen(good, bad, 1);
+        assert_ne!(text, GOOD, "{good} stands in the good file");
+        let error = SceneFile::parse(&text, "bad.toml").expect_err(bad);
+        let message = error.to_string();
+        assert!(message.starts_with(&format!("bad.toml:{line}: ")), "{bad}: {message}");
+        assert!(!message.contains('\n'), "{message}");
+        for word in said {
+            assert!(message.contains(word), "{bad}: `{word}` is missing in: {message}");
+        }
+    }
+}
+
+#[test]
+fn a_scene_about_nothing_says_what_it_needs() {
+    let text = GOOD.replace("[object]\nmass_kg = 0.2\nwidth_mm = 60\nstiffness_n_per_mm = 3\n", "");
+    let message = SceneFile::parse(&text, "bad.toml").unwrap_err().to_string();
+    assert!(message.contains("[object]") && message.contains("[robot]"), "{message}");
+}
+
+#[test]
+fn no_text_makes_it_panic() {
+    for text in ["", "\u{0}", "=", "[", "[contact", "name = \"\u{1F980}", "\u{FEFF}", "duration_s = 1e999"] {
+        SceneFile::parse(text, "bad.toml").expect_err(text);
+    }
+    // Cut anywhere, it is an error or a scene, never a panic.
+    for cut in 0..GOOD.len() {
+        let _ = SceneFile::parse(&GOOD[..cut], "bad.toml");
+    }
+}
