@@ -81,7 +81,7 @@ impl Scale {
     /// Units of [`Activation`].
     fn activation(&self, sense: Sense, raw: i32) -> i32 {
         let ratio = self.reciprocal.ratio(self.size(raw).min(self.largest));
-        // At most 1, Q30, and the rounding of the largest makes it exactly 1.
+        // The ratio is at most 1, so this is too.
         let size = ((ratio + RATIO_HALF) >> RATIO_SHIFT) as i32;
         match sense {
             Sense::Pressure if raw < self.zero => -size,
@@ -131,7 +131,7 @@ impl<const N: usize> Normaliser<N> {
         }
     }
 
-    /// The activations of these readings. Within 2^-24 of the exact quotient, rounded to nearest; no division.
+    /// The activations of these readings. Within 2^-25 of the exact quotient; no division.
     #[must_use]
     pub fn activations(&self, config: &NormaliserConfig<N>, raw: &[i32; N]) -> Activations<N> {
         Activations(core::array::from_fn(|n| self.scales[n].activation(config.senses[n], raw[n])))

@@ -20,8 +20,10 @@ impl Reciprocal {
         let number = if number == 0 { 1 } else { number };
         let shift = number.leading_zeros();
         let m = number << shift;
-        // `m >> 16` is in 2^15..2^16, so this is in 2^16..2^17, and in Q30 below 2^31.
-        let rough = (u32::MAX / (m >> 16)) << 14;
+        // In 2^15..2^16. Its highest bit is set already; said again, the compiler sees that it is not 0.
+        let coarse = m >> 16 | 1 << 15;
+        // In 2^16..2^17, and in Q30 below 2^31.
+        let rough = (u32::MAX / coarse) << 14;
         // m * rough is within 2^-14 of 1, so 2 minus it is in 0..2, Q30. The product is rounded down, hence one unit more.
         let correction = (1 << 31) - 1 - high_product(m, rough);
         Self { shift, mantissa: ((rough as u64 * correction as u64) >> 30) as u32 }
