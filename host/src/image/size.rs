@@ -1,0 +1,45 @@
+//! What an image takes of the chip's memories.
+
+use std::path::Path;
+
+use anyhow::{Context, Result, ensure};
+use object::{File, Object, ObjectSection, SectionFlags, SectionKind, elf};
+
+/// The chip's flash, bytes. The image's build fails if it does not fit, so this is only for shares.
+pub const FLASH_BYTES: u64 = 512 * 1024;
+/// The chip's RAM, bytes.
+pub const RAM_BYTES: u64 = 128 * 1024;
+
+/// Bytes that an image takes before it runs. Its stack is measured by running it: see
+/// [`Run::stack_bytes`](crate::board::Run::stack_bytes).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Size {
+    /// Code, constants and the first values of variables.
+    pub flash: u64,
+    /// Variables.
+    pub ram: u64,
+}
+
+impl Size {
+    /// Adds up an ELF file's sections that are loaded or kept free.
+    pub fn read(path: &Path) -> Result<Self> {
+        let bytes = std::fs::read(path).with_context(|| format!("reading the image {}", path.display()))?;
+        let file = File::parse(&*bytes).with_context(|| format!("{} is not an ELF file", path.display()))?;
+        let mut size = Self::default();
+        for section in file.sections() {
+            let SectionFlags::Elf { sh_flags } = section.flags() else {
+                continue;
+            };
+            if sh_flags & u64::from(elf::SHF_ALLOC) == 0 {
+                continue;
+            }
+            let in_ram = sh_flags & u64::from(elf::SHF_WRITE) != 0;
+            let in_flash = section.kind() != SectionKind::UninitializedData;
+            // Variables with first values are in both.
+            size.ram += if in_ram { section.size() } else { 0 };
+            size.flash += if in_flash { section.size() } else { 0 };
+        }
+        ensure!(size.flash > 0, "{} has nothing to flash", path.display());
+        Ok(size)
+    }
+}
