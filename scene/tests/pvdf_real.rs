@@ -23,7 +23,7 @@ type Films = [Vec<f64>; PVDF_COUNT];
 fn recording(name: &str, span_s: Range<f64>) -> Films {
     let mut films = Films::default();
     let mut sums = [0.0; PVDF_COUNT];
-    let mut scans = 0;
+    let mut scans = 0_usize;
     run(&scene(name), 1, Reflex::Ratio, |world, pins, _| {
         if !span_s.contains(&world.now_s()) {
             return;
@@ -31,7 +31,7 @@ fn recording(name: &str, span_s: Range<f64>) -> Films {
         scans += 1;
         for film in 0..PVDF_COUNT {
             sums[film] += (pins.0[film] * 1e3 - f64::from(PVDF_REST_MV)) / GAIN / SCANS_PER_FRAME as f64;
-            if scans % SCANS_PER_FRAME == 0 {
+            if scans.is_multiple_of(SCANS_PER_FRAME) {
                 films[film].push(std::mem::take(&mut sums[film]));
             }
         }

@@ -141,3 +141,44 @@ impl Grasp {
         self.needed_n
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::SceneFile;
+
+    /// A glass that is lifted from 1 s on and gripped with `grip_n` all along; its touch at the end of `for_s`.
+    fn lifted(grip_n: f64, for_s: f64) -> (Grasp, Touch) {
+        let (_, text) = crate::builtin()[0];
+        let scene = SceneFile::parse(text, "glass").unwrap();
+        let mut hand = Hand::new(
+            &SceneFile::parse(&text.replace("at_s = 5.0", "at_s = 1.0"), "glass").unwrap().moves[..1],
+            &[],
+        );
+        let surface = Surface::new(&scene.contact, &[]);
+        let mut grasp = Grasp::new(scene.object.as_ref().unwrap(), &[], &scene.table, surface, 18.0);
+        let mut touch = Touch::default();
+        for step in 0..(for_s / STEP_S) as u32 {
+            let t_s = f64::from(step) * STEP_S;
+            hand.step(t_s, grasp.table_part());
+            touch = grasp.step(t_s, &hand, grip_n);
+        }
+        (grasp, touch)
+    }
+
+    #[test]
+    fn a_held_glass_pulls_with_half_its_weight_on_each_finger_and_never_creeps() {
+        let (grasp, touch) = lifted(6.0, 60.0);
+        assert!((touch.shear_n - 0.25 * GRAVITY_M_S2 / 2.0).abs() < 1e-9, "{} N", touch.shear_n);
+        assert_eq!((grasp.slid_m, touch.slide_m_s, grasp.is_held()), (0.0, 0.0, true));
+    }
+
+    #[test]
+    fn what_is_needed_is_where_it_begins_to_slide() {
+        // mu_s = 0.5: the weight alone needs m g / (2 mu_s); the lift's acceleration needs up to 1.6 % more.
+        let needed_n = 0.25 * GRAVITY_M_S2 / (2.0 * 0.5);
+        assert!(lifted(needed_n * 1.02, 5.0).1.sticks);
+        let (grasp, _) = lifted(needed_n * 0.98, 30.0);
+        assert!(grasp.slid_m < 0.0 || grasp.is_dropped());
+    }
+}

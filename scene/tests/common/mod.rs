@@ -36,7 +36,7 @@ impl Envelope {
             *sum += pin * 1e3 / SCANS_PER_FRAME as f64;
         }
         self.scans += 1;
-        if self.scans % SCANS_PER_FRAME != 0 {
+        if !self.scans.is_multiple_of(SCANS_PER_FRAME) {
             return false;
         }
         let frame_hz = f64::from(SCAN_HZ) / SCANS_PER_FRAME as f64;
