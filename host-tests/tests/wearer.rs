@@ -276,3 +276,26 @@ fn a_dead_myosensor_silences_the_reflex_and_the_other_still_commands() {
     bench.pins_mv[MYO_EXTENSOR] = f64::from(MYO_REST_MV) + 800.0;
     assert!(bench.run(OPEN_WITHIN_FRAMES).last().unwrap().opens());
 }
+
+#[test]
+fn a_film_that_freezes_anywhere_is_no_slip() {
+    for frozen in (0..=SAMPLE_MAX).step_by(1_365) {
+        let mut bench = Bench::holding(7);
+        for _ in 0..6_000 {
+            let mut frame = bench.frame();
+            frame.pvdf[3] = frozen;
+            assert_eq!(bench.give(&frame), MotorDrive::Coast, "frozen at {frozen}");
+        }
+    }
+}
+
+#[test]
+fn a_quadrant_pressed_at_boot_closes_nothing_until_it_was_seen_unloaded() {
+    let mut bench = Bench::new(8);
+    bench.pins_mv[FSR] += 400.0;
+    assert!(bench.run(4_000).iter().all(|drive| *drive == MotorDrive::Coast));
+    bench.load(0.0, 0.0);
+    bench.run(100);
+    bench.load(4.0, 2.0);
+    assert!(bench.run(400).iter().any(|drive| drive.closes()), "S2 is back");
+}

@@ -102,7 +102,7 @@ impl Default for Config {
             grip: GripConfig {
                 slip_duty_permille: 1_000,
                 slip_frames: frames(30),
-                slip_frames_max: frames(90),
+                slip_frames_max: frames(50),
                 incipient_duty_permille: 400,
                 incipient_frames: frames(15),
                 settle_frames: frames(80),

@@ -16,7 +16,7 @@ use crate::gate::Gate;
 use crate::grip::Grip;
 use crate::health::{Change, Limits, SensorHealth};
 use crate::journal::Journal;
-use crate::vibration::{Vibration, VibrationDetector};
+use crate::vibration::{Trust, Vibration, VibrationDetector};
 
 /// How long the filters and the switches are given after the start, in frames.
 const WARM_UP_FRAMES: u32 = frames(200);
@@ -26,8 +26,11 @@ const STALE_FRAMES: u32 = tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME as u32;
 const MYO_HZ: u32 = 3 * SLOW_HZ;
 /// Equal readings of an active muscle in a row that no muscle gives: 50 ms. At rest, the general limit holds.
 const MYO_FROZEN_AFTER: u32 = MYO_HZ / 20;
-/// A quadrant this far above its zero when the hand is switched on is pressed, mV.
-const PRESSED_MV: i32 = 100;
+/// Equal samples in a row that a live film, with 30 of them rms of noise, hardly ever gives: before the jump of a film
+/// that freezes has come through its filters, it is doubted.
+const FILM_DOUBTED_AFTER: u32 = 2;
+/// A quadrant this far above its zero when the hand is switched on is pressed, uV.
+const PRESSED_UV: i32 = 100_000;
 
 static PVDF_LIMITS: Limits = Limits::of(&CHANNELS[PVDF], FRAME_HZ);
 static FSR_LIMITS: Limits = Limits::of(&CHANNELS[FSR], SLOW_HZ);
@@ -41,6 +44,7 @@ pub struct Senses {
     myo: [SensorHealth; 2],
     fsr_readings: [Option<u16>; FSR_COUNT],
     fsr_seen: bool,
+    pressed: bool,
     force_sensor: ForceSensor,
     detector: VibrationDetector,
     frames_seen: u32,
@@ -120,14 +124,18 @@ impl Senses {
     }
 
     fn films(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
-        let mut usable = [false; PVDF_COUNT];
+        let mut trust = [Trust::None; PVDF_COUNT];
         for (n, health) in self.pvdf.iter_mut().enumerate() {
             let (reading, change) = health.take(&PVDF_LIMITS, frame.pvdf[n]);
-            usable[n] = reading.is_ok();
+            trust[n] = match reading {
+                Err(_) => Trust::None,
+                Ok(_) if health.same() >= FILM_DOUBTED_AFTER => Trust::Doubtful,
+                Ok(_) => Trust::Full,
+            };
             report(journal, PVDF + n, change);
         }
-        self.films_usable = usable.contains(&true);
-        self.vibration = self.detector.process(&config.vibration, &frame.pvdf, &usable);
+        self.films_usable = trust.iter().any(|&trust| trust != Trust::None);
+        self.vibration = self.detector.process(&config.vibration, &frame.pvdf, &trust);
     }
 
     fn quadrant(&mut self, config: &Config, quadrant: usize, sample: u16, journal: &mut Journal) {
@@ -142,15 +150,23 @@ impl Senses {
             self.forces = None;
             return;
         };
+        let samples = [a, b, c, d];
+        let is_pressed = |sample: u16| fsr::uv_above_rest(sample) > PRESSED_UV;
         if !self.fsr_seen {
             self.fsr_seen = true;
-            for (n, sample) in [a, b, c, d].into_iter().enumerate() {
-                if fsr::uv_above_rest(sample) > PRESSED_MV * 1_000 {
-                    journal.fault(Fault::PressedAtBoot { channel: (FSR + n) as u8 });
-                }
+            for (n, _) in samples.iter().enumerate().filter(|&(_, &sample)| is_pressed(sample)) {
+                journal.fault(Fault::PressedAtBoot { channel: (FSR + n) as u8 });
+                self.pressed = true;
             }
         }
-        self.forces = Some(self.force_sensor.process([a, b, c, d], config.friction.loaded_mn));
+        // Once it has been seen unloaded, its zero is known again.
+        self.pressed &= samples.into_iter().any(is_pressed);
+        let mut forces = self.force_sensor.process(samples, config.friction.loaded_mn);
+        if self.pressed {
+            // What presses it may be no object: the size of the force is still a bound, its direction is not.
+            forces.ratio_permille = None;
+        }
+        self.forces = Some(forces);
     }
 
     fn muscle(&mut self, config: &Config, muscle: usize, sample: u16, journal: &mut Journal) {

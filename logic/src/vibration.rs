@@ -76,6 +76,18 @@ impl Film {
     }
 }
 
+/// How far a film's sample can be believed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Trust {
+    /// It is a number.
+    #[default]
+    Full,
+    /// The film may be freezing: its jump to where it froze is not to be taken for slip.
+    Doubtful,
+    /// It is no number.
+    None,
+}
+
 /// What the films say in one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Vibration {
@@ -94,22 +106,22 @@ pub struct VibrationDetector {
 }
 
 impl VibrationDetector {
-    /// Takes one sample of each film; `usable` are those that give numbers.
+    /// Takes one sample of each film, and how far it can be believed.
     pub fn process(
         &mut self,
         config: &VibrationConfig,
         samples: &[u16; PVDF_COUNT],
-        usable: &[bool; PVDF_COUNT],
+        trust: &[Trust; PVDF_COUNT],
     ) -> Vibration {
         let mut loudest = Envelope::default();
-        for ((film, &sample), &usable) in self.films.iter_mut().zip(samples).zip(usable) {
-            if !usable {
+        for ((film, &sample), &trust) in self.films.iter_mut().zip(samples).zip(trust) {
+            if trust == Trust::None {
                 // Primed anew when it comes back: its jump back is no vibration.
                 *film = Film::default();
                 continue;
             }
             let envelope = film.process(sample);
-            if envelope.inside > loudest.inside {
+            if trust == Trust::Full && envelope.inside > loudest.inside {
                 loudest = envelope;
             }
         }
@@ -189,7 +201,7 @@ mod tests {
         let config = crate::config::Config::default().vibration;
         samples
             .iter()
-            .map(|&sample| detector.process(&config, &[sample; PVDF_COUNT], &[true; PVDF_COUNT]))
+            .map(|&sample| detector.process(&config, &[sample; PVDF_COUNT], &[Trust::Full; PVDF_COUNT]))
             .collect()
     }
 
@@ -229,10 +241,9 @@ mod tests {
     fn a_film_that_comes_back_is_primed_anew() {
         let mut detector = VibrationDetector::default();
         let config = crate::config::Config::default().vibration;
-        for usable in [true, false, true] {
+        for (trust, sample) in [(Trust::Full, 12_000), (Trust::None, 0), (Trust::Full, 12_000)] {
             for _ in 0..200 {
-                let sample = if usable { 12_000 } else { 0 };
-                let v = detector.process(&config, &[sample; PVDF_COUNT], &[usable; PVDF_COUNT]);
+                let v = detector.process(&config, &[sample; PVDF_COUNT], &[trust; PVDF_COUNT]);
                 assert_eq!(v, Vibration::default());
             }
         }
