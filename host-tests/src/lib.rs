@@ -46,12 +46,13 @@ impl Bench {
         }
     }
 
-    /// At rest, holding something with 4 N and a shear of 0.4 N, long enough for the reflex to watch.
+    /// Switched on at rest, then holding something with 4 N and a shear of 0.4 N, long enough for the reflex to watch.
     #[must_use]
     pub fn holding(seed: u64) -> Self {
         let mut bench = Self::new(seed);
+        bench.run(200);
         bench.load(4.0, 0.4);
-        bench.run(1_000);
+        bench.run(800);
         assert_eq!(bench.fingertip.mode(), GripMode::Watch);
         bench
     }
