@@ -21,6 +21,7 @@ mod pole;
 mod random;
 mod schedule;
 mod sensor;
+pub mod stepping;
 pub mod truth;
 pub mod world;
 

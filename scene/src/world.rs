@@ -63,7 +63,7 @@ impl World {
         let task = match &scene.object {
             Some(object) => Task::Grasp {
                 grasp: Grasp::new(
-                    object,
+                    object.get_ref(),
                     &scene.fill,
                     &scene.table,
                     surface,

@@ -48,6 +48,19 @@ fn every_mistake_is_named_where_it_stands() {
         ("mu_d = 0.4", "mu_d = 0.6", 8, &["mu_d = 0.6", "mu_s = 0.5"]),
         ("mu_d = 0.4", "mu_dyn = 0.4", 8, &["mu_dyn", "expected", "mu_d"]),
         ("mass_kg = 0.2", "mass_kg = -0.2", 12, &["mass_kg", "-0.2", "0.0005..=20"]),
+        // Each number within its own range, but together too stiff for the step of one scan: refused at the section.
+        (
+            "mass_kg = 0.2\nwidth_mm = 60\nstiffness_n_per_mm = 3",
+            "mass_kg = 0.0005\nwidth_mm = 60\nstiffness_n_per_mm = 3\n[table]\nmat_n_per_mm = 1000",
+            11,
+            &["mass_kg", "mat_n_per_mm", "23 us", "125 us"],
+        ),
+        (
+            "stiffness_n_per_mm = 3",
+            "stiffness_n_per_mm = 1000\n[gripper]\nspeed_mm_s = 500\nforce_n = 1",
+            11,
+            &["gripper", "stiffness_n_per_mm", "4 us", "125 us"],
+        ),
         ("mass_kg = 0.2", "mass_g = 200", 12, &["mass_g", "mass_kg"]),
         ("duration_s = 10", "duration_s = inf", 4, &["duration_s", "inf", "3600"]),
         ("duration_s = 10", "duration_s = 0", 4, &["duration_s", "0 is outside"]),

@@ -8,6 +8,7 @@ use toml::Spanned;
 use super::SceneFile;
 use super::quantity::{Instant, Mu};
 use super::sections::{Command, CommandKind, FaultKind, SensorFault};
+use super::step::step;
 use crate::commands;
 
 /// The first thing that does not fit.
@@ -16,9 +17,9 @@ pub(super) struct Wrong {
     pub(super) what: String,
 }
 
-type Checked = Result<(), Wrong>;
+pub(super) type Checked = Result<(), Wrong>;
 
-fn demand(fits: bool, span: Range<usize>, what: impl FnOnce() -> String) -> Checked {
+pub(super) fn demand(fits: bool, span: Range<usize>, what: impl FnOnce() -> String) -> Checked {
     if fits { Ok(()) } else { Err(Wrong { span, what: what() }) }
 }
 
@@ -26,6 +27,7 @@ pub(super) fn check(scene: &SceneFile) -> Checked {
     friction(scene)?;
     instants(scene)?;
     one_story(scene)?;
+    step(scene)?;
     let opening = &scene.gripper.opening_mm;
     demand(opening.get_ref().get() <= scene.gripper.range_mm.get(), opening.span(), || {
         format!(
@@ -78,7 +80,7 @@ fn instants(scene: &SceneFile) -> Checked {
             format!("{at_s} s is after the scene's end at duration_s = {}", scene.duration_s())
         })?;
     }
-    let mut poured_kg = scene.object.as_ref().map_or(0.0, |object| object.mass_kg.get());
+    let mut poured_kg = scene.object.as_ref().map_or(0.0, |object| object.get_ref().mass_kg.get());
     for fill in &scene.fill {
         poured_kg += fill.add_kg.get_ref().get();
         demand(poured_kg > 0.0, fill.add_kg.span(), || {

@@ -6,6 +6,7 @@ mod defaults;
 mod error;
 pub mod quantity;
 pub mod sections;
+mod step;
 
 use serde::Deserialize;
 use toml::Spanned;
@@ -32,7 +33,7 @@ pub struct SceneFile {
     /// The relative speed above which the object counts as slipping.
     slip_floor_mm_s: Speed,
     pub(crate) contact: Contact,
-    pub(crate) object: Option<Object>,
+    pub(crate) object: Option<Spanned<Object>>,
     #[serde(default)]
     pub(crate) table: Table,
     pub(crate) robot: Option<Spanned<Robot>>,

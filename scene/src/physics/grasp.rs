@@ -156,7 +156,7 @@ mod tests {
             &[],
         );
         let surface = Surface::new(&scene.contact, &[]);
-        let mut grasp = Grasp::new(scene.object.as_ref().unwrap(), &[], &scene.table, surface, 18.0);
+        let mut grasp = Grasp::new(scene.object.as_ref().unwrap().get_ref(), &[], &scene.table, surface, 18.0);
         let mut touch = Touch::default();
         for step in 0..(for_s / STEP_S) as u32 {
             let t_s = f64::from(step) * STEP_S;

@@ -1,10 +1,12 @@
 //! What moves, and what makes it move.
 
+pub mod brush;
 pub mod contact;
 pub mod friction;
 pub mod grasp;
 pub mod gripper;
 pub mod hand;
+pub mod stribeck;
 pub mod stroke;
 pub mod wearer;
 

@@ -1,0 +1,231 @@
+//! L1: a patch of bristles under a Hertzian load. It begins to slide at its edge, long before all of it slides.
+
+use std::num::NonZeroU16;
+
+use super::friction::Friction;
+
+/// Elements of the shipped patch. The worst error of the shear is `0.375 / N^2` of `mu P`: 0.07 %.
+pub const ELEMENTS: NonZeroU16 = NonZeroU16::new(24).unwrap();
+
+/// What a patch is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pad {
+    /// Radius a of the contact, m. It is kept under every load: a fingertip that is flattened already. Assumed.
+    pub radius_m: f64,
+    /// Shear stiffness k per area, N/m^3.
+    pub stiffness_n_per_m3: f64,
+}
+
+impl Pad {
+    /// Of the whole patch while all of it sticks, `k pi a^2`, N/m.
+    #[must_use]
+    pub fn stiffness_n_per_m(&self) -> f64 {
+        self.stiffness_n_per_m3 * self.area_m2()
+    }
+
+    /// The displacement at which the last element lets go, `mu p0 / k`, m: `s` is the displacement over it.
+    #[must_use]
+    pub fn macro_slip_m(&self, normal_n: f64, mu: f64) -> f64 {
+        mu * 1.5 * normal_n / self.stiffness_n_per_m()
+    }
+
+    fn area_m2(&self) -> f64 {
+        std::f64::consts::PI * self.radius_m * self.radius_m
+    }
+}
+
+/// One ring of the patch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Element {
+    /// Where it is, as a part of the contact's radius: the root mean square of its edges.
+    radius_part: f64,
+    area_part: f64,
+    load_part: f64,
+    bristle_m: f64,
+    sticks: bool,
+    released_n: f64,
+}
+
+impl Element {
+    /// Distance from the centre as a part of the contact's radius.
+    #[must_use]
+    pub const fn radius_part(&self) -> f64 {
+        self.radius_part
+    }
+
+    /// Its part of the area.
+    #[must_use]
+    pub const fn area_part(&self) -> f64 {
+        self.area_part
+    }
+
+    /// Its part of the normal load.
+    #[must_use]
+    pub const fn load_part(&self) -> f64 {
+        self.load_part
+    }
+
+    /// Whether it sticks.
+    #[must_use]
+    pub const fn sticks(&self) -> bool {
+        self.sticks
+    }
+
+    /// The shear that it let go of in the last step, N: this micro-slip event is what a PVDF film over it hears.
+    #[must_use]
+    pub const fn released_n(&self) -> f64 {
+        self.released_n
+    }
+}
+
+/// What a step of the patch did.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Outcome {
+    /// Shear Q after the step, N, against the displacement.
+    pub shear_n: f64,
+    /// Elements that let go in this step.
+    pub let_go: usize,
+    /// The shear that they let go of, N.
+    pub released_n: f64,
+}
+
+/// The patch: rings whose pressures are evenly spaced.
+///
+/// With `w = p / p0 = sqrt(1 - (r/a)^2)` a ring between `w1` and `w2` has the area part `w2^2 - w1^2` and the load part
+/// `w2^3 - w1^3`, both exact. So the patch carries its load and its stiffness exactly at every N, each ring that only
+/// sticks or only slides is exact too, and the one that the edge of the stick zone crosses is all of the error: second
+/// order in 1/N. Evenly spaced radii would squeeze the edge, where the pressure falls like a root, into one ring. And the
+/// rings let go at evenly spaced displacements, which is how the events should come.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BrushPatch {
+    pad: Pad,
+    elements: Vec<Element>,
+}
+
+impl BrushPatch {
+    /// At rest, loose.
+    #[must_use]
+    pub fn new(pad: Pad, elements: NonZeroU16) -> Self {
+        let edge = |n: u16| f64::from(n) / f64::from(elements.get());
+        let ring = |n: u16| {
+            let (low, high) = (edge(n), edge(n + 1));
+            Element {
+                radius_part: (1.0 - (low * low + high * high) / 2.0).sqrt(),
+                area_part: high * high - low * low,
+                load_part: high * high * high - low * low * low,
+                bristle_m: 0.0,
+                sticks: true,
+                released_n: 0.0,
+            }
+        };
+        Self { pad, elements: (0..elements.get()).map(ring).collect() }
+    }
+
+    /// Goes on by a displacement of `by_m` of the object over the pad, pressed with `normal_n`.
+    ///
+    /// Each element holds until it carries `mu_s` of its load, drops to `mu_d` and slides there until the motion stops or
+    /// turns. It is exact at any step in which the direction does not change.
+    pub fn step(&mut self, normal_n: f64, friction: Friction, by_m: f64) -> Outcome {
+        let stiffness_n_per_m = self.pad.stiffness_n_per_m();
+        let normal_n = normal_n.max(0.0);
+        let mut outcome = Outcome::default();
+        for element in &mut self.elements {
+            // The deflection at which the friction coefficient is 1, m.
+            let whole_m = element.load_part * normal_n / (element.area_part * stiffness_n_per_m);
+            let trial_m = element.bristle_m + by_m;
+            let slid = !element.sticks;
+            let mu = if slid { friction.mu_d } else { friction.mu_s };
+            element.sticks = if slid {
+                trial_m.abs() < mu * whole_m || by_m == 0.0
+            } else {
+                trial_m.abs() <= mu * whole_m
+            };
+            element.released_n = 0.0;
+            if element.sticks {
+                element.bristle_m = trial_m;
+            } else {
+                element.bristle_m = (friction.mu_d * whole_m).copysign(trial_m);
+                if !slid {
+                    element.released_n = (friction.mu_s - friction.mu_d) * element.load_part * normal_n;
+                    outcome.let_go += 1;
+                    outcome.released_n += element.released_n;
+                }
+            }
+            outcome.shear_n += element.area_part * stiffness_n_per_m * element.bristle_m;
+        }
+        outcome
+    }
+
+    /// The rings, from the edge of the contact to its centre.
+    #[must_use]
+    pub fn elements(&self) -> &[Element] {
+        &self.elements
+    }
+
+    /// The part of the radius that sticks, c/a.
+    #[must_use]
+    pub fn stick_radius_part(&self) -> f64 {
+        self.elements
+            .iter()
+            .filter(|element| element.sticks)
+            .map(|element| element.area_part)
+            .sum::<f64>()
+            .sqrt()
+    }
+
+    /// Whether none of it sticks.
+    #[must_use]
+    pub fn is_sliding(&self) -> bool {
+        self.elements.iter().all(|element| !element.sticks)
+    }
+
+    /// Energy in its bristles, J.
+    #[must_use]
+    pub fn energy_j(&self) -> f64 {
+        let squares =
+            self.elements.iter().map(|element| element.area_part * element.bristle_m * element.bristle_m);
+        0.5 * self.pad.stiffness_n_per_m() * squares.sum::<f64>()
+    }
+}
+
+/// The closed forms, for one friction coefficient, with `s = k delta / (mu p0)` from 0 to 1.
+pub mod closed_form {
+    /// Q / (mu P) of the brush: (3 s - s^3) / 2.
+    #[must_use]
+    pub fn shear(s: f64) -> f64 {
+        (3.0 * s - s * s * s) / 2.0
+    }
+
+    /// c / a of the brush: sqrt(1 - s^2).
+    #[must_use]
+    pub fn stick_radius(s: f64) -> f64 {
+        (1.0 - s * s).max(0.0).sqrt()
+    }
+
+    /// Q / P of the brush where what slides has mu_d and `s` is reckoned with mu_s: `1.5 mu_s s (1 - s^2) + mu_d s^3`.
+    #[must_use]
+    pub fn shear_with_drop(s: f64, friction: super::Friction) -> f64 {
+        1.5 * friction.mu_s * s * (1.0 - s * s) + friction.mu_d * s * s * s
+    }
+
+    /// The s of its greatest shear: `sqrt(mu_s / (3 mu_s - 2 mu_d))`. Whoever pulls harder than there loses all of it.
+    #[must_use]
+    pub fn peak(friction: super::Friction) -> f64 {
+        (friction.mu_s / (3.0 * friction.mu_s - 2.0 * friction.mu_d)).sqrt()
+    }
+
+    /// Q / (mu P) of the elastic half-space (Cattaneo 1938, Mindlin 1949): 1 - (1 - s)^1.5.
+    ///
+    /// With the same stiffness at rest (`k pi a^2 = 8 G* a`) both let go altogether at the same displacement, so `s`
+    /// means the same.
+    #[must_use]
+    pub fn half_space_shear(s: f64) -> f64 {
+        1.0 - (1.0 - s) * (1.0 - s).sqrt()
+    }
+
+    /// c / a of the elastic half-space under a shear of `q` = Q / (mu P): (1 - q)^(1/3).
+    #[must_use]
+    pub fn half_space_stick_radius(q: f64) -> f64 {
+        libm::cbrt(1.0 - q)
+    }
+}

@@ -1,0 +1,164 @@
+//! L2: friction that falls with speed, under a mass on a spring.
+//!
+//! A mass held by a spring on a moving surface vibrates by itself exactly when `c + P dmu/dv < 0` at the sliding speed
+//! (`SCENES.md`, L2). That vibration is the continuous signal of the photoelastic sensor (Dubey 2006, section 3, "a
+//! negative damping to sustain the vibration"); with L0 and L1, whose sliding friction is constant, it dies away.
+
+use super::GRAVITY_M_S2;
+
+/// mu(v) = mu_d + (mu_s - mu_d) exp(-v / v_s).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stribeck {
+    /// At rest.
+    pub mu_s: f64,
+    /// At high speed. At most `mu_s`.
+    pub mu_d: f64,
+    /// v_s, the speed at which 1/e of the difference is left, m/s. Above 0.
+    pub speed_m_s: f64,
+}
+
+impl Stribeck {
+    /// The coefficient at a sliding speed of either direction.
+    #[must_use]
+    pub fn mu(&self, slide_m_s: f64) -> f64 {
+        self.mu_d + (self.mu_s - self.mu_d) * libm::exp(-slide_m_s.abs() / self.speed_m_s)
+    }
+
+    /// dmu/dv at a sliding speed, s/m: never positive.
+    #[must_use]
+    pub fn slope_s_m(&self, slide_m_s: f64) -> f64 {
+        (self.mu_d - self.mu(slide_m_s)) / self.speed_m_s
+    }
+}
+
+/// What the slider is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slider {
+    /// The mass that rubs, kg.
+    pub mass_kg: f64,
+    /// Of its spring, N/m.
+    pub stiffness_n_per_m: f64,
+    /// Of its damper, N s/m.
+    pub damping_ns_per_m: f64,
+    /// Between mass and surface.
+    pub friction: Stribeck,
+}
+
+/// Small vibrations about steady sliding, from the linearised equation
+/// `m x'' + (c + P dmu/dv) x' + k x = 0`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SmallSignal {
+    /// Amplitudes go as exp(growth t), 1/s. Above 0 it vibrates by itself.
+    pub growth_per_s: f64,
+    /// Angular frequency, rad/s; 0 where it creeps back or runs away without swinging.
+    pub omega_rad_s: f64,
+}
+
+impl Slider {
+    /// What the linearised equation says about sliding at `surface_m_s` under `normal_n`.
+    #[must_use]
+    pub fn small_signal(&self, normal_n: f64, surface_m_s: f64) -> SmallSignal {
+        let net_ns_per_m = self.damping_ns_per_m + normal_n * self.friction.slope_s_m(surface_m_s);
+        let growth_per_s = -net_ns_per_m / (2.0 * self.mass_kg);
+        let square = self.stiffness_n_per_m / self.mass_kg - growth_per_s * growth_per_s;
+        SmallSignal { growth_per_s, omega_rad_s: square.max(0.0).sqrt() }
+    }
+
+    /// The longest inner step that keeps the growth rate within 1 % and the frequency within 0.2 %, s.
+    ///
+    /// The step multiplies an amplitude by `sqrt(1 - D)` with `D = dt (c + P dmu/dv) / m`, which is exp(growth dt) but
+    /// for a part `D/2`, and has the frequency `omega (1 + (omega dt)^2 / 24)`. Both are held at the steepest slope.
+    fn inner_step_s(&self, normal_n: f64) -> f64 {
+        let steepest_ns_per_m = self.damping_ns_per_m - normal_n * self.friction.slope_s_m(0.0);
+        let omega_rad_s = (self.stiffness_n_per_m / self.mass_kg).sqrt();
+        (0.02 * self.mass_kg / steepest_ns_per_m).min(0.2 / omega_rad_s)
+    }
+}
+
+/// The longest inner step is cut no further than this: a slider that wants more is too light for its friction, and what
+/// it does between two scans is no longer resolved. It stays stable.
+const INNER_STEPS_MAX: f64 = 1_000.0;
+
+/// A slider in motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StribeckSlider {
+    slider: Slider,
+    position_m: f64,
+    speed_m_s: f64,
+    shear_n: f64,
+}
+
+impl StribeckSlider {
+    /// At rest, its spring loose.
+    #[must_use]
+    pub const fn new(slider: Slider) -> Self {
+        Self { slider, position_m: 0.0, speed_m_s: 0.0, shear_n: 0.0 }
+    }
+
+    /// Deflected by `position_m`, moving at `speed_m_s`.
+    #[must_use]
+    pub const fn with_motion(mut self, position_m: f64, speed_m_s: f64) -> Self {
+        self.position_m = position_m;
+        self.speed_m_s = speed_m_s;
+        self
+    }
+
+    /// Goes on by `dt_s` over a surface that moves at `surface_m_s`, pressed with `normal_n`.
+    ///
+    /// Inside, a Moreau step with mu taken at the speed before it; as many as the accuracy needs. It sticks exactly:
+    /// the slider then has the speed of the surface, not nearly.
+    pub fn step(&mut self, normal_n: f64, surface_m_s: f64, dt_s: f64) {
+        let normal_n = normal_n.max(0.0);
+        let count = (dt_s / self.slider.inner_step_s(normal_n)).ceil().clamp(1.0, INNER_STEPS_MAX);
+        for _ in 0..count as u32 {
+            self.inner(normal_n, surface_m_s, dt_s / count);
+        }
+    }
+
+    fn inner(&mut self, normal_n: f64, surface_m_s: f64, dt_s: f64) {
+        let Slider { mass_kg, stiffness_n_per_m, damping_ns_per_m, friction } = self.slider;
+        let pull_n = -stiffness_n_per_m * self.position_m - damping_ns_per_m * self.speed_m_s;
+        let free_m_s = self.speed_m_s + pull_n / mass_kg * dt_s;
+        let stopping_ns = mass_kg * (surface_m_s - free_m_s);
+        let limit_ns = friction.mu(self.speed_m_s - surface_m_s) * normal_n * dt_s;
+        let impulse_ns = if stopping_ns.abs() <= limit_ns {
+            self.speed_m_s = surface_m_s;
+            stopping_ns
+        } else {
+            let sliding_ns = limit_ns.copysign(stopping_ns);
+            self.speed_m_s = free_m_s + sliding_ns / mass_kg;
+            sliding_ns
+        };
+        self.position_m += self.speed_m_s * dt_s;
+        self.shear_n = impulse_ns / dt_s;
+    }
+
+    /// Deflection of its spring, m: what the photoelastic layer sees.
+    #[must_use]
+    pub const fn position_m(&self) -> f64 {
+        self.position_m
+    }
+
+    /// Speed of the mass, m/s.
+    #[must_use]
+    pub const fn speed_m_s(&self) -> f64 {
+        self.speed_m_s
+    }
+
+    /// Friction on the mass in the last inner step, N.
+    #[must_use]
+    pub const fn shear_n(&self) -> f64 {
+        self.shear_n
+    }
+}
+
+/// The sensing strip of Dubey 2006 (9 x 3 mm of metal on polyurethane). The paper gives neither its mass nor its
+/// frequency; all numbers are assumed.
+pub const STRIP: Slider =
+    Slider { mass_kg: 0.005, stiffness_n_per_m: 2_800.0, damping_ns_per_m: 4.0, friction: METAL };
+
+/// Metal on the metal strip. Assumed.
+pub const METAL: Stribeck = Stribeck { mu_s: 0.35, mu_d: 0.30, speed_m_s: 0.003 };
+
+/// The weight of Dubey's aluminium block (105 g), N: the order of the normal force in its experiments.
+pub const BLOCK_N: f64 = 0.105 * GRAVITY_M_S2;
