@@ -8,19 +8,19 @@ pub mod text;
 pub mod wearer;
 
 use serde::Serialize;
-use tenax_hal_shim::channel::CHANNELS;
+use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ};
 use tenax_hal_shim::wire::EventKind;
 use tenax_hal_shim::words::Fault;
 
-use crate::board::{Run, TickCost};
+use crate::board::Run;
 use crate::timeline::Timeline;
 
 /// The core's clock, Hz.
 const CORE_HZ: f64 = 100e6;
-/// Cycles an instruction takes at least and at most, on average over a tick: a Cortex-M4 runs most instructions in one
-/// cycle, loads in two and taken branches in two to four, and the flash's prefetch hides most of its three wait states.
-/// The emulated core counts instructions, not cycles, so the load is a bracket.
-pub const CYCLES_PER_INSTRUCTION: [f64; 2] = [1.0, 3.0];
+/// Cycles an instruction takes on average, at least and at most: a Cortex-M4 runs most instructions in one cycle, single
+/// loads in two and taken branches in two to four, and the flash's prefetch and cache hide most of its three wait states.
+/// The emulated core counts instructions, not cycles, so a load is a bracket.
+pub const CYCLES_PER_INSTRUCTION: [f64; 2] = [1.0, 2.0];
 
 /// A report. The keys of issue 2 are stable; null where a thing did not happen.
 #[derive(Clone, Debug, Serialize)]
@@ -70,8 +70,10 @@ pub struct Ticks {
     pub instructions_mean: Option<f64>,
     /// Instructions of one tick, worst.
     pub instructions_max: Option<u64>,
-    /// Part of the core at 100 MHz that everything takes (ticks, interrupts, telemetry), per cent, with [`CYCLES_PER_INSTRUCTION`] at its two ends.
+    /// Part of the core at 100 MHz that the ticks take, per cent, with [`CYCLES_PER_INSTRUCTION`] at its two ends.
     pub load_percent: Option<[f64; 2]>,
+    /// The same for everything that the core does: ticks, interrupts, telemetry.
+    pub core_load_percent: Option<[f64; 2]>,
 }
 
 impl Ticks {
@@ -82,15 +84,15 @@ impl Ticks {
             dropped: run.counters.frames_lost + run.counters.ticks_late,
             instructions_mean: cost.map(|cost| cost.instructions_mean),
             instructions_max: cost.map(|cost| cost.instructions_max),
-            load_percent: cost.map(|cost| load_percent(&cost)),
+            load_percent: cost.map(|cost| load_percent(cost.instructions_mean * f64::from(FRAME_HZ))),
+            core_load_percent: cost.map(|cost| load_percent(cost.instructions_per_s)),
         }
     }
 }
 
 /// Per cent of the core at 100 MHz, as a bracket.
-#[must_use]
-pub fn load_percent(cost: &TickCost) -> [f64; 2] {
-    CYCLES_PER_INSTRUCTION.map(|cycles| cost.instructions_per_s * cycles / CORE_HZ * 100.0)
+fn load_percent(instructions_per_s: f64) -> [f64; 2] {
+    CYCLES_PER_INSTRUCTION.map(|cycles| instructions_per_s * cycles / CORE_HZ * 100.0)
 }
 
 /// Grip force, per finger.

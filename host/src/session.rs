@@ -1,11 +1,15 @@
 //! One run: from what is to be run, on which board, to its report and its figure.
 
 use std::path::Path;
+#[cfg(feature = "emulator")]
+use std::path::PathBuf;
 
 use anyhow::{Context, bail};
 use tenax_scene::plant::Plant;
 use tenax_scene::{SceneFile, World, builtin};
 
+#[cfg(feature = "emulator")]
+use crate::board::emulated;
 use crate::board::{Run, simulated};
 use crate::plot::{Figure, panels};
 use crate::replay::{Recording, ReplayPlant, library};
@@ -22,11 +26,26 @@ pub const DEFAULT_SCENE: &str = "glass";
 pub enum Board {
     /// The host's own build of it.
     Host,
+    /// The real image, instruction by instruction.
+    #[cfg(feature = "emulator")]
+    Emulated {
+        /// Its ELF file.
+        image: PathBuf,
+        /// How to run it.
+        options: emulated::Options,
+    },
 }
 
 impl Board {
-    /// The emulated board with the image of this checkout, built if it is not yet.
-    pub fn emulated() -> anyhow::Result<Self> {
+    /// The emulated board with the image of the workspace at `root`, built if it is not yet.
+    #[cfg(feature = "emulator")]
+    pub fn emulated(root: &Path) -> anyhow::Result<Self> {
+        Ok(Self::Emulated { image: crate::image::build(root)?, options: emulated::Options::default() })
+    }
+
+    /// Says how to get an emulated board.
+    #[cfg(not(feature = "emulator"))]
+    pub fn emulated(_root: &Path) -> anyhow::Result<Self> {
         bail!(
             "this `tenax` was built without the emulator: use `cargo tenax ...` in a checkout, or add --host"
         )
@@ -37,13 +56,21 @@ impl Board {
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Host => "host",
+            #[cfg(feature = "emulator")]
+            Self::Emulated { .. } => "emulated",
         }
     }
 
     /// Connects a plant and runs it to its end. `progress` hears of the virtual time that has gone by, s.
-    pub fn run<P: Plant>(&self, plant: P, progress: &mut dyn FnMut(f64)) -> anyhow::Result<(Run, P)> {
+    pub fn run<P: Plant + 'static>(
+        &self,
+        plant: P,
+        progress: &mut dyn FnMut(f64),
+    ) -> anyhow::Result<(Run, P)> {
         match self {
             Self::Host => Ok(simulated::run(plant, progress)),
+            #[cfg(feature = "emulator")]
+            Self::Emulated { image, options } => emulated::run(image, plant, options, progress),
         }
     }
 }

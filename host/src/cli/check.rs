@@ -24,7 +24,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         Some(data) => data.clone(),
         None => workspace::root()?.join("../shared/data"),
     };
-    let board = if args.host { Board::Host } else { Board::emulated()? };
+    let board = if args.host { Board::Host } else { Board::emulated(&workspace::root()?)? };
     let (mut failed, mut skipped, mut passed) = (0, 0, 0);
     let mut print = |bar: Bar| {
         println!("{bar}");

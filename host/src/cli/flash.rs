@@ -5,6 +5,8 @@ use std::process::{Command, ExitCode};
 
 use anyhow::{Context, bail};
 
+use super::workspace;
+
 const CHIP: &str = "STM32F411RETx";
 const INSTALL: &str = "\
 probe-rs is not installed, and it is what talks to the board's ST-LINK.
@@ -31,7 +33,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let image = match &args.image {
         Some(image) => image.clone(),
-        None => build()?,
+        None => crate::image::build(&workspace::root()?)?,
     };
     let mut download = Command::new("probe-rs");
     download.args(["download", "--chip", CHIP]).arg(&image);
@@ -53,8 +55,4 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     }
     println!("flashed {}; watch it with   tenax monitor", image.display());
     Ok(ExitCode::SUCCESS)
-}
-
-fn build() -> anyhow::Result<PathBuf> {
-    bail!("not yet")
 }

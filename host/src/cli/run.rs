@@ -8,6 +8,7 @@ use anyhow::Context;
 use clap::ValueEnum;
 
 use super::progress::Progress;
+use super::workspace;
 use crate::plot::{draw, png};
 use crate::replay::Recording;
 use crate::report::text::Text;
@@ -48,7 +49,7 @@ enum Format {
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    let board = if args.host { Board::Host } else { Board::emulated()? };
+    let board = if args.host { Board::Host } else { Board::emulated(&workspace::root()?)? };
     let outcome = match &args.replay {
         Some(path) => {
             let recording = Recording::read(path)?;

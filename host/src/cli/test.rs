@@ -3,6 +3,7 @@
 use std::process::{Command, ExitCode};
 
 use super::workspace;
+use crate::image;
 
 /// Run every test of the workspace, the emulated ones included.
 #[derive(Debug, clap::Args)]
@@ -27,6 +28,8 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         "emulator",
     ]);
     emulated.args(&args.extra);
+    // Before the tests, so that its messages are seen and what is to be installed is said once.
+    image::build(&workspace::root()?)?;
     let mut passed = true;
     for command in [&mut plain, &mut emulated] {
         // The second is run even if the first fails: a person wants to know of all that is broken.

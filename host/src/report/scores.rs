@@ -117,8 +117,13 @@ fn last_s(slip: &SlipSpan) -> f64 {
 mod tests {
     use super::*;
 
-    const SLIP: SlipSpan =
-        SlipSpan { micro_onset_s: 1.0, macro_onset_s: Some(1.1), end_s: 1.12, distance_mm: 1.0 };
+    const SLIP: SlipSpan = SlipSpan {
+        micro_onset_s: 1.0,
+        macro_onset_s: Some(1.1),
+        end_s: 1.12,
+        distance_mm: 1.0,
+        meant: false,
+    };
 
     #[test]
     fn a_detection_belongs_to_a_slip_from_its_micro_onset_to_50_ms_after_its_macro_onset() {

@@ -62,15 +62,19 @@ impl Display for Text<'_> {
 fn ticks(f: &mut fmt::Formatter<'_>, report: &Report) -> fmt::Result {
     let ticks = &report.ticks;
     line!(f, "ticks", "{} run, {} dropped, {} overruns", ticks.count, ticks.dropped, report.overruns)?;
-    if let (Some(mean), Some(max), Some([low, high])) =
-        (ticks.instructions_mean, ticks.instructions_max, ticks.load_percent)
+    if let (Some(mean), Some(max), Some(load), Some(core)) =
+        (ticks.instructions_mean, ticks.instructions_max, ticks.load_percent, ticks.core_load_percent)
     {
+        line!(f, "tick", "{mean:.0} instructions, {max} at worst")?;
         let [few, many] = CYCLES_PER_INSTRUCTION;
         line!(
             f,
             "load",
-            "{mean:.0} instructions a tick, {max} at worst: {low:.1} to {high:.1} % of 100 MHz at {few:.0} to {many:.0} \
-             cycles an instruction"
+            "ticks {:.1} to {:.1} %, all {:.1} to {:.1} % of 100 MHz, at {few:.0} to {many:.0} cycles an instruction",
+            load[0],
+            load[1],
+            core[0],
+            core[1]
         )?;
     }
     Ok(())

@@ -1,0 +1,57 @@
+//! The monitor on a real serial line (a pty pair), with garbage on it, and unplugged.
+#![cfg(unix)]
+
+use std::io::Write;
+use std::thread;
+use std::time::Duration;
+
+use serialport::{SerialPort, TTYPort};
+use tenax::monitor::{Counts, End, Monitor};
+use tenax_hal_shim::wire::{Counters, FRAME_MAX, Up, encode};
+
+fn frame(sequence: u16) -> Vec<u8> {
+    let message = Up::Counters(Counters { frames: u32::from(sequence), ..Counters::default() });
+    encode(sequence, &message, &mut [0; FRAME_MAX]).expect("it fits").to_vec()
+}
+
+#[test]
+fn a_board_that_is_unplugged_ends_the_watch_with_a_reason() {
+    let (mut board, mut port) = TTYPort::pair().expect("this machine has ptys");
+    port.set_timeout(Duration::from_millis(50)).unwrap();
+    let sender = thread::spawn(move || {
+        // It was switched on in the middle of a message, sends two, loses one, and has its cable pulled.
+        board.write_all(&frame(0)[5..]).unwrap();
+        for sequence in [1, 2, 4] {
+            board.write_all(&frame(sequence)).unwrap();
+        }
+        board.flush().unwrap();
+        thread::sleep(Duration::from_millis(200));
+    });
+    let (mut monitor, mut out) = (Monitor::default(), Vec::new());
+    let end = monitor.watch(&mut port, &mut out).unwrap();
+    sender.join().unwrap();
+    let text = String::from_utf8(out).unwrap();
+    assert!(matches!(end, End::Unplugged(_) | End::Over), "{end:?}");
+    assert_eq!(monitor.counts(), Counts { messages: 3, bad_frames: 1, missed: 1 }, "{text}");
+    assert!(text.contains("    2 counters: 2 frames"), "{text}");
+}
+
+#[test]
+fn random_bytes_are_survived_and_counted() {
+    // xorshift: any bytes will do, the same each time.
+    let mut state = 0x2545_F491_4F6C_DD1D_u64;
+    let noise = std::iter::repeat_with(|| {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        state as u8
+    });
+    let mut bytes: Vec<u8> = noise.take(1 << 20).collect();
+    bytes.push(0);
+    bytes.extend(frame(9));
+    let (mut monitor, mut out) = (Monitor::default(), Vec::new());
+    monitor.watch(&mut bytes.as_slice(), &mut out).unwrap();
+    let counts = monitor.counts();
+    assert_eq!(counts.messages, 1, "a CRC-32 lets one in four billion through");
+    assert!(counts.bad_frames > 3_000, "{counts}");
+}

@@ -1,0 +1,99 @@
+//! The report's keys: other people's programs read them.
+
+use serde_json::Value;
+use tenax::session::{self, Board};
+
+/// Every key of a scene's report, in order, as a path. Those of issue 2 must stay; new ones are added here.
+const KEYS: &str = "
+    scene board seed virtual_s wall_s overruns
+    ticks.count ticks.dropped ticks.instructions_mean ticks.instructions_max ticks.load_percent
+    ticks.core_load_percent stack_bytes
+    slip.micro_onset_s slip.macro_onset_s slip.caught slip.latency_ms slip.distance_mm slip.dropped
+    slip.macro_slips slip.macro_slips_caught
+    oracle.distance_mm oracle.peak_force_n oracle.distance_ratio oracle.peak_force_ratio
+    grip.peak_force_n grip.needed_force_n
+    wearer.reflex_while_active wearer.open_latency_ms wearer.active_first_s wearer.active_permille wearer.reflex_ticks
+    detectors.s1.first_s detectors.s1.detections detectors.s1.false_alarms
+    detectors.s2.first_s detectors.s2.detections detectors.s2.false_alarms
+    detectors.wearer.first_s detectors.wearer.detections detectors.wearer.false_alarms
+    faults line.bytes line.messages_missed line.telemetry_dropped line.bad_frames replay
+";
+
+/// What a recording's report has below `replay`.
+const REPLAY_KEYS: &str = "
+    replay.recording replay.recipe replay.first_s replay.duration_s replay.lead_in_s replay.longest_gap_ms
+    replay.unused_columns replay.assumed
+    replay.force.peak_ratio replay.force.peak_s
+    replay.force.s2_first_s replay.force.s2_before_peak_ms replay.force.s1_first_s replay.force.s1_before_peak_ms
+    replay.muscle.onset_s replay.muscle.noticed_s replay.muscle.onset_delay_ms replay.muscle.active_part
+    replay.muscle.reflex_while_active
+";
+
+fn leaves(value: &Value, path: &str, into: &mut Vec<String>) {
+    match value {
+        Value::Object(map) => {
+            for (key, value) in map {
+                leaves(value, format!("{path}.{key}").trim_start_matches('.'), into);
+            }
+        }
+        _ => into.push(path.to_owned()),
+    }
+}
+
+fn found(report: &Value) -> Vec<String> {
+    let mut found = Vec::new();
+    leaves(report, "", &mut found);
+    found
+}
+
+fn expected(keys: &[&str]) -> Vec<String> {
+    keys.iter().flat_map(|keys| keys.split_whitespace()).map(str::to_owned).collect()
+}
+
+fn played(csv: &str, recipe: Option<&str>) -> Value {
+    let recording = tempfile::Builder::new().suffix(".csv").tempfile().unwrap();
+    std::fs::write(recording.path(), csv).unwrap();
+    let file = recipe.map(|text| {
+        let file = tempfile::Builder::new().suffix(".toml").tempfile().unwrap();
+        std::fs::write(file.path(), text).unwrap();
+        file
+    });
+    let recipe = file.as_ref().map(|file| file.path().to_str().unwrap());
+    let outcome = session::replay(recording.path(), recipe, 1, &Board::Host, &mut |_| {}).unwrap();
+    serde_json::to_value(&outcome.report).unwrap()
+}
+
+#[test]
+fn a_scenes_keys_are_stable() {
+    let file = session::load_scene(session::DEFAULT_SCENE).unwrap();
+    let outcome = session::scene(&file, 1, &Board::Host, &mut |_| {}).unwrap();
+    assert_eq!(found(&serde_json::to_value(&outcome.report).unwrap()), expected(&[KEYS]));
+}
+
+#[test]
+fn a_replays_keys_are_stable() {
+    let recipe = "title = ''\ndescription = ''\n[force]\nnormal = 'n'\nshear_x = 's'\n\
+                  [[map]]\ncolumn = 'm'\nchannels = ['myo_flexor']\ngain = 1.0\n";
+    let report = played("t,n,s,m\n0,1,0,0\n0.5,1,0,0\n", Some(recipe));
+    assert_eq!(found(&report), expected(&[KEYS.trim_end().strip_suffix("replay").unwrap(), REPLAY_KEYS]));
+}
+
+#[test]
+fn what_did_not_happen_or_is_not_known_is_null() {
+    let report = played("t,pvdf_1\n0,1.65\n0.5,1.65\n", None);
+    for path in [
+        "/slip/macro_onset_s",
+        "/slip/caught",
+        "/slip/dropped",
+        "/oracle/distance_mm",
+        "/grip/peak_force_n",
+        "/wearer/open_latency_ms",
+        "/detectors/s1/first_s",
+        "/detectors/s1/false_alarms",
+        "/ticks/instructions_mean",
+    ] {
+        assert_eq!(report.pointer(path), Some(&Value::Null), "{path}");
+    }
+    assert_eq!(report["board"], "host");
+    assert!(report["faults"].is_array());
+}
