@@ -1,19 +1,17 @@
 //! The last sample of every channel, for whoever asks over the line.
 
-use tenax_hal_shim::channel::{CHANNELS, COUNT, Input};
+use tenax_hal_shim::channel::{CHANNELS, Input, PVDF_COUNT, SWITCH_INPUTS};
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::wire::Up;
 
-/// The last samples, each as old as its channel is slow.
+/// The last samples, each as old as its channel is slow. Kept as they come, twelve and two a frame; only who asks pays
+/// for putting them in order.
+#[derive(Default)]
 pub struct LastSamples {
     frame: u32,
-    samples: [u16; COUNT],
-}
-
-impl Default for LastSamples {
-    fn default() -> Self {
-        Self { frame: 0, samples: [0; COUNT] }
-    }
+    pvdf: [u16; PVDF_COUNT],
+    switch_a: [u16; SWITCH_INPUTS as usize],
+    switch_b: [u16; SWITCH_INPUTS as usize],
 }
 
 impl LastSamples {
@@ -22,20 +20,22 @@ impl LastSamples {
         if !frame.valid {
             return;
         }
+        let select = usize::from(frame.select());
         self.frame = frame.sequence;
-        let shown = frame.select();
-        for (sample, channel) in self.samples.iter_mut().zip(&CHANNELS) {
-            match channel.input {
-                Input::Direct { rank } => *sample = frame.pvdf[usize::from(rank)],
-                Input::SwitchA { select } if select == shown => *sample = frame.switch_a,
-                Input::SwitchB { select } if select == shown => *sample = frame.switch_b,
-                Input::SwitchA { .. } | Input::SwitchB { .. } => {}
-            }
-        }
+        self.pvdf = frame.pvdf;
+        self.switch_a[select] = frame.switch_a;
+        self.switch_b[select] = frame.switch_b;
     }
 
     /// The answer to [`Down::Samples`](tenax_hal_shim::wire::Down::Samples).
     pub fn message(&self) -> Up {
-        Up::Samples { frame: self.frame, samples: self.samples }
+        Up::Samples {
+            frame: self.frame,
+            samples: CHANNELS.map(|channel| match channel.input {
+                Input::Direct { rank } => self.pvdf[usize::from(rank)],
+                Input::SwitchA { select } => self.switch_a[usize::from(select)],
+                Input::SwitchB { select } => self.switch_b[usize::from(select)],
+            }),
+        }
     }
 }

@@ -33,8 +33,13 @@ const FRAME_PERIOD: Duration = Duration::from_hz(FRAME_HZ as u64);
 const EXTSEL_TIM3_TRGO: u8 = 0b1000;
 /// ADC1 on DMA2 stream 0 (RM0383, table 28).
 const DMA_REQUEST_ADC1: dma::Request = 0;
-/// 84 + 12 cycles at 25 MHz: a scan takes 53.8 us of its 125, and 10 kohm sources settle to half a code.
-const SAMPLE_TIME: SampleTime = SampleTime::CYCLES84;
+/// 56 + 12 cycles at 25 MHz: a scan takes 38 us of its 125, and sources of up to 20 kohm settle (DS10314, equation 1).
+const SAMPLE_TIME: SampleTime = SampleTime::CYCLES56;
+/// A frame that is this late is not waited for any more.
+///
+/// Not shorter: a deadline that is given up because its frame came wakes the task once more when it would have passed,
+/// so each costs half a tick.
+const PATIENCE: Duration = Duration::from_hz(FRAME_HZ as u64 / 3);
 
 /// Why a recording ended.
 #[derive(defmt::Format)]
@@ -93,7 +98,7 @@ impl Scan {
     /// Hands every frame to `on_frame` as soon as its last code has been converted, for ever. Frames that are lost are
     /// handed over as such, so that whoever counts time by frames keeps time.
     ///
-    /// `on_frame` has until the next frame begins, 71 us, to step the switches for it.
+    /// `on_frame` has until the next frame begins, 87 us, to step the switches for it.
     pub async fn run(mut self, mut on_frame: impl FnMut(&Frame)) -> ! {
         self.timer.start();
         // The first trigger comes one period after the start.
@@ -142,11 +147,10 @@ impl Scan {
         listen(converter);
 
         loop {
-            let mut codes = [0; FRAME_LEN];
+            let mut scans = [Codes::default(); SCANS_PER_FRAME];
             let following_begins = due.begins + FRAME_PERIOD;
-            // The frame is due 71 us before the following one begins.
-            let deadline = following_begins + SCAN_PERIOD / 2;
-            match with_deadline(deadline, ring.read_exact(&mut codes)).await {
+            let read = ring.read_exact(scans.as_flattened_mut());
+            match with_deadline(following_begins + PATIENCE, read).await {
                 Ok(Ok(_)) => {}
                 Ok(Err(_)) => return Trouble::Behind,
                 Err(_) if converter.sr().read().ovr() => return Trouble::Overrun,
@@ -154,7 +158,7 @@ impl Scan {
             }
             // Then the switches do not show yet what the following frame is reading.
             let behind = Instant::now() > following_begins;
-            on_frame(&frame_of(due.sequence, &codes));
+            on_frame(&Frame::from_scans(due.sequence, &scans));
             counts::FRAMES.add_one();
             if Instant::now() > following_begins {
                 counts::TICKS_LATE.add_one();
@@ -189,12 +193,4 @@ fn listen(converter: pac::adc::Adc) {
         w.set_extsel(EXTSEL_TIM3_TRGO);
         w.set_exten(Exten::RISING_EDGE);
     });
-}
-
-fn frame_of(sequence: u32, codes: &[u16; FRAME_LEN]) -> Frame {
-    let mut scans = [Codes::default(); SCANS_PER_FRAME];
-    for (scan, codes) in scans.iter_mut().zip(codes.chunks_exact(SCAN_LEN)) {
-        scan.copy_from_slice(codes);
-    }
-    Frame::from_scans(sequence, &scans)
 }

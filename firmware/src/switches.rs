@@ -21,7 +21,7 @@ impl Switches {
         s2: Peri<'static, PB14>,
         s3: Peri<'static, PB15>,
     ) -> Self {
-        // Slow edges: they must not be heard on the films, and the switch has 70 us to settle.
+        // Slow edges: they must not be heard on the films, and the switches have most of 87 us to settle.
         Self {
             _lines: [
                 Output::new(s0, Level::Low, Speed::Low),

@@ -2,6 +2,7 @@
 
 mod cost;
 mod line;
+mod mishaps;
 mod nucleo;
 mod wires;
 mod world;
@@ -21,6 +22,7 @@ use tenax_scene::plant::Plant;
 
 use self::cost::CostMeter;
 use self::line::Line;
+use self::mishaps::Mishaps;
 use self::nucleo::Nucleo;
 use self::world::World;
 use super::simulated::frames_in;
@@ -52,6 +54,8 @@ pub enum Mishap {
     Garbage(Vec<u8>),
     /// The core executes nothing more until something resets it.
     CoreHangs,
+    /// The DMA stream of the converter is sent to an address where nothing is: its driver panics.
+    DmaFails,
 }
 
 /// Why a run has no result.
@@ -88,7 +92,8 @@ pub fn run<P: Plant + 'static>(
     let (sender, reports) = mpsc::channel();
     let cost = CostMeter::new(&symbols);
     let watched = cost.watched();
-    let world = World::new(plant, frames, &options.mishaps, cost, symbols.stack.clone(), sender);
+    let mishaps = Mishaps::new(&options.mishaps);
+    let world = World::new(plant, frames, mishaps, cost, symbols.stack.clone(), sender);
     let images = [Image::read(image, None).context("reading the image")?, cost::paint(&symbols.stack)?];
     let rate = options.instructions_per_second;
 
@@ -107,7 +112,9 @@ pub fn run<P: Plant + 'static>(
     }
     let mut run = world.run;
     line_log::decode(&mut run);
+    // What the last scans led to had time to come up the line; what came after them was no part of the run.
     run.slows.retain(|slow| slow.frame < frames);
+    run.events.retain(|event| event.frame < frames);
     run.virtual_s = run.scans.len() as f64 / f64::from(SCAN_HZ);
     run.wall_s = began.elapsed().as_secs_f64();
     Ok((run, world.plant))

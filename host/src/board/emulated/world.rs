@@ -5,20 +5,19 @@ use std::ops::Range;
 use std::sync::mpsc::Sender;
 
 use rigless::emulator::{Driver, Host, Settled, Stop};
-use rigless::mcu::Operate;
 use rigless::session::Session;
-use rigless::soc::Width;
 use rigless::time::VirtualNanos;
 use tenax_hal_shim::channel::{SCAN_HZ, SCANS_PER_FRAME};
 use tenax_hal_shim::frame::{Scan, scan_of_pins};
 use tenax_hal_shim::wire::{FRAME_MAX, encode};
 use tenax_scene::plant::Plant;
 
+use super::Broken;
 use super::cost::{CostMeter, stack_used};
 use super::line::Line;
+use super::mishaps::Mishaps;
 use super::nucleo::{Nucleo, USART2};
 use super::wires::Wires;
-use super::{Broken, Mishap};
 use crate::board::Run;
 
 const SCAN_NS: u64 = 1_000_000_000 / SCAN_HZ as u64;
@@ -48,7 +47,7 @@ pub struct World<P> {
     stepped_at: Option<VirtualNanos>,
     codes: Scan,
     command_sequence: u16,
-    mishaps: Vec<(usize, Mishap)>,
+    mishaps: Mishaps,
     resets: usize,
     executed: Option<(VirtualNanos, u64)>,
     stack: Range<u64>,
@@ -61,15 +60,11 @@ impl<P: Plant> World<P> {
     pub fn new(
         plant: P,
         frames: u32,
-        mishaps: &[(f64, Mishap)],
+        mishaps: Mishaps,
         cost: CostMeter,
         stack: Range<u64>,
         progress: Sender<f64>,
     ) -> Self {
-        let mishaps = mishaps
-            .iter()
-            .map(|(at_s, mishap)| ((at_s * f64::from(SCAN_HZ)) as usize, mishap.clone()))
-            .collect();
         Self {
             plant,
             run: Run::default(),
@@ -127,13 +122,7 @@ impl<P: Plant> World<P> {
                 self.command_sequence = self.command_sequence.wrapping_add(1);
             }
         }
-        self.mishaps.retain(|(at, mishap)| {
-            let due = *at <= scan;
-            if due {
-                mishap.happen(session, stop.at, host);
-            }
-            !due
-        });
+        self.mishaps.happen(scan, session, stop.at, host);
         if let Some(progress) = self.progress.as_ref().filter(|_| scan % PROGRESS_SCANS == 0) {
             // Nobody listening is no reason to stop.
             let _ = progress.send(scan as f64 / f64::from(SCAN_HZ));
@@ -168,6 +157,7 @@ impl<P: Plant> Driver<Nucleo> for World<P> {
         if session.resets().len() > self.resets {
             self.resets = session.resets().len();
             self.pulses = 0;
+            // A reset ends a hang.
             host.hold(false);
         }
         let pulses = Wires::new(&mut session.board_mut().mcu, stop.at).trigger_pulses();
@@ -193,24 +183,4 @@ impl<P: Plant> Driver<Nucleo> for World<P> {
 
 fn seconds(at: VirtualNanos) -> f64 {
     at.0 as f64 / 1e9
-}
-
-const DMA2_S0CR: u64 = 0x4002_6410;
-
-impl Mishap {
-    fn happen(&self, session: &mut Session<Nucleo>, now: VirtualNanos, host: &mut dyn Host) {
-        let mcu = &mut session.board_mut().mcu;
-        match self {
-            Self::DmaStalls => {
-                let control = mcu.peek(now, DMA2_S0CR, Width::W32).unwrap_or(0);
-                let _ = mcu.write(now, DMA2_S0CR, Width::W32, control & !1);
-            }
-            Self::Garbage(bytes) => {
-                if let Some(line) = mcu.usart[USART2].chip_mut::<Line>() {
-                    line.down.extend(bytes);
-                }
-            }
-            Self::CoreHangs => host.hold(true),
-        }
-    }
 }

@@ -1,0 +1,73 @@
+//! What can go wrong with a board, done to the emulated one.
+
+use rigless::emulator::Host;
+use rigless::mcu::Operate;
+use rigless::session::Session;
+use rigless::soc::Width;
+use rigless::soc::stm32f427::Stm32f427;
+use rigless::time::VirtualNanos;
+use tenax_hal_shim::channel::SCAN_HZ;
+
+use super::Mishap;
+use super::line::Line;
+use super::nucleo::{Nucleo, USART2};
+
+/// DMA2 stream 0's configuration: bit 0 switches it on.
+const DMA2_S0CR: u64 = 0x4002_6410;
+/// DMA2 stream 0's address in memory.
+const DMA2_S0M0AR: u64 = 0x4002_641C;
+/// No chip of the family has anything there.
+const NOWHERE: u64 = 0x6000_0000;
+
+/// What is still to happen, each with the scan at which it does.
+pub struct Mishaps(Vec<(usize, Mishap)>);
+
+impl Mishaps {
+    /// Those of `mishaps`, each at its time, s.
+    pub fn new(mishaps: &[(f64, Mishap)]) -> Self {
+        let scan = |at_s: f64| (at_s * f64::from(SCAN_HZ)) as usize;
+        Self(mishaps.iter().map(|(at_s, mishap)| (scan(*at_s), mishap.clone())).collect())
+    }
+
+    /// Does what is due at `scan`.
+    pub fn happen(
+        &mut self,
+        scan: usize,
+        session: &mut Session<Nucleo>,
+        now: VirtualNanos,
+        host: &mut dyn Host,
+    ) {
+        let due: Vec<_> = self.0.extract_if(.., |(at, _)| *at <= scan).collect();
+        let mcu = &mut session.board_mut().mcu;
+        for (_, mishap) in due {
+            match mishap {
+                Mishap::DmaStalls => {
+                    stop_stream(mcu, now);
+                }
+                Mishap::DmaFails => {
+                    let control = stop_stream(mcu, now);
+                    set(mcu, now, DMA2_S0M0AR, NOWHERE);
+                    set(mcu, now, DMA2_S0CR, control);
+                }
+                Mishap::Garbage(bytes) => {
+                    if let Some(line) = mcu.usart[USART2].chip_mut::<Line>() {
+                        line.down.extend(bytes);
+                    }
+                }
+                Mishap::CoreHangs => host.hold(true),
+            }
+        }
+    }
+}
+
+/// Switches the converter's stream off; gives its configuration before.
+fn stop_stream(mcu: &mut Stm32f427, now: VirtualNanos) -> u64 {
+    let control = mcu.peek(now, DMA2_S0CR, Width::W32).unwrap_or(0);
+    set(mcu, now, DMA2_S0CR, control & !1);
+    control
+}
+
+fn set(mcu: &mut Stm32f427, now: VirtualNanos, address: u64, value: u64) {
+    let written = mcu.write(now, address, Width::W32, value);
+    debug_assert!(written.is_ok(), "{address:#x} is a register of the chip");
+}

@@ -1,0 +1,102 @@
+//! The real image on the emulated board, against what it promises. Builds the image first if it is not built.
+#![cfg(feature = "emulator")]
+
+mod agreement;
+mod faults;
+mod link;
+
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use tenax::board::Run;
+use tenax::board::emulated::{self, Options};
+use tenax_hal_shim::channel::SCAN_HZ;
+use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::wire::Down;
+use tenax_scene::plant::{Pins, Plant};
+
+/// The image of this checkout.
+fn image() -> &'static Path {
+    static IMAGE: OnceLock<PathBuf> = OnceLock::new();
+    IMAGE.get_or_init(|| {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package is in the workspace");
+        tenax::image::build(root).expect("the image")
+    })
+}
+
+/// Every pin swings through the converter's range at its own phase, so that no two ever read alike for long; and somebody
+/// sends commands.
+struct Swing {
+    pins: Pins,
+    scans: u32,
+    duration_s: f64,
+    commands: Vec<(f64, Down)>,
+}
+
+impl Swing {
+    fn new(duration_s: f64) -> Self {
+        Self { pins: Pins::default(), scans: 0, duration_s, commands: Vec::new() }
+    }
+
+    fn sending(mut self, at_s: f64, command: Down) -> Self {
+        self.commands.push((at_s, command));
+        self
+    }
+
+    fn t_s(&self) -> f64 {
+        f64::from(self.scans) / f64::from(SCAN_HZ)
+    }
+}
+
+impl Plant for Swing {
+    fn scan(&mut self, _drive: MotorDrive) -> &Pins {
+        self.scans += 1;
+        for (index, volts) in self.pins.0.iter_mut().enumerate() {
+            *volts = 1.65 + 1.8 * (0.013 * f64::from(self.scans) + index as f64).sin();
+        }
+        &self.pins
+    }
+
+    fn commands(&mut self) -> Vec<Down> {
+        let now_s = self.t_s();
+        self.commands.extract_if(.., |(at_s, _)| *at_s <= now_s).map(|(_, command)| command).collect()
+    }
+
+    fn duration_s(&self) -> f64 {
+        self.duration_s
+    }
+}
+
+/// Every pin at rest, and somebody sends commands.
+struct Rest(Swing, Pins);
+
+impl Rest {
+    fn new(swing: Swing) -> Self {
+        Self(swing, Pins::default())
+    }
+}
+
+impl Plant for Rest {
+    fn scan(&mut self, drive: MotorDrive) -> &Pins {
+        self.0.scan(drive);
+        &self.1
+    }
+
+    fn commands(&mut self) -> Vec<Down> {
+        self.0.commands()
+    }
+
+    fn duration_s(&self) -> f64 {
+        self.0.duration_s
+    }
+}
+
+fn run(plant: impl Plant + 'static, options: &Options) -> Run {
+    emulated::run(image(), plant, options, &mut |_| {}).expect("the run").0
+}
+
+/// The motor's drives between two instants.
+fn drives(run: &Run, from_s: f64, to_s: f64) -> &[MotorDrive] {
+    let scan = |t_s: f64| (t_s * f64::from(SCAN_HZ)) as usize;
+    &run.drives[scan(from_s)..scan(to_s).min(run.drives.len())]
+}
