@@ -1,0 +1,75 @@
+//! Who carries the hand: the wearer's arm, or a robot's.
+
+use std::num::NonZeroU8;
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use crate::file::quantity::{
+    Acceleration, Damping, Duration, Height, Hertz, Instant, Kilograms, Milliseconds, Newtons, Stiffness,
+    Velocity,
+};
+
+/// The arm lifts or lowers the hand.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Move {
+    /// When it begins.
+    pub at_s: Spanned<Instant>,
+    /// How long it takes.
+    pub for_s: Duration,
+    /// To this height over where the hand grasped.
+    pub to_mm: Height,
+}
+
+/// The arm swings the hand up and down.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Swing {
+    /// When it begins.
+    pub at_s: Spanned<Instant>,
+    /// How many times.
+    pub cycles: NonZeroU8,
+    /// How often.
+    pub rate_hz: Hertz,
+    /// Acceleration of the strongest.
+    pub peak_m_s2: Acceleration,
+}
+
+/// The robot that strokes a probe over a surface.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Robot {
+    /// Mass of the probe.
+    pub probe_kg: Kilograms,
+    /// Compliance of the arm along the stroke.
+    pub stiffness_n_per_mm: Stiffness,
+    /// Its damping.
+    pub damping: Damping,
+    /// How long load and speed take to come and to go.
+    pub ramp_ms: Milliseconds,
+}
+
+/// The robot presses the probe on the surface.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Press {
+    /// When the load begins to come.
+    pub at_s: Spanned<Instant>,
+    /// Until it is gone.
+    pub for_s: Duration,
+    /// The load.
+    pub load_n: Newtons,
+}
+
+/// The robot moves its carriage.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sweep {
+    /// When it begins.
+    pub at_s: Spanned<Instant>,
+    /// How long it lasts.
+    pub for_s: Duration,
+    /// How fast; negative is back.
+    pub speed_mm_s: Velocity,
+}

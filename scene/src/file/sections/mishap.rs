@@ -1,0 +1,67 @@
+//! What goes wrong.
+
+use serde::Deserialize;
+use toml::Spanned;
+
+use crate::file::channel::ChannelName;
+use crate::file::quantity::{Duration, Hertz, Instant, Milliseconds, Millivolts, Newtons};
+
+/// Something hits the hand or the table: a short ring in every film.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Knock {
+    /// When.
+    pub at_s: Spanned<Instant>,
+    /// First peak, at the film.
+    pub peak_mv: Millivolts,
+    /// What rings.
+    pub ring_hz: Hertz,
+    /// Until it has fallen to 1/e.
+    pub decay_ms: Milliseconds,
+}
+
+/// An electrode lifts off the skin: it hears no muscle, and more mains.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ElectrodeLift {
+    /// When.
+    pub at_s: Spanned<Instant>,
+    /// How long.
+    pub for_s: Duration,
+    /// `myo_flexor` or `myo_extensor`.
+    pub channel: Spanned<ChannelName>,
+    /// What it picks up instead, above rest.
+    pub pickup_mv: Millivolts,
+}
+
+/// What a broken sensor does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FaultKind {
+    /// 0 V: a cut wire, a lost supply.
+    Dead,
+    /// The supply: a short.
+    Saturated,
+    /// The voltage of that instant, for ever, without noise: a converter input or a switch that latched up.
+    Stuck,
+    /// A quadrant of the force sensor with `press_n` on it that nobody put there: a bent finger cover.
+    Pressed,
+}
+
+/// A sensor breaks.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SensorFault {
+    /// When. 0 is before the hand is switched on.
+    pub at_s: Spanned<Instant>,
+    /// When it works again; never without it.
+    pub until_s: Option<Spanned<Instant>>,
+    /// Which.
+    pub channel: Spanned<ChannelName>,
+    /// How.
+    pub kind: FaultKind,
+    /// The force of `pressed`.
+    pub press_n: Option<Spanned<Newtons>>,
+    /// The physical reason.
+    pub reason: String,
+}

@@ -1,0 +1,20 @@
+//! What a scene file is made of: one struct for each kind of table in it.
+//!
+//! `docs/scenes.md` explains every key to whoever writes one. Sections of the hand and its sensors have defaults, whose
+//! sources stand in [`super::defaults`]; the world has none, it is what the scene is about.
+
+mod arm;
+mod contact;
+mod gripper;
+mod mishap;
+mod object;
+mod person;
+mod sensor;
+
+pub use arm::{Move, Press, Robot, Sweep, Swing};
+pub use contact::{Contact, Wet};
+pub use gripper::Gripper;
+pub use mishap::{ElectrodeLift, FaultKind, Knock, SensorFault};
+pub use object::{Fill, Object, Table};
+pub use person::{Command, CommandKind, Intent, Muscle};
+pub use sensor::{Fsr, Myo, Pvdf};

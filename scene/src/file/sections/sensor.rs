@@ -1,0 +1,71 @@
+//! What the fingertip feels with.
+
+use serde::Deserialize;
+
+use crate::file::quantity::{Duration, Gain, Hertz, Milliseconds, Millivolts, Part, Speed};
+
+/// The PVDF films. Voltages are at the film; the front end multiplies them by `gain`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Pvdf {
+    /// From film to pin.
+    pub gain: Gain,
+    /// How much louder or quieter than the mean one film may be: 0.4 is from 0.6 to 1.4.
+    pub spread: Part,
+    /// Corner of the charge amplifier's high-pass.
+    pub high_pass_hz: Hertz,
+    /// Mean time in which the skin passes a deformation on to a film; deeper films take up to 1.5 times as long.
+    pub skin_ms: Milliseconds,
+    /// For 1 N of normal force.
+    pub normal_mv_per_n: Gain,
+    /// For 1 N of shear.
+    pub shear_mv_per_n: Gain,
+    /// For 1 N of shear let go by a contact that begins to slide.
+    pub release_mv_per_n: Gain,
+    /// Texture tone of fast sliding, for 1 N of difference between sticking and sliding shear.
+    pub texture_mv_per_n: Gain,
+    /// The speed at which the texture tone has half of that.
+    pub texture_half_mm_s: Speed,
+    /// Noise of an object settling in the grasp, rms, for 1 N/s of change of the grip force.
+    pub adjust_mv_per_n_s: Gain,
+    /// Motor and gear at full speed.
+    pub motor_mv: Millivolts,
+    /// Frequency of the gear's teeth at full speed.
+    pub motor_hz: Hertz,
+    /// Mains hum.
+    pub mains_mv: Millivolts,
+    /// Frequency of the mains.
+    pub mains_hz: Hertz,
+    /// Broadband noise up to half the frame rate, rms.
+    pub noise_mv: Millivolts,
+}
+
+/// The force sensor under its tilting element.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Fsr {
+    /// Half the width of the gap between loading and unloading, as a part of the force.
+    pub hysteresis: Part,
+    /// How much more a lasting load reads in the end than at first.
+    pub creep: Part,
+    /// How long that takes.
+    pub creep_s: Duration,
+}
+
+/// The myoelectric sensors: smoothed envelopes.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Myo {
+    /// Rise of the envelope from 10 to 90 %.
+    pub rise_ms: Milliseconds,
+    /// A relaxed muscle, above rest.
+    pub tone_mv: Millivolts,
+    /// Wandering of a relaxed envelope, rms.
+    pub noise_mv: Millivolts,
+    /// Wandering of a contraction, rms, as a part of it.
+    pub ripple: Part,
+    /// The part of a contraction that the other electrode hears.
+    pub crosstalk: Part,
+    /// Mains in the envelope (twice its frequency, it is rectified).
+    pub mains_mv: Millivolts,
+}
