@@ -1,6 +1,6 @@
 //! The image and the host's build of the logic, given the same codes, say the same, bit for bit.
 
-use tenax_hal_shim::channel::SCANS_PER_FRAME;
+use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, SCANS_PER_FRAME};
 use tenax_hal_shim::frame::{Frame, Scan};
 use tenax_hal_shim::wire::{Event, Slow};
 use tenax_logic::fingertip::Fingertip;
@@ -46,24 +46,28 @@ pub fn bar(run: &Run) -> Bar {
             false,
         );
     }
-    let differs = run.slows.iter().zip(&host.slows).find(|(image, host)| image != host);
-    let events_differ = run.events.iter().zip(&host.events).find(|(image, host)| image != host);
-    match (differs, events_differ) {
+    let differing: Vec<(&Slow, &Slow)> = run.slows.iter().zip(&host.slows).filter(|(a, b)| a != b).collect();
+    let event = run.events.iter().zip(&host.events).find(|(image, host)| image != host);
+    let figure = match (differing.first(), event) {
         (None, None) => {
-            let figure = format!(
-                "{} slow frames with {ticks} ticks, {} events, equal",
-                run.slows.len(),
-                run.events.len()
-            );
-            Bar::new(PROMISE, figure, true)
+            format!("{} slow frames with {ticks} ticks, {} events, equal", run.slows.len(), run.events.len())
         }
-        (Some((image, host)), _) => Bar::new(
-            PROMISE,
-            format!("first difference in slow frame {}: {image:?}, host {host:?}", image.frame),
-            false,
-        ),
-        (None, Some((image, host))) => {
-            Bar::new(PROMISE, format!("first difference in event {image:?}, host {host:?}"), false)
+        (Some((image, host)), _) => {
+            format!("{} slow frames differ, the first in {}", differing.len(), first_difference(image, host))
+        }
+        (None, Some((image, host))) => format!("image {image:?}, host {host:?}"),
+    };
+    Bar::new(PROMISE, figure, differing.is_empty() && event.is_none())
+}
+
+/// Where two slow frames begin to differ.
+fn first_difference(image: &Slow, host: &Slow) -> String {
+    let first = image.frame.saturating_sub(u32::from(FRAMES_PER_SLOW_FRAME) - 1);
+    match (first..).zip(image.ticks.iter().zip(&host.ticks)).find(|(_, (image, host))| image != host) {
+        Some((frame, (image, host))) => format!("frame {frame}: image {image:?}, host {host:?}"),
+        None => {
+            let without_ticks = |slow: &Slow| Slow { ticks: Default::default(), ..slow.clone() };
+            format!("frame {}: image {:?}, host {:?}", image.frame, without_ticks(image), without_ticks(host))
         }
     }
 }
