@@ -44,10 +44,10 @@ fn cargo(root: &Path, verb: &str, more: &[&str]) -> Result<()> {
     if verb == "clippy" {
         toolchain.fetch_clippy()?;
     }
-    let mut cargo = toolchain.cargo();
+    let mut cargo = toolchain.cargo(verb);
     cargo
         .current_dir(root)
-        .args([verb, "--quiet", "--profile", PROFILE, "--package", PACKAGE, "--target", TARGET])
+        .args(["--quiet", "--profile", PROFILE, "--package", PACKAGE, "--target", TARGET])
         .args(toolchain.build_std())
         .arg("--target-dir")
         .arg(target_dir(root))

@@ -14,7 +14,8 @@ pub const RUSTC: &str = "/usr/bin/rustc";
 pub const CARGO: &str = "/usr/bin/cargo";
 /// Where Debian puts the sources of `core` for `-Zbuild-std`.
 const SOURCES: &str = "/usr/lib/rustlib/src/rust/library/core/Cargo.toml";
-const CLIPPY: &str = "/usr/bin/cargo-clippy";
+/// Debian's Clippy, called as `cargo clippy` calls it.
+pub const CLIPPY: &str = "/usr/bin/cargo-clippy";
 const LLD: &str = "/usr/bin/ld.lld";
 
 /// The compiler, Cargo, the sources, and Clippy: first the recent ones that stable releases get for their browsers.
@@ -115,7 +116,7 @@ fn is_known(package: &str) -> bool {
 }
 
 fn update() -> Result<()> {
-    eprintln!("the image's compiler is missing: asking Debian for it (apt-get update)");
+    eprintln!("a tool that makes the image is missing: asking Debian what it has (apt-get update)");
     quietly(Command::new("apt-get").args(["update", "--quiet"]))
 }
 

@@ -59,19 +59,24 @@ impl Toolchain {
         }
     }
 
-    /// Cargo, as this toolchain needs it called.
-    pub fn cargo(&self) -> Command {
-        match self {
+    /// Cargo's command `verb`, as this toolchain needs it called.
+    pub fn cargo(&self, verb: &str) -> Command {
+        let mut cargo = match self {
             Self::OnPath => clean(Command::new("cargo")),
             Self::Debian { linker } => {
-                let mut cargo = clean(Command::new(debian::CARGO));
+                // Cargo looks for its subcommands in rustup's folder first, so Debian's Clippy is called by its path.
+                let program = if verb == "clippy" { debian::CLIPPY } else { debian::CARGO };
+                let mut cargo = clean(Command::new(program));
+                cargo.env("CARGO", debian::CARGO);
                 cargo.env("RUSTC", debian::RUSTC);
                 // Lets a stable compiler take `-Z build-std`.
                 cargo.env("RUSTC_BOOTSTRAP", "1");
                 cargo.env("CARGO_TARGET_THUMBV7EM_NONE_EABIHF_LINKER", linker);
                 cargo
             }
-        }
+        };
+        cargo.arg(verb);
+        cargo
     }
 
     /// What to tell Cargo so that it has a `core`.
