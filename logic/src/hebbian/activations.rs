@@ -55,15 +55,20 @@ pub struct NormaliserConfig<const N: usize> {
     pub floors: [u32; N],
     /// The largest maximum of any, in raw units: what its front end can give. Above, the activation clips.
     pub ceiling: u32,
-    /// A maximum rises by the part `2^-rise_shift` of what exceeds it, at each reading: one spike does not make a receptor
-    /// deaf. 0 takes the whole excess at once.
-    pub rise_shift: u32,
+    /// The maximum is that of an average over about `2^average_shift` readings, at most 16: a spike makes no receptor
+    /// deaf, and a receptor that crackles is heard as loud as one that hums. 0 takes single readings.
+    pub average_shift: u32,
 }
+
+/// More than any average needs; the sum of 2^16 readings of 32 bits is below 2^48.
+const AVERAGE_SHIFT_MAX: u32 = 16;
 
 /// One receptor's zero and maximum, and the maximum's reciprocal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Scale {
     zero: i32,
+    /// The average's accumulator: `2^average_shift` times the average.
+    sum: u64,
     largest: u32,
     reciprocal: Reciprocal,
 }
@@ -71,7 +76,7 @@ struct Scale {
 impl Scale {
     const fn new(zero: i32, largest: u32) -> Self {
         let largest = if largest == 0 { 1 } else { largest };
-        Self { zero, largest, reciprocal: Reciprocal::of(largest) }
+        Self { zero, sum: 0, largest, reciprocal: Reciprocal::of(largest) }
     }
 
     fn size(&self, raw: i32) -> u32 {
@@ -122,11 +127,14 @@ impl<const N: usize> Normaliser<N> {
     /// Lets the maxima rise. For the caller to allow: as learning is, so that a knock or a noisy motor makes no receptor
     /// deaf. One division for each maximum that rises.
     pub fn observe(&mut self, config: &NormaliserConfig<N>, raw: &[i32; N]) {
+        let shift = config.average_shift.min(AVERAGE_SHIFT_MAX);
         for (scale, &raw) in self.scales.iter_mut().zip(raw) {
             let size = scale.size(raw).min(config.ceiling);
-            if size > scale.largest {
-                let rise = ((size - scale.largest) >> config.rise_shift.min(31)).max(1);
-                *scale = Scale::new(scale.zero, scale.largest + rise);
+            // The sum settles at 2^shift times the size and does not pass it.
+            scale.sum = scale.sum - (scale.sum >> shift) + u64::from(size);
+            let average = (scale.sum >> shift).min(u64::from(config.ceiling)) as u32;
+            if average > scale.largest {
+                *scale = Scale { sum: scale.sum, ..Scale::new(scale.zero, average) };
             }
         }
     }
@@ -143,7 +151,7 @@ impl<const N: usize> Normaliser<N> {
         self.scales.map(|scale| scale.largest)
     }
 
-    /// One with these maxima and zeros; each maximum is brought between its floor and the ceiling.
+    /// One with these maxima and no zeros taken; each maximum is brought between its floor and the ceiling.
     #[must_use]
     pub fn from_maxima(config: &NormaliserConfig<N>, maxima: &[u32; N]) -> Self {
         let mut normaliser = Self::new(config);
@@ -162,7 +170,7 @@ mod tests {
         senses: [Sense::Vibration, Sense::Pressure],
         floors: [100, 100],
         ceiling: 1 << 30,
-        rise_shift: 0,
+        average_shift: 0,
     };
 
     fn seen(normaliser: &Normaliser<2>, raw: [i32; 2]) -> [f64; 2] {
@@ -199,14 +207,15 @@ mod tests {
 
     #[test]
     fn a_spike_makes_no_receptor_deaf_and_a_level_is_learned() {
-        let config = NormaliserConfig { rise_shift: 3, ..CONFIG };
+        let config = NormaliserConfig { average_shift: 6, ..CONFIG };
         let mut normaliser = Normaliser::new(&config);
         normaliser.observe(&config, &[8_100, 0]);
-        assert_eq!(normaliser.maxima(), [1_100, 100]);
-        for _ in 0..200 {
+        assert_eq!(normaliser.maxima(), [126, 100]);
+        for _ in 0..1_000 {
             normaliser.observe(&config, &[8_100, 0]);
         }
-        assert_eq!(normaliser.maxima(), [8_100, 100]);
+        assert!((8_090..=8_100).contains(&normaliser.maxima()[0]), "{:?}", normaliser.maxima());
+        assert_eq!(normaliser.maxima()[1], 100);
         normaliser.reset(&config);
         assert_eq!(normaliser.maxima(), [100, 100]);
     }

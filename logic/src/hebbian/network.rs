@@ -2,7 +2,7 @@
 //!
 //! | quantity | format | range | rounding |
 //! |---|---|---|---|
-//! | activation t | `i32` Q26 | +-1 | by the normaliser, to nearest |
+//! | activation t | `i32` Q26 | +-1 | by the normaliser, 2^-25 |
 //! | weight w, as used | `i32` Q27 | +-8 | the upper word of the next line |
 //! | weight w, as kept | `i64` Q59 | +-8 | none: the products below are exact |
 //! | sum of t w | `i64` Q53 | 31 inputs: below 2^61 | none |
@@ -13,9 +13,9 @@
 //! | alpha r v | `i32` Q33 | +-2^-4, since r <= 1 | down |
 //! | alpha r v t, beta w | `i64` Q59 | 2^55, 2^58 | none |
 //!
-//! No update is too small for a kept weight: at alpha = 1e-3, t of one step of the converter and the r of an unused
-//! connection among weights of 8, which is 1e-10, it is still 2^25 units. An update lost to the rounding of alpha r
-//! needs alpha r below 2^-33, and then a million of them would have moved the weight by 1e-4.
+//! No useful update is too small for a kept weight: at alpha = 1e-3, delta = 1e-3 among 24 weights of 8 (r = 5e-6) and
+//! t of one step of the converter (2^-14) it is 3e-13, far below a unit of a 32-bit weight, and 2^17 units of a kept one.
+//! What alpha r loses in Q33 moves a weight by 1e-4 in a million updates at most.
 
 use dsp_fixedpoint::Q32;
 

@@ -2,7 +2,7 @@
 
 use core::ops::RangeInclusive;
 
-/// The rates of equations 5 and 6, for one update. At 1 kHz, a beta of 50 000 ppb forgets in 20 s of being taught.
+/// The rates of equations 5 and 6, for one update. At 1 kHz, a beta of 10 000 ppb forgets in 100 s of being taught.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Config {
     /// alpha: learning rate, parts per billion.
@@ -19,14 +19,14 @@ impl Config {
     pub const ALPHA_PPB: RangeInclusive<u32> = 0..=60_000_000;
     /// Accepted beta, ppb.
     pub const BETA_PPB: RangeInclusive<u32> = 0..=60_000_000;
-    /// Accepted delta, ppm: from a thousand times the resolution of r to the largest weight.
-    pub const DELTA_PPM: RangeInclusive<u32> = 125..=8_000_000;
+    /// Accepted delta, ppm: from 8000 times the resolution of r to the largest weight.
+    pub const DELTA_PPM: RangeInclusive<u32> = 1_000..=8_000_000;
 }
 
 /// The middle of the useful region of the map in `docs/hebbian.md`.
 impl Default for Config {
     fn default() -> Self {
-        Self { alpha_ppb: 1_000_000, beta_ppb: 50_000, delta_ppm: 1_000_000 }
+        Self { alpha_ppb: 50_000, beta_ppb: 10_000, delta_ppm: 300_000 }
     }
 }
 
@@ -48,7 +48,7 @@ pub struct Rule {
     pub(super) alpha: u32,
     /// -beta, Q32, above -2^28. Rounded to nearest.
     pub(super) minus_beta: i32,
-    /// delta, Q23, in 2^10..=2^26. Rounded to nearest.
+    /// delta, Q23, in 2^13..=2^26. Rounded to nearest.
     pub(super) delta: u32,
 }
 
@@ -96,7 +96,7 @@ mod tests {
                 for delta_ppm in ends(Config::DELTA_PPM) {
                     let rule = Rule::new(&Config { alpha_ppb, beta_ppb, delta_ppm }).unwrap();
                     assert!(rule.alpha < 1 << 31 && (0..1 << 28).contains(&-rule.minus_beta));
-                    assert!((1 << 10..=1 << 26).contains(&rule.delta));
+                    assert!((1 << 13..=1 << 26).contains(&rule.delta));
                     assert!(
                         (f64::from(rule.alpha) / 2f64.powi(35) * 1e9 - f64::from(alpha_ppb)).abs() < 0.03
                     );

@@ -109,8 +109,12 @@ mod tests {
     use crate::hebbian::teacher::Code;
 
     const LENGTH: usize = length(3, 2);
-    const CONFIG: NormaliserConfig<3> =
-        NormaliserConfig { senses: [Sense::Pressure; 3], floors: [10; 3], ceiling: 1 << 20, rise_shift: 0 };
+    const CONFIG: NormaliserConfig<3> = NormaliserConfig {
+        senses: [Sense::Pressure; 3],
+        floors: [10; 3],
+        ceiling: 1 << 20,
+        average_shift: 0,
+    };
 
     fn learned() -> (Normaliser<3>, Network<3, 2>, [u8; LENGTH]) {
         let mut normaliser = Normaliser::new(&CONFIG);
@@ -136,7 +140,7 @@ mod tests {
     fn what_comes_back_gives_the_same_outputs() {
         let (normaliser, network, bytes) = learned();
         let (normaliser_back, network_back) = restore::<3, 2>(&CONFIG, &bytes).unwrap();
-        assert_eq!(normaliser_back, normaliser);
+        assert_eq!(normaliser_back.maxima(), normaliser.maxima());
         assert_eq!(network_back.weights(), network.weights());
         assert_ne!(network.weights(), Network::<3, 2>::default().weights());
         let mut again = [0; LENGTH];

@@ -1,0 +1,268 @@
+//! What the network becomes, over alpha, beta and delta, beside what the fixed point says.
+
+use std::fmt::Write;
+
+use tenax_logic::hebbian::{Code, Config, FingertipNetwork, RECEPTORS, Rule, Weight};
+
+use crate::oracle::{Rates, exact, fixed_point, weights_of};
+use crate::task::{Finger, Moment};
+
+const ALPHAS_PPB: [u32; 9] =
+    [1_000, 10_000, 20_000, 50_000, 100_000, 200_000, 500_000, 2_000_000, 50_000_000];
+const BETAS_PPB: [u32; 7] = [1_000, 5_000, 10_000, 20_000, 50_000, 500_000, 5_000_000];
+const DELTAS_PPM: [u32; 3] = [10_000, 300_000, 3_000_000];
+
+/// o1 below this, on average over [`WINDOW_MS`], says 'slip'.
+pub const SLIP_BELOW: f64 = -0.2;
+/// The seed of a trial that no lesson has.
+pub const UNSEEN: u64 = 1_000;
+/// The shortest time that is judged.
+const WINDOW_MS: usize = 50;
+
+/// What a network has become, in the order in which it is asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fate {
+    /// One connection has more than half of all the weight of an output: if it is lost, all is.
+    Runaway,
+    /// o1 hears nothing: within 0.1 on average during slip.
+    Dead,
+    /// o1 is at its end for more than nine tenths of the slip: how much it slips is not told any more.
+    Saturated,
+    /// It says things that are not so: slip in more than 1 % of holding, or the wrong direction in more than 1 % of slip.
+    Wrong,
+    /// Slip is said in less than 95 % of its time.
+    Weak,
+    /// None of these.
+    Useful,
+}
+
+impl Fate {
+    fn letter(self) -> char {
+        match self {
+            Self::Runaway => '1',
+            Self::Dead => '.',
+            Self::Saturated => 'S',
+            Self::Wrong => 'x',
+            Self::Weak => 'w',
+            Self::Useful => 'U',
+        }
+    }
+}
+
+/// What the touch-only outputs say in a trial that was not learned from.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Said {
+    /// Mean of |o1| while it slips.
+    pub o1_slip: f64,
+    /// Part of the slip in which o1 is at -1.
+    pub at_end: f64,
+    /// Part of the slip that is called so.
+    pub slip_seen: f64,
+    /// Part of the holding that is called slip.
+    pub false_slip: f64,
+    /// Part of lifting and lowering slip in which o2's sign is right.
+    pub direction: f64,
+}
+
+/// Asks weights about a trial, whose phases are whole windows.
+pub fn ask(weights: &[[f64; RECEPTORS]; 2], trial: &[Moment]) -> Said {
+    let (mut said, mut slipping, mut holding) = (Said::default(), 0.0, 0.0);
+    for window in trial.chunks_exact(WINDOW_MS) {
+        let outputs = window.iter().map(|moment| {
+            let t = exact(&moment.felt);
+            weights.map(|row| row.iter().zip(t).map(|(w, t)| w * t).sum::<f64>().clamp(-1.0, 1.0))
+        });
+        let (mut o1, mut o2, mut at_end) = (0.0, 0.0, 0.0);
+        for [relative, direction] in outputs {
+            o1 += relative / WINDOW_MS as f64;
+            o2 += direction / WINDOW_MS as f64;
+            at_end += f64::from(u8::from(relative <= -1.0)) / WINDOW_MS as f64;
+        }
+        let slip = f64::from(u8::from(o1 < SLIP_BELOW));
+        let [relative, direction] = window[0].truth;
+        if relative == Code::Minus {
+            slipping += 1.0;
+            said.o1_slip += o1.abs();
+            said.at_end += at_end;
+            said.slip_seen += slip;
+            said.direction += f64::from(u8::from(o2 * f64::from(direction.sign()) > 0.0));
+        } else {
+            holding += 1.0;
+            said.false_slip += slip;
+        }
+    }
+    said.o1_slip /= slipping;
+    said.at_end /= slipping;
+    said.slip_seen /= slipping;
+    said.direction /= slipping;
+    said.false_slip /= holding;
+    said
+}
+
+/// The largest part that one connection has in an output's weights.
+pub fn largest_part(row: &[f64; RECEPTORS]) -> f64 {
+    let sum: f64 = row.iter().map(|w| w.abs()).sum();
+    row.iter().fold(0.0f64, |largest, w| largest.max(w.abs())) / sum.max(f64::MIN_POSITIVE)
+}
+
+/// What these weights have become, judged on a trial.
+pub fn fate(weights: &[[f64; RECEPTORS]; 2], trial: &[Moment]) -> Fate {
+    let said = ask(weights, trial);
+    if weights.iter().any(|row| largest_part(row) > 0.5) {
+        Fate::Runaway
+    } else if said.o1_slip < 0.1 {
+        Fate::Dead
+    } else if said.at_end > 0.9 {
+        Fate::Saturated
+    } else if said.false_slip > 0.01 || said.direction < 0.99 {
+        Fate::Wrong
+    } else if said.slip_seen < 0.95 {
+        Fate::Weak
+    } else {
+        Fate::Useful
+    }
+}
+
+/// Teaches these moments.
+pub fn teach(network: &mut FingertipNetwork, config: &Config, moments: &[Moment]) {
+    let rule = Rule::new(config).unwrap();
+    for moment in moments {
+        if let Some(codes) = moment.lesson() {
+            network.learn(&rule, &moment.felt, &codes);
+        }
+    }
+}
+
+/// The network after these moments.
+pub fn learned(config: &Config, moments: &[Moment]) -> FingertipNetwork {
+    let mut network = FingertipNetwork::default();
+    teach(&mut network, config, moments);
+    network
+}
+
+/// The means of `t_j v_i` over what is taught.
+pub fn correlations(moments: &[Moment]) -> [[f64; RECEPTORS]; 2] {
+    let mut sums = [[0.0; RECEPTORS]; 2];
+    let mut taught = 0.0;
+    for moment in moments {
+        if let Some(codes) = moment.lesson() {
+            taught += 1.0;
+            for (row, code) in sums.iter_mut().zip(codes) {
+                for (sum, t) in row.iter_mut().zip(exact(&moment.felt)) {
+                    *sum += t * f64::from(code.sign());
+                }
+            }
+        }
+    }
+    sums.map(|row| row.map(|sum| sum / taught))
+}
+
+fn map() -> String {
+    let finger = Finger::new(1);
+    let (lesson, trial) = (finger.lesson(), finger.trial(UNSEEN));
+    let c = correlations(&lesson);
+    let mut map = String::new();
+    for delta_ppm in DELTAS_PPM {
+        writeln!(map, "delta = {}\n   alpha", f64::from(delta_ppm) * 1e-6).unwrap();
+        for alpha_ppb in ALPHAS_PPB.iter().rev() {
+            write!(map, "{:>8}  ", format!("{:.0e}", f64::from(*alpha_ppb) * 1e-9)).unwrap();
+            for beta_ppb in BETAS_PPB {
+                let config = Config { alpha_ppb: *alpha_ppb, beta_ppb, delta_ppm };
+                let measured = fate(&weights_of(&learned(&config, &lesson)), &trial);
+                let settled = fate(&c.map(|c| fixed_point(&Rates::from(&config), &c)), &trial);
+                let (open, close) = if config == Config::default() { ('[', ']') } else { (' ', ' ') };
+                write!(map, "  {open}{}{}{close}", measured.letter(), settled.letter()).unwrap();
+            }
+            writeln!(map).unwrap();
+        }
+        write!(map, "    beta  ").unwrap();
+        for beta_ppb in BETAS_PPB {
+            write!(map, "{:>6}", format!("{:.0e}", f64::from(beta_ppb) * 1e-9)).unwrap();
+        }
+        writeln!(map, "\n").unwrap();
+    }
+    map.trim_end().lines().map(str::trim_end).collect::<Vec<_>>().join("\n")
+}
+
+/// The figure in the documentation is the one that is measured.
+#[test]
+fn the_documentation_has_this_map() {
+    let map = map();
+    println!("{map}");
+    let documentation = include_str!("../../../docs/hebbian.md");
+    assert!(documentation.contains(&map), "docs/hebbian.md has another map: put the one printed above there");
+}
+
+/// The defaults are useful with a margin: half and twice of each of them are too.
+#[test]
+fn the_defaults_are_inside_the_useful_region() {
+    let finger = Finger::new(1);
+    let (lesson, trial) = (finger.lesson(), finger.trial(UNSEEN));
+    let d = Config::default();
+    for alpha_ppb in [d.alpha_ppb / 2, d.alpha_ppb, d.alpha_ppb * 2] {
+        for beta_ppb in [d.beta_ppb / 2, d.beta_ppb, d.beta_ppb * 2] {
+            for delta_ppm in [d.delta_ppm / 2, d.delta_ppm, d.delta_ppm * 2] {
+                let changed = usize::from(alpha_ppb != d.alpha_ppb)
+                    + usize::from(beta_ppb != d.beta_ppb)
+                    + usize::from(delta_ppm != d.delta_ppm);
+                if changed < 2 {
+                    let config = Config { alpha_ppb, beta_ppb, delta_ppm };
+                    let weights = weights_of(&learned(&config, &lesson));
+                    println!("{config:?}: {:.2?}", ask(&weights, &trial));
+                    assert_eq!(fate(&weights, &trial), Fate::Useful, "{config:?}");
+                }
+            }
+        }
+    }
+}
+
+/// The defaults, four times slower: the order of the phases in a trial matters less, as the theory has it.
+fn slow(delta_ppm: u32) -> Config {
+    let Config { alpha_ppb, beta_ppb, .. } = Config::default();
+    Config { alpha_ppb: alpha_ppb / 4, beta_ppb: beta_ppb / 4, delta_ppm }
+}
+
+/// The mean of the weights in the second half of many lessons, and the fixed point, of each output.
+fn settled(config: &Config, mut network: FingertipNetwork) -> [([f64; RECEPTORS], [f64; RECEPTORS]); 2] {
+    const LESSONS: usize = 60;
+    let lesson = Finger::new(1).lesson();
+    let c = correlations(&lesson);
+    let mut mean = [[0.0; RECEPTORS]; 2];
+    for n in 0..LESSONS {
+        teach(&mut network, config, &lesson);
+        if n >= LESSONS / 2 {
+            for (mean, w) in mean.as_flattened_mut().iter_mut().zip(weights_of(&network).as_flattened()) {
+                *mean += w / (LESSONS - LESSONS / 2) as f64;
+            }
+        }
+    }
+    std::array::from_fn(|i| (mean[i], fixed_point(&Rates::from(config), &c[i])))
+}
+
+fn is_close((found, theory): &([f64; RECEPTORS], [f64; RECEPTORS])) {
+    let largest = theory.iter().fold(0.0f64, |largest, w| largest.max(w.abs()));
+    let error = found.iter().zip(theory).fold(0.0f64, |error, (a, b)| error.max((a - b).abs()));
+    println!("{:.3} of the largest weight, {largest:.2}", error / largest);
+    assert!(error < 0.05 * largest, "{found:.3?} for {theory:.3?}");
+}
+
+/// From nothing, the weights come to where the derivation says.
+#[test]
+fn it_settles_at_the_fixed_point() {
+    for delta_ppm in [300_000, 3_000_000] {
+        let config = slow(delta_ppm);
+        settled(&config, FingertipNetwork::default()).iter().for_each(is_close);
+    }
+}
+
+/// With a small delta two rivals take 1 / (beta (1 - c2 / c1)) updates to decide, longer than this. But once there, the
+/// weights stay.
+#[test]
+fn it_stays_at_the_fixed_point() {
+    let c = correlations(&Finger::new(1).lesson());
+    for delta_ppm in DELTAS_PPM {
+        let config = slow(delta_ppm);
+        let weights = c.map(|c| fixed_point(&Rates::from(&config), &c).map(Weight::from_f64));
+        settled(&config, FingertipNetwork::from_weights(&weights)).iter().for_each(is_close);
+    }
+}
