@@ -74,8 +74,8 @@ pub struct Slow {
     pub extensor_mv: Option<i16>,
     /// Whether a myosensor is active, its hold time included.
     pub wearer_active: bool,
-    /// CRC-32 of every valid sample that the slow frame's ticks were given: the two ends agree on the input too.
-    pub samples_crc: u32,
+    /// Checksum of every valid sample that the slow frame's ticks were given: the two ends agree on the input too.
+    pub samples_sum: u32,
 }
 
 /// What the board counted since it was switched on.
@@ -327,33 +327,27 @@ fn decode<T: DeserializeOwned>(bytes: &mut [u8]) -> Result<Received<T>, BadFrame
     }
 }
 
-/// Running CRC-32 over a slow frame's samples, for [`Slow::samples_crc`].
-#[derive(Clone)]
-pub struct SamplesCrc(crc::Digest<'static, u32>);
-
-impl Default for SamplesCrc {
-    fn default() -> Self {
-        Self(CRC.digest())
-    }
+/// Running checksum over a slow frame's samples, for [`Slow::samples_sum`]: Fletcher's two sums, modulo 2^32. It is taken
+/// in every tick, and a CRC would cost seven times as much; the line has its own.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SamplesSum {
+    sum: u32,
+    sum_of_sums: u32,
 }
 
-impl core::fmt::Debug for SamplesCrc {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str("SamplesCrc")
-    }
-}
-
-impl SamplesCrc {
+impl SamplesSum {
     /// Takes a frame's samples in.
     pub fn update(&mut self, frame: &crate::frame::Frame) {
-        for sample in frame.pvdf.iter().chain([&frame.switch_a, &frame.switch_b]) {
-            self.0.update(&sample.to_le_bytes());
+        for &sample in frame.pvdf.iter().chain([&frame.switch_a, &frame.switch_b]) {
+            self.sum = self.sum.wrapping_add(u32::from(sample));
+            self.sum_of_sums = self.sum_of_sums.wrapping_add(self.sum);
         }
     }
 
-    /// The CRC so far; starts anew.
+    /// The checksum so far; starts anew.
     pub fn take(&mut self) -> u32 {
-        core::mem::take(self).0.finalize()
+        let Self { sum, sum_of_sums } = core::mem::take(self);
+        sum_of_sums ^ sum.rotate_left(16)
     }
 }
 

@@ -61,7 +61,7 @@ fn up() {
         flexor_mv: Some(40),
         extensor_mv: None,
         wearer_active: false,
-        samples_crc: 0xDEAD_BEEF,
+        samples_sum: 0xDEAD_BEEF,
     };
     check(
         &Up::Slow(slow),

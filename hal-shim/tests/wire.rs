@@ -115,7 +115,7 @@ fn the_longest_message_fits_a_frame() {
         flexor_mv: Some(i16::MIN),
         extensor_mv: Some(i16::MIN),
         wearer_active: true,
-        samples_crc: u32::MAX,
+        samples_sum: u32::MAX,
     };
     let mut buffer = [0; FRAME_MAX];
     let length = encode(u16::MAX, &Up::Slow(slow), &mut buffer).unwrap().len();

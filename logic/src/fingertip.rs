@@ -242,7 +242,7 @@ impl Fingertip {
     }
 
     fn end_slow_frame(&mut self, frame: &Frame) -> Slow {
-        let (ticks, samples_crc) = self.journal.take_slow();
+        let (ticks, samples_sum) = self.journal.take_slow();
         Slow {
             frame: frame.sequence,
             ticks,
@@ -253,7 +253,7 @@ impl Fingertip {
             flexor_mv: self.senses.gate.flexor.mv(),
             extensor_mv: self.senses.gate.extensor.mv(),
             wearer_active: self.senses.gate.is_active(),
-            samples_crc,
+            samples_sum,
         }
     }
 }

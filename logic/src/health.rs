@@ -54,7 +54,22 @@ pub struct SensorHealth {
 
 impl SensorHealth {
     /// Takes a reading: its value, or why it has none; and what changed with it.
+    #[inline]
     pub fn take(&mut self, limits: &Limits, sample: u16) -> (Result<u16, Reason>, Option<Change>) {
+        // Nearly every reading of nearly every sensor.
+        let live = sample >= limits.low && sample <= limits.high && self.last != Some(sample);
+        if live && self.lost.is_none() {
+            self.last = Some(sample);
+            self.same = 0;
+            self.bad = 0;
+            return (Ok(sample), None);
+        }
+        self.weigh(limits, sample)
+    }
+
+    /// A reading that is not plainly good.
+    #[inline(never)]
+    fn weigh(&mut self, limits: &Limits, sample: u16) -> (Result<u16, Reason>, Option<Change>) {
         self.same = if self.last == Some(sample) { self.same.saturating_add(1) } else { 0 };
         self.last = Some(sample);
         let verdict = if sample < limits.low {

@@ -2,7 +2,7 @@
 
 use heapless::Deque;
 use tenax_hal_shim::frame::Frame;
-use tenax_hal_shim::wire::{Event, EventKind, SamplesCrc, TickRecord};
+use tenax_hal_shim::wire::{Event, EventKind, SamplesSum, TickRecord};
 use tenax_hal_shim::words::{Cause, Fault, GripMode};
 
 /// Events kept until they are taken: more than all sensors failing at once.
@@ -13,7 +13,7 @@ const EVENTS: usize = 32;
 pub struct Journal {
     frame: u32,
     ticks: [TickRecord; tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME as usize],
-    crc: SamplesCrc,
+    samples: SamplesSum,
     events: Deque<Event, EVENTS>,
     events_lost: u16,
 }
@@ -26,7 +26,7 @@ impl Journal {
             self.ticks = Default::default();
         }
         if frame.valid {
-            self.crc.update(frame);
+            self.samples.update(frame);
         }
     }
 
@@ -37,11 +37,11 @@ impl Journal {
         }
     }
 
-    /// The ticks of the slow frame, and the CRC of what they were given; a new one begins.
+    /// The ticks of the slow frame, and the checksum of what they were given; a new one begins.
     pub fn take_slow(
         &mut self,
     ) -> ([TickRecord; tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME as usize], u32) {
-        (self.ticks, self.crc.take())
+        (self.ticks, self.samples.take())
     }
 
     /// The mode changed.

@@ -36,10 +36,25 @@ pub const TRANSITIONS: [(GripMode, Cause, GripMode); 22] = [
     (Explore, StrokeOver, Settle),
 ];
 
+const MODES: usize = Explore as usize + 1;
+const CAUSES: usize = StrokeOver as usize + 1;
+
+/// The table by mode and cause: it is asked three times in every tick, which is no time to search.
+static NEXT: [[Option<GripMode>; CAUSES]; MODES] = {
+    let mut next = [[None; CAUSES]; MODES];
+    let mut row = 0;
+    while row < TRANSITIONS.len() {
+        let (from, cause, to) = TRANSITIONS[row];
+        next[from as usize][cause as usize] = Some(to);
+        row += 1;
+    }
+    next
+};
+
 /// Where a cause leads, None where it changes nothing.
 #[must_use]
-pub fn next(from: GripMode, cause: Cause) -> Option<GripMode> {
-    TRANSITIONS.iter().find(|row| row.0 == from && row.1 == cause).map(|row| row.2)
+pub const fn next(from: GripMode, cause: Cause) -> Option<GripMode> {
+    NEXT[from as usize][cause as usize]
 }
 
 /// Whether the reflex may drive the motor in this mode.
@@ -58,14 +73,15 @@ pub const fn listens(mode: GripMode) -> bool {
 mod tests {
     use super::*;
 
-    const MODES: [GripMode; 7] = [Standby, Wearer, Watch, Slip, Incipient, Settle, Explore];
+    const ALL: [GripMode; MODES] = [Standby, Wearer, Watch, Slip, Incipient, Settle, Explore];
 
     #[test]
     fn the_table_is_a_function_and_reaches_every_mode() {
         for (n, a) in TRANSITIONS.iter().enumerate() {
             assert!(!TRANSITIONS[n + 1..].iter().any(|b| (a.0, a.1) == (b.0, b.1)), "{a:?} stands twice");
+            assert_eq!(next(a.0, a.1), Some(a.2));
         }
-        for mode in MODES {
+        for mode in ALL {
             assert!(
                 mode == Standby || TRANSITIONS.iter().any(|row| row.2 == mode && row.0 != mode),
                 "{mode:?}"
@@ -75,7 +91,7 @@ mod tests {
 
     #[test]
     fn every_mode_yields_to_the_wearer_and_to_lost_sensors() {
-        for mode in MODES {
+        for mode in ALL {
             assert!(matches!(mode, Standby | Wearer) || next(mode, TakenOver) == Some(Wearer), "{mode:?}");
             assert!(mode == Standby || next(mode, SensorsLost) == Some(Standby), "{mode:?}");
         }

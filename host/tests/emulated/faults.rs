@@ -28,7 +28,7 @@ fn an_overrun_costs_a_few_frames_and_is_told() {
     // the world had at those instants.
     let host = replay_scans(&run.scans, &[]);
     let same: Vec<bool> =
-        host.iter().zip(&run.slows).map(|(host, image)| host.samples_crc == image.samples_crc).collect();
+        host.iter().zip(&run.slows).map(|(host, image)| host.samples_sum == image.samples_sum).collect();
     assert_eq!((same.len(), same.iter().filter(|same| !**same).count()), (160, 1));
     assert!(run.slows.iter().zip(&host).all(|(image, host)| image.frame == host.frame));
 }
