@@ -123,7 +123,7 @@ impl<P: Plant> World<P> {
             }
         }
         self.mishaps.happen(scan, session, stop.at, host);
-        if let Some(progress) = self.progress.as_ref().filter(|_| scan % PROGRESS_SCANS == 0) {
+        if let Some(progress) = self.progress.as_ref().filter(|_| scan.is_multiple_of(PROGRESS_SCANS)) {
             // Nobody listening is no reason to stop.
             let _ = progress.send(scan as f64 / f64::from(SCAN_HZ));
         }
