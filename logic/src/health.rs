@@ -45,7 +45,8 @@ pub enum Change {
 /// Watches one sensor.
 #[derive(Clone, Debug, Default)]
 pub struct SensorHealth {
-    last: Option<u16>,
+    /// 0 before the first reading: which, if it is 0 too, is one equal reading too many in a count of thousands.
+    last: u16,
     same: u32,
     bad: u32,
     good: u32,
@@ -53,25 +54,25 @@ pub struct SensorHealth {
 }
 
 impl SensorHealth {
-    /// Takes a reading: its value, or why it has none; and what changed with it.
+    /// Takes a reading that is like nearly every reading of nearly every sensor: in range, different from the last, of a
+    /// sensor that is not lost. False, and nothing changed, if it is not.
     #[inline]
-    pub fn take(&mut self, limits: &Limits, sample: u16) -> (Result<u16, Reason>, Option<Change>) {
-        // Nearly every reading of nearly every sensor.
-        let live = sample >= limits.low && sample <= limits.high && self.last != Some(sample);
-        if live && self.lost.is_none() {
-            self.last = Some(sample);
+    #[must_use]
+    pub fn is_plain(&mut self, limits: &Limits, sample: u16) -> bool {
+        let plain =
+            sample >= limits.low && sample <= limits.high && self.last != sample && self.lost.is_none();
+        if plain {
+            self.last = sample;
             self.same = 0;
             self.bad = 0;
-            return (Ok(sample), None);
         }
-        self.weigh(limits, sample)
+        plain
     }
 
-    /// A reading that is not plainly good.
-    #[inline(never)]
-    fn weigh(&mut self, limits: &Limits, sample: u16) -> (Result<u16, Reason>, Option<Change>) {
-        self.same = if self.last == Some(sample) { self.same.saturating_add(1) } else { 0 };
-        self.last = Some(sample);
+    /// Takes a reading: its value, or why it has none; and what changed with it.
+    pub fn take(&mut self, limits: &Limits, sample: u16) -> (Result<u16, Reason>, Option<Change>) {
+        self.same = if self.last == sample { self.same.saturating_add(1) } else { 0 };
+        self.last = sample;
         let verdict = if sample < limits.low {
             Err(Reason::Dead)
         } else if sample > limits.high {

@@ -79,7 +79,9 @@ impl Senses {
             self.muscle(config, muscle, frame.switch_b, journal);
         }
         self.gate.tick(&config.gate);
-        self.capabilities(journal);
+        if frame.ends_slow_frame() {
+            self.capabilities(journal);
+        }
     }
 
     /// A frame was lost: the films say nothing, and after a while the rest is too old to be believed.
@@ -124,18 +126,23 @@ impl Senses {
     }
 
     fn films(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
-        let mut trust = [Trust::None; PVDF_COUNT];
-        for (n, health) in self.pvdf.iter_mut().enumerate() {
-            let (reading, change) = health.take(&PVDF_LIMITS, frame.pvdf[n]);
-            trust[n] = match reading {
-                Err(_) => Trust::None,
-                Ok(_) if health.same() >= FILM_DOUBTED_AFTER => Trust::Doubtful,
-                Ok(_) => Trust::Full,
+        self.films_usable = false;
+        for (n, (health, &sample)) in self.pvdf.iter_mut().zip(&frame.pvdf).enumerate() {
+            let trust = if health.is_plain(&PVDF_LIMITS, sample) {
+                Trust::Full
+            } else {
+                let (reading, change) = health.take(&PVDF_LIMITS, sample);
+                report(journal, PVDF + n, change);
+                match reading {
+                    Err(_) => Trust::None,
+                    Ok(_) if health.same() >= FILM_DOUBTED_AFTER => Trust::Doubtful,
+                    Ok(_) => Trust::Full,
+                }
             };
-            report(journal, PVDF + n, change);
+            self.films_usable |= trust != Trust::None;
+            self.detector.hear(n, sample, trust);
         }
-        self.films_usable = trust.iter().any(|&trust| trust != Trust::None);
-        self.vibration = self.detector.process(&config.vibration, &frame.pvdf, &trust);
+        self.vibration = self.detector.judge(&config.vibration);
     }
 
     fn quadrant(&mut self, config: &Config, quadrant: usize, sample: u16, journal: &mut Journal) {

@@ -2,8 +2,9 @@
 //!
 //! Each film's sample goes through a high-pass (offset, drift and slow contact go), a low-pass, a rectifier (the sign of
 //! a film means nothing: Tada 2006, section 2) and a second low-pass: the envelope of the slip band, 20 to 150 Hz. What
-//! the low-pass took away goes through the same rectifier and low-pass: the envelope above the band. The bands are those
-//! of real slip onsets, which have 83 to 94 % of their energy below 100 Hz and 1 to 3 % above 200 Hz.
+//! the low-pass took away is rectified too, and the loudest film's goes through one more low-pass: the envelope above the
+//! band. The bands are those of real slip onsets, which have 83 to 94 % of their energy below 100 Hz and 1 to 3 % above
+//! 200 Hz.
 //!
 //! A knock is as loud as slip or louder, but rings above the band, and is over soon. So S1 needs a loud band, and a
 //! quieter sound above it, or a sound that stays.
@@ -44,23 +45,23 @@ static ENVELOPE: Lowpass<1> = corner(1e6 / (2.0 * core::f64::consts::PI * ENVELO
 pub struct Film {
     offset: LowpassState<1>,
     band: LowpassState<1>,
-    inside: LowpassState<1>,
-    above: LowpassState<1>,
+    envelope: LowpassState<1>,
     primed: bool,
 }
 
-/// Envelopes of one film, Q16 samples.
+/// What one film says, Q16 samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Envelope {
-    /// In the slip band.
-    pub inside: i32,
-    /// Above it.
+pub struct Heard {
+    /// Envelope in the slip band.
+    pub envelope: i32,
+    /// Size of the vibration above it.
     pub above: i32,
 }
 
 impl Film {
     /// Takes a 14-bit sample. The first one is taken as the offset, so that being switched on is no vibration.
-    pub fn process(&mut self, sample: u16) -> Envelope {
+    #[inline]
+    pub fn process(&mut self, sample: u16) -> Heard {
         let x = (i32::from(sample) - MIDDLE) << Q;
         if !self.primed {
             self.offset.0[0] = i64::from(x) << 32;
@@ -68,11 +69,7 @@ impl Film {
         }
         let ac = x - HIGH_PASS.process(&mut self.offset, x);
         let low = LOW_PASS.process(&mut self.band, ac);
-        let high = ac - low;
-        Envelope {
-            inside: ENVELOPE.process(&mut self.inside, low.abs()),
-            above: ENVELOPE.process(&mut self.above, high.abs()),
-        }
+        Heard { envelope: ENVELOPE.process(&mut self.envelope, low.abs()), above: (ac - low).abs() }
     }
 }
 
@@ -101,52 +98,55 @@ pub struct Vibration {
 #[derive(Clone, Debug, Default)]
 pub struct VibrationDetector {
     films: [Film; PVDF_COUNT],
+    loudest: Heard,
+    above: LowpassState<1>,
     loud_frames: u32,
     s1: bool,
 }
 
 impl VibrationDetector {
-    /// Takes one sample of each film, and how far it can be believed.
-    pub fn process(
-        &mut self,
-        config: &VibrationConfig,
-        samples: &[u16; PVDF_COUNT],
-        trust: &[Trust; PVDF_COUNT],
-    ) -> Vibration {
-        let mut loudest = Envelope::default();
-        for ((film, &sample), &trust) in self.films.iter_mut().zip(samples).zip(trust) {
-            if trust == Trust::None {
-                // Primed anew when it comes back: its jump back is no vibration.
-                *film = Film::default();
-                continue;
-            }
-            let envelope = film.process(sample);
-            if trust == Trust::Full && envelope.inside > loudest.inside {
-                loudest = envelope;
-            }
+    /// Takes one film's sample of this tick, and how far it can be believed.
+    #[inline]
+    pub fn hear(&mut self, film: usize, sample: u16, trust: Trust) {
+        let Some(film) = self.films.get_mut(film) else { return };
+        if trust == Trust::None {
+            // Primed anew when it comes back: its jump back is no vibration.
+            *film = Film::default();
+            return;
         }
+        let heard = film.process(sample);
+        if trust == Trust::Full {
+            self.loudest.envelope = self.loudest.envelope.max(heard.envelope);
+            self.loudest.above = self.loudest.above.max(heard.above);
+        }
+    }
+
+    /// What all films said in this tick; the next one begins.
+    pub fn judge(&mut self, config: &VibrationConfig) -> Vibration {
+        let Heard { envelope, above } = core::mem::take(&mut self.loudest);
+        let above = ENVELOPE.process(&mut self.above, above);
         let on = i32::from(config.s1) << Q;
         // Once on, half the threshold keeps it on: the envelope of one slip has dips.
-        let loud = loudest.inside > if self.s1 { on / 2 } else { on };
+        let loud = envelope > if self.s1 { on / 2 } else { on };
         self.loud_frames = if loud { self.loud_frames.saturating_add(1) } else { 0 };
-        let knock = i64::from(loudest.above) * 1_000
-            > i64::from(loudest.inside) * i64::from(config.knock_permille)
+        let knock = i64::from(above) * 1_000 > i64::from(envelope) * i64::from(config.knock_permille)
             && self.loud_frames < config.knock_frames;
         self.s1 = loud && (self.s1 || !knock);
-        Vibration { level: (loudest.inside >> Q).clamp(0, i32::from(u16::MAX)) as u16, s1: self.s1 }
+        Vibration { level: (envelope >> Q).clamp(0, i32::from(u16::MAX)) as u16, s1: self.s1 }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::config::Config;
     use core::f64::consts::PI;
     use std::vec::Vec;
     use tenax_hal_shim::channel::SAMPLE_MAX;
 
     /// The same conditioning in `f64`, from the same transfer function (bilinear, unwarped gain k).
     #[derive(Default)]
-    struct Reference([f64; 4], bool);
+    struct Reference([f64; 3], bool);
 
     impl Reference {
         fn low_pass(state: &mut f64, hz: f64, x: f64) -> f64 {
@@ -165,10 +165,7 @@ mod tests {
             let ac = x - Self::low_pass(&mut self.0[0], 20.0, x);
             let low = Self::low_pass(&mut self.0[1], 150.0, ac);
             let envelope_hz = 1e6 / (2.0 * PI * 8_000.0);
-            (
-                Self::low_pass(&mut self.0[2], envelope_hz, low.abs()),
-                Self::low_pass(&mut self.0[3], envelope_hz, (ac - low).abs()),
-            )
+            (Self::low_pass(&mut self.0[2], envelope_hz, low.abs()), (ac - low).abs())
         }
     }
 
@@ -178,7 +175,7 @@ mod tests {
             let fixed = film.process(sample);
             let (inside, above) = reference.process(sample);
             worst
-                .max((f64::from(fixed.inside) / 65_536.0 - inside).abs())
+                .max((f64::from(fixed.envelope) / 65_536.0 - inside).abs())
                 .max((f64::from(fixed.above) / 65_536.0 - above).abs())
         })
     }
@@ -196,13 +193,16 @@ mod tests {
         assert!(worst_error((0..20_000).map(|n| if n < 9 { 0 } else { SAMPLE_MAX })) < 0.01);
     }
 
+    fn tick(detector: &mut VibrationDetector, sample: u16, trust: Trust) -> Vibration {
+        for film in 0..PVDF_COUNT {
+            detector.hear(film, sample, trust);
+        }
+        detector.judge(&Config::default().vibration)
+    }
+
     fn levels(samples: &[u16]) -> Vec<Vibration> {
         let mut detector = VibrationDetector::default();
-        let config = crate::config::Config::default().vibration;
-        samples
-            .iter()
-            .map(|&sample| detector.process(&config, &[sample; PVDF_COUNT], &[Trust::Full; PVDF_COUNT]))
-            .collect()
+        samples.iter().map(|&sample| tick(&mut detector, sample, Trust::Full)).collect()
     }
 
     fn tone(hz: f64, amplitude: f64, decay_s: f64, frames: u32) -> Vec<u16> {
@@ -225,7 +225,7 @@ mod tests {
     #[test]
     fn a_knock_is_not_slip_though_it_is_louder() {
         let knock = levels(&tone(300.0, 7_000.0, 0.006, 400));
-        assert!(knock.iter().map(|v| v.level).max() > Some(crate::config::Config::default().vibration.s1));
+        assert!(knock.iter().map(|v| v.level).max() > Some(Config::default().vibration.s1));
         assert!(knock.iter().all(|v| !v.s1));
     }
 
@@ -240,11 +240,9 @@ mod tests {
     #[test]
     fn a_film_that_comes_back_is_primed_anew() {
         let mut detector = VibrationDetector::default();
-        let config = crate::config::Config::default().vibration;
         for (trust, sample) in [(Trust::Full, 12_000), (Trust::None, 0), (Trust::Full, 12_000)] {
             for _ in 0..200 {
-                let v = detector.process(&config, &[sample; PVDF_COUNT], &[trust; PVDF_COUNT]);
-                assert_eq!(v, Vibration::default());
+                assert_eq!(tick(&mut detector, sample, trust), Vibration::default());
             }
         }
     }
