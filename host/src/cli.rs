@@ -1,5 +1,6 @@
 //! The command line: one file a subcommand.
 
+mod chart;
 mod check;
 mod flash;
 mod monitor;
@@ -24,6 +25,7 @@ Examples:
   tenax run --report json > report.json     for programs
   tenax scenes                              what there is to run
   tenax check                               every promise, measured
+  tenax chart scenes                        how friction is stepped, where that fails, and what it costs
   tenax monitor --port /dev/ttyACM0         watch a real board";
 
 /// Runs, replays, watches and charts the Tenax fingertip.
@@ -44,6 +46,8 @@ enum Command {
     Test(test::Args),
     /// Measure every promise of the project, one line each; fails if one is not kept
     Check(check::Args),
+    /// Draw the charts behind a page of docs/
+    Chart(chart::Args),
     /// Flash a NUCLEO-F411RE through probe-rs
     Flash(flash::Args),
     /// Watch a board's serial line, one line a message
@@ -62,6 +66,7 @@ pub fn main() -> ExitCode {
         Command::Scenes => scenes::main(),
         Command::Test(args) => test::main(&args),
         Command::Check(args) => check::main(&args),
+        Command::Chart(args) => chart::main(&args),
         Command::Flash(args) => flash::main(&args),
         Command::Monitor(args) => monitor::main(&args),
         Command::Size => size::main(),

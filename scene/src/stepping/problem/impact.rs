@@ -10,7 +10,7 @@ use crate::stepping::{Body, Load, Method, run};
 /// Friction is less than the weight, so it never sticks, and depth and height follow from the energies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
-    /// Of the mat, N/m.
+    /// Of the mat, N/m: above about 250, else friction swallows all the energy and nothing rises.
     pub mat_n_per_m: f64,
 }
 
@@ -69,8 +69,9 @@ impl Problem for Impact {
         "impact with the table"
     }
 
+    /// Falling and rising, and a whole swing of the mat, which is longer than any half with a load on it.
     fn duration_s(&self) -> f64 {
-        0.2
+        0.1 + std::f64::consts::TAU * (MASS_KG / self.mat_n_per_m).sqrt()
     }
 
     /// Depth and height.

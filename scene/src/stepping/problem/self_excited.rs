@@ -15,9 +15,9 @@ pub struct SelfExcited {
 }
 
 /// The first deviation, m: above rounding, and below what the curve of mu(v) would show, for as long as it is watched.
-const DEVIATION_M: f64 = 1e-11;
+const DEVIATION_M: f64 = 1e-13;
 /// Watched for so many swings.
-const SWINGS: usize = 8;
+const SWINGS: usize = 5;
 
 impl SelfExcited {
     /// Growth and frequency, or none if it does not swing.

@@ -1,0 +1,60 @@
+//! The charts of `tenax chart scenes`: where each way of stepping friction fails, and what it costs where it does not.
+
+mod cost;
+mod draw;
+mod growth;
+mod map;
+mod patch;
+mod sheet;
+
+use plotters::style::RGBColor;
+use tenax_scene::stepping::SHIPPED_S;
+
+use crate::plot::figure::colour;
+
+/// A chart and the numbers in it.
+#[derive(Clone, Debug)]
+pub struct Chart {
+    /// Its file name, without extension.
+    pub name: &'static str,
+    /// The drawing.
+    pub svg: String,
+    /// The numbers.
+    pub csv: String,
+}
+
+/// Told how much is done, from 0 to 1.
+pub type Progress<'a> = &'a (dyn Fn(f64) + Sync);
+
+/// Runs everything and draws it. Times are of this machine; all else is the same on every one.
+///
+/// # Errors
+/// If a chart cannot be drawn.
+pub fn scenes(progress: Progress) -> anyhow::Result<Vec<Chart>> {
+    // Parts of the whole time, as measured.
+    let map = map::chart(&|part| progress(0.85 * part))?;
+    let cost = cost::chart(&|part| progress(0.85 + 0.13 * part))?;
+    let rest = [patch::chart()?, growth::chart()?];
+    progress(1.0);
+    Ok([map, cost].into_iter().chain(rest).collect())
+}
+
+/// The colour of a method, by its place in [`tenax_scene::stepping::methods`].
+const METHOD: [RGBColor; 5] =
+    [colour::VERMILLION, colour::ORANGE, colour::GREEN, colour::PURPLE, colour::BLUE];
+
+/// An error from here on is no answer.
+const FAILED: f64 = 1.0;
+
+/// The scenes' step, us.
+const SHIPPED_US: f64 = SHIPPED_S * 1e6;
+
+/// The rows of a CSV file, under its header.
+fn csv(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> anyhow::Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(header)?;
+    for row in rows {
+        writer.write_record(row)?;
+    }
+    Ok(String::from_utf8(writer.into_inner()?)?)
+}
