@@ -21,5 +21,9 @@ pub const fn builtin() -> &'static [(&'static str, &'static str)] {
         "wearer-control",
         "dead-sensor",
         "pressed-at-boot",
+        "pick-up",
+        "steel-balls",
+        "can",
+        "rig",
     ]
 }

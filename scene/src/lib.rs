@@ -20,7 +20,7 @@ pub mod plant;
 mod pole;
 mod random;
 mod schedule;
-mod sensor;
+pub mod sensor;
 pub mod stepping;
 pub mod truth;
 pub mod world;

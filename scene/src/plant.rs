@@ -21,7 +21,8 @@ impl Pins {
     pub fn codes(&self) -> [u16; COUNT] {
         self.0.map(|volts| {
             let code = volts * 1e3 / f64::from(REFERENCE_MV) * (f64::from(CODE_MAX) + 1.0);
-            (code as i64).clamp(0, i64::from(CODE_MAX)) as u16
+            // A maximum with NaN is the other one.
+            code.max(0.0).min(f64::from(CODE_MAX)) as i32 as u16
         })
     }
 }

@@ -1,7 +1,6 @@
 //! Noise: one numbered stream for each source, so that a source added later changes no other one's noise.
 
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
-use rand_distr::StandardNormal;
 
 /// Who draws. New sources are added at the end: their place is their stream.
 #[derive(Clone, Copy, Debug)]
@@ -14,6 +13,18 @@ pub(crate) enum Source {
     Myo,
     /// The converter.
     Converter,
+    /// Places, depths and mixtures of the strain gauges.
+    StrainMaking,
+    /// The noise of the strain gauges.
+    Strain,
+    /// Gains and offsets of the normal-force array.
+    ArrayMaking,
+    /// The noise of the normal-force array.
+    Array,
+    /// Which element of the array slips.
+    ArraySlips,
+    /// Where the camera's pixels lie, and their jitter.
+    Camera,
 }
 
 /// A source's stream of numbers.
@@ -27,9 +38,29 @@ impl Noise {
         Self(rng)
     }
 
-    /// Normally distributed, mean 0, standard deviation 1.
+    /// Normally distributed, mean 0, standard deviation 1, as far as sensors care: within 4.
+    ///
+    /// Of one draw of 64 bits, 48 are coins, whose heads are binomial, and 16 fill the gaps between the counts evenly.
+    /// The distribution has an excess kurtosis of -0.04 and ends at 7. It takes no function of any platform's, which the
+    /// ziggurat's tail does, and a third of its time: noise was half of what a world cost.
     pub(crate) fn normal(&mut self) -> f64 {
-        self.0.sample(StandardNormal)
+        let [one] = self.normals();
+        one
+    }
+
+    /// As many at once: the compiler then takes several in one instruction.
+    pub(crate) fn normals<const N: usize>(&mut self) -> [f64; N] {
+        const COINS: u32 = 48;
+        // The variances of the count, a quarter a coin, and of the gap's filling.
+        const VARIANCE: f64 = COINS as f64 / 4.0 + 1.0 / 12.0;
+        const DEVIATION: f64 = 3.476_108_935_769_035;
+        const { assert!((DEVIATION * DEVIATION - VARIANCE).abs() < 1e-12) };
+        let bits: [u64; N] = std::array::from_fn(|_| self.0.random());
+        bits.map(|bits| {
+            let heads = f64::from((bits >> (u64::BITS - COINS)).count_ones());
+            let filled = (f64::from(bits as u16) + 0.5) / 65_536.0 - 0.5;
+            (heads - f64::from(COINS) / 2.0 + filled) * (1.0 / DEVIATION)
+        })
     }
 
     /// Evenly distributed from `low` to `high`.
@@ -40,5 +71,29 @@ impl Noise {
     /// -1 or 1.
     pub(crate) fn sign(&mut self) -> f64 {
         if self.0.random::<bool>() { 1.0 } else { -1.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn normal_is_normal_to_the_fourth_moment() {
+        const DRAWS: u32 = 1_000_000;
+        let mut noise = Noise::new(1, Source::Film);
+        let (mut sums, mut beyond) = ([0.0; 4], [0_u32; 3]);
+        for _ in 0..DRAWS {
+            let draw = noise.normal();
+            (0..4).for_each(|power| sums[power] += draw.powi(power as i32 + 1));
+            (0..3).for_each(|n| beyond[n] += u32::from(draw.abs() > (n + 1) as f64));
+        }
+        let [mean, variance, skew, kurtosis] = sums.map(|sum| sum / f64::from(DRAWS));
+        assert!(mean.abs() < 0.004 && (variance - 1.0).abs() < 0.006, "{mean}, {variance}");
+        assert!(skew.abs() < 0.012 && (kurtosis - 3.0).abs() < 0.07, "{skew}, {kurtosis}");
+        for (beyond, normal) in beyond.into_iter().zip([0.3173, 0.0455, 0.0027]) {
+            let part = f64::from(beyond) / f64::from(DRAWS);
+            assert!((part / normal - 1.0).abs() < 0.15, "{part} for {normal}");
+        }
     }
 }

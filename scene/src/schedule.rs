@@ -1,9 +1,12 @@
 //! Time, and things that happen for a while.
 
-use tenax_hal_shim::channel::SCAN_HZ;
+use tenax_hal_shim::channel::{FRAME_HZ, SCAN_HZ};
 
 /// One step of every model: one scan, s.
 pub(crate) const STEP_S: f64 = 1.0 / SCAN_HZ as f64;
+
+/// One frame, s: how often the slow sensors are stepped.
+pub(crate) const FRAME_S: f64 = 1.0 / FRAME_HZ as f64;
 
 /// From a beginning to an end, s. The end is not part of it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,6 +5,7 @@ use tenax_hal_shim::channel::{CHANNELS, COUNT, MYO_EXTENSOR, MYO_FLEXOR};
 use crate::file::sections::Intent;
 use crate::physics::{TOUCH_N, Touch};
 use crate::schedule::STEP_S;
+use crate::sensor::camera::Seen;
 
 /// Rows of the trace a second.
 pub const TRACE_HZ: u32 = 200;
@@ -13,10 +14,14 @@ pub const MYO_ON_MV: f64 = 160.0;
 /// And inactive below this, mV.
 pub const MYO_OFF_MV: f64 = 110.0;
 
+/// Micro slips further apart than this are not of one run, s: the time that a late detection of a slip may take.
+pub const MICRO_PAUSE_S: f64 = 0.050;
+
 /// One slip of the object through the fingers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slip {
-    /// When some of the contact let go, s. With rigid contact (L0) this is the macro onset.
+    /// When the run of micro slips that led to it began, s: the first element that let go, with no pause longer than
+    /// [`MICRO_PAUSE_S`] since. With rigid contact (L0) this is the macro onset.
     pub micro_onset_s: f64,
     /// When all of it slid, s.
     pub macro_onset_s: f64,
@@ -65,8 +70,12 @@ pub struct Row {
     pub position_mm: f64,
     /// Speed of the object over the pad, mm/s.
     pub slide_mm_s: f64,
-    /// Whether the contact sticks.
+    /// Whether any of the contact sticks.
     pub sticks: bool,
+    /// The part of the contact's area that sticks.
+    pub stuck_part: f64,
+    /// How far the object has turned about the pads, rad.
+    pub pitch_rad: f64,
     /// The least grip force of each finger that would hold at this instant, N; 0 while the hand does not carry.
     pub needed_n: f64,
 }
@@ -80,6 +89,16 @@ pub struct Truth {
     pub slip_distance_mm: f64,
     /// Whether the object left the pads after it was lifted.
     pub dropped: bool,
+    /// Elements of the sensed contact that let go, each time counted.
+    pub micro_slips: u64,
+    /// When the fingers first crushed it, s.
+    pub crushed_at_s: Option<f64>,
+    /// How far they crushed it for good, mm.
+    pub dent_mm: f64,
+    /// When it broke, s.
+    pub broken_at_s: Option<f64>,
+    /// The furthest that it turned about the pads, rad.
+    pub pitch_rad: f64,
     /// The greatest grip force of a finger, N.
     pub peak_grip_n: f64,
     /// The greatest grip force that was ever needed while the hand carried the object, N.
@@ -90,12 +109,23 @@ pub struct Truth {
     pub activity: Vec<Activity>,
     /// The trace, [`TRACE_HZ`] rows a second.
     pub trace: Vec<Row>,
+    /// What the camera said, 30 times a second. It goes to nobody by itself.
+    pub camera: Vec<Seen>,
     slide: Option<Slide>,
+    micro: Option<Micro>,
+}
+
+/// A run of micro slips.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Micro {
+    begin_s: f64,
+    last_s: f64,
 }
 
 /// The contact slides at this moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Slide {
+    micro_s: f64,
     begin_s: f64,
     way_mm: f64,
     /// Whether it was ever faster than the floor, so that it stands in [`Truth::slips`] as the last one.
@@ -126,6 +156,10 @@ pub(crate) struct State {
     pub(crate) needed_n: f64,
     pub(crate) mass_kg: f64,
     pub(crate) position_mm: f64,
+    pub(crate) hand_mm: f64,
+    pub(crate) pitch_rad: f64,
+    pub(crate) dent_mm: f64,
+    pub(crate) broken: bool,
 }
 
 impl Truth {
@@ -133,6 +167,14 @@ impl Truth {
         self.slip(step);
         let (touch, state) = (step.touch, &step.state);
         self.dropped |= state.dropped;
+        self.dent_mm = state.dent_mm;
+        if state.dent_mm > 0.0 {
+            self.crushed_at_s.get_or_insert(step.t_s);
+        }
+        if state.broken {
+            self.broken_at_s.get_or_insert(step.t_s);
+        }
+        self.pitch_rad = self.pitch_rad.max(state.pitch_rad.abs());
         self.peak_grip_n = self.peak_grip_n.max(touch.normal_n);
         self.needed_grip_n = self.needed_grip_n.max(state.needed_n);
         if step.trace {
@@ -144,6 +186,8 @@ impl Truth {
                 position_mm: state.position_mm,
                 slide_mm_s: touch.slide_m_s * 1e3,
                 sticks: touch.sticks,
+                stuck_part: touch.stuck_part,
+                pitch_rad: state.pitch_rad,
                 needed_n: state.needed_n,
             });
         }
@@ -151,7 +195,7 @@ impl Truth {
 
     /// Whether the object moves over the pad faster than the floor.
     pub(crate) fn slipping(&self, touch: &Touch, floor_mm_s: f64) -> bool {
-        self.slide.is_some() && touch.slide_m_s.abs() * 1e3 > floor_mm_s
+        self.slide.is_some() && touch.rub_m_s() * 1e3 > floor_mm_s
     }
 
     /// A slip begins when the contact lets go, and counts once it is faster than the floor: what settles more slowly
@@ -159,17 +203,24 @@ impl Truth {
     fn slip(&mut self, step: &Step<'_>) {
         let touch = step.touch;
         let slides = !touch.sticks && touch.normal_n > TOUCH_N;
+        self.micro(step);
+        let micro_s = self.micro.map_or(step.t_s, |run| run.begin_s);
         let Some(mut slide) = self.slide.or_else(|| {
-            (slides && step.state.carried).then_some(Slide { begin_s: step.t_s, way_mm: 0.0, counts: false })
+            (slides && step.state.carried).then_some(Slide {
+                micro_s,
+                begin_s: step.t_s,
+                way_mm: 0.0,
+                counts: false,
+            })
         }) else {
             return;
         };
         let way_mm = touch.slide_m_s.abs() * 1e3 * STEP_S;
         slide.way_mm += way_mm;
-        if !slide.counts && touch.slide_m_s.abs() * 1e3 > step.floor_mm_s {
+        if !slide.counts && touch.rub_m_s() * 1e3 > step.floor_mm_s {
             slide.counts = true;
             self.slips.push(Slip {
-                micro_onset_s: slide.begin_s,
+                micro_onset_s: slide.micro_s,
                 macro_onset_s: slide.begin_s,
                 end_s: None,
                 distance_mm: 0.0,
@@ -186,6 +237,19 @@ impl Truth {
             slip.end_s = (!slides).then_some(step.t_s);
         }
         self.slide = slides.then_some(slide);
+        if !slides {
+            // Everything sticks again: what lets go from now on leads to another slip.
+            self.micro = None;
+        }
+    }
+
+    fn micro(&mut self, step: &Step<'_>) {
+        let t_s = step.t_s;
+        self.micro = self.micro.filter(|run| t_s - run.last_s <= MICRO_PAUSE_S);
+        if step.touch.let_go > 0 && step.touch.normal_n > TOUCH_N {
+            self.micro_slips += step.touch.let_go as u64;
+            self.micro.get_or_insert(Micro { begin_s: t_s, last_s: t_s }).last_s = t_s;
+        }
     }
 
     pub(crate) fn wearer(&mut self, t_s: f64, intent: Option<Intent>, pins_v: &[f64; COUNT]) {

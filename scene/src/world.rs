@@ -1,26 +1,31 @@
 //! A whole world: everything that moves, everything that senses, and the line over which somebody types.
 
-use tenax_hal_shim::channel::{COUNT, FSR, FSR_COUNT, MYO_FLEXOR, OPENING, PVDF, PVDF_COUNT, SCAN_HZ};
+use tenax_hal_shim::channel::{
+    ARRAY, COUNT, FSR, MYO_FLEXOR, OPENING, PVDF, PVDF_COUNT, SCAN_HZ, SCANS_PER_FRAME, STRAIN,
+};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::Down;
 
 use crate::commands::Script;
 use crate::file::SceneFile;
+use crate::file::sections::Arm;
 use crate::physics::Touch;
-use crate::physics::friction::Surface;
 use crate::physics::grasp::Grasp;
 use crate::physics::gripper::Gripper;
 use crate::physics::hand::Hand;
 use crate::physics::stroke::Stroke;
-use crate::physics::wearer::Wearer;
+use crate::physics::wearer::{Effort, Wearer};
 use crate::plant::{Pins, Plant};
 use crate::schedule::STEP_S;
+use crate::sensor::array::Elements;
+use crate::sensor::camera::Eye;
 use crate::sensor::converter::Converter;
 use crate::sensor::fault::Faults;
 use crate::sensor::fsr::Quadrants;
 use crate::sensor::hand;
-use crate::sensor::myo::{Envelopes, SIDES};
+use crate::sensor::myo::Envelopes;
 use crate::sensor::pvdf::Films;
+use crate::sensor::strain::Gauges;
 use crate::truth::{self, State, TRACE_HZ, Truth};
 
 /// Scans between two rows of the trace.
@@ -39,6 +44,11 @@ pub struct World {
     films: Films,
     quadrants: Quadrants,
     envelopes: Envelopes,
+    gauges: Gauges,
+    elements: Elements,
+    eye: Eye,
+    released_n: f64,
+    slow_v: [f64; COUNT],
     faults: Faults,
     converter: Converter,
     script: Script,
@@ -50,32 +60,27 @@ pub struct World {
 #[derive(Clone, Debug)]
 enum Task {
     /// An object between the fingers, carried by the wearer's arm.
-    Grasp { grasp: Grasp, hand: Hand },
+    Grasp { grasp: Box<Grasp>, hand: Hand, arm: Arm },
     /// A surface, stroked by a robot.
-    Stroke(Stroke),
+    Stroke(Box<Stroke>),
 }
 
 impl World {
     /// The scene at its beginning. The seed decides all noise and how the films came out in the making.
     #[must_use]
     pub fn new(scene: &SceneFile, seed: u64) -> Self {
-        let surface = Surface::new(&scene.contact, &scene.wet);
         let task = match &scene.object {
             Some(object) => Task::Grasp {
-                grasp: Grasp::new(
-                    object.get_ref(),
-                    &scene.fill,
-                    &scene.table,
-                    surface,
-                    scene.contact.pad_length_mm.get(),
-                ),
+                grasp: Box::new(Grasp::new(scene, object.get_ref())),
                 hand: Hand::new(&scene.moves, &scene.swing),
+                arm: scene.arm,
             },
             None => {
                 let robot = scene.robot.as_ref().map(|robot| robot.get_ref().clone()).unwrap_or_default();
-                Task::Stroke(Stroke::new(&robot, &scene.press, &scene.sweep, surface))
+                Task::Stroke(Box::new(Stroke::new(scene, &robot)))
             }
         };
+        let patch_radius_mm = scene.contact.patch_radius_mm.get();
         Self {
             scans: 0,
             duration_s: scene.duration_s(),
@@ -87,6 +92,11 @@ impl World {
             films: Films::new(&scene.pvdf, &scene.knock, scene.contact.pitch_mm.get(), seed),
             quadrants: Quadrants::new(&scene.fsr),
             envelopes: Envelopes::new(&scene.myo, &scene.electrode_lift, scene.pvdf.mains_hz.get(), seed),
+            gauges: Gauges::new(&scene.strain, seed),
+            elements: Elements::new(&scene.array, patch_radius_mm, seed),
+            eye: Eye::new(&scene.camera, seed),
+            released_n: 0.0,
+            slow_v: Pins::default().0,
             faults: Faults::new(&scene.fault),
             converter: Converter::new(seed),
             script: Script::new(&scene.command),
@@ -101,29 +111,56 @@ impl World {
         &self.truth
     }
 
+    /// What the sensed fingertip feels at this instant.
+    #[must_use]
+    pub const fn touch(&self) -> &Touch {
+        &self.touch
+    }
+
+    fn strokes(&self) -> bool {
+        matches!(self.task, Task::Stroke(_))
+    }
+
     /// How much of it is over, s.
     #[must_use]
     pub fn now_s(&self) -> f64 {
         self.scans as f64 * STEP_S
     }
 
+    /// Steps what sits behind the switches, once a frame: each of it is read once in 25.
+    fn slow(&mut self, t_s: f64, effort: &Effort) {
+        let released_n = std::mem::take(&mut self.released_n);
+        let pins_v = &mut self.slow_v;
+        pins_v[STRAIN..FSR].copy_from_slice(&self.gauges.step(&self.touch));
+        pins_v[FSR..ARRAY].copy_from_slice(&self.quadrants.step(&self.touch, self.faults.pressed_n(t_s)));
+        pins_v[ARRAY..MYO_FLEXOR].copy_from_slice(&self.elements.step(&self.touch, released_n));
+        pins_v[MYO_FLEXOR..OPENING].copy_from_slice(&self.envelopes.step(t_s, effort));
+        pins_v[OPENING..COUNT].copy_from_slice(&hand::pins_v(&self.gripper));
+        self.truth.wearer(t_s, effort.intent, pins_v);
+    }
+
     /// Moves everything that moves.
     fn moves(&mut self, t_s: f64, drive: MotorDrive) -> State {
         self.gripper.step(drive, self.touch.normal_n);
         match &mut self.task {
-            Task::Grasp { grasp, hand } => {
+            Task::Grasp { grasp, hand, arm } => {
                 let grip_n = grasp
                     .between_the_fingers()
                     .map_or(0.0, |(width_mm, stiffness)| self.gripper.grip_n(width_mm, stiffness));
-                hand.step(t_s, grasp.table_part());
+                let felt_part = if *arm == Arm::Person { grasp.table_part() } else { 0.0 };
+                hand.step(t_s, felt_part);
                 self.touch = grasp.step(t_s, hand, grip_n);
                 let carried = grasp.is_held();
                 State {
-                    carried,
+                    carried: carried || *arm == Arm::Robot,
                     dropped: grasp.is_dropped(),
                     needed_n: if carried { grasp.needed_n() } else { 0.0 },
                     mass_kg: grasp.mass_kg(),
                     position_mm: grasp.height_m(hand) * 1e3,
+                    hand_mm: hand.height_m() * 1e3,
+                    pitch_rad: grasp.pitch_rad(),
+                    dent_mm: grasp.body().dent_mm(),
+                    broken: grasp.body().is_broken(),
                 }
             }
             Task::Stroke(stroke) => {
@@ -133,7 +170,12 @@ impl World {
                     dropped: false,
                     needed_n: 0.0,
                     mass_kg: 0.0,
+                    // The surface lies still; the probe is the hand.
                     position_mm: stroke.probe_m() * 1e3,
+                    hand_mm: stroke.probe_m() * 1e3,
+                    pitch_rad: 0.0,
+                    dent_mm: 0.0,
+                    broken: false,
                 }
             }
         }
@@ -146,6 +188,9 @@ impl Plant for World {
         let t_s = self.now_s();
         let effort = self.wearer.step(t_s, self.touch.normal_n);
         let state = self.moves(t_s, drive);
+        let hand_mm = state.hand_mm;
+        let object_mm = if self.strokes() { 0.0 } else { state.position_mm };
+        self.truth.camera.extend(self.eye.step(t_s, hand_mm, object_mm));
         self.truth.step(&truth::Step {
             t_s,
             touch: &self.touch,
@@ -155,17 +200,16 @@ impl Plant for World {
             trace: self.scans.is_multiple_of(TRACE_EVERY),
         });
 
-        let mut pins_v = Pins::default().0;
+        self.released_n += self.touch.released_n;
+        if (self.scans - 1).is_multiple_of(SCANS_PER_FRAME as u64) {
+            self.slow(t_s, &effort);
+        }
+        let mut pins_v = self.slow_v;
         pins_v[PVDF..PVDF + PVDF_COUNT].copy_from_slice(&self.films.step(
             t_s,
             &self.touch,
             self.gripper.speed_part(),
         ));
-        pins_v[FSR..FSR + FSR_COUNT]
-            .copy_from_slice(&self.quadrants.step(&self.touch, self.faults.pressed_n(t_s)));
-        pins_v[MYO_FLEXOR..MYO_FLEXOR + SIDES].copy_from_slice(&self.envelopes.step(t_s, &effort));
-        pins_v[OPENING..COUNT].copy_from_slice(&hand::pins_v(&self.gripper));
-        self.truth.wearer(t_s, effort.intent, &pins_v);
         self.converter.step(&mut pins_v);
         self.faults.apply(t_s, &mut pins_v);
         self.pins = Pins(pins_v);

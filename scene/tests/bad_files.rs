@@ -92,6 +92,26 @@ fn every_mistake_is_named_where_it_stands() {
             27,
             &["pvdf_1", "myo_flexor"],
         ),
+        ("pitch_mm = 1", "pitch_mm = 1\nlevel = \"l3\"", 11, &["l3", "l0", "l1", "l2"]),
+        ("pitch_mm = 1", "pitch_mm = 1\nskin_ms = 3", 11, &["skin_ms", "l1"]),
+        ("pitch_mm = 1", "pitch_mm = 1\nlevel = \"l1\"\nstribeck_mm_s = 3", 12, &["stribeck_mm_s", "l2"]),
+        (
+            "pitch_mm = 1",
+            "pitch_mm = 1\nlevel = \"l1\"\nskin_n_per_mm = -1",
+            12,
+            &["skin_n_per_mm", "0.01..=1000"],
+        ),
+        ("stiffness_n_per_mm = 3", "stiffness_n_per_mm = 3\ncrush_n = nan", 15, &["crush_n", "NaN"]),
+        (
+            "[[fault]]",
+            "[pitch]\noffset_mm = 500\nhang_mm = 1\ngyration_mm = 9\n[[fault]]",
+            16,
+            &["offset_mm", "-100..=100"],
+        ),
+        ("[[fault]]", "[strain]\ncreep = 2\n[[fault]]", 16, &["creep", "0..=1"]),
+        ("[[fault]]", "[array]\ntilt = -0.1\n[[fault]]", 16, &["tilt", "0..=1"]),
+        ("[[fault]]", "[camera]\nrate_hz = 0\n[[fault]]", 16, &["rate_hz", "0.01..=1000"]),
+        ("[[fault]]", "[gripper]\nstep_mm = 50\n[[fault]]", 16, &["step_mm", "0..=20"]),
         ("[[muscle]]", "[[fill]]\nat_s = 1\nfor_s = 1\nadd_kg = -1\n[[muscle]]", 27, &["add_kg", "above 0"]),
     ];
     for (good, bad, line, said) in cases {

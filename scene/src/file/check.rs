@@ -7,7 +7,7 @@ use toml::Spanned;
 
 use super::SceneFile;
 use super::quantity::{Instant, Mu};
-use super::sections::{Command, CommandKind, FaultKind, SensorFault};
+use super::sections::{Command, CommandKind, FaultKind, Level, SensorFault};
 use super::step::step;
 use crate::commands;
 
@@ -25,6 +25,7 @@ pub(super) fn demand(fits: bool, span: Range<usize>, what: impl FnOnce() -> Stri
 
 pub(super) fn check(scene: &SceneFile) -> Checked {
     friction(scene)?;
+    level(scene)?;
     instants(scene)?;
     one_story(scene)?;
     step(scene)?;
@@ -56,6 +57,23 @@ fn friction(scene: &SceneFile) -> Checked {
                 mu_s.get()
             )
         })?;
+    }
+    Ok(())
+}
+
+/// What belongs to one level of contact stands only where that level is.
+fn level(scene: &SceneFile) -> Checked {
+    let contact = &scene.contact;
+    let skin = contact.skin_n_per_mm.as_ref().map(|skin| ("skin_n_per_mm", skin.span()));
+    let skin_ms = contact.skin_ms.as_ref().map(|skin| ("skin_ms", skin.span()));
+    let stribeck = contact.stribeck_mm_s.as_ref().map(|speed| ("stribeck_mm_s", speed.span()));
+    for (key, level, needs) in
+        [(skin, Level::L1, "l1"), (skin_ms, Level::L1, "l1"), (stribeck, Level::L2, "l2")]
+    {
+        if let Some((key, span)) = key.filter(|_| contact.level != level) {
+            let what = format!("{key} belongs to level = \"{needs}\" and would change nothing here");
+            return Err(Wrong { span, what });
+        }
     }
     Ok(())
 }
@@ -110,6 +128,10 @@ fn one_story(scene: &SceneFile) -> Checked {
             refuse(foreign, "[[press]] and [[sweep]] are the robot's; this scene has an [object]")
         }
         (None, Some(_)) => {
+            if let Some(pitch) = &scene.pitch {
+                let what = "[pitch] needs an [object]; this scene has a [robot]".to_owned();
+                return Err(Wrong { span: pitch.span(), what });
+            }
             let foreign = scene.fill.iter().map(|fill| &fill.at_s);
             let foreign = foreign.chain(scene.moves.iter().map(|step| &step.at_s));
             let foreign = foreign.chain(scene.swing.iter().map(|swing| &swing.at_s));

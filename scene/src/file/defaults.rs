@@ -4,9 +4,9 @@ use toml::Spanned;
 
 use super::quantity::{
     Damping, DeadTime, Duration, Gain, Hertz, Kilograms, Millimetres, Milliseconds, Millivolts, NewtonsMax,
-    Part, Speed, Stiffness,
+    Part, Play, Speed, Stiffness,
 };
-use super::sections::{Fsr, Gripper, Myo, Pvdf, Robot, Table};
+use super::sections::{Array, Camera, Fsr, Gripper, Myo, Pvdf, Robot, Strain, Table};
 
 impl Default for Gripper {
     fn default() -> Self {
@@ -19,6 +19,8 @@ impl Default for Gripper {
             // Assumed: the Ottobock's opening width is about 100 mm.
             range_mm: Millimetres::of(100.0),
             opening_mm: Spanned::new(0..0, Millimetres::of(90.0)),
+            // The Ottobock is driven by voltage.
+            step_mm: Play::of(0.0),
         }
     }
 }
@@ -94,5 +96,46 @@ impl Default for Myo {
             crosstalk: Part::of(0.05),
             mains_mv: Millivolts::of(5.0),
         }
+    }
+}
+
+impl Default for Strain {
+    fn default() -> Self {
+        Self {
+            // Assumed: 20 N of grasp stay within the front end's range.
+            normal_mv_per_n: Gain::of(60.0),
+            shear_mv_per_n: Gain::of(120.0),
+            // Tada 2006, section III: random places and depths; how unlike is assumed.
+            spread: Part::of(0.3),
+            offset_mv: Millivolts::of(40.0),
+            drift_mv_per_min: Millivolts::of(5.0),
+            // Assumed: silicone rubber relaxes by a few per cent.
+            creep: Part::of(0.02),
+            creep_s: Duration::of(10.0),
+            // Assumed: a foil gauge behind an instrumentation amplifier.
+            noise_mv: Millivolts::of(1.0),
+        }
+    }
+}
+
+impl Default for Array {
+    fn default() -> Self {
+        Self {
+            // Bamshad 2023, section 2.1: 14.7 N full scale, here over the front end's 3 V.
+            mv_per_n: Gain::of(200.0),
+            // Assumed, as the rest: piezoresistive elements under one cover.
+            spread: Part::of(0.15),
+            offset_mv: Millivolts::of(30.0),
+            tilt: Part::of(0.5),
+            slip_part: Part::of(0.5),
+            noise_mv: Millivolts::of(2.0),
+        }
+    }
+}
+
+impl Default for Camera {
+    fn default() -> Self {
+        // Tada 2006, section III-A. The jitter is assumed.
+        Self { pixel_mm: Millimetres::of(1.32), rate_hz: Hertz::of(30.0), jitter_px: Part::of(0.02) }
     }
 }

@@ -14,8 +14,8 @@ use toml::Spanned;
 pub use error::SceneError;
 use quantity::{Duration, Speed};
 use sections::{
-    Command, Contact, ElectrodeLift, Fill, Fsr, Gripper, Knock, Move, Muscle, Myo, Object, Press, Pvdf,
-    Robot, SensorFault, Sweep, Swing, Table, Wet,
+    Arm, Array, Camera, Command, Contact, ElectrodeLift, Fill, Fsr, Gripper, Knock, Move, Muscle, Myo,
+    Object, Pitch, Press, Pvdf, Robot, SensorFault, Strain, Sweep, Swing, Table, Wet,
 };
 
 /// A whole scene, every number in it checked.
@@ -32,8 +32,11 @@ pub struct SceneFile {
     duration_s: Duration,
     /// The relative speed above which the object counts as slipping.
     slip_floor_mm_s: Speed,
+    #[serde(default)]
+    pub(crate) arm: Arm,
     pub(crate) contact: Contact,
     pub(crate) object: Option<Spanned<Object>>,
+    pub(crate) pitch: Option<Spanned<Pitch>>,
     #[serde(default)]
     pub(crate) table: Table,
     pub(crate) robot: Option<Spanned<Robot>>,
@@ -45,6 +48,12 @@ pub struct SceneFile {
     pub(crate) fsr: Fsr,
     #[serde(default)]
     pub(crate) myo: Myo,
+    #[serde(default)]
+    pub(crate) strain: Strain,
+    #[serde(default)]
+    pub(crate) array: Array,
+    #[serde(default)]
+    pub(crate) camera: Camera,
     #[serde(default)]
     pub(crate) wet: Vec<Wet>,
     #[serde(default)]

@@ -66,6 +66,10 @@ quantities! {
     NewtonsMax: 1.0 to 200.0;
     /// A length, mm.
     Millimetres: 0.01 to 300.0;
+    /// A short way, mm: 0 is none.
+    Play: 0.0 to 20.0;
+    /// Where a load hangs beside or under the pads, mm, either way.
+    Lever: -100.0 to 100.0;
     /// A height, mm: below 0 the hand would push through the table.
     Height: 0.0 to 2000.0;
     /// A stiffness, N/mm.

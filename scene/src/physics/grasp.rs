@@ -1,15 +1,21 @@
 //! An object between two fingers, over a table.
 
-use super::contact::RigidCoulomb;
-use super::friction::Surface;
+use super::friction::{Friction, Surface};
 use super::hand::Hand;
+use super::level::Level;
+use super::limit::Body;
+use super::pitch::{Pitch, Turn};
 use super::{GRAVITY_M_S2, TOUCH_N, Touch};
-use crate::file::sections::{Fill, Object, Table};
+use crate::file::SceneFile;
+use crate::file::sections::Object;
 use crate::schedule::{STEP_S, Span};
+
+/// Two fingers.
+const PADS: f64 = 2.0;
 
 /// The object, what is poured into it, the table under it, and the two pads at its sides.
 ///
-/// Vertical motion only: `m(t) v' = Q_1 + Q_2 - m(t) g + N` (`SCENES.md`, object and gripper), stepped in the hand's
+/// Vertical motion, and pitch where the scene asks for it: `m(t) v' = Q_1 + Q_2 - m(t) g + N` (`SCENES.md`, object and gripper), stepped in the hand's
 /// frame, where the arm's acceleration is an inertial force and sticking is rest. The two fingers press alike and share
 /// the shear; one of them is sensed. The table wears a mat, a spring and damper, so that the weight passes from the
 /// table to the hand over a millimetre and not between two scans.
@@ -18,13 +24,15 @@ pub struct Grasp {
     empty_kg: f64,
     fills: Vec<(Span, f64)>,
     surface: Surface,
-    width_mm: f64,
-    stiffness_n_per_mm: f64,
+    body: Body,
+    pitch: Option<Pitch>,
     pad_m: f64,
     mat_n_per_m: f64,
     mat_ns_per_m: f64,
     rest_m: f64,
-    contact: RigidCoulomb,
+    contact: Level,
+    sticks: bool,
+    shear_part: f64,
     in_hand: bool,
     lifted: bool,
     slid_m: f64,
@@ -35,26 +43,33 @@ pub struct Grasp {
 }
 
 impl Grasp {
-    pub(crate) fn new(object: &Object, fills: &[Fill], table: &Table, surface: Surface, pad_mm: f64) -> Self {
+    /// `object` is the scene's.
+    pub(crate) fn new(scene: &SceneFile, object: &Object) -> Self {
         let empty_kg = object.mass_kg.get();
-        let mat_n_per_m = table.mat_n_per_mm.get() * 1e3;
+        let mat_n_per_m = scene.table.mat_n_per_mm.get() * 1e3;
         // Damping of the mat with the empty object on it, as a part of critical.
-        let mat_ns_per_m = 2.0 * table.damping.get() * (mat_n_per_m * empty_kg).sqrt();
-        let fills = fills
+        let mat_ns_per_m = 2.0 * scene.table.damping.get() * (mat_n_per_m * empty_kg).sqrt();
+        let fills = scene
+            .fill
             .iter()
             .map(|fill| (Span::new(fill.at_s.get_ref().get(), fill.for_s.get()), fill.add_kg.get_ref().get()))
             .collect();
         Self {
             empty_kg,
             fills,
-            surface,
-            width_mm: object.width_mm.get(),
-            stiffness_n_per_mm: object.stiffness_n_per_mm.get(),
-            pad_m: pad_mm / 1e3,
+            surface: Surface::new(&scene.contact, &scene.wet),
+            body: Body::new(object),
+            pitch: scene
+                .pitch
+                .as_ref()
+                .map(|pitch| Pitch::new(pitch.get_ref(), scene.contact.patch_radius_mm.get())),
+            pad_m: scene.contact.pad_length_mm.get() / 1e3,
             mat_n_per_m,
             mat_ns_per_m,
             rest_m: -empty_kg * GRAVITY_M_S2 / mat_n_per_m,
-            contact: RigidCoulomb::default(),
+            contact: Level::new(&scene.contact),
+            sticks: true,
+            shear_part: 0.0,
             in_hand: true,
             lifted: false,
             slid_m: 0.0,
@@ -69,8 +84,8 @@ impl Grasp {
     pub fn step(&mut self, t_s: f64, hand: &Hand, grip_n: f64) -> Touch {
         let poured_kg = self.fills.iter().map(|(span, kg)| kg * span.progress(t_s)).sum::<f64>();
         self.mass_kg = self.empty_kg + poured_kg;
-        let friction = self.surface.at(t_s);
-        let grip_n = if self.in_hand { grip_n } else { 0.0 };
+        let dry = self.surface.at(t_s);
+        let grip_n = if self.in_hand { self.body.bears(grip_n) } else { 0.0 };
 
         let depth_m = -self.height_m(hand);
         let sinking_m_s = -(self.speed_m_s + hand.speed_m_s());
@@ -81,28 +96,54 @@ impl Grasp {
         };
         let free_n = self.table_n - self.mass_kg * (GRAVITY_M_S2 + hand.acceleration_m_s2());
         let free_m_s = self.speed_m_s + free_n / self.mass_kg * STEP_S;
-        let outcome = self.contact.step(2.0 * grip_n, friction, self.mass_kg, free_m_s, STEP_S);
+        // Torsion lets go where shear alone would: of a patch, that is below mu_s.
+        let holds = self.contact.holds(dry);
+        let turn = self.turn(Friction { mu_s: holds, mu_d: dry.mu_d.min(holds) }, grip_n, hand);
+        let friction = self.pitch.as_ref().map_or(dry, |pitch| pitch.leaves(dry));
+        let outcome = self.contact.step(grip_n, PADS, friction, self.mass_kg, free_m_s, STEP_S);
         self.speed_m_s = outcome.speed_m_s;
         self.slid_m += self.speed_m_s * STEP_S;
+        self.sticks = outcome.sticks;
+        let shear_n = outcome.force_n / PADS;
+        self.shear_part = if grip_n > 0.0 { (shear_n.abs() / (holds * grip_n)).min(1.0) } else { 0.0 };
 
-        self.needed_n = free_n.abs() / 2.0 / friction.mu_s;
+        self.needed_n = free_n.abs() / PADS / self.contact.holds(friction);
         self.lifted |= grip_n > TOUCH_N && self.table_n == 0.0;
-        self.in_hand &= self.slid_m.abs() <= self.pad_m;
+        self.in_hand &= self.slid_m.abs() <= self.pad_m && !self.body.is_broken();
+        let drop_n = (friction.mu_s - friction.mu_d) * grip_n;
+        let twisted_n = if turn.onset { drop_n } else { 0.0 };
         Touch {
             normal_n: grip_n,
-            shear_n: outcome.force_n / 2.0,
+            shear_n,
             slide_m_s: -self.speed_m_s,
-            sticks: self.contact.sticks(),
-            released_n: if outcome.onset { (friction.mu_s - friction.mu_d) * grip_n } else { 0.0 },
-            drop_n: (friction.mu_s - friction.mu_d) * grip_n,
+            turn_m_s: turn.rub_m_s,
+            torque_nm: turn.torque_nm,
+            sticks: outcome.sticks && !self.turns(),
+            stuck_part: outcome.stuck_part,
+            let_go: outcome.let_go + usize::from(turn.onset),
+            released_n: outcome.released_n + twisted_n,
+            drop_n,
         }
+    }
+
+    /// The table keeps what stands on it from turning.
+    fn turn(&mut self, friction: Friction, grip_n: f64, hand: &Hand) -> Turn {
+        let Some(pitch) = self.pitch.as_mut().filter(|_| self.in_hand) else { return Turn::default() };
+        let hangs = self.table_n == 0.0;
+        let weight_n = if hangs { self.mass_kg * (GRAVITY_M_S2 + hand.acceleration_m_s2()) } else { 0.0 };
+        let slide_m_s = if self.sticks { 0.0 } else { self.speed_m_s };
+        pitch.step(self.mass_kg, weight_n, grip_n, friction, self.shear_part, slide_m_s)
+    }
+
+    fn turns(&self) -> bool {
+        self.pitch.as_ref().is_some_and(Pitch::turns)
     }
 
     /// How the fingers feel it: its width, mm, and the stiffness of pad and object together, N/mm a finger. None once
     /// it has left the pads: the fingers close on nothing.
     #[must_use]
     pub fn between_the_fingers(&self) -> Option<(f64, f64)> {
-        self.in_hand.then_some((self.width_mm, self.stiffness_n_per_mm))
+        self.in_hand.then(|| (self.body.width_mm(), self.body.stiffness_n_per_mm()))
     }
 
     /// Over where it stood, m.
@@ -135,6 +176,18 @@ impl Grasp {
         self.lifted && !self.in_hand
     }
 
+    /// How far it has turned about the pads, rad.
+    #[must_use]
+    pub fn pitch_rad(&self) -> f64 {
+        self.pitch.as_ref().map_or(0.0, Pitch::angle_rad)
+    }
+
+    /// What the grip did to it.
+    #[must_use]
+    pub const fn body(&self) -> &Body {
+        &self.body
+    }
+
     /// The least grip force that would hold it at this instant, N.
     #[must_use]
     pub const fn needed_n(&self) -> f64 {
@@ -150,13 +203,14 @@ mod tests {
     /// A glass that is lifted from 1 s on and gripped with `grip_n` all along; its touch at the end of `for_s`.
     fn lifted(grip_n: f64, for_s: f64) -> (Grasp, Touch) {
         let (_, text) = crate::builtin()[0];
-        let scene = SceneFile::parse(text, "glass").unwrap();
+        let mut scene = SceneFile::parse(text, "glass").unwrap();
+        scene.fill.clear();
+        scene.wet.clear();
         let mut hand = Hand::new(
             &SceneFile::parse(&text.replace("at_s = 5.0", "at_s = 1.0"), "glass").unwrap().moves[..1],
             &[],
         );
-        let surface = Surface::new(&scene.contact, &[]);
-        let mut grasp = Grasp::new(scene.object.as_ref().unwrap().get_ref(), &[], &scene.table, surface, 18.0);
+        let mut grasp = Grasp::new(&scene, scene.object.as_ref().unwrap().get_ref());
         let mut touch = Touch::default();
         for step in 0..(for_s / STEP_S) as u32 {
             let t_s = f64::from(step) * STEP_S;

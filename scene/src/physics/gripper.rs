@@ -11,13 +11,16 @@ use crate::schedule::STEP_S;
 ///
 /// The duty sets the finger speed, less what the load takes: `v = v_max (duty - F / F_max)`, so the fingers stall at
 /// `duty F_max`. The gear does not run backwards: a load never opens the hand, driven or not. What the bridge is told
-/// reaches the fingers one dead time later, starting and stopping alike (gear play, friction, the motor's inertia).
+/// reaches the fingers one dead time later, starting and stopping alike (gear play, friction, the motor's inertia). A
+/// position-controlled gripper moves by whole steps, each as fast as it can.
 #[derive(Clone, Debug)]
 pub struct Gripper {
     speed_max_mm_s: f64,
     force_max_n: f64,
     range_mm: f64,
+    step_mm: f64,
     pipeline: VecDeque<MotorDrive>,
+    aim_mm: f64,
     opening_mm: f64,
     speed_mm_s: f64,
     current: f64,
@@ -30,7 +33,9 @@ impl Gripper {
             speed_max_mm_s: parameters.speed_mm_s.get(),
             force_max_n: parameters.force_n.get(),
             range_mm: parameters.range_mm.get(),
+            step_mm: parameters.step_mm.get(),
             pipeline: vec![MotorDrive::Coast; dead_steps].into(),
+            aim_mm: parameters.opening_mm.get_ref().get(),
             opening_mm: parameters.opening_mm.get_ref().get(),
             speed_mm_s: 0.0,
             current: 0.0,
@@ -52,9 +57,20 @@ impl Gripper {
             MotorDrive::Open(duty) => (f64::from(duty.as_per_mille()) / 1e3, 0.0),
         };
         let before_mm = self.opening_mm;
-        self.opening_mm = (before_mm + speed * self.speed_max_mm_s * STEP_S).clamp(0.0, self.range_mm);
+        self.aim_mm = (self.aim_mm + speed * self.speed_max_mm_s * STEP_S).clamp(0.0, self.range_mm);
+        self.opening_mm = self.reach(load);
         self.speed_mm_s = (self.opening_mm - before_mm) / STEP_S;
         self.current = current;
+    }
+
+    /// Where the fingers are next: at the aim, or on the way to the whole step nearest to it, as fast as they can.
+    fn reach(&self, load: f64) -> f64 {
+        if self.step_mm == 0.0 {
+            return self.aim_mm;
+        }
+        let goal_mm = ((self.aim_mm / self.step_mm).round() * self.step_mm).clamp(0.0, self.range_mm);
+        let closing_mm = (1.0 - load).max(0.0) * self.speed_max_mm_s * STEP_S;
+        goal_mm.clamp(self.opening_mm - closing_mm, self.opening_mm + self.speed_max_mm_s * STEP_S)
     }
 
     /// Distance between the pads when nothing is compressed, mm.
@@ -97,6 +113,7 @@ impl Gripper {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::file::quantity::Play;
     use tenax_hal_shim::motor::Duty;
 
     const WIDTH_MM: f64 = 70.0;
@@ -132,5 +149,18 @@ mod tests {
         assert_eq!(gripper.grip_n(WIDTH_MM, STIFFNESS_N_PER_MM), grip_n);
         run(&mut gripper, MotorDrive::Close(Duty::per_mille(100)), 1.0);
         assert_eq!(gripper.grip_n(WIDTH_MM, STIFFNESS_N_PER_MM), grip_n);
+    }
+
+    #[test]
+    fn a_position_controlled_one_stands_on_whole_steps_only() {
+        let stepped = sections::Gripper { step_mm: Play::of(0.5), ..sections::Gripper::default() };
+        let mut gripper = Gripper::new(&stepped);
+        for _ in 0..40 {
+            run(&mut gripper, MotorDrive::Close(Duty::per_mille(50)), 0.033);
+            run(&mut gripper, MotorDrive::Coast, 0.1);
+            let steps = gripper.opening_mm() / 0.5;
+            assert!((steps - steps.round()).abs() < 1e-9, "{} mm", gripper.opening_mm());
+        }
+        assert!(gripper.opening_mm() < 85.0);
     }
 }

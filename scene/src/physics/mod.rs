@@ -6,6 +6,10 @@ pub mod friction;
 pub mod grasp;
 pub mod gripper;
 pub mod hand;
+pub mod level;
+pub mod limit;
+pub mod patch;
+pub mod pitch;
 pub mod stribeck;
 pub mod stroke;
 pub mod wearer;
@@ -25,11 +29,27 @@ pub struct Touch {
     pub shear_n: f64,
     /// Speed of the object over the pad, m/s, in the direction of the shear.
     pub slide_m_s: f64,
-    /// Whether the contact sticks.
+    /// Speed of the pad's edge over the object because the object turns, m/s.
+    pub turn_m_s: f64,
+    /// Torsion on the pad, N m.
+    pub torque_nm: f64,
+    /// Whether any of the contact sticks.
     pub sticks: bool,
-    /// The shear that the contact let go of in this step, because it began to slide, N: (mu_s - mu_d) times the normal
-    /// force. This is the micro-slip event that the PVDF hears.
+    /// The part of the contact's area that sticks.
+    pub stuck_part: f64,
+    /// Elements of the contact that let go in this step.
+    pub let_go: usize,
+    /// The shear that they let go of, N: (mu_s - mu_d) times their part of the normal force. These are the micro-slip
+    /// events that the PVDF hears.
     pub released_n: f64,
     /// The shear that sliding lacks of sticking, N: what the texture's vibration grows with.
     pub drop_n: f64,
+}
+
+impl Touch {
+    /// How fast the object rubs over the pad, m/s: along it, and by turning.
+    #[must_use]
+    pub fn rub_m_s(&self) -> f64 {
+        (self.slide_m_s * self.slide_m_s + self.turn_m_s * self.turn_m_s).sqrt()
+    }
 }

@@ -1,9 +1,10 @@
 //! A probe stroked over a surface by a robot's arm (Prosthesis, figures 3 to 7).
 
-use super::contact::RigidCoulomb;
 use super::friction::Surface;
+use super::level::Level;
 use super::{TOUCH_N, Touch};
-use crate::file::sections::{Press, Robot, Sweep};
+use crate::file::SceneFile;
+use crate::file::sections::Robot;
 use crate::schedule::{STEP_S, Span, smooth};
 
 /// The fingertip on a carriage: pressed with a set load, pulled along through the arm's compliance.
@@ -19,23 +20,25 @@ pub struct Stroke {
     stiffness_n_per_m: f64,
     damping_ns_per_m: f64,
     surface: Surface,
-    contact: RigidCoulomb,
+    contact: Level,
     carriage_m: f64,
     probe_m: f64,
     speed_m_s: f64,
 }
 
 impl Stroke {
-    pub(crate) fn new(robot: &Robot, presses: &[Press], sweeps: &[Sweep], surface: Surface) -> Self {
+    pub(crate) fn new(scene: &SceneFile, robot: &Robot) -> Self {
         let mass_kg = robot.probe_kg.get();
         let stiffness_n_per_m = robot.stiffness_n_per_mm.get() * 1e3;
         Self {
-            presses: presses
+            presses: scene
+                .press
                 .iter()
                 .map(|press| (Span::new(press.at_s.get_ref().get(), press.for_s.get()), press.load_n.get()))
                 .collect(),
             ramp_s: robot.ramp_ms.get() / 1e3,
-            sweeps: sweeps
+            sweeps: scene
+                .sweep
                 .iter()
                 .map(|sweep| {
                     (Span::new(sweep.at_s.get_ref().get(), sweep.for_s.get()), sweep.speed_mm_s.get() / 1e3)
@@ -44,8 +47,8 @@ impl Stroke {
             mass_kg,
             stiffness_n_per_m,
             damping_ns_per_m: 2.0 * robot.damping.get() * (stiffness_n_per_m * mass_kg).sqrt(),
-            surface,
-            contact: RigidCoulomb::default(),
+            surface: Surface::new(&scene.contact, &scene.wet),
+            contact: Level::new(&scene.contact),
             carriage_m: 0.0,
             probe_m: 0.0,
             speed_m_s: 0.0,
@@ -61,7 +64,7 @@ impl Stroke {
         let pull_n = self.stiffness_n_per_m * (self.carriage_m - self.probe_m)
             + self.damping_ns_per_m * (carriage_m_s - self.speed_m_s);
         let free_m_s = self.speed_m_s + pull_n / self.mass_kg * STEP_S;
-        let outcome = self.contact.step(load_n, friction, self.mass_kg, free_m_s, STEP_S);
+        let outcome = self.contact.step(load_n, 1.0, friction, self.mass_kg, free_m_s, STEP_S);
         self.speed_m_s = outcome.speed_m_s;
         self.probe_m += self.speed_m_s * STEP_S;
         let drop_n = (friction.mu_s - friction.mu_d) * load_n;
@@ -69,8 +72,12 @@ impl Stroke {
             normal_n: load_n,
             shear_n: -outcome.force_n,
             slide_m_s: self.speed_m_s,
-            sticks: self.contact.sticks(),
-            released_n: if outcome.onset && load_n > TOUCH_N { drop_n } else { 0.0 },
+            turn_m_s: 0.0,
+            torque_nm: 0.0,
+            sticks: outcome.sticks,
+            stuck_part: outcome.stuck_part,
+            let_go: outcome.let_go,
+            released_n: if load_n > TOUCH_N { outcome.released_n } else { 0.0 },
             drop_n,
         }
     }

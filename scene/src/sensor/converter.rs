@@ -1,6 +1,8 @@
 //! The converter's own noise: no real channel is exactly constant.
 
-use tenax_hal_shim::channel::{CODE_MAX, COUNT, REFERENCE_MV};
+use tenax_hal_shim::channel::{
+    CHANNELS, CODE_MAX, COUNT, Input, RANK_SWITCH_A, RANK_SWITCH_B, REFERENCE_MV, SCAN_LEN,
+};
 
 use crate::random::{Noise, Source};
 
@@ -9,7 +11,23 @@ const LSB_V: f64 = REFERENCE_MV as f64 / 1e3 / (CODE_MAX as f64 + 1.0);
 /// Noise, rms, codes (STM32F411 data sheet: an effective resolution of about 10.5 bits; converter and wiring).
 const NOISE_LSB: f64 = 1.0;
 
-/// Adds noise to every pin.
+/// The rank of the scan in which each channel is converted.
+const RANKS: [usize; COUNT] = {
+    let mut ranks = [0; COUNT];
+    let mut channel = 0;
+    while channel < COUNT {
+        ranks[channel] = match CHANNELS[channel].input {
+            Input::Direct { rank } => rank as usize,
+            Input::SwitchA { .. } => RANK_SWITCH_A,
+            Input::SwitchB { .. } => RANK_SWITCH_B,
+        };
+        channel += 1;
+    }
+    ranks
+};
+
+/// Adds the noise of one scan: of each conversion its own. What shares a switch shares a conversion, whichever of it is
+/// selected.
 #[derive(Debug)]
 pub(crate) struct Converter(Noise);
 
@@ -19,8 +37,9 @@ impl Converter {
     }
 
     pub(crate) fn step(&mut self, pins_v: &mut [f64; COUNT]) {
-        for pin_v in pins_v {
-            *pin_v += NOISE_LSB * LSB_V * self.0.normal();
+        let rank_v: [f64; SCAN_LEN] = self.0.normals().map(|draw| NOISE_LSB * LSB_V * draw);
+        for (rank, pin_v) in RANKS.iter().zip(pins_v) {
+            *pin_v += rank_v[*rank];
         }
     }
 }

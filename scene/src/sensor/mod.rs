@@ -1,11 +1,14 @@
 //! What the sensors make of the world, in volts at the pins.
 
+pub(crate) mod array;
+pub mod camera;
 pub(crate) mod converter;
 pub(crate) mod fault;
 pub(crate) mod fsr;
 pub(crate) mod hand;
 pub(crate) mod myo;
 pub(crate) mod pvdf;
+pub(crate) mod strain;
 
 /// Supply of the analogue front ends less what their outputs cannot reach, V.
 const CLIP_V: std::ops::RangeInclusive<f64> = 0.05..=3.2;

@@ -40,8 +40,8 @@ struct Side {
 impl Envelopes {
     pub(crate) fn new(parameters: &Myo, lifts: &[ElectrodeLift], mains_hz: f64, seed: u64) -> Self {
         let side = Side {
-            envelope: LowPass::with_tau_s(parameters.rise_ms.get() / 1e3 / RISE_TAUS),
-            wander: LowPass::with_corner_hz(WANDER_HZ),
+            envelope: LowPass::of_frames(parameters.rise_ms.get() / 1e3 / RISE_TAUS),
+            wander: LowPass::of_frames(1.0 / (TAU * WANDER_HZ)),
         };
         let lifts = lifts.iter().map(|lift| {
             let side = lift.channel.get_ref().index() - MYO_FLEXOR;
@@ -56,7 +56,7 @@ impl Envelopes {
         }
     }
 
-    /// Voltages at the pins after one scan that ends at `t_s`.
+    /// Voltages at the pins after one frame that ends at `t_s`.
     pub(crate) fn step(&mut self, t_s: f64, effort: &Effort) -> [f64; SIDES] {
         const { assert!(MYO_EXTENSOR == MYO_FLEXOR + 1) };
         let p = &self.parameters;
@@ -71,7 +71,7 @@ impl Envelopes {
                 Some((_, _, pickup_mv)) => pickup_mv * (1.0 + RIPPLE_PART * ripple),
                 None => {
                     let muscle_mv = own_mv[n] + p.crosstalk.get() * own_mv[1 - n];
-                    p.tone_mv.get() + muscle_mv + p.noise_mv.get().hypot(p.ripple.get() * muscle_mv) * wander
+                    p.tone_mv.get() + muscle_mv + both(p.noise_mv.get(), p.ripple.get() * muscle_mv) * wander
                 }
             };
             let envelope_mv = side.envelope.step(heard_mv) + p.mains_mv.get() * ripple;
@@ -81,10 +81,15 @@ impl Envelopes {
     }
 }
 
+/// Two independent noises together. (The platform's own `hypot` is not the same on all of them.)
+fn both(a: f64, b: f64) -> f64 {
+    (a * a + b * b).sqrt()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::schedule::STEP_S;
+    use crate::schedule::FRAME_S;
 
     #[test]
     fn an_envelope_rises_in_60_ms_and_the_other_side_stays_below_its_threshold() {
@@ -92,9 +97,9 @@ mod tests {
         let mut envelopes = Envelopes::new(&quiet, &[], 50.0, 1);
         let effort = Effort { flexor_mv: 1_000.0, ..Effort::default() };
         let (mut ten_s, mut ninety_s) = (None, None);
-        (0..8_000).for_each(|n| _ = envelopes.step(f64::from(n) * STEP_S, &Effort::default()));
-        for n in 0..8_000 {
-            let t_s = f64::from(n) * STEP_S;
+        (0..2_000).for_each(|n| _ = envelopes.step(f64::from(n) * FRAME_S, &Effort::default()));
+        for n in 0..2_000 {
+            let t_s = f64::from(n) * FRAME_S;
             let [flexor, extensor] = envelopes.step(1.0 + t_s, &effort).map(|volts| volts * 1e3 - 300.0);
             if flexor > 150.0 {
                 ten_s.get_or_insert(t_s);

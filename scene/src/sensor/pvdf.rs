@@ -82,9 +82,10 @@ impl Films {
         self.last_normal_n = touch.normal_n;
         let adjust_mv = p.adjust_mv_per_n_s.get() * change_n_per_s;
         // White over the whole scan rate, so that the sum of a frame's scans has the rms that was asked for.
-        let noise_mv = p.noise_mv.get().hypot(adjust_mv) * (SCANS_PER_FRAME as f64).sqrt();
+        let power = p.noise_mv.get() * p.noise_mv.get() + adjust_mv * adjust_mv;
+        let noise_mv = (power * SCANS_PER_FRAME as f64).sqrt();
 
-        let speed_m_s = touch.slide_m_s.abs();
+        let speed_m_s = touch.rub_m_s();
         self.texture_phase = (self.texture_phase + speed_m_s / self.pitch_m * STEP_S).fract();
         let half_m_s = p.texture_half_mm_s.get() / 1e3;
         let texture_mv = if touch.normal_n > TOUCH_N && speed_m_s > 0.0 {
@@ -101,7 +102,8 @@ impl Films {
         } + p.mains_mv.get() * libm::sin(TAU * p.mains_hz.get() * t_s);
 
         let mut pins = [0.0; PVDF_COUNT];
-        for (film, pin) in self.films.iter_mut().zip(&mut pins) {
+        let draws: [f64; PVDF_COUNT] = self.noise.normals();
+        for ((film, pin), draw) in self.films.iter_mut().zip(&mut pins).zip(draws) {
             let deformed_mv = film.skin.iter_mut().fold(load_mv, |mv, pole| pole.step(mv));
             let mut film_mv = deformed_mv - film.amplifier.step(deformed_mv);
             if texture_mv > 0.0 {
@@ -110,7 +112,7 @@ impl Films {
             for knock in &self.knocks {
                 film_mv += ring_mv(knock, t_s, film.phase);
             }
-            film_mv = film.gain * (film_mv + everywhere_mv) + noise_mv * self.noise.normal();
+            film_mv = film.gain * (film_mv + everywhere_mv) + noise_mv * draw;
             *pin = front_end_v(f64::from(PVDF_REST_MV) + p.gain.get() * film_mv);
         }
         pins

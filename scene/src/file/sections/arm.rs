@@ -10,6 +10,17 @@ use crate::file::quantity::{
     Velocity,
 };
 
+/// Who carries the hand over an object.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Arm {
+    /// A person, who slows as they feel the table carry the object; sliding over what still stands there is no slip.
+    #[default]
+    Person,
+    /// A robot, which goes on; the fingers may slip along an object on the table, and that is slip (Tada 2006, figure 5).
+    Robot,
+}
+
 /// The arm lifts or lowers the hand.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]

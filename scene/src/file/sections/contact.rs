@@ -3,12 +3,28 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::file::quantity::{Instant, Millimetres, Milliseconds, Mu};
+use crate::file::quantity::{Instant, Millimetres, Milliseconds, Mu, Speed, Stiffness};
+
+/// How much of the contact is modelled (`SCENES.md`, contact, three levels).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Level {
+    /// Rigid Coulomb friction.
+    #[default]
+    L0,
+    /// A patch of bristles: micro slip before macro slip.
+    L1,
+    /// Friction that falls with speed.
+    L2,
+}
 
 /// Friction between pad and surface.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
+    /// How much of it is modelled.
+    #[serde(default)]
+    pub level: Level,
     /// Static friction.
     pub mu_s: Mu,
     /// Dynamic friction, at most `mu_s`.
@@ -17,6 +33,43 @@ pub struct Contact {
     pub pad_length_mm: Millimetres,
     /// Distance between two ridges of the skin's grooves or of the surface's texture, whichever is coarser.
     pub pitch_mm: Millimetres,
+    /// Radius of the contact of a pad: a fingertip that is flattened already.
+    #[serde(default = "Contact::default_radius_mm")]
+    pub patch_radius_mm: Millimetres,
+    /// Of `l1`: shear stiffness of the skin under the whole patch.
+    pub skin_n_per_mm: Option<Spanned<Stiffness>>,
+    /// Of `l1`: damping of the skin over its stiffness.
+    pub skin_ms: Option<Spanned<Milliseconds>>,
+    /// Of `l2`: the sliding speed at which 1/e of the difference between `mu_s` and `mu_d` is left.
+    pub stribeck_mm_s: Option<Spanned<Speed>>,
+}
+
+impl Contact {
+    /// Assumed: a thumb's width of flattened rubber.
+    const fn default_radius_mm() -> Millimetres {
+        Millimetres::of(5.0)
+    }
+
+    /// Shear stiffness of the skin under the whole patch.
+    #[must_use]
+    pub fn skin_n_per_mm(&self) -> Stiffness {
+        // The finger on the friction rig has 1.9 N/mm (`scenes/rig.toml`); silicone rubber is taken as the same.
+        self.skin_n_per_mm.as_ref().map_or(Stiffness::of(2.0), |skin| *skin.get_ref())
+    }
+
+    /// Damping of the skin over its stiffness.
+    #[must_use]
+    pub fn skin_ms(&self) -> Milliseconds {
+        // Assumed: rubber that rings once.
+        self.skin_ms.as_ref().map_or(Milliseconds::of(3.0), |skin| *skin.get_ref())
+    }
+
+    /// Stribeck's speed.
+    #[must_use]
+    pub fn stribeck_mm_s(&self) -> Speed {
+        // Assumed, as the strip's in `physics::stribeck`.
+        self.stribeck_mm_s.as_ref().map_or(Speed::of(3.0), |speed| *speed.get_ref())
+    }
 }
 
 /// A change of friction for a while: water, grease.

@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::file::quantity::{DeadTime, Millimetres, NewtonsMax, Speed};
+use crate::file::quantity::{DeadTime, Millimetres, NewtonsMax, Play, Speed};
 
 /// The hand's motor and fingers.
 #[derive(Clone, Debug, Deserialize)]
@@ -19,4 +19,6 @@ pub struct Gripper {
     pub range_mm: Millimetres,
     /// The opening at the start.
     pub opening_mm: Spanned<Millimetres>,
+    /// The least change of the opening, of a position-controlled gripper; 0 is none.
+    pub step_mm: Play,
 }

@@ -11,10 +11,10 @@ mod object;
 mod person;
 mod sensor;
 
-pub use arm::{Move, Press, Robot, Sweep, Swing};
-pub use contact::{Contact, Wet};
+pub use arm::{Arm, Move, Press, Robot, Sweep, Swing};
+pub use contact::{Contact, Level, Wet};
 pub use gripper::Gripper;
 pub use mishap::{ElectrodeLift, FaultKind, Knock, SensorFault};
-pub use object::{Fill, Object, Table};
+pub use object::{Fill, Object, Pitch, Table};
 pub use person::{Command, CommandKind, Intent, Muscle};
-pub use sensor::{Fsr, Myo, Pvdf};
+pub use sensor::{Array, Camera, Fsr, Myo, Pvdf, Strain};

@@ -3,7 +3,9 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::file::quantity::{Damping, Duration, Instant, Kilograms, KilogramsAdded, Millimetres, Stiffness};
+use crate::file::quantity::{
+    Damping, Duration, Instant, Kilograms, KilogramsAdded, Lever, Millimetres, Newtons, Stiffness,
+};
 
 /// Something to grasp.
 #[derive(Clone, Debug, Deserialize)]
@@ -15,6 +17,22 @@ pub struct Object {
     pub width_mm: Millimetres,
     /// Of pad and object together, a finger.
     pub stiffness_n_per_mm: Stiffness,
+    /// Force of a finger at which it is crushed: it yields and keeps the dent.
+    pub crush_n: Option<Newtons>,
+    /// Force of a finger at which it breaks.
+    pub break_n: Option<Newtons>,
+}
+
+/// Where its mass lies, for objects that turn about the pads.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Pitch {
+    /// Centre of mass beside the pads.
+    pub offset_mm: Lever,
+    /// Centre of mass under the pads.
+    pub hang_mm: Lever,
+    /// Radius of gyration about the pads.
+    pub gyration_mm: Millimetres,
 }
 
 /// The table it stands on, with its mat.

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use crate::file::quantity::{Duration, Gain, Hertz, Milliseconds, Millivolts, Part, Speed};
+use crate::file::quantity::{Duration, Gain, Hertz, Millimetres, Milliseconds, Millivolts, Part, Speed};
 
 /// The PVDF films. Voltages are at the film; the front end multiplies them by `gain`.
 #[derive(Clone, Debug, Deserialize)]
@@ -68,4 +68,56 @@ pub struct Myo {
     pub crosstalk: Part,
     /// Mains in the envelope (twice its frequency, it is rectified).
     pub mains_mv: Millivolts,
+}
+
+/// The strain gauges.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Strain {
+    /// For 1 N of normal force, of a gauge that feels nothing else, in the outer layer.
+    pub normal_mv_per_n: Gain,
+    /// For 1 N of shear, likewise.
+    pub shear_mv_per_n: Gain,
+    /// How much more or less sensitive than the mean one gauge may be, as a part.
+    pub spread: Part,
+    /// How far from rest an unloaded gauge may be, either way.
+    pub offset_mv: Millivolts,
+    /// How far a gauge may drift in a minute, either way.
+    pub drift_mv_per_min: Millivolts,
+    /// How much more a lasting load reads in the end than at first.
+    pub creep: Part,
+    /// How long that takes.
+    pub creep_s: Duration,
+    /// Noise of a reading, rms.
+    pub noise_mv: Millivolts,
+}
+
+/// The normal-force array.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Array {
+    /// For 1 N on one element.
+    pub mv_per_n: Gain,
+    /// How much more or less sensitive than the mean one element may be, as a part.
+    pub spread: Part,
+    /// How far above rest an unloaded element may be.
+    pub offset_mv: Millivolts,
+    /// How much of the load a shear (or a torsion over the patch's radius) as large as it moves to the pad's end.
+    pub tilt: Part,
+    /// How much of the shear that an element lets go of comes off its load.
+    pub slip_part: Part,
+    /// Noise of a reading, rms.
+    pub noise_mv: Millivolts,
+}
+
+/// The camera that watches hand and object.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Camera {
+    /// One pixel in the world.
+    pub pixel_mm: Millimetres,
+    /// Images a second.
+    pub rate_hz: Hertz,
+    /// Jitter of a mark's place, rms, pixels.
+    pub jitter_px: Part,
 }

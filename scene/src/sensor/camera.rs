@@ -1,0 +1,103 @@
+//! A camera that watches a mark on the hand and one on the object, and says three words about it (Tada 2006, eqs 1, 2).
+
+use crate::file::sections::Camera;
+use crate::random::{Noise, Source};
+
+/// What it says of two images.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen {
+    /// When the second image was taken, s.
+    pub t_s: f64,
+    /// v1: -1 the object moves relative to the hand, 1 they move as one, 0 neither moves.
+    pub v1: i8,
+    /// v2: 1 the hand moves upward, -1 downward, 0 not.
+    pub v2: i8,
+}
+
+/// Marks on whole pixels, two images.
+///
+/// One pixel is 1.32 mm, so what moves slowly crosses a pixel in some images and not in others: the words chatter, as in
+/// Tada 2006, figure 6 (a) and (b), and a slip is seen two images late.
+#[derive(Debug)]
+pub(crate) struct Eye {
+    pixel_mm: f64,
+    rate_hz: f64,
+    jitter_px: f64,
+    /// Where the marks lie on the grid of pixels, as parts of a pixel.
+    phases: [f64; 2],
+    noise: Noise,
+    images: u64,
+    last_px: Option<[i64; 2]>,
+}
+
+impl Eye {
+    pub(crate) fn new(parameters: &Camera, seed: u64) -> Self {
+        let mut noise = Noise::new(seed, Source::Camera);
+        Self {
+            pixel_mm: parameters.pixel_mm.get(),
+            rate_hz: parameters.rate_hz.get(),
+            jitter_px: parameters.jitter_px.get(),
+            phases: [noise.between(0.0, 1.0), noise.between(0.0, 1.0)],
+            noise,
+            images: 0,
+            last_px: None,
+        }
+    }
+
+    /// Goes on to `t_s`; says something whenever an image is due and there is one before it.
+    pub(crate) fn step(&mut self, t_s: f64, hand_mm: f64, object_mm: f64) -> Option<Seen> {
+        if t_s * self.rate_hz < self.images as f64 {
+            return None;
+        }
+        self.images += 1;
+        let places = [hand_mm, object_mm - hand_mm];
+        let px: [i64; 2] = std::array::from_fn(|n| {
+            let jitter = self.jitter_px * self.noise.normal();
+            (places[n] / self.pixel_mm + self.phases[n] + jitter).floor() as i64
+        });
+        let last = self.last_px.replace(px)?;
+        let hand = px[0].cmp(&last[0]) as i8;
+        let relative = px[1] != last[1];
+        Some(Seen { t_s, v1: if relative { -1 } else { hand.abs() }, v2: hand })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The words of one second in which the hand moves at `hand_mm_s` and the object at `object_mm_s`.
+    fn words(hand_mm_s: f64, object_mm_s: f64) -> Vec<Seen> {
+        let mut eye =
+            Eye::new(&Camera { jitter_px: crate::file::quantity::Part::of(0.0), ..Camera::default() }, 1);
+        (0..8_000)
+            .filter_map(|n| {
+                let t_s = f64::from(n) / 8e3;
+                eye.step(t_s, hand_mm_s * t_s, object_mm_s * t_s)
+            })
+            .collect()
+    }
+
+    #[test]
+    fn thirty_images_a_second_make_twenty_nine_words() {
+        assert_eq!(words(0.0, 0.0).len(), 29);
+        assert!(words(0.0, 0.0).iter().all(|seen| (seen.v1, seen.v2) == (0, 0)));
+    }
+
+    #[test]
+    fn as_one_is_1_and_apart_is_minus_1() {
+        // 50 mm/s is more than a pixel an image.
+        assert!(words(50.0, 50.0).iter().all(|seen| (seen.v1, seen.v2) == (1, 1)));
+        assert!(words(-50.0, -50.0).iter().all(|seen| (seen.v1, seen.v2) == (1, -1)));
+        assert!(words(50.0, 0.0).iter().all(|seen| (seen.v1, seen.v2) == (-1, 1)));
+    }
+
+    #[test]
+    fn slow_motion_chatters() {
+        // Tada's 25 mm/s are 0.63 of a pixel an image: some 18 of 29 images see it, and no two in a row do without.
+        let words = words(25.0, 25.0);
+        let seen = words.iter().filter(|seen| seen.v2 == 1).count();
+        assert!((17..=19).contains(&seen), "{seen}");
+        assert!(words.windows(2).all(|pair| pair[0].v2 == 1 || pair[1].v2 == 1));
+    }
+}
