@@ -3,6 +3,7 @@
 mod chart;
 mod check;
 mod flash;
+mod lint_image;
 mod monitor;
 mod progress;
 mod run;
@@ -19,7 +20,7 @@ use clap::{Parser, Subcommand};
 const EXAMPLES: &str = "\
 Examples:
   tenax run                                 the default scene on the emulated board, with the flashed image
-  tenax run --host --scene knock            another scene, on the host's build of the logic
+  tenax run --host --scene knocks           another scene, on the host's build of the logic
   tenax run --replay touch.csv              a recording, with the recipe that its name calls for
   tenax run --replay my.csv --recipe my.toml
   tenax run --report json > report.json     for programs
@@ -52,8 +53,10 @@ enum Command {
     Flash(flash::Args),
     /// Watch a board's serial line, one line a message
     Monitor(monitor::Args),
-    /// Flash, RAM and worst stack of the image
-    Size,
+    /// Flash, RAM, worst stack and instructions a tick of the image, beside their budgets
+    Size(size::Args),
+    /// Run Clippy on the image with the toolchain that builds it
+    LintImage,
     /// Print the channel map as a Markdown table
     Wiring,
 }
@@ -69,7 +72,8 @@ pub fn main() -> ExitCode {
         Command::Chart(args) => chart::main(&args),
         Command::Flash(args) => flash::main(&args),
         Command::Monitor(args) => monitor::main(&args),
-        Command::Size => size::main(),
+        Command::Size(args) => size::main(&args),
+        Command::LintImage => lint_image::main(),
         Command::Wiring => wiring::main(),
     };
     match done {

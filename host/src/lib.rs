@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 pub mod board;
+pub mod budgets;
 pub mod chart;
 pub mod check;
 pub mod cli;

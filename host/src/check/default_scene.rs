@@ -25,7 +25,11 @@ pub fn bars(outcome: &Outcome, emulated: bool) -> Vec<Bar> {
         ),
         Bar::new(
             format!("{name}: kept"),
-            format!("dropped: {:?}", report.slip.dropped),
+            match report.slip.dropped {
+                Some(true) => "it was dropped",
+                Some(false) => "it was not dropped",
+                None => "there was no object",
+            },
             report.slip.dropped == Some(false),
         ),
         of_oracle(name, "slip distance", "mm", report.slip.distance_mm, report.oracle.distance_mm),

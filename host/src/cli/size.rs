@@ -1,36 +1,46 @@
-//! `tenax size`: what the image takes of the chip.
+//! `tenax size`: what the image takes of the chip, beside its budgets.
 
 use std::process::ExitCode;
 
 use super::progress::Progress;
 use super::workspace;
+use crate::budgets::{Budgets, Line};
 use crate::image;
 use crate::image::size::{FLASH_BYTES, RAM_BYTES, Size};
 use crate::session::{self, Board};
 
-pub fn main() -> anyhow::Result<ExitCode> {
-    let root = workspace::root()?;
-    let size = Size::read(&image::build(&root)?)?;
-    print("flash", size.flash, FLASH_BYTES);
-    print("RAM, variables", size.ram, RAM_BYTES);
-    let board = match Board::emulated(&root) {
-        Ok(board) => board,
-        Err(error) => {
-            println!("worst stack     not measured: {error}");
-            return Ok(ExitCode::SUCCESS);
-        }
-    };
-    let file = session::load_scene(session::DEFAULT_SCENE)?;
-    let mut progress = Progress::new("worst stack", file.duration_s());
-    let outcome = session::scene(&file, 1, &board, &mut |s| progress.at(s))?;
-    drop(progress);
-    match outcome.report.stack_bytes {
-        Some(bytes) => print("worst stack", bytes, RAM_BYTES - size.ram),
-        None => println!("worst stack     not measured on this board"),
-    }
-    Ok(ExitCode::SUCCESS)
+/// Flash, RAM, worst stack and instructions a tick of the image, beside their budgets.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Fail if a budget (budgets.toml) is passed, or could not be measured
+    #[arg(long)]
+    check: bool,
 }
 
-fn print(what: &str, bytes: u64, of: u64) {
-    println!("{what:<16}{bytes:>7} of {of} bytes, {:.1} %", 100.0 * bytes as f64 / of as f64);
+pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
+    let root = workspace::root()?;
+    let budgets = Budgets::of_checkout()?;
+    let size = Size::read(&image::build(&root)?)?;
+    let board = Board::emulated(&root)?;
+    let file = session::load_scene(session::DEFAULT_SCENE)?;
+    let mut progress = Progress::new("worst stack", file.duration_s());
+    let report = session::scene(&file, 1, &board, &mut |s| progress.at(s))?.report;
+    drop(progress);
+
+    let bytes = |what, measured, budget, of| Line { what, unit: "bytes", measured, budget, of: Some(of) };
+    let instructions =
+        |what, measured, budget| Line { what, unit: "instructions", measured, budget, of: None };
+    let mean = report.ticks.instructions_mean.map(|mean| mean.round() as u64);
+    let lines = [
+        bytes("flash", Some(size.flash), budgets.flash_bytes, FLASH_BYTES),
+        bytes("RAM, variables", Some(size.ram), budgets.ram_bytes, RAM_BYTES),
+        bytes("worst stack", report.stack_bytes, budgets.stack_bytes, RAM_BYTES - size.ram),
+        instructions("tick, mean", mean, budgets.tick_instructions_mean),
+        instructions("tick, worst", report.ticks.instructions_max, budgets.tick_instructions_max),
+    ];
+    for line in &lines {
+        println!("{line}");
+    }
+    let kept = lines.iter().all(Line::is_kept);
+    Ok(if kept || !args.check { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

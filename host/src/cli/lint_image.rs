@@ -1,0 +1,12 @@
+//! `tenax lint-image`: Clippy on the image's package.
+
+use std::process::ExitCode;
+
+use super::workspace;
+use crate::image;
+
+pub fn main() -> anyhow::Result<ExitCode> {
+    image::clippy(&workspace::root()?)?;
+    println!("image: no warnings");
+    Ok(ExitCode::SUCCESS)
+}
