@@ -1,10 +1,12 @@
 //! The charts of `tenax chart scenes`: where each way of stepping friction fails, and what it costs where it does not.
+//! And of `tenax chart sensors`: the scenes' sensors beside real ones.
 
 mod cost;
 mod draw;
 mod growth;
 mod map;
 mod patch;
+pub mod sensors;
 mod sheet;
 
 use plotters::style::RGBColor;

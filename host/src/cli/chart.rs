@@ -9,6 +9,7 @@ use anyhow::Context;
 use clap::ValueEnum;
 
 use super::progress::Progress;
+use super::workspace;
 use crate::chart;
 use crate::plot::png;
 
@@ -21,22 +22,30 @@ pub struct Args {
     /// Where they are written: SVG, PNG and CSV
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
+    /// Where the recordings are [default: shared/data beside the checkout]
+    #[arg(long, value_name = "DIR")]
+    recordings: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Subject {
     /// How the scenes' friction is stepped: where each method fails, and what it costs
     Scenes,
+    /// What the scenes' sensors say at the onset of slip, beside real recordings where they are present
+    Sensors,
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    let Subject::Scenes = args.subject;
-    let progress = Mutex::new(Progress::new("charts", 1.0));
-    let charts = chart::scenes(&|part| {
-        // A bar that a panicking thread left is still a bar.
-        progress.lock().unwrap_or_else(PoisonError::into_inner).at(part);
-    })?;
-    drop(progress);
+    let charts = match args.subject {
+        Subject::Scenes => scenes()?,
+        Subject::Sensors => {
+            let recordings = match &args.recordings {
+                Some(folder) => folder.clone(),
+                None => workspace::root()?.join("../shared/data"),
+            };
+            vec![chart::sensors::chart(&recordings)?]
+        }
+    };
     fs::create_dir_all(&args.out).with_context(|| format!("cannot make {}", args.out.display()))?;
     for chart in charts {
         let files =
@@ -48,4 +57,12 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         }
     }
     Ok(ExitCode::SUCCESS)
+}
+
+fn scenes() -> anyhow::Result<Vec<chart::Chart>> {
+    let progress = Mutex::new(Progress::new("charts", 1.0));
+    chart::scenes(&|part| {
+        // A bar that a panicking thread left is still a bar.
+        progress.lock().unwrap_or_else(PoisonError::into_inner).at(part);
+    })
 }
