@@ -26,7 +26,11 @@ const RULES: [Rule; 7] = [
         promise: "S2 warns before the peak of Ft/Fn, no alarm before 1.50 s",
         judge: rig,
     },
-    Rule { pattern: "emg_*rest*.csv", promise: "relaxed muscles give no activity", judge: relaxed },
+    Rule {
+        pattern: "emg_*rest*.csv",
+        promise: "relaxed muscles give no activity, and the reflex fires",
+        judge: relaxed,
+    },
     Rule {
         pattern: "emg_*fist*.csv",
         promise: "a fist is noticed, the reflex is silent throughout",
@@ -102,8 +106,9 @@ fn rig(report: &Report) -> (String, bool) {
 }
 
 fn relaxed(report: &Report) -> (String, bool) {
-    let detections = report.detectors.wearer.detections;
-    (format!("{detections} activities"), detections == 0)
+    // The control of the contracted recordings: the same grasp, and nobody but the reflex to hold it.
+    let (detections, reflex_ticks) = (report.detectors.wearer.detections, report.wearer.reflex_ticks);
+    (format!("{detections} activities, {reflex_ticks} ticks of reflex"), detections == 0 && reflex_ticks > 0)
 }
 
 fn contracted(report: &Report) -> (String, bool) {
