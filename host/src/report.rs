@@ -103,6 +103,12 @@ pub struct Grip {
     pub peak_force_n: Option<f64>,
     /// The least that would have held the object at its heaviest, N.
     pub needed_force_n: Option<f64>,
+    /// When it first crushed the object, s.
+    pub crushed_at_s: Option<f64>,
+    /// How deep, for good, mm.
+    pub dent_mm: Option<f64>,
+    /// When it broke the object, s.
+    pub broken_at_s: Option<f64>,
 }
 
 /// A fault and when it was noticed.
@@ -166,6 +172,9 @@ impl Report {
             grip: subject.truth.map_or_else(Grip::default, |truth| Grip {
                 peak_force_n: truth.peak_grip_n,
                 needed_force_n: truth.needed_force_n,
+                crushed_at_s: truth.crushed_at_s,
+                dent_mm: truth.crushed_at_s.map(|_| truth.dent_mm),
+                broken_at_s: truth.broken_at_s,
             }),
             wearer: wearer::Wearer::of(run, timeline),
             detectors: scores::Detectors::of(timeline, subject.truth),

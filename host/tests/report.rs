@@ -11,7 +11,7 @@ const KEYS: &str = "
     slip.micro_onset_s slip.macro_onset_s slip.caught slip.latency_ms slip.distance_mm slip.dropped
     slip.macro_slips slip.macro_slips_caught
     oracle.distance_mm oracle.peak_force_n oracle.distance_ratio oracle.peak_force_ratio
-    grip.peak_force_n grip.needed_force_n
+    grip.peak_force_n grip.needed_force_n grip.crushed_at_s grip.dent_mm grip.broken_at_s
     wearer.reflex_while_active wearer.open_latency_ms wearer.active_first_s wearer.active_permille wearer.reflex_ticks
     detectors.s1.first_s detectors.s1.detections detectors.s1.false_alarms
     detectors.s2.first_s detectors.s2.detections detectors.s2.false_alarms

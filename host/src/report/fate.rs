@@ -28,6 +28,12 @@ pub struct Fate {
     pub dropped: bool,
     /// The greatest grip force, N. None where nothing was held.
     pub peak_grip_n: Option<f64>,
+    /// When the fingers first crushed it, s.
+    pub crushed_at_s: Option<f64>,
+    /// How deep, for good, mm.
+    pub dent_mm: f64,
+    /// When it broke, s.
+    pub broken_at_s: Option<f64>,
     /// The least force that would have held it at its heaviest, N.
     pub needed_force_n: Option<f64>,
     /// Grip force over time, s and N.
@@ -52,6 +58,9 @@ impl Fate {
             slips: truth.slips.iter().map(slip).collect(),
             distance_mm: truth.slip_distance_mm,
             dropped: truth.dropped,
+            crushed_at_s: truth.crushed_at_s,
+            dent_mm: truth.dent_mm,
+            broken_at_s: truth.broken_at_s,
             peak_grip_n: (truth.peak_grip_n > 0.0).then_some(truth.peak_grip_n),
             needed_force_n: held.then_some(truth.needed_grip_n),
             grip_n: truth.trace.iter().map(|row| (row.t_s, row.grip_n)).collect(),

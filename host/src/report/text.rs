@@ -102,6 +102,12 @@ fn slip(f: &mut fmt::Formatter<'_>, report: &Report) -> fmt::Result {
         Or(report.oracle.peak_force_n, "N"),
         Or(report.oracle.peak_force_ratio, "times")
     )?;
+    if let (Some(at_s), Some(dent_mm)) = (report.grip.crushed_at_s, report.grip.dent_mm) {
+        line!(f, "damage", "CRUSHED at {at_s:.2} s by {dent_mm:.2} mm")?;
+    }
+    if let Some(at_s) = report.grip.broken_at_s {
+        line!(f, "damage", "BROKEN at {at_s:.2} s")?;
+    }
     let caught = match (slip.macro_slips, slip.macro_slips_caught) {
         (Some(0) | None, _) => "no macro slip".to_owned(),
         (Some(all), caught) => format!("{} of {all} macro slips caught", caught.unwrap_or(0)),

@@ -107,7 +107,9 @@ impl Grasp {
         let shear_n = outcome.force_n / PADS;
         self.shear_part = if grip_n > 0.0 { (shear_n.abs() / (holds * grip_n)).min(1.0) } else { 0.0 };
 
-        self.needed_n = free_n.abs() / PADS / self.contact.holds(friction);
+        // Both at once, by the ellipsoid.
+        let along_n = free_n.abs() / PADS / holds;
+        self.needed_n = (along_n * along_n + turn.needed_n * turn.needed_n).sqrt();
         self.lifted |= grip_n > TOUCH_N && self.table_n == 0.0;
         self.in_hand &= self.slid_m.abs() <= self.pad_m && !self.body.is_broken();
         let drop_n = (friction.mu_s - friction.mu_d) * grip_n;

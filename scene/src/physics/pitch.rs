@@ -35,6 +35,8 @@ pub struct Turn {
     pub rub_m_s: f64,
     /// Whether it began to turn in this step.
     pub onset: bool,
+    /// The least force of each pad that would keep it from turning, N, if nothing slid.
+    pub needed_n: f64,
 }
 
 impl Pitch {
@@ -81,6 +83,7 @@ impl Pitch {
             torque_nm: -outcome.force_n / 2.0,
             rub_m_s: self.speed_rad_s * self.radius_m,
             onset: outcome.onset,
+            needed_n: pull_nm.abs() / (2.0 * TORSION * self.radius_m * friction.mu_s),
         }
     }
 
