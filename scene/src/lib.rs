@@ -7,8 +7,8 @@
 //!
 //! | module | one type with one step function for each of |
 //! |---|---|
-//! | [`physics`] | contact, gripper, grasped object, stroked surface, hand, wearer |
-//! | `sensor` | PVDF, FSR, myoelectric, opening, motor current, and the faults of all of them |
+//! | [`physics`] | contact at three levels, gripper, grasped object, stroked surface, hand, wearer |
+//! | [`sensor`] | PVDF, strain, FSR, force array, myoelectric, camera, opening, motor current, and the faults of all of them |
 //! | [`truth`] | nothing of the world: it writes down what really happened |
 #![forbid(unsafe_code)]
 

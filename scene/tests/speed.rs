@@ -25,7 +25,8 @@ fn times_real_time(name: &str) -> f64 {
 #[test]
 #[cfg_attr(debug_assertions, ignore = "only a release build is as fast")]
 fn a_pick_up_with_24_receptors_is_fast_enough() {
-    // The best of a few: whatever else the machine does can only slow it.
+    // The best of a few: whatever else the machine does can only slow it. The bar is 200 on an idle core (203 for
+    // `pick-up`, 237 for `glass` when this was written, the conversion to codes included); a busy one must not fail here.
     for name in ["pick-up", "glass"] {
         let best = (0..5).map(|_| times_real_time(name)).fold(0.0, f64::max);
         println!("{name}: {best:.0} times real time");
