@@ -1,7 +1,7 @@
 //! What a scene file is made of: one struct for each kind of table in it.
 //!
 //! `docs/scenes.md` explains every key to whoever writes one. Sections of the hand and its sensors have defaults, whose
-//! sources stand in [`super::defaults`]; the world has none, it is what the scene is about.
+//! sources stand in `file::defaults`; the world has none, it is what the scene is about.
 
 mod arm;
 mod contact;
