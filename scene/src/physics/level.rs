@@ -14,8 +14,8 @@ pub enum Level {
     Rigid(RigidCoulomb),
     /// L1: it begins to slide at its edge.
     Patch(Patch),
-    /// L2: it slides the more easily the faster it slides, with Stribeck's speed in m/s.
-    Stribeck(RigidCoulomb, f64),
+    /// L2: it slides the more easily the faster it slides.
+    Stribeck(Falling),
 }
 
 /// What a step of any level did.
@@ -52,7 +52,8 @@ impl Level {
                 Self::Patch(Patch::new(Pad { radius_m, stiffness_n_per_m3 }, contact.skin_ms().get() / 1e3))
             }
             sections::Level::L2 => {
-                Self::Stribeck(RigidCoulomb::default(), contact.stribeck_mm_s().get() / 1e3)
+                let speed_m_s = contact.stribeck_mm_s().get() / 1e3;
+                Self::Stribeck(Falling { contact: RigidCoulomb::default(), speed_m_s, before_m_s: 0.0 })
             }
         }
     }
@@ -80,11 +81,7 @@ impl Level {
         let normal_n = normal_n.max(0.0);
         match self {
             Self::Rigid(contact) => rigid(contact, normal_n, pads, friction, mass_kg, free_m_s, dt_s),
-            Self::Stribeck(contact, speed_m_s) => {
-                let curve = Stribeck { mu_s: friction.mu_s, mu_d: friction.mu_d, speed_m_s: *speed_m_s };
-                let sliding = Friction { mu_s: friction.mu_s, mu_d: curve.mu(free_m_s) };
-                rigid(contact, normal_n, pads, sliding, mass_kg, free_m_s, dt_s)
-            }
+            Self::Stribeck(falling) => falling.step(normal_n, pads, friction, mass_kg, free_m_s, dt_s),
             Self::Patch(patch) => patch.step(normal_n, pads, friction, mass_kg, free_m_s, dt_s),
         }
     }
@@ -96,6 +93,54 @@ impl Level {
             Self::Patch(patch) => pads * patch.energy_j(),
             Self::Rigid(_) | Self::Stribeck(..) => 0.0,
         }
+    }
+}
+
+/// L2's contact: L0's, with sliding friction that falls with speed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Falling {
+    contact: RigidCoulomb,
+    /// Stribeck's speed, m/s.
+    speed_m_s: f64,
+    /// Speed after the last step, m/s.
+    before_m_s: f64,
+}
+
+/// Longer inner steps than this part of `m v_s / (P (mu_s - mu_d))` would be off in the growth of the vibration by more
+/// than 1 % (`docs/stepping.md`).
+const INNER_STEP_PART: f64 = 0.02;
+/// More inner steps than this are not taken: a mass that wants more is too light for its friction to be resolved.
+const INNER_STEPS_MAX: f64 = 1_000.0;
+
+impl Falling {
+    /// As many inner steps as the fall of friction needs; what accelerates the mass is even over all of them.
+    fn step(
+        &mut self,
+        normal_n: f64,
+        pads: f64,
+        friction: Friction,
+        mass_kg: f64,
+        free_m_s: f64,
+        dt_s: f64,
+    ) -> Outcome {
+        let curve = Stribeck { mu_s: friction.mu_s, mu_d: friction.mu_d, speed_m_s: self.speed_m_s };
+        let fall_n = pads * normal_n * (friction.mu_s - friction.mu_d);
+        let count = (dt_s * fall_n / (INNER_STEP_PART * mass_kg * self.speed_m_s)).ceil();
+        let count = count.clamp(1.0, INNER_STEPS_MAX);
+        let gain_m_s = (free_m_s - self.before_m_s) / count;
+        let (mut force_n, mut let_go, mut released_n) = (0.0, 0, 0.0_f64);
+        for _ in 0..count as u32 {
+            let free_m_s = self.before_m_s + gain_m_s;
+            let sliding = Friction { mu_s: friction.mu_s, mu_d: curve.mu(free_m_s) };
+            let inner = rigid(&mut self.contact, normal_n, pads, sliding, mass_kg, free_m_s, dt_s / count);
+            self.before_m_s = inner.speed_m_s;
+            force_n += inner.force_n / count;
+            let_go += inner.let_go;
+            released_n = released_n.max(inner.released_n);
+        }
+        let sticks = self.contact.sticks();
+        let stuck_part = if sticks { 1.0 } else { 0.0 };
+        Outcome { speed_m_s: self.before_m_s, force_n, sticks, stuck_part, let_go, released_n }
     }
 }
 
