@@ -16,7 +16,7 @@ const LONGEST_S: f64 = 600.0;
 #[derive(Debug, Error)]
 pub enum RecordingError {
     /// The file cannot be opened or read.
-    #[error("{file}: cannot be read: {source}")]
+    #[error("{file}: cannot be read")]
     Unreadable {
         /// The recording.
         file: String,
