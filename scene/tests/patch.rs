@@ -5,7 +5,7 @@ mod common;
 use common::{Reflex, run};
 use proptest::prelude::*;
 use tenax_scene::physics::friction::Friction;
-use tenax_scene::physics::level::Level;
+use tenax_scene::physics::level::{Level, Push};
 use tenax_scene::{SceneFile, Truth, World, builtin};
 
 /// The held glass with a contact of this level, without its knocks.
@@ -100,7 +100,8 @@ proptest! {
         loads.sort_by(|a, b| b.total_cmp(a));
         for normal_n in loads {
             for _ in 0..20 {
-                let outcome = contact.step(normal_n, 2.0, friction, mass_kg, speed_m_s, 125e-6);
+                let push = Push { normal_n, pads: 2.0, friction, mass_kg, free_m_s: speed_m_s };
+                let outcome = contact.step(push, 125e-6);
                 speed_m_s = outcome.speed_m_s;
                 let after_j = 0.5 * mass_kg * speed_m_s * speed_m_s + contact.energy_j(2.0);
                 prop_assert!(after_j <= before_j * (1.0 + 1e-9) + 1e-15, "{} J after {}", after_j, before_j);
@@ -118,7 +119,9 @@ fn held_for_a_minute_a_patch_creeps_by_nothing_that_counts() {
     let (mut speed_m_s, mut way_m) = (0.0, [0.0; 2]);
     for n in 0..480_000_u32 {
         let free_m_s = speed_m_s + 9.80665 * 125e-6;
-        speed_m_s = contact.step(4.0, 2.0, friction, 0.25, free_m_s, 125e-6).speed_m_s;
+        speed_m_s = contact
+            .step(Push { normal_n: 4.0, pads: 2.0, friction, mass_kg: 0.25, free_m_s }, 125e-6)
+            .speed_m_s;
         way_m[usize::from(n >= 8_000)] += speed_m_s * 125e-6;
     }
     // The first second stretches the skin by m g / 2K; from then on it stands still.

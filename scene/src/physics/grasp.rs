@@ -2,7 +2,7 @@
 
 use super::friction::{Friction, Surface};
 use super::hand::Hand;
-use super::level::Level;
+use super::level::{Level, Push};
 use super::limit::Body;
 use super::pitch::{Pitch, Turn};
 use super::{GRAVITY_M_S2, TOUCH_N, Touch};
@@ -100,7 +100,8 @@ impl Grasp {
         let holds = self.contact.holds(dry);
         let turn = self.turn(Friction { mu_s: holds, mu_d: dry.mu_d.min(holds) }, grip_n, hand);
         let friction = self.pitch.as_ref().map_or(dry, |pitch| pitch.leaves(dry));
-        let outcome = self.contact.step(grip_n, PADS, friction, self.mass_kg, free_m_s, STEP_S);
+        let push = Push { normal_n: grip_n, pads: PADS, friction, mass_kg: self.mass_kg, free_m_s };
+        let outcome = self.contact.step(push, STEP_S);
         self.speed_m_s = outcome.speed_m_s;
         self.slid_m += self.speed_m_s * STEP_S;
         self.sticks = outcome.sticks;

@@ -18,6 +18,21 @@ pub enum Level {
     Stribeck(Falling),
 }
 
+/// What is pressed and pushed in one step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Push {
+    /// What each pad presses with, N; less than nothing is nothing.
+    pub normal_n: f64,
+    /// Pads that press alike and share the friction.
+    pub pads: f64,
+    /// Their friction.
+    pub friction: Friction,
+    /// What they hold, kg.
+    pub mass_kg: f64,
+    /// The speed that it would have after the step without friction, m/s.
+    pub free_m_s: f64,
+}
+
 /// What a step of any level did.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
@@ -67,22 +82,13 @@ impl Level {
         }
     }
 
-    /// Goes on by `dt_s`. `free_m_s` is the speed that the mass would have after it without friction; each of the `pads`
-    /// presses with `normal_n`.
-    pub fn step(
-        &mut self,
-        normal_n: f64,
-        pads: f64,
-        friction: Friction,
-        mass_kg: f64,
-        free_m_s: f64,
-        dt_s: f64,
-    ) -> Outcome {
-        let normal_n = normal_n.max(0.0);
+    /// Goes on by `dt_s`.
+    pub fn step(&mut self, push: Push, dt_s: f64) -> Outcome {
+        let push = Push { normal_n: push.normal_n.max(0.0), ..push };
         match self {
-            Self::Rigid(contact) => rigid(contact, normal_n, pads, friction, mass_kg, free_m_s, dt_s),
-            Self::Stribeck(falling) => falling.step(normal_n, pads, friction, mass_kg, free_m_s, dt_s),
-            Self::Patch(patch) => patch.step(normal_n, pads, friction, mass_kg, free_m_s, dt_s),
+            Self::Rigid(contact) => rigid(contact, push, dt_s),
+            Self::Stribeck(falling) => falling.step(push, dt_s),
+            Self::Patch(patch) => patch.step(push, dt_s),
         }
     }
 
@@ -114,25 +120,18 @@ const INNER_STEPS_MAX: f64 = 1_000.0;
 
 impl Falling {
     /// As many inner steps as the fall of friction needs; what accelerates the mass is even over all of them.
-    fn step(
-        &mut self,
-        normal_n: f64,
-        pads: f64,
-        friction: Friction,
-        mass_kg: f64,
-        free_m_s: f64,
-        dt_s: f64,
-    ) -> Outcome {
-        let curve = Stribeck { mu_s: friction.mu_s, mu_d: friction.mu_d, speed_m_s: self.speed_m_s };
-        let fall_n = pads * normal_n * (friction.mu_s - friction.mu_d);
-        let count = (dt_s * fall_n / (INNER_STEP_PART * mass_kg * self.speed_m_s)).ceil();
+    fn step(&mut self, push: Push, dt_s: f64) -> Outcome {
+        let Friction { mu_s, mu_d } = push.friction;
+        let curve = Stribeck { mu_s, mu_d, speed_m_s: self.speed_m_s };
+        let fall_n = push.pads * push.normal_n * (mu_s - mu_d);
+        let count = (dt_s * fall_n / (INNER_STEP_PART * push.mass_kg * self.speed_m_s)).ceil();
         let count = count.clamp(1.0, INNER_STEPS_MAX);
-        let gain_m_s = (free_m_s - self.before_m_s) / count;
+        let gain_m_s = (push.free_m_s - self.before_m_s) / count;
         let (mut force_n, mut let_go, mut released_n) = (0.0, 0, 0.0_f64);
         for _ in 0..count as u32 {
             let free_m_s = self.before_m_s + gain_m_s;
-            let sliding = Friction { mu_s: friction.mu_s, mu_d: curve.mu(free_m_s) };
-            let inner = rigid(&mut self.contact, normal_n, pads, sliding, mass_kg, free_m_s, dt_s / count);
+            let friction = Friction { mu_s, mu_d: curve.mu(free_m_s) };
+            let inner = rigid(&mut self.contact, Push { friction, free_m_s, ..push }, dt_s / count);
             self.before_m_s = inner.speed_m_s;
             force_n += inner.force_n / count;
             let_go += inner.let_go;
@@ -145,15 +144,8 @@ impl Falling {
 }
 
 /// L0's step, in the words of every level.
-fn rigid(
-    contact: &mut RigidCoulomb,
-    normal_n: f64,
-    pads: f64,
-    friction: Friction,
-    mass_kg: f64,
-    free_m_s: f64,
-    dt_s: f64,
-) -> Outcome {
+fn rigid(contact: &mut RigidCoulomb, push: Push, dt_s: f64) -> Outcome {
+    let Push { normal_n, pads, friction, mass_kg, free_m_s } = push;
     let outcome = contact.step(pads * normal_n, friction, mass_kg, free_m_s, dt_s);
     Outcome {
         speed_m_s: outcome.speed_m_s,

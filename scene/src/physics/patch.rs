@@ -1,8 +1,7 @@
 //! L1 at work: a mass that is held by brush patches, moved by one scan at a time.
 
 use super::brush::{BrushPatch, ELEMENTS, Element, Pad};
-use super::friction::Friction;
-use super::level::Outcome;
+use super::level::{Outcome, Push};
 
 /// The skin of one pad: a [`BrushPatch`] whose bristles are damped as rubber is.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,15 +44,8 @@ impl Patch {
     /// Backward Euler over what sticks: `m v = m v_free - dt (Q + K v dt + K tau v)`. Each term takes energy or moves it
     /// between mass and bristles, so none grows, at any step and stiffness. What slides pulls with the shear that it has;
     /// when the mass turns round, all of it sticks again and is a spring too.
-    pub(super) fn step(
-        &mut self,
-        normal_n: f64,
-        pads: f64,
-        friction: Friction,
-        mass_kg: f64,
-        free_m_s: f64,
-        dt_s: f64,
-    ) -> Outcome {
+    pub(super) fn step(&mut self, push: Push, dt_s: f64) -> Outcome {
+        let Push { normal_n, pads, friction, mass_kg, free_m_s } = push;
         // What the pad carried under the load of the last step, as far as it can under this one's.
         let limit_n = friction.mu_s * normal_n;
         let pull_n = pads * self.shear_n.clamp(-limit_n, limit_n);

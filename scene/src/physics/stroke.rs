@@ -1,7 +1,7 @@
 //! A probe stroked over a surface by a robot's arm (Prosthesis, figures 3 to 7).
 
 use super::friction::Surface;
-use super::level::Level;
+use super::level::{Level, Push};
 use super::{TOUCH_N, Touch};
 use crate::file::SceneFile;
 use crate::file::sections::Robot;
@@ -64,7 +64,8 @@ impl Stroke {
         let pull_n = self.stiffness_n_per_m * (self.carriage_m - self.probe_m)
             + self.damping_ns_per_m * (carriage_m_s - self.speed_m_s);
         let free_m_s = self.speed_m_s + pull_n / self.mass_kg * STEP_S;
-        let outcome = self.contact.step(load_n, 1.0, friction, self.mass_kg, free_m_s, STEP_S);
+        let push = Push { normal_n: load_n, pads: 1.0, friction, mass_kg: self.mass_kg, free_m_s };
+        let outcome = self.contact.step(push, STEP_S);
         self.speed_m_s = outcome.speed_m_s;
         self.probe_m += self.speed_m_s * STEP_S;
         let drop_n = (friction.mu_s - friction.mu_d) * load_n;
