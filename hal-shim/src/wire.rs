@@ -197,7 +197,8 @@ impl Setting {
         match self {
             Self::S1Mv(value) => ("S1", "mV", value as u32, 5..=1_500),
             Self::S2Permille(value) => ("S2", "per mille", value as u32, 50..=1_500),
-            Self::MyoOnMv(value) => ("myo on", "mV", value as u32, 20..=2_000),
+            // Higher, and a plain contraction would no longer silence the reflex.
+            Self::MyoOnMv(value) => ("myo on", "mV", value as u32, 20..=600),
             Self::ForceCeilingMn(value) => ("force ceiling", "mN", value, 500..=140_000),
         }
     }
@@ -227,7 +228,7 @@ pub enum Down {
     },
     /// Change a setting.
     Set(Setting),
-    /// Begin (true) or end (false) a stroke that measures the friction of a surface.
+    /// Begin (true) or end (false) a stroke that measures the friction of a surface. It ends by itself after a minute.
     Stroke(bool),
     /// Take the force sensor's readings as zero. Refused while the finger is loaded.
     Zero,

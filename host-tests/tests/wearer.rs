@@ -299,3 +299,22 @@ fn a_quadrant_pressed_at_boot_closes_nothing_until_it_was_seen_unloaded() {
     bench.load(4.0, 2.0);
     assert!(bench.run(400).iter().any(|drive| drive.closes()), "S2 is back");
 }
+
+#[test]
+fn a_stroke_that_nobody_ends_gives_the_reflex_back() {
+    let mut bench = Bench::holding(9);
+    bench.fingertip.command(&Down::Stroke(true)).unwrap();
+    bench.load(4.0, 2.0);
+    assert!(
+        bench.run(119_000).iter().all(|drive| *drive == MotorDrive::Coast),
+        "a stroke answers slip by nothing"
+    );
+    assert!(bench.run(2_000).iter().any(|drive| drive.closes()));
+}
+
+#[test]
+fn no_setting_makes_the_hand_deaf_to_a_contraction() {
+    let mut bench = Bench::holding(10);
+    let refused = bench.fingertip.command(&Down::Set(Setting::MyoOnMv(601)));
+    assert_eq!(refused, Err(tenax_hal_shim::wire::Refusal::OutOfRange));
+}

@@ -10,12 +10,15 @@ use tenax_hal_shim::wire::{DRIVE_HOLD_MAX_MS, Down, Event, EventKind, Refusal, S
 use tenax_hal_shim::words::{Cause, GripMode};
 
 use crate::arbiter::{Wishes, arbitrate};
-use crate::config::Config;
+use crate::config::{Config, frames};
 use crate::friction::FrictionDetector;
 use crate::grip::Reflex;
 use crate::journal::Journal;
 use crate::mode;
 use crate::senses::Senses;
+
+/// A stroke that nobody ends is over after this long, in frames: a lost link must not leave the reflex silent.
+const STROKE_FRAMES_MAX: u32 = frames(60_000);
 
 /// A drive command that holds for some frames more.
 #[derive(Clone, Copy, Debug)]
@@ -193,6 +196,9 @@ impl Fingertip {
         }
         if self.mode == GripMode::Settle && self.reflex.settled(&config) {
             self.cause(Cause::Settled);
+        }
+        if self.mode == GripMode::Explore && self.reflex.elapsed() >= STROKE_FRAMES_MAX {
+            self.cause(Cause::StrokeOver);
         }
     }
 

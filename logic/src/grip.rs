@@ -47,6 +47,12 @@ impl Reflex {
         }
     }
 
+    /// How long the mode has lasted, in frames.
+    #[must_use]
+    pub const fn elapsed(&self) -> u32 {
+        self.elapsed
+    }
+
     /// Goes on by one frame.
     pub fn tick(&mut self, mode: GripMode, grip: Grip) {
         self.elapsed = self.elapsed.saturating_add(1);
