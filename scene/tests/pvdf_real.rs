@@ -108,16 +108,21 @@ fn near(value: f64, figures: Range<f64>) -> bool {
     (figures.start / 2.0..figures.end * 2.0).contains(&value)
 }
 
+/// Of the recordings' size, with their share of low and of high frequencies.
+fn is_a_bump(onset: &Films) {
+    let swing_mv = median(onset, peak_to_peak);
+    assert!(near(swing_mv, 37.0..61.0), "{swing_mv} mV peak to peak");
+    let low = median(onset, |film| energy_part(film, 0.0..100.0));
+    assert!(low > 0.80, "{low} of the energy below 100 Hz; recordings: 0.83 to 0.94");
+    let high = median(onset, |film| energy_part(film, 200.0..1e4));
+    assert!(high < 0.06, "{high} of the energy above 200 Hz; recordings: 0.01 to 0.03");
+}
+
 #[test]
 fn slip_onset_is_a_bump_and_not_a_burst() {
     // The onset is at 42.013 s; a cut of 100 ms like the recording's, before the glass has fallen out of the hand.
     let onset = recording("glass", 41.99..42.09);
-    let swing_mv = median(&onset, peak_to_peak);
-    assert!(near(swing_mv, 37.0..61.0), "{swing_mv} mV peak to peak");
-    let low = median(&onset, |film| energy_part(film, 0.0..100.0));
-    assert!(low > 0.80, "{low} of the energy below 100 Hz; recordings: 0.83 to 0.94");
-    let high = median(&onset, |film| energy_part(film, 200.0..1e4));
-    assert!(high < 0.06, "{high} of the energy above 200 Hz; recordings: 0.01 to 0.03");
+    is_a_bump(&onset);
     let long_ms = median(&onset, bump_ms);
     assert!(near(long_ms, 25.0..26.0), "{long_ms} ms");
 }
@@ -125,12 +130,7 @@ fn slip_onset_is_a_bump_and_not_a_burst() {
 #[test]
 fn the_onset_of_a_patch_is_such_a_bump_too() {
     let onset = patch_onset();
-    let swing_mv = median(&onset, peak_to_peak);
-    assert!(near(swing_mv, 37.0..61.0), "{swing_mv} mV peak to peak");
-    let low = median(&onset, |film| energy_part(film, 0.0..100.0));
-    assert!(low > 0.80, "{low} of the energy below 100 Hz; recordings: 0.83 to 0.94");
-    let high = median(&onset, |film| energy_part(film, 200.0..1e4));
-    assert!(high < 0.06, "{high} of the energy above 200 Hz; recordings: 0.01 to 0.03");
+    is_a_bump(&onset);
     let long_ms = median(&onset, half_height_ms);
     assert!(near(long_ms, 10.0..20.0), "{long_ms} ms above half height");
 }
