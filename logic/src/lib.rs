@@ -11,6 +11,7 @@
 extern crate std;
 
 pub mod arbiter;
+pub mod array;
 pub mod config;
 pub mod fingertip;
 pub mod forces;

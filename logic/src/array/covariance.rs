@@ -1,0 +1,67 @@
+//! Sliding covariance of the elements' differences (Bamshad 2023, equations 3 and 4).
+//!
+//! `X` has one row an element and one column for each of the last `N` slow frames; `X X^T` is symmetric, so its 55 entries
+//! on and above the diagonal say everything. (The means are not taken off: equation 4 does not.) A new column adds its
+//! outer product and the oldest takes its own away: exact, so nothing drifts.
+
+use super::{COVARIANCES, ELEMENTS};
+
+/// Differences are within this, so that ten of their products fit in an `i32`.
+pub const DIFFERENCE_MAX: i16 = 14_650;
+
+/// The covariance over the last `N` differences, in the square of their unit.
+#[derive(Clone, Debug)]
+pub struct SlidingCovariance<const N: usize> {
+    window: [[i16; ELEMENTS]; N],
+    /// The oldest column of the window.
+    oldest: usize,
+    entries: [i32; COVARIANCES],
+}
+
+impl<const N: usize> Default for SlidingCovariance<N> {
+    /// The covariance of an array where nothing ever happened.
+    fn default() -> Self {
+        const { assert!(N >= 1 && N <= 10, "more than ten products of differences could overflow") }
+        Self { window: [[0; ELEMENTS]; N], oldest: 0, entries: [0; COVARIANCES] }
+    }
+}
+
+impl<const N: usize> SlidingCovariance<N> {
+    /// Takes the newest differences, each within +-[`DIFFERENCE_MAX`] (what is beyond is cut), and forgets the oldest.
+    #[inline]
+    pub fn push(&mut self, differences: &[i16; ELEMENTS]) {
+        let new = differences.map(|d| d.clamp(-DIFFERENCE_MAX, DIFFERENCE_MAX));
+        let Some(column) = self.window.get_mut(self.oldest) else { return };
+        let old = core::mem::replace(column, new);
+        self.oldest = if self.oldest + 1 < N { self.oldest + 1 } else { 0 };
+        let mut entries = self.entries.iter_mut();
+        for row in 0..ELEMENTS {
+            for other in row..ELEMENTS {
+                let Some(entry) = entries.next() else { return };
+                *entry = *entry + i32::from(new[row]) * i32::from(new[other])
+                    - i32::from(old[row]) * i32::from(old[other]);
+            }
+        }
+    }
+
+    /// Takes an element out of the window, as if it had never changed: what it said last is not to be believed.
+    pub fn forget(&mut self, element: usize) {
+        for column in &mut self.window {
+            if let Some(difference) = column.get_mut(element) {
+                *difference = 0;
+            }
+        }
+        let pairs = (0..ELEMENTS).flat_map(|row| (row..ELEMENTS).map(move |other| (row, other)));
+        for (entry, (row, other)) in self.entries.iter_mut().zip(pairs) {
+            if row == element || other == element {
+                *entry = 0;
+            }
+        }
+    }
+
+    /// The entries on and above the diagonal, row by row: (1,1), (1,2) .. (1,10), (2,2) .. (10,10).
+    #[must_use]
+    pub fn entries(&self) -> &[i32; COVARIANCES] {
+        &self.entries
+    }
+}

@@ -1,0 +1,174 @@
+//! The verdict: features, network and a threshold with two edges.
+
+use tenax_hal_shim::channel::SLOW_HZ;
+
+use super::network::{LookBack, Mlp};
+use super::preprocess::{Preprocessor, PreprocessorConfig};
+use super::{FEATURES, Reading};
+
+/// How a logit is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Judgement {
+    /// How much a logit has to grow for the odds of slip to grow e-fold: its calibration.
+    pub logit_per_nat: i32,
+    /// Confidence from which slow frames are slip, per mille.
+    pub on_permille: u16,
+    /// Confidence below which they are not, per mille.
+    pub off_permille: u16,
+    /// Slow frames in a row that have to say so, for slip to begin.
+    pub on_frames: u8,
+    /// Slow frames in a row that have to say so, for slip to be over.
+    pub off_frames: u8,
+}
+
+impl Judgement {
+    /// A verdict for each frame by itself, at even odds.
+    pub const EVEN: Self =
+        Self { logit_per_nat: 1 << 16, on_permille: 500, off_permille: 500, on_frames: 1, off_frames: 1 };
+}
+
+/// A trained detector: everything about it that is not state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Model<const H1: usize, const L: usize, const H2: usize> {
+    /// What its features were made with.
+    pub preprocessor: PreprocessorConfig,
+    /// The network.
+    pub network: Mlp<FEATURES, H1, L, H2>,
+    /// How its logit is read.
+    pub judgement: Judgement,
+}
+
+/// What the array says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ArrayVerdict {
+    /// Whether the object slips.
+    pub slip: bool,
+    /// How likely that is, per mille: the calibrated logit's logistic function.
+    pub confidence_permille: u16,
+    /// How long ago, at the end of the last slow frame, there was something to judge by, ms: 0 while the detector works.
+    pub age_ms: u16,
+}
+
+impl ArrayVerdict {
+    /// Nothing has been judged yet.
+    pub const NONE: Self = Self { slip: false, confidence_permille: 0, age_ms: u16::MAX };
+}
+
+/// The detector of one array.
+#[derive(Clone, Debug)]
+pub struct ArrayDetector<'m, const H1: usize, const L: usize, const H2: usize> {
+    model: &'m Model<H1, L, H2>,
+    preprocessor: Preprocessor,
+    look_back: LookBack<H1, L>,
+    /// Slow frames in a row that contradict the verdict.
+    contradicted: u8,
+    /// Slow frames since the last one that was judged.
+    unjudged: u16,
+    verdict: ArrayVerdict,
+}
+
+impl<'m, const H1: usize, const L: usize, const H2: usize> ArrayDetector<'m, H1, L, H2> {
+    /// One that has read nothing.
+    #[must_use]
+    pub fn new(model: &'m Model<H1, L, H2>) -> Self {
+        Self {
+            model,
+            preprocessor: Preprocessor::new(model.preprocessor),
+            look_back: LookBack::default(),
+            contradicted: 0,
+            unjudged: u16::MAX,
+            verdict: ArrayVerdict::NONE,
+        }
+    }
+
+    /// Takes one slow frame.
+    ///
+    /// Without features (windows not full, too many elements dead) it stands down: no slip, confidence 0, and an age that
+    /// grows until there is something to judge by again.
+    pub fn push(&mut self, reading: &Reading) -> ArrayVerdict {
+        match self.logit(reading) {
+            Some(logit) => self.judge(logit),
+            None => self.stand_down(),
+        }
+        self.verdict
+    }
+
+    /// Takes one slow frame as [`push`](Self::push) does, and gives the network's logit. None without features.
+    pub fn logit(&mut self, reading: &Reading) -> Option<i32> {
+        let network = &self.model.network;
+        let Some(features) = self.preprocessor.push(reading) else {
+            self.look_back.clear();
+            return None;
+        };
+        Some(network.judge(self.look_back.push(network.see(features))?))
+    }
+
+    /// The last verdict.
+    #[must_use]
+    pub fn verdict(&self) -> ArrayVerdict {
+        self.verdict
+    }
+
+    fn judge(&mut self, logit: i32) {
+        let Judgement { logit_per_nat, on_permille, off_permille, on_frames, off_frames } =
+            self.model.judgement;
+        let confidence_permille = logistic_permille(logit, logit_per_nat);
+        let slip = self.verdict.slip;
+        let contradicts =
+            if slip { confidence_permille < off_permille } else { confidence_permille >= on_permille };
+        self.contradicted = if contradicts { self.contradicted.saturating_add(1) } else { 0 };
+        let turns = contradicts && self.contradicted >= if slip { off_frames } else { on_frames };
+        if turns {
+            self.contradicted = 0;
+        }
+        self.unjudged = 0;
+        self.verdict = ArrayVerdict { slip: slip != turns, confidence_permille, age_ms: 0 };
+    }
+
+    fn stand_down(&mut self) {
+        self.contradicted = 0;
+        self.unjudged = self.unjudged.saturating_add(1);
+        let age_ms = u32::from(self.unjudged) * 1_000 / SLOW_HZ;
+        let age_ms =
+            if self.unjudged == u16::MAX { u16::MAX } else { age_ms.min(u32::from(u16::MAX)) as u16 };
+        self.verdict = ArrayVerdict { slip: false, confidence_permille: 0, age_ms };
+    }
+}
+
+/// Points of the logistic function, four to a unit.
+const LOGISTIC: [u16; 33] = [
+    500, 562, 622, 679, 731, 777, 818, 852, 881, 905, 924, 940, 953, 963, 971, 977, 982, 986, 989, 991, 993,
+    995, 996, 997, 998, 998, 998, 999, 999, 999, 999, 1_000, 1_000,
+];
+
+/// `1000 / (1 + exp(-logit / per_nat))`, straight between points a quarter apart: within 3 of it. A `per_nat` below 1 is
+/// taken as 1.
+#[must_use]
+pub fn logistic_permille(logit: i32, per_nat: i32) -> u16 {
+    let per_nat = i64::from(per_nat.max(1));
+    let quarters = i64::from(logit).abs() * 4;
+    let (whole, part) = (quarters / per_nat, quarters % per_nat);
+    let last = i64::from(LOGISTIC[LOGISTIC.len() - 1]);
+    let at = |n: i64| usize::try_from(n).ok().and_then(|n| LOGISTIC.get(n)).map_or(last, |&p| i64::from(p));
+    let above = at(whole) + (at(whole + 1) - at(whole)) * part / per_nat;
+    (if logit < 0 { 1_000 - above } else { above }) as u16
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_logistic_function_is_within_three_per_mille() {
+        for per_nat in [1, 7, 1_000, 1 << 16, 1 << 28] {
+            for step in -400..=400 {
+                let logit = (f64::from(step) / 40.0 * f64::from(per_nat)) as i32;
+                let exact = 1_000.0 / (1.0 + (-f64::from(logit) / f64::from(per_nat)).exp());
+                let found = f64::from(logistic_permille(logit, per_nat));
+                assert!((found - exact).abs() <= 3.0, "{logit} {per_nat}: {found} {exact}");
+            }
+        }
+        assert_eq!(logistic_permille(i32::MIN, 1), 0);
+        assert_eq!(logistic_permille(i32::MAX, 0), 1_000);
+    }
+}

@@ -1,0 +1,184 @@
+//! The network: two hidden layers and a logit, quantised, with a queue that looks back (Bamshad 2023, section 5.3).
+//!
+//! ```text
+//! h1 = relu(W1 x + b1) >> shift             x: features of this slow frame
+//! h2 = relu(W2 [h1, h1 of the L - 1 frames before] + b2) >> shift
+//! logit = w3 h2 + b3                         slip is more likely than not above 0
+//! ```
+//!
+//! The paper queues whole features before the first layer: five times 76 inputs, and most of the work done again in each
+//! frame. Here what the first layer made of a frame is queued, so it is made once.
+//!
+//! | quantity | format | range |
+//! |---|---|---|
+//! | input, activation | `i16` | 0..2^15 - 1 behind a ReLU, saturated |
+//! | weight | `i16`, of which a model uses 8 bits or what its sums leave | see [`Layer::new`] |
+//! | bias, sum, logit | `i32` | cannot overflow: [`Layer::new`] refuses a layer whose sums could |
+//!
+//! A shift rounds down: who wants it to round to nearest adds half a step to the bias.
+
+/// What a hidden unit saturates at.
+pub const ACTIVATION_MAX: i16 = i16::MAX;
+/// The largest size of an input.
+const INPUT_SIZE: u32 = 1 << 15;
+
+/// A layer that was refused: with the largest inputs, the sum of this output could leave `i32`; or it shifts by more
+/// than 31.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TooLarge {
+    /// Which output.
+    pub output: usize,
+}
+
+/// `O` sums of `I` products.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[repr(C, align(8))]
+pub struct Layer<const I: usize, const O: usize> {
+    weights: [[i16; I]; O],
+    bias: [i32; O],
+    shift: u32,
+}
+
+impl<const I: usize, const O: usize> Layer<I, O> {
+    /// A layer: a row of weights for each output, biases in units of the sum, and by how many bits a sum is shifted down
+    /// to become an activation.
+    ///
+    /// # Errors
+    /// If `|bias| + 2^15 (sum of |weights|)` of a row is 2^31 or more, or the shift is. 76 weights of 8 bits always fit.
+    pub const fn new(weights: [[i16; I]; O], bias: [i32; O], shift: u32) -> Result<Self, TooLarge> {
+        let mut output = 0;
+        while output < O {
+            let mut size = bias[output].unsigned_abs() as u64;
+            let mut input = 0;
+            while input < I {
+                size += weights[output][input].unsigned_abs() as u64 * INPUT_SIZE as u64;
+                input += 1;
+            }
+            if size > i32::MAX as u64 || shift > 31 {
+                return Err(TooLarge { output });
+            }
+            output += 1;
+        }
+        Ok(Self { weights, bias, shift })
+    }
+
+    /// The sums.
+    #[must_use]
+    pub fn sums(&self, inputs: &[i16; I]) -> [i32; O] {
+        let mut sums = self.bias;
+        for (sum, weights) in sums.iter_mut().zip(&self.weights) {
+            for (&weight, &input) in weights.iter().zip(inputs) {
+                *sum += i32::from(weight) * i32::from(input);
+            }
+        }
+        sums
+    }
+
+    /// What a hidden layer hands on: no negative sum, shifted down, saturated.
+    #[must_use]
+    pub fn activations(&self, inputs: &[i16; I]) -> [i16; O] {
+        self.activations_of(self.sums(inputs))
+    }
+
+    fn activations_of(&self, sums: [i32; O]) -> [i16; O] {
+        sums.map(|sum| (sum >> self.shift).clamp(0, i32::from(ACTIVATION_MAX)) as i16)
+    }
+}
+
+/// The network. `I` inputs, `H1` units in the first hidden layer, `L` slow frames of which are seen by the `H2` units of
+/// the second: 1 looks at the present only.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mlp<const I: usize, const H1: usize, const L: usize, const H2: usize> {
+    first: Layer<I, H1>,
+    /// Of this frame, then of the one before, and so on. Their sums add up; the shift is the first one's.
+    second: [Layer<H1, H2>; L],
+    last: Layer<H2, 1>,
+}
+
+impl<const I: usize, const H1: usize, const L: usize, const H2: usize> Mlp<I, H1, L, H2> {
+    /// A network of layers. `second` has one for each frame that is seen, the present one first; the biases of all of
+    /// them count, the shift of the first.
+    ///
+    /// # Errors
+    /// If the layers of `second` could overflow together though none does alone.
+    pub const fn new(
+        first: Layer<I, H1>,
+        second: [Layer<H1, H2>; L],
+        last: Layer<H2, 1>,
+    ) -> Result<Self, TooLarge> {
+        const { assert!(L >= 1, "a network sees at least the present") }
+        let mut output = 0;
+        while output < H2 {
+            let (mut size, mut frame) = (0, 0);
+            while frame < L {
+                size += second[frame].bias[output].unsigned_abs() as u64;
+                let mut input = 0;
+                while input < H1 {
+                    size += second[frame].weights[output][input].unsigned_abs() as u64 * INPUT_SIZE as u64;
+                    input += 1;
+                }
+                frame += 1;
+            }
+            if size > i32::MAX as u64 {
+                return Err(TooLarge { output });
+            }
+            output += 1;
+        }
+        Ok(Self { first, second, last })
+    }
+
+    /// What is seen in one frame's features: to be queued.
+    #[must_use]
+    pub fn see(&self, features: &[i16; I]) -> [i16; H1] {
+        self.first.activations(features)
+    }
+
+    /// The logit of what was seen in the last `L` frames.
+    #[must_use]
+    pub fn judge(&self, seen: &[[i16; H1]; L]) -> i32 {
+        let mut sums = [0; H2];
+        for (layer, seen) in self.second.iter().zip(seen) {
+            for (sum, more) in sums.iter_mut().zip(layer.sums(seen)) {
+                *sum += more;
+            }
+        }
+        let shift = self.second.first().map_or(0, |layer| layer.shift);
+        let hidden = sums.map(|sum| (sum >> shift).clamp(0, i32::from(ACTIVATION_MAX)) as i16);
+        let [logit] = self.last.sums(&hidden);
+        logit
+    }
+}
+
+/// What was seen in the last `L` slow frames.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LookBack<const H1: usize, const L: usize> {
+    /// The newest first.
+    seen: [[i16; H1]; L],
+    missing: usize,
+}
+
+impl<const H1: usize, const L: usize> Default for LookBack<H1, L> {
+    /// Nothing.
+    fn default() -> Self {
+        Self { seen: [[0; H1]; L], missing: L }
+    }
+}
+
+impl<const H1: usize, const L: usize> LookBack<H1, L> {
+    /// Queues what was seen in a frame. None until `L` have been queued.
+    pub fn push(&mut self, seen: [i16; H1]) -> Option<&[[i16; H1]; L]> {
+        for n in (1..L).rev() {
+            self.seen[n] = self.seen[n - 1];
+        }
+        if let Some(newest) = self.seen.first_mut() {
+            *newest = seen;
+        }
+        self.missing = self.missing.saturating_sub(1);
+        (self.missing == 0).then_some(&self.seen)
+    }
+
+    /// Forgets: frames have gone unseen, and what is seen next does not follow on what was.
+    pub fn clear(&mut self) {
+        self.missing = L;
+    }
+}

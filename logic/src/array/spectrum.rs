@@ -1,0 +1,191 @@
+//! Sliding discrete Fourier transform of the elements' sum (Bamshad 2023, section 4.3).
+//!
+//! 40 samples are not a power of two, and need not be: each bin is kept as the sum that defines it, and a new sample
+//! replaces the one 40 frames before it, whose twiddle factor was the same one. In integers that is exact and never
+//! drifts; a bin costs two multiply-accumulates a frame instead of a transform. What is left of a zero-padded or windowed
+//! 64-point transform's trouble - leakage of the resting force into every bin - is not there either: a constant
+//! contributes to bin 0 only, so no mean has to be removed.
+//!
+//! The phase is counted from a fixed frame, not from the window's first sample. Magnitudes do not know the difference.
+
+use super::{BINS, SPECTRUM_WINDOW};
+
+/// `cos(2 pi n / 40)` for n = 0 to 10, Q30, rounded to nearest.
+const QUARTER_WAVE: [i32; SPECTRUM_WINDOW / 4 + 1] = [
+    1_073_741_824,
+    1_060_522_280,
+    1_021_189_159,
+    956_710_970,
+    868_675_383,
+    759_250_125,
+    631_129_609,
+    487_468_587,
+    331_804_471,
+    167_970_228,
+    0,
+];
+/// Fraction bits of a twiddle factor.
+const TWIDDLE_Q: u32 = 30;
+
+/// `(cos, -sin)` of `2 pi n / 40`, Q30.
+const TWIDDLES: [[i32; 2]; SPECTRUM_WINDOW] = {
+    let mut twiddles = [[0; 2]; SPECTRUM_WINDOW];
+    let mut n = 0;
+    while n < SPECTRUM_WINDOW {
+        // -sin(a) = cos(a + a quarter turn).
+        twiddles[n] = [cosine(n), cosine(n + SPECTRUM_WINDOW / 4)];
+        n += 1;
+    }
+    twiddles
+};
+
+const fn cosine(n: usize) -> i32 {
+    let half = SPECTRUM_WINDOW / 2;
+    let n = n % SPECTRUM_WINDOW;
+    let n = if n > half { SPECTRUM_WINDOW - n } else { n };
+    if n > half / 2 { -QUARTER_WAVE[half - n] } else { QUARTER_WAVE[n] }
+}
+
+/// The transform of the last `M` sums: 40, or 20 or 10, which have the bins 0 to M / 2 of [`BINS`].
+#[derive(Clone, Debug)]
+pub struct SlidingSpectrum<const M: usize> {
+    window: [i32; M],
+    /// Frames modulo M: where the oldest sum is, and the newest one's angle.
+    place: usize,
+    /// Real and imaginary part, Q30. Ten elements of 14 bits and 40 sums stay below 2^53.
+    bins: [[i64; 2]; BINS],
+}
+
+impl<const M: usize> Default for SlidingSpectrum<M> {
+    /// That of an array at rest.
+    fn default() -> Self {
+        const { assert!(M >= 2 && M.is_multiple_of(2) && SPECTRUM_WINDOW.is_multiple_of(M)) }
+        Self { window: [0; M], place: 0, bins: [[0; 2]; BINS] }
+    }
+}
+
+impl<const M: usize> SlidingSpectrum<M> {
+    /// Takes the newest sum, within +-2^20, and forgets the oldest.
+    #[inline]
+    pub fn push(&mut self, sum: i32) {
+        let Some(oldest) = self.window.get_mut(self.place) else { return };
+        let change = i64::from(sum - core::mem::replace(oldest, sum));
+        let step = self.place * (SPECTRUM_WINDOW / M);
+        self.place = if self.place + 1 < M { self.place + 1 } else { 0 };
+        let mut angle = 0;
+        for [re, im] in self.bins.iter_mut().take(M / 2 + 1) {
+            let [cos, minus_sin] = TWIDDLES.get(angle).copied().unwrap_or_default();
+            *re += change * i64::from(cos);
+            *im += change * i64::from(minus_sin);
+            angle += step;
+            angle = if angle >= SPECTRUM_WINDOW { angle - SPECTRUM_WINDOW } else { angle };
+        }
+    }
+
+    /// Adds a constant to every sum of the window: only bin 0 knows of it, since each bin's twiddle factors add up to 0.
+    pub fn shift(&mut self, by: i32) {
+        for sum in &mut self.window {
+            *sum += by;
+        }
+        if let Some([re, _]) = self.bins.first_mut() {
+            *re += (i64::from(by) * M as i64) << TWIDDLE_Q;
+        }
+    }
+
+    /// Squared magnitudes, in the square of the sums' unit: `|sum over n of s_n exp(-2 pi i k n / M)|^2`.
+    ///
+    /// Real and imaginary part are rounded down to the sums' unit, and the squares to 24 bits, on every machine alike.
+    #[must_use]
+    #[inline]
+    pub fn powers(&self) -> [f32; BINS] {
+        self.bins.map(|[re, im]| {
+            // Below 2^23 for elements of 14 bits: exact as a single.
+            let (re, im) = ((re >> TWIDDLE_Q) as i32 as f32, (im >> TWIDDLE_Q) as i32 as f32);
+            re * re + im * im
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::f64::consts::PI;
+    use std::vec::Vec;
+
+    #[test]
+    fn twiddles_are_right_and_a_constant_reaches_bin_0_only() {
+        for (n, [cos, minus_sin]) in TWIDDLES.iter().enumerate() {
+            let angle = 2.0 * PI * n as f64 / SPECTRUM_WINDOW as f64;
+            let scale = f64::from(1 << TWIDDLE_Q);
+            assert!((angle.cos() * scale - f64::from(*cos)).abs() <= 0.5, "{n}");
+            assert!((-angle.sin() * scale - f64::from(*minus_sin)).abs() <= 0.5, "{n}");
+        }
+        for bin in 1..BINS {
+            let sum = |part: usize| {
+                (0..SPECTRUM_WINDOW)
+                    .map(|n| i64::from(TWIDDLES[n * bin % SPECTRUM_WINDOW][part]))
+                    .sum::<i64>()
+            };
+            assert_eq!((sum(0), sum(1)), (0, 0), "{bin}");
+        }
+    }
+
+    /// The definition, in `f64`.
+    fn powers_of(window: &[i32]) -> Vec<f64> {
+        let m = window.len();
+        let bin = |k: usize| {
+            let part = |wave: fn(f64) -> f64| -> f64 {
+                let turn = |n: usize| 2.0 * PI * (k * n % m) as f64 / m as f64;
+                window.iter().enumerate().map(|(n, &s)| f64::from(s) * wave(turn(n))).sum()
+            };
+            part(f64::cos).powi(2) + part(f64::sin).powi(2)
+        };
+        (0..=m / 2).map(bin).collect()
+    }
+
+    fn against_the_definition<const M: usize>(sums: impl Iterator<Item = i32>) {
+        let mut spectrum = SlidingSpectrum::<M>::default();
+        let mut all = std::vec![0; M];
+        for sum in sums {
+            spectrum.push(sum);
+            all.push(sum);
+        }
+        let exact = powers_of(&all[all.len() - M..]);
+        for (bin, (found, exact)) in spectrum.powers().iter().zip(&exact).enumerate() {
+            let (found, exact) = (f64::from(*found).sqrt(), exact.sqrt());
+            // Each part is rounded down to one unit: at most sqrt(2) of them; and a single has 24 bits.
+            assert!((found - exact).abs() < 1.5 + 2e-7 * exact, "{M} {bin}: {found} {exact}");
+        }
+        assert!(spectrum.powers()[M / 2 + 1..].iter().all(|&p| p == 0.0));
+    }
+
+    #[test]
+    fn after_any_time_it_is_the_transform_of_the_window() {
+        let full = 10 * 16_380;
+        let noise = |n: u32| (n.wrapping_mul(0x9E37_79B9) >> 12) as i32 % full;
+        for length in [40, 41, 77, 100_000] {
+            against_the_definition::<40>((0..length).map(noise));
+            against_the_definition::<20>((0..length).map(noise));
+            against_the_definition::<10>((0..length).map(noise));
+            against_the_definition::<40>((0..length).map(|n| if n / 20 % 2 == 0 { full } else { -full }));
+            against_the_definition::<40>((0..length).map(|_| full));
+        }
+    }
+
+    #[test]
+    fn a_shifted_window_is_that_of_shifted_sums() {
+        let sum = |n: i32| (n * n) % 1_000;
+        let (mut shifted, mut plain) = (SlidingSpectrum::<40>::default(), SlidingSpectrum::<40>::default());
+        for n in 0..100 {
+            if n == 63 {
+                shifted.shift(5_000);
+            }
+            shifted.push(sum(n) + if n >= 63 { 5_000 } else { 0 });
+            plain.push(sum(n) + 5_000);
+            if n >= 63 {
+                assert_eq!(shifted.powers()[1..], plain.powers()[1..], "{n}");
+            }
+        }
+        assert_eq!(shifted.bins, plain.bins);
+    }
+}
