@@ -2,7 +2,8 @@
 //!
 //! What crosses it, in the order in which data goes: [`channel`] says which signal is on which pin, [`frame`] is what a
 //! board hands to the logic every 0.5 ms, [`motor`] is what the logic hands back, [`words`] are the states and faults
-//! that both sides and a person watching name alike, and [`wire`] is how all of it travels over the serial line.
+//! that both sides and a person watching name alike, [`wire`] is how all of it travels over the serial line, and [`flash`]
+//! is where a board keeps what must outlive a power cut.
 //! Nothing here decides anything.
 #![no_std]
 #![forbid(unsafe_code)]
@@ -11,6 +12,7 @@
 extern crate std;
 
 pub mod channel;
+pub mod flash;
 pub mod frame;
 pub mod front_end;
 pub mod motor;

@@ -3,7 +3,8 @@
 //! Data goes one way, and so do the modules: [`health`] says which readings can be believed; [`vibration`] (S1),
 //! [`fsr`], [`forces`] and [`friction`] (S2) and [`gate`] (the wearer's muscles) say what they mean; [`senses`] puts a
 //! frame through all of them; [`mode`], [`grip`] and [`arbiter`] decide; [`fingertip`] is the whole, and [`journal`] is
-//! what it tells. [`config`] holds every number that can be chosen.
+//! what it tells. [`config`] holds every number that can be chosen, and [`store`]
+//! keeps what must outlive a power cut.
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -12,6 +13,7 @@ extern crate std;
 
 pub mod arbiter;
 pub mod array;
+mod checksum;
 pub mod config;
 pub mod fingertip;
 pub mod forces;
@@ -24,4 +26,5 @@ pub mod hebbian;
 pub mod journal;
 pub mod mode;
 pub mod senses;
+pub mod store;
 pub mod vibration;

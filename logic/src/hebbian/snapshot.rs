@@ -10,18 +10,15 @@
 //! The lower words of the kept weights are left out: they are below the resolution of an output, so a restored network
 //! gives the same outputs bit for bit and goes on learning from within 2^-27 of each weight.
 
-use crc::{CRC_32_ISO_HDLC, Crc};
-
 use super::activations::{Normaliser, NormaliserConfig};
 use super::network::{Network, Weight};
+use crate::checksum::CRC;
 
 /// The version of the layout above. A snapshot of another is refused.
 pub const VERSION: u8 = 1;
 
 const HEADER: usize = 4;
 const WORD: usize = 4;
-
-static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 /// Why a snapshot is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

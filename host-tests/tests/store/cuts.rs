@@ -1,0 +1,123 @@
+//! A power cut at every operation, and another one at every operation of the boot after it.
+
+use tenax_hal_shim::flash::FlashFailed;
+use tenax_logic::store::open;
+use tenax_logic::store::record::Kind;
+
+use crate::flash::{HARMS, TestFlash};
+use crate::{numbers, save};
+
+const SECTOR_WORDS: usize = 80;
+const SAVES: u32 = 60;
+/// Saves from one boot to the next.
+const SESSION: u32 = 4;
+
+/// What the wearer may count on, of each kind: the last save that was finished, and the one that may or may not have been.
+#[derive(Clone, Debug, Default)]
+struct Promise {
+    finished: [Option<u32>; 3],
+    begun: Option<(Kind, u32)>,
+}
+
+impl Promise {
+    fn holds(&self, found: [Option<u32>; 3]) -> bool {
+        Kind::ALL.into_iter().zip(found).all(|(kind, found)| {
+            found == self.finished[kind as usize]
+                || self.begun.is_some_and(|(begun, n)| begun == kind && found == Some(n))
+        })
+    }
+}
+
+/// Lives until the power goes or everything is saved.
+fn live(flash: &mut TestFlash) -> (Promise, Result<(), FlashFailed>) {
+    let mut promise = Promise::default();
+    for n in 0..SAVES {
+        if n % SESSION == 0 {
+            let (_, found) = open(flash);
+            if flash.dead {
+                return (promise, Err(FlashFailed));
+            }
+            assert_eq!(numbers(flash, &found), promise.finished);
+        }
+        let (mut log, _) = open(flash);
+        if flash.dead {
+            return (promise, Err(FlashFailed));
+        }
+        let kind = Kind::ALL[(n * n % 3) as usize];
+        promise.begun = Some((kind, n));
+        if save(flash, &mut log, kind, n).is_err() {
+            return (promise, Err(FlashFailed));
+        }
+        promise.finished[kind as usize] = Some(n);
+        promise.begun = None;
+    }
+    (promise, Ok(()))
+}
+
+#[test]
+fn any_cut_leaves_the_old_or_the_new() {
+    let mut whole = TestFlash::blank(SECTOR_WORDS);
+    let (_, survived) = live(&mut whole);
+    assert!(survived.is_ok());
+    assert!(whole.erases[0] >= 3 && whole.erases[1] >= 3, "{:?} sectors were worn", whole.erases);
+    let mut cases = 0;
+    for operation in 0..whole.operations {
+        for harm in HARMS {
+            let mut flash = TestFlash::blank(SECTOR_WORDS);
+            flash.cut = Some((operation, harm));
+            let (promise, survived) = live(&mut flash);
+            assert!(survived.is_err(), "the power went at operation {operation}");
+            flash.power_up();
+            cases += boot_with_cuts(&flash, &promise);
+        }
+    }
+    println!("{} operations, {cases} boots", whole.operations);
+    assert!(cases > 10_000);
+}
+
+/// Boots, with the power going at each operation of the boot in turn, and not at all. Gives the number of boots.
+fn boot_with_cuts(flash: &TestFlash, promise: &Promise) -> usize {
+    let mut undisturbed = flash.clone();
+    undisturbed.operations = 0;
+    let (mut log, found) = open(&mut undisturbed);
+    let first = numbers(&undisturbed, &found);
+    assert!(promise.holds(first), "{first:?} for {promise:?}");
+    let operations = undisturbed.operations;
+    // Life goes on, and what was found is found again.
+    save(&mut undisturbed, &mut log, Kind::Zero, 1_000).expect("power");
+    let (_, found) = open(&mut undisturbed);
+    assert_eq!(numbers(&undisturbed, &found), [first[0], Some(1_000), first[2]]);
+
+    for operation in 0..operations {
+        for harm in HARMS {
+            let mut flash = flash.clone();
+            flash.cut = Some((operation, harm));
+            let (_, _) = open(&mut flash);
+            assert!(flash.dead);
+            flash.power_up();
+            let (_, found) = open(&mut flash);
+            assert_eq!(numbers(&flash, &found), first, "cut again at operation {operation}, {harm:?}");
+        }
+    }
+    1 + operations * HARMS.len()
+}
+
+/// The test above can fail: a record counts by its commit word alone, and without it the older one does.
+#[test]
+fn a_record_without_its_last_word_does_not_count() {
+    let mut flash = TestFlash::blank(SECTOR_WORDS);
+    let (mut log, _) = open(&mut flash);
+    let words = save(&mut flash, &mut log, Kind::Zero, 1).expect("power");
+    let payload = crate::payload(Kind::Zero, 2);
+    let mut saving = log.begin(Kind::Zero, &payload).expect("room");
+    for _ in 0..words - 1 {
+        assert_eq!(saving.step(&mut flash), Ok(false));
+    }
+    let (_, before) = open(&mut flash);
+    assert_eq!(numbers(&flash, &before), [None, Some(1), None]);
+    assert!(before.is_damaged(Kind::Zero) && !before.is_damaged(Kind::Network));
+    assert_eq!(saving.step(&mut flash), Ok(true));
+    let (_, after) = open(&mut flash);
+    assert_eq!(numbers(&flash, &after), [None, Some(2), None]);
+    assert!(!after.is_damaged(Kind::Zero));
+}

@@ -1,0 +1,121 @@
+//! A flash that only clears bits, fails over what is not blank, and loses its power at any operation.
+
+use tenax_hal_shim::flash::{BLANK, FlashArea, FlashFailed, Sector};
+
+/// What an operation has done when the power goes.
+#[derive(Clone, Copy, Debug)]
+pub enum Harm {
+    /// Nothing.
+    Nothing,
+    /// Everything; the core never hears of it.
+    Everything,
+    /// A word's bits in this mask were not programmed yet; the words of an erased sector still have their zeros in it.
+    Bits(u32),
+    /// A word as above; every word of an erased sector reads something else.
+    Noise(u32),
+}
+
+/// Every harm that a test with a cut tries.
+pub const HARMS: [Harm; 6] = [
+    Harm::Nothing,
+    Harm::Everything,
+    Harm::Bits(0xFFFF_0000),
+    Harm::Bits(0x5555_5555),
+    Harm::Bits(0x0000_0001),
+    Harm::Noise(0x9E37_79B9),
+];
+
+/// Two sectors.
+#[derive(Clone, Debug)]
+pub struct TestFlash {
+    words: [Vec<u32>; 2],
+    /// Operations until the power goes, and what the last one does.
+    pub cut: Option<(usize, Harm)>,
+    /// Whether the power is gone.
+    pub dead: bool,
+    /// Erases fail.
+    pub worn: bool,
+    /// Operations so far.
+    pub operations: usize,
+    /// Erases of each sector.
+    pub erases: [usize; 2],
+}
+
+impl TestFlash {
+    /// Out of the factory.
+    pub fn blank(sector_words: usize) -> Self {
+        Self::holding([vec![BLANK; sector_words], vec![BLANK; sector_words]])
+    }
+
+    /// Whatever it holds.
+    pub fn holding(words: [Vec<u32>; 2]) -> Self {
+        Self { words, cut: None, dead: false, worn: false, operations: 0, erases: [0; 2] }
+    }
+
+    /// Its words, to do harm to.
+    pub fn words(&mut self) -> &mut [Vec<u32>; 2] {
+        &mut self.words
+    }
+
+    /// The power comes back.
+    pub fn power_up(&mut self) {
+        self.cut = None;
+        self.dead = false;
+    }
+
+    /// Begins an operation: what the power cut does to it, if there is one now.
+    fn begin(&mut self) -> Result<Option<Harm>, FlashFailed> {
+        assert!(!self.dead, "nothing runs without power");
+        self.operations += 1;
+        match &mut self.cut {
+            None => Ok(None),
+            Some((0, harm)) => {
+                self.dead = true;
+                Ok(Some(*harm))
+            }
+            Some((left, _)) => {
+                *left -= 1;
+                Ok(None)
+            }
+        }
+    }
+}
+
+impl FlashArea for TestFlash {
+    fn sector_words(&self) -> usize {
+        self.words[0].len()
+    }
+
+    fn read(&self, sector: Sector, word: usize) -> u32 {
+        self.words[sector as usize].get(word).copied().unwrap_or(BLANK)
+    }
+
+    fn program(&mut self, sector: Sector, word: usize, value: u32) -> Result<(), FlashFailed> {
+        let harm = self.begin()?;
+        let cell = self.words[sector as usize].get_mut(word).expect("a word of the sector");
+        assert_eq!(*cell, BLANK, "{sector:?} {word} is programmed twice");
+        *cell = match harm {
+            None | Some(Harm::Everything) => value,
+            Some(Harm::Nothing) => BLANK,
+            Some(Harm::Bits(mask) | Harm::Noise(mask)) => value | mask,
+        };
+        if harm.is_some() { Err(FlashFailed) } else { Ok(()) }
+    }
+
+    fn erase(&mut self, sector: Sector) -> Result<(), FlashFailed> {
+        let harm = self.begin()?;
+        if self.worn {
+            return Err(FlashFailed);
+        }
+        self.erases[sector as usize] += 1;
+        for (n, word) in self.words[sector as usize].iter_mut().enumerate() {
+            *word = match harm {
+                None | Some(Harm::Everything) => BLANK,
+                Some(Harm::Nothing) => *word,
+                Some(Harm::Bits(mask)) => *word | !mask,
+                Some(Harm::Noise(seed)) => seed.wrapping_mul(2 * n as u32 + 1).rotate_left(n as u32),
+            };
+        }
+        if harm.is_some() { Err(FlashFailed) } else { Ok(()) }
+    }
+}

@@ -1,0 +1,191 @@
+//! What outlives a power cut: a log of records in two sectors of flash.
+//!
+//! Records are appended to one sector, word after word ([`record`]); the newest whole one of each kind counts. Nothing is
+//! erased while the hand works, because an erase stalls the core for a second or two. That is left to [`open`], which is
+//! called at boot: it finds what counts, and when the sector is half full it erases the other one, copies there what
+//! counts, and makes that the one to append to. The old sector is left as it is until its turn comes again, so there is
+//! a second copy of everything for as long.
+//!
+//! A power cut at any instant leaves, of each kind, the record before or the record after, whole. Why:
+//! - a record counts only with its CRC and, programmed after it, its commit word;
+//! - only the sector that holds nothing that counts is ever erased;
+//! - a copy has the sequence number of the original, so half a copied sector is never newer than the original, and its
+//!   opening words, which break the tie, are programmed last.
+//!
+//! # Wear
+//! A record takes its payload and [`OVERHEAD_WORDS`](record::OVERHEAD_WORDS) words. Of 128 KiB sectors at least half is
+//! filled between two erases, so the network's 78 words are saved 210 times for one erase, settings (8 words) 2 000
+//! times. The chip's 10 000 erases of each of two sectors (DS10314, flash memory endurance) are 4.2 million saves of the
+//! network: eight years of one a minute, day and night.
+//!
+//! The crate `sequential-storage` does most of this, but erases whenever a page is full.
+
+pub mod record;
+mod sector;
+
+use tenax_hal_shim::flash::{FlashArea, FlashFailed, Sector};
+
+use record::{Kind, Saving, Tag};
+use sector::{Entry, OPENING_WORDS, Survey};
+
+/// Where the next record goes.
+#[derive(Clone, Debug)]
+pub struct Log {
+    sector: Sector,
+    end: usize,
+    /// Words that records of a session may fill: the rest is for [`open`].
+    limit: usize,
+    next_sequence: u32,
+    /// The flash failed at boot: nothing more is saved before the next.
+    failed: bool,
+}
+
+/// Why a record is not saved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refused {
+    /// The sector is full. The next boot makes room.
+    Full,
+    /// The flash failed at boot.
+    Failed,
+    /// Longer than 255 words, or not whole words.
+    Length,
+}
+
+/// What [`open`] found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Found {
+    newest: [Option<Entry>; Kind::ALL.len()],
+    damaged: [bool; Kind::ALL.len()],
+    /// How often a sector has been erased to make room, less one: each sector has had half of it.
+    pub generation: u32,
+}
+
+impl Found {
+    /// The newest whole record of `kind`, read into `buffer`. None if there is none, or it is longer than `buffer`.
+    pub fn read<'a>(&self, area: &impl FlashArea, kind: Kind, buffer: &'a mut [u8]) -> Option<&'a [u8]> {
+        let entry = self.newest[kind.index()]?;
+        entry.read(area, buffer)
+    }
+
+    /// Whether a later record of `kind` than the one that counts is damaged, or was not finished.
+    #[must_use]
+    pub const fn is_damaged(&self, kind: Kind) -> bool {
+        self.damaged[kind.index()]
+    }
+}
+
+/// Finds what counts and makes room. May erase, so it stalls the core for seconds: at boot, before anything moves.
+///
+/// A flash that fails costs the log, never what was found in it.
+pub fn open(area: &mut impl FlashArea) -> (Log, Found) {
+    let [a, b] = Sector::BOTH.map(|sector| Survey::of(area, sector));
+    let (active, stale) = if b.rank() > a.rank() { (b, a) } else { (a, b) };
+    let mut found = Found {
+        newest: active.newest,
+        damaged: active.damaged,
+        generation: active.generation.max(stale.generation).unwrap_or(0),
+    };
+    for (newest, stale) in found.newest.iter_mut().zip(stale.newest) {
+        *newest = match (*newest, stale) {
+            (Some(ours), Some(theirs)) if theirs.sequence > ours.sequence => Some(theirs),
+            (ours, theirs) => ours.or(theirs),
+        };
+    }
+    let mut log = Log {
+        sector: active.sector,
+        end: active.end,
+        limit: area.sector_words() / 8 * 7,
+        next_sequence: active.last_sequence.max(stale.last_sequence).saturating_add(1),
+        failed: false,
+    };
+    log.failed = log.make_room(area, &active, &mut found).is_err();
+    (log, found)
+}
+
+impl Log {
+    /// Begins to save a record; its words are programmed one by one by [`Saving::step`]. Its place is taken from now on,
+    /// whether it is finished or not.
+    ///
+    /// # Errors
+    /// Says why it is not saved.
+    pub fn begin<'a>(&mut self, kind: Kind, payload: &'a [u8]) -> Result<Saving<'a>, Refused> {
+        if self.failed {
+            return Err(Refused::Failed);
+        }
+        let (words, rest) = payload.as_chunks::<4>();
+        let tag = Tag::new(kind.number(), words.len()).filter(|_| rest.is_empty()).ok_or(Refused::Length)?;
+        let after = self.end + tag.record_words();
+        if after > self.limit {
+            return Err(Refused::Full);
+        }
+        let saving = Saving::new(self.sector, self.end, tag, self.next_sequence, words);
+        self.end = after;
+        self.next_sequence = self.next_sequence.saturating_add(1);
+        Ok(saving)
+    }
+
+    /// Words that can still be filled before the next boot.
+    #[must_use]
+    pub const fn free_words(&self) -> usize {
+        if self.failed { 0 } else { self.limit.saturating_sub(self.end) }
+    }
+
+    /// Sees to it that the active sector is opened, holds everything that counts, and has room for a day.
+    fn make_room(
+        &mut self,
+        area: &mut impl FlashArea,
+        active: &Survey,
+        found: &mut Found,
+    ) -> Result<(), FlashFailed> {
+        if active.generation.is_none() && found.newest.iter().all(Option::is_none) {
+            // A new chip, or nothing worth keeping.
+            if !sector::is_blank(area, self.sector) {
+                area.erase(self.sector)?;
+            }
+            self.end = OPENING_WORDS;
+            found.generation = 1;
+            return sector::write_opening(area, self.sector, 1);
+        }
+        // A record that counts only in the stale sector (its successor here is damaged) would go with it.
+        let kept = self.sector;
+        for entry in found.newest.iter_mut().flatten().filter(|entry| entry.sector != kept) {
+            if self.end + entry.tag().record_words() > area.sector_words() {
+                return Err(FlashFailed);
+            }
+            self.copy(area, entry)?;
+        }
+        if active.generation.is_some() && self.end <= area.sector_words() / 2 {
+            return Ok(());
+        }
+        let target = self.sector.other();
+        area.erase(target)?;
+        let mut to = Self { sector: target, end: OPENING_WORDS, ..self.clone() };
+        let mut newest = found.newest;
+        for entry in newest.iter_mut().flatten() {
+            to.copy(area, entry)?;
+        }
+        let generation = found.generation.saturating_add(1);
+        sector::write_opening(area, target, generation)?;
+        *self = to;
+        found.newest = newest;
+        found.generation = generation;
+        Ok(())
+    }
+
+    /// Copies a record to the end of this log, word by word; it is found there from now on.
+    fn copy(&mut self, area: &mut impl FlashArea, entry: &mut Entry) -> Result<(), FlashFailed> {
+        for n in 0..entry.tag().record_words() {
+            let word = area.read(entry.sector, entry.at + n);
+            program(area, self.sector, self.end + n, word)?;
+        }
+        (entry.sector, entry.at) = (self.sector, self.end);
+        self.end += entry.tag().record_words();
+        Ok(())
+    }
+}
+
+/// Programs a word and reads it back.
+fn program(area: &mut impl FlashArea, sector: Sector, word: usize, value: u32) -> Result<(), FlashFailed> {
+    area.program(sector, word, value)?;
+    (area.read(sector, word) == value).then_some(()).ok_or(FlashFailed)
+}

@@ -1,0 +1,133 @@
+//! A record, in words, in the order in which they are programmed.
+//!
+//! ```text
+//! tag        kind, payload's words, and the complements of both: a tag that is half programmed is none
+//! sequence   higher is newer, over both sectors
+//! payload    up to 255 whole words, little-endian
+//! CRC-32     of all of the above (ISO-HDLC, the wire's)
+//! commit     programmed last, so that everything before it was programmed to the end
+//! ```
+
+use crc::Digest;
+use tenax_hal_shim::flash::{FlashArea, FlashFailed, Sector};
+
+use crate::checksum::CRC;
+
+/// Words of a record beside its payload.
+pub const OVERHEAD_WORDS: usize = 4;
+
+const COMMIT: u32 = 0x3C5A_96E1;
+
+/// What a record is about. Numbers are never given twice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// What the network learned: [`hebbian::snapshot`](crate::hebbian::snapshot).
+    Network,
+    /// The force sensor's zero.
+    Zero,
+    /// What was set from outside, or measured by a stroke.
+    Settings,
+}
+
+impl Kind {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Network, Self::Zero, Self::Settings];
+
+    pub(super) const fn index(self) -> usize {
+        self as usize
+    }
+
+    pub(super) const fn number(self) -> u8 {
+        self as u8 + 1
+    }
+
+    pub(super) fn from_number(number: u8) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.number() == number)
+    }
+}
+
+/// The first word of a record.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Tag {
+    pub kind: u8,
+    pub words: u8,
+}
+
+impl Tag {
+    /// None if the payload is too long.
+    pub fn new(kind: u8, words: usize) -> Option<Self> {
+        Some(Self { kind, words: u8::try_from(words).ok()? })
+    }
+
+    /// The words that the whole record takes.
+    pub const fn record_words(self) -> usize {
+        self.words as usize + OVERHEAD_WORDS
+    }
+
+    const fn to_word(self) -> u32 {
+        u32::from_le_bytes([self.kind, self.words, !self.kind, !self.words])
+    }
+
+    /// None if `word` is no tag.
+    pub fn from_word(word: u32) -> Option<Self> {
+        let [kind, words, ..] = word.to_le_bytes();
+        let tag = Self { kind, words };
+        (tag.to_word() == word).then_some(tag)
+    }
+
+    /// The sequence number of the record at `at`. None if it is not whole.
+    pub fn check(self, area: &impl FlashArea, sector: Sector, at: usize) -> Option<u32> {
+        let payload_end = at + 2 + usize::from(self.words);
+        let mut digest = CRC.digest();
+        for word in at..payload_end {
+            digest.update(&area.read(sector, word).to_le_bytes());
+        }
+        let whole = area.read(sector, payload_end) == digest.finalize()
+            && area.read(sector, payload_end + 1) == COMMIT;
+        whole.then(|| area.read(sector, at + 1))
+    }
+}
+
+/// A record that is being programmed. Dropped before its end, it does not count.
+pub struct Saving<'a> {
+    sector: Sector,
+    at: usize,
+    tag: Tag,
+    sequence: u32,
+    payload: &'a [[u8; 4]],
+    digest: Digest<'static, u32>,
+    step: usize,
+}
+
+impl<'a> Saving<'a> {
+    pub(super) fn new(sector: Sector, at: usize, tag: Tag, sequence: u32, payload: &'a [[u8; 4]]) -> Self {
+        Self { sector, at, tag, sequence, payload, digest: CRC.digest(), step: 0 }
+    }
+
+    /// Programs the next word; true when it was the last one, and the record counts.
+    ///
+    /// # Errors
+    /// If the flash failed. The record does not count and never will.
+    pub fn step(&mut self, area: &mut impl FlashArea) -> Result<bool, FlashFailed> {
+        let word = match self.step {
+            0 => self.tag.to_word(),
+            1 => self.sequence,
+            step => match self.payload.get(step - 2) {
+                Some(bytes) => u32::from_le_bytes(*bytes),
+                None if step == self.tag.record_words() - 2 => self.digest.clone().finalize(),
+                None => COMMIT,
+            },
+        };
+        self.digest.update(&word.to_le_bytes());
+        let place = self.at + self.step;
+        super::program(area, self.sector, place, word)?;
+        self.step += 1;
+        Ok(self.step == self.tag.record_words())
+    }
+}
+
+impl core::fmt::Debug for Saving<'_> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Saving").field("tag", &self.tag).field("step", &self.step).finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,133 @@
+//! What one sector holds.
+//!
+//! ```text
+//! opening words   magic, generation, CRC-32 of both: programmed last when a sector is taken into use
+//! records         one after the other
+//! blank words     up to its end
+//! ```
+
+use tenax_hal_shim::flash::{BLANK, FlashArea, FlashFailed, Sector};
+
+use super::record::{Kind, Tag};
+use crate::checksum::CRC;
+
+/// Words before the first record.
+pub const OPENING_WORDS: usize = 3;
+
+/// Changes with the layout of sectors and records.
+const MAGIC: u32 = 0x7E4A_0001;
+
+/// Where a whole record is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Entry {
+    pub sector: Sector,
+    pub at: usize,
+    pub kind: Kind,
+    pub words: u8,
+    pub sequence: u32,
+}
+
+impl Entry {
+    pub fn tag(&self) -> Tag {
+        Tag { kind: self.kind.number(), words: self.words }
+    }
+
+    /// Its payload. None if it is longer than `buffer`.
+    pub fn read<'a>(&self, area: &impl FlashArea, buffer: &'a mut [u8]) -> Option<&'a [u8]> {
+        let payload = buffer.get_mut(..4 * usize::from(self.words))?;
+        let (slots, _) = payload.as_chunks_mut::<4>();
+        for (n, slot) in slots.iter_mut().enumerate() {
+            *slot = area.read(self.sector, self.at + 2 + n).to_le_bytes();
+        }
+        Some(payload)
+    }
+}
+
+/// Everything that is known about a sector.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Survey {
+    pub sector: Sector,
+    /// None if its opening words are not whole.
+    pub generation: Option<u32>,
+    /// The newest whole record of each kind.
+    pub newest: [Option<Entry>; Kind::ALL.len()],
+    /// Whether a damaged or unfinished record of the kind follows it.
+    pub damaged: [bool; Kind::ALL.len()],
+    /// The highest sequence number of its whole records, 0 if it has none.
+    pub last_sequence: u32,
+    /// From here on everything is blank.
+    pub end: usize,
+}
+
+impl Survey {
+    /// Reads the whole sector: nothing in it is trusted, so nothing in it says where to stop.
+    pub fn of(area: &impl FlashArea, sector: Sector) -> Self {
+        let mut survey = Self {
+            sector,
+            generation: read_opening(area, sector),
+            newest: Default::default(),
+            damaged: Default::default(),
+            last_sequence: 0,
+            end: OPENING_WORDS,
+        };
+        let mut at = OPENING_WORDS;
+        while at < area.sector_words() {
+            let word = area.read(sector, at);
+            let tag = Tag::from_word(word).filter(|tag| at + tag.record_words() <= area.sector_words());
+            // A word that is no tag is what a power cut left of one.
+            let next = at + tag.map_or(1, Tag::record_words);
+            if word != BLANK {
+                survey.end = next;
+            }
+            if let Some((tag, kind)) = tag.and_then(|tag| Some((tag, Kind::from_number(tag.kind)?))) {
+                let sequence = tag.check(area, sector, at);
+                survey.damaged[kind.index()] = sequence.is_none();
+                if let Some(sequence) = sequence {
+                    survey.enter(Entry { sector, at, kind, words: tag.words, sequence });
+                }
+            }
+            at = next;
+        }
+        survey
+    }
+
+    fn enter(&mut self, entry: Entry) {
+        let newest = &mut self.newest[entry.kind.index()];
+        if newest.is_none_or(|newest| newest.sequence <= entry.sequence) {
+            *newest = Some(entry);
+        }
+        self.last_sequence = self.last_sequence.max(entry.sequence);
+    }
+
+    /// The sector of the higher rank is the one to append to. Equal sequence numbers are a copy and its original; a copy
+    /// that was finished has opening words of a later generation.
+    pub fn rank(&self) -> (u32, u32) {
+        (self.last_sequence, self.generation.unwrap_or(0))
+    }
+}
+
+/// Whether no word of it has been programmed.
+pub fn is_blank(area: &impl FlashArea, sector: Sector) -> bool {
+    (0..area.sector_words()).all(|word| area.read(sector, word) == BLANK)
+}
+
+/// Takes a sector into use.
+pub fn write_opening(area: &mut impl FlashArea, sector: Sector, generation: u32) -> Result<(), FlashFailed> {
+    for (n, word) in opening(generation).into_iter().enumerate() {
+        super::program(area, sector, n, word)?;
+    }
+    Ok(())
+}
+
+fn read_opening(area: &impl FlashArea, sector: Sector) -> Option<u32> {
+    let words = [0, 1, 2].map(|n| area.read(sector, n));
+    let generation = words[1];
+    (words == opening(generation)).then_some(generation)
+}
+
+fn opening(generation: u32) -> [u32; OPENING_WORDS] {
+    let mut digest = CRC.digest();
+    digest.update(&MAGIC.to_le_bytes());
+    digest.update(&generation.to_le_bytes());
+    [MAGIC, generation, digest.finalize()]
+}
