@@ -58,8 +58,10 @@ impl Control {
     fn take_commands(&mut self) {
         for command in core::iter::from_fn(mail::next_command).take(COMMANDS_PER_TICK) {
             let refused = self.fingertip.command(&command.message).err();
-            if command.message == Down::Samples && refused.is_none() {
-                mail::post(self.samples.message());
+            match command.message {
+                Down::Samples => mail::post(self.samples.message()),
+                Down::Network => mail::post(Up::Network(self.fingertip.network())),
+                _ => {}
             }
             mail::post(Up::Ack { of: command.sequence, refused });
         }

@@ -12,18 +12,23 @@ use postcard::de_flavors::crc::from_bytes_u32;
 use postcard::ser_flavors::{Cobs, Flavor, Slice, crc::CrcModifier};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
-use crate::channel::{COUNT, FRAMES_PER_SLOW_FRAME};
+use crate::channel::{COUNT, FRAMES_PER_SLOW_FRAME, PVDF_COUNT, STRAIN_COUNT};
 use crate::motor::MotorDrive;
-use crate::words::{Cause, DriveSource, Fault, GripMode};
+use crate::words::{Cause, Codes, DriveSource, Fault, GripMode, NoLesson};
 
 /// The version of every message below. A receiver refuses frames of another.
-pub const VERSION: u8 = 1;
+pub const VERSION: u8 = 2;
 /// The serial line's rate, baud, 8N1.
 pub const BAUD: u32 = 921_600;
 /// The longest frame, bytes, the final zero included: what a sender's and a receiver's buffer must hold.
 pub const FRAME_MAX: usize = 512;
 
 static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+
+/// Inputs of the network: films, then strain gauges.
+pub const RECEPTORS: usize = PVDF_COUNT + STRAIN_COUNT;
+/// Outputs of the network: relative motion (o1) and direction (o2).
+pub const NETWORK_OUTPUTS: usize = 2;
 
 /// What one tick (0.5 ms) decided.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -32,6 +37,10 @@ pub struct TickRecord {
     pub vibration: u16,
     /// Whether it is above S1.
     pub s1: bool,
+    /// What touch alone makes the network say, relative motion (o1) and direction (o2): 128 would be 1.
+    pub outputs: [i8; NETWORK_OUTPUTS],
+    /// Whether that means slip, whoever listens.
+    pub slips: bool,
     /// What drives the motor.
     pub drive: MotorDrive,
     /// Who drives it.
@@ -74,8 +83,27 @@ pub struct Slow {
     pub extensor_mv: Option<i16>,
     /// Whether a myosensor is active, its hold time included.
     pub wearer_active: bool,
+    /// What the network is learning, None while nothing.
+    pub lesson: Option<Codes>,
     /// Checksum of every valid sample that the slow frame's ticks were given: the two ends agree on the input too.
     pub samples_sum: u32,
+}
+
+/// What the network knows and feels (Tada 2006, equations 3 to 6).
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct NetworkState {
+    /// Sequence number of the last frame in it.
+    pub frame: u32,
+    /// Weights, a row for each output; 2^27 is 1.
+    pub weights: [[i32; RECEPTORS]; NETWORK_OUTPUTS],
+    /// Activations, 2^14 is 1: films 0 to 1, strain gauges -1 to 1.
+    pub activations: [i16; RECEPTORS],
+    /// Updates of the weights since the network knew nothing.
+    pub updates: u32,
+    /// Age of the teacher's newest picture, ms; None before the first.
+    pub teacher_age_ms: Option<u16>,
+    /// Why it is not learning, if it is not.
+    pub no_lesson: Option<NoLesson>,
 }
 
 /// What the board counted since it was switched on.
@@ -175,6 +203,8 @@ pub enum Up {
         #[serde(with = "samples")]
         samples: [u16; COUNT],
     },
+    /// The network, on request.
+    Network(NetworkState),
 }
 
 /// A number that can be set from outside.
@@ -188,6 +218,8 @@ pub enum Setting {
     MyoOnMv(u16),
     /// Normal force above which the reflex closes no further, mN.
     ForceCeilingMn(u32),
+    /// How far below 0 the network's o1 means slip, per mille.
+    NetworkSlipPermille(u16),
 }
 
 impl Setting {
@@ -200,6 +232,8 @@ impl Setting {
             // Higher, and a plain contraction would no longer silence the reflex.
             Self::MyoOnMv(value) => ("myo on", "mV", value as u32, 20..=600),
             Self::ForceCeilingMn(value) => ("force ceiling", "mN", value, 500..=140_000),
+            // Below, a network that has hardly learned would move the hand; at 1000, o1 is at its end.
+            Self::NetworkSlipPermille(value) => ("network slip", "per mille", value as u32, 100..=1_000),
         }
     }
 
@@ -234,6 +268,17 @@ pub enum Down {
     Zero,
     /// Send [`Up::Samples`] once.
     Samples,
+    /// A teacher's picture: what the object and the hand do (v1, v2). Some 30 times a second.
+    Teach {
+        /// Relative motion and direction.
+        codes: Codes,
+        /// Age of the picture that they were made from, ms.
+        age_ms: u16,
+    },
+    /// Send [`Up::Network`] once.
+    Network,
+    /// Forget all that the network has learned.
+    Forget,
 }
 
 /// A frame's contents.

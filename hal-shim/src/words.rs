@@ -2,6 +2,8 @@
 //!
 //! New ones are added at the end: their place is their number on the wire.
 
+use core::cmp::Ordering;
+
 use serde::{Deserialize, Serialize};
 
 /// What the grip reflex is doing (Prosthesis, figure 9).
@@ -48,6 +50,8 @@ pub enum Cause {
     StrokeBegun,
     /// The stroke is over.
     StrokeOver,
+    /// The network's first output says slip.
+    Network,
 }
 
 /// Why a sensor gives no number.
@@ -120,4 +124,58 @@ pub enum Fault {
         /// Index in [`CHANNELS`](crate::channel::CHANNELS).
         channel: u8,
     },
+}
+
+/// What a teacher says about one output of the network (Tada 2006, equations 1 and 2).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Code {
+    /// v1: object and hand move against each other, it slips. v2: the hand moves down.
+    Minus,
+    /// v1: neither moves. v2: the hand does not move.
+    #[default]
+    Zero,
+    /// v1: object and hand move as one. v2: the hand moves up.
+    Plus,
+}
+
+impl Code {
+    /// -1, 0 or 1.
+    #[must_use]
+    pub const fn sign(self) -> i32 {
+        match self {
+            Self::Minus => -1,
+            Self::Zero => 0,
+            Self::Plus => 1,
+        }
+    }
+
+    /// From any number's sign.
+    #[must_use]
+    pub fn from_sign(number: i32) -> Self {
+        match number.cmp(&0) {
+            Ordering::Less => Self::Minus,
+            Ordering::Equal => Self::Zero,
+            Ordering::Greater => Self::Plus,
+        }
+    }
+}
+
+/// Relative motion (v1, equation 1) and direction (v2, equation 2).
+pub type Codes = [Code; 2];
+
+/// Why the network has nothing to learn at the moment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum NoLesson {
+    /// No teacher, or it has said less than it takes to believe it.
+    Absent,
+    /// Its last picture is too old.
+    Late,
+    /// It has said opposite things in a short time, or that the hand moves while nothing does.
+    Contradicting,
+    /// It says that neither hand nor object moves.
+    NothingMoves,
+    /// Nothing is held.
+    NoGrasp,
+    /// The receptors feel something else: the reflex or the wearer moves the hand, or something knocks at it.
+    Disturbed,
 }

@@ -4,16 +4,16 @@
 use tenax_hal_shim::channel::COUNT;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{
-    Counters, Down, Event, EventKind, FRAME_MAX, Forces, Receiver, Refusal, Setting, Slow, TickRecord, Up,
-    VERSION, encode,
+    Counters, Down, Event, EventKind, FRAME_MAX, Forces, NetworkState, Receiver, Refusal, Setting, Slow,
+    TickRecord, Up, VERSION, encode,
 };
-use tenax_hal_shim::words::{Capability, Cause, DriveSource, Fault, GripMode, Reason};
+use tenax_hal_shim::words::{Capability, Cause, Code, DriveSource, Fault, GripMode, NoLesson, Reason};
 
 fn check<T>(message: &T, golden: &str)
 where
     T: serde::Serialize + serde::de::DeserializeOwned + PartialEq + std::fmt::Debug,
 {
-    assert_eq!(VERSION, 1, "new version: write new golden bytes");
+    assert_eq!(VERSION, 2, "new version: write new golden bytes");
     let mut buffer = [0; FRAME_MAX];
     let bytes = encode(0x1234, message, &mut buffer).unwrap();
     let hex: String = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
@@ -25,26 +25,32 @@ where
 
 #[test]
 fn down() {
-    check(&Down::Ping, "0401b42405130f47aa00");
+    check(&Down::Ping, "0402b42405fda0f2b800");
     check(
         &Down::Drive { drive: MotorDrive::Open(Duty::FULL), hold_ms: 200 },
-        "0c01b4240102e807c8017857024b00",
+        "0e02b4240102e807c801bd6b8d7200",
     );
-    check(&Down::Set(Setting::S1Mv(100)), "0501b4240206649495d2f900");
-    check(&Down::Set(Setting::S2Permille(300)), "0c01b4240201ac02183c76c900");
-    check(&Down::Set(Setting::MyoOnMv(160)), "0c01b4240202a001f79c8cfe00");
-    check(&Down::Set(Setting::ForceCeilingMn(40_000)), "0d01b4240203c0b80236dc47da00");
-    check(&Down::Stroke(true), "0a01b4240301098a3c0a00");
-    check(&Down::Zero, "0901b424040acb2aad00");
-    check(&Down::Samples, "0901b424059cfb2dda00");
+    check(&Down::Set(Setting::S1Mv(100)), "0502b4240206643ae7467f00");
+    check(&Down::Set(Setting::S2Permille(300)), "0c02b4240201ac0285269ef800");
+    check(&Down::Set(Setting::MyoOnMv(160)), "0c02b4240202a0016a8664cf00");
+    check(&Down::Set(Setting::ForceCeilingMn(40_000)), "0d02b4240203c0b802d5dbc85400");
+    check(&Down::Stroke(true), "0a02b4240301d9f09c4d00");
+    check(&Down::Zero, "0902b42404e4649fbf00");
+    check(&Down::Samples, "0902b42405725498c800");
+    check(&Down::Teach { codes: [Code::Minus, Code::Plus], age_ms: 40 }, "0502b424060702285483019d00");
+    check(&Down::Network, "0902b424075e35962600");
+    check(&Down::Forget, "0902b42408cf2829b600");
+    check(&Down::Set(Setting::NetworkSlipPermille(400)), "0c02b4240204900307ada1fa00");
 }
 
 #[test]
 fn up() {
-    check(&Up::Hello { frame_hz: 2_000, after: Some(Fault::WatchdogReset) }, "0401b42409d00f01050ec8f6a500");
+    check(&Up::Hello { frame_hz: 2_000, after: Some(Fault::WatchdogReset) }, "0402b42409d00f0105edcf792b00");
     let record = TickRecord {
         vibration: 500,
         s1: true,
+        outputs: [-128, 64],
+        slips: true,
         drive: MotorDrive::Close(Duty::FULL),
         source: DriveSource::Reflex,
     };
@@ -61,33 +67,46 @@ fn up() {
         flexor_mv: Some(40),
         extensor_mv: None,
         wearer_active: false,
+        lesson: Some([Code::Minus, Code::Plus]),
         samples_sum: 0xDEAD_BEEF,
     };
     check(
         &Up::Slow(slow),
-        "0601b4240131010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010114f4030101e807030301c03ecf0f28d00f01fa0105ac020150010aeffdb6f50d3eff38ca00",
+        "0602b4240131010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010117f4030180400101e807030301c03ecf0f28d00f01fa0105ac0201500102010b02effdb6f50d0645b79300",
     );
     let mode = EventKind::Mode { from: GripMode::Watch, to: GripMode::Slip, cause: Cause::S1 };
-    check(&Up::Event(Event { frame: 50, kind: mode }), "0601b42402320802030466ccd12100");
+    check(&Up::Event(Event { frame: 50, kind: mode }), "0602b424023208020304a3f05c1800");
     for (kind, golden) in [
-        (Fault::SensorLost { channel: 38, reason: Reason::Dead }, "0701b424023201022605936b777500"),
-        (Fault::CapabilityLost(Capability::WearerIntent), "0d01b4240232010202b7f9971c00"),
-        (Fault::PressedAtBoot { channel: 24 }, "0d01b424023201071888f4829c00"),
+        (Fault::SensorLost { channel: 38, reason: Reason::Dead }, "0702b4240232010226055657fa4c00"),
+        (Fault::CapabilityLost(Capability::WearerIntent), "0d02b424023201020254fe189200"),
+        (Fault::PressedAtBoot { channel: 24 }, "0d02b42402320107186bf30d1200"),
     ] {
         check(&Up::Event(Event { frame: 50, kind: EventKind::Fault(kind) }), golden);
     }
     let stroke = EventKind::Stroke { mu_s_permille: 490, s2_permille: 392 };
-    check(&Up::Event(Event { frame: 50, kind: stroke }), "0f01b424023202ea0388036646c61100");
-    check(&Up::Event(Event { frame: 50, kind: EventKind::EventsLost(3) }), "0c01b4240232030361f7c3b100");
+    check(&Up::Event(Event { frame: 50, kind: stroke }), "0f02b424023202ea03880365fdf1fa00");
+    check(&Up::Event(Event { frame: 50, kind: EventKind::EventsLost(3) }), "0c02b42402320303fced2b8000");
     check(
         &Up::Counters(Counters { frames: 100, ticks: 100, ..Counters::default() }),
-        "0601b424036401026401010581993bb700",
+        "0602b424036401026401010580ffd92e00",
     );
-    check(&Up::Ack { of: 7, refused: Some(Refusal::Loaded) }, "0c01b42404070101688c306a00");
+    check(&Up::Ack { of: 7, refused: Some(Refusal::Loaded) }, "0c02b42404070101f596d85b00");
+    let network = NetworkState {
+        frame: 74,
+        weights: [[1; 24], [-(1 << 27); 24]],
+        activations: [1 << 14; 24],
+        updates: 1_000,
+        teacher_age_ms: Some(40),
+        no_lesson: Some(NoLesson::Late),
+    };
+    check(
+        &Up::Network(network),
+        "d002b424064a020202020202020202020202020202020202020202020202ffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7f808002808002808002808002808002808002808002808002808002808002808002808002808002808002808002808002808002808002808002808002808002808002808002808002e807012801018c9526f100",
+    );
     let mut samples = [8_190; COUNT];
     samples[0] = 1;
     check(
         &Up::Samples { frame: 74, samples },
-        "5d01b424054a01fe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3f045e8a5600",
+        "5d02b424054a01fe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3ffe3f2f86c5ae00",
     );
 }

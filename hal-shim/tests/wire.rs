@@ -4,15 +4,17 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{
-    BadFrame, Counters, Down, FRAME_MAX, Receiver, Setting, Slow, TickRecord, Up, encode,
+    BadFrame, Counters, Down, FRAME_MAX, NetworkState, Receiver, Setting, Slow, TickRecord, Up, encode,
 };
-use tenax_hal_shim::words::{DriveSource, GripMode};
+use tenax_hal_shim::words::{Code, DriveSource, GripMode, NoLesson};
 
 fn down() -> impl Strategy<Value = Down> {
     prop_oneof![
         Just(Down::Ping),
         Just(Down::Zero),
         Just(Down::Samples),
+        Just(Down::Network),
+        any::<u16>().prop_map(|age_ms| Down::Teach { codes: [Code::Minus, Code::Plus], age_ms }),
         any::<bool>().prop_map(Down::Stroke),
         any::<u16>().prop_map(|mv| Down::Set(Setting::S1Mv(mv))),
         any::<u32>().prop_map(|mn| Down::Set(Setting::ForceCeilingMn(mn))),
@@ -95,6 +97,8 @@ fn the_longest_message_fits_a_frame() {
     let longest = TickRecord {
         vibration: u16::MAX,
         s1: true,
+        outputs: [i8::MIN; 2],
+        slips: true,
         drive: MotorDrive::Close(Duty::FULL),
         source: DriveSource::Reflex,
     };
@@ -115,6 +119,7 @@ fn the_longest_message_fits_a_frame() {
         flexor_mv: Some(i16::MIN),
         extensor_mv: Some(i16::MIN),
         wearer_active: true,
+        lesson: Some([Code::Minus; 2]),
         samples_sum: u32::MAX,
     };
     let mut buffer = [0; FRAME_MAX];
@@ -122,6 +127,15 @@ fn the_longest_message_fits_a_frame() {
     assert!(length < FRAME_MAX, "{length}");
     let bits_a_second = length * 10 * 80;
     assert!(bits_a_second < 921_600 / 2, "slow frames may use at most half of the line: {bits_a_second}");
+    let network = NetworkState {
+        frame: u32::MAX,
+        weights: [[i32::MIN; 24]; 2],
+        activations: [i16::MIN; 24],
+        updates: u32::MAX,
+        teacher_age_ms: Some(u16::MAX),
+        no_lesson: Some(NoLesson::Disturbed),
+    };
+    assert!(encode(u16::MAX, &Up::Network(network), &mut buffer).is_some());
     let counters = Counters { frames: u32::MAX, ..Counters::default() };
     assert!(encode(0, &Up::Counters(counters), &mut [0; 40]).is_some());
     assert!(encode(0, &Up::Counters(counters), &mut [0; 8]).is_none(), "too small a buffer is no panic");

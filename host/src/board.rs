@@ -7,7 +7,7 @@ pub mod simulated;
 
 use tenax_hal_shim::frame::Scan;
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{Counters, Event, Refusal, Slow};
+use tenax_hal_shim::wire::{Counters, Event, NetworkState, Refusal, Slow};
 use tenax_hal_shim::words::Fault;
 
 /// What the core spent, in instructions of the emulated Cortex-M4.
@@ -40,6 +40,8 @@ pub struct Run {
     pub slows: Vec<Slow>,
     /// Events, as they came up the line.
     pub events: Vec<Event>,
+    /// The network, each time it was asked for.
+    pub networks: Vec<NetworkState>,
     /// Commands that were answered: the sequence number of each, and why it was not carried out.
     pub acks: Vec<(u16, Option<Refusal>)>,
     /// Why the board started, each time it did.

@@ -5,7 +5,7 @@ use std::io::{self, ErrorKind, Read, Write};
 
 use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ, mv_from_sample};
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{BadFrame, Event, EventKind, Receiver, Slow, Up, VERSION};
+use tenax_hal_shim::wire::{BadFrame, Event, EventKind, NetworkState, Receiver, Slow, Up, VERSION};
 
 use crate::report::in_words;
 
@@ -136,6 +136,7 @@ impl Display for Words<'_> {
             ),
             Up::Ack { of, refused: None } => write!(f, "done: command {of}"),
             Up::Ack { of, refused: Some(refusal) } => write!(f, "refused: command {of}: {refusal:?}"),
+            Up::Network(network) => network_words(f, network),
             Up::Samples { frame, samples } => {
                 write!(f, "{:10.4} s samples, mV:", seconds(*frame))?;
                 for (channel, &sample) in CHANNELS.iter().zip(samples) {
@@ -177,17 +178,51 @@ fn slow_words(f: &mut fmt::Formatter<'_>, slow: &Slow) -> fmt::Result {
         }
     }
     let last = slow.ticks.last();
+    if let Some([o1, o2]) =
+        last.map(|tick| tick.outputs.map(|o| f64::from(o) / 128.0)).filter(|o| *o != [0.0; 2])
+    {
+        write!(f, " o {o1:5.2} {o2:5.2}")?;
+    }
+    if slow.lesson.is_some() {
+        f.write_str(" learning")?;
+    }
+    let slips = slow.ticks.iter().any(|tick| tick.slips);
     match last.map(|tick| tick.drive) {
         Some(MotorDrive::Close(duty)) => write!(f, " closing {}", duty.as_per_mille())?,
         Some(MotorDrive::Open(duty)) => write!(f, " opening {}", duty.as_per_mille())?,
         Some(MotorDrive::Coast) | None => {}
     }
-    for (spoke, name) in
-        [(slow.ticks.iter().any(|tick| tick.s1), " S1"), (slow.s2, " S2"), (slow.wearer_active, " wearer")]
-    {
+    for (spoke, name) in [
+        (slow.ticks.iter().any(|tick| tick.s1), " S1"),
+        (slow.s2, " S2"),
+        (slips, " slips"),
+        (slow.wearer_active, " wearer"),
+    ] {
         if spoke {
             f.write_str(name)?;
         }
+    }
+    Ok(())
+}
+
+fn network_words(f: &mut fmt::Formatter<'_>, network: &NetworkState) -> fmt::Result {
+    write!(f, "{:10.4} s network: {} updates", seconds(network.frame), network.updates)?;
+    match (network.no_lesson, network.teacher_age_ms) {
+        (None, _) => f.write_str(", learning")?,
+        (Some(why), Some(age_ms)) => {
+            write!(f, ", no lesson: {why:?}, the teacher's picture is {age_ms} ms old")?
+        }
+        (Some(why), None) => write!(f, ", no lesson: {why:?}")?,
+    }
+    for (output, weights) in network.weights.iter().enumerate() {
+        write!(f, "\n      w{}:", output + 1)?;
+        for &weight in weights {
+            write!(f, " {:6.3}", f64::from(weight) / f64::from(1 << 27))?;
+        }
+    }
+    write!(f, "\n       t:")?;
+    for &activation in &network.activations {
+        write!(f, " {:6.3}", f64::from(activation) / f64::from(1 << 14))?;
     }
     Ok(())
 }

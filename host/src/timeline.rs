@@ -46,6 +46,12 @@ impl<'a> Timeline<'a> {
         rising(self.ticks().map(|(t, tick)| (t, tick.s1)))
     }
 
+    /// When the network said slip: the rising edges, s.
+    #[must_use]
+    pub fn network(self) -> Vec<f64> {
+        rising(self.ticks().map(|(t, tick)| (t, tick.slips)))
+    }
+
     /// When S2 spoke: the rising edges, s. A slow frame says only that it did; it does so in the tick that reads the last
     /// of the four quadrants.
     #[must_use]

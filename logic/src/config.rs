@@ -3,6 +3,8 @@
 use tenax_hal_shim::channel::sample_from_mv;
 use tenax_hal_shim::wire::Setting;
 
+use crate::hebbian::{Rule, TeacherConfig};
+
 /// Frames in this many milliseconds.
 #[must_use]
 pub const fn frames(ms: u32) -> u32 {
@@ -30,6 +32,19 @@ pub struct FrictionConfig {
     pub s2_of_mu_s_permille: u16,
     /// Fn from which the finger counts as loaded, mN: below, noise divided by a small Fn would be a large ratio.
     pub loaded_mn: i32,
+}
+
+/// What the network's output means, and how it learns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TouchConfig {
+    /// How far below 0 o1 means slip, per mille.
+    pub slip_permille: u16,
+    /// For how long, in frames.
+    pub slip_frames: u32,
+    /// When a teacher is believed.
+    pub teacher: TeacherConfig,
+    /// How fast it is learned from.
+    pub rule: Rule,
 }
 
 /// Thresholds of the myoelectric gate.
@@ -77,6 +92,8 @@ pub struct Config {
     pub vibration: VibrationConfig,
     /// S2.
     pub friction: FrictionConfig,
+    /// The network.
+    pub touch: TouchConfig,
     /// The wearer's muscles.
     pub gate: GateConfig,
     /// The reflex.
@@ -92,6 +109,12 @@ impl Default for Config {
                 knock_frames: frames(30),
             },
             friction: FrictionConfig { s2_permille: 300, s2_of_mu_s_permille: 800, loaded_mn: 600 },
+            touch: TouchConfig {
+                slip_permille: 400,
+                slip_frames: frames(5),
+                teacher: TeacherConfig::default(),
+                rule: Rule::default(),
+            },
             gate: GateConfig {
                 on_mv: 160,
                 off_permille: 700,
@@ -124,6 +147,7 @@ impl Config {
             Setting::S1Mv(mv) => self.vibration.s1 = sample_from_mv(u32::from(mv)),
             Setting::S2Permille(permille) => self.friction.s2_permille = permille,
             Setting::MyoOnMv(mv) => self.gate.on_mv = mv,
+            Setting::NetworkSlipPermille(permille) => self.touch.slip_permille = permille,
             Setting::ForceCeilingMn(mn) => self.grip.ceiling_mn = i32::try_from(mn).unwrap_or(i32::MAX),
         }
         true

@@ -6,16 +6,20 @@
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{DRIVE_HOLD_MAX_MS, Down, Event, EventKind, Refusal, Setting, Slow, TickRecord};
+use tenax_hal_shim::wire::{
+    DRIVE_HOLD_MAX_MS, Down, Event, EventKind, NetworkState, Refusal, Setting, Slow, TickRecord,
+};
 use tenax_hal_shim::words::{Cause, GripMode};
 
 use crate::arbiter::{Wishes, arbitrate};
 use crate::config::{Config, frames};
 use crate::friction::FrictionDetector;
-use crate::grip::Reflex;
+use crate::grip::{Grip, Reflex};
+use crate::hebbian::Situation;
 use crate::journal::Journal;
 use crate::mode;
 use crate::senses::Senses;
+use crate::touch::{Felt, Touch};
 
 /// A stroke that nobody ends is over after this long, in frames: a lost link must not leave the reflex silent.
 const STROKE_FRAMES_MAX: u32 = frames(60_000);
@@ -30,7 +34,8 @@ struct LinkDrive {
 /// The detectors' verdict of one tick.
 #[derive(Clone, Copy, Debug, Default)]
 struct Verdict {
-    slip: bool,
+    s1: bool,
+    network: bool,
     incipient: bool,
 }
 
@@ -40,6 +45,7 @@ pub struct Fingertip {
     config: Config,
     senses: Senses,
     friction: FrictionDetector,
+    touch: Touch,
     s2: bool,
     mode: GripMode,
     reflex: Reflex,
@@ -60,14 +66,15 @@ impl Fingertip {
     /// Frames come one by one, lost ones included ([`Frame::lost`]): time is counted by them.
     pub fn tick(&mut self, frame: &Frame) -> MotorDrive {
         self.sense(frame);
-        let verdict = Verdict { slip: self.senses.vibration.s1, incipient: self.s2 };
+        let verdict =
+            Verdict { s1: self.senses.vibration.s1, network: self.touch.slips(), incipient: self.s2 };
         self.act(frame, verdict)
     }
 
     /// The oracle's tick: the same fingertip, told by somebody who knows whether the object slips.
     pub fn tick_told(&mut self, frame: &Frame, slips: bool) -> MotorDrive {
         self.sense(frame);
-        self.act(frame, Verdict { slip: slips, incipient: false })
+        self.act(frame, Verdict { s1: slips, ..Verdict::default() })
     }
 
     /// Carries out a command.
@@ -76,7 +83,7 @@ impl Fingertip {
     /// Says why it was not carried out; then nothing has changed.
     pub fn command(&mut self, command: &Down) -> Result<(), Refusal> {
         match *command {
-            Down::Ping | Down::Samples => Ok(()),
+            Down::Ping | Down::Samples | Down::Network => Ok(()),
             Down::Drive { hold_ms, .. } if hold_ms > DRIVE_HOLD_MAX_MS => Err(Refusal::OutOfRange),
             Down::Drive { drive: MotorDrive::Close(_), .. } if self.senses.gate.is_active() => {
                 Err(Refusal::WearerActive)
@@ -96,6 +103,14 @@ impl Fingertip {
             Down::Stroke(true) => self.begin_stroke(),
             Down::Stroke(false) => {
                 self.end_stroke();
+                Ok(())
+            }
+            Down::Teach { codes, age_ms } => {
+                self.touch.hear(&self.config.touch, codes, age_ms);
+                Ok(())
+            }
+            Down::Forget => {
+                self.touch.forget();
                 Ok(())
             }
             Down::Zero if self.senses.forces.is_none() => Err(Refusal::SensorLost),
@@ -131,12 +146,20 @@ impl Fingertip {
         self.senses.gate.is_active()
     }
 
+    /// What the network knows and feels.
+    #[must_use]
+    pub fn network(&self) -> NetworkState {
+        self.touch.state(self.journal.frame())
+    }
+
     fn sense(&mut self, frame: &Frame) {
         self.journal.begin(frame);
         if frame.valid {
             self.senses.take(&self.config, frame, &mut self.journal);
+            self.feel(frame);
         } else {
             self.senses.lose(&self.config, &mut self.journal);
+            self.touch.lose();
         }
         if self.senses.forces.is_none() {
             self.s2 = self.friction.process(&self.config.friction, None);
@@ -144,6 +167,22 @@ impl Fingertip {
             let ratio = self.senses.forces.and_then(|forces| forces.ratio_permille);
             self.s2 = self.friction.process(&self.config.friction, ratio);
         }
+    }
+
+    fn feel(&mut self, frame: &Frame) {
+        let knock = self.senses.vibration.knock;
+        let moves = mode::closes(self.mode) || self.mode == GripMode::Settle || self.senses.gate.is_active();
+        let felt = Felt {
+            envelopes: self.senses.envelopes(),
+            loads: &self.senses.gauges().loads(),
+            gauge: usize::from(frame.select()),
+            knock,
+            situation: Situation {
+                grasp: matches!(self.senses.grip(&self.config), Grip::Holds(_)),
+                disturbed: knock || moves || !self.senses.hears(),
+            },
+        };
+        self.touch.tick(&self.config.touch, &felt);
     }
 
     fn act(&mut self, frame: &Frame, verdict: Verdict) -> MotorDrive {
@@ -167,6 +206,8 @@ impl Fingertip {
             TickRecord {
                 vibration: self.senses.vibration.level,
                 s1: listens && self.senses.vibration.s1,
+                outputs: self.touch.outputs(),
+                slips: self.touch.slips(),
                 drive,
                 source,
             },
@@ -185,13 +226,17 @@ impl Fingertip {
         self.cause(if self.senses.ready(&self.config) { Cause::SensorsReady } else { Cause::SensorsLost });
         self.cause(if taken_over { Cause::TakenOver } else { Cause::Released });
         let may_close = self.reflex.may_close(&config, grip);
-        if verdict.slip && may_close {
+        let slips = verdict.s1 || verdict.network;
+        if verdict.s1 && may_close {
             self.cause(Cause::S1);
+        }
+        if verdict.network && may_close {
+            self.cause(Cause::Network);
         }
         if verdict.incipient && may_close {
             self.cause(Cause::S2);
         }
-        if mode::closes(self.mode) && self.reflex.pulse_over(&config, self.mode, verdict.slip, grip) {
+        if mode::closes(self.mode) && self.reflex.pulse_over(&config, self.mode, slips, grip) {
             self.cause(Cause::PulseOver);
         }
         if self.mode == GripMode::Settle && self.reflex.settled(&config) {
@@ -259,6 +304,7 @@ impl Fingertip {
             flexor_mv: self.senses.gate.flexor.mv(),
             extensor_mv: self.senses.gate.extensor.mv(),
             wearer_active: self.senses.gate.is_active(),
+            lesson: self.touch.lesson().ok(),
             samples_sum,
         }
     }

@@ -27,7 +27,8 @@ pub use activations::{Activation, Activations, Normaliser, NormaliserConfig, Sen
 pub use network::{Network, Output, Weight};
 pub use rule::{Config, NotAllowed, Rule};
 pub use snapshot::Damaged;
-pub use teacher::{Code, Codes, NoLesson, Situation, Teacher, TeacherConfig};
+pub use teacher::{Situation, Teacher, TeacherConfig};
+pub use tenax_hal_shim::words::{Code, Codes, NoLesson};
 
 /// Receptors of one fingertip: 12 vibration, 12 pressure (Tada 2006, section III.A).
 pub const RECEPTORS: usize = 24;

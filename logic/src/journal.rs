@@ -30,6 +30,12 @@ impl Journal {
         }
     }
 
+    /// Sequence number of the frame that is being taken.
+    #[must_use]
+    pub const fn frame(&self) -> u32 {
+        self.frame
+    }
+
     /// The tick of this frame.
     pub fn tick(&mut self, place: u8, record: TickRecord) {
         if let Some(slot) = self.ticks.get_mut(usize::from(place)) {

@@ -1,10 +1,10 @@
 //! What the fingertip decides. No heap, no I/O, no clock of its own: time arrives as frames.
 //!
 //! Data goes one way, and so do the modules: [`health`] says which readings can be believed; [`vibration`] (S1),
-//! [`fsr`], [`forces`] and [`friction`] (S2) and [`gate`] (the wearer's muscles) say what they mean; [`senses`] puts a
-//! frame through all of them; [`mode`], [`grip`] and [`arbiter`] decide; [`fingertip`] is the whole, and [`journal`] is
-//! what it tells. [`config`] holds every number that can be chosen, and [`store`]
-//! keeps what must outlive a power cut.
+//! [`fsr`], [`forces`] and [`friction`] (S2), [`strain`], [`array`] and [`gate`] (the wearer's muscles) say what they mean;
+//! [`senses`] puts a frame through all of them; [`touch`] learns slip from them ([`hebbian`]); [`mode`], [`grip`] and
+//! [`arbiter`] decide; [`fingertip`] is the whole, and [`journal`] is what it tells. [`config`] holds every number that
+//! can be chosen, and [`store`] keeps what must outlive a power cut.
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -26,5 +26,10 @@ pub mod hebbian;
 pub mod journal;
 pub mod mode;
 pub mod senses;
+<<<<<<< HEAD
 pub mod store;
+=======
+pub mod strain;
+pub mod touch;
+>>>>>>> d5642cb (wire version 2: the network in every tick, a teacher's codes down, weights up on request)
 pub mod vibration;

@@ -2,7 +2,7 @@
 
 use tenax_hal_shim::channel::{
     CHANNELS, FRAME_HZ, FSR, FSR_COUNT, FSR_SELECT, MYO_EXTENSOR, MYO_FLEXOR, MYO_SELECT, PVDF, PVDF_COUNT,
-    SLOW_HZ,
+    SLOW_HZ, STRAIN, STRAIN_COUNT,
 };
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::front_end::FSR_REST_MV;
@@ -16,6 +16,7 @@ use crate::gate::Gate;
 use crate::grip::Grip;
 use crate::health::{Change, Limits, SensorHealth};
 use crate::journal::Journal;
+use crate::strain::Gauges;
 use crate::vibration::{Trust, Vibration, VibrationDetector};
 
 /// How long the filters and the switches are given after the start, in frames.
@@ -47,6 +48,7 @@ pub struct Senses {
     pressed: bool,
     force_sensor: ForceSensor,
     detector: VibrationDetector,
+    gauges: Gauges,
     frames_seen: u32,
     frames_lost: u32,
     films_usable: bool,
@@ -72,6 +74,11 @@ impl Senses {
         self.films(config, frame, journal);
         self.forces_are_new = false;
         let select = frame.select();
+        if usize::from(select) < STRAIN_COUNT {
+            let unloaded = self.is_unloaded(config);
+            let change = self.gauges.take(usize::from(select), frame.switch_a, unloaded);
+            report(journal, STRAIN + usize::from(select), change);
+        }
         if let Some(quadrant) = select.checked_sub(FSR_SELECT).map(usize::from) {
             self.quadrant(config, quadrant, frame.switch_a, journal);
         }
@@ -101,10 +108,32 @@ impl Senses {
         self.capabilities(journal);
     }
 
-    /// Takes the force sensor's last readings as its zero; false if it is loaded.
+    /// Takes the last readings of the force sensor and of the gauges as their zeros; false if the finger is loaded.
     #[must_use]
     pub fn zero(&mut self) -> bool {
-        self.force_sensor.zero()
+        let unloaded = self.force_sensor.zero();
+        if unloaded {
+            self.gauges.zero();
+        }
+        unloaded
+    }
+
+    /// Each film's envelope in the slip band, Q16 samples.
+    #[must_use]
+    pub const fn envelopes(&self) -> &[i32; PVDF_COUNT] {
+        self.detector.envelopes()
+    }
+
+    /// The gauges.
+    #[must_use]
+    pub const fn gauges(&self) -> &Gauges {
+        &self.gauges
+    }
+
+    /// Whether vibration can be heard at all.
+    #[must_use]
+    pub const fn hears(&self) -> bool {
+        self.films_usable
     }
 
     /// Whether the reflex has all that it cannot do without: both muscles known, and a way to feel slip.
@@ -123,6 +152,11 @@ impl Senses {
             Some(forces) if forces.fn_mn < config.friction.loaded_mn => Grip::Unloaded,
             Some(forces) => Grip::Holds(forces.fn_mn),
         }
+    }
+
+    /// Known to touch nothing at all: far below where a finger counts as loaded.
+    fn is_unloaded(&self, config: &Config) -> bool {
+        !self.pressed && self.forces.is_some_and(|forces| forces.fn_mn < config.friction.loaded_mn / 4)
     }
 
     fn films(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {

@@ -92,12 +92,15 @@ pub struct Vibration {
     pub level: u16,
     /// Whether it is slip: above S1 and no knock.
     pub s1: bool,
+    /// Whether it rings above the slip band as a knock does, and has not lasted longer than one.
+    pub knock: bool,
 }
 
 /// The detector.
 #[derive(Clone, Debug, Default)]
 pub struct VibrationDetector {
     films: [Film; PVDF_COUNT],
+    envelopes: [i32; PVDF_COUNT],
     loudest: Heard,
     above: LowpassState<1>,
     loud_frames: u32,
@@ -108,14 +111,18 @@ impl VibrationDetector {
     /// Takes one film's sample of this tick, and how far it can be believed.
     #[inline]
     pub fn hear(&mut self, film: usize, sample: u16, trust: Trust) {
-        let Some(film) = self.films.get_mut(film) else { return };
+        let (Some(film), Some(own)) = (self.films.get_mut(film), self.envelopes.get_mut(film)) else {
+            return;
+        };
         if trust == Trust::None {
             // Primed anew when it comes back: its jump back is no vibration.
             *film = Film::default();
+            *own = 0;
             return;
         }
         let heard = film.process(sample);
         if trust == Trust::Full {
+            *own = heard.envelope;
             self.loudest.envelope = self.loudest.envelope.max(heard.envelope);
             self.loudest.above = self.loudest.above.max(heard.above);
         }
@@ -132,7 +139,13 @@ impl VibrationDetector {
         let knock = i64::from(above) * 1_000 > i64::from(envelope) * i64::from(config.knock_permille)
             && self.loud_frames < config.knock_frames;
         self.s1 = loud && (self.s1 || !knock);
-        Vibration { level: (envelope >> Q).clamp(0, i32::from(u16::MAX)) as u16, s1: self.s1 }
+        Vibration { level: (envelope >> Q).clamp(0, i32::from(u16::MAX)) as u16, s1: self.s1, knock }
+    }
+
+    /// Each film's envelope in the slip band, Q16 samples; 0 of one that gives no number.
+    #[must_use]
+    pub const fn envelopes(&self) -> &[i32; PVDF_COUNT] {
+        &self.envelopes
     }
 }
 

@@ -17,6 +17,7 @@ pub(crate) fn setting(kind: CommandKind, value: u32) -> Option<Setting> {
         CommandKind::SetS1Mv => small.ok().map(Setting::S1Mv),
         CommandKind::SetS2Permille => small.ok().map(Setting::S2Permille),
         CommandKind::SetMyoOnMv => small.ok().map(Setting::MyoOnMv),
+        CommandKind::SetNetworkSlipPermille => small.ok().map(Setting::NetworkSlipPermille),
         CommandKind::SetForceCeilingMn => Some(Setting::ForceCeilingMn(value)),
         _ => None,
     }

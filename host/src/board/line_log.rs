@@ -25,6 +25,7 @@ pub fn decode(run: &mut Run) {
                     Up::Event(event) => run.events.push(event),
                     Up::Counters(counters) => run.counters = counters,
                     Up::Ack { of, refused } => run.acks.push((of, refused)),
+                    Up::Network(network) => run.networks.push(network),
                     Up::Samples { .. } => {}
                 }
             }

@@ -55,6 +55,9 @@ fn closed_loop<P: Plant>(mut plant: P, judge: Judge, progress: &mut dyn FnMut(f6
         for command in &commands {
             // A refusal goes back to whoever sent it; there is no line here.
             let _ = fingertip.command(command);
+            if *command == Down::Network {
+                run.networks.push(fingertip.network());
+            }
         }
         let frame = Frame::from_scans(sequence, &scans);
         drive = match judge {

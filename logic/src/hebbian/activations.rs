@@ -31,11 +31,25 @@ pub enum Sense {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Activations<const N: usize>([i32; N]);
 
+impl<const N: usize> Default for Activations<N> {
+    /// Nothing is felt.
+    fn default() -> Self {
+        Self([0; N])
+    }
+}
+
 impl<const N: usize> Activations<N> {
     /// These; what is beyond +-1 is taken as +-1.
     #[must_use]
     pub fn new(activations: [Activation; N]) -> Self {
         Self(activations.map(|activation| activation.into_bits().clamp(-ONE, ONE)))
+    }
+
+    /// One of them is new. Outside, nothing changes.
+    pub fn set(&mut self, receptor: usize, activation: Activation) {
+        if let Some(slot) = self.0.get_mut(receptor) {
+            *slot = activation.into_bits().clamp(-ONE, ONE);
+        }
     }
 
     /// As integers, 2^26 is 1.
@@ -143,6 +157,16 @@ impl<const N: usize> Normaliser<N> {
     #[must_use]
     pub fn activations(&self, config: &NormaliserConfig<N>, raw: &[i32; N]) -> Activations<N> {
         Activations(core::array::from_fn(|n| self.scales[n].activation(config.senses[n], raw[n])))
+    }
+
+    /// The activation of one receptor's reading; 0 for one that is not there.
+    #[inline]
+    #[must_use]
+    pub fn activation(&self, config: &NormaliserConfig<N>, receptor: usize, raw: i32) -> Activation {
+        match (self.scales.get(receptor), config.senses.get(receptor)) {
+            (Some(scale), Some(&sense)) => Activation::from_bits(scale.activation(sense, raw)),
+            _ => Activation::default(),
+        }
     }
 
     /// The running maxima, raw units.

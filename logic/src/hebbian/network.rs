@@ -22,7 +22,7 @@ use dsp_fixedpoint::Q32;
 use super::activations::Activations;
 use super::arithmetic::Reciprocal;
 use super::rule::Rule;
-use super::teacher::Code;
+use tenax_hal_shim::words::Code;
 
 /// A weight: 2^27 is 1.
 pub type Weight = Q32<27>;

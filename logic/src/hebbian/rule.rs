@@ -15,6 +15,8 @@ pub struct Config {
 }
 
 impl Config {
+    /// The middle of the useful region of the map in `docs/hebbian.md`.
+    pub const DEFAULT: Self = Self { alpha_ppb: 50_000, beta_ppb: 10_000, delta_ppm: 300_000 };
     /// Accepted alpha, ppb. Below 1/16, so that a step fits its format.
     pub const ALPHA_PPB: RangeInclusive<u32> = 0..=60_000_000;
     /// Accepted beta, ppb.
@@ -23,10 +25,9 @@ impl Config {
     pub const DELTA_PPM: RangeInclusive<u32> = 1_000..=8_000_000;
 }
 
-/// The middle of the useful region of the map in `docs/hebbian.md`.
 impl Default for Config {
     fn default() -> Self {
-        Self { alpha_ppb: 50_000, beta_ppb: 10_000, delta_ppm: 300_000 }
+        Self::DEFAULT
     }
 }
 
@@ -64,14 +65,26 @@ impl Rule {
         if !Config::DELTA_PPM.contains(&config.delta_ppm) {
             return Err(NotAllowed::Delta);
         }
+        Ok(Self::of(config))
+    }
+
+    /// Of rates within their ranges.
+    const fn of(config: &Config) -> Self {
         // 60e6 < 2^26, so nothing below leaves 64 bits, and the ranges above keep each result in its type.
-        let beta = ((u64::from(config.beta_ppb) << 32) + 500_000_000) / 1_000_000_000;
-        let delta = ((u64::from(config.delta_ppm) << 23) + 500_000) / 1_000_000;
-        Ok(Self {
-            alpha: ((u64::from(config.alpha_ppb) << 35) / 1_000_000_000) as u32,
+        let beta = (((config.beta_ppb as u64) << 32) + 500_000_000) / 1_000_000_000;
+        let delta = (((config.delta_ppm as u64) << 23) + 500_000) / 1_000_000;
+        Self {
+            alpha: (((config.alpha_ppb as u64) << 35) / 1_000_000_000) as u32,
             minus_beta: -(beta as i32),
             delta: delta as u32,
-        })
+        }
+    }
+}
+
+impl Default for Rule {
+    /// Of the default rates.
+    fn default() -> Self {
+        Self::of(&Config::DEFAULT)
     }
 }
 

@@ -101,9 +101,9 @@ pub fn restore<const I: usize, const O: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::hebbian::Code;
     use crate::hebbian::activations::{Activation, Activations, Sense};
     use crate::hebbian::rule::{Config, Rule};
-    use crate::hebbian::teacher::Code;
 
     const LENGTH: usize = length(3, 2);
     const CONFIG: NormaliserConfig<3> = NormaliserConfig {

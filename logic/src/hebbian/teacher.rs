@@ -9,44 +9,7 @@
 //! the last three messages: a single stray zero or code is dropped, at the cost of one message's delay. Two opposite codes
 //! among the three are a contradiction, or a change of direction; neither teaches anything for two messages.
 
-use core::cmp::Ordering;
-
-/// What the teacher says about one output.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Code {
-    /// v1: object and hand move against each other, it slips. v2: the hand moves down.
-    Minus,
-    /// v1: neither moves. v2: the hand does not move.
-    #[default]
-    Zero,
-    /// v1: object and hand move as one. v2: the hand moves up.
-    Plus,
-}
-
-impl Code {
-    /// -1, 0 or 1.
-    #[must_use]
-    pub const fn sign(self) -> i32 {
-        match self {
-            Self::Minus => -1,
-            Self::Zero => 0,
-            Self::Plus => 1,
-        }
-    }
-
-    /// From any number's sign.
-    #[must_use]
-    pub fn from_sign(number: i32) -> Self {
-        match number.cmp(&0) {
-            Ordering::Less => Self::Minus,
-            Ordering::Equal => Self::Zero,
-            Ordering::Greater => Self::Plus,
-        }
-    }
-}
-
-/// Relative motion (v1, equation 1) and direction (v2, equation 2).
-pub type Codes = [Code; 2];
+use tenax_hal_shim::words::{Code, Codes, NoLesson};
 
 /// Messages that a code is the median of.
 const MEMORY: usize = 3;
@@ -72,23 +35,6 @@ pub struct Situation {
     pub grasp: bool,
     /// The motor runs, the hand is knocked or swung, or a receptor has just been lost: what it feels is not slip.
     pub disturbed: bool,
-}
-
-/// Why there is nothing to learn at the moment.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NoLesson {
-    /// No teacher, or it has said less than it takes to believe it.
-    Absent,
-    /// Its last picture is older than [`TeacherConfig::fresh_ms`].
-    Late,
-    /// It has said opposite things in a short time, or that the hand moves while nothing does.
-    Contradicting,
-    /// It says that neither hand nor object moves.
-    NothingMoves,
-    /// Nothing is held.
-    NoGrasp,
-    /// The receptors feel something else.
-    Disturbed,
 }
 
 /// What a teacher has said of late.

@@ -55,6 +55,8 @@ pub enum CommandKind {
     SetMyoOnMv,
     /// The force ceiling is set to `value`, mN.
     SetForceCeilingMn,
+    /// How far below 0 the network's o1 means slip is set to `value`, per mille.
+    SetNetworkSlipPermille,
 }
 
 /// A command over the serial line.

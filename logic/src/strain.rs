@@ -1,0 +1,108 @@
+//! The strain gauges' zeros: what is left of a reading is load.
+//!
+//! A foil gauge in silicone is off by as much as a light grasp and drifts by some mV a minute. Whether the finger is
+//! unloaded is known from another sensor, the FSR, so the zeros can follow by themselves: while it is, a gauge's zero goes
+//! after its readings. From the first load on they stay as they are.
+
+use tenax_hal_shim::channel::{CHANNELS, SLOW_HZ, STRAIN, STRAIN_COUNT, sample_from_mv};
+use tenax_hal_shim::words::Reason;
+
+use crate::health::{Change, Limits, SensorHealth};
+
+/// Fraction bits of a load.
+const Q: u32 = 4;
+/// The zero follows over about `2^FOLLOW_SHIFT` readings: 0.8 s.
+const FOLLOW_SHIFT: u32 = 6;
+
+static LIMITS: Limits = Limits::of(&CHANNELS[STRAIN], SLOW_HZ);
+const REST: i32 = (sample_from_mv(CHANNELS[STRAIN].rest_mv) as i32) << (Q + FOLLOW_SHIFT);
+
+/// One gauge.
+#[derive(Clone, Debug)]
+struct Gauge {
+    health: SensorHealth,
+    /// Samples, 4 + 6 fraction bits, so that the smallest load still moves it.
+    zero: i32,
+    load: i32,
+}
+
+/// The twelve gauges.
+#[derive(Clone, Debug)]
+pub struct Gauges([Gauge; STRAIN_COUNT]);
+
+impl Default for Gauges {
+    /// Every zero where the front end rests.
+    fn default() -> Self {
+        Self(core::array::from_fn(|_| Gauge { health: SensorHealth::default(), zero: REST, load: 0 }))
+    }
+}
+
+impl Gauges {
+    /// Takes a reading of one gauge (14 bits). `unloaded`: the finger is known to touch nothing.
+    pub fn take(&mut self, gauge: usize, sample: u16, unloaded: bool) -> Option<Change> {
+        let gauge = self.0.get_mut(gauge)?;
+        let (reading, change) = if gauge.health.is_plain(&LIMITS, sample) {
+            (Ok(sample), None)
+        } else {
+            gauge.health.take(&LIMITS, sample)
+        };
+        gauge.take(reading, unloaded);
+        change
+    }
+
+    /// Takes the last readings as zeros. For the caller to allow: never during a grasp.
+    pub fn zero(&mut self) {
+        for gauge in &mut self.0 {
+            gauge.zero += gauge.load << FOLLOW_SHIFT;
+            gauge.load = 0;
+        }
+    }
+
+    /// Loads above zero, 1/16 of a sample. A gauge that gives no number has none.
+    #[must_use]
+    pub fn loads(&self) -> [i32; STRAIN_COUNT] {
+        core::array::from_fn(|n| self.0[n].load)
+    }
+}
+
+impl Gauge {
+    fn take(&mut self, reading: Result<u16, Reason>, unloaded: bool) {
+        // 14 bits, 4 and 6: nothing here leaves 32.
+        self.load = reading.map_or(0, |sample| (i32::from(sample) << Q) - (self.zero >> FOLLOW_SHIFT));
+        if unloaded {
+            self.zero += self.load;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn noisy(mv: u32, n: u16) -> u16 {
+        sample_from_mv(mv) + n % 2
+    }
+
+    #[test]
+    fn an_offset_is_gone_after_some_seconds_without_load_and_load_is_not() {
+        let mut gauges = Gauges::default();
+        (0..80 * 6).for_each(|n| _ = gauges.take(3, noisy(1_700, n), true));
+        assert!(gauges.loads()[3].abs() <= (1 << Q) * 2, "{:?}", gauges.loads());
+        (0..80 * 60).for_each(|n| _ = gauges.take(3, noisy(1_900, n), false));
+        let load = gauges.loads()[3] >> Q;
+        assert!((990..=996).contains(&load), "{load} samples for 200 mV");
+        gauges.zero();
+        assert_eq!(gauges.loads(), [0; STRAIN_COUNT]);
+    }
+
+    #[test]
+    fn a_gauge_without_a_number_carries_no_load_and_loses_no_zero() {
+        let mut gauges = Gauges::default();
+        let change = (0..80).find_map(|_| gauges.take(0, 0, true));
+        assert_eq!(change, Some(Change::Lost(Reason::Dead)));
+        assert_eq!(gauges.loads()[0], 0);
+        (0..81).for_each(|n| _ = gauges.take(0, noisy(1_650, n), false));
+        assert!(gauges.loads()[0].abs() <= 1 << Q);
+        assert_eq!(gauges.take(STRAIN_COUNT, 0, true), None);
+    }
+}

@@ -1,0 +1,218 @@
+//! Touch that learns: the films' envelopes and the gauges' loads go into the Hebbian network (Tada 2006), a camera
+//! teaches it over the serial line, and what it says alone is one more way to feel slip.
+//!
+//! Every tick has an output; lessons are given at 1 kHz, in every other tick, and the maxima rise in the ticks between,
+//! so that no tick does both. Learning and using go on at once: what the network says never holds the teacher's own
+//! codes (they are taken as 0), so it can be believed while it is being taught.
+//!
+//! Outputs mean slip while o1 is far enough below 0, for some ticks, on a finger that holds something, and not while a
+//! knock rings. An untaught network says 0, which is nothing.
+
+use tenax_hal_shim::channel::{PVDF_COUNT, STRAIN_COUNT};
+use tenax_hal_shim::wire::{NETWORK_OUTPUTS, NetworkState, RECEPTORS};
+use tenax_hal_shim::words::{Code, Codes, NoLesson};
+
+use crate::config::TouchConfig;
+use crate::hebbian::{
+    Activations, FingertipNetwork, Normaliser, NormaliserConfig, Output, Sense, Situation, Teacher, snapshot,
+};
+
+/// Bytes of a saved network.
+pub const SNAPSHOT_LENGTH: usize = snapshot::length(RECEPTORS, NETWORK_OUTPUTS);
+
+/// Fraction bits of a film's envelope (Q16) that are below what a film can tell; 4 are left, as a gauge's load has.
+const ENVELOPE_SHIFT: u32 = 12;
+
+/// How readings become activations. Both kinds are samples (14 bits) with 4 fraction bits.
+static NORMALISER: NormaliserConfig<RECEPTORS> = NormaliserConfig {
+    senses: {
+        let mut senses = [Sense::Pressure; RECEPTORS];
+        let mut film = 0;
+        while film < PVDF_COUNT {
+            senses[film] = Sense::Vibration;
+            film += 1;
+        }
+        senses
+    },
+    // 4 mV of vibration, 6 mV of load: below is noise.
+    floors: {
+        let mut floors = [480; RECEPTORS];
+        let mut film = 0;
+        while film < PVDF_COUNT {
+            floors[film] = 320;
+            film += 1;
+        }
+        floors
+    },
+    ceiling: 1 << 17,
+    average_shift: 8,
+};
+
+/// What the rest of the fingertip gives in a tick.
+#[derive(Clone, Copy, Debug)]
+pub struct Felt<'a> {
+    /// Each film's envelope, Q16 samples.
+    pub envelopes: &'a [i32; PVDF_COUNT],
+    /// Each gauge's load, 1/16 of a sample.
+    pub loads: &'a [i32; STRAIN_COUNT],
+    /// The gauge that was read in this tick.
+    pub gauge: usize,
+    /// Whether a knock rings.
+    pub knock: bool,
+    /// Whether the finger holds something, and whether anything else than the object is felt.
+    pub situation: Situation,
+}
+
+/// The network and all that it needs.
+#[derive(Clone, Debug)]
+pub struct Touch {
+    normaliser: Normaliser<RECEPTORS>,
+    network: FingertipNetwork,
+    teacher: Teacher,
+    activations: Activations<RECEPTORS>,
+    outputs: [Output; NETWORK_OUTPUTS],
+    said_frames: u32,
+    slips: bool,
+    lesson: Result<Codes, NoLesson>,
+    odd: bool,
+    updates: u32,
+}
+
+impl Default for Touch {
+    /// One that knows nothing.
+    fn default() -> Self {
+        Self {
+            normaliser: Normaliser::new(&NORMALISER),
+            network: FingertipNetwork::default(),
+            teacher: Teacher::default(),
+            activations: Activations::default(),
+            outputs: [Output::default(); NETWORK_OUTPUTS],
+            said_frames: 0,
+            slips: false,
+            lesson: Err(NoLesson::Absent),
+            odd: false,
+            updates: 0,
+        }
+    }
+}
+
+impl Touch {
+    /// Takes what is felt in one tick, learns if there is a lesson, and says what it means.
+    pub fn tick(&mut self, config: &TouchConfig, felt: &Felt<'_>) {
+        for (film, &envelope) in felt.envelopes.iter().enumerate() {
+            let activation = self.normaliser.activation(&NORMALISER, film, envelope >> ENVELOPE_SHIFT);
+            self.activations.set(film, activation);
+        }
+        if let Some(&load) = felt.loads.get(felt.gauge) {
+            let receptor = PVDF_COUNT + felt.gauge;
+            let activation = self.normaliser.activation(&NORMALISER, receptor, load);
+            self.activations.set(receptor, activation);
+        }
+        self.outputs = self.network.output(&self.activations, &[Code::Zero; NETWORK_OUTPUTS]);
+        self.judge(config, felt);
+        self.learn(config, felt);
+    }
+
+    /// A frame was lost: nothing is felt.
+    pub fn lose(&mut self) {
+        self.outputs = [Output::default(); NETWORK_OUTPUTS];
+        self.said_frames = 0;
+        self.slips = false;
+        self.pass();
+    }
+
+    /// Hears the teacher.
+    pub fn hear(&mut self, config: &TouchConfig, codes: Codes, age_ms: u16) {
+        self.teacher.hear(&config.teacher, codes, age_ms);
+    }
+
+    /// Forgets all that was learned.
+    pub fn forget(&mut self) {
+        self.normaliser.reset(&NORMALISER);
+        self.network = FingertipNetwork::default();
+        self.updates = 0;
+    }
+
+    /// Whether touch alone says slip.
+    #[must_use]
+    pub const fn slips(&self) -> bool {
+        self.slips
+    }
+
+    /// What touch alone says, relative motion and direction: 128 would be 1.
+    #[must_use]
+    pub fn outputs(&self) -> [i8; NETWORK_OUTPUTS] {
+        self.outputs.map(|output| (output.into_bits() >> 19).clamp(-128, 127) as i8)
+    }
+
+    /// What it is learning, or why nothing.
+    pub const fn lesson(&self) -> Result<Codes, NoLesson> {
+        self.lesson
+    }
+
+    /// Weights, activations and what goes on, for whoever asks.
+    #[must_use]
+    pub fn state(&self, frame: u32) -> NetworkState {
+        NetworkState {
+            frame,
+            weights: self.network.weights().map(|row| row.map(|weight| weight.into_bits())),
+            activations: self.activations.as_bits().map(|bits| (bits >> 12) as i16),
+            updates: self.updates,
+            teacher_age_ms: self.teacher.age_ms(),
+            no_lesson: self.lesson.err(),
+        }
+    }
+
+    /// What was learned, as bytes to keep.
+    pub fn save<'a>(&self, buffer: &'a mut [u8; SNAPSHOT_LENGTH]) -> Option<&'a [u8]> {
+        snapshot::save(&self.normaliser, &self.network, buffer)
+    }
+
+    /// Takes up what was kept.
+    ///
+    /// # Errors
+    /// Says why the bytes are refused; then nothing has changed.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), snapshot::Damaged> {
+        (self.normaliser, self.network) = snapshot::restore(&NORMALISER, bytes)?;
+        Ok(())
+    }
+
+    fn judge(&mut self, config: &TouchConfig, felt: &Felt<'_>) {
+        let o1_permille = (i64::from(self.outputs[0].into_bits()) * 1_000) >> 26;
+        // Once said, half of it keeps it said: one slip has dips.
+        let threshold = i64::from(config.slip_permille) / if self.slips { 2 } else { 1 };
+        let says = felt.situation.grasp && !felt.knock && o1_permille <= -threshold;
+        self.said_frames = if says { self.said_frames.saturating_add(1) } else { 0 };
+        self.slips = self.said_frames >= config.slip_frames;
+    }
+
+    fn learn(&mut self, config: &TouchConfig, felt: &Felt<'_>) {
+        self.lesson = self.teacher.lesson(&config.teacher, felt.situation);
+        if let Ok(codes) = self.lesson {
+            if self.odd {
+                self.network.learn(&config.rule, &self.activations, &codes);
+                self.updates = self.updates.saturating_add(1);
+            } else {
+                self.normaliser.observe(&NORMALISER, &readings(felt));
+            }
+        }
+        self.pass();
+    }
+
+    fn pass(&mut self) {
+        self.odd = !self.odd;
+        if self.odd {
+            self.teacher.tick_ms();
+        }
+    }
+}
+
+fn readings(felt: &Felt<'_>) -> [i32; RECEPTORS] {
+    let mut readings = [0; RECEPTORS];
+    let (films, gauges) = readings.split_at_mut(PVDF_COUNT);
+    for (reading, envelope) in films.iter_mut().zip(felt.envelopes) {
+        *reading = envelope >> ENVELOPE_SHIFT;
+    }
+    gauges.copy_from_slice(felt.loads);
+    readings
+}
