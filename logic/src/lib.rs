@@ -26,10 +26,7 @@ pub mod hebbian;
 pub mod journal;
 pub mod mode;
 pub mod senses;
-<<<<<<< HEAD
 pub mod store;
-=======
 pub mod strain;
 pub mod touch;
->>>>>>> d5642cb (wire version 2: the network in every tick, a teacher's codes down, weights up on request)
 pub mod vibration;
