@@ -136,7 +136,9 @@ impl VibrationDetector {
         // Once on, half the threshold keeps it on: the envelope of one slip has dips.
         let loud = envelope > if self.s1 { on / 2 } else { on };
         self.loud_frames = if loud { self.loud_frames.saturating_add(1) } else { 0 };
-        let knock = i64::from(above) * 1_000 > i64::from(envelope) * i64::from(config.knock_permille)
+        // A quiet film's noise is mostly above the band too, but no knock is as quiet.
+        let knock = above > on / 4
+            && i64::from(above) * 1_000 > i64::from(envelope) * i64::from(config.knock_permille)
             && self.loud_frames < config.knock_frames;
         self.s1 = loud && (self.s1 || !knock);
         Vibration { level: (envelope >> Q).clamp(0, i32::from(u16::MAX)) as u16, s1: self.s1, knock }

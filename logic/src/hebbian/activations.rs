@@ -161,7 +161,6 @@ impl<const N: usize> Normaliser<N> {
 
     /// The activation of one receptor's reading; 0 for one that is not there.
     #[inline]
-    #[must_use]
     pub fn activation(&self, config: &NormaliserConfig<N>, receptor: usize, raw: i32) -> Activation {
         match (self.scales.get(receptor), config.senses.get(receptor)) {
             (Some(scale), Some(&sense)) => Activation::from_bits(scale.activation(sense, raw)),

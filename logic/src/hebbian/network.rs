@@ -70,12 +70,33 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
         outputs
     }
 
+    /// The part of an output that the first `inputs` receptors have in it, before it is clipped; 0 of one that is not
+    /// there.
+    pub fn share(&self, output: usize, inputs: usize, activations: &Activations<INPUTS>) -> Output {
+        let weights = self.weights.get(output).map_or(&[][..], |weights| weights);
+        let terms = weights.iter().zip(activations.as_bits()).take(inputs);
+        let sum: i64 = terms.map(|(&weight, &t)| i64::from(in_use(weight)) * i64::from(t)).sum();
+        // 31 inputs of at most 8: below 2^8, and 2^34 in Q26.
+        Output::from_bits((sum >> 27).clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32)
+    }
+
     /// Equations 5 and 6, once. Two divisions for two outputs.
     ///
     /// An output whose code is [`Code::Zero`] only forgets; whether there is anything to learn from at all is for
     /// [`Teacher::lesson`](super::Teacher::lesson) to say.
     pub fn learn(&mut self, rule: &Rule, activations: &Activations<INPUTS>, codes: &[Code; OUTPUTS]) {
-        for (weights, &code) in self.weights.iter_mut().zip(codes) {
+        self.learn_some(rule, activations, &codes.map(Some));
+    }
+
+    /// The same; an output that is not in the lesson, None, stays as it is.
+    pub fn learn_some(
+        &mut self,
+        rule: &Rule,
+        activations: &Activations<INPUTS>,
+        codes: &[Option<Code>; OUTPUTS],
+    ) {
+        for (weights, code) in self.weights.iter_mut().zip(codes) {
+            let Some(code) = code else { continue };
             let divisor = weights.iter().fold(rule.delta, |sum, &weight| sum + magnitude(weight));
             let reciprocal = Reciprocal::of(divisor);
             // alpha <= 0.06 in Q35 and the mantissa <= 2 in Q30: at most 0.12 in Q34, below 2^31.

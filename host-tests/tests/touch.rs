@@ -1,0 +1,109 @@
+//! Learning and using at once, on the bench: what a network that was taught may do to the hand, and what it may not.
+
+use tenax_hal_shim::channel::{SAMPLE_MAX, STRAIN, STRAIN_COUNT};
+use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::wire::Down;
+use tenax_hal_shim::words::Cause;
+use tenax_host_tests::Bench;
+use tenax_host_tests::teaching::{PICTURE_FRAMES, SLIP_MV, SLIPS_UP};
+use tenax_logic::config::Config;
+
+fn closes(drives: &[MotorDrive]) -> bool {
+    drives.iter().any(|drive| drive.closes())
+}
+
+#[test]
+fn untaught_it_says_nothing_and_taught_it_answers_a_slip_that_s1_does_not_hear() {
+    let mut untaught = Bench::holding(1);
+    untaught.vibration_mv = SLIP_MV;
+    assert!(!closes(&untaught.run(2_000)));
+    let says =
+        |bench: &Bench| bench.slows.iter().flat_map(|slow| &slow.ticks).any(|tick| tick.outputs != [0; 2]);
+    assert!(!says(&untaught));
+
+    let mut bench = Bench::taught(1);
+    assert!(!closes(&bench.run(4_000)), "nothing slips");
+    bench.vibration_mv = SLIP_MV;
+    assert!(closes(&bench.run(100)), "50 ms of slip");
+    assert_eq!(bench.last_cause(), Some(Cause::Network));
+    bench.fingertip.command(&Down::Forget).unwrap();
+    bench.vibration_mv = 0.0;
+    bench.run(400);
+    bench.vibration_mv = SLIP_MV;
+    assert!(!closes(&bench.run(2_000)), "it has forgotten");
+}
+
+#[test]
+fn o2_tells_up_from_down() {
+    let mut bench = Bench::taught(2);
+    for (up, sign) in [(1.0, 1), (-0.8, -1)] {
+        bench.shear(up);
+        bench.run(200);
+        let direction = bench.slows.last().unwrap().ticks[24].outputs[1];
+        assert!(i32::from(direction) * sign > 0, "{direction} for a shear of {up}");
+    }
+}
+
+#[test]
+fn while_a_muscle_is_active_the_network_moves_nothing() {
+    let mut bench = Bench::taught(3);
+    bench.muscles(50.0, 400.0);
+    bench.run(100);
+    bench.vibration_mv = SLIP_MV;
+    assert!(bench.run(4_000).iter().all(|drive| !drive.closes()));
+}
+
+#[test]
+fn gauges_that_fail_are_no_slip() {
+    let mut bench = Bench::taught(4);
+    for gauge in STRAIN..STRAIN + STRAIN_COUNT {
+        for fails_at_mv in [0.0, 3_300.0] {
+            let works = bench.pins_mv[gauge];
+            bench.pins_mv[gauge] = fails_at_mv;
+            assert!(!closes(&bench.run(600)), "gauge {gauge} at {fails_at_mv} mV");
+            bench.pins_mv[gauge] = works;
+            // It is believed again after a second.
+            assert!(!closes(&bench.run(2_600)), "gauge {gauge} back");
+        }
+    }
+    for gauge in STRAIN..STRAIN + STRAIN_COUNT {
+        bench.pins_mv[gauge] = 0.0;
+        assert!(!closes(&bench.run(400)), "all gauges up to {gauge}");
+    }
+}
+
+#[test]
+fn films_that_freeze_are_no_slip() {
+    for frozen in (0..=SAMPLE_MAX).step_by(1_365) {
+        let mut bench = Bench::taught(6);
+        for frame in 0..6_000 {
+            let mut given = bench.frame();
+            // One after the other.
+            given.pvdf[..(1 + frame / 600).min(11)].fill(frozen);
+            assert!(!bench.give(&given).closes(), "frozen at {frozen}, frame {frame}");
+        }
+    }
+}
+
+#[test]
+fn nothing_is_learned_from_a_disturbed_hand_a_late_picture_or_an_empty_one() {
+    let before = |bench: &Bench| bench.fingertip.network().updates;
+    let mut bench = Bench::taught(5);
+    let updates = before(&bench);
+    bench.load(0.0, 0.0);
+    bench.run(100);
+    bench.teach(SLIPS_UP, 20);
+    assert_eq!(before(&bench), updates, "an empty hand");
+    bench.load(4.0, 0.4);
+    bench.run(400);
+    let updates = before(&bench);
+    for _ in 0..20 {
+        let late = Config::default().touch.teacher.fresh_ms + 1;
+        bench.fingertip.command(&Down::Teach { codes: SLIPS_UP, age_ms: late }).unwrap();
+        bench.run(PICTURE_FRAMES);
+    }
+    assert_eq!(before(&bench), updates, "late pictures");
+    bench.muscles(400.0, 50.0);
+    bench.teach(SLIPS_UP, 20);
+    assert_eq!(before(&bench), updates, "the wearer moves the hand");
+}
