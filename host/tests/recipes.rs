@@ -7,6 +7,7 @@ use std::fs;
 use std::path::Path;
 
 use common::{recipe, with_head};
+use tenax::labelled::{self, ArrayRecipe};
 use tenax::replay::{Recipe, library};
 
 const MAP: &str = "[[map]]\ncolumn = 'a'\nchannels = ['pvdf_1']\ngain = 1.0\n";
@@ -64,8 +65,14 @@ fn every_recipe_in_the_folder_is_built_in_and_good() {
         .unwrap()
         .map(|entry| entry.unwrap().path().file_stem().unwrap().to_string_lossy().into_owned())
         .collect();
-    let builtin: BTreeSet<String> = library::BUILTIN.iter().map(|(name, _)| (*name).to_owned()).collect();
-    assert_eq!(files, builtin);
+    let names =
+        |list: &[(&str, &str)]| -> BTreeSet<String> { list.iter().map(|(name, _)| (*name).into()).collect() };
+    let (builtin, labelled) = (names(&library::BUILTIN), names(&labelled::library::BUILTIN));
+    assert_eq!(files, builtin.union(&labelled).cloned().collect());
+    for (name, text) in labelled::library::BUILTIN {
+        let recipe = ArrayRecipe::parse(text, name).unwrap();
+        assert!(!recipe.applies_to.is_empty(), "{name} is for no recording");
+    }
     for name in &builtin {
         let named = library::builtin(name).unwrap().unwrap();
         assert!(!named.recipe.applies_to.is_empty(), "{name} is for no recording");
