@@ -1,6 +1,7 @@
 //! The image for the microcontroller: building it, and reading what it says about itself.
 
 mod debian;
+pub mod kernels;
 pub mod size;
 pub mod symbols;
 mod toolchain;
@@ -16,6 +17,8 @@ use self::toolchain::Toolchain;
 pub const TARGET: &str = "thumbv7em-none-eabihf";
 /// The package that it is made of, and its file's name.
 const PACKAGE: &str = "tenax-firmware";
+/// The file's name of the image that is the array detector's arithmetic alone.
+const KERNELS: &str = "tenax-kernels";
 /// The Cargo profile that it is made with.
 const PROFILE: &str = "firmware";
 
@@ -24,9 +27,20 @@ const PROFILE: &str = "firmware";
 /// # Errors
 /// Says what to install, or what the compiler said.
 pub fn build(root: &Path) -> Result<PathBuf> {
-    let target_dir = target_dir(root);
-    cargo(root, "build", &[])?;
-    let elf = target_dir.join(TARGET).join(PROFILE).join(PACKAGE);
+    build_bin(root, PACKAGE)
+}
+
+/// Builds the image of the array detector's kernels, for [`kernels`](crate::board::emulated::kernels).
+///
+/// # Errors
+/// As [`build`].
+pub fn build_kernels(root: &Path) -> Result<PathBuf> {
+    build_bin(root, KERNELS)
+}
+
+fn build_bin(root: &Path, bin: &str) -> Result<PathBuf> {
+    cargo(root, "build", &["--bin", bin])?;
+    let elf = target_dir(root).join(TARGET).join(PROFILE).join(bin);
     ensure!(elf.exists(), "the build succeeded, but there is no {}", elf.display());
     Ok(elf)
 }

@@ -17,9 +17,11 @@
 
 pub mod covariance;
 pub mod detector;
+pub mod dual;
 pub mod logarithm;
 pub mod network;
 pub mod preprocess;
+pub mod specimen;
 pub mod spectrum;
 
 use tenax_hal_shim::channel::ARRAY_COUNT;

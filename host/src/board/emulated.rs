@@ -1,6 +1,7 @@
 //! The emulated board: the real image, instruction by instruction, with a plant at its pins.
 
 mod cost;
+pub mod kernels;
 mod line;
 mod mishaps;
 mod nucleo;

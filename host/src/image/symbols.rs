@@ -29,17 +29,23 @@ impl Symbols {
 
     fn parse(elf: &[u8]) -> Result<Self> {
         let file = File::parse(elf).context("not an ELF file")?;
-        // Bit 0 of a function's address says that it is Thumb code.
-        let tick = address_of(&file, TICK)? & !1;
-        let text = file.section_by_name(".text").context("has no .text section")?;
-        let after_tick = only_return_address(text.data()?, text.address(), tick)?;
+        let (tick, after_tick) = entry_and_return(&file, TICK)?;
         let stack = address_of(&file, "__sheap")?..address_of(&file, "_stack_start")?;
         ensure!(stack.start < stack.end, "leaves no RAM for the stack");
         Ok(Self { tick, after_tick, stack })
     }
 }
 
-fn address_of(file: &File<'_>, name: &str) -> Result<u64> {
+/// Where a function begins, and the instruction that it returns to. It must be called from one place only.
+pub(super) fn entry_and_return(file: &File<'_>, name: &str) -> Result<(u64, u64)> {
+    // Bit 0 of a function's address says that it is Thumb code.
+    let entry = address_of(file, name)? & !1;
+    let text = file.section_by_name(".text").context("has no .text section")?;
+    let after = only_return_address(text.data()?, text.address(), entry).with_context(|| name.to_owned())?;
+    Ok((entry, after))
+}
+
+pub(super) fn address_of(file: &File<'_>, name: &str) -> Result<u64> {
     file.symbols()
         .find(|symbol| symbol.name() == Ok(name))
         .map(|symbol| symbol.address())
@@ -57,8 +63,8 @@ fn only_return_address(text: &[u8], base: u64, target: u64) -> Result<u64> {
     });
     match (found.next(), found.next()) {
         (Some(after), None) => Ok(after),
-        (None, _) => bail!("never calls `{TICK}`"),
-        (Some(_), Some(_)) => bail!("calls `{TICK}` from more than one place: its cost cannot be told"),
+        (None, _) => bail!("is never called"),
+        (Some(_), Some(_)) => bail!("is called from more than one place: its cost cannot be told"),
     }
 }
 

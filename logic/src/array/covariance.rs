@@ -4,12 +4,16 @@
 //! on and above the diagonal say everything. (The means are not taken off: equation 4 does not.) A new column adds its
 //! outer product and the oldest takes its own away: exact, so nothing drifts.
 
+use super::dual::{Pair, multiply_subtract};
 use super::{COVARIANCES, ELEMENTS};
 
-/// Differences are within this, so that ten of their products fit in an `i32`.
-pub const DIFFERENCE_MAX: i16 = 14_650;
+/// d_max of equation 2, samples: a fixed full scale, 1.65 V or 8 N of one element in 12.5 ms, which no hand does.
+///
+/// As a power of two it makes a difference in samples a normalised one in Q13, and ten products, Q26, fit in an `i32`.
+/// A running maximum instead would make one knock deafen the detector for as long as it is remembered.
+pub const D_MAX: i16 = 1 << 13;
 
-/// The covariance over the last `N` differences, in the square of their unit.
+/// The covariance over the last `N` differences: of normalised ones in Q26, which is of samples as they are.
 #[derive(Clone, Debug)]
 pub struct SlidingCovariance<const N: usize> {
     window: [[i16; ELEMENTS]; N],
@@ -21,25 +25,25 @@ pub struct SlidingCovariance<const N: usize> {
 impl<const N: usize> Default for SlidingCovariance<N> {
     /// The covariance of an array where nothing ever happened.
     fn default() -> Self {
-        const { assert!(N >= 1 && N <= 10, "more than ten products of differences could overflow") }
+        const { assert!(N >= 1 && N <= 10, "a sum of ten products fits") }
         Self { window: [[0; ELEMENTS]; N], oldest: 0, entries: [0; COVARIANCES] }
     }
 }
 
 impl<const N: usize> SlidingCovariance<N> {
-    /// Takes the newest differences, each within +-[`DIFFERENCE_MAX`] (what is beyond is cut), and forgets the oldest.
+    /// Takes the newest differences, and forgets the oldest. What is beyond +-[`D_MAX`] (1 - 2^-13 above) is cut.
     #[inline]
-    pub fn push(&mut self, differences: &[i16; ELEMENTS]) {
-        let new = differences.map(|d| d.clamp(-DIFFERENCE_MAX, DIFFERENCE_MAX));
+    pub fn push(&mut self, differences: &[i32; ELEMENTS]) {
+        let new = differences.map(|d| d.clamp(-i32::from(D_MAX), i32::from(D_MAX) - 1) as i16);
         let Some(column) = self.window.get_mut(self.oldest) else { return };
         let old = core::mem::replace(column, new);
         self.oldest = if self.oldest + 1 < N { self.oldest + 1 } else { 0 };
+        let pairs: [Pair; ELEMENTS] = core::array::from_fn(|n| Pair::new(new[n], old[n]));
         let mut entries = self.entries.iter_mut();
         for row in 0..ELEMENTS {
             for other in row..ELEMENTS {
                 let Some(entry) = entries.next() else { return };
-                *entry = *entry + i32::from(new[row]) * i32::from(new[other])
-                    - i32::from(old[row]) * i32::from(old[other]);
+                *entry = multiply_subtract(pairs[row], pairs[other], *entry);
             }
         }
     }

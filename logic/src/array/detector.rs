@@ -3,7 +3,7 @@
 use tenax_hal_shim::channel::SLOW_HZ;
 
 use super::network::{LookBack, Mlp};
-use super::preprocess::{Preprocessor, PreprocessorConfig};
+use super::preprocess::{Features, Preprocessor, PreprocessorConfig};
 use super::{FEATURES, Reading};
 
 /// How a logit is read.
@@ -64,6 +64,7 @@ pub struct ArrayDetector<'m, const H1: usize, const L: usize, const H2: usize> {
     contradicted: u8,
     /// Slow frames since the last one that was judged.
     unjudged: u16,
+    logit: Option<i32>,
     verdict: ArrayVerdict,
 }
 
@@ -77,6 +78,7 @@ impl<'m, const H1: usize, const L: usize, const H2: usize> ArrayDetector<'m, H1,
             look_back: LookBack::default(),
             contradicted: 0,
             unjudged: u16::MAX,
+            logit: None,
             verdict: ArrayVerdict::NONE,
         }
     }
@@ -86,21 +88,33 @@ impl<'m, const H1: usize, const L: usize, const H2: usize> ArrayDetector<'m, H1,
     /// Without features (windows not full, too many elements dead) it stands down: no slip, confidence 0, and an age that
     /// grows until there is something to judge by again.
     pub fn push(&mut self, reading: &Reading) -> ArrayVerdict {
-        match self.logit(reading) {
+        self.logit = self.evidence(reading);
+        match self.logit {
             Some(logit) => self.judge(logit),
             None => self.stand_down(),
         }
         self.verdict
     }
 
-    /// Takes one slow frame as [`push`](Self::push) does, and gives the network's logit. None without features.
-    pub fn logit(&mut self, reading: &Reading) -> Option<i32> {
+    fn evidence(&mut self, reading: &Reading) -> Option<i32> {
         let network = &self.model.network;
         let Some(features) = self.preprocessor.push(reading) else {
             self.look_back.clear();
             return None;
         };
         Some(network.judge(self.look_back.push(network.see(features))?))
+    }
+
+    /// The network's logit of the last slow frame. None if there was nothing to judge by.
+    #[must_use]
+    pub fn logit(&self) -> Option<i32> {
+        self.logit
+    }
+
+    /// The last features. They mean nothing where there is no logit.
+    #[must_use]
+    pub fn features(&self) -> &Features {
+        self.preprocessor.features()
     }
 
     /// The last verdict.

@@ -2,7 +2,7 @@
 
 use tenax_hal_shim::channel::{ARRAY, CHANNELS, sample_from_mv};
 
-use super::covariance::{DIFFERENCE_MAX, SlidingCovariance};
+use super::covariance::SlidingCovariance;
 use super::logarithm::Knee;
 use super::spectrum::SlidingSpectrum;
 use super::{COVARIANCE_WINDOW, COVARIANCES, ELEMENTS, FEATURES, Reading, SPECTRUM_WINDOW};
@@ -16,11 +16,6 @@ pub type Features = [i16; FEATURES];
 /// How readings become features.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PreprocessorConfig {
-    /// d_max of equation 2, in samples: a fixed full scale. A difference beyond it counts as d_max. Division by it is
-    /// left out, because a feature is a logarithm: it would take the same number from every one of them.
-    ///
-    /// A running maximum instead would make one knock deafen the detector for as long as it remembers it.
-    pub d_max: u16,
     /// Covariance below which a feature is straight instead of logarithmic, samples^2: about that of noise alone.
     pub covariance_knee: u32,
     /// The same for a bin's power, samples^2.
@@ -32,8 +27,7 @@ pub struct PreprocessorConfig {
 impl PreprocessorConfig {
     /// For elements of 200 mV/N with half a millivolt of noise: 2.5 samples, so 12.5 squared in a difference, ten of
     /// which make a variance, and 6.2 in a reading, 400 of which make a bin's power.
-    pub const DEFAULT: Self =
-        Self { d_max: DIFFERENCE_MAX as u16, covariance_knee: 128, spectrum_knee: 2_048, dead_max: 2 };
+    pub const DEFAULT: Self = Self { covariance_knee: 128, spectrum_knee: 2_048, dead_max: 2 };
 }
 
 impl Default for PreprocessorConfig {
@@ -51,7 +45,6 @@ impl Default for PreprocessorConfig {
 #[derive(Clone, Debug)]
 pub struct Preprocessor<const N: usize = COVARIANCE_WINDOW, const M: usize = SPECTRUM_WINDOW> {
     config: PreprocessorConfig,
-    d_max: i32,
     covariance_knee: Knee,
     spectrum_knee: Knee,
     /// The last reading of each element, and whether it had one in the last frame.
@@ -77,12 +70,11 @@ impl<const N: usize, const M: usize> Preprocessor<N, M> {
     /// Readings until the windows are full: a difference takes two.
     pub const READY_AFTER: usize = if N + 1 > M { N + 1 } else { M };
 
-    /// One that has read nothing. A `d_max` above [`DIFFERENCE_MAX`] is taken as that.
+    /// One that has read nothing.
     #[must_use]
     pub fn new(config: PreprocessorConfig) -> Self {
         Self {
             config,
-            d_max: i32::from(config.d_max).min(i32::from(DIFFERENCE_MAX)),
             covariance_knee: Knee::at(config.covariance_knee),
             spectrum_knee: Knee::at(config.spectrum_knee),
             last: [(Self::REST, false); ELEMENTS],
@@ -122,7 +114,7 @@ impl<const N: usize, const M: usize> Preprocessor<N, M> {
             let change = i32::from(now) - i32::from(*last);
             self.sum += change;
             if *was_alive {
-                *difference = change.clamp(-self.d_max, self.d_max) as i16;
+                *difference = change;
             } else {
                 missed += change;
             }
@@ -144,6 +136,12 @@ impl<const N: usize, const M: usize> Preprocessor<N, M> {
         for (feature, power) in bins.iter_mut().zip(self.spectrum.powers()) {
             *feature = self.spectrum_knee.of(power);
         }
+    }
+
+    /// What [`push`](Self::push) gave last.
+    #[must_use]
+    pub fn features(&self) -> &Features {
+        &self.features
     }
 
     /// The covariances behind the last features, samples^2.

@@ -1,0 +1,61 @@
+//! The array detector's arithmetic on the emulated core, without the rest of the fingertip.
+//!
+//! The host puts a reading into the [`mailbox`] whenever the core arrives at `tenax_kernels_next`, and finds there what the
+//! core made of the one before. Each kernel is a function that is called from one place, so its instructions can be
+//! counted from its entry to where it returns. This image drives nothing and is never flashed.
+#![no_std]
+#![no_main]
+
+mod mailbox;
+mod parts;
+mod rivals;
+
+use core::hint::black_box;
+use core::panic::PanicInfo;
+
+use cortex_m_rt::entry;
+// Brings the interrupt vectors that the linker's script asks for.
+use embassy_stm32 as _;
+use tenax_logic::array::specimen;
+use tenax_logic::array::{ArrayDetector, ArrayVerdict, Reading};
+
+use self::parts::Parts;
+use self::rivals::Rivals;
+
+type Detector = ArrayDetector<'static, 32, 1, 16>;
+#[entry]
+fn main() -> ! {
+    // The compiler is not to know the weights: it would write them into the code.
+    let model = black_box(&specimen::MODEL);
+    let mut detector = Detector::new(model);
+    let (mut parts, mut rivals) = (Parts::default(), Rivals::default());
+    loop {
+        mailbox::tenax_kernels_next();
+        let orders = mailbox::orders();
+        let reading = mailbox::reading();
+        if orders.forget {
+            detector = Detector::new(model);
+        }
+        let verdict = tenax_kernel_slow_frame(&mut detector, &reading);
+        mailbox::answer(&detector, verdict);
+        if orders.everything {
+            parts.run(&reading);
+            rivals.run(detector.features());
+        }
+    }
+}
+
+/// All that the array costs in a slow frame.
+#[inline(never)]
+#[unsafe(no_mangle)]
+fn tenax_kernel_slow_frame(detector: &mut Detector, reading: &Reading) -> ArrayVerdict {
+    detector.push(reading)
+}
+
+#[panic_handler]
+fn on_panic(_: &PanicInfo) -> ! {
+    // The host notices that nobody comes for the next reading.
+    loop {
+        cortex_m::asm::nop();
+    }
+}

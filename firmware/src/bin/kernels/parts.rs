@@ -1,0 +1,77 @@
+//! The parts of the detector, each by itself.
+
+use core::hint::black_box;
+
+use tenax_logic::array::covariance::SlidingCovariance;
+use tenax_logic::array::spectrum::SlidingSpectrum;
+use tenax_logic::array::{BINS, ELEMENTS, Features, Preprocessor, PreprocessorConfig, Reading};
+
+/// Their state.
+pub struct Parts {
+    covariance: SlidingCovariance<10>,
+    spectrum: SlidingSpectrum<40>,
+    /// The windows of the paper's figure 6.
+    features: Preprocessor<10, 40>,
+    features_half: Preprocessor<5, 20>,
+    features_least: Preprocessor<1, 10>,
+}
+
+impl Default for Parts {
+    fn default() -> Self {
+        let config = PreprocessorConfig::DEFAULT;
+        Self {
+            covariance: SlidingCovariance::default(),
+            spectrum: SlidingSpectrum::default(),
+            features: Preprocessor::new(config),
+            features_half: Preprocessor::new(config),
+            features_least: Preprocessor::new(config),
+        }
+    }
+}
+
+impl Parts {
+    /// Runs each of them once. Numbers of the reading stand in for differences: what they are costs nothing.
+    pub fn run(&mut self, reading: &Reading) {
+        let numbers = reading.map(|sample| i32::from(sample.unwrap_or(0)));
+        tenax_kernel_covariance(&mut self.covariance, &numbers);
+        black_box(self.covariance.entries());
+        black_box(tenax_kernel_spectrum(&mut self.spectrum, numbers.iter().sum()));
+        black_box(tenax_kernel_features_10_40(&mut self.features, reading));
+        black_box(tenax_kernel_features_5_20(&mut self.features_half, reading));
+        black_box(tenax_kernel_features_1_10(&mut self.features_least, reading));
+    }
+}
+
+#[inline(never)]
+#[unsafe(no_mangle)]
+fn tenax_kernel_covariance(covariance: &mut SlidingCovariance<10>, differences: &[i32; ELEMENTS]) {
+    covariance.push(differences);
+}
+
+#[inline(never)]
+#[unsafe(no_mangle)]
+fn tenax_kernel_spectrum(spectrum: &mut SlidingSpectrum<40>, sum: i32) -> [f32; BINS] {
+    spectrum.push(sum);
+    spectrum.powers()
+}
+
+#[inline(never)]
+#[unsafe(no_mangle)]
+fn tenax_kernel_features_10_40<'p>(
+    p: &'p mut Preprocessor<10, 40>,
+    reading: &Reading,
+) -> Option<&'p Features> {
+    p.push(reading)
+}
+
+#[inline(never)]
+#[unsafe(no_mangle)]
+fn tenax_kernel_features_5_20<'p>(p: &'p mut Preprocessor<5, 20>, reading: &Reading) -> Option<&'p Features> {
+    p.push(reading)
+}
+
+#[inline(never)]
+#[unsafe(no_mangle)]
+fn tenax_kernel_features_1_10<'p>(p: &'p mut Preprocessor<1, 10>, reading: &Reading) -> Option<&'p Features> {
+    p.push(reading)
+}

@@ -1,0 +1,161 @@
+//! Classifiers that could be shipped instead, at the sizes of `docs/figures/detectors.csv`: a kernel's name is
+//! `classifier_precision_lookback`, with which the chart finds it. Their weights are nobody's; their work is real.
+
+mod float;
+mod wide;
+
+use core::hint::black_box;
+
+use tenax_logic::array::{FEATURES, Features, Layer, LookBack, Mlp, specimen};
+
+use self::float::{FloatDense, FloatLstm, FloatMlp};
+use self::wide::WideMlp;
+
+type Queue380 = [[i16; FEATURES]; 5];
+
+static MLP_8_1: Mlp<FEATURES, 32, 1, 16> = specimen::mlp(1);
+static MLP_8_3: Mlp<FEATURES, 32, 3, 16> = specimen::mlp(2);
+static MLP_8_5: Mlp<FEATURES, 32, 5, 16> = specimen::mlp(3);
+static QUEUE_8_5: Mlp<380, 32, 1, 16> = specimen::mlp(4);
+static LOGISTIC_8_1: Layer<FEATURES, 1> = specimen::layer(&mut 5);
+static MLP_16_1: WideMlp<FEATURES, 32, 16> = WideMlp::specimen(6);
+static MLP_FLOAT_1: FloatMlp<FEATURES, 32, 1, 16> = FloatMlp::specimen(7);
+static MLP_FLOAT_5: FloatMlp<FEATURES, 32, 5, 16> = FloatMlp::specimen(8);
+static QUEUE_FLOAT_5: FloatMlp<380, 32, 1, 16> = FloatMlp::specimen(9);
+static LOGISTIC_FLOAT_1: FloatDense<FEATURES, 1> = FloatDense::specimen(&mut 10);
+static LSTM_FLOAT_1: FloatLstm<FEATURES, 16> = FloatLstm::specimen(11);
+
+/// What they remember from frame to frame.
+#[derive(Default)]
+pub struct Rivals {
+    back_3: LookBack<32, 3>,
+    back_5: LookBack<32, 5>,
+    queue: Queue380Box,
+    float_back: [[f32; 32]; 5],
+    lstm: float::LstmState<16>,
+}
+
+/// The paper's queue: whole features, the newest first.
+struct Queue380Box(Queue380);
+
+impl Default for Queue380Box {
+    fn default() -> Self {
+        Self([[0; FEATURES]; 5])
+    }
+}
+
+impl Rivals {
+    /// Runs each of them once.
+    pub fn run(&mut self, features: &Features) {
+        self.queue.0.rotate_right(1);
+        self.queue.0[0] = *features;
+        black_box(tenax_kernel_mlp_8_1(black_box(&MLP_8_1), features));
+        black_box(tenax_kernel_mlp_8_3(black_box(&MLP_8_3), &mut self.back_3, features));
+        black_box(tenax_kernel_mlp_8_5(black_box(&MLP_8_5), &mut self.back_5, features));
+        black_box(tenax_kernel_queue_8_5(black_box(&QUEUE_8_5), &self.queue.0));
+        black_box(tenax_kernel_logistic_8_1(black_box(&LOGISTIC_8_1), features));
+        black_box(tenax_kernel_mlp_16_1(black_box(&MLP_16_1), features));
+        let none = &mut [[0.0; 32]; 1];
+        black_box(tenax_kernel_mlp_float_1(black_box(&MLP_FLOAT_1), none, features));
+        black_box(tenax_kernel_mlp_float_5(black_box(&MLP_FLOAT_5), &mut self.float_back, features));
+        black_box(tenax_kernel_queue_float_5(black_box(&QUEUE_FLOAT_5), none, &self.queue.0));
+        black_box(tenax_kernel_logistic_float_1(black_box(&LOGISTIC_FLOAT_1), features));
+        black_box(tenax_kernel_lstm_float_1(black_box(&LSTM_FLOAT_1), &mut self.lstm, features));
+    }
+}
+
+#[inline(never)]
+#[unsafe(no_mangle)]
+fn tenax_kernel_mlp_8_1(network: &Mlp<FEATURES, 32, 1, 16>, features: &Features) -> i32 {
+    network.judge(&[network.see(features)])
+}
+
+#[inline(never)]
+#[unsafe(no_mangle)]
+fn tenax_kernel_mlp_8_3(
+    network: &Mlp<FEATURES, 32, 3, 16>,
+    back: &mut LookBack<32, 3>,
+    features: &Features,
+) -> Option<i32> {
+    Some(network.judge(back.push(network.see(features))?))
+}
+
+#[inline(never)]
+#[unsafe(no_mangle)]
+fn tenax_kernel_mlp_8_5(
+    network: &Mlp<FEATURES, 32, 5, 16>,
+    back: &mut LookBack<32, 5>,
+    features: &Features,
+) -> Option<i32> {
+    Some(network.judge(back.push(network.see(features))?))
+}
+
+/// As the paper queues: five frames' features into a network of 380 inputs.
+#[inline(never)]
+#[unsafe(no_mangle)]
+fn tenax_kernel_queue_8_5(network: &Mlp<380, 32, 1, 16>, queue: &Queue380) -> Option<i32> {
+    let inputs = queue.as_flattened().try_into().ok()?;
+    Some(network.judge(&[network.see(inputs)]))
+}
+
+/// Also a linear SVM: both are one weighted sum.
+#[inline(never)]
+#[unsafe(no_mangle)]
+fn tenax_kernel_logistic_8_1(layer: &Layer<FEATURES, 1>, features: &Features) -> [i32; 1] {
+    layer.sums(features)
+}
+
+#[inline(never)]
+#[unsafe(no_mangle)]
+fn tenax_kernel_mlp_16_1(network: &WideMlp<FEATURES, 32, 16>, features: &Features) -> i64 {
+    network.judge(features)
+}
+
+#[inline(never)]
+#[unsafe(no_mangle)]
+fn tenax_kernel_mlp_float_1(
+    network: &FloatMlp<FEATURES, 32, 1, 16>,
+    back: &mut [[f32; 32]; 1],
+    features: &Features,
+) -> f32 {
+    network.judge(back, &features.map(f32::from))
+}
+
+#[inline(never)]
+#[unsafe(no_mangle)]
+fn tenax_kernel_mlp_float_5(
+    network: &FloatMlp<FEATURES, 32, 5, 16>,
+    back: &mut [[f32; 32]; 5],
+    features: &Features,
+) -> f32 {
+    network.judge(back, &features.map(f32::from))
+}
+
+#[inline(never)]
+#[unsafe(no_mangle)]
+fn tenax_kernel_queue_float_5(
+    network: &FloatMlp<380, 32, 1, 16>,
+    back: &mut [[f32; 32]; 1],
+    queue: &Queue380,
+) -> Option<f32> {
+    let inputs: &[i16; 380] = queue.as_flattened().try_into().ok()?;
+    Some(network.judge(back, &inputs.map(f32::from)))
+}
+
+#[inline(never)]
+#[unsafe(no_mangle)]
+fn tenax_kernel_logistic_float_1(layer: &FloatDense<FEATURES, 1>, features: &Features) -> [f32; 1] {
+    layer.sums(&features.map(f32::from))
+}
+
+/// One step of a 16-cell LSTM and the network 16-16-1 behind it. The encoder of an autoencoder is the same work: its
+/// decoder is only needed for training.
+#[inline(never)]
+#[unsafe(no_mangle)]
+fn tenax_kernel_lstm_float_1(
+    network: &FloatLstm<FEATURES, 16>,
+    state: &mut float::LstmState<16>,
+    features: &Features,
+) -> f32 {
+    network.judge(state, &features.map(f32::from))
+}

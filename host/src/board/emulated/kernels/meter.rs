@@ -1,0 +1,83 @@
+//! Counts kernels' instructions.
+
+use std::collections::BTreeSet;
+
+use rigless::emulator::Hit;
+
+use crate::image::kernels::{Kernel, KernelSymbols};
+
+/// What a kernel cost, in instructions from its entry to where it returned.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Cost {
+    /// Which.
+    pub name: String,
+    /// How often it ran.
+    pub calls: u64,
+    /// The call that cost least.
+    pub least: u64,
+    /// The call that cost most.
+    pub most: u64,
+    sum: u64,
+}
+
+impl Cost {
+    /// The mean of all calls.
+    #[must_use]
+    pub fn mean(&self) -> f64 {
+        self.sum as f64 / self.calls as f64
+    }
+}
+
+/// One for each kernel.
+#[derive(Debug)]
+pub struct Meters(Vec<Meter>);
+
+#[derive(Debug)]
+struct Meter {
+    kernel: Kernel,
+    entered: Option<u64>,
+    cost: Cost,
+}
+
+impl Meters {
+    pub fn new(symbols: &KernelSymbols) -> Self {
+        let meter = |kernel: &Kernel| Meter {
+            kernel: kernel.clone(),
+            entered: None,
+            cost: Cost { name: kernel.name.clone(), calls: 0, least: u64::MAX, most: 0, sum: 0 },
+        };
+        Self(symbols.kernels.iter().map(meter).collect())
+    }
+
+    /// The instructions to be told about, each once: a kernel may return to where the next one begins.
+    pub fn watched(symbols: &KernelSymbols) -> impl Iterator<Item = u64> {
+        let ends = symbols.kernels.iter().flat_map(|kernel| [kernel.entry, kernel.after]);
+        ends.collect::<BTreeSet<_>>().into_iter()
+    }
+
+    /// The core is about to run a watched instruction.
+    pub fn hit(&mut self, hit: Hit) {
+        for meter in &mut self.0 {
+            if hit.address == meter.kernel.after
+                && let Some(entered) = meter.entered.take()
+            {
+                let instructions = hit.instruction_count - entered;
+                meter.cost.calls += 1;
+                meter.cost.least = meter.cost.least.min(instructions);
+                meter.cost.most = meter.cost.most.max(instructions);
+                meter.cost.sum += instructions;
+            }
+            if hit.address == meter.kernel.entry {
+                meter.entered = Some(hit.instruction_count);
+            }
+        }
+    }
+
+    /// What those that ran cost, by name.
+    pub fn into_costs(self) -> Vec<Cost> {
+        let mut costs: Vec<Cost> =
+            self.0.into_iter().map(|meter| meter.cost).filter(|cost| cost.calls > 0).collect();
+        costs.sort_by(|a, b| a.name.cmp(&b.name));
+        costs
+    }
+}
