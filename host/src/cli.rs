@@ -2,6 +2,7 @@
 
 mod chart;
 mod check;
+mod dataset;
 mod flash;
 mod lint_image;
 mod monitor;
@@ -47,6 +48,8 @@ enum Command {
     Test(test::Args),
     /// Measure every promise of the project, one line each; fails if one is not kept
     Check(check::Args),
+    /// Make a labelled data set of the normal-force array
+    Dataset(dataset::Args),
     /// Draw the charts behind a page of docs/
     Chart(chart::Args),
     /// Flash a NUCLEO-F411RE through probe-rs
@@ -70,6 +73,7 @@ pub fn main() -> ExitCode {
         Command::Test(args) => test::main(&args),
         Command::Check(args) => check::main(&args),
         Command::Chart(args) => chart::main(&args),
+        Command::Dataset(args) => dataset::main(&args),
         Command::Flash(args) => flash::main(&args),
         Command::Monitor(args) => monitor::main(&args),
         Command::Size(args) => size::main(&args),

@@ -6,6 +6,7 @@ pub mod budgets;
 pub mod chart;
 pub mod check;
 pub mod cli;
+pub mod dataset;
 pub mod image;
 pub mod labelled;
 pub mod monitor;

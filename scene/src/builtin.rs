@@ -23,6 +23,9 @@ pub const fn builtin() -> &'static [(&'static str, &'static str)] {
         "pressed-at-boot",
         "pick-up",
         "steel-balls",
+        "array-pour",
+        "array-pick",
+        "array-disturb",
         "can",
         "rig",
     ]

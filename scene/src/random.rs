@@ -25,6 +25,8 @@ pub(crate) enum Source {
     ArraySlips,
     /// Where the camera's pixels lie, and their jitter.
     Camera,
+    /// The unevenness of the surface under the normal-force array.
+    ArraySurface,
 }
 
 /// A source's stream of numbers.

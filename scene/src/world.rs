@@ -17,7 +17,7 @@ use crate::physics::stroke::Stroke;
 use crate::physics::wearer::{Effort, Wearer};
 use crate::plant::{Pins, Plant};
 use crate::schedule::STEP_S;
-use crate::sensor::array::Elements;
+use crate::sensor::array::{Elements, Shakes};
 use crate::sensor::camera::Eye;
 use crate::sensor::converter::Converter;
 use crate::sensor::fault::Faults;
@@ -80,7 +80,6 @@ impl World {
                 Task::Stroke(Box::new(Stroke::new(scene, &robot)))
             }
         };
-        let patch_radius_mm = scene.contact.patch_radius_mm.get();
         Self {
             scans: 0,
             duration_s: scene.duration_s(),
@@ -93,7 +92,7 @@ impl World {
             quadrants: Quadrants::new(&scene.fsr),
             envelopes: Envelopes::new(&scene.myo, &scene.electrode_lift, scene.pvdf.mains_hz.get(), seed),
             gauges: Gauges::new(&scene.strain, seed),
-            elements: Elements::new(&scene.array, patch_radius_mm, seed),
+            elements: Elements::new(scene, seed),
             eye: Eye::new(&scene.camera, seed),
             released_n: 0.0,
             slow_v: Pins::default().0,
@@ -133,7 +132,8 @@ impl World {
         let pins_v = &mut self.slow_v;
         pins_v[STRAIN..FSR].copy_from_slice(&self.gauges.step(&self.touch));
         pins_v[FSR..ARRAY].copy_from_slice(&self.quadrants.step(&self.touch, self.faults.pressed_n(t_s)));
-        pins_v[ARRAY..MYO_FLEXOR].copy_from_slice(&self.elements.step(&self.touch, released_n));
+        let shakes = Shakes { t_s, released_n, motor_speed: self.gripper.speed_part() };
+        pins_v[ARRAY..MYO_FLEXOR].copy_from_slice(&self.elements.step(&self.touch, shakes));
         pins_v[MYO_FLEXOR..OPENING].copy_from_slice(&self.envelopes.step(t_s, effort));
         pins_v[OPENING..COUNT].copy_from_slice(&hand::pins_v(&self.gripper));
         self.truth.wearer(t_s, effort.intent, pins_v);

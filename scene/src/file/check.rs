@@ -75,6 +75,11 @@ fn level(scene: &SceneFile) -> Checked {
             return Err(Wrong { span, what });
         }
     }
+    if let Some(rise) = contact.mu_per_decade.as_ref().filter(|_| contact.level == Level::L2) {
+        let what =
+            "mu_per_decade belongs to level = \"l0\" or \"l1\"; with l2 friction falls with speed".to_owned();
+        return Err(Wrong { span: rise.span(), what });
+    }
     Ok(())
 }
 

@@ -12,6 +12,27 @@ pub struct Friction {
     pub mu_d: f64,
 }
 
+/// Slower than this, sliding friction does not depend on speed, m/s (assumed).
+const SLOWEST_M_S: f64 = 1e-3;
+
+impl Friction {
+    /// What a speed of `speed_m_s` adds to `mu_d` where friction rises by `per_decade` of it with each tenfold speed:
+    /// `mu_d k log10(1 + v / v_0)`, as rubber's does below its peak (Grosch 1963; that it is a straight line over the
+    /// logarithm is assumed).
+    #[must_use]
+    pub fn rise(self, per_decade: f64, speed_m_s: f64) -> f64 {
+        self.mu_d * per_decade * libm::log10(1.0 + speed_m_s / SLOWEST_M_S)
+    }
+
+    /// The same as damping: what it adds over the speed, s/m. At rest it is the slope.
+    #[must_use]
+    pub fn rise_s_per_m(self, per_decade: f64, speed_m_s: f64) -> f64 {
+        // Below a thousandth of the slowest the quotient is the slope to four places.
+        let speed_m_s = speed_m_s.max(1e-3 * SLOWEST_M_S);
+        self.rise(per_decade, speed_m_s) / speed_m_s
+    }
+}
+
 /// Friction over time: dry, with wet patches.
 #[derive(Clone, Debug)]
 pub struct Surface {
@@ -56,5 +77,20 @@ impl Surface {
 impl Patch {
     fn dried(&self, t_s: f64) -> f64 {
         if t_s < self.drying.begin_s { 0.0 } else { smooth(self.drying.progress(t_s)) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sliding_friction_rises_by_the_same_part_with_each_decade() {
+        let friction = Friction { mu_s: 0.5, mu_d: 0.4 };
+        assert_eq!(friction.rise(0.1, 0.0), 0.0);
+        let decades = [9e-3, 99e-3].map(|speed_m_s| friction.rise(0.1, speed_m_s));
+        assert!((decades[0] - 0.04).abs() < 1e-12 && (decades[1] - 0.08).abs() < 1e-12, "{decades:?}");
+        let slope_s_per_m = 0.4 * 0.1 / std::f64::consts::LN_10 / SLOWEST_M_S;
+        assert!((friction.rise_s_per_m(0.1, 0.0) / slope_s_per_m - 1.0).abs() < 1e-3);
     }
 }

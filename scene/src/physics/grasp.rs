@@ -4,7 +4,7 @@ use super::friction::{Friction, Surface};
 use super::hand::Hand;
 use super::level::{Level, Push};
 use super::limit::Body;
-use super::pitch::{Pitch, Turn};
+use super::pitch::{Load, Pitch, Turn};
 use super::{GRAVITY_M_S2, TOUCH_N, Touch};
 use crate::file::SceneFile;
 use crate::file::sections::Object;
@@ -31,6 +31,7 @@ pub struct Grasp {
     mat_ns_per_m: f64,
     rest_m: f64,
     contact: Level,
+    mu_per_decade: f64,
     sticks: bool,
     shear_part: f64,
     in_hand: bool,
@@ -68,6 +69,7 @@ impl Grasp {
             mat_ns_per_m,
             rest_m: -empty_kg * GRAVITY_M_S2 / mat_n_per_m,
             contact: Level::new(&scene.contact),
+            mu_per_decade: scene.contact.mu_per_decade(),
             sticks: true,
             shear_part: 0.0,
             in_hand: true,
@@ -95,17 +97,21 @@ impl Grasp {
             0.0
         };
         let free_n = self.table_n - self.mass_kg * (GRAVITY_M_S2 + hand.acceleration_m_s2());
-        let free_m_s = self.speed_m_s + free_n / self.mass_kg * STEP_S;
+        let drag_ns_per_m = self.drag_ns_per_m(dry, grip_n);
+        // Backward Euler: no drag turns the motion round.
+        let free_m_s =
+            (self.speed_m_s + free_n / self.mass_kg * STEP_S) / (1.0 + drag_ns_per_m / self.mass_kg * STEP_S);
         // Torsion lets go where shear alone would: of a patch, that is below mu_s.
         let holds = self.contact.holds(dry);
-        let turn = self.turn(Friction { mu_s: holds, mu_d: dry.mu_d.min(holds) }, grip_n, hand);
+        let turn =
+            self.turn(Friction { mu_s: holds, mu_d: dry.mu_d.min(holds) }, grip_n, drag_ns_per_m, hand);
         let friction = self.pitch.as_ref().map_or(dry, |pitch| pitch.leaves(dry));
         let push = Push { normal_n: grip_n, pads: PADS, friction, mass_kg: self.mass_kg, free_m_s };
         let outcome = self.contact.step(push, STEP_S);
         self.speed_m_s = outcome.speed_m_s;
         self.slid_m += self.speed_m_s * STEP_S;
         self.sticks = outcome.sticks;
-        let shear_n = outcome.force_n / PADS;
+        let shear_n = (outcome.force_n - drag_ns_per_m * free_m_s) / PADS;
         self.shear_part = if grip_n > 0.0 { (shear_n.abs() / (holds * grip_n)).min(1.0) } else { 0.0 };
 
         // Both at once, by the ellipsoid.
@@ -130,12 +136,34 @@ impl Grasp {
     }
 
     /// The table keeps what stands on it from turning.
-    fn turn(&mut self, friction: Friction, grip_n: f64, hand: &Hand) -> Turn {
+    fn turn(&mut self, friction: Friction, grip_n: f64, drag_ns_per_m: f64, hand: &Hand) -> Turn {
         let Some(pitch) = self.pitch.as_mut().filter(|_| self.in_hand) else { return Turn::default() };
         let hangs = self.table_n == 0.0;
         let weight_n = if hangs { self.mass_kg * (GRAVITY_M_S2 + hand.acceleration_m_s2()) } else { 0.0 };
         let slide_m_s = if self.sticks { 0.0 } else { self.speed_m_s };
-        pitch.step(self.mass_kg, weight_n, grip_n, friction, self.shear_part, slide_m_s)
+        let load = Load {
+            mass_kg: self.mass_kg,
+            weight_n,
+            normal_n: grip_n,
+            shear_part: self.shear_part,
+            slide_m_s,
+            drag_ns_per_m,
+        };
+        pitch.step(load, friction)
+    }
+
+    /// How fast the pads rub over the object, by sliding and by turning, m/s.
+    fn rubs_m_s(&self) -> f64 {
+        let turns_m_s = self.pitch.as_ref().map_or(0.0, Pitch::turns_m_s);
+        (self.speed_m_s * self.speed_m_s + turns_m_s * turns_m_s).sqrt()
+    }
+
+    /// The part of sliding friction that grows with speed, as damping of what slides or turns, N s/m.
+    fn drag_ns_per_m(&self, friction: Friction, grip_n: f64) -> f64 {
+        if self.sticks && !self.turns() {
+            return 0.0;
+        }
+        PADS * grip_n * friction.rise_s_per_m(self.mu_per_decade, self.rubs_m_s())
     }
 
     fn turns(&self) -> bool {

@@ -11,8 +11,9 @@ pub const TORSION: f64 = 3.0 * std::f64::consts::PI / 16.0;
 /// A pendulum with dry friction at its pivot: `I w' = m g (x cos - h sin) - M`, I = m r^2.
 ///
 /// Shear and torsion share one friction: `(Q / Q_max)^2 + (M / M_max)^2 <= 1` (Howe and Cutkosky 1996, the ellipsoid).
-/// While the pad sticks each has what the other leaves. What slides pulls against its own direction: an object that turns
-/// has little friction left along the pad and sinks, the more slowly the faster it turns.
+/// While the pad sticks each has what the other leaves. What slides pulls against its own direction, and the skin needs
+/// some way to lean into a new one: an object that turns loses its friction along the pad over that way and sinks, the
+/// more slowly the faster it turns.
 #[derive(Clone, Debug)]
 pub struct Pitch {
     offset_m: f64,
@@ -23,7 +24,26 @@ pub struct Pitch {
     angle_rad: f64,
     speed_rad_s: f64,
     used_part: f64,
-    slide_m_s: f64,
+    /// The parts of friction that act against turning and along the pad.
+    turn_part: f64,
+    slide_part: f64,
+}
+
+/// What acts on the object in one scan.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Load {
+    /// With what is in it, kg.
+    pub mass_kg: f64,
+    /// That of the hand's acceleration included, less what a table carries, N.
+    pub weight_n: f64,
+    /// Of each pad, N.
+    pub normal_n: f64,
+    /// The part of the friction that the shear of the step before took.
+    pub shear_part: f64,
+    /// How fast it slid, m/s; 0 while it sticks.
+    pub slide_m_s: f64,
+    /// Damping by friction that grows with speed, both pads, N s/m.
+    pub drag_ns_per_m: f64,
 }
 
 /// What a step of the pitch did.
@@ -50,52 +70,63 @@ impl Pitch {
             angle_rad: 0.0,
             speed_rad_s: 0.0,
             used_part: 0.0,
-            slide_m_s: 0.0,
+            turn_part: 1.0,
+            slide_part: 1.0,
         }
     }
 
-    /// Goes on by one scan under a weight of `weight_n` (that of the hand's acceleration included, less what a table
-    /// carries), pressed by each pad with `normal_n`. The shear of the step before took `shear_part` of the friction, and
-    /// the object slid at `slide_m_s`, 0 while it sticks.
-    pub fn step(
-        &mut self,
-        mass_kg: f64,
-        weight_n: f64,
-        normal_n: f64,
-        friction: Friction,
-        shear_part: f64,
-        slide_m_s: f64,
-    ) -> Turn {
+    /// Goes on by one scan.
+    pub fn step(&mut self, load: Load, friction: Friction) -> Turn {
+        let Load { mass_kg, weight_n, normal_n, .. } = load;
         let inertia_kg_m2 = mass_kg * self.gyration_m * self.gyration_m;
         let (sin, cos) = (libm::sin(self.angle_rad), libm::cos(self.angle_rad));
         let pull_nm = weight_n * (self.offset_m * cos - self.hang_m * sin);
-        let free_rad_s = self.speed_rad_s + pull_nm / inertia_kg_m2 * STEP_S;
+        let arm_m = TORSION * self.radius_m;
+        let drag_nms = load.drag_ns_per_m * arm_m * arm_m;
+        let free_rad_s =
+            (self.speed_rad_s + pull_nm / inertia_kg_m2 * STEP_S) / (1.0 + drag_nms / inertia_kg_m2 * STEP_S);
+        self.lean(load.shear_part, load.slide_m_s);
         // The same step as along the pad: the limit is a torque, the mass an inertia.
-        self.slide_m_s = slide_m_s;
-        let part = if slide_m_s == 0.0 { left(shear_part) } else { share(self.turns_m_s(), slide_m_s) };
-        let arm_m = 2.0 * TORSION * self.radius_m * part;
-        let outcome = self.contact.step(normal_n * arm_m, friction, inertia_kg_m2, free_rad_s, STEP_S);
+        let limit_nm = 2.0 * normal_n * arm_m * self.turn_part;
+        let outcome = self.contact.step(limit_nm, friction, inertia_kg_m2, free_rad_s, STEP_S);
         self.speed_rad_s = outcome.speed_m_s;
         self.angle_rad += self.speed_rad_s * STEP_S;
-        let whole_nm = 2.0 * TORSION * self.radius_m * friction.mu_s * normal_n;
+        let whole_nm = 2.0 * arm_m * friction.mu_s * normal_n;
         self.used_part = if whole_nm > 0.0 { (outcome.force_n.abs() / whole_nm).min(1.0) } else { 0.0 };
         Turn {
-            torque_nm: -outcome.force_n / 2.0,
+            torque_nm: (drag_nms * free_rad_s - outcome.force_n) / 2.0,
             rub_m_s: self.speed_rad_s * self.radius_m,
             onset: outcome.onset,
-            needed_n: pull_nm.abs() / (2.0 * TORSION * self.radius_m * friction.mu_s),
+            needed_n: pull_nm.abs() / (2.0 * arm_m * friction.mu_s),
         }
     }
 
     /// The friction along the pad that torsion leaves.
     #[must_use]
     pub fn leaves(&self, friction: Friction) -> Friction {
-        let part = if self.turns() { share(self.slide_m_s, self.turns_m_s()) } else { left(self.used_part) };
-        Friction { mu_s: friction.mu_s * part, mu_d: friction.mu_d * part }
+        Friction { mu_s: friction.mu_s * self.slide_part, mu_d: friction.mu_d * self.slide_part }
+    }
+
+    /// Where friction pulls. What rubs turns it into its own direction within [`LEANS_M`].
+    fn lean(&mut self, shear_part: f64, slide_m_s: f64) {
+        if !self.turns() && slide_m_s == 0.0 {
+            (self.turn_part, self.slide_part) = (left(shear_part), left(self.used_part));
+            return;
+        }
+        let turns_m_s = self.turns_m_s();
+        let both_m_s = (turns_m_s * turns_m_s + slide_m_s * slide_m_s).sqrt();
+        if both_m_s == 0.0 {
+            return;
+        }
+        let leans = 1.0 - libm::exp(-both_m_s * STEP_S / LEANS_M);
+        let lean =
+            |part: f64, own_m_s: f64| (part + leans * (own_m_s.abs() / both_m_s - part)).clamp(LEAST, 1.0);
+        self.turn_part = lean(self.turn_part, turns_m_s);
+        self.slide_part = lean(self.slide_part, slide_m_s);
     }
 
     /// The turning as a speed over the pad: that of the radius at which all friction would make its torque, m/s.
-    fn turns_m_s(&self) -> f64 {
+    pub(crate) fn turns_m_s(&self) -> f64 {
         self.speed_rad_s * TORSION * self.radius_m
     }
 
@@ -118,18 +149,15 @@ impl Pitch {
     }
 }
 
+/// The way over which the skin leans into a new direction, m: that over which a pad of 2 N/mm takes up the shear of 1 N
+/// (assumed; a bristle's relaxation length is the deflection at which it slides).
+const LEANS_M: f64 = 0.5e-3;
 /// No friction at all has no direction to begin in.
 const LEAST: f64 = 0.03;
 
 /// The other half-axis of the ellipse.
 fn left(part: f64) -> f64 {
     (1.0 - part * part).max(LEAST * LEAST).sqrt()
-}
-
-/// The part of sliding friction that acts against one of two speeds.
-fn share(own_m_s: f64, other_m_s: f64) -> f64 {
-    let both_m_s = (own_m_s * own_m_s + other_m_s * other_m_s).sqrt();
-    if both_m_s > 0.0 { (own_m_s.abs() / both_m_s).max(LEAST) } else { 1.0 }
 }
 
 #[cfg(test)]
@@ -152,6 +180,10 @@ mod tests {
         Pitch::new(&section, 5.0)
     }
 
+    fn under(normal_n: f64) -> Load {
+        Load { mass_kg: MASS_KG, weight_n: WEIGHT_N, normal_n, ..Load::default() }
+    }
+
     #[test]
     fn it_turns_from_the_torque_of_the_closed_form() {
         // m g x = 2 (3 pi / 16) mu_s P a, with no shear.
@@ -159,7 +191,7 @@ mod tests {
         let critical_n = WEIGHT_N * offset_m / (2.0 * TORSION * FRICTION.mu_s * 0.005);
         let turns = |normal_n| {
             let mut pitch = pitch(offset_m * 1e3, 0.0);
-            pitch.step(MASS_KG, WEIGHT_N, normal_n, FRICTION, 0.0, 0.0);
+            pitch.step(under(normal_n), FRICTION);
             pitch.turns()
         };
         assert!(!turns(critical_n * 1.001) && turns(critical_n * 0.999));
@@ -170,7 +202,7 @@ mod tests {
         let (mut pitch, mut crossings, mut last) = (pitch(0.0, 20.0), Vec::new(), 1.0);
         pitch.angle_rad = 0.01;
         for n in 0..16_000 {
-            pitch.step(MASS_KG, WEIGHT_N, 0.0, FRICTION, 0.0, 0.0);
+            pitch.step(under(0.0), FRICTION);
             if pitch.angle_rad < 0.0 && last >= 0.0 {
                 crossings.push(f64::from(n) * STEP_S);
             }
@@ -184,9 +216,23 @@ mod tests {
     #[test]
     fn shear_leaves_less_for_torsion() {
         let (mut alone, mut shared) = (pitch(2.0, 0.0), pitch(2.0, 0.0));
-        alone.step(MASS_KG, WEIGHT_N, 2.0, FRICTION, 0.0, 0.0);
-        shared.step(MASS_KG, WEIGHT_N, 2.0, FRICTION, 0.9, 0.0);
+        alone.step(under(2.0), FRICTION);
+        shared.step(Load { shear_part: 0.9, ..under(2.0) }, FRICTION);
         assert!(!alone.turns() && shared.turns());
+    }
+
+    #[test]
+    fn what_turns_gives_up_its_friction_along_the_pad_over_a_way_and_not_at_once() {
+        let mut pitch = pitch(4.0, 0.0);
+        pitch.step(Load { shear_part: 0.9, ..under(2.0) }, FRICTION);
+        assert!(pitch.turns());
+        pitch.step(Load { shear_part: 0.9, ..under(2.0) }, FRICTION);
+        let at_once = pitch.leaves(FRICTION).mu_d / FRICTION.mu_d;
+        while pitch.angle_rad() * TORSION * 0.005 < 5.0 * LEANS_M {
+            pitch.step(Load { shear_part: 0.9, ..under(2.0) }, FRICTION);
+        }
+        let later = pitch.leaves(FRICTION).mu_d / FRICTION.mu_d;
+        assert!(at_once > 0.8 && later <= LEAST + 1e-2, "{at_once}, {later}");
     }
 
     proptest! {
@@ -196,7 +242,7 @@ mod tests {
         ) {
             let mut pitch = pitch(0.0, 0.0);
             pitch.speed_rad_s = speed_rad_s;
-            pitch.step(mass_kg, 0.0, normal_n, FRICTION, shear_part, 0.0);
+            pitch.step(Load { mass_kg, normal_n, shear_part, ..Load::default() }, FRICTION);
             prop_assert!(pitch.speed_rad_s.abs() <= speed_rad_s.abs());
         }
     }

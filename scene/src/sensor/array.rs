@@ -1,9 +1,13 @@
 //! The normal-force array: two rows of five elements under a silicone cover (Bamshad 2023, section 2.1).
 
+use std::f64::consts::TAU;
+
 use tenax_hal_shim::channel::{ARRAY, ARRAY_COUNT, CHANNELS};
 
 use super::front_end_v;
-use crate::file::sections::Array;
+use super::pvdf::ring_mv;
+use crate::file::SceneFile;
+use crate::file::sections::{Array, Knock};
 use crate::physics::{TOUCH_N, Touch};
 use crate::random::{Noise, Source};
 use crate::schedule::FRAME_S;
@@ -14,19 +18,45 @@ const ROWS: usize = 2;
 const LONG: usize = ARRAY_COUNT / ROWS;
 /// How long the cover takes to forget that an element slipped, s (assumed).
 const FORGETS_S: f64 = 0.030;
+/// The cover spreads the load of the patch to this many times its radius (assumed): no element is ever out of it.
+const SPREADS: f64 = 1.4;
+/// The least share of the load that an element at the edge of it has, beside one in the middle (assumed).
+const EDGE_PART: f64 = 0.05;
+/// Waves of a surface's unevenness: from one pitch of its texture on, each so many times as long as the last (assumed).
+const WAVES: usize = 5;
+const WAVE_RATIO: f64 = 1.7;
 
 /// Ten shares of one load.
 ///
-/// The weight that hangs on the pad tilts the load along it, torsion tilts it across the diagonal, and each element slip
-/// moves some of it from one element to the others: the sum stays, the covariance changes, which is all that the
-/// detector of Bamshad 2023 (section 4) has to go by.
+/// At rest an element carries what the patch presses on it under the cover, the more the nearer it is to the contact's
+/// middle. The weight that hangs on the pad tilts the load along it and torsion tilts it across the diagonal. What slips
+/// moves load from one element to its neighbours: a ring of the patch that lets go (micro slip) once, an element that
+/// slides again and again, once for each pitch of the texture that passes it at its own speed, and the unevenness of
+/// the surface with it. The sum stays, the covariance changes, which is all that the detector of Bamshad 2023 (section
+/// 4) has to go by. A knock and the gear press on all of it.
 #[derive(Debug)]
 pub(crate) struct Elements {
     parameters: Array,
+    knocks: Vec<Knock>,
     patch_m: f64,
+    pitch_m: f64,
+    motor_hz: f64,
+    motor_phase: f64,
     elements: [Element; ARRAY_COUNT],
+    waves: [Wave; WAVES],
     noise: Noise,
     slips: Noise,
+}
+
+/// What shakes the array besides the touch.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Shakes {
+    /// At the end of the frame, s.
+    pub(crate) t_s: f64,
+    /// The shear that was let go during it, N.
+    pub(crate) released_n: f64,
+    /// The motor's speed as a part of the fastest.
+    pub(crate) motor_speed: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -36,76 +66,163 @@ struct Element {
     /// Across and along the pad, -1 to 1.
     across: f64,
     along: f64,
+    /// Of the load, at rest.
+    part: f64,
+    /// How far the surface went over it, m.
+    travel_m: f64,
     moved_n: f64,
 }
 
+/// One wave of the surface: its length, and where it begins under each row, in turns.
+#[derive(Clone, Copy, Debug)]
+struct Wave {
+    length_m: f64,
+    begins: [f64; ROWS],
+}
+
 impl Elements {
-    pub(crate) fn new(parameters: &Array, patch_radius_mm: f64, seed: u64) -> Self {
-        let mut making = Noise::new(seed, Source::ArrayMaking);
+    pub(crate) fn new(scene: &SceneFile, seed: u64) -> Self {
+        let parameters = &scene.array;
+        let patch_m = scene.contact.patch_radius_mm.get() / 1e3;
+        let pitch_m = scene.contact.pitch_mm.get() / 1e3;
+        let mut making = Noise::new(parameters.specimen.map_or(seed, u64::from), Source::ArrayMaking);
         let spread = parameters.spread.get();
-        let element = |n: usize| Element {
-            gain: making.between(1.0 - spread, 1.0 + spread),
-            offset_mv: making.between(0.0, parameters.offset_mv.get()),
-            across: if n / LONG == 0 { -1.0 } else { 1.0 },
-            along: (n % LONG) as f64 * 2.0 / (LONG - 1) as f64 - 1.0,
-            moved_n: 0.0,
-        };
+        let place = parameters.place_mm.get() / 1e3 / patch_m;
+        let mut elements = std::array::from_fn(|n| {
+            let across = if n / LONG == 0 { -1.0 } else { 1.0 };
+            let along = (n % LONG) as f64 * 2.0 / (LONG - 1) as f64 - 1.0;
+            // The rows are half an element from the middle, an element being two fifths of the radius long.
+            let away = [across / LONG as f64, along * (1.0 - 1.0 / LONG as f64) - place];
+            let inside = 1.0 - (away[0] * away[0] + away[1] * away[1]) / (SPREADS * SPREADS);
+            Element {
+                gain: making.between(1.0 - spread, 1.0 + spread),
+                offset_mv: making.between(0.0, parameters.offset_mv.get()),
+                across,
+                along,
+                part: inside.max(EDGE_PART * EDGE_PART).sqrt(),
+                travel_m: 0.0,
+                moved_n: 0.0,
+            }
+        });
+        let whole: f64 = elements.iter().map(|element: &Element| element.part).sum();
+        elements.iter_mut().for_each(|element| element.part /= whole);
+        let mut surface = Noise::new(seed, Source::ArraySurface);
+        let mut length_m = pitch_m;
+        let waves = std::array::from_fn(|_| {
+            let wave = Wave { length_m, begins: std::array::from_fn(|_| surface.between(0.0, 1.0)) };
+            length_m *= WAVE_RATIO;
+            wave
+        });
         Self {
             parameters: parameters.clone(),
-            patch_m: patch_radius_mm / 1e3,
-            elements: std::array::from_fn(element),
+            knocks: scene.knock.clone(),
+            patch_m,
+            pitch_m,
+            motor_hz: scene.pvdf.motor_hz.get(),
+            motor_phase: 0.0,
+            elements,
+            waves,
             noise: Noise::new(seed, Source::Array),
             slips: Noise::new(seed, Source::ArraySlips),
         }
     }
 
-    /// Voltages at the pins after one frame. `released_n` is the shear that was let go during it.
-    pub(crate) fn step(&mut self, touch: &Touch, released_n: f64) -> [f64; ARRAY_COUNT] {
-        self.slip(touch, released_n);
-        let p = &self.parameters;
+    /// Voltages at the pins after one frame.
+    pub(crate) fn step(&mut self, touch: &Touch, shakes: Shakes) -> [f64; ARRAY_COUNT] {
         let pressed = touch.normal_n > TOUCH_N;
+        self.slip(touch, if pressed { shakes.released_n } else { 0.0 });
+        let shaken_n = if pressed { self.shaken_n(touch, shakes) } else { 0.0 };
+        let draws: [f64; ARRAY_COUNT] = self.noise.normals();
+        let p = &self.parameters;
         // Both as parts of the load: the shear, and the torsion over the patch's radius.
         let (weight, twist) = if pressed {
             (touch.shear_n / touch.normal_n, touch.torque_nm / (self.patch_m * touch.normal_n))
         } else {
             (0.0, 0.0)
         };
+        let leans = |element: &Element| {
+            let tilt = p.tilt.get() * (weight * element.along + twist * element.across * element.along);
+            tilt + p.uneven.get() * self.uneven(element)
+        };
+        let lean = self.elements.iter().map(|element| element.part * leans(element)).sum::<f64>();
         let moved_n = self.elements.iter().map(|element| element.moved_n).sum::<f64>() / ARRAY_COUNT as f64;
+        let load_n = touch.normal_n + shaken_n;
         let mut pins = [0.0; ARRAY_COUNT];
         for (n, element) in self.elements.iter().enumerate() {
-            let tilt = p.tilt.get() * (weight * element.along + twist * element.across * element.along);
-            let share_n = touch.normal_n / ARRAY_COUNT as f64 * (1.0 + tilt) + element.moved_n - moved_n;
+            let share_n = load_n * element.part * (1.0 + leans(element) - lean) + element.moved_n - moved_n;
             let read_mv = p.mv_per_n.get() * element.gain * share_n.max(0.0) + element.offset_mv;
             let rest_mv = f64::from(CHANNELS[ARRAY + n].rest_mv);
-            pins[n] = front_end_v(rest_mv + read_mv + p.noise_mv.get() * self.noise.normal());
+            pins[n] = front_end_v(rest_mv + read_mv + p.noise_mv.get() * draws[n]);
         }
         pins
     }
 
-    /// Each element that lets go moves load; sliding does so all the time.
+    /// What the surface under an element adds to its load, rms 1 over a long way.
+    fn uneven(&self, element: &Element) -> f64 {
+        let row = usize::from(element.across > 0.0);
+        let at_m = element.travel_m + element.along * self.patch_m;
+        let wave = |wave: &Wave| libm::sin(TAU * (at_m / wave.length_m + wave.begins[row]));
+        self.waves.iter().map(wave).sum::<f64>() * (2.0 / WAVES as f64).sqrt()
+    }
+
+    /// What a knock and the gear press on the whole pad, N.
+    fn shaken_n(&mut self, touch: &Touch, shakes: Shakes) -> f64 {
+        let p = &self.parameters;
+        self.motor_phase = (self.motor_phase + self.motor_hz * shakes.motor_speed * FRAME_S).fract();
+        let gear_n = p.motor_part.get()
+            * touch.normal_n
+            * shakes.motor_speed.sqrt()
+            * libm::sin(TAU * self.motor_phase);
+        let knocks_mv = self.knocks.iter().map(|knock| ring_mv(knock, shakes.t_s, 0.0)).sum::<f64>();
+        // No knock lifts the pad off what it presses on.
+        (gear_n + p.knock_mn_per_mv.get() / 1e3 * knocks_mv).max(-touch.normal_n)
+    }
+
+    /// What lets go moves load to its neighbours; what slides moves it all the time.
     fn slip(&mut self, touch: &Touch, released_n: f64) {
-        let keeps = libm::exp(-FRAME_S / FORGETS_S);
-        for element in &mut self.elements {
-            element.moved_n *= keeps;
-        }
+        let forgets = libm::exp(-FRAME_S / FORGETS_S);
         let part = self.parameters.slip_part.get();
-        if released_n > 0.0 {
-            let which = self.slips.between(0.0, ARRAY_COUNT as f64) as usize;
-            self.elements[which.min(ARRAY_COUNT - 1)].moved_n -= part * released_n;
+        let slides = !touch.sticks && touch.normal_n > TOUCH_N && touch.rub_m_s() > 0.0;
+        for element in &mut self.elements {
+            if !slides {
+                element.moved_n *= forgets;
+                continue;
+            }
+            let by_m = rub_m_s(touch, element, self.patch_m) * FRAME_S;
+            element.travel_m += by_m;
+            // Each pitch that passes deals the load out anew.
+            let keeps = libm::exp(-by_m / self.pitch_m);
+            let dealt_n = part * touch.drop_n * element.part * (1.0 - keeps * keeps).sqrt();
+            element.moved_n = keeps * element.moved_n + dealt_n * self.slips.normal();
         }
-        if !touch.sticks && touch.normal_n > TOUCH_N && touch.rub_m_s() > 0.0 {
-            let step_n = part * touch.drop_n / ARRAY_COUNT as f64 * (1.0 - keeps * keeps).sqrt();
-            for element in &mut self.elements {
-                element.moved_n += step_n * self.slips.normal();
+        if released_n > 0.0 {
+            let place = self.slips.between(0.0, ARRAY_COUNT as f64) as usize;
+            let (row, place) = ((place / LONG).min(ROWS - 1) * LONG, place % LONG);
+            // No element loses more than half of what it has.
+            let has_n = self.elements[row + place].part * touch.normal_n;
+            let moved_n = (part * released_n).min(has_n / 2.0);
+            self.elements[row + place].moved_n -= moved_n;
+            let neighbours = [place.checked_sub(1), Some(place + 1).filter(|&next| next < LONG)];
+            let count = neighbours.iter().flatten().count() as f64;
+            for neighbour in neighbours.into_iter().flatten() {
+                self.elements[row + neighbour].moved_n += moved_n / count;
             }
         }
     }
 }
 
+/// How fast the surface goes over an element that is off the middle of what turns, m/s.
+fn rub_m_s(touch: &Touch, element: &Element, patch_m: f64) -> f64 {
+    let turns_per_s = touch.turn_m_s / patch_m;
+    let (across_m, along_m) = (element.across * patch_m / LONG as f64, element.along * patch_m);
+    let (along_m_s, across_m_s) = (touch.slide_m_s + turns_per_s * across_m, turns_per_s * along_m);
+    (along_m_s * along_m_s + across_m_s * across_m_s).sqrt()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::file::quantity::{Millivolts, Part};
+    use crate::file::quantity::{Lever, Millivolts, Part};
 
     const HELD: Touch = Touch {
         normal_n: 5.0,
@@ -119,43 +236,117 @@ mod tests {
         released_n: 0.0,
         drop_n: 0.5,
     };
+    const SLIDES: Touch = Touch { sticks: false, slide_m_s: 0.01, ..HELD };
+    const STILL: Shakes = Shakes { t_s: 0.0, released_n: 0.0, motor_speed: 0.0 };
+    const LETS_GO: Shakes = Shakes { released_n: 0.5, ..STILL };
 
-    fn quiet() -> Elements {
+    fn made(change: impl FnOnce(&mut SceneFile)) -> Elements {
+        let (_, text) = crate::builtin()[0];
+        let mut scene = SceneFile::parse(text, "glass").unwrap();
         let off = Millivolts::of(0.0);
-        let parameters = Array { noise_mv: off, offset_mv: off, spread: Part::of(0.0), ..Array::default() };
-        Elements::new(&parameters, 5.0, 1)
+        scene.array = Array {
+            noise_mv: off,
+            offset_mv: off,
+            spread: Part::of(0.0),
+            uneven: Part::of(0.0),
+            ..scene.array
+        };
+        change(&mut scene);
+        Elements::new(&scene, 1)
     }
 
-    fn newtons(elements: &mut Elements, touch: Touch, released_n: f64) -> [f64; ARRAY_COUNT] {
-        elements.step(&touch, released_n).map(|volts| (volts * 1e3 - 200.0) / 200.0)
+    fn quiet() -> Elements {
+        made(|_| {})
+    }
+
+    fn newtons(elements: &mut Elements, touch: Touch, shakes: Shakes) -> [f64; ARRAY_COUNT] {
+        elements.step(&touch, shakes).map(|volts| (volts * 1e3 - 200.0) / 200.0)
+    }
+
+    /// Deviation of one share over 2000 frames, N.
+    fn wander(mut elements: Elements, touch: Touch) -> f64 {
+        let shares: Vec<f64> = (0..2_000).map(|_| newtons(&mut elements, touch, STILL)[3]).collect();
+        let mean = shares.iter().sum::<f64>() / 2_000.0;
+        (shares.iter().map(|share| (share - mean).powi(2)).sum::<f64>() / 2_000.0).sqrt()
     }
 
     #[test]
     fn the_shares_add_up_to_the_load_whatever_moves_them() {
-        let slides = Touch { sticks: false, slide_m_s: 0.01, shear_n: 2.0, torque_nm: 0.004, ..HELD };
-        for (touch, released_n) in [(HELD, 0.0), (HELD, 0.5), (slides, 0.5)] {
-            let sum: f64 = newtons(&mut quiet(), touch, released_n).iter().sum();
-            assert!((sum - 5.0).abs() < 1e-9, "{sum} N");
+        let slides = Touch { shear_n: 2.0, torque_nm: 0.004, ..SLIDES };
+        let uneven = || made(|scene| scene.array.uneven = Part::of(0.1));
+        let aside = || made(|scene| scene.array.place_mm = Lever::of(2.0));
+        for make in [&quiet as &dyn Fn() -> Elements, &uneven, &aside] {
+            for (touch, shakes) in [(HELD, STILL), (HELD, LETS_GO), (slides, LETS_GO)] {
+                let sum: f64 = newtons(&mut make(), touch, shakes).iter().sum();
+                assert!((sum - 5.0).abs() < 1e-9, "{sum} N");
+            }
         }
     }
 
     #[test]
     fn weight_tilts_it_along_the_pad_and_torsion_across_the_diagonal() {
-        let hangs = newtons(&mut quiet(), Touch { shear_n: 2.0, ..HELD }, 0.0);
+        let hangs = newtons(&mut quiet(), Touch { shear_n: 2.0, ..HELD }, STILL);
         assert!(hangs[4] > hangs[0] && hangs[9] > hangs[5] && (hangs[0] - hangs[5]).abs() < 1e-12);
-        let twisted = newtons(&mut quiet(), Touch { torque_nm: 0.004, ..HELD }, 0.0);
+        let twisted = newtons(&mut quiet(), Touch { torque_nm: 0.004, ..HELD }, STILL);
         assert!(twisted[9] > twisted[5] && twisted[4] < twisted[0]);
     }
 
     #[test]
+    fn the_nearer_to_the_middle_of_the_contact_the_more_an_element_carries() {
+        let middle = newtons(&mut quiet(), HELD, STILL);
+        assert!(middle[2] > middle[1] && middle[1] > middle[0] && (middle[0] - middle[4]).abs() < 1e-12);
+        let aside = newtons(&mut made(|scene| scene.array.place_mm = Lever::of(3.0)), HELD, STILL);
+        assert!(aside[3] > aside[1] && aside[4] > aside[0]);
+    }
+
+    #[test]
+    fn what_lets_go_loads_its_neighbours_and_no_other_row() {
+        let mut elements = quiet();
+        let before = newtons(&mut elements, HELD, STILL);
+        let after = newtons(&mut elements, HELD, LETS_GO);
+        let change: Vec<f64> = after.iter().zip(before).map(|(after, before)| after - before).collect();
+        let lost = change.iter().position(|&change| change < -0.2).expect("one lost half of what it let go");
+        let row = lost / LONG * LONG;
+        let other: f64 = change[(LONG - row)..(LONG - row) + LONG].iter().map(|change| change.abs()).sum();
+        assert!(change[row..row + LONG].iter().filter(|&&change| change > 0.1).count() >= 1 && other < 1e-9);
+    }
+
+    #[test]
     fn sliding_makes_the_shares_wander_and_sticking_does_not() {
-        let wander = |touch: Touch| {
-            let mut elements = quiet();
-            let shares: Vec<f64> = (0..2_000).map(|_| newtons(&mut elements, touch, 0.0)[3]).collect();
-            let mean = shares.iter().sum::<f64>() / 2_000.0;
-            (shares.iter().map(|share| (share - mean).powi(2)).sum::<f64>() / 2_000.0).sqrt()
+        assert!(wander(quiet(), HELD) < 1e-12);
+        assert!(wander(quiet(), SLIDES) > 0.005);
+        assert!(wander(quiet(), Touch { slide_m_s: 0.0, turn_m_s: 0.01, ..SLIDES }) > 0.005);
+    }
+
+    #[test]
+    fn an_uneven_surface_is_felt_where_it_slides_without_any_stick_slip() {
+        let smooth = Touch { drop_n: 0.0, ..SLIDES };
+        let uneven = || made(|scene| scene.array.uneven = Part::of(0.05));
+        assert!(wander(quiet(), smooth) < 1e-12);
+        let (felt, share_n) = (wander(uneven(), smooth), newtons(&mut quiet(), HELD, STILL)[3]);
+        assert!((felt / (0.05 * share_n) - 1.0).abs() < 0.3, "{felt} N of {share_n} N");
+        assert!(wander(uneven(), HELD) < 1e-12);
+    }
+
+    #[test]
+    fn the_gear_shakes_all_of_it_together() {
+        let runs = |n: u32| Shakes { t_s: f64::from(n) * FRAME_S, motor_speed: 1.0, ..STILL };
+        let mut elements = quiet();
+        let sums = (0..2_000).map(|n| newtons(&mut elements, HELD, runs(n)).iter().sum::<f64>());
+        let strongest = sums.fold(0.0_f64, |strongest, sum| strongest.max((sum - 5.0).abs()));
+        assert!((strongest / 0.015 - 1.0).abs() < 0.05, "{strongest} N");
+    }
+
+    #[test]
+    fn one_specimen_has_its_own_gains_whatever_the_seed() {
+        let make = |specimen, seed| {
+            let (_, text) = crate::builtin()[0];
+            let mut scene = SceneFile::parse(text, "glass").unwrap();
+            scene.array.specimen = specimen;
+            Elements::new(&scene, seed).elements.map(|element| element.gain)
         };
-        assert!(wander(HELD) < 1e-12);
-        assert!(wander(Touch { sticks: false, slide_m_s: 0.01, ..HELD }) > 0.005);
+        assert_eq!(make(Some(7), 1), make(Some(7), 2));
+        assert_ne!(make(None, 1), make(None, 2));
+        assert_ne!(make(Some(7), 1), make(Some(8), 1));
     }
 }

@@ -125,7 +125,7 @@ fn spike(turns: f64) -> f64 {
     hump * hump * hump * hump - 35.0 / 128.0
 }
 
-fn ring_mv(knock: &Knock, t_s: f64, phase: f64) -> f64 {
+pub(super) fn ring_mv(knock: &Knock, t_s: f64, phase: f64) -> f64 {
     let since_s = t_s - knock.at_s.get_ref().get();
     let decay_s = knock.decay_ms.get() / 1e3;
     if !(0.0..KNOCK_DECAYS * decay_s).contains(&since_s) {

@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::file::quantity::{Instant, Millimetres, Milliseconds, Mu, Speed, Stiffness};
+use crate::file::quantity::{Instant, Millimetres, Milliseconds, Mu, Part, Speed, Stiffness};
 
 /// How much of the contact is modelled (`SCENES.md`, contact, three levels).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
@@ -33,6 +33,9 @@ pub struct Contact {
     pub pad_length_mm: Millimetres,
     /// Distance between two ridges of the skin's grooves or of the surface's texture, whichever is coarser.
     pub pitch_mm: Millimetres,
+    /// Of `l0` and `l1`: how much sliding friction rises, as a part of `mu_d`, whenever the speed grows tenfold. Then a
+    /// slip can be mild: it settles at the speed whose friction carries the load.
+    pub mu_per_decade: Option<Spanned<Part>>,
     /// Radius of the contact of a pad: a fingertip that is flattened already.
     #[serde(default = "Contact::default_radius_mm")]
     pub patch_radius_mm: Millimetres,
@@ -62,6 +65,12 @@ impl Contact {
     pub fn skin_ms(&self) -> Milliseconds {
         // Assumed: rubber that rings once.
         self.skin_ms.as_ref().map_or(Milliseconds::of(3.0), |skin| *skin.get_ref())
+    }
+
+    /// How much sliding friction rises with each decade of speed.
+    #[must_use]
+    pub fn mu_per_decade(&self) -> f64 {
+        self.mu_per_decade.as_ref().map_or(0.0, |part| part.get_ref().get())
     }
 
     /// Stribeck's speed.

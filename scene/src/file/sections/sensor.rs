@@ -2,7 +2,9 @@
 
 use serde::Deserialize;
 
-use crate::file::quantity::{Duration, Gain, Hertz, Millimetres, Milliseconds, Millivolts, Part, Speed};
+use crate::file::quantity::{
+    Duration, Gain, Hertz, Lever, Millimetres, Milliseconds, Millivolts, Part, Speed,
+};
 
 /// The PVDF films. Voltages are at the film; the front end multiplies them by `gain`.
 #[derive(Clone, Debug, Deserialize)]
@@ -106,6 +108,16 @@ pub struct Array {
     pub tilt: Part,
     /// How much of the shear that an element lets go of comes off its load.
     pub slip_part: Part,
+    /// What the unevenness of a surface that slides over an element adds to its load and takes from it, rms, as a part.
+    pub uneven: Part,
+    /// What a knock of 1 mV at a film adds to the load of the whole pad while it rings.
+    pub knock_mn_per_mv: Gain,
+    /// What the gear's teeth add to the load of the whole pad while the motor runs at full speed, as a part.
+    pub motor_part: Part,
+    /// How far along the pad the object lies off the array's middle.
+    pub place_mm: Lever,
+    /// Which array it is: its gains and offsets. The scene's seed decides if it is not said.
+    pub specimen: Option<u32>,
     /// Noise of a reading, rms.
     pub noise_mv: Millivolts,
 }

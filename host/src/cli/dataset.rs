@@ -1,0 +1,88 @@
+//! `tenax dataset`: a labelled data set of the normal-force array.
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::{Mutex, PoisonError};
+
+use anyhow::{Context, bail};
+
+use super::progress::Progress;
+use crate::dataset::manifest::Manifest;
+use crate::dataset::session::Sizes;
+use crate::dataset::{Dataset, Label, Plan};
+
+const EXAMPLES: &str = "\
+Examples:
+  tenax dataset                                    out/array.csv and out/array.toml, the ones that are trained on
+  tenax dataset --sessions 12 --out more.csv       three times as much
+  tenax dataset --label marker --out marker.csv    labelled by the marker's moving averages, as in the paper";
+
+/// Make a labelled data set of the normal-force array: Bamshad's collection method as scenes.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    /// Seed of everything that is drawn: the same seed gives the same bytes
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Sessions to learn from, of each seen material; a quarter as many again to validate, half as many to test
+    #[arg(long, value_name = "N", default_value_t = Sizes::DEFAULT_TRAIN)]
+    sessions: usize,
+    /// Who says that it slipped
+    #[arg(long, value_enum, default_value_t = Label::Truth)]
+    label: Label,
+    /// The data's file; its manifest goes beside it, as .toml
+    #[arg(long, value_name = "FILE.csv", default_value = "out/array.csv")]
+    out: PathBuf,
+}
+
+pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
+    if args.sessions == 0 {
+        bail!("--sessions must be at least 1");
+    }
+    let Some(file) = args.out.file_name().map(|name| name.to_string_lossy().into_owned()) else {
+        bail!("--out needs a file name, such as out/array.csv");
+    };
+    if args.out.extension().is_some_and(|extension| extension == "toml") {
+        bail!("--out is the data's file, a .csv; the manifest goes beside it as .toml");
+    }
+    let plan = Plan { seed: args.seed, sessions: args.sessions, label: args.label };
+    let progress = Mutex::new(Progress::new("sessions", 1.0));
+    let dataset = Dataset::make(plan, &|part| {
+        // A bar that a panicking thread left is still a bar.
+        progress.lock().unwrap_or_else(PoisonError::into_inner).at(part);
+    })?;
+    drop(progress);
+    let csv = dataset.csv()?;
+    let manifest = dataset.manifest(&file, &csv);
+    if let Some(folder) = args.out.parent() {
+        fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    }
+    let beside = args.out.with_extension("toml");
+    let files = [(&args.out, csv), (&beside, toml::to_string(&manifest)?.into_bytes())];
+    for (path, bytes) in &files {
+        fs::write(path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
+    }
+    print(&manifest);
+    for (path, _) in files {
+        eprintln!("  {:<14}{}", "written", path.display());
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn print(manifest: &Manifest) {
+    println!("data set of seed {}, SHA-256 {}", manifest.seed, manifest.sha256);
+    for (split, counts) in &manifest.split {
+        let percent = 100.0 * counts.slip_steps as f64 / counts.steps.max(1) as f64;
+        println!(
+            "  {:<14}{} sessions, {} steps, {percent:.1} % of them slip, {} slips, {} of {} recordings end in a fall",
+            split.name(),
+            counts.sessions,
+            counts.steps,
+            counts.slips,
+            counts.dropped,
+            counts.recordings
+        );
+    }
+    println!("  {:<14}agrees with the world in {:.1} % of steps", "marker", manifest.marker_agrees_percent);
+}

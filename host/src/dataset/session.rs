@@ -1,0 +1,146 @@
+//! Sessions: a box, an array and a gripper as somebody set them up on one day. No two are alike.
+
+use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
+use serde::Serialize;
+
+use super::material::{HELD_OUT, Material, SEEN};
+
+/// What a session's data is for. Whole sessions are: no step of one is in two splits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Split {
+    /// A classifier learns from it.
+    Train,
+    /// It is chosen by it.
+    Validation,
+    /// It is judged by it, once.
+    Test,
+}
+
+impl Split {
+    /// As in the data.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Train => "train",
+            Self::Validation => "validation",
+            Self::Test => "test",
+        }
+    }
+}
+
+/// How many sessions of each material there are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sizes {
+    /// To learn from, of each seen material.
+    pub train: usize,
+    /// To choose by.
+    pub validation: usize,
+    /// To judge by, of each seen material; the material that is held out has as many again.
+    pub test: usize,
+}
+
+impl Sizes {
+    /// The default.
+    pub const DEFAULT_TRAIN: usize = 4;
+
+    /// In proportion to those to learn from.
+    #[must_use]
+    pub const fn of_train(train: usize) -> Self {
+        Self { train, validation: train.div_ceil(4), test: train.div_ceil(2) }
+    }
+}
+
+/// One session.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Session {
+    /// Of the material, with a number.
+    pub name: String,
+    /// What for.
+    pub split: Split,
+    /// The box's sides.
+    pub material: &'static str,
+    /// Seed of all its noise.
+    pub seed: u64,
+    /// Which array: gains and offsets of its elements.
+    pub specimen: u32,
+    /// Static friction: the material's, on that day.
+    pub mu_s: f64,
+    /// Dynamic friction.
+    pub mu_d: f64,
+    /// Rise of dynamic friction with each decade of speed, as a part.
+    pub mu_per_decade: f64,
+    /// Pitch of the texture, mm.
+    pub pitch_mm: f64,
+    /// Unevenness, as a part of an element's load.
+    pub uneven: f64,
+    /// Stiffness of cover and wall, a finger, N/mm.
+    pub stiffness_n_per_mm: f64,
+    /// Where the box lies along the array, mm from its middle.
+    pub place_mm: f64,
+    /// How far beside the pads the mass of the box lies, mm.
+    pub offset_mm: f64,
+    /// How far under them, mm.
+    pub hang_mm: f64,
+    /// Sensitivity of the array, mV/N an element.
+    pub mv_per_n: f64,
+    /// How unlike its elements are, as a part.
+    pub spread: f64,
+    /// Noise of a reading, rms, mV.
+    pub noise_mv: f64,
+}
+
+impl Session {
+    fn draw(name: String, split: Split, material: &Material, rng: &mut ChaCha8Rng) -> Self {
+        let mut round = |low: f64, high: f64| thousandths(rng.random_range(low..high));
+        // Wear, dust and damp: both coefficients together, then the gap between them.
+        let day = round(0.85, 1.15);
+        let mu_s = thousandths(material.mu_s * day);
+        let mu_d = thousandths(mu_s - (material.mu_s - material.mu_d) * round(0.7, 1.3));
+        Self {
+            mu_s,
+            mu_d,
+            mu_per_decade: thousandths(material.mu_per_decade * round(0.8, 1.2)),
+            pitch_mm: thousandths(material.pitch_mm * round(0.8, 1.2)),
+            uneven: thousandths(material.uneven * round(0.8, 1.2)),
+            stiffness_n_per_mm: thousandths(material.stiffness_n_per_mm * round(0.8, 1.2)),
+            place_mm: round(-3.0, 3.0),
+            offset_mm: round(-12.0, 12.0),
+            hang_mm: round(6.0, 20.0),
+            mv_per_n: round(160.0, 240.0),
+            spread: round(0.05, 0.25),
+            noise_mv: round(0.6, 1.6),
+            name,
+            split,
+            material: material.name,
+            seed: rng.random(),
+            specimen: rng.random(),
+        }
+    }
+}
+
+/// To three places: what the manifest says is what was run.
+fn thousandths(value: f64) -> f64 {
+    (value * 1e3).round() / 1e3
+}
+
+/// All sessions of a data set, the same for the same seed. Each draws from a stream of its own, so that more sessions of
+/// one material change none of another.
+#[must_use]
+pub fn sessions(seed: u64, sizes: Sizes) -> Vec<Session> {
+    let Sizes { train, validation, test } = sizes;
+    let seen = [(Split::Train, train), (Split::Validation, validation), (Split::Test, test)];
+    let held_out = [(Split::Test, 2 * test)];
+    let materials = SEEN.iter().map(|material| (material, &seen[..])).chain([(&HELD_OUT, &held_out[..])]);
+    let mut all = Vec::new();
+    for (index, (material, splits)) in materials.enumerate() {
+        let purposes = splits.iter().flat_map(|&(split, count)| std::iter::repeat_n(split, count));
+        for (number, split) in purposes.enumerate() {
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            rng.set_stream(((index as u64) << 32) | number as u64);
+            let name = format!("{}-{:02}", material.name, number + 1);
+            all.push(Session::draw(name, split, material, &mut rng));
+        }
+    }
+    all
+}

@@ -1,0 +1,144 @@
+//! What happens in a session: three scenes of the repository, with the session's numbers in place of theirs.
+
+use anyhow::Context;
+use rand::{RngExt, rngs::ChaCha8Rng};
+use tenax_scene::{SceneFile, builtin};
+use toml::{Table, Value};
+
+use super::session::Session;
+
+/// What is recorded of every session.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Story {
+    /// Bamshad 2023, section 3.2: balls are poured in until it slips, again and again.
+    Pour,
+    /// The first task of section 6: picked up, and placed back.
+    Pick,
+    /// Knocks, arm swing, tremor, the motor: nothing slips.
+    Disturb,
+}
+
+impl Story {
+    /// All of them, in the order of the data.
+    pub const ALL: [Self; 3] = [Self::Pour, Self::Pick, Self::Disturb];
+
+    /// As in the data.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Pour => "pour",
+            Self::Pick => "pick",
+            Self::Disturb => "disturb",
+        }
+    }
+
+    const fn scene(self) -> &'static str {
+        match self {
+            Self::Pour => "array-pour",
+            Self::Pick => "array-pick",
+            Self::Disturb => "array-disturb",
+        }
+    }
+
+    /// The scene of this story in this session.
+    ///
+    /// # Errors
+    /// If a drawn number is none that a scene may have.
+    pub fn scene_in(self, session: &Session, rng: &mut ChaCha8Rng) -> anyhow::Result<SceneFile> {
+        let name = self.scene();
+        let found = builtin().iter().find(|(builtin, _)| *builtin == name);
+        let (_, text) = found.with_context(|| format!("the scene {name} is not there"))?;
+        let mut scene: Table = text.parse()?;
+        let duration_s = self.retell(&mut scene, rng);
+        let numbers = [
+            ("contact", "mu_s", session.mu_s),
+            ("contact", "mu_d", session.mu_d),
+            ("contact", "mu_per_decade", session.mu_per_decade),
+            ("contact", "pitch_mm", session.pitch_mm),
+            ("object", "stiffness_n_per_mm", session.stiffness_n_per_mm),
+            ("pitch", "offset_mm", session.offset_mm),
+            ("pitch", "hang_mm", session.hang_mm),
+            ("array", "uneven", session.uneven),
+            ("array", "place_mm", session.place_mm),
+            ("array", "mv_per_n", session.mv_per_n),
+            ("array", "spread", session.spread),
+            ("array", "noise_mv", session.noise_mv),
+        ];
+        for (section, key, value) in numbers {
+            put(&mut scene, section, key, Value::from(value));
+        }
+        put(&mut scene, "array", "specimen", Value::from(session.specimen));
+        scene.insert("duration_s".to_owned(), Value::from(duration_s));
+        let called = format!("{} of {}", name, session.name);
+        Ok(SceneFile::parse(&scene.to_string(), &called)?)
+    }
+
+    /// Draws when and how much; gives how long it lasts, s.
+    fn retell(self, scene: &mut Table, rng: &mut ChaCha8Rng) -> f64 {
+        // Somebody else grips (`super::operator`).
+        scene.remove("command");
+        match self {
+            Self::Pour => {
+                put(scene, "object", "mass_kg", Value::from(rng.random_range(0.06..0.12)));
+                let (mut fills, mut at_s) = (Vec::new(), 4.0);
+                while at_s < POUR_S - 3.0 {
+                    let for_s = rng.random_range(1.0..3.0);
+                    fills.push(entry(&[
+                        ("at_s", at_s),
+                        ("for_s", for_s),
+                        ("add_kg", rng.random_range(0.05..0.13)),
+                    ]));
+                    at_s += for_s + rng.random_range(0.3..1.5);
+                }
+                scene.insert("fill".to_owned(), Value::Array(fills));
+                POUR_S
+            }
+            Self::Pick => {
+                put(scene, "object", "mass_kg", Value::from(rng.random_range(0.10..0.45)));
+                PICK_S
+            }
+            Self::Disturb => {
+                put(scene, "object", "mass_kg", Value::from(rng.random_range(0.10..0.30)));
+                let knock = |rng: &mut ChaCha8Rng, at_s: f64| {
+                    entry(&[
+                        ("at_s", at_s + rng.random_range(0.0..0.5)),
+                        ("peak_mv", rng.random_range(30.0..300.0)),
+                        ("ring_hz", rng.random_range(60.0..500.0)),
+                        ("decay_ms", rng.random_range(3.0..25.0)),
+                    ])
+                };
+                let knocks = (0..5).map(|n| knock(rng, 3.3 + 0.6 * f64::from(n))).collect();
+                let mut swing = |at_s: f64, cycles: i64, rate_hz: f64, peak: std::ops::Range<f64>| {
+                    let mut swing =
+                        entry(&[("at_s", at_s), ("rate_hz", rate_hz), ("peak_m_s2", rng.random_range(peak))]);
+                    if let Value::Table(swing) = &mut swing {
+                        swing.insert("cycles".to_owned(), Value::from(cycles));
+                    }
+                    swing
+                };
+                let swings = vec![swing(6.4, 3, 1.5, 1.0..6.0), swing(8.6, 12, 9.0, 0.3..1.5)];
+                scene.insert("knock".to_owned(), Value::Array(knocks));
+                scene.insert("swing".to_owned(), Value::Array(swings));
+                DISTURB_S
+            }
+        }
+    }
+}
+
+/// How long a pour lasts, s.
+const POUR_S: f64 = 26.0;
+/// How long a pick and place lasts, s.
+const PICK_S: f64 = 9.0;
+/// How long the disturbances last, s; in the last 3 s the grip changes.
+const DISTURB_S: f64 = 13.0;
+
+fn entry(keys: &[(&str, f64)]) -> Value {
+    Value::Table(keys.iter().map(|&(key, value)| (key.to_owned(), Value::from(value))).collect())
+}
+
+fn put(scene: &mut Table, section: &str, key: &str, value: Value) {
+    let section = scene.entry(section).or_insert_with(|| Value::Table(Table::new()));
+    if let Value::Table(section) = section {
+        section.insert(key.to_owned(), value);
+    }
+}
