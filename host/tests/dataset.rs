@@ -43,7 +43,9 @@ fn a_small_one_is_what_its_manifest_says() {
         assert!(slips > all / 50 && slips < all / 2, "{slips} of {all} in {split}");
     }
     assert!(rows.iter().filter(|row| row[3].ends_with("-disturb")).all(|row| &row[5] == "0"));
-    assert!(rows.iter().flat_map(|row| row.iter().skip(6)).all(|sample| sample.parse::<u16>().unwrap() <= 16_380));
+    assert!(
+        rows.iter().flat_map(|row| row.iter().skip(6)).all(|sample| sample.parse::<u16>().unwrap() <= 16_380)
+    );
     // The marker sees the same slips, through a camera.
     assert!(manifest.marker_agrees_percent > 90.0, "{} %", manifest.marker_agrees_percent);
 }

@@ -14,7 +14,7 @@ use crate::dataset::{Dataset, Label, Plan};
 
 const EXAMPLES: &str = "\
 Examples:
-  tenax dataset                                    out/array.csv and out/array.toml, the ones that are trained on
+  tenax dataset                                    out/array_dataset.csv, and its manifest beside it
   tenax dataset --sessions 12 --out more.csv       three times as much
   tenax dataset --label marker --out marker.csv    labelled by the marker's moving averages, as in the paper";
 
@@ -32,7 +32,7 @@ pub struct Args {
     #[arg(long, value_enum, default_value_t = Label::Truth)]
     label: Label,
     /// The data's file; its manifest goes beside it, as .toml
-    #[arg(long, value_name = "FILE.csv", default_value = "out/array.csv")]
+    #[arg(long, value_name = "FILE.csv", default_value = "out/array_dataset.csv")]
     out: PathBuf,
 }
 
@@ -41,7 +41,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         bail!("--sessions must be at least 1");
     }
     let Some(file) = args.out.file_name().map(|name| name.to_string_lossy().into_owned()) else {
-        bail!("--out needs a file name, such as out/array.csv");
+        bail!("--out needs a file name, such as out/array_dataset.csv");
     };
     if args.out.extension().is_some_and(|extension| extension == "toml") {
         bail!("--out is the data's file, a .csv; the manifest goes beside it as .toml");
