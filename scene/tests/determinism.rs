@@ -40,7 +40,7 @@ fn the_bytes_are_those_of_every_other_build() {
     ];
     assert_eq!(
         sums,
-        [0x1379_32f4_0a69_f0aa, 0xd847_ff0c_0c13_5a73, 0x2dcc_a3bc_adc1_1197, 0xd615_3a5d_962f_5c1d],
+        [0x1986_8064_f454_06fc, 0x92da_3e28_3f0e_3bd3, 0x9d37_4aa1_1834_fc35, 0x1d4c_9f18_dbfd_d9c9],
         "{sums:#018x?}"
     );
 }

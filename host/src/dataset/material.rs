@@ -30,7 +30,7 @@ pub const SEEN: [Material; 4] = [
         mu_d: 0.54,
         mu_per_decade: 0.08,
         pitch_mm: 0.8,
-        uneven: 0.020,
+        uneven: 0.03,
         stiffness_n_per_mm: 4.0,
     },
     // Fibres: it lets go with a jerk. A wall of paper gives.
@@ -40,7 +40,7 @@ pub const SEEN: [Material; 4] = [
         mu_d: 0.48,
         mu_per_decade: 0.06,
         pitch_mm: 0.4,
-        uneven: 0.030,
+        uneven: 0.04,
         stiffness_n_per_mm: 2.0,
     },
     // Ra 0.8 um (SCENES.md): smooth, hard and slippery, and the one that Bamshad's detector was weakest on (figure 9).
@@ -50,7 +50,7 @@ pub const SEEN: [Material; 4] = [
         mu_d: 0.39,
         mu_per_decade: 0.07,
         pitch_mm: 0.3,
-        uneven: 0.010,
+        uneven: 0.015,
         stiffness_n_per_mm: 8.0,
     },
     // Prosthesis, section 5: Ft/Fn peaks at about 0.5 on raw wood. Grain.
@@ -60,7 +60,7 @@ pub const SEEN: [Material; 4] = [
         mu_d: 0.43,
         mu_per_decade: 0.05,
         pitch_mm: 1.0,
-        uneven: 0.050,
+        uneven: 0.06,
         stiffness_n_per_mm: 6.0,
     },
 ];
@@ -72,6 +72,6 @@ pub const HELD_OUT: Material = Material {
     mu_d: 0.40,
     mu_per_decade: 0.06,
     pitch_mm: 0.6,
-    uneven: 0.035,
+    uneven: 0.045,
     stiffness_n_per_mm: 2.5,
 };

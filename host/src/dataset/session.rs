@@ -109,7 +109,7 @@ impl Session {
             hang_mm: round(6.0, 20.0),
             mv_per_n: round(160.0, 240.0),
             spread: round(0.05, 0.25),
-            noise_mv: round(0.6, 1.6),
+            noise_mv: round(0.2, 0.6),
             name,
             split,
             material: material.name,

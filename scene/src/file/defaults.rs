@@ -133,7 +133,7 @@ impl Default for Array {
             motor_part: Part::of(0.003),
             place_mm: Lever::of(0.0),
             specimen: None,
-            noise_mv: Millivolts::of(2.0),
+            noise_mv: Millivolts::of(0.5),
         }
     }
 }

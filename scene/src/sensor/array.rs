@@ -22,6 +22,9 @@ const FORGETS_S: f64 = 0.030;
 const SPREADS: f64 = 1.4;
 /// The least share of the load that an element at the edge of it has, beside one in the middle (assumed).
 const EDGE_PART: f64 = 0.05;
+/// The way over which the contacts under an element are all new ones, m: friction's memory, some tens of micrometres on
+/// polymers (Dieterich and Kilgore 1994); assumed for the cover.
+const RENEWS_M: f64 = 50e-6;
 /// Waves of a surface's unevenness: from one pitch of its texture on, each so many times as long as the last (assumed).
 const WAVES: usize = 5;
 const WAVE_RATIO: f64 = 1.7;
@@ -31,15 +34,13 @@ const WAVE_RATIO: f64 = 1.7;
 /// At rest an element carries what the patch presses on it under the cover, the more the nearer it is to the contact's
 /// middle. The weight that hangs on the pad tilts the load along it and torsion tilts it across the diagonal. What slips
 /// moves load from one element to its neighbours: a ring of the patch that lets go (micro slip) once, an element that
-/// slides again and again, once for each pitch of the texture that passes it at its own speed, and the unevenness of
-/// the surface with it. The sum stays, the covariance changes, which is all that the detector of Bamshad 2023 (section
+/// slides again and again, as its contacts are renewed at its own speed, and the unevenness of the surface with it. The sum stays, the covariance changes, which is all that the detector of Bamshad 2023 (section
 /// 4) has to go by. A knock and the gear press on all of it.
 #[derive(Debug)]
 pub(crate) struct Elements {
     parameters: Array,
     knocks: Vec<Knock>,
     patch_m: f64,
-    pitch_m: f64,
     motor_hz: f64,
     motor_phase: f64,
     elements: [Element; ARRAY_COUNT],
@@ -117,7 +118,6 @@ impl Elements {
             parameters: parameters.clone(),
             knocks: scene.knock.clone(),
             patch_m,
-            pitch_m,
             motor_hz: scene.pvdf.motor_hz.get(),
             motor_phase: 0.0,
             elements,
@@ -190,8 +190,8 @@ impl Elements {
             }
             let by_m = rub_m_s(touch, element, self.patch_m) * FRAME_S;
             element.travel_m += by_m;
-            // Each pitch that passes deals the load out anew.
-            let keeps = libm::exp(-by_m / self.pitch_m);
+            // New contacts deal the load out anew.
+            let keeps = libm::exp(-by_m / RENEWS_M);
             let dealt_n = part * touch.drop_n * element.part * (1.0 - keeps * keeps).sqrt();
             element.moved_n = keeps * element.moved_n + dealt_n * self.slips.normal();
         }
