@@ -1,0 +1,45 @@
+//! Equations 1 to 4 and the transform, from the readings of the whole window, in `f64` and `i64`.
+
+use std::f64::consts::PI;
+
+use tenax_hal_shim::channel::{ARRAY, CHANNELS, sample_from_mv};
+use tenax_logic::array::{BINS, COVARIANCE_WINDOW, COVARIANCES, ELEMENTS, SPECTRUM_WINDOW};
+
+/// Full scale of a difference, samples.
+const D_MAX: i64 = 1 << 13;
+
+/// The covariances of the last `COVARIANCE_WINDOW` differences, samples^2.
+pub fn covariances(readings: &[[u16; ELEMENTS]]) -> [i64; COVARIANCES] {
+    let last = &readings[readings.len() - COVARIANCE_WINDOW - 1..];
+    let difference = |frame: usize, element: usize| {
+        let change = i64::from(last[frame + 1][element]) - i64::from(last[frame][element]);
+        change.clamp(-D_MAX, D_MAX - 1)
+    };
+    let entry = |(a, b): (usize, usize)| {
+        (0..COVARIANCE_WINDOW).map(|frame| difference(frame, a) * difference(frame, b)).sum()
+    };
+    let pairs: Vec<_> = (0..ELEMENTS).flat_map(|a| (a..ELEMENTS).map(move |b| (a, b))).collect();
+    std::array::from_fn(|n| entry(pairs[n]))
+}
+
+/// Magnitudes of the transform of the last `SPECTRUM_WINDOW` sums above rest, samples.
+pub fn magnitudes(readings: &[[u16; ELEMENTS]]) -> [f64; BINS] {
+    let rest = f64::from(sample_from_mv(CHANNELS[ARRAY].rest_mv));
+    let last = &readings[readings.len() - SPECTRUM_WINDOW..];
+    let sums: Vec<f64> = last.iter().map(|r| r.iter().map(|&x| f64::from(x) - rest).sum()).collect();
+    std::array::from_fn(|bin| {
+        let part = |wave: fn(f64) -> f64| -> f64 {
+            let angle = |n: usize| 2.0 * PI * (n * bin) as f64 / SPECTRUM_WINDOW as f64;
+            sums.iter().enumerate().map(|(n, sum)| sum * wave(angle(n))).sum()
+        };
+        part(f64::cos).hypot(part(f64::sin))
+    })
+}
+
+/// `log2(1 + x / knee)` as straight lines between powers of two of `x + knee` in units of the knee, which has to be a
+/// power of two itself, in units of 2^-9.
+pub fn compressed(x: f64, knee: u32) -> f64 {
+    let ratio = 1.0 + x / f64::from(knee);
+    let whole = ratio.log2().floor();
+    512.0 * (whole + ratio / whole.exp2() - 1.0)
+}
