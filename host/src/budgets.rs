@@ -17,6 +17,14 @@ pub struct Budgets {
     pub tick_instructions_mean: u64,
     /// A tick's instructions, worst.
     pub tick_instructions_max: u64,
+    /// The array's sliding covariance, a slow frame.
+    pub array_covariance_instructions: u64,
+    /// Its sliding spectrum.
+    pub array_spectrum_instructions: u64,
+    /// A network of 76-32-16-1.
+    pub array_network_instructions: u64,
+    /// All that the array costs in a slow frame.
+    pub array_slow_frame_instructions: u64,
 }
 
 impl Budgets {

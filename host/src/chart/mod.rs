@@ -1,7 +1,9 @@
 //! The charts of `tenax chart scenes`: where each way of stepping friction fails, and what it costs where it does not.
-//! And of `tenax chart sensors`: the scenes' sensors beside real ones.
+//! And of `tenax chart sensors`: the scenes' sensors beside real ones. And of `tenax chart detectors`: what detectors from
+//! normal force get wrong against what they cost.
 
 mod cost;
+pub mod detectors;
 mod draw;
 mod growth;
 mod map;

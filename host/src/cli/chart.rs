@@ -1,7 +1,7 @@
 //! `tenax chart`: the charts behind the pages in `docs/`.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
 
@@ -22,6 +22,9 @@ pub struct Args {
     /// Where they are written: SVG, PNG and CSV
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
+    /// The detectors' scores [default: docs/figures/detectors.csv, which `tenax train` writes]
+    #[arg(long, value_name = "CSV")]
+    scores: Option<PathBuf>,
     /// Where the recordings are [default: shared/data beside the checkout]
     #[arg(long, value_name = "DIR")]
     recordings: Option<PathBuf>,
@@ -33,6 +36,8 @@ enum Subject {
     Scenes,
     /// What the scenes' sensors say at the onset of slip, beside real recordings where they are present
     Sensors,
+    /// What detectors from normal force get wrong against the instructions that they take
+    Detectors,
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
@@ -45,6 +50,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             };
             vec![chart::sensors::chart(&recordings)?]
         }
+        Subject::Detectors => vec![detectors(args.scores.as_deref())?],
     };
     fs::create_dir_all(&args.out).with_context(|| format!("cannot make {}", args.out.display()))?;
     for chart in charts {
@@ -57,6 +63,26 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         }
     }
     Ok(ExitCode::SUCCESS)
+}
+
+#[cfg(feature = "emulator")]
+fn detectors(scores: Option<&Path>) -> anyhow::Result<chart::Chart> {
+    let root = workspace::root()?;
+    let scores = scores.map_or_else(|| root.join("docs/figures/detectors.csv"), Path::to_owned);
+    let table = fs::read_to_string(&scores)
+        .with_context(|| format!("cannot read the detectors' scores {}", scores.display()))?;
+    let image = crate::image::build_kernels(&root)?;
+    let costs = crate::board::emulated::kernels::costs(&image)?;
+    let instructions = costs.into_iter().map(|cost| (cost.name, cost.most)).collect();
+    chart::detectors::chart(&table, &instructions)
+}
+
+#[cfg(not(feature = "emulator"))]
+fn detectors(_scores: Option<&Path>) -> anyhow::Result<chart::Chart> {
+    anyhow::bail!(
+        "instructions are counted on the emulated board, and this `tenax` was built without it: use `cargo tenax chart \
+         detectors` in a checkout"
+    )
 }
 
 fn scenes() -> anyhow::Result<Vec<chart::Chart>> {

@@ -1,5 +1,6 @@
 //! `tenax size`: what the image takes of the chip, beside its budgets.
 
+use std::path::Path;
 use std::process::ExitCode;
 
 use super::progress::Progress;
@@ -38,9 +39,33 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         instructions("tick, mean", mean, budgets.tick_instructions_mean),
         instructions("tick, worst", report.ticks.instructions_max, budgets.tick_instructions_max),
     ];
-    for line in &lines {
+    let array = array_costs(&root)?;
+    let of_array = |what, name: &str, budget| {
+        instructions(what, array.iter().find(|(own, _)| own == name).map(|(_, most)| *most), budget)
+    };
+    let array_lines = [
+        of_array("array covariance", "covariance", budgets.array_covariance_instructions),
+        of_array("array spectrum", "spectrum", budgets.array_spectrum_instructions),
+        of_array("76-32-16-1", "mlp_8_1", budgets.array_network_instructions),
+        of_array("array, all of it", "slow_frame", budgets.array_slow_frame_instructions),
+    ];
+    let lines = || lines.iter().chain(&array_lines);
+    for line in lines() {
         println!("{line}");
     }
-    let kept = lines.iter().all(Line::is_kept);
+    let kept = lines().all(Line::is_kept);
     Ok(if kept || !args.check { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// What each kernel of the array detector costs at its worst.
+#[cfg(feature = "emulator")]
+fn array_costs(root: &Path) -> anyhow::Result<Vec<(String, u64)>> {
+    let costs = crate::board::emulated::kernels::costs(&image::build_kernels(root)?)?;
+    Ok(costs.into_iter().map(|cost| (cost.name, cost.most)).collect())
+}
+
+/// Not measured: there is no core to count on.
+#[cfg(not(feature = "emulator"))]
+fn array_costs(_root: &Path) -> anyhow::Result<Vec<(String, u64)>> {
+    Ok(Vec::new())
 }

@@ -12,6 +12,8 @@ use std::path::Path;
 use std::sync::mpsc;
 
 use anyhow::{Context, Result, anyhow, bail};
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
 use rigless::emulator::{self, Finished, Start, Watch};
 use rigless::image::Image;
 use rigless::session::Session;
@@ -106,6 +108,20 @@ pub fn run(
         bail!("the kernels' image stopped at reading {}: has it panicked?", bench.answered());
     }
     Ok(bench.into_outcome())
+}
+
+/// Every kernel's cost on the readings of a hand that holds something: noise, and now and then a slip.
+///
+/// # Errors
+/// As [`run`].
+pub fn costs(image: &Path) -> Result<Vec<Cost>> {
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    let mut reading = |n: usize| -> Reading {
+        let spread = if n / 40 % 2 == 0 { 5 } else { 200 };
+        std::array::from_fn(|_| Some(2_000 + random.random_range(0..spread)))
+    };
+    let readings = (0..400).map(&mut reading).collect();
+    Ok(run(image, &[readings], Kernels::All, &mut |_| {})?.costs)
 }
 
 fn execute(images: &[Image], symbols: &KernelSymbols, bench: Bench) -> Result<Finished<Nucleo, Bench>> {

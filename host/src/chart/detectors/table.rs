@@ -1,0 +1,106 @@
+//! The table of scores, and the kernel that belongs to each of its lines.
+
+use std::collections::BTreeMap;
+
+use anyhow::{Context, Result, ensure};
+use serde::Deserialize;
+
+/// One line of the table.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+pub struct Row {
+    /// `mlp` (76-32-16-1), `queue` (the same on queued features, 380-32-16-1), `logistic`, `svm` (linear), `lstm`,
+    /// `lstm-autoencoder` (16 cells).
+    pub classifier: String,
+    /// `float`, `16` or `8`: its weights.
+    pub precision: String,
+    /// Differences in the covariance and samples in the spectrum: `10/40`, `5/20` or `1/10`.
+    pub window: String,
+    /// Slow frames that it sees at once: 1 is none but the present.
+    pub lookback: u32,
+    /// Part of all steps that it gets right, 0 to 1.
+    pub accuracy: f64,
+    /// Steps of slip that it missed.
+    pub missed: u64,
+    /// Steps without slip that it took for slip.
+    #[serde(rename = "false")]
+    pub false_alarms: u64,
+    /// Whether it is the one that is shipped: `true`, else empty. The column may be missing.
+    #[serde(default, deserialize_with = "yes")]
+    pub shipped: bool,
+}
+
+/// `true`; anything else is no.
+fn yes<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<bool, D::Error> {
+    Ok(String::deserialize(deserializer)? == "true")
+}
+
+impl Row {
+    /// What tells it from its classifier's others.
+    pub fn variant(&self) -> String {
+        let mut variant =
+            if self.precision == "float" { "float".to_owned() } else { format!("{} bit", self.precision) };
+        if self.lookback > 1 {
+            variant += &format!(", look-back {}", self.lookback);
+        }
+        if self.window != "10/40" {
+            variant += &format!(", {}", self.window);
+        }
+        variant
+    }
+
+    /// The kernels that it takes.
+    fn kernels(&self) -> Vec<String> {
+        if self.shipped {
+            return vec!["slow_frame".to_owned()];
+        }
+        let classifier = match self.classifier.as_str() {
+            // One weighted sum each.
+            "svm" => "logistic",
+            // An encoder is an LSTM; the decoder is only for training.
+            "lstm-autoencoder" => "lstm",
+            other => other,
+        };
+        vec![
+            format!("features_{}", self.window.replace('/', "_")),
+            format!("{classifier}_{}_{}", self.precision, self.lookback),
+        ]
+    }
+}
+
+/// A line and what it costs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// The line.
+    pub row: Row,
+    /// Of a slow frame.
+    pub instructions: u64,
+}
+
+impl Measured {
+    /// Steps wrong, %.
+    pub fn wrong_percent(&self) -> f64 {
+        100.0 * (1.0 - self.row.accuracy)
+    }
+}
+
+/// Reads the table and adds up what each of its lines takes.
+pub fn read(table: &str, instructions: &BTreeMap<String, u64>) -> Result<Vec<Measured>> {
+    let mut reader = csv::Reader::from_reader(table.as_bytes());
+    let mut all = Vec::new();
+    for (n, row) in reader.deserialize().enumerate() {
+        let line = n + 2;
+        let row: Row = row.with_context(|| format!("line {line} of the detectors' table"))?;
+        let is_part = (0.0..=1.0).contains(&row.accuracy);
+        ensure!(is_part, "line {line}: the accuracy is a part of all steps, 0 to 1, not {}", row.accuracy);
+        let mut sum = 0;
+        for kernel in row.kernels() {
+            sum += instructions.get(&kernel).with_context(|| {
+                let known: Vec<&str> = instructions.keys().map(String::as_str).collect();
+                format!("line {line}: the kernels' image has no `{kernel}`, only {}", known.join(", "))
+            })?;
+        }
+        all.push(Measured { row, instructions: sum });
+    }
+    ensure!(!all.is_empty(), "the detectors' table is empty: `tenax train` writes it");
+    Ok(all)
+}
