@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 use crate::channel::{COUNT, FRAMES_PER_SLOW_FRAME, PVDF_COUNT, STRAIN_COUNT};
 use crate::motor::MotorDrive;
-use crate::words::{Cause, Codes, DriveSource, Fault, GripMode, NoLesson};
+use crate::words::{Cause, Codes, DriveSource, Fault, GripMode, Kept, NoLesson};
 
 /// The version of every message below. A receiver refuses frames of another.
 pub const VERSION: u8 = 2;
@@ -205,6 +205,13 @@ pub enum Up {
     },
     /// The network, on request.
     Network(NetworkState),
+    /// This outlives a power cut from now on.
+    Saved {
+        /// Sequence number of the last frame before.
+        frame: u32,
+        /// What.
+        kept: Kept,
+    },
 }
 
 /// A number that can be set from outside.
@@ -279,6 +286,8 @@ pub enum Down {
     Network,
     /// Forget all that the network has learned.
     Forget,
+    /// Save what the network has learned now, and not when nothing moves any more.
+    Save,
 }
 
 /// A frame's contents.

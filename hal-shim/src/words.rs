@@ -124,6 +124,12 @@ pub enum Fault {
         /// Index in [`CHANNELS`](crate::channel::CHANNELS).
         channel: u8,
     },
+    /// The newest record of this is damaged, or power was lost while it was saved. The one before is used, or the default.
+    RecordDamaged(Kept),
+    /// There is no room to save this. The next start makes room; until then the hand works on and forgets.
+    StoreFull(Kept),
+    /// The flash did not take this: it is worn, or protected.
+    StoreFailed(Kept),
 }
 
 /// What a teacher says about one output of the network (Tada 2006, equations 1 and 2).
@@ -178,4 +184,20 @@ pub enum NoLesson {
     NoGrasp,
     /// The receptors feel something else: the reflex or the wearer moves the hand, or something knocks at it.
     Disturbed,
+}
+
+/// What outlives a power cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Kept {
+    /// What the network learned.
+    Network,
+    /// The force sensor's zero.
+    Zero,
+    /// What was set from outside, or measured by a stroke.
+    Settings,
+}
+
+impl Kept {
+    /// All of it.
+    pub const ALL: [Self; 3] = [Self::Network, Self::Zero, Self::Settings];
 }

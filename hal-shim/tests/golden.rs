@@ -7,7 +7,7 @@ use tenax_hal_shim::wire::{
     Counters, Down, Event, EventKind, FRAME_MAX, Forces, NetworkState, Receiver, Refusal, Setting, Slow,
     TickRecord, Up, VERSION, encode,
 };
-use tenax_hal_shim::words::{Capability, Cause, Code, DriveSource, Fault, GripMode, NoLesson, Reason};
+use tenax_hal_shim::words::{Capability, Cause, Code, DriveSource, Fault, GripMode, Kept, NoLesson, Reason};
 
 fn check<T>(message: &T, golden: &str)
 where
@@ -40,6 +40,7 @@ fn down() {
     check(&Down::Teach { codes: [Code::Minus, Code::Plus], age_ms: 40 }, "0502b424060702285483019d00");
     check(&Down::Network, "0902b424075e35962600");
     check(&Down::Forget, "0902b42408cf2829b600");
+    check(&Down::Save, "0902b4240959182ec100");
     check(&Down::Set(Setting::NetworkSlipPermille(400)), "0c02b4240204900307ada1fa00");
 }
 
@@ -80,6 +81,9 @@ fn up() {
         (Fault::SensorLost { channel: 38, reason: Reason::Dead }, "0702b4240232010226055657fa4c00"),
         (Fault::CapabilityLost(Capability::WearerIntent), "0d02b424023201020254fe189200"),
         (Fault::PressedAtBoot { channel: 24 }, "0d02b42402320107186bf30d1200"),
+        (Fault::RecordDamaged(Kept::Zero), "0d02b42402320108016447fef100"),
+        (Fault::StoreFull(Kept::Network), "0802b4240232010905b346e29f00"),
+        (Fault::StoreFailed(Kept::Settings), "0d02b4240232010a025c74c15a00"),
     ] {
         check(&Up::Event(Event { frame: 50, kind: EventKind::Fault(kind) }), golden);
     }
@@ -103,6 +107,7 @@ fn up() {
         &Up::Network(network),
         "d002b424064a020202020202020202020202020202020202020202020202ffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7fffffff7f808002808002808002808002808002808002808002808002808002808002808002808002808002808002808002808002808002808002808002808002808002808002808002808002e807012801018c9526f100",
     );
+    check(&Up::Saved { frame: 74, kept: Kept::Settings }, "0b02b424074a023346cad700");
     let mut samples = [8_190; COUNT];
     samples[0] = 1;
     check(

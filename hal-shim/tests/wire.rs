@@ -14,6 +14,7 @@ fn down() -> impl Strategy<Value = Down> {
         Just(Down::Zero),
         Just(Down::Samples),
         Just(Down::Network),
+        Just(Down::Save),
         any::<u16>().prop_map(|age_ms| Down::Teach { codes: [Code::Minus, Code::Plus], age_ms }),
         any::<bool>().prop_map(Down::Stroke),
         any::<u16>().prop_map(|mv| Down::Set(Setting::S1Mv(mv))),

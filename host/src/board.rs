@@ -8,7 +8,7 @@ pub mod simulated;
 use tenax_hal_shim::frame::Scan;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Counters, Event, NetworkState, Refusal, Slow};
-use tenax_hal_shim::words::Fault;
+use tenax_hal_shim::words::{Fault, Kept};
 
 /// What the core spent, in instructions of the emulated Cortex-M4.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,6 +44,8 @@ pub struct Run {
     pub networks: Vec<NetworkState>,
     /// Commands that were answered: the sequence number of each, and why it was not carried out.
     pub acks: Vec<(u16, Option<Refusal>)>,
+    /// What was saved, with the sequence number of the last frame before.
+    pub saved: Vec<(u32, Kept)>,
     /// Why the board started, each time it did.
     pub starts: Vec<Option<Fault>>,
     /// The last counters.
@@ -58,4 +60,15 @@ pub struct Run {
     pub tick_cost: Option<TickCost>,
     /// The deepest that the stack was, bytes. None where it cannot be measured.
     pub stack_bytes: Option<u64>,
+    /// What was done to the flash.
+    pub flash: FlashUse,
+}
+
+/// What was done to the flash.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FlashUse {
+    /// Words programmed.
+    pub words: u64,
+    /// Sectors erased.
+    pub erases: u64,
 }

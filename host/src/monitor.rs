@@ -7,7 +7,7 @@ use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ, mv_from_sample};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{BadFrame, Event, EventKind, NetworkState, Receiver, Slow, Up, VERSION};
 
-use crate::report::in_words;
+use crate::report::{in_words, kept_in_words};
 
 /// What has been heard so far.
 #[derive(Debug, Default)]
@@ -137,6 +137,9 @@ impl Display for Words<'_> {
             Up::Ack { of, refused: None } => write!(f, "done: command {of}"),
             Up::Ack { of, refused: Some(refusal) } => write!(f, "refused: command {of}: {refusal:?}"),
             Up::Network(network) => network_words(f, network),
+            Up::Saved { frame, kept } => {
+                write!(f, "{:10.4} s saved: {}", seconds(*frame), kept_in_words(*kept))
+            }
             Up::Samples { frame, samples } => {
                 write!(f, "{:10.4} s samples, mV:", seconds(*frame))?;
                 for (channel, &sample) in CHANNELS.iter().zip(samples) {

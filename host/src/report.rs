@@ -10,7 +10,7 @@ pub mod wearer;
 use serde::Serialize;
 use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ};
 use tenax_hal_shim::wire::EventKind;
-use tenax_hal_shim::words::Fault;
+use tenax_hal_shim::words::{Fault, Kept};
 
 use crate::board::Run;
 use crate::timeline::Timeline;
@@ -215,5 +215,22 @@ pub fn in_words(fault: &Fault) -> String {
         Fault::PressedAtBoot { channel } => format!("{} was loaded when the board started", name(channel)),
         Fault::WatchdogReset => "restarted by the watchdog".to_owned(),
         Fault::PanicReset => "restarted after a panic".to_owned(),
+        Fault::RecordDamaged(kept) => {
+            format!("the last {} to be saved are lost; older ones are used", kept_in_words(kept))
+        }
+        Fault::StoreFull(kept) => {
+            format!("no room to save {}: switch the hand off and on again", kept_in_words(kept))
+        }
+        Fault::StoreFailed(kept) => format!("the flash did not take {}", kept_in_words(kept)),
+    }
+}
+
+/// What is kept, for a person.
+#[must_use]
+pub const fn kept_in_words(kept: Kept) -> &'static str {
+    match kept {
+        Kept::Network => "the network's weights",
+        Kept::Zero => "the force sensor's zeros",
+        Kept::Settings => "the settings",
     }
 }

@@ -9,7 +9,7 @@ use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{
     DRIVE_HOLD_MAX_MS, Down, Event, EventKind, NetworkState, Refusal, Setting, Slow, TickRecord,
 };
-use tenax_hal_shim::words::{Cause, GripMode};
+use tenax_hal_shim::words::{Cause, Fault, GripMode, Kept};
 
 use crate::arbiter::{Wishes, arbitrate};
 use crate::config::{Config, frames};
@@ -19,6 +19,9 @@ use crate::hebbian::Situation;
 use crate::journal::Journal;
 use crate::mode;
 use crate::senses::Senses;
+use crate::store::keeper::{Keeper, Now};
+use crate::store::payload;
+use crate::store::record::Record;
 use crate::touch::{Felt, Touch};
 
 /// A stroke that nobody ends is over after this long, in frames: a lost link must not leave the reflex silent.
@@ -52,6 +55,7 @@ pub struct Fingertip {
     link: Option<LinkDrive>,
     journal: Journal,
     slow: Option<Slow>,
+    save_asked: bool,
 }
 
 impl Fingertip {
@@ -59,6 +63,59 @@ impl Fingertip {
     #[must_use]
     pub fn new(config: Config) -> Self {
         Self { config, ..Self::default() }
+    }
+
+    /// Takes up what was kept through a power cut, before the first tick. What it cannot use it reports; the defaults stay.
+    #[inline(never)]
+    pub fn restore(&mut self, kept: Kept, payload: &[u8]) {
+        let restored = match kept {
+            Kept::Network => self.touch.restore(payload).is_ok(),
+            Kept::Zero => {
+                let zero_uv = payload::zero(payload);
+                zero_uv.map(|zero_uv| self.senses.force_sensor_mut().restore_zero(zero_uv)).is_some()
+            }
+            Kept::Settings => payload::restore_settings(&mut self.config, payload),
+        };
+        if !restored {
+            self.report(Fault::RecordDamaged(kept));
+        }
+    }
+
+    /// One who sees to it that changes are saved, from what there is now.
+    #[must_use]
+    pub fn keeper(&self) -> Keeper {
+        Keeper::new(&self.now())
+    }
+
+    /// What has to be kept and is not yet, one thing at a time; ask now and then. Who asks sees to it that it is saved: it
+    /// is given once.
+    #[inline(never)]
+    pub fn next_record(&mut self, keeper: &mut Keeper) -> Option<Record> {
+        let now = self.now();
+        Some(match keeper.next(&now)? {
+            Kept::Network => {
+                self.save_asked = false;
+                Record::Network(self.touch.learned())
+            }
+            Kept::Zero => Record::Zero(now.zero),
+            Kept::Settings => Record::Settings(now.settings),
+        })
+    }
+
+    /// What there is to keep.
+    fn now(&self) -> Now {
+        Now {
+            settings: payload::of_settings(&self.config),
+            zero: payload::of_zero(self.senses.force_sensor().zero_uv()),
+            updates: self.touch.updates(),
+            at_rest: self.is_at_rest(),
+            asked: self.save_asked,
+        }
+    }
+
+    /// Tells of something that went wrong outside.
+    pub fn report(&mut self, fault: Fault) {
+        self.journal.fault(fault);
     }
 
     /// Takes one frame, decides, and says how to drive the motor until the next.
@@ -111,6 +168,12 @@ impl Fingertip {
             }
             Down::Forget => {
                 self.touch.forget();
+                // What is forgotten does not come back with the power.
+                self.save_asked = true;
+                Ok(())
+            }
+            Down::Save => {
+                self.save_asked = true;
                 Ok(())
             }
             Down::Zero if self.senses.forces.is_none() => Err(Refusal::SensorLost),
@@ -150,6 +213,12 @@ impl Fingertip {
     #[must_use]
     pub fn network(&self) -> NetworkState {
         self.touch.state(self.journal.frame())
+    }
+
+    /// Nobody moves the hand and nobody teaches.
+    fn is_at_rest(&self) -> bool {
+        let listening = matches!(self.mode, GripMode::Standby | GripMode::Watch);
+        listening && !self.senses.gate.is_active() && self.link.is_none() && self.touch.lesson().is_err()
     }
 
     fn sense(&mut self, frame: &Frame) {

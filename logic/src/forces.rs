@@ -42,6 +42,17 @@ impl ForceSensor {
         }
         unloaded
     }
+
+    /// The zeros, uV above rest.
+    #[must_use]
+    pub const fn zero_uv(&self) -> &[i32; FSR_COUNT] {
+        &self.zero_uv
+    }
+
+    /// Takes up zeros that were taken before, none further than [`ZERO_LIMIT_UV`].
+    pub const fn restore_zero(&mut self, zero_uv: [i32; FSR_COUNT]) {
+        self.zero_uv = zero_uv;
+    }
 }
 
 /// The paper's formulas on quadrant forces in mN, below 24 000 each: sums stay below 2^17, squares below 2^34.

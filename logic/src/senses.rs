@@ -118,6 +118,17 @@ impl Senses {
         unloaded
     }
 
+    /// The force sensor.
+    #[must_use]
+    pub const fn force_sensor(&self) -> &ForceSensor {
+        &self.force_sensor
+    }
+
+    /// The force sensor, to take up a zero that was kept.
+    pub const fn force_sensor_mut(&mut self) -> &mut ForceSensor {
+        &mut self.force_sensor
+    }
+
     /// Each film's envelope in the slip band, Q16 samples.
     #[must_use]
     pub const fn envelopes(&self) -> &[i32; PVDF_COUNT] {

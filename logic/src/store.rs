@@ -14,18 +14,21 @@
 //!
 //! # Wear
 //! A record takes its payload and [`OVERHEAD_WORDS`](record::OVERHEAD_WORDS) words. Of 128 KiB sectors at least half is
-//! filled between two erases, so the network's 78 words are saved 210 times for one erase, settings (8 words) 2 000
+//! filled between two erases, so the network's 78 words are saved 210 times for one erase, settings (9 words) 1 800
 //! times. The chip's 10 000 erases of each of two sectors (DS10314, flash memory endurance) are 4.2 million saves of the
 //! network: eight years of one a minute, day and night.
 //!
 //! The crate `sequential-storage` does most of this, but erases whenever a page is full.
 
+pub mod keeper;
+pub mod payload;
 pub mod record;
 mod sector;
 
 use tenax_hal_shim::flash::{FlashArea, FlashFailed, Sector};
+use tenax_hal_shim::words::Kept;
 
-use record::{Kind, Saving, Tag};
+use record::{Saving, Tag};
 use sector::{Entry, OPENING_WORDS, Survey};
 
 /// Where the next record goes.
@@ -54,23 +57,23 @@ pub enum Refused {
 /// What [`open`] found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Found {
-    newest: [Option<Entry>; Kind::ALL.len()],
-    damaged: [bool; Kind::ALL.len()],
+    newest: [Option<Entry>; Kept::ALL.len()],
+    damaged: [bool; Kept::ALL.len()],
     /// How often a sector has been erased to make room, less one: each sector has had half of it.
     pub generation: u32,
 }
 
 impl Found {
-    /// The newest whole record of `kind`, read into `buffer`. None if there is none, or it is longer than `buffer`.
-    pub fn read<'a>(&self, area: &impl FlashArea, kind: Kind, buffer: &'a mut [u8]) -> Option<&'a [u8]> {
-        let entry = self.newest[kind.index()]?;
+    /// The newest whole record of `kept`, read into `buffer`. None if there is none, or it is longer than `buffer`.
+    pub fn read<'a>(&self, area: &impl FlashArea, kept: Kept, buffer: &'a mut [u8]) -> Option<&'a [u8]> {
+        let entry = self.newest[kept as usize]?;
         entry.read(area, buffer)
     }
 
-    /// Whether a later record of `kind` than the one that counts is damaged, or was not finished.
+    /// Whether a later record of `kept` than the one that counts is damaged, or was not finished.
     #[must_use]
-    pub const fn is_damaged(&self, kind: Kind) -> bool {
-        self.damaged[kind.index()]
+    pub const fn is_damaged(&self, kept: Kept) -> bool {
+        self.damaged[kept as usize]
     }
 }
 
@@ -108,12 +111,13 @@ impl Log {
     ///
     /// # Errors
     /// Says why it is not saved.
-    pub fn begin<'a>(&mut self, kind: Kind, payload: &'a [u8]) -> Result<Saving<'a>, Refused> {
+    pub fn begin<'a>(&mut self, kept: Kept, payload: &'a [u8]) -> Result<Saving<'a>, Refused> {
         if self.failed {
             return Err(Refused::Failed);
         }
         let (words, rest) = payload.as_chunks::<4>();
-        let tag = Tag::new(kind.number(), words.len()).filter(|_| rest.is_empty()).ok_or(Refused::Length)?;
+        let tag =
+            Tag::new(record::number(kept), words.len()).filter(|_| rest.is_empty()).ok_or(Refused::Length)?;
         let after = self.end + tag.record_words();
         if after > self.limit {
             return Err(Refused::Full);

@@ -19,6 +19,8 @@ use crate::hebbian::{
     Activations, FingertipNetwork, Normaliser, NormaliserConfig, Output, Sense, Situation, Teacher, snapshot,
 };
 
+/// All that was learned.
+pub type Learned = snapshot::Contents<RECEPTORS, NETWORK_OUTPUTS>;
 /// Bytes of a saved network.
 pub const SNAPSHOT_LENGTH: usize = snapshot::length(RECEPTORS, NETWORK_OUTPUTS);
 
@@ -26,7 +28,7 @@ pub const SNAPSHOT_LENGTH: usize = snapshot::length(RECEPTORS, NETWORK_OUTPUTS);
 const ENVELOPE_SHIFT: u32 = 12;
 
 /// How readings become activations. Both kinds are samples (14 bits) with 4 fraction bits.
-static NORMALISER: NormaliserConfig<RECEPTORS> = NormaliserConfig {
+pub static NORMALISER: NormaliserConfig<RECEPTORS> = NormaliserConfig {
     senses: {
         let mut senses = [Sense::Pressure; RECEPTORS];
         let mut film = 0;
@@ -181,6 +183,12 @@ impl Touch {
         self.lesson
     }
 
+    /// Updates of the weights since the start, or since all was forgotten.
+    #[must_use]
+    pub const fn updates(&self) -> u32 {
+        self.updates
+    }
+
     /// Weights, activations and what goes on, for whoever asks.
     #[must_use]
     pub fn state(&self, frame: u32) -> NetworkState {
@@ -194,9 +202,10 @@ impl Touch {
         }
     }
 
-    /// What was learned, as bytes to keep.
-    pub fn save<'a>(&self, buffer: &'a mut [u8; SNAPSHOT_LENGTH]) -> Option<&'a [u8]> {
-        snapshot::save(&self.normaliser, &self.network, buffer)
+    /// What was learned, to keep.
+    #[must_use]
+    pub fn learned(&self) -> Learned {
+        Learned::of(&self.normaliser, &self.network)
     }
 
     /// Takes up what was kept.

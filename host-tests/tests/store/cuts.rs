@@ -1,8 +1,8 @@
 //! A power cut at every operation, and another one at every operation of the boot after it.
 
 use tenax_hal_shim::flash::FlashFailed;
+use tenax_hal_shim::words::Kept;
 use tenax_logic::store::open;
-use tenax_logic::store::record::Kind;
 
 use crate::flash::{HARMS, TestFlash};
 use crate::{numbers, save};
@@ -12,18 +12,18 @@ const SAVES: u32 = 60;
 /// Saves from one boot to the next.
 const SESSION: u32 = 4;
 
-/// What the wearer may count on, of each kind: the last save that was finished, and the one that may or may not have been.
+/// What the wearer may count on, of each kept: the last save that was finished, and the one that may or may not have been.
 #[derive(Clone, Debug, Default)]
 struct Promise {
     finished: [Option<u32>; 3],
-    begun: Option<(Kind, u32)>,
+    begun: Option<(Kept, u32)>,
 }
 
 impl Promise {
     fn holds(&self, found: [Option<u32>; 3]) -> bool {
-        Kind::ALL.into_iter().zip(found).all(|(kind, found)| {
-            found == self.finished[kind as usize]
-                || self.begun.is_some_and(|(begun, n)| begun == kind && found == Some(n))
+        Kept::ALL.into_iter().zip(found).all(|(kept, found)| {
+            found == self.finished[kept as usize]
+                || self.begun.is_some_and(|(begun, n)| begun == kept && found == Some(n))
         })
     }
 }
@@ -43,12 +43,12 @@ fn live(flash: &mut TestFlash) -> (Promise, Result<(), FlashFailed>) {
         if flash.dead {
             return (promise, Err(FlashFailed));
         }
-        let kind = Kind::ALL[(n * n % 3) as usize];
-        promise.begun = Some((kind, n));
-        if save(flash, &mut log, kind, n).is_err() {
+        let kept = Kept::ALL[(n * n % 3) as usize];
+        promise.begun = Some((kept, n));
+        if save(flash, &mut log, kept, n).is_err() {
             return (promise, Err(FlashFailed));
         }
-        promise.finished[kind as usize] = Some(n);
+        promise.finished[kept as usize] = Some(n);
         promise.begun = None;
     }
     (promise, Ok(()))
@@ -84,7 +84,7 @@ fn boot_with_cuts(flash: &TestFlash, promise: &Promise) -> usize {
     assert!(promise.holds(first), "{first:?} for {promise:?}");
     let operations = undisturbed.operations;
     // Life goes on, and what was found is found again.
-    save(&mut undisturbed, &mut log, Kind::Zero, 1_000).expect("power");
+    save(&mut undisturbed, &mut log, Kept::Zero, 1_000).expect("power");
     let (_, found) = open(&mut undisturbed);
     assert_eq!(numbers(&undisturbed, &found), [first[0], Some(1_000), first[2]]);
 
@@ -107,17 +107,17 @@ fn boot_with_cuts(flash: &TestFlash, promise: &Promise) -> usize {
 fn a_record_without_its_last_word_does_not_count() {
     let mut flash = TestFlash::blank(SECTOR_WORDS);
     let (mut log, _) = open(&mut flash);
-    let words = save(&mut flash, &mut log, Kind::Zero, 1).expect("power");
-    let payload = crate::payload(Kind::Zero, 2);
-    let mut saving = log.begin(Kind::Zero, &payload).expect("room");
+    let words = save(&mut flash, &mut log, Kept::Zero, 1).expect("power");
+    let payload = crate::payload(Kept::Zero, 2);
+    let mut saving = log.begin(Kept::Zero, &payload).expect("room");
     for _ in 0..words - 1 {
         assert_eq!(saving.step(&mut flash), Ok(false));
     }
     let (_, before) = open(&mut flash);
     assert_eq!(numbers(&flash, &before), [None, Some(1), None]);
-    assert!(before.is_damaged(Kind::Zero) && !before.is_damaged(Kind::Network));
+    assert!(before.is_damaged(Kept::Zero) && !before.is_damaged(Kept::Network));
     assert_eq!(saving.step(&mut flash), Ok(true));
     let (_, after) = open(&mut flash);
     assert_eq!(numbers(&flash, &after), [None, Some(2), None]);
-    assert!(!after.is_damaged(Kind::Zero));
+    assert!(!after.is_damaged(Kept::Zero));
 }

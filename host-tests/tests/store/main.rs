@@ -1,29 +1,30 @@
 //! The log of what outlives a power cut, against a flash that behaves as flash does.
 
 mod cuts;
+mod fingertip;
 mod flash;
 mod properties;
 
 use tenax_hal_shim::flash::FlashFailed;
-use tenax_logic::store::record::Kind;
+use tenax_hal_shim::words::Kept;
 use tenax_logic::store::{Found, Log, open};
 
 use flash::TestFlash;
 
-/// The payload that save number `n` of `kind` has: no two are alike, and each kind has its length.
-fn payload(kind: Kind, n: u32) -> Vec<u8> {
-    let words = match kind {
-        Kind::Network => 5,
-        Kind::Zero => 2,
-        Kind::Settings => 3,
+/// The payload that save number `n` of `kept` has: no two are alike, and each kept has its length.
+fn payload(kept: Kept, n: u32) -> Vec<u8> {
+    let words = match kept {
+        Kept::Network => 5,
+        Kept::Zero => 2,
+        Kept::Settings => 3,
     };
-    (0..words).flat_map(|word: u32| (n << 8 | word << 4 | kind as u32).to_le_bytes()).collect()
+    (0..words).flat_map(|word: u32| (n << 8 | word << 4 | kept as u32).to_le_bytes()).collect()
 }
 
 /// Programs a whole record; the number of its words. An error if the flash failed on the way.
-fn save(flash: &mut TestFlash, log: &mut Log, kind: Kind, n: u32) -> Result<usize, FlashFailed> {
-    let payload = payload(kind, n);
-    let mut saving = log.begin(kind, &payload).expect("room for it");
+fn save(flash: &mut TestFlash, log: &mut Log, kept: Kept, n: u32) -> Result<usize, FlashFailed> {
+    let payload = payload(kept, n);
+    let mut saving = log.begin(kept, &payload).expect("room for it");
     let mut words = 1;
     while !saving.step(flash)? {
         words += 1;
@@ -31,26 +32,26 @@ fn save(flash: &mut TestFlash, log: &mut Log, kind: Kind, n: u32) -> Result<usiz
     Ok(words)
 }
 
-/// The number of the save of `kind` that is found. Fails if what is found was never saved.
-fn number(flash: &TestFlash, found: &Found, kind: Kind) -> Option<u32> {
+/// The number of the save of `kept` that is found. Fails if what is found was never saved.
+fn number(flash: &TestFlash, found: &Found, kept: Kept) -> Option<u32> {
     let mut buffer = [0; 64];
-    let bytes = found.read(flash, kind, &mut buffer)?;
+    let bytes = found.read(flash, kept, &mut buffer)?;
     let n = u32::from_le_bytes(bytes[..4].try_into().expect("four bytes")) >> 8;
-    assert_eq!(bytes, payload(kind, n), "a record of {kind:?} that nobody saved");
+    assert_eq!(bytes, payload(kept, n), "a record of {kept:?} that nobody saved");
     Some(n)
 }
 
 fn numbers(flash: &TestFlash, found: &Found) -> [Option<u32>; 3] {
-    Kind::ALL.map(|kind| number(flash, found, kind))
+    Kept::ALL.map(|kept| number(flash, found, kept))
 }
 
 #[test]
-fn the_newest_of_each_kind_comes_back_from_a_sector_of_the_chip() {
+fn the_newest_of_each_kept_comes_back_from_a_sector_of_the_chip() {
     let mut flash = TestFlash::blank(128 * 1024 / 4);
     let (mut log, found) = open(&mut flash);
     assert_eq!(numbers(&flash, &found), [None; 3]);
     for n in 0..50 {
-        save(&mut flash, &mut log, Kind::ALL[n as usize % 3], n).unwrap();
+        save(&mut flash, &mut log, Kept::ALL[n as usize % 3], n).unwrap();
     }
     let (_, found) = open(&mut flash);
     assert_eq!(numbers(&flash, &found), [Some(48), Some(49), Some(47)]);
@@ -66,7 +67,7 @@ fn four_million_saves_of_the_network_in_the_chips_life() {
     let (mut log, _) = open(&mut flash);
     let mut saves = 0;
     while flash.erases != [3, 3] {
-        let Ok(mut saving) = log.begin(Kind::Network, &snapshot) else {
+        let Ok(mut saving) = log.begin(Kept::Network, &snapshot) else {
             panic!("a boot after every save always makes room");
         };
         while !saving.step(&mut flash).unwrap() {}
@@ -85,18 +86,18 @@ fn a_full_sector_refuses_until_the_next_boot_and_erases_nothing_before() {
     let (mut log, _) = open(&mut flash);
     let mut n = 0;
     while log.free_words() >= 9 {
-        save(&mut flash, &mut log, Kind::Network, n).unwrap();
+        save(&mut flash, &mut log, Kept::Network, n).unwrap();
         n += 1;
     }
-    let refused = log.begin(Kind::Network, &payload(Kind::Network, n)).expect_err("full");
+    let refused = log.begin(Kept::Network, &payload(Kept::Network, n)).expect_err("full");
     assert_eq!(refused, tenax_logic::store::Refused::Full);
     assert_eq!(flash.erases, [0, 0]);
     let (mut log, found) = open(&mut flash);
-    assert_eq!(number(&flash, &found, Kind::Network), Some(n - 1));
+    assert_eq!(number(&flash, &found, Kept::Network), Some(n - 1));
     assert_eq!(flash.erases, [0, 1], "the other one; the full one is kept until its turn");
-    save(&mut flash, &mut log, Kind::Network, n).unwrap();
+    save(&mut flash, &mut log, Kept::Network, n).unwrap();
     let (_, found) = open(&mut flash);
-    assert_eq!(number(&flash, &found, Kind::Network), Some(n));
+    assert_eq!(number(&flash, &found, Kept::Network), Some(n));
 }
 
 #[test]
@@ -105,12 +106,12 @@ fn payloads_that_are_no_record_are_refused() {
     let (mut log, _) = open(&mut flash);
     for bytes in [1, 3, 4 * 256] {
         assert_eq!(
-            log.begin(Kind::Zero, &vec![0; bytes]).expect_err("no record"),
+            log.begin(Kept::Zero, &vec![0; bytes]).expect_err("no record"),
             tenax_logic::store::Refused::Length,
             "{bytes} bytes"
         );
     }
-    assert!(log.begin(Kind::Zero, &[0; 4 * 255]).is_ok());
+    assert!(log.begin(Kept::Zero, &[0; 4 * 255]).is_ok());
 }
 
 #[test]
@@ -118,12 +119,12 @@ fn a_worn_flash_costs_the_log_but_not_what_it_held() {
     let mut flash = TestFlash::blank(128);
     let (mut log, _) = open(&mut flash);
     for n in 0..9 {
-        save(&mut flash, &mut log, Kind::Network, n).unwrap();
+        save(&mut flash, &mut log, Kept::Network, n).unwrap();
     }
     flash.worn = true;
     let (mut log, found) = open(&mut flash);
-    assert_eq!(number(&flash, &found, Kind::Network), Some(8));
+    assert_eq!(number(&flash, &found, Kept::Network), Some(8));
     assert_eq!(log.free_words(), 0);
-    let refused = log.begin(Kind::Zero, &payload(Kind::Zero, 9)).expect_err("worn");
+    let refused = log.begin(Kept::Zero, &payload(Kept::Zero, 9)).expect_err("worn");
     assert_eq!(refused, tenax_logic::store::Refused::Failed);
 }

@@ -1,22 +1,22 @@
 //! What holds for any history and any damage.
 
 use proptest::prelude::*;
+use tenax_hal_shim::words::Kept;
 use tenax_logic::store::open;
-use tenax_logic::store::record::Kind;
 
 use crate::flash::{HARMS, TestFlash};
 use crate::{numbers, save};
 
 const SECTOR_WORDS: usize = 96;
 
-fn kinds() -> impl Strategy<Value = Kind> {
-    prop::sample::select(Kind::ALL.to_vec())
+fn kepts() -> impl Strategy<Value = Kept> {
+    prop::sample::select(Kept::ALL.to_vec())
 }
 
 proptest! {
     /// Cut after cut, each followed by a boot: nothing finished is ever lost, nothing is found that was never saved.
     #[test]
-    fn many_cuts_in_a_row(lives in prop::collection::vec((0usize..60, 0..HARMS.len(), kinds()), 1..40)) {
+    fn many_cuts_in_a_row(lives in prop::collection::vec((0usize..60, 0..HARMS.len(), kepts()), 1..40)) {
         let mut flash = TestFlash::blank(SECTOR_WORDS);
         let mut known = [None; 3];
         let mut n = 0;
@@ -25,20 +25,20 @@ proptest! {
             let mut look = flash.clone();
             let (_, found) = open(&mut look);
             let now = numbers(&look, &found);
-            for kind in Kind::ALL {
-                let index = kind as usize;
+            for kept in Kept::ALL {
+                let index = kept as usize;
                 // What was found once may only be replaced by what was being saved since.
-                prop_assert!(now[index] >= known[index], "{:?}: {:?} after {:?}", kind, now[index], known[index]);
+                prop_assert!(now[index] >= known[index], "{:?}: {:?} after {:?}", kept, now[index], known[index]);
             }
             known = now;
             flash.cut = Some((operations, HARMS[harm]));
             let (mut log, _) = open(&mut flash);
-            for kind in Kind::ALL.into_iter().cycle().skip(first as usize).take(20) {
+            for kept in Kept::ALL.into_iter().cycle().skip(first as usize).take(20) {
                 n += 1;
-                if flash.dead || log.free_words() < 9 || save(&mut flash, &mut log, kind, n).is_err() {
+                if flash.dead || log.free_words() < 9 || save(&mut flash, &mut log, kept, n).is_err() {
                     break;
                 }
-                known[kind as usize] = Some(n);
+                known[kept as usize] = Some(n);
             }
         }
     }
@@ -52,7 +52,7 @@ proptest! {
         let mut flash = TestFlash::blank(SECTOR_WORDS);
         for n in 0..saves {
             let (mut log, _) = open(&mut flash);
-            save(&mut flash, &mut log, Kind::ALL[n as usize % 3], n).unwrap();
+            save(&mut flash, &mut log, Kept::ALL[n as usize % 3], n).unwrap();
         }
         for (sector, word, bits) in rot {
             flash.words()[sector][word] ^= bits;
@@ -62,7 +62,7 @@ proptest! {
             prop_assert!(n < saves);
         }
         if log.free_words() >= 9 {
-            save(&mut flash, &mut log, Kind::Network, 99).unwrap();
+            save(&mut flash, &mut log, Kept::Network, 99).unwrap();
             let (_, found) = open(&mut flash);
             prop_assert_eq!(numbers(&flash, &found)[0], Some(99));
         }
@@ -74,25 +74,25 @@ proptest! {
         let mut flash = TestFlash::holding(words);
         let (mut log, found) = open(&mut flash);
         prop_assert_eq!(numbers(&flash, &found), [None; 3]);
-        save(&mut flash, &mut log, Kind::Settings, 5).unwrap();
+        save(&mut flash, &mut log, Kept::Settings, 5).unwrap();
         let (_, found) = open(&mut flash);
         prop_assert_eq!(numbers(&flash, &found), [None, None, Some(5)]);
     }
 
-    /// One rotten record of a kind costs that record: the one before it is used, and the other kinds stay.
+    /// One rotten record of a kept costs that record: the one before it is used, and the other kepts stay.
     #[test]
     fn a_rotten_record_leaves_the_one_before(bit in 0usize..32, word in 0usize..6) {
         let mut flash = TestFlash::blank(SECTOR_WORDS);
         let (mut log, _) = open(&mut flash);
-        for (n, kind) in Kind::ALL.into_iter().enumerate() {
-            save(&mut flash, &mut log, kind, n as u32).unwrap();
+        for (n, kept) in Kept::ALL.into_iter().enumerate() {
+            save(&mut flash, &mut log, kept, n as u32).unwrap();
         }
         let begins = SECTOR_WORDS / 8 * 7 - log.free_words();
-        save(&mut flash, &mut log, Kind::Zero, 7).unwrap();
+        save(&mut flash, &mut log, Kept::Zero, 7).unwrap();
         flash.words()[0][begins + word] ^= 1 << bit;
         let (_, found) = open(&mut flash);
         prop_assert_eq!(numbers(&flash, &found), [Some(0), Some(1), Some(2)]);
-        // A tag that rotted is no record of any kind.
-        prop_assert_eq!(found.is_damaged(Kind::Zero), word > 0);
+        // A tag that rotted is no record of any kept.
+        prop_assert_eq!(found.is_damaged(Kept::Zero), word > 0);
     }
 }

@@ -1,6 +1,7 @@
 //! The emulated board: the real image, instruction by instruction, with a plant at its pins.
 
 mod cost;
+mod flash;
 pub mod kernels;
 mod line;
 mod mishaps;
@@ -22,6 +23,7 @@ use tenax_hal_shim::channel::SCAN_HZ;
 use tenax_scene::plant::Plant;
 
 use self::cost::CostMeter;
+use self::flash::FlashArray;
 use self::line::Line;
 use self::mishaps::Mishaps;
 use self::nucleo::Nucleo;
@@ -38,11 +40,21 @@ pub struct Options {
     pub instructions_per_second: NonZeroU64,
     /// What goes wrong on the way, and when, s.
     pub mishaps: Vec<(f64, Mishap)>,
+    /// What the flash holds beside the image before the start: an address and the bytes from there on.
+    pub flash: Option<(u64, Vec<u8>)>,
+    /// How long the flash takes to program a word, us; the core stands still for as long. 16 typically, 100 at most
+    /// (DS10314, flash memory programming).
+    pub word_us: u64,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { instructions_per_second: NonZeroU64::new(100_000_000).expect("not zero"), mishaps: Vec::new() }
+        Self {
+            instructions_per_second: NonZeroU64::new(100_000_000).expect("not zero"),
+            mishaps: Vec::new(),
+            flash: None,
+            word_us: 16,
+        }
     }
 }
 
@@ -57,6 +69,11 @@ pub enum Mishap {
     CoreHangs,
     /// The DMA stream of the converter is sent to an address where nothing is: its driver panics.
     DmaFails,
+    /// The power goes for an instant while the flash programs the word after the next `words`.
+    PowerFails {
+        /// Words that are still programmed whole.
+        words: u32,
+    },
 }
 
 /// Why a run has no result.
@@ -71,7 +88,7 @@ pub enum Broken {
         at_s: f64,
     },
     /// The image never triggered a scan.
-    #[error("the image had not begun to scan one second after its start")]
+    #[error("the image had not begun to scan three seconds after its start")]
     NeverScanned,
 }
 
@@ -94,8 +111,13 @@ pub fn run<P: Plant + 'static>(
     let cost = CostMeter::new(&symbols);
     let watched = cost.watched();
     let mishaps = Mishaps::new(&options.mishaps);
-    let world = World::new(plant, frames, mishaps, cost, symbols.stack.clone(), sender);
-    let images = [Image::read(image, None).context("reading the image")?, cost::paint(&symbols.stack)?];
+    let flash = FlashArray::new(1_000 * options.word_us);
+    let world = World::new(plant, frames, mishaps, cost, flash, symbols.stack.clone(), sender);
+    let mut images =
+        vec![Image::read(image, None).context("reading the image")?, cost::paint(&symbols.stack)?];
+    if let Some((address, bytes)) = &options.flash {
+        images.push(Image::new(Path::new("flash"), bytes.clone(), Some(*address))?);
+    }
     let rate = options.instructions_per_second;
 
     // The emulator keeps its driver for itself, so it runs on a thread of its own and reports to this one.
@@ -112,6 +134,7 @@ pub fn run<P: Plant + 'static>(
         return Err(broken.into());
     }
     let mut run = world.run;
+    run.flash = world.flash.done;
     line_log::decode(&mut run);
     // What the last scans led to had time to come up the line; what came after them was no part of the run.
     run.slows.retain(|slow| slow.frame < frames);

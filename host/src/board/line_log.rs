@@ -26,6 +26,7 @@ pub fn decode(run: &mut Run) {
                     Up::Counters(counters) => run.counters = counters,
                     Up::Ack { of, refused } => run.acks.push((of, refused)),
                     Up::Network(network) => run.networks.push(network),
+                    Up::Saved { frame, kept } => run.saved.push((frame, kept)),
                     Up::Samples { .. } => {}
                 }
             }

@@ -44,25 +44,45 @@ pub const fn length(inputs: usize, outputs: usize) -> usize {
     HEADER + WORD * (inputs + inputs * outputs + 1)
 }
 
+/// What a snapshot holds: small enough to be copied in a tick, so that the bytes can be made when there is more time.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Contents<const I: usize, const O: usize> {
+    maxima: [u32; I],
+    weights: [[Weight; I]; O],
+}
+
+impl<const I: usize, const O: usize> Contents<I, O> {
+    /// What there is to keep of a network and of the normaliser that its weights belong to.
+    #[must_use]
+    pub fn of(normaliser: &Normaliser<I>, network: &Network<I, O>) -> Self {
+        Self { maxima: normaliser.maxima(), weights: network.weights() }
+    }
+
+    /// Writes the snapshot to the beginning of `buffer` and gives it. None if the buffer is shorter than [`length`].
+    pub fn write<'a>(&self, buffer: &'a mut [u8]) -> Option<&'a [u8]> {
+        let snapshot = buffer.get_mut(..length(I, O))?;
+        let (body, crc) = snapshot.split_last_chunk_mut::<WORD>()?;
+        let (header, words) = body.split_first_chunk_mut::<HEADER>()?;
+        // A network has at most 62 inputs; the outputs' count only has to differ for another shape.
+        *header = [VERSION, I as u8, O as u8, 0];
+        let maxima = self.maxima.map(u32::to_le_bytes);
+        let weights = self.weights.map(|row| row.map(|weight| weight.into_bits().to_le_bytes()));
+        let (slots, _) = words.as_chunks_mut::<WORD>();
+        for (slot, word) in slots.iter_mut().zip(maxima.iter().chain(weights.as_flattened())) {
+            *slot = *word;
+        }
+        *crc = CRC.checksum(body).to_le_bytes();
+        Some(snapshot)
+    }
+}
+
 /// Writes a snapshot to the beginning of `buffer` and gives it. None if the buffer is shorter than [`length`].
 pub fn save<'a, const I: usize, const O: usize>(
     normaliser: &Normaliser<I>,
     network: &Network<I, O>,
     buffer: &'a mut [u8],
 ) -> Option<&'a [u8]> {
-    let snapshot = buffer.get_mut(..length(I, O))?;
-    let (body, crc) = snapshot.split_last_chunk_mut::<WORD>()?;
-    let (header, words) = body.split_first_chunk_mut::<HEADER>()?;
-    // A network has at most 62 inputs; the outputs' count only has to differ for another shape.
-    *header = [VERSION, I as u8, O as u8, 0];
-    let maxima = normaliser.maxima().map(u32::to_le_bytes);
-    let weights = network.weights().map(|row| row.map(|weight| weight.into_bits().to_le_bytes()));
-    let (slots, _) = words.as_chunks_mut::<WORD>();
-    for (slot, word) in slots.iter_mut().zip(maxima.iter().chain(weights.as_flattened())) {
-        *slot = *word;
-    }
-    *crc = CRC.checksum(body).to_le_bytes();
-    Some(snapshot)
+    Contents::of(normaliser, network).write(buffer)
 }
 
 /// What a snapshot holds, or why it is refused. The zeros of the receptors are not in it: they are taken anew.

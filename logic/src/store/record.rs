@@ -10,40 +10,61 @@
 
 use crc::Digest;
 use tenax_hal_shim::flash::{FlashArea, FlashFailed, Sector};
+use tenax_hal_shim::words::Kept;
 
 use crate::checksum::CRC;
+use crate::store::payload::{SettingsBytes, ZeroBytes};
+use crate::touch::{Learned, SNAPSHOT_LENGTH};
 
 /// Words of a record beside its payload.
 pub const OVERHEAD_WORDS: usize = 4;
 
 const COMMIT: u32 = 0x3C5A_96E1;
 
-/// What a record is about. Numbers are never given twice.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// What the network learned: [`hebbian::snapshot`](crate::hebbian::snapshot).
-    Network,
+/// Bytes of the longest payload that there is today: the network's.
+pub const PAYLOAD_BYTES: usize = SNAPSHOT_LENGTH;
+
+/// Something that is to be saved.
+#[derive(Clone, Debug)]
+#[allow(clippy::large_enum_variant, reason = "there is no heap to put the large one on")]
+pub enum Record {
+    /// What the network learned.
+    Network(Learned),
     /// The force sensor's zero.
-    Zero,
-    /// What was set from outside, or measured by a stroke.
-    Settings,
+    Zero(ZeroBytes),
+    /// The settings.
+    Settings(SettingsBytes),
 }
 
-impl Kind {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Network, Self::Zero, Self::Settings];
-
-    pub(super) const fn index(self) -> usize {
-        self as usize
+impl Record {
+    /// What it is.
+    #[must_use]
+    pub const fn kept(&self) -> Kept {
+        match self {
+            Self::Network(_) => Kept::Network,
+            Self::Zero(_) => Kept::Zero,
+            Self::Settings(_) => Kept::Settings,
+        }
     }
 
-    pub(super) const fn number(self) -> u8 {
-        self as u8 + 1
+    /// Its payload.
+    pub fn payload<'a>(&'a self, buffer: &'a mut [u8; PAYLOAD_BYTES]) -> &'a [u8] {
+        match self {
+            // The buffer has just the length that it takes.
+            Self::Network(learned) => learned.write(buffer).unwrap_or_default(),
+            Self::Zero(bytes) => bytes,
+            Self::Settings(bytes) => bytes,
+        }
     }
+}
 
-    pub(super) fn from_number(number: u8) -> Option<Self> {
-        Self::ALL.into_iter().find(|kind| kind.number() == number)
-    }
+/// What a record of `kept` is called in flash. Numbers are never given twice.
+pub(super) const fn number(kept: Kept) -> u8 {
+    kept as u8 + 1
+}
+
+pub(super) fn from_number(number: u8) -> Option<Kept> {
+    Kept::ALL.into_iter().find(|&kept| self::number(kept) == number)
 }
 
 /// The first word of a record.

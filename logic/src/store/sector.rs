@@ -7,8 +7,9 @@
 //! ```
 
 use tenax_hal_shim::flash::{BLANK, FlashArea, FlashFailed, Sector};
+use tenax_hal_shim::words::Kept;
 
-use super::record::{Kind, Tag};
+use super::record::{self, Tag};
 use crate::checksum::CRC;
 
 /// Words before the first record.
@@ -22,14 +23,14 @@ const MAGIC: u32 = 0x7E4A_0001;
 pub struct Entry {
     pub sector: Sector,
     pub at: usize,
-    pub kind: Kind,
+    pub kept: Kept,
     pub words: u8,
     pub sequence: u32,
 }
 
 impl Entry {
     pub fn tag(&self) -> Tag {
-        Tag { kind: self.kind.number(), words: self.words }
+        Tag { kind: record::number(self.kept), words: self.words }
     }
 
     /// Its payload. None if it is longer than `buffer`.
@@ -50,9 +51,9 @@ pub struct Survey {
     /// None if its opening words are not whole.
     pub generation: Option<u32>,
     /// The newest whole record of each kind.
-    pub newest: [Option<Entry>; Kind::ALL.len()],
+    pub newest: [Option<Entry>; Kept::ALL.len()],
     /// Whether a damaged or unfinished record of the kind follows it.
-    pub damaged: [bool; Kind::ALL.len()],
+    pub damaged: [bool; Kept::ALL.len()],
     /// The highest sequence number of its whole records, 0 if it has none.
     pub last_sequence: u32,
     /// From here on everything is blank.
@@ -79,11 +80,11 @@ impl Survey {
             if word != BLANK {
                 survey.end = next;
             }
-            if let Some((tag, kind)) = tag.and_then(|tag| Some((tag, Kind::from_number(tag.kind)?))) {
+            if let Some((tag, kept)) = tag.and_then(|tag| Some((tag, record::from_number(tag.kind)?))) {
                 let sequence = tag.check(area, sector, at);
-                survey.damaged[kind.index()] = sequence.is_none();
+                survey.damaged[kept as usize] = sequence.is_none();
                 if let Some(sequence) = sequence {
-                    survey.enter(Entry { sector, at, kind, words: tag.words, sequence });
+                    survey.enter(Entry { sector, at, kept, words: tag.words, sequence });
                 }
             }
             at = next;
@@ -92,7 +93,7 @@ impl Survey {
     }
 
     fn enter(&mut self, entry: Entry) {
-        let newest = &mut self.newest[entry.kind.index()];
+        let newest = &mut self.newest[entry.kept as usize];
         if newest.is_none_or(|newest| newest.sequence <= entry.sequence) {
             *newest = Some(entry);
         }

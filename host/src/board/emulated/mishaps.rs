@@ -9,6 +9,7 @@ use rigless::time::VirtualNanos;
 use tenax_hal_shim::channel::SCAN_HZ;
 
 use super::Mishap;
+use super::flash::FlashArray;
 use super::line::Line;
 use super::nucleo::{Nucleo, USART2};
 
@@ -35,6 +36,7 @@ impl Mishaps {
         scan: usize,
         session: &mut Session<Nucleo>,
         now: VirtualNanos,
+        flash: &mut FlashArray,
         host: &mut dyn Host,
     ) {
         let due: Vec<_> = self.0.extract_if(.., |(at, _)| *at <= scan).collect();
@@ -55,6 +57,7 @@ impl Mishaps {
                     }
                 }
                 Mishap::CoreHangs => host.hold(true),
+                Mishap::PowerFails { words } => flash.cut_power_after(words),
             }
         }
     }

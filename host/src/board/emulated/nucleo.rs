@@ -1,7 +1,7 @@
 //! The NUCLEO-F411RE as the emulator sees it.
 //!
 //! `rigless` has no STM32F411, but its STM32F427 has every peripheral that this chip has, at the same addresses, and runs
-//! the unmodified image. What differs is not used: more memory, more timers, a faster clock.
+//! the unmodified image. What differs is not used: more timers, a faster clock. The memories are the F411's.
 
 use std::num::{NonZeroU32, NonZeroU64};
 
@@ -14,6 +14,8 @@ use rigless::snapshot::Store;
 use rigless::soc::Error;
 use rigless::soc::stm32f427::Stm32f427;
 use tenax_hal_shim::channel::CODE_MAX;
+
+use super::flash::MemoryMap;
 
 /// The ST-LINK's clock on OSC_IN, Hz.
 const HSE_HZ: u64 = 8_000_000;
@@ -33,6 +35,7 @@ pub const USART2: usize = 1;
 pub struct Nucleo {
     /// The chip.
     pub mcu: Stm32f427,
+    memory: MemoryMap,
     instructions_per_second: NonZeroU64,
 }
 
@@ -40,12 +43,13 @@ impl Nucleo {
     /// The board out of its box, its serial line in the hands of `line`.
     pub fn new(instructions_per_second: NonZeroU64, line: impl Peer) -> Result<Self, Error> {
         let mut mcu = Stm32f427::new()?;
+        let memory = MemoryMap::new(&mcu)?;
         mcu.rcc.attach_crystals(HSE_HZ, 0);
         mcu.set_supply(SUPPLY_MV);
         // The model's word is `input * 4095 / reference`: with this reference, an input is a code and nothing is rounded.
         mcu.adc[0].set_reference(u32::from(CODE_MAX));
         mcu.usart[USART2].attach(line);
-        Ok(Self { mcu, instructions_per_second })
+        Ok(Self { mcu, memory, instructions_per_second })
     }
 }
 
@@ -77,6 +81,7 @@ impl Board for Nucleo {
             boot: "flash",
         }
         .spec_with_parts(&windows(Mcu::bus(&self.mcu)), Fpu::FpV4Sp, MpuRegions::Eight);
-        vec![Target::new("stm32f411re", &mut self.mcu, core)]
+        // The emulator takes its memories from here, and everything else from `mcu`.
+        vec![Target::new("stm32f411re", &mut self.memory, core)]
     }
 }

@@ -14,6 +14,7 @@ use tenax_scene::plant::Plant;
 
 use super::Broken;
 use super::cost::{CostMeter, stack_used};
+use super::flash::FlashArray;
 use super::line::Line;
 use super::mishaps::Mishaps;
 use super::nucleo::{Nucleo, USART2};
@@ -23,8 +24,8 @@ use crate::board::Run;
 const SCAN_NS: u64 = 1_000_000_000 / SCAN_HZ as u64;
 /// While the timer's phase is not known, every this often it is looked for.
 const SEEK_NS: u64 = 5_000;
-/// An image that has not begun to scan by now never will.
-const BOOT_NS: u64 = 1_000_000_000;
+/// An image that has not begun to scan by now never will. It may erase a sector first, which takes a second or two.
+const BOOT_NS: u64 = 3_000_000_000;
 /// Scans after the plant's last, so that what they led to comes up the line.
 const DRAIN_SCANS: u32 = 64;
 /// Scans between two reports of progress: a tenth of a virtual second.
@@ -40,6 +41,8 @@ pub struct World<P> {
     pub broken: Option<Broken>,
     /// What the ticks cost.
     pub cost: CostMeter,
+    /// The flash's words.
+    pub flash: FlashArray,
     /// Whole scans that the plant lasts.
     scans: usize,
     drained: u32,
@@ -62,6 +65,7 @@ impl<P: Plant> World<P> {
         frames: u32,
         mishaps: Mishaps,
         cost: CostMeter,
+        flash: FlashArray,
         stack: Range<u64>,
         progress: Sender<f64>,
     ) -> Self {
@@ -70,6 +74,7 @@ impl<P: Plant> World<P> {
             run: Run::default(),
             broken: None,
             cost,
+            flash,
             scans: frames as usize * SCANS_PER_FRAME,
             drained: 0,
             pulses: 0,
@@ -122,7 +127,7 @@ impl<P: Plant> World<P> {
                 self.command_sequence = self.command_sequence.wrapping_add(1);
             }
         }
-        self.mishaps.happen(scan, session, stop.at, host);
+        self.mishaps.happen(scan, session, stop.at, &mut self.flash, host);
         if let Some(progress) = self.progress.as_ref().filter(|_| scan.is_multiple_of(PROGRESS_SCANS)) {
             // Nobody listening is no reason to stop.
             let _ = progress.send(scan as f64 / f64::from(SCAN_HZ));
@@ -142,9 +147,12 @@ impl<P: Plant> World<P> {
 }
 
 impl<P: Plant> Driver<Nucleo> for World<P> {
-    fn on_settled(&mut self, _session: &mut Session<Nucleo>, _host: &mut dyn Host, settled: Settled) {
-        if let Settled::Hit(hit) = settled {
-            self.cost.hit(hit);
+    fn on_settled(&mut self, session: &mut Session<Nucleo>, host: &mut dyn Host, settled: Settled) {
+        match settled {
+            Settled::Hit(hit) => self.cost.hit(hit),
+            Settled::Access { access, .. } => self.flash.accessed(&access, session, host),
+            Settled::Stop(stop) => self.flash.stopped(stop, session, host),
+            _ => {}
         }
     }
 
@@ -157,6 +165,7 @@ impl<P: Plant> Driver<Nucleo> for World<P> {
         if session.resets().len() > self.resets {
             self.resets = session.resets().len();
             self.pulses = 0;
+            self.flash.reset();
             // A reset ends a hang.
             host.hold(false);
         }

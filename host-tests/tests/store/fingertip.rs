@@ -1,0 +1,99 @@
+//! What a fingertip keeps is what it has after a power cut.
+
+use tenax_hal_shim::channel::{FSR, FSR_COUNT};
+use tenax_hal_shim::front_end::FSR_REST_MV;
+use tenax_hal_shim::wire::{Down, EventKind, Setting};
+use tenax_hal_shim::words::{Fault, Kept};
+use tenax_host_tests::Bench;
+use tenax_logic::fingertip::Fingertip;
+use tenax_logic::store::keeper::Keeper;
+use tenax_logic::store::open;
+use tenax_logic::store::record::{PAYLOAD_BYTES, Record};
+
+use crate::flash::TestFlash;
+
+/// Everything that `fingertip` wants saved goes into `flash`.
+fn save_all(fingertip: &mut Fingertip, keeper: &mut Keeper, flash: &mut TestFlash) -> Vec<Kept> {
+    let (mut log, _) = open(flash);
+    let save = |record: Record| {
+        let mut buffer = [0; PAYLOAD_BYTES];
+        let mut saving = log.begin(record.kept(), record.payload(&mut buffer)).expect("room");
+        while !saving.step(flash).expect("a flash that works") {}
+        record.kept()
+    };
+    std::iter::from_fn(|| fingertip.next_record(keeper)).map(save).collect()
+}
+
+/// A new fingertip with what `flash` holds.
+fn booted(flash: &mut TestFlash) -> Fingertip {
+    let (_, found) = open(flash);
+    let mut fingertip = Fingertip::default();
+    let mut buffer = [0; PAYLOAD_BYTES];
+    for kept in Kept::ALL {
+        if let Some(payload) = found.read(flash, kept, &mut buffer) {
+            fingertip.restore(kept, payload);
+        }
+    }
+    fingertip
+}
+
+/// A finger whose force sensor is 30 mV off, which reads as a load.
+fn off_zero(fingertip: Fingertip) -> Bench {
+    let mut bench = Bench::new(3);
+    bench.fingertip = fingertip;
+    for quadrant in 0..FSR_COUNT {
+        bench.pins_mv[FSR + quadrant] = f64::from(FSR_REST_MV + 30);
+    }
+    bench.run(1_000);
+    bench
+}
+
+fn fn_mn(bench: &Bench) -> i32 {
+    bench.slows.last().and_then(|slow| slow.forces).expect("forces").fn_mn
+}
+
+#[test]
+fn zero_and_settings_survive_and_a_fingertip_without_them_differs() {
+    let mut flash = TestFlash::blank(4_096);
+    let mut bench = off_zero(Fingertip::default());
+    let mut keeper = bench.fingertip.keeper();
+    assert!(save_all(&mut bench.fingertip, &mut keeper, &mut flash).is_empty(), "nothing has changed yet");
+    let untouched = fn_mn(&bench);
+    assert!(untouched > 100, "{untouched} mN");
+    bench.fingertip.command(&Down::Zero).unwrap();
+    bench.fingertip.command(&Down::Set(Setting::S2Permille(420))).unwrap();
+    assert_eq!(save_all(&mut bench.fingertip, &mut keeper, &mut flash), [Kept::Settings, Kept::Zero]);
+
+    let after = off_zero(booted(&mut flash));
+    assert!(fn_mn(&after) < untouched / 4, "{} mN after, {untouched} mN before", fn_mn(&after));
+    assert_eq!(after.slows.last().map(|slow| slow.s2_permille), Some(420));
+    let mut same = booted(&mut flash);
+    let mut keeper = same.keeper();
+    assert!(same.next_record(&mut keeper).is_none(), "what was restored need not be saved");
+}
+
+#[test]
+fn a_record_of_something_else_is_told_and_changes_nothing() {
+    let mut fingertip = Fingertip::default();
+    let mut keeper = fingertip.keeper();
+    for kept in Kept::ALL {
+        fingertip.restore(kept, &[0xFF; 12]);
+    }
+    for kept in Kept::ALL {
+        let event = fingertip.next_event().expect("an event for each");
+        assert_eq!(event.kind, EventKind::Fault(Fault::RecordDamaged(kept)));
+    }
+    assert!(fingertip.next_record(&mut keeper).is_none());
+    let bench = off_zero(fingertip);
+    assert_eq!(bench.slows.last().map(|slow| slow.s2_permille), Some(300));
+}
+
+#[test]
+fn what_is_forgotten_stays_forgotten() {
+    let mut flash = TestFlash::blank(4_096);
+    let mut fingertip = Fingertip::default();
+    let mut keeper = fingertip.keeper();
+    fingertip.command(&Down::Forget).unwrap();
+    assert_eq!(save_all(&mut fingertip, &mut keeper, &mut flash), [Kept::Network]);
+    assert_eq!(booted(&mut flash).network().weights, [[0; 24]; 2]);
+}

@@ -1,0 +1,114 @@
+//! When something is saved. By itself, so that a wearer never has to think of it, and seldom enough for the flash.
+
+use tenax_hal_shim::words::Kept;
+
+use super::payload::{SettingsBytes, ZeroBytes};
+use crate::config::frames;
+
+/// Settings and zero are saved when they have changed, and then not again for this long, in frames.
+const CHANGED_FRAMES: u32 = frames(3_000);
+/// What the network learned is saved by itself no more often than this, in frames.
+const LEARNED_FRAMES: u32 = frames(60_000);
+
+/// What there is to save.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Now {
+    /// The settings.
+    pub settings: SettingsBytes,
+    /// The force sensor's zero.
+    pub zero: ZeroBytes,
+    /// How often the network's weights have been updated.
+    pub updates: u32,
+    /// Whether nothing moves and nothing is learned: the network is not saved by itself in the middle of a lesson.
+    pub at_rest: bool,
+    /// Whether somebody asked for the network to be saved, at rest or not.
+    pub asked: bool,
+}
+
+/// What was saved last, and when.
+#[derive(Clone, Debug)]
+pub struct Keeper {
+    settings: SettingsBytes,
+    zero: ZeroBytes,
+    /// Updates of the weights that the saved network had had.
+    updates: u32,
+    /// Frames since each kind was saved, saturating.
+    since: [u32; Kept::ALL.len()],
+}
+
+impl Keeper {
+    /// What is as in `now` need not be saved.
+    #[must_use]
+    pub const fn new(now: &Now) -> Self {
+        Self {
+            settings: now.settings,
+            zero: now.zero,
+            updates: now.updates,
+            since: [u32::MAX; Kept::ALL.len()],
+        }
+    }
+
+    /// So many frames have passed.
+    pub fn pass(&mut self, frames: u32) {
+        for since in &mut self.since {
+            *since = since.saturating_add(frames);
+        }
+    }
+
+    /// What is to be saved, if anything; it counts as saved from now on.
+    pub fn next(&mut self, now: &Now) -> Option<Kept> {
+        let since = |kept: Kept| self.since[kept as usize];
+        let learned = now.updates != self.updates;
+        let kept = if now.settings != self.settings && since(Kept::Settings) >= CHANGED_FRAMES {
+            self.settings = now.settings;
+            Kept::Settings
+        } else if now.zero != self.zero && since(Kept::Zero) >= CHANGED_FRAMES {
+            self.zero = now.zero;
+            Kept::Zero
+        } else if now.asked || (learned && now.at_rest && since(Kept::Network) >= LEARNED_FRAMES) {
+            self.updates = now.updates;
+            Kept::Network
+        } else {
+            return None;
+        };
+        self.since[kept as usize] = 0;
+        Some(kept)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn now(settings: u8, zero: u8, updates: u32, at_rest: bool) -> Now {
+        Now { settings: [settings; _], zero: [zero; _], updates, at_rest, asked: false }
+    }
+
+    #[test]
+    fn a_change_is_saved_at_once_and_a_flood_of_them_seldom() {
+        let mut keeper = Keeper::new(&now(1, 1, 0, true));
+        assert_eq!(keeper.next(&now(1, 1, 0, true)), None);
+        assert_eq!(keeper.next(&now(2, 1, 0, false)), Some(Kept::Settings));
+        assert_eq!(keeper.next(&now(2, 1, 0, false)), None);
+        keeper.pass(CHANGED_FRAMES - 1);
+        assert_eq!(keeper.next(&now(3, 1, 0, false)), None);
+        assert_eq!(keeper.next(&now(3, 2, 0, false)), Some(Kept::Zero), "each has its own pause");
+        keeper.pass(1);
+        assert_eq!(keeper.next(&now(3, 2, 0, false)), Some(Kept::Settings), "nothing is forgotten meanwhile");
+        assert_eq!(keeper.next(&now(3, 2, 0, false)), None);
+    }
+
+    #[test]
+    fn what_is_learned_is_saved_once_a_minute_at_rest() {
+        let mut keeper = Keeper::new(&now(1, 1, 0, true));
+        assert_eq!(keeper.next(&now(1, 1, 9, false)), None, "something moves");
+        assert_eq!(keeper.next(&now(1, 1, 9, true)), Some(Kept::Network));
+        keeper.pass(LEARNED_FRAMES);
+        assert_eq!(keeper.next(&now(1, 1, 9, true)), None, "nothing was learned since");
+        assert_eq!(keeper.next(&now(1, 1, 10, true)), Some(Kept::Network));
+        assert_eq!(keeper.next(&now(1, 1, 11, true)), None);
+        let asked = Now { asked: true, ..now(1, 1, 11, false) };
+        assert_eq!(keeper.next(&asked), Some(Kept::Network), "asked for");
+        assert_eq!(keeper.next(&now(1, 1, 11, false)), None);
+    }
+}
