@@ -7,6 +7,7 @@ use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::{MotorBridge, MotorDrive};
 use tenax_hal_shim::wire::{Down, Up};
 use tenax_logic::fingertip::Fingertip;
+use tenax_logic::store::keeper::Keeper;
 
 use crate::bridge::Bridge;
 use crate::counts;
@@ -19,6 +20,9 @@ use crate::switches::Switches;
 pub const WATCHDOG_US: u32 = 100_000;
 /// Commands taken in one tick, so that a flood of them cannot make it late.
 const COMMANDS_PER_TICK: usize = 2;
+/// The place in the slow frame at which the fingertip is asked for something to save: the lines rest there, and the last
+/// one, whose tick has the most to do, is far.
+const PLACE_OF_SAVING: u8 = 19;
 
 /// What a tick works with.
 pub struct Control {
@@ -27,12 +31,21 @@ pub struct Control {
     switches: Switches,
     watchdog: IndependentWatchdog<'static, IWDG>,
     samples: LastSamples,
+    keeper: Keeper,
 }
 
 impl Control {
     /// A hand at rest.
     pub fn new(bridge: Bridge, switches: Switches, watchdog: IndependentWatchdog<'static, IWDG>) -> Self {
-        Self { fingertip: Fingertip::default(), bridge, switches, watchdog, samples: LastSamples::default() }
+        let fingertip = Fingertip::default();
+        let keeper = fingertip.keeper();
+        Self { fingertip, bridge, switches, watchdog, samples: LastSamples::default(), keeper }
+    }
+
+    /// Lets the fingertip take up what was kept, before the first tick.
+    pub fn restore(&mut self, restore: impl FnOnce(&mut Fingertip)) {
+        restore(&mut self.fingertip);
+        self.keeper = self.fingertip.keeper();
     }
 
     /// Everything that a frame causes, the most urgent first.
@@ -50,8 +63,23 @@ impl Control {
         if let Some(slow) = self.fingertip.take_slow() {
             mail::post(Up::Slow(slow));
         }
+        if frame.place() == PLACE_OF_SAVING {
+            self.save();
+        }
         while let Some(event) = self.fingertip.next_event() {
             mail::post(Up::Event(event));
+        }
+        mail::end_tick();
+    }
+
+    /// Not inlined: it is asked once in 25 ticks, and all of them would carry it.
+    #[inline(never)]
+    fn save(&mut self) {
+        self.keeper.pass(u32::from(FRAMES_PER_SLOW_FRAME));
+        if mail::store_is_free()
+            && let Some(record) = self.fingertip.next_record(&mut self.keeper)
+        {
+            mail::save(record);
         }
     }
 

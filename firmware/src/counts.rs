@@ -42,6 +42,11 @@ pub static TELEMETRY_DROPPED: Count = Count::new();
 /// Frames received that were no message, and errors of the line itself.
 pub static BAD_FRAMES: Count = Count::new();
 
+/// Sequence number of the last frame that had its tick.
+pub fn last_frame() -> u32 {
+    TICKS.get().wrapping_sub(1)
+}
+
 /// All of them, as they go up the line.
 pub fn counters() -> Counters {
     Counters {

@@ -1,8 +1,12 @@
-//! The two bounded boxes between control, which never waits, and the tasks of the serial line, which do.
+//! The bounded boxes between control, which never waits, and the tasks of the serial line and of the store, which do.
+
+use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::channel::Channel;
+use embassy_sync::signal::Signal;
 use tenax_hal_shim::wire::{Down, Received, Up};
+use tenax_logic::store::record::Record;
 
 use crate::counts;
 
@@ -11,6 +15,11 @@ use crate::counts;
 static UP: Channel<CriticalSectionRawMutex, Up, 16> = Channel::new();
 /// Commands on their way to control.
 static DOWN: Channel<CriticalSectionRawMutex, Received<Down>, 8> = Channel::new();
+/// A record on its way to flash.
+static RECORD: Channel<CriticalSectionRawMutex, Record, 1> = Channel::new();
+/// Control has just ended a tick; signalled only while the store waits for one.
+static TICK: Signal<CriticalSectionRawMutex, ()> = Signal::new();
+static TICK_WANTED: AtomicBool = AtomicBool::new(false);
 
 /// Hands a message to telemetry. Never waits: if the line is behind, the message is dropped and counted.
 pub fn post(message: Up) {
@@ -32,4 +41,34 @@ pub async fn hand_over(command: Received<Down>) {
 /// The oldest command that control has not taken. Never waits.
 pub fn next_command() -> Option<Received<Down>> {
     DOWN.try_receive().ok()
+}
+
+/// Whether the store would take a record.
+pub fn store_is_free() -> bool {
+    RECORD.is_empty()
+}
+
+/// Hands a record to the store. Never waits: only control does so, and only when the store is free.
+pub fn save(record: Record) {
+    let _taken = RECORD.try_send(record);
+}
+
+/// The next record to save; waits for one.
+pub async fn next_record() -> Record {
+    RECORD.receive().await
+}
+
+/// Says that a tick has ended, if anybody waits for it.
+pub fn end_tick() {
+    if TICK_WANTED.load(Relaxed) {
+        TICK.signal(());
+    }
+}
+
+/// Waits for the end of the tick to come.
+pub async fn tick_over() {
+    TICK.reset();
+    TICK_WANTED.store(true, Relaxed);
+    TICK.wait().await;
+    TICK_WANTED.store(false, Relaxed);
 }

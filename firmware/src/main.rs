@@ -9,6 +9,7 @@
 //! | [`control`]: frame, logic, bridge, watchdog | executor in interrupt SPI5 | 2 | switches step late, ticks run late |
 //! | the serial line's interrupts | USART2, DMA1 | 6 | below control or control jitters by them |
 //! | [`telemetry`], [`commands`] | thread executor | none | messages are dropped and counted, control goes on |
+//! | [`store`]: a word of flash after every fourth tick | thread executor | none | the core stalls in a tick |
 //! | idle | thread executor | none | sleeps in WFE until an interrupt |
 //!
 //! Control never waits for the others: what it hands over goes into a bounded box ([`mail`]) or is dropped. If it stops,
@@ -21,10 +22,12 @@ mod clock;
 mod commands;
 mod control;
 mod counts;
+mod flash;
 mod last_words;
 mod mail;
 mod samples;
 mod scan;
+mod store;
 mod switches;
 mod telemetry;
 
@@ -68,6 +71,9 @@ async fn main(spawner: Spawner) {
     let p = embassy_stm32::init(config);
     // Before anything that could take time: from here on both sides are held low.
     let bridge = bridge::Bridge::new(p.TIM1, p.PA8, p.PA9);
+    // While nothing moves yet: this may erase a sector, and then the core stands still for a second or two.
+    let mut flash = flash::Flash::new(p.FLASH);
+    let (log, found) = tenax_logic::store::open(&mut flash);
     interrupt::DMA2_STREAM0.set_priority(Priority::P1);
     interrupt::TIM5.set_priority(Priority::P1);
     interrupt::SPI5.set_priority(Priority::P2);
@@ -103,7 +109,9 @@ async fn main(spawner: Spawner) {
     spawner.spawn(telemetry::telemetry(up, after).expect("one telemetry task"));
     spawner
         .spawn(commands::commands(down.into_ring_buffered(COMMAND_RING.take())).expect("one commands task"));
-    let control = control::Control::new(bridge, switches, watchdog);
+    let mut control = control::Control::new(bridge, switches, watchdog);
+    control.restore(|fingertip| store::restore(fingertip, &flash, &found));
+    spawner.spawn(store::store(flash, log).expect("one store task"));
     let urgent = URGENT.start(interrupt::SPI5);
     urgent.spawn(control::control(scan, control).expect("one control task"));
 }

@@ -15,6 +15,8 @@ const COUNTERS_PERIOD: Duration = Duration::from_hz(10);
 /// Says hello, then sends what is posted and the counters ten times a second.
 #[embassy_executor::task]
 pub async fn telemetry(mut line: UartTx<'static, Async>, after: Option<Fault>) -> ! {
+    // Ends the frame that a reset may have cut short, so that the hello is not taken for the rest of it.
+    let _gone = line.write(&[0]).await;
     let mut counters_due = Ticker::every(COUNTERS_PERIOD);
     let mut message = Up::Hello { frame_hz: FRAME_HZ as u16, after };
     let mut sequence = 0u16;

@@ -5,8 +5,9 @@ use std::path::Path;
 use anyhow::{Context, Result, ensure};
 use object::{File, Object, ObjectSection, SectionFlags, SectionKind, elf};
 
-/// The chip's flash, bytes. The image's build fails if it does not fit, so this is only for shares.
-pub const FLASH_BYTES: u64 = 512 * 1024;
+/// The chip's flash for an image, bytes: all but the last two sectors, which outlive it. The image's build fails if it
+/// does not fit, so this is only for shares.
+pub const FLASH_BYTES: u64 = 256 * 1024;
 /// The chip's RAM, bytes.
 pub const RAM_BYTES: u64 = 128 * 1024;
 

@@ -4,6 +4,7 @@
 mod agreement;
 mod faults;
 mod link;
+mod store;
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;

@@ -1,0 +1,62 @@
+//! The store task: what has to outlive a power cut goes into flash, a word every few ticks.
+//!
+//! Programming a word stalls the core, so each begins when a tick has just ended and the next frame is 0.4 ms away: even
+//! at its longest, 0.1 ms, it is over before control is needed again. Nothing is erased while the hand works.
+
+use tenax_hal_shim::flash::FlashFailed;
+use tenax_hal_shim::wire::{Event, EventKind, Up};
+use tenax_hal_shim::words::{Fault, Kept};
+use tenax_logic::fingertip::Fingertip;
+use tenax_logic::store::record::{PAYLOAD_BYTES, Record};
+use tenax_logic::store::{Found, Log, Refused};
+
+use crate::flash::Flash;
+use crate::{counts, mail};
+
+/// Ticks from one word to the next: the network's 78 words take 0.16 s, and the serial line keeps its share of the core.
+const TICKS_PER_WORD: u32 = 4;
+
+/// Hands over to the fingertip what was kept.
+pub fn restore(fingertip: &mut Fingertip, flash: &Flash, found: &Found) {
+    let mut buffer = [0; PAYLOAD_BYTES];
+    for kept in Kept::ALL {
+        if found.is_damaged(kept) {
+            fingertip.report(Fault::RecordDamaged(kept));
+        }
+        if let Some(payload) = found.read(flash, kept, &mut buffer) {
+            fingertip.restore(kept, payload);
+        }
+    }
+}
+
+/// Saves what it is handed, for ever.
+#[embassy_executor::task]
+pub async fn store(mut flash: Flash, mut log: Log) -> ! {
+    loop {
+        let record = mail::next_record().await;
+        let kept = record.kept();
+        let saved = save(&mut flash, &mut log, &record).await;
+        let frame = counts::last_frame();
+        let fault = |fault| Up::Event(Event { frame, kind: EventKind::Fault(fault) });
+        mail::post(match saved {
+            Ok(()) => Up::Saved { frame, kept },
+            Err(Refused::Full) => fault(Fault::StoreFull(kept)),
+            Err(Refused::Failed | Refused::Length) => fault(Fault::StoreFailed(kept)),
+        });
+    }
+}
+
+async fn save(flash: &mut Flash, log: &mut Log, record: &Record) -> Result<(), Refused> {
+    let mut buffer = [0; PAYLOAD_BYTES];
+    let mut saving = log.begin(record.kept(), record.payload(&mut buffer))?;
+    loop {
+        for _ in 0..TICKS_PER_WORD {
+            mail::tick_over().await;
+        }
+        match saving.step(flash) {
+            Ok(true) => return Ok(()),
+            Ok(false) => {}
+            Err(FlashFailed) => return Err(Refused::Failed),
+        }
+    }
+}
