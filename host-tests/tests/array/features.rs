@@ -36,6 +36,41 @@ proptest! {
     }
 
     #[test]
+    fn a_difference_is_to_the_reading_a_lag_before(
+        frames in prop::collection::vec(alive(), 90..150),
+        lag in 1..=40u8,
+        dead in 0..ELEMENTS,
+        gone in 0..200usize,
+    ) {
+        let config = PreprocessorConfig { lag, ..PreprocessorConfig::DEFAULT };
+        let mut preprocessor: Preprocessor = Preprocessor::new(config);
+        let ready_after = SPECTRUM_WINDOW.max(usize::from(lag) + 10);
+        for (n, frame) in frames.iter().enumerate() {
+            let mut reading = some(frame);
+            if n == gone {
+                reading[dead] = None;
+            }
+            let ready = preprocessor.push(&reading).is_some();
+            prop_assert_eq!(ready, n + 1 >= ready_after);
+            let lag = usize::from(lag);
+            if n < lag + 10 {
+                continue;
+            }
+            // Every lag-th reading from the newest back to the window's oldest difference, as if there were no others.
+            let difference = |at: usize, element: usize| {
+                let is_known = element != dead || gone + lag < at || gone > n;
+                let change = i64::from(frames[at][element]) - i64::from(frames[at - lag][element]);
+                if is_known { change.clamp(-8_192, 8_191) } else { 0 }
+            };
+            let pairs = (0..ELEMENTS).flat_map(|a| (a..ELEMENTS).map(move |b| (a, b)));
+            for (entry, (a, b)) in preprocessor.covariance().entries().iter().zip(pairs) {
+                let exact: i64 = (n - 9..=n).map(|at| difference(at, a) * difference(at, b)).sum();
+                prop_assert_eq!(i64::from(*entry), exact, "frame {}, {} {}", n, a, b);
+            }
+        }
+    }
+
+    #[test]
     fn features_are_the_logarithms_of_what_the_oracle_finds(
         frames in prop::collection::vec(alive(), SPECTRUM_WINDOW..120),
     ) {

@@ -13,9 +13,14 @@ use super::{COVARIANCE_WINDOW, COVARIANCES, ELEMENTS, FEATURES, Reading, SPECTRU
 /// `log2(1 + p / knee)` of a bin's power. 512 is one doubling. A covariance is within +-2^14, a bin within 0..2^15.
 pub type Features = [i16; FEATURES];
 
+/// The longest lag of a difference, slow frames: half a second, for sensors that creep.
+pub const LAG_MAX: usize = 40;
+
 /// How readings become features.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PreprocessorConfig {
+    /// A difference is to the reading so many slow frames before, 1 to [`LAG_MAX`] (equation 1: 1). What is beyond is cut.
+    pub lag: u8,
     /// Covariance below which a feature is straight instead of logarithmic, samples^2: about that of noise alone.
     pub covariance_knee: u32,
     /// The same for a bin's power, samples^2.
@@ -27,7 +32,7 @@ pub struct PreprocessorConfig {
 impl PreprocessorConfig {
     /// For elements of 200 mV/N with half a millivolt of noise: 2.5 samples, so 12.5 squared in a difference, ten of
     /// which make a variance, and 6.2 in a reading, 400 of which make a bin's power.
-    pub const DEFAULT: Self = Self { covariance_knee: 128, spectrum_knee: 2_048, dead_max: 2 };
+    pub const DEFAULT: Self = Self { lag: 1, covariance_knee: 128, spectrum_knee: 2_048, dead_max: 2 };
 }
 
 impl Default for PreprocessorConfig {
@@ -41,14 +46,20 @@ impl Default for PreprocessorConfig {
 /// An element without a reading changes nothing: its differences are 0, its covariances are 0 from that very frame on
 /// (also those of the frames before, whose readings may have been its dying ones), and the sum keeps what it had of it.
 /// When it comes back, or reads for the first time, that is no change either: the spectrum's window is given the force
-/// that it missed as a constant.
+/// that it missed as a constant, and differences begin when there is a reading of its own to differ from.
 #[derive(Clone, Debug)]
 pub struct Preprocessor<const N: usize = COVARIANCE_WINDOW, const M: usize = SPECTRUM_WINDOW> {
     config: PreprocessorConfig,
     covariance_knee: Knee,
     spectrum_knee: Knee,
-    /// The last reading of each element, and whether it had one in the last frame.
-    last: [(u16, bool); ELEMENTS],
+    /// Slow frames from the reading that a difference is to.
+    lag: usize,
+    /// Readings of the last `lag` frames, where there were any.
+    past: [[u16; ELEMENTS]; LAG_MAX],
+    /// The oldest of them.
+    oldest: usize,
+    /// The last reading of each element, and for how many frames up to now it has had one, `lag` at most.
+    last: [(u16, usize); ELEMENTS],
     /// Force of all elements above rest, samples.
     sum: i32,
     covariance: SlidingCovariance<N>,
@@ -67,21 +78,22 @@ impl Default for Preprocessor {
 impl<const N: usize, const M: usize> Preprocessor<N, M> {
     /// The reading of an element that nothing presses.
     const REST: u16 = sample_from_mv(CHANNELS[ARRAY].rest_mv);
-    /// Readings until the windows are full: a difference takes two.
-    pub const READY_AFTER: usize = if N + 1 > M { N + 1 } else { M };
-
     /// One that has read nothing.
     #[must_use]
     pub fn new(config: PreprocessorConfig) -> Self {
+        let lag = usize::from(config.lag).clamp(1, LAG_MAX);
         Self {
             config,
             covariance_knee: Knee::at(config.covariance_knee),
             spectrum_knee: Knee::at(config.spectrum_knee),
-            last: [(Self::REST, false); ELEMENTS],
+            lag,
+            past: [[Self::REST; ELEMENTS]; LAG_MAX],
+            oldest: 0,
+            last: [(Self::REST, 0); ELEMENTS],
             sum: 0,
             covariance: SlidingCovariance::default(),
             spectrum: SlidingSpectrum::default(),
-            missing: Self::READY_AFTER,
+            missing: if N + lag > M { N + lag } else { M },
             features: [0; FEATURES],
         }
     }
@@ -101,24 +113,29 @@ impl<const N: usize, const M: usize> Preprocessor<N, M> {
     fn take(&mut self, reading: &Reading) -> usize {
         let mut differences = [0; ELEMENTS];
         let (mut dead, mut missed) = (0, 0);
-        let elements = self.last.iter_mut().zip(reading).zip(&mut differences).enumerate();
-        for (element, (((last, was_alive), reading), difference)) in elements {
+        let Some(past) = self.past.get_mut(self.oldest) else { return ELEMENTS };
+        self.oldest = if self.oldest + 1 < self.lag { self.oldest + 1 } else { 0 };
+        let elements = self.last.iter_mut().zip(past).zip(reading).zip(&mut differences);
+        for (element, ((((last, alive), past), reading), difference)) in elements.enumerate() {
             let Some(now) = *reading else {
-                if *was_alive {
+                if *alive > 0 {
                     self.covariance.forget(element);
                 }
-                *was_alive = false;
+                *alive = 0;
                 dead += 1;
                 continue;
             };
             let change = i32::from(now) - i32::from(*last);
             self.sum += change;
-            if *was_alive {
-                *difference = change;
-            } else {
+            if *alive == 0 {
                 missed += change;
             }
-            (*last, *was_alive) = (now, true);
+            if *alive < self.lag {
+                *alive += 1;
+            } else {
+                *difference = i32::from(now) - i32::from(*past);
+            }
+            (*last, *past) = (now, now);
         }
         if missed != 0 {
             self.spectrum.shift(missed);

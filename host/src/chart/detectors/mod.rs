@@ -82,8 +82,11 @@ fn panel(all: &[Measured], front: &[usize]) -> Panel {
     };
     let (cheapest, dearest) = ends(|point| point.0);
     let (best, worst) = ends(|point| point.1);
-    let y = Axis::log("steps wrong, %", best / 1.6, worst * 1.6);
-    let x = Axis::log("instructions a slow frame", cheapest / 1.3, dearest.max(LOAD_BAR) * 2.0);
+    let decades = |from: f64, to: f64| (10_f64.powf(from.log10().floor()), 10_f64.powf(to.log10().ceil()));
+    let (from, to) = decades(best / 1.2, worst * 1.2);
+    let y = Axis::log("steps wrong, %", from, to);
+    let (from, to) = decades(cheapest / 1.2, dearest.max(LOAD_BAR) * 1.2);
+    let x = Axis::log("instructions a slow frame", from, to);
 
     let mut names: Vec<&str> = all.iter().map(|measured| measured.row.classifier.as_str()).collect();
     names.sort_unstable();
