@@ -32,7 +32,7 @@ pub struct Rivals {
     back_5: LookBack<32, 5>,
     queue: Queue380Box,
     float_back: [[f32; 32]; 5],
-    lstm: float::LstmState<16>,
+    lstm: float::LstmQueue<16>,
 }
 
 /// The paper's queue: whole features, the newest first.
@@ -148,14 +148,14 @@ fn tenax_kernel_logistic_float_1(layer: &FloatDense<FEATURES, 1>, features: &Fea
     layer.sums(&features.map(f32::from))
 }
 
-/// One step of a 16-cell LSTM and the network 16-16-1 behind it. The encoder of an autoencoder is the same work: its
-/// decoder is only needed for training.
+/// A 16-cell LSTM over the last ten frames and the network 16-16-1 behind it. The encoder of an autoencoder is the same
+/// work: its decoder is only needed for training.
 #[inline(never)]
 #[unsafe(no_mangle)]
 fn tenax_kernel_lstm_float_1(
     network: &FloatLstm<FEATURES, 16>,
-    state: &mut float::LstmState<16>,
+    queue: &mut float::LstmQueue<16>,
     features: &Features,
 ) -> f32 {
-    network.judge(state, &features.map(f32::from))
+    network.judge(queue, &features.map(f32::from))
 }

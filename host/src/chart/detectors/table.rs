@@ -9,7 +9,7 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 pub struct Row {
     /// `mlp` (76-32-16-1), `queue` (the same on queued features, 380-32-16-1), `logistic`, `svm` (linear), `lstm`,
-    /// `lstm-autoencoder` (16 cells).
+    /// `lstm-autoencoder` (16 cells over ten frames).
     pub classifier: String,
     /// `float`, `16` or `8`: its weights.
     pub precision: String,

@@ -89,7 +89,10 @@ fn relu<const O: usize>(sums: [f32; O]) -> [f32; O] {
     sums.map(|sum| if sum > 0.0 { sum } else { 0.0 })
 }
 
-/// An LSTM layer of `H` cells with peephole-free gates, and `H`-16-1 behind it.
+/// Frames that an LSTM is run over, from nothing, in each slow frame: as it was trained (`train/src/recurrent.rs`).
+pub const LSTM_FRAMES: usize = 10;
+
+/// An LSTM layer of `H` cells without peepholes, and `H`-16-1 behind it.
 pub struct FloatLstm<const I: usize, const H: usize> {
     /// Input, forget, output gate and candidate: from the inputs, and from the last hidden state.
     from_inputs: [FloatDense<I, H>; 4],
@@ -98,15 +101,12 @@ pub struct FloatLstm<const I: usize, const H: usize> {
     last: FloatDense<16, 1>,
 }
 
-/// What it remembers.
-pub struct LstmState<const H: usize> {
-    cell: [f32; H],
-    hidden: [f32; H],
-}
+/// What the gates hear of the inputs of the last frames, the newest first: each frame's is made once.
+pub struct LstmQueue<const H: usize>([[[f32; H]; 4]; LSTM_FRAMES]);
 
-impl<const H: usize> Default for LstmState<H> {
+impl<const H: usize> Default for LstmQueue<H> {
     fn default() -> Self {
-        Self { cell: [0.0; H], hidden: [0.0; H] }
+        Self([[[0.0; H]; 4]; LSTM_FRAMES])
     }
 }
 
@@ -124,19 +124,24 @@ impl<const I: usize, const H: usize> FloatLstm<I, H> {
         Self { from_inputs, from_hidden, hidden, last: FloatDense::specimen(&mut seed) }
     }
 
-    pub fn judge(&self, state: &mut LstmState<H>, inputs: &[f32; I]) -> f32 {
-        let mut gates = [[0.0; H]; 4];
-        for ((gate, from_inputs), from_hidden) in
-            gates.iter_mut().zip(&self.from_inputs).zip(&self.from_hidden)
-        {
-            *gate = from_hidden.add_sums(&state.hidden, from_inputs.sums(inputs));
+    pub fn judge(&self, queue: &mut LstmQueue<H>, inputs: &[f32; I]) -> f32 {
+        queue.0.rotate_right(1);
+        for (gate, from_inputs) in queue.0[0].iter_mut().zip(&self.from_inputs) {
+            *gate = from_inputs.sums(inputs);
         }
-        let [input, forget, output, candidate] = gates;
-        for n in 0..H {
-            state.cell[n] = sigmoid(forget[n]) * state.cell[n] + sigmoid(input[n]) * tanh(candidate[n]);
-            state.hidden[n] = sigmoid(output[n]) * tanh(state.cell[n]);
+        let (mut cell, mut hidden) = ([0.0; H], [0.0; H]);
+        for heard in queue.0.iter().rev() {
+            let mut gates = *heard;
+            for (gate, from_hidden) in gates.iter_mut().zip(&self.from_hidden) {
+                *gate = from_hidden.add_sums(&hidden, *gate);
+            }
+            let [input, forget, output, candidate] = gates;
+            for n in 0..H {
+                cell[n] = sigmoid(forget[n]) * cell[n] + sigmoid(input[n]) * tanh(candidate[n]);
+                hidden[n] = sigmoid(output[n]) * tanh(cell[n]);
+            }
         }
-        let [logit] = self.last.sums(&relu(self.hidden.sums(&state.hidden)));
+        let [logit] = self.last.sums(&relu(self.hidden.sums(&hidden)));
         logit
     }
 }
