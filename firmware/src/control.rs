@@ -105,7 +105,7 @@ fn tenax_control_tick(fingertip: &mut Fingertip, frame: &Frame) -> MotorDrive {
 
 /// Runs control from frame to frame, for ever.
 #[embassy_executor::task]
-pub async fn control(scan: Scan, mut control: Control) -> ! {
+pub async fn control(scan: Scan, control: &'static mut Control) -> ! {
     control.watchdog.unleash();
     scan.run(|frame| control.on_frame(frame)).await
 }

@@ -39,7 +39,7 @@ use embassy_stm32::interrupt::{InterruptExt, Priority};
 use embassy_stm32::usart::{self, Uart};
 use embassy_stm32::wdg::IndependentWatchdog;
 use embassy_stm32::{bind_interrupts, dma, peripherals};
-use static_cell::ConstStaticCell;
+use static_cell::{ConstStaticCell, StaticCell};
 use tenax_hal_shim::wire::BAUD;
 
 bind_interrupts!(struct Irqs {
@@ -63,6 +63,9 @@ static SCAN_RING: ConstStaticCell<[u16; scan::RING_LEN]> = ConstStaticCell::new(
 static COMMAND_RING: ConstStaticCell<[u8; commands::RING_LEN]> =
     ConstStaticCell::new([0; commands::RING_LEN]);
 
+/// What control works with: built once and never moved, for every move of it by value is a copy on the stack.
+static CONTROL: StaticCell<control::Control> = StaticCell::new();
+
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
     let after = last_words::of_last_run();
@@ -74,6 +77,7 @@ async fn main(spawner: Spawner) {
     // While nothing moves yet: this may erase a sector, and then the core stands still for a second or two.
     let mut flash = flash::Flash::new(p.FLASH);
     let (log, found) = tenax_logic::store::open(&mut flash);
+    clock::accelerate_flash();
     interrupt::DMA2_STREAM0.set_priority(Priority::P1);
     interrupt::TIM5.set_priority(Priority::P1);
     interrupt::SPI5.set_priority(Priority::P2);
@@ -109,7 +113,7 @@ async fn main(spawner: Spawner) {
     spawner.spawn(telemetry::telemetry(up, after).expect("one telemetry task"));
     spawner
         .spawn(commands::commands(down.into_ring_buffered(COMMAND_RING.take())).expect("one commands task"));
-    let mut control = control::Control::new(bridge, switches, watchdog);
+    let control = CONTROL.init_with(|| control::Control::new(bridge, switches, watchdog));
     control.restore(|fingertip| store::restore(fingertip, &flash, &found));
     spawner.spawn(store::store(flash, log).expect("one store task"));
     let urgent = URGENT.start(interrupt::SPI5);
