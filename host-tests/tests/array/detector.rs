@@ -1,7 +1,9 @@
 //! What the detector says, and when it says nothing.
 
 use proptest::prelude::*;
-use tenax_logic::array::{ArrayDetector, ArrayVerdict, Judgement, Model, Reading, specimen};
+use tenax_logic::array::{
+    ArrayDetector, ArrayVerdict, Judgement, Model, PreprocessorConfig, Reading, specimen,
+};
 
 use crate::readings;
 
@@ -63,4 +65,16 @@ fn without_readings_it_stands_down_and_says_for_how_long() {
     }
     assert_eq!(detector.verdict(), ArrayVerdict::NONE);
     assert_eq!(detector.push(&load(1)).age_ms, 0);
+}
+
+#[test]
+fn a_model_may_have_other_windows() {
+    let Model { preprocessor, network, judgement } = specimen::MODEL.clone();
+    let slow: Model<32, 1, 16, 40, 20> =
+        Model { preprocessor: PreprocessorConfig { lag: 20, ..preprocessor }, network, judgement };
+    let mut detector = ArrayDetector::new(&slow);
+    let ready =
+        (0..100u16).map(|n| detector.push(&[Some(2_000 + n); 10]).age_ms == 0).position(|ready| ready);
+    // 40 differences over 20 frames take 60 readings.
+    assert_eq!(ready, Some(59));
 }

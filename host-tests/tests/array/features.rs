@@ -216,3 +216,30 @@ fn the_worst_that_a_converter_gives_stays_in_range() {
     assert!(most[COVARIANCES..].iter().all(|&f| f < 18_000), "{most:?}");
     assert!(most[FEATURES - 1] > 16_000 && most.len() == COVARIANCES + BINS);
 }
+
+fn worst_of_window<const N: usize>() {
+    let d_max = i64::from(SlidingCovariance::<N>::D_MAX);
+    assert!(
+        (d_max * d_max * N as i64) < i64::from(i32::MAX)
+            && 4 * d_max * d_max * N as i64 > i64::from(i32::MAX)
+    );
+    let mut covariance = SlidingCovariance::<N>::default();
+    for n in 0..3 * N {
+        covariance.push(&[if n < N { i32::MIN } else { i32::MAX }; ELEMENTS]);
+        let size = if n < N { d_max } else { d_max - 1 };
+        if (n + 1).is_multiple_of(N) {
+            assert!(covariance.entries().iter().all(|&entry| i64::from(entry) == size * size * N as i64));
+        }
+    }
+}
+
+#[test]
+fn no_window_overflows() {
+    worst_of_window::<1>();
+    worst_of_window::<2>();
+    worst_of_window::<5>();
+    worst_of_window::<10>();
+    worst_of_window::<20>();
+    worst_of_window::<32>();
+    worst_of_window::<40>();
+}

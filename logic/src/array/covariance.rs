@@ -7,13 +7,7 @@
 use super::dual::{Pair, multiply_subtract};
 use super::{COVARIANCES, ELEMENTS};
 
-/// d_max of equation 2, samples: a fixed full scale, 1.65 V or 8 N of one element in 12.5 ms, which no hand does.
-///
-/// As a power of two it makes a difference in samples a normalised one in Q13, and ten products, Q26, fit in an `i32`.
-/// A running maximum instead would make one knock deafen the detector for as long as it is remembered.
-pub const D_MAX: i16 = 1 << 13;
-
-/// The covariance over the last `N` differences: of normalised ones in Q26, which is of samples as they are.
+/// The covariance over the last `N` differences, 40 at most, samples^2.
 #[derive(Clone, Debug)]
 pub struct SlidingCovariance<const N: usize> {
     window: [[i16; ELEMENTS]; N],
@@ -25,16 +19,24 @@ pub struct SlidingCovariance<const N: usize> {
 impl<const N: usize> Default for SlidingCovariance<N> {
     /// The covariance of an array where nothing ever happened.
     fn default() -> Self {
-        const { assert!(N >= 1 && N <= 10, "a sum of ten products fits") }
+        const { assert!(N >= 1 && N <= 40, "a window of 1 to 40 differences") }
         Self { window: [[0; ELEMENTS]; N], oldest: 0, entries: [0; COVARIANCES] }
     }
 }
 
 impl<const N: usize> SlidingCovariance<N> {
-    /// Takes the newest differences, and forgets the oldest. What is beyond +-[`D_MAX`] (1 - 2^-13 above) is cut.
+    /// d_max of equation 2, samples: a fixed full scale, the largest power of two of which `N` squares fit in an `i32`. For
+    /// 10 it is 2^13, 1.65 V or 8 N of one element in 12.5 ms, which no hand does.
+    ///
+    /// A power of two makes a difference in samples a normalised one, in Q13, as it stands. A running maximum instead would
+    /// make one knock deafen the detector for as long as it is remembered.
+    pub const D_MAX: i32 = 1 << (i32::MAX as u32 / N as u32).isqrt().ilog2();
+
+    /// Takes the newest differences, and forgets the oldest. What is beyond +-[`D_MAX`](Self::D_MAX), above less one, is
+    /// cut.
     #[inline]
     pub fn push(&mut self, differences: &[i32; ELEMENTS]) {
-        let new = differences.map(|d| d.clamp(-i32::from(D_MAX), i32::from(D_MAX) - 1) as i16);
+        let new = differences.map(|d| d.clamp(-Self::D_MAX, Self::D_MAX - 1) as i16);
         let Some(column) = self.window.get_mut(self.oldest) else { return };
         let old = core::mem::replace(column, new);
         self.oldest = if self.oldest + 1 < N { self.oldest + 1 } else { 0 };

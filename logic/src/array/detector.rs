@@ -4,7 +4,7 @@ use tenax_hal_shim::channel::SLOW_HZ;
 
 use super::network::{LookBack, Mlp};
 use super::preprocess::{Features, Preprocessor, PreprocessorConfig};
-use super::{FEATURES, Reading};
+use super::{COVARIANCE_WINDOW, FEATURES, Reading, SPECTRUM_WINDOW};
 
 /// How a logit is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,9 +27,15 @@ impl Judgement {
         Self { logit_per_nat: 1 << 16, on_permille: 500, off_permille: 500, on_frames: 1, off_frames: 1 };
 }
 
-/// A trained detector: everything about it that is not state.
+/// A trained detector on windows of `N` differences and `M` sums: everything about it that is not state.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Model<const H1: usize, const L: usize, const H2: usize> {
+pub struct Model<
+    const H1: usize,
+    const L: usize,
+    const H2: usize,
+    const N: usize = COVARIANCE_WINDOW,
+    const M: usize = SPECTRUM_WINDOW,
+> {
     /// What its features were made with.
     pub preprocessor: PreprocessorConfig,
     /// The network.
@@ -56,9 +62,16 @@ impl ArrayVerdict {
 
 /// The detector of one array.
 #[derive(Clone, Debug)]
-pub struct ArrayDetector<'m, const H1: usize, const L: usize, const H2: usize> {
-    model: &'m Model<H1, L, H2>,
-    preprocessor: Preprocessor,
+pub struct ArrayDetector<
+    'm,
+    const H1: usize,
+    const L: usize,
+    const H2: usize,
+    const N: usize = COVARIANCE_WINDOW,
+    const M: usize = SPECTRUM_WINDOW,
+> {
+    model: &'m Model<H1, L, H2, N, M>,
+    preprocessor: Preprocessor<N, M>,
     look_back: LookBack<H1, L>,
     /// Slow frames in a row that contradict the verdict.
     contradicted: u8,
@@ -68,10 +81,12 @@ pub struct ArrayDetector<'m, const H1: usize, const L: usize, const H2: usize> {
     verdict: ArrayVerdict,
 }
 
-impl<'m, const H1: usize, const L: usize, const H2: usize> ArrayDetector<'m, H1, L, H2> {
+impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const M: usize>
+    ArrayDetector<'m, H1, L, H2, N, M>
+{
     /// One that has read nothing.
     #[must_use]
-    pub fn new(model: &'m Model<H1, L, H2>) -> Self {
+    pub fn new(model: &'m Model<H1, L, H2, N, M>) -> Self {
         Self {
             model,
             preprocessor: Preprocessor::new(model.preprocessor),

@@ -50,8 +50,8 @@ pub struct Evidence {
 
 impl Answer {
     /// What a detector on this machine says to a reading, for comparison.
-    pub fn of<const H1: usize, const L: usize, const H2: usize>(
-        detector: &mut ArrayDetector<'_, H1, L, H2>,
+    pub fn of<const H1: usize, const L: usize, const H2: usize, const N: usize, const M: usize>(
+        detector: &mut ArrayDetector<'_, H1, L, H2, N, M>,
         reading: &Reading,
     ) -> Self {
         let verdict = detector.push(reading);
