@@ -117,7 +117,7 @@ pub fn run(
 pub fn costs(image: &Path) -> Result<Vec<Cost>> {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let mut reading = |n: usize| -> Reading {
-        let spread = if n / 40 % 2 == 0 { 5 } else { 200 };
+        let spread = if (n / 40).is_multiple_of(2) { 5 } else { 200 };
         std::array::from_fn(|_| Some(2_000 + random.random_range(0..spread)))
     };
     let readings = (0..400).map(&mut reading).collect();
