@@ -1,10 +1,11 @@
 //! The charts of `tenax chart scenes`: where each way of stepping friction fails, and what it costs where it does not.
-//! And of `tenax chart sensors`: the scenes' sensors beside real ones. And of `tenax chart detectors`: what detectors from
-//! normal force get wrong against what they cost.
+//! Of `tenax chart sensors`: the scenes' sensors beside real ones. Of `tenax chart detectors`: what detectors from normal
+//! force get wrong against what they cost. And of `tenax chart features`: what tells slip from rest.
 
 mod cost;
 pub mod detectors;
 mod draw;
+pub mod features;
 mod growth;
 mod map;
 mod patch;

@@ -38,11 +38,14 @@ enum Subject {
     Sensors,
     /// What detectors from normal force get wrong against the instructions that they take
     Detectors,
+    /// What tells slip from rest in the force array: force sum, derivative, covariance, frequency, and their windows
+    Features,
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let charts = match args.subject {
         Subject::Scenes => scenes()?,
+        Subject::Features => vec![chart::features::chart()?],
         Subject::Sensors => {
             let recordings = match &args.recordings {
                 Some(folder) => folder.clone(),
