@@ -7,6 +7,7 @@ pub mod chart;
 pub mod check;
 pub mod cli;
 pub mod dataset;
+pub mod evaluate;
 pub mod image;
 pub mod labelled;
 pub mod monitor;

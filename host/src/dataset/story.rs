@@ -2,6 +2,7 @@
 
 use anyhow::Context;
 use rand::{RngExt, rngs::ChaCha8Rng};
+use tenax_scene::physics::GRAVITY_M_S2;
 use tenax_scene::{SceneFile, builtin};
 use toml::{Table, Value};
 
@@ -45,6 +46,12 @@ impl Story {
     /// # Errors
     /// If a drawn number is none that a scene may have.
     pub fn scene_in(self, session: &Session, rng: &mut ChaCha8Rng) -> anyhow::Result<SceneFile> {
+        let (scene, duration_s) = self.told(session, rng)?;
+        finish(scene, duration_s, &format!("{} in {}", self.scene(), session.name))
+    }
+
+    /// The repository's scene with the session's numbers, and how long it lasts, s.
+    fn told(self, session: &Session, rng: &mut ChaCha8Rng) -> anyhow::Result<(Table, f64)> {
         let name = self.scene();
         let found = builtin().iter().find(|(builtin, _)| *builtin == name);
         let (_, text) = found.with_context(|| format!("the scene {name} is not there"))?;
@@ -68,14 +75,30 @@ impl Story {
             put(&mut scene, section, key, Value::from(value));
         }
         put(&mut scene, "array", "specimen", Value::from(session.specimen));
-        scene.insert("duration_s".to_owned(), Value::from(duration_s));
-        let called = format!("{} of {}", name, session.name);
-        Ok(SceneFile::parse(&scene.to_string(), &called)?)
+        Ok((scene, duration_s))
+    }
+
+    /// The same story for a fingertip that has to hold the box itself, once somebody has closed the hand on it with about
+    /// what holds it: nobody tightens the grip but the fingertip.
+    ///
+    /// # Errors
+    /// If a drawn number is none that a scene may have.
+    pub fn task_in(self, session: &Session, rng: &mut ChaCha8Rng) -> anyhow::Result<SceneFile> {
+        let (mut scene, duration_s) = self.told(session, rng)?;
+        let mass_kg = number(&scene, "object", "mass_kg");
+        let part = rng.random_range(1.05..1.4);
+        let grip_n = part * mass_kg * GRAVITY_M_S2 / 2.0 / session.mu_d;
+        let mut commands = vec![drive("close", 0.4, closing_s(&scene, grip_n, session))];
+        if self == Self::Pick {
+            commands.push(drive("open", 7.5, 1.0));
+        }
+        scene.insert("command".to_owned(), Value::Array(commands));
+        finish(scene, duration_s, &format!("{} in {}", self.scene(), session.name))
     }
 
     /// Draws when and how much; gives how long it lasts, s.
     fn retell(self, scene: &mut Table, rng: &mut ChaCha8Rng) -> f64 {
-        // Somebody else grips (`super::operator`).
+        // Somebody else grips (`super::operator`), or `task_in` says how.
         scene.remove("command");
         match self {
             Self::Pour => {
@@ -131,6 +154,43 @@ const POUR_S: f64 = 26.0;
 const PICK_S: f64 = 9.0;
 /// How long the disturbances last, s; in the last 3 s the grip changes.
 const DISTURB_S: f64 = 13.0;
+
+/// How somebody closes on the box, and opens, per mille.
+const DUTY: i64 = 300;
+
+fn finish(mut scene: Table, duration_s: f64, called: &str) -> anyhow::Result<SceneFile> {
+    scene.insert("duration_s".to_owned(), Value::from(duration_s));
+    Ok(SceneFile::parse(&scene.to_string(), called)?)
+}
+
+fn drive(kind: &str, at_s: f64, for_s: f64) -> Value {
+    let mut drive = entry(&[("at_s", at_s), ("for_s", for_s)]);
+    if let Value::Table(drive) = &mut drive {
+        drive.insert("kind".to_owned(), Value::from(kind));
+        drive.insert("duty_permille".to_owned(), Value::from(DUTY));
+    }
+    drive
+}
+
+/// How long the hand has to close until each finger presses with `grip_n`, s: over the gap, and then against a spring
+/// that slows it.
+fn closing_s(scene: &Table, grip_n: f64, session: &Session) -> f64 {
+    let of = |section: &str, key: &str| number(scene, section, key);
+    let duty = DUTY as f64 / 1e3;
+    let speed_mm_s = of("gripper", "speed_mm_s");
+    let gap_s = (of("gripper", "opening_mm") - of("object", "width_mm")) / (duty * speed_mm_s);
+    let stall_n = duty * of("gripper", "force_n");
+    let spring_s = 2.0 * of("gripper", "force_n") / (speed_mm_s * session.stiffness_n_per_mm);
+    let closing_s = gap_s - spring_s * (1.0 - (grip_n / stall_n).min(0.95)).ln();
+    // The logarithm may differ in its last bits from one platform to the next.
+    (closing_s * 1e3).round() / 1e3
+}
+
+/// A number of a scene; 0 if it does not say.
+fn number(scene: &Table, section: &str, key: &str) -> f64 {
+    let value = scene.get(section).and_then(|section| section.get(key));
+    value.map_or(0.0, |value| value.as_float().or(value.as_integer().map(|n| n as f64)).unwrap_or(0.0))
+}
 
 fn entry(keys: &[(&str, f64)]) -> Value {
     Value::Table(keys.iter().map(|&(key, value)| (key.to_owned(), Value::from(value))).collect())

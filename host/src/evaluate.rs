@@ -1,0 +1,56 @@
+//! `tenax evaluate`: the shipped network of the force array on recordings that it never saw, step by step and slip by
+//! slip; and with the hand around it, in the paper's two tasks and in the scenes where it has to fail.
+
+pub mod events;
+pub mod failures;
+pub mod online;
+pub mod ran;
+pub mod report;
+pub mod text;
+
+use rayon::prelude::*;
+use tenax_hal_shim::channel::{ARRAY, CHANNELS, SLOW_HZ};
+use tenax_logic::array::{ArrayDetector, ELEMENTS, Reading};
+use tenax_logic::health::{Limits, SensorHealth};
+
+use crate::labelled::{Part, Recording, Step};
+
+/// What a detector said of a recording, step by step: slip or not.
+pub type Verdicts = Vec<bool>;
+
+/// When a reading of an element is to be believed: as the fingertip has it.
+static LIMITS: Limits = Limits::of(&CHANNELS[ARRAY], SLOW_HZ);
+
+/// What a detector says of recordings, in the logic's own integers. Each recording is read by a `fresh` one, which knows
+/// nothing yet.
+pub fn judge<const H1: usize, const L: usize, const H2: usize>(
+    fresh: impl Fn() -> ArrayDetector<'static, H1, L, H2> + Sync,
+    recordings: &[Recording],
+) -> Vec<Verdicts> {
+    recordings.par_iter().map(|recording| verdicts(&mut fresh(), &recording.steps)).collect()
+}
+
+/// What one detector says, an element that cannot be believed having no reading.
+pub fn verdicts<const H1: usize, const L: usize, const H2: usize>(
+    detector: &mut ArrayDetector<'static, H1, L, H2>,
+    steps: &[Step],
+) -> Verdicts {
+    let mut health: [SensorHealth; ELEMENTS] = Default::default();
+    let mut said = |step: &Step| {
+        let mut readings = health.iter_mut().zip(step.samples);
+        let reading: Reading = std::array::from_fn(|_| {
+            readings.next().and_then(|(health, sample)| health.take(&LIMITS, sample).0.ok())
+        });
+        detector.push(&reading).slip
+    };
+    steps.iter().map(&mut said).collect()
+}
+
+/// The recordings to be judged by: those that their file calls test, or all if it says nothing of the kind.
+#[must_use]
+pub fn test_split(recordings: Vec<Recording>) -> Vec<Recording> {
+    if recordings.iter().all(|recording| recording.part.is_none()) {
+        return recordings;
+    }
+    recordings.into_iter().filter(|recording| recording.part == Some(Part::Test)).collect()
+}

@@ -1,0 +1,79 @@
+//! Where the array's detector may fail: nine scenes, each with its score and with what the hand did then.
+
+use anyhow::Context;
+use rayon::prelude::*;
+use serde::Serialize;
+use tenax_logic::array::ArrayDetector;
+
+use super::events::Events;
+use super::report::Steps;
+use super::{ran, verdicts};
+use crate::session::{self, Board};
+
+/// The scenes: first the two that the others are the failures of.
+pub const SCENES: [&str; 11] = [
+    "array-pour",
+    "array-disturb",
+    "array-rotation",
+    "array-slow",
+    "array-dead",
+    "array-stuck",
+    "array-lost",
+    "array-new-material",
+    "array-load",
+    "array-saturated",
+    "array-opening",
+];
+
+/// What came of a scene.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// Its name.
+    pub scene: &'static str,
+    /// What the detector alone said, step by step.
+    pub steps: Steps,
+    /// Slips, those that it caught within 50 ms, and its false alarms.
+    pub slips: [usize; 3],
+    /// Whether the object stayed in the hand. Null where the hand strokes a surface.
+    pub kept: Option<bool>,
+    /// How far it slid, mm, and with an oracle.
+    pub distance_mm: [Option<f64>; 2],
+    /// The greatest force of a finger, N, and with an oracle.
+    pub peak_force_n: [Option<f64>; 2],
+    /// Sensors that the board reported as lost.
+    pub faults: Vec<String>,
+}
+
+/// Runs them all, on all cores, and scores what a `fresh` detector makes of what the board's converter read.
+///
+/// # Errors
+/// If a board cannot be run.
+pub fn rows<const H1: usize, const L: usize, const H2: usize>(
+    fresh: impl Fn() -> ArrayDetector<'static, H1, L, H2> + Sync,
+    seed: u64,
+    board: &Board,
+    progress: &(dyn Fn(f64) + Sync),
+) -> anyhow::Result<Vec<Row>> {
+    let done = std::sync::atomic::AtomicUsize::new(0);
+    let row = |scene: &&'static str| {
+        let file = session::load_scene(scene)?;
+        let outcome =
+            session::scene(&file, seed, board, &mut |_| {}).with_context(|| format!("scene {scene}"))?;
+        let steps = ran::steps(&outcome.run);
+        let said = verdicts(&mut fresh(), &steps);
+        let (mut events, report) = (Events::default(), outcome.report);
+        events.take(&steps, &said);
+        let done = 1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        progress(done as f64 / SCENES.len() as f64);
+        Ok(Row {
+            scene,
+            steps: Steps::of(&steps, &said),
+            slips: [events.count, events.latencies_ms.len(), events.false_alarms],
+            kept: report.grip.needed_force_n.and(report.slip.dropped).map(|dropped| !dropped),
+            distance_mm: [report.slip.distance_mm, report.oracle.distance_mm],
+            peak_force_n: [report.grip.peak_force_n, report.oracle.peak_force_n],
+            faults: report.faults.iter().map(|fault| fault.what.clone()).collect(),
+        })
+    };
+    SCENES.par_iter().map(row).collect()
+}

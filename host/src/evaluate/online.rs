@@ -1,0 +1,132 @@
+//! The paper's online tasks (Bamshad 2023, section 6): pick and place, and a grasp kept while balls are poured in, ten
+//! times each for four materials, with the whole fingertip closing the loop. The box has to be kept.
+
+use anyhow::Context;
+use rand::{SeedableRng, rngs::ChaCha8Rng};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::dataset::material::SEEN;
+use crate::dataset::session::{Session, Sizes, sessions};
+use crate::dataset::story::Story;
+use crate::session::{self, Board};
+
+/// Times that each task is tried with each material.
+pub const TIMES: usize = 10;
+/// The two tasks, as the paper orders them.
+pub const TASKS: [Story; 2] = [Story::Pick, Story::Pour];
+
+/// What came of one try.
+#[derive(Clone, Debug, Serialize)]
+pub struct Try {
+    /// Of the box.
+    pub material: &'static str,
+    /// `pick` or `pour`.
+    pub task: &'static str,
+    /// Of the world's noise.
+    pub seed: u64,
+    /// Whether the box stayed in the hand.
+    pub kept: bool,
+    /// How far it slid, mm.
+    pub distance_mm: f64,
+    /// How far with an oracle that tells the same hand of slip at once, mm.
+    pub oracle_distance_mm: f64,
+    /// The greatest force of a finger, N.
+    pub peak_force_n: f64,
+    /// The oracle's, N.
+    pub oracle_peak_force_n: f64,
+    /// The least force that would have held the box at its heaviest, N.
+    pub needed_force_n: f64,
+}
+
+/// The tries of one task with one material.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// Of the box.
+    pub material: &'static str,
+    /// `pick` or `pour`.
+    pub task: &'static str,
+    /// Tries.
+    pub tries: usize,
+    /// Those in which the box was kept.
+    pub kept: usize,
+    /// Means over the tries: slid, the oracle's, mm; greatest force, the oracle's, needed, N.
+    pub distance_mm: f64,
+    /// See above.
+    pub oracle_distance_mm: f64,
+    /// See above.
+    pub peak_force_n: f64,
+    /// See above.
+    pub oracle_peak_force_n: f64,
+    /// See above.
+    pub needed_force_n: f64,
+}
+
+/// Tries everything, on all cores. `progress` is told the part that is done, 0 to 1.
+///
+/// Sessions are drawn from another seed than any data set's default, so no network has seen one of them.
+///
+/// # Errors
+/// If a board cannot be run.
+pub fn tasks(
+    seed: u64,
+    times: usize,
+    board: &Board,
+    progress: &(dyn Fn(f64) + Sync),
+) -> anyhow::Result<Vec<Try>> {
+    let drawn = sessions(SEED_OFFSET + seed, Sizes { train: times, validation: 0, test: 0 });
+    let jobs: Vec<(Story, &Session)> =
+        TASKS.iter().flat_map(|&task| drawn.iter().map(move |session| (task, session))).collect();
+    let done = std::sync::atomic::AtomicUsize::new(0);
+    let tried = jobs.par_iter().map(|&(task, session)| {
+        let tried = attempt(task, session, board)?;
+        let done = 1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        progress(done as f64 / jobs.len() as f64);
+        Ok(tried)
+    });
+    tried.collect()
+}
+
+/// Away from the seeds that anybody gives to a data set.
+const SEED_OFFSET: u64 = 1 << 40;
+
+fn attempt(task: Story, session: &Session, board: &Board) -> anyhow::Result<Try> {
+    let mut rng = ChaCha8Rng::seed_from_u64(session.seed);
+    let scene = task.task_in(session, &mut rng)?;
+    let report = session::scene(&scene, session.seed, board, &mut |_| {})?.report;
+    let known = "a scene knows what became of its object";
+    Ok(Try {
+        material: session.material,
+        task: task.name(),
+        seed: session.seed,
+        kept: !report.slip.dropped.context(known)?,
+        distance_mm: report.slip.distance_mm.context(known)?,
+        oracle_distance_mm: report.oracle.distance_mm.context(known)?,
+        peak_force_n: report.grip.peak_force_n.context(known)?,
+        oracle_peak_force_n: report.oracle.peak_force_n.context(known)?,
+        needed_force_n: report.grip.needed_force_n.unwrap_or(0.0),
+    })
+}
+
+/// The tries as a table: each task with each material.
+#[must_use]
+pub fn rows(tries: &[Try]) -> Vec<Row> {
+    let all = TASKS.iter().flat_map(|task| SEEN.iter().map(move |material| (task.name(), material.name)));
+    let row = |(task, material)| {
+        let own: Vec<&Try> =
+            tries.iter().filter(|own| own.task == task && own.material == material).collect();
+        let mean = |of: fn(&Try) -> f64| own.iter().map(|own| of(own)).sum::<f64>() / own.len().max(1) as f64;
+        Row {
+            material,
+            task,
+            tries: own.len(),
+            kept: own.iter().filter(|own| own.kept).count(),
+            distance_mm: mean(|own| own.distance_mm),
+            oracle_distance_mm: mean(|own| own.oracle_distance_mm),
+            peak_force_n: mean(|own| own.peak_force_n),
+            oracle_peak_force_n: mean(|own| own.oracle_peak_force_n),
+            needed_force_n: mean(|own| own.needed_force_n),
+        }
+    };
+    all.map(row).collect()
+}
