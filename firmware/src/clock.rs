@@ -1,10 +1,10 @@
 //! The clock tree: 100 MHz from the ST-LINK's 8 MHz.
 
-use embassy_stm32::{Config, pac};
 use embassy_stm32::rcc::{
     AHBPrescaler, APBPrescaler, Hse, HseMode, Pll, PllMul, PllPDiv, PllPreDiv, PllSource, Sysclk,
 };
 use embassy_stm32::time::Hertz;
+use embassy_stm32::{Config, pac};
 
 /// Lets the flash fetch ahead and cache instructions: at 100 MHz it has three wait states, which the chip otherwise pays
 /// at every jump (RM0383, section 3.4). Its data cache stays off, so that what was programmed is what is read.

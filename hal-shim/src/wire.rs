@@ -62,6 +62,22 @@ pub struct Forces {
     pub ratio_permille: Option<u16>,
 }
 
+/// What the normal-force array says (Bamshad 2023).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ArrayVerdict {
+    /// Whether the object slips.
+    pub slip: bool,
+    /// How likely that is, per mille: the calibrated logit's logistic function.
+    pub confidence_permille: u16,
+    /// How long ago, at the end of the last slow frame, there was something to judge by, ms: 0 while the detector works.
+    pub age_ms: u16,
+}
+
+impl ArrayVerdict {
+    /// Nothing has been judged yet.
+    pub const NONE: Self = Self { slip: false, confidence_permille: 0, age_ms: u16::MAX };
+}
+
 /// Everything a slow frame (12.5 ms) decided.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Slow {
@@ -85,6 +101,8 @@ pub struct Slow {
     pub wearer_active: bool,
     /// What the network is learning, None while nothing.
     pub lesson: Option<Codes>,
+    /// What the array says.
+    pub array: ArrayVerdict,
     /// Checksum of every valid sample that the slow frame's ticks were given: the two ends agree on the input too.
     pub samples_sum: u32,
 }

@@ -52,6 +52,8 @@ pub enum Cause {
     StrokeOver,
     /// The network's first output says slip.
     Network,
+    /// The normal-force array says slip.
+    Array,
 }
 
 /// Why a sensor gives no number.

@@ -4,7 +4,8 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{
-    BadFrame, Counters, Down, FRAME_MAX, NetworkState, Receiver, Setting, Slow, TickRecord, Up, encode,
+    ArrayVerdict, BadFrame, Counters, Down, FRAME_MAX, NetworkState, Receiver, Setting, Slow, TickRecord, Up,
+    encode,
 };
 use tenax_hal_shim::words::{Code, DriveSource, GripMode, NoLesson};
 
@@ -121,6 +122,7 @@ fn the_longest_message_fits_a_frame() {
         extensor_mv: Some(i16::MIN),
         wearer_active: true,
         lesson: Some([Code::Minus; 2]),
+        array: ArrayVerdict { slip: true, confidence_permille: u16::MAX, age_ms: u16::MAX },
         samples_sum: u32::MAX,
     };
     let mut buffer = [0; FRAME_MAX];

@@ -190,6 +190,9 @@ fn slow_words(f: &mut fmt::Formatter<'_>, slow: &Slow) -> fmt::Result {
         f.write_str(" learning")?;
     }
     let slips = slow.ticks.iter().any(|tick| tick.slips);
+    if slow.array.age_ms == 0 {
+        write!(f, " p(slip) {:5.3}", f64::from(slow.array.confidence_permille) / 1e3)?;
+    }
     match last.map(|tick| tick.drive) {
         Some(MotorDrive::Close(duty)) => write!(f, " closing {}", duty.as_per_mille())?,
         Some(MotorDrive::Open(duty)) => write!(f, " opening {}", duty.as_per_mille())?,
@@ -198,7 +201,8 @@ fn slow_words(f: &mut fmt::Formatter<'_>, slow: &Slow) -> fmt::Result {
     for (spoke, name) in [
         (slow.ticks.iter().any(|tick| tick.s1), " S1"),
         (slow.s2, " S2"),
-        (slips, " slips"),
+        (slips, " network"),
+        (slow.array.slip, " array"),
         (slow.wearer_active, " wearer"),
     ] {
         if spoke {

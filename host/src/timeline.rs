@@ -1,6 +1,6 @@
 //! When things happened in a run, in seconds.
 
-use tenax_hal_shim::channel::{FRAME_HZ, FRAMES_PER_SLOW_FRAME, FSR_COUNT, FSR_SELECT};
+use tenax_hal_shim::channel::{ARRAY_COUNT, FRAME_HZ, FRAMES_PER_SLOW_FRAME, FSR_COUNT, FSR_SELECT};
 use tenax_hal_shim::wire::{Event, EventKind, Slow, TickRecord};
 use tenax_hal_shim::words::Cause;
 
@@ -50,6 +50,14 @@ impl<'a> Timeline<'a> {
     #[must_use]
     pub fn network(self) -> Vec<f64> {
         rising(self.ticks().map(|(t, tick)| (t, tick.slips)))
+    }
+
+    /// When the array said slip: the rising edges, s. It does so in the tick after its last element was read.
+    #[must_use]
+    pub fn array(self) -> Vec<f64> {
+        let ticks_before_end = u32::from(FRAMES_PER_SLOW_FRAME) - 1 - ARRAY_COUNT as u32;
+        let decided = |slow: &Slow| self.time_s(slow.frame.saturating_sub(ticks_before_end));
+        rising(self.slows.iter().map(|slow| (decided(slow), slow.array.slip)))
     }
 
     /// When S2 spoke: the rising edges, s. A slow frame says only that it did; it does so in the tick that reads the last

@@ -21,14 +21,16 @@ pub mod dual;
 pub mod logarithm;
 pub mod network;
 pub mod preprocess;
+pub mod shipped;
 pub mod specimen;
 pub mod spectrum;
 
 use tenax_hal_shim::channel::ARRAY_COUNT;
 
-pub use detector::{ArrayDetector, ArrayVerdict, Judgement, Model};
+pub use detector::{ArrayDetector, Judgement, Model};
 pub use network::{Layer, LookBack, Mlp, TooLarge};
 pub use preprocess::{Features, Preprocessor, PreprocessorConfig};
+pub use tenax_hal_shim::wire::ArrayVerdict;
 
 /// Elements of the array: two pads of five (Bamshad 2023, section 2.1).
 pub const ELEMENTS: usize = ARRAY_COUNT;
@@ -45,3 +47,13 @@ pub const SPECTRUM_WINDOW: usize = 40;
 
 /// One reading of every element, 14-bit samples; None where an element has no believable one.
 pub type Reading = [Option<u16>; ELEMENTS];
+
+/// The detector that ships.
+pub type ShippedDetector = ArrayDetector<'static, 32, 1, 16>;
+
+impl Default for ShippedDetector {
+    /// One that has read nothing.
+    fn default() -> Self {
+        Self::new(&shipped::MODEL)
+    }
+}

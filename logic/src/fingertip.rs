@@ -39,6 +39,7 @@ struct LinkDrive {
 struct Verdict {
     s1: bool,
     network: bool,
+    array: bool,
     incipient: bool,
 }
 
@@ -123,8 +124,12 @@ impl Fingertip {
     /// Frames come one by one, lost ones included ([`Frame::lost`]): time is counted by them.
     pub fn tick(&mut self, frame: &Frame) -> MotorDrive {
         self.sense(frame);
-        let verdict =
-            Verdict { s1: self.senses.vibration.s1, network: self.touch.slips(), incipient: self.s2 };
+        let verdict = Verdict {
+            s1: self.senses.vibration.s1,
+            network: self.touch.slips(),
+            array: self.senses.array().slip,
+            incipient: self.s2,
+        };
         self.act(frame, verdict)
     }
 
@@ -244,7 +249,7 @@ impl Fingertip {
         let felt = Felt {
             envelopes: self.senses.envelopes(),
             loads: &self.senses.gauges().loads(),
-            gauge: usize::from(frame.select()),
+            gauge: usize::from(frame.place()),
             knock,
             situation: Situation {
                 grasp: matches!(self.senses.grip(&self.config), Grip::Holds(_)),
@@ -295,12 +300,15 @@ impl Fingertip {
         self.cause(if self.senses.ready(&self.config) { Cause::SensorsReady } else { Cause::SensorsLost });
         self.cause(if taken_over { Cause::TakenOver } else { Cause::Released });
         let may_close = self.reflex.may_close(&config, grip);
-        let slips = verdict.s1 || verdict.network;
+        let slips = verdict.s1 || verdict.network || verdict.array;
         if verdict.s1 && may_close {
             self.cause(Cause::S1);
         }
         if verdict.network && may_close {
             self.cause(Cause::Network);
+        }
+        if verdict.array && may_close {
+            self.cause(Cause::Array);
         }
         if verdict.incipient && may_close {
             self.cause(Cause::S2);
@@ -374,6 +382,7 @@ impl Fingertip {
             extensor_mv: self.senses.gate.extensor.mv(),
             wearer_active: self.senses.gate.is_active(),
             lesson: self.touch.lesson().ok(),
+            array: self.senses.array(),
             samples_sum,
         }
     }

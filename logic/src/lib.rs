@@ -16,6 +16,7 @@ pub mod arbiter;
 pub mod array;
 mod checksum;
 pub mod config;
+pub mod elements;
 pub mod fingertip;
 pub mod forces;
 pub mod friction;

@@ -3,7 +3,7 @@
 use tenax_hal_shim::words::{Cause, GripMode};
 
 use Cause::{
-    Network, PulseOver, Released, S1, S2, SensorsLost, SensorsReady, Settled, StrokeBegun, StrokeOver,
+    Array, Network, PulseOver, Released, S1, S2, SensorsLost, SensorsReady, Settled, StrokeBegun, StrokeOver,
     TakenOver,
 };
 use GripMode::{Explore, Incipient, Settle, Slip, Standby, Watch, Wearer};
@@ -12,7 +12,7 @@ use GripMode::{Explore, Incipient, Settle, Slip, Standby, Watch, Wearer};
 ///
 /// Who may enter: [`Slip`] and [`Incipient`], the only two that close the hand, are entered from [`Watch`] alone (and
 /// [`Slip`] from [`Incipient`]), and [`Watch`] is left for [`Wearer`] or [`Standby`] before a detector is asked.
-pub const TRANSITIONS: [(GripMode, Cause, GripMode); 24] = [
+pub const TRANSITIONS: [(GripMode, Cause, GripMode); 26] = [
     (Standby, SensorsReady, Watch),
     (Wearer, SensorsLost, Standby),
     (Wearer, Released, Settle),
@@ -20,6 +20,7 @@ pub const TRANSITIONS: [(GripMode, Cause, GripMode); 24] = [
     (Watch, TakenOver, Wearer),
     (Watch, S1, Slip),
     (Watch, Network, Slip),
+    (Watch, Array, Slip),
     (Watch, S2, Incipient),
     (Watch, StrokeBegun, Explore),
     (Slip, SensorsLost, Standby),
@@ -29,6 +30,7 @@ pub const TRANSITIONS: [(GripMode, Cause, GripMode); 24] = [
     (Incipient, TakenOver, Wearer),
     (Incipient, S1, Slip),
     (Incipient, Network, Slip),
+    (Incipient, Array, Slip),
     (Incipient, PulseOver, Settle),
     (Settle, SensorsLost, Standby),
     (Settle, TakenOver, Wearer),
@@ -40,7 +42,7 @@ pub const TRANSITIONS: [(GripMode, Cause, GripMode); 24] = [
 ];
 
 const MODES: usize = Explore as usize + 1;
-const CAUSES: usize = Network as usize + 1;
+const CAUSES: usize = Array as usize + 1;
 
 /// The table by mode and cause: it is asked three times in every tick, which is no time to search.
 static NEXT: [[Option<GripMode>; CAUSES]; MODES] = {
@@ -103,7 +105,7 @@ mod tests {
     #[test]
     fn closing_is_entered_by_a_detector_alone() {
         for (_, cause, _) in TRANSITIONS.iter().filter(|row| closes(row.2)) {
-            assert!(matches!(cause, S1 | S2 | Network));
+            assert!(matches!(cause, S1 | S2 | Network | Array));
         }
         for (from, ..) in TRANSITIONS.iter().filter(|row| closes(row.2)) {
             assert!(matches!(from, Watch | Incipient));

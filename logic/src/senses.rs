@@ -1,15 +1,17 @@
 //! From frames to what the fingertip knows: which sensors can be believed, and what they say.
 
 use tenax_hal_shim::channel::{
-    CHANNELS, FRAME_HZ, FSR, FSR_COUNT, FSR_SELECT, MYO_EXTENSOR, MYO_FLEXOR, MYO_SELECT, PVDF, PVDF_COUNT,
-    SLOW_HZ, STRAIN, STRAIN_COUNT,
+    ARRAY, ARRAY_COUNT, CHANNELS, FRAME_HZ, FSR, FSR_COUNT, FSR_SELECT, MYO_EXTENSOR, MYO_FLEXOR, MYO_SELECT,
+    PVDF, PVDF_COUNT, SLOW_HZ, STRAIN, STRAIN_COUNT,
 };
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::front_end::FSR_REST_MV;
-use tenax_hal_shim::wire::Forces;
+use tenax_hal_shim::wire::{ArrayVerdict, Forces};
 use tenax_hal_shim::words::{Capability, Fault};
 
+use crate::array::ShippedDetector;
 use crate::config::{Config, frames};
+use crate::elements::Elements;
 use crate::forces::ForceSensor;
 use crate::fsr;
 use crate::gate::Gate;
@@ -49,6 +51,8 @@ pub struct Senses {
     force_sensor: ForceSensor,
     detector: VibrationDetector,
     gauges: Gauges,
+    elements: Elements,
+    array: ShippedDetector,
     frames_seen: u32,
     frames_lost: u32,
     films_usable: bool,
@@ -74,10 +78,19 @@ impl Senses {
         self.films(config, frame, journal);
         self.forces_are_new = false;
         let select = frame.select();
-        if usize::from(select) < STRAIN_COUNT {
+        // The first frames show each input once, in order; the later ones show some of them again.
+        let place = usize::from(frame.place());
+        if place < STRAIN_COUNT {
             let unloaded = self.is_unloaded(config);
-            let change = self.gauges.take(usize::from(select), frame.switch_a, unloaded);
-            report(journal, STRAIN + usize::from(select), change);
+            let change = self.gauges.take(place, frame.switch_a, unloaded);
+            report(journal, STRAIN + place, change);
+        }
+        if place < ARRAY_COUNT {
+            let change = self.elements.take(place, frame.switch_b);
+            report(journal, ARRAY + place, change);
+        }
+        if place == ARRAY_COUNT {
+            self.array.push(self.elements.reading());
         }
         if let Some(quadrant) = select.checked_sub(FSR_SELECT).map(usize::from) {
             self.quadrant(config, quadrant, frame.switch_a, journal);
@@ -100,6 +113,7 @@ impl Senses {
             journal.fault(Fault::FramesLost { count: self.frames_lost });
             self.forces = None;
             self.fsr_readings = [None; FSR_COUNT];
+            self.elements.lose();
             self.films_usable = false;
             self.gate.flexor.take(&config.gate, None);
             self.gate.extensor.take(&config.gate, None);
@@ -139,6 +153,12 @@ impl Senses {
     #[must_use]
     pub const fn gauges(&self) -> &Gauges {
         &self.gauges
+    }
+
+    /// What the normal-force array says.
+    #[must_use]
+    pub fn array(&self) -> ArrayVerdict {
+        self.array.verdict()
     }
 
     /// Whether vibration can be heard at all.

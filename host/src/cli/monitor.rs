@@ -7,8 +7,9 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use anyhow::{Context, bail};
-use tenax_hal_shim::wire::BAUD;
+use tenax_hal_shim::wire::{BAUD, Down};
 
+use crate::commander::Commander;
 use crate::monitor::{End, Monitor};
 
 /// Watch a board's serial line.
@@ -20,6 +21,42 @@ pub struct Args {
     /// A captured line instead, such as out/line.bin of `tenax run`
     #[arg(long, value_name = "FILE")]
     file: Option<PathBuf>,
+    /// First ask the board for something, or tell it something; may be given more than once
+    #[arg(long, value_name = "COMMAND", requires = "port")]
+    send: Vec<Send>,
+    /// Pass a camera's words on to the board, from standard input: a line `v1 v2 [age_ms]` for each picture
+    #[arg(long, requires = "port")]
+    teach: bool,
+}
+
+/// What can be sent by name.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum Send {
+    /// Ask for a sign of life
+    Ping,
+    /// Ask for the last sample of every channel
+    Samples,
+    /// Ask for the network's weights and activations
+    Network,
+    /// Take the readings of the unloaded finger as zero
+    Zero,
+    /// Save what the network has learned now
+    Save,
+    /// Forget all that the network has learned
+    Forget,
+}
+
+impl From<Send> for Down {
+    fn from(send: Send) -> Self {
+        match send {
+            Send::Ping => Self::Ping,
+            Send::Samples => Self::Samples,
+            Send::Network => Self::Network,
+            Send::Zero => Self::Zero,
+            Send::Save => Self::Save,
+            Send::Forget => Self::Forget,
+        }
+    }
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
@@ -30,7 +67,11 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             let mut source = File::open(file).with_context(|| format!("cannot open {}", file.display()))?;
             monitor.watch(&mut source, &mut out)
         }
-        (None, Some(port)) => monitor.watch(open(port)?.as_mut(), &mut out),
+        (None, Some(port)) => {
+            let mut line = open(port)?;
+            tell(args, line.as_ref())?;
+            monitor.watch(line.as_mut(), &mut out)
+        }
         (None, None) => bail!("give --port PORT or --file FILE"),
     };
     let end = match watched {
@@ -46,6 +87,23 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         (End::Over, Some(port)) => bail!("{port} was closed at its other end"),
         _ => Ok(ExitCode::SUCCESS),
     }
+}
+
+/// Sends what is to be sent at once, and lets the teacher talk beside the watching.
+fn tell(args: &Args, line: &dyn serialport::SerialPort) -> anyhow::Result<()> {
+    let mut commander = Commander::new(line.try_clone().context("cannot write to the port")?);
+    for &command in &args.send {
+        commander.send(&command.into()).context("cannot write to the port")?;
+    }
+    if args.teach {
+        // It ends with its input, or with the process.
+        std::thread::spawn(move || {
+            if let Err(error) = commander.teach(io::stdin().lock()) {
+                eprintln!("tenax: {error:#}; the teacher is not heard any more");
+            }
+        });
+    }
+    Ok(())
 }
 
 fn open(port: &str) -> anyhow::Result<Box<dyn serialport::SerialPort>> {

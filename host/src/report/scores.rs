@@ -37,7 +37,7 @@ impl Slip {
         let Some(truth) = truth else {
             return Self::default();
         };
-        let mut detections = [timeline.s1(), timeline.s2(), timeline.network()].concat();
+        let mut detections = [timeline.s1(), timeline.s2(), timeline.network(), timeline.array()].concat();
         detections.sort_by(f64::total_cmp);
         let macro_slips: Vec<&SlipSpan> =
             truth.slips.iter().filter(|slip| slip.macro_onset_s.is_some()).collect();
@@ -81,6 +81,8 @@ pub struct Detectors {
     pub s2: Detector,
     /// The network that learned from a camera.
     pub network: Detector,
+    /// The normal-force array.
+    pub array: Detector,
     /// The myoelectric gate; it has no false alarms here, since its truth is not slip.
     pub wearer: Detector,
 }
@@ -94,6 +96,7 @@ impl Detectors {
             s1: detector(&timeline.s1(), slips),
             s2: detector(&timeline.s2(), slips),
             network: detector(&timeline.network(), slips),
+            array: detector(&timeline.array(), slips),
             wearer: detector(&timeline.wearer(), None),
         }
     }

@@ -46,6 +46,8 @@ impl Display for Text<'_> {
         wearer(f, report)?;
         detector(f, "S1 vibration", &report.detectors.s1)?;
         detector(f, "S2 Ft/Fn", &report.detectors.s2)?;
+        detector(f, "network", &report.detectors.network)?;
+        detector(f, "array", &report.detectors.array)?;
         if let Some(recorded) = &report.replay {
             replay(f, recorded)?;
         }

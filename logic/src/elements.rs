@@ -1,0 +1,68 @@
+//! The elements of the normal-force array: which of their readings can be believed.
+
+use tenax_hal_shim::channel::{ARRAY, ARRAY_COUNT, CHANNELS, SLOW_HZ};
+
+use crate::array::Reading;
+use crate::health::{Change, Limits, SensorHealth};
+
+static LIMITS: Limits = Limits::of(&CHANNELS[ARRAY], SLOW_HZ);
+
+/// The ten elements.
+#[derive(Clone, Debug, Default)]
+pub struct Elements {
+    health: [SensorHealth; ARRAY_COUNT],
+    reading: Reading,
+}
+
+impl Elements {
+    /// Takes a reading of one element (14 bits).
+    pub fn take(&mut self, element: usize, sample: u16) -> Option<Change> {
+        let (health, slot) = (self.health.get_mut(element)?, self.reading.get_mut(element)?);
+        if health.is_plain(&LIMITS, sample) {
+            *slot = Some(sample);
+            return None;
+        }
+        let (reading, change) = health.take(&LIMITS, sample);
+        *slot = reading.ok();
+        change
+    }
+
+    /// Frames were lost: what was read is too old.
+    pub fn lose(&mut self) {
+        self.reading = Reading::default();
+    }
+
+    /// The last reading of every element.
+    #[must_use]
+    pub const fn reading(&self) -> &Reading {
+        &self.reading
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tenax_hal_shim::words::Reason;
+
+    #[test]
+    fn a_dead_element_has_no_reading_and_is_told_once() {
+        let mut elements = Elements::default();
+        assert_eq!(elements.take(2, 2_000), None);
+        assert_eq!(elements.reading()[2], Some(2_000));
+        let changes: std::vec::Vec<_> = (0..80).filter_map(|_| elements.take(2, 0)).collect();
+        assert_eq!(changes, [Change::Lost(Reason::Dead)]);
+        assert_eq!(elements.reading(), &Reading::default());
+        assert_eq!(elements.take(ARRAY_COUNT, 2_000), None);
+    }
+
+    #[test]
+    fn an_element_that_is_stuck_for_two_seconds_has_no_reading() {
+        let mut elements = Elements::default();
+        let lost_after = (0..400).position(|_| elements.take(0, 3_000).is_some());
+        assert_eq!(lost_after, Some(160));
+        assert_eq!(elements.reading()[0], None);
+        elements.take(0, 3_001);
+        elements.lose();
+        assert_eq!(elements.reading(), &Reading::default());
+    }
+}
