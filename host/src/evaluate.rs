@@ -10,7 +10,7 @@ pub mod text;
 
 use rayon::prelude::*;
 use tenax_hal_shim::channel::{ARRAY, CHANNELS, SLOW_HZ};
-use tenax_logic::array::{ArrayDetector, ELEMENTS, Reading};
+use tenax_logic::array::{ELEMENTS, Reading};
 use tenax_logic::health::{Limits, SensorHealth};
 
 use crate::labelled::{Part, Recording, Step};
@@ -21,29 +21,26 @@ pub type Verdicts = Vec<bool>;
 /// When a reading of an element is to be believed: as the fingertip has it.
 static LIMITS: Limits = Limits::of(&CHANNELS[ARRAY], SLOW_HZ);
 
-/// What a detector says of recordings, in the logic's own integers. Each recording is read by a `fresh` one, which knows
-/// nothing yet.
-pub fn judge<const H1: usize, const L: usize, const H2: usize>(
-    fresh: impl Fn() -> ArrayDetector<'static, H1, L, H2> + Sync,
+/// What a detector says of recordings. Each recording is read by a `fresh` one, which knows nothing yet: it is told the
+/// readings of one slow frame and says whether the object slips.
+pub fn judge<D: FnMut(&Reading) -> bool>(
+    fresh: impl Fn() -> D + Sync,
     recordings: &[Recording],
 ) -> Vec<Verdicts> {
-    recordings.par_iter().map(|recording| verdicts(&mut fresh(), &recording.steps)).collect()
+    recordings.par_iter().map(|recording| verdicts(fresh(), &recording.steps)).collect()
 }
 
-/// What one detector says, an element that cannot be believed having no reading.
-pub fn verdicts<const H1: usize, const L: usize, const H2: usize>(
-    detector: &mut ArrayDetector<'static, H1, L, H2>,
-    steps: &[Step],
-) -> Verdicts {
+/// What one detector says. An element that the fingertip would not believe has no reading.
+pub fn verdicts(mut detector: impl FnMut(&Reading) -> bool, steps: &[Step]) -> Verdicts {
     let mut health: [SensorHealth; ELEMENTS] = Default::default();
-    let mut said = |step: &Step| {
+    let said = |step: &Step| {
         let mut readings = health.iter_mut().zip(step.samples);
         let reading: Reading = std::array::from_fn(|_| {
             readings.next().and_then(|(health, sample)| health.take(&LIMITS, sample).0.ok())
         });
-        detector.push(&reading).slip
+        detector(&reading)
     };
-    steps.iter().map(&mut said).collect()
+    steps.iter().map(said).collect()
 }
 
 /// The recordings to be judged by: those that their file calls test, or all if it says nothing of the kind.

@@ -61,11 +61,14 @@ fn the_same_seed_gives_the_same_recording_and_another_gives_another() {
 }
 
 #[test]
-fn more_sessions_to_learn_from_change_no_session_that_was_there() {
-    let few: Vec<_> = sessions(1, Sizes { train: 1, validation: 0, test: 0 });
-    let more: Vec<_> = sessions(1, Sizes { train: 3, validation: 0, test: 0 });
-    assert_eq!((few.len(), more.len()), (SEEN.len(), 3 * SEEN.len()));
+fn a_larger_one_has_every_session_of_a_smaller_one_in_the_same_split() {
+    let (few, more) = (sessions(1, Sizes::of_train(1)), sessions(1, Sizes::of_train(12)));
+    assert_eq!(few.len(), SEEN.len() * 3 + 2);
+    // So a network that learned from the larger one has not seen the test of the smaller one.
     assert!(few.iter().all(|session| more.contains(session)));
+    let names: BTreeSet<&str> = more.iter().map(|session| session.name.as_str()).collect();
+    let seeds: BTreeSet<u64> = more.iter().map(|session| session.seed).collect();
+    assert_eq!((names.len(), seeds.len()), (more.len(), more.len()));
 }
 
 #[test]

@@ -124,8 +124,8 @@ fn thousandths(value: f64) -> f64 {
     (value * 1e3).round() / 1e3
 }
 
-/// All sessions of a data set, the same for the same seed. Each draws from a stream of its own, so that more sessions of
-/// one material change none of another.
+/// All sessions of a data set, the same for the same seed. Each draws from a stream of its own material, split and number:
+/// a larger data set has all sessions of a smaller one, in the same split.
 #[must_use]
 pub fn sessions(seed: u64, sizes: Sizes) -> Vec<Session> {
     let Sizes { train, validation, test } = sizes;
@@ -134,11 +134,11 @@ pub fn sessions(seed: u64, sizes: Sizes) -> Vec<Session> {
     let materials = SEEN.iter().map(|material| (material, &seen[..])).chain([(&HELD_OUT, &held_out[..])]);
     let mut all = Vec::new();
     for (index, (material, splits)) in materials.enumerate() {
-        let purposes = splits.iter().flat_map(|&(split, count)| std::iter::repeat_n(split, count));
-        for (number, split) in purposes.enumerate() {
+        for (split, number) in splits.iter().flat_map(|&(split, count)| (1..=count).map(move |n| (split, n)))
+        {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
-            rng.set_stream(((index as u64) << 32) | number as u64);
-            let name = format!("{}-{:02}", material.name, number + 1);
+            rng.set_stream(((index as u64) << 40) | ((split as u64) << 32) | number as u64);
+            let name = format!("{}-{}-{number:02}", material.name, split.name());
             all.push(Session::draw(name, split, material, &mut rng));
         }
     }

@@ -3,7 +3,7 @@
 use anyhow::Context;
 use rayon::prelude::*;
 use serde::Serialize;
-use tenax_logic::array::ArrayDetector;
+use tenax_logic::array::Reading;
 
 use super::events::Events;
 use super::report::Steps;
@@ -48,8 +48,8 @@ pub struct Row {
 ///
 /// # Errors
 /// If a board cannot be run.
-pub fn rows<const H1: usize, const L: usize, const H2: usize>(
-    fresh: impl Fn() -> ArrayDetector<'static, H1, L, H2> + Sync,
+pub fn rows<D: FnMut(&Reading) -> bool>(
+    fresh: impl Fn() -> D + Sync,
     seed: u64,
     board: &Board,
     progress: &(dyn Fn(f64) + Sync),
@@ -60,7 +60,7 @@ pub fn rows<const H1: usize, const L: usize, const H2: usize>(
         let outcome =
             session::scene(&file, seed, board, &mut |_| {}).with_context(|| format!("scene {scene}"))?;
         let steps = ran::steps(&outcome.run);
-        let said = verdicts(&mut fresh(), &steps);
+        let said = verdicts(fresh(), &steps);
         let (mut events, report) = (Events::default(), outcome.report);
         events.take(&steps, &said);
         let done = 1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
