@@ -3,6 +3,7 @@
 mod chart;
 mod check;
 mod dataset;
+mod evaluate;
 mod flash;
 mod lint_image;
 mod monitor;
@@ -50,6 +51,8 @@ enum Command {
     Check(check::Args),
     /// Make a labelled data set of the normal-force array
     Dataset(dataset::Args),
+    /// Score the force array's network on what it never saw, or the whole hand in the paper's tasks
+    Evaluate(evaluate::Args),
     /// Draw the charts behind a page of docs/
     Chart(chart::Args),
     /// Flash a NUCLEO-F411RE through probe-rs
@@ -74,6 +77,7 @@ pub fn main() -> ExitCode {
         Command::Check(args) => check::main(&args),
         Command::Chart(args) => chart::main(&args),
         Command::Dataset(args) => dataset::main(&args),
+        Command::Evaluate(args) => evaluate::main(&args),
         Command::Flash(args) => flash::main(&args),
         Command::Monitor(args) => monitor::main(&args),
         Command::Size(args) => size::main(&args),

@@ -1,0 +1,186 @@
+//! `tenax evaluate`: the force array's network, scored.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::{Mutex, PoisonError};
+
+use anyhow::bail;
+use clap::ValueEnum;
+use tenax_logic::array::{Reading, ShippedDetector};
+
+use super::progress::Progress;
+use super::workspace;
+use crate::dataset::session::Sizes;
+use crate::dataset::{Dataset, Label, Plan};
+use crate::evaluate::report::Report;
+use crate::evaluate::text::Text;
+use crate::evaluate::{failures, judge, online, test_split};
+use crate::labelled::{self, Recording, library};
+use crate::session::Board;
+
+const EXAMPLES: &str = "\
+Examples:
+  tenax evaluate                                   the shipped network on the test split of the built-in data set
+  tenax evaluate --report json                     for programs
+  tenax evaluate --dataset my.csv --recipe my.toml on recordings of one's own
+  tenax evaluate --online --host                   the paper's two tasks, ten times with each of four materials
+  tenax evaluate --failures --host                 the scenes where it may fail, and what the hand does then";
+
+/// Score the force array's network on what it never saw.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    /// A labelled recording (CSV) instead of the built-in data set
+    #[arg(long, value_name = "FILE.csv")]
+    dataset: Option<PathBuf>,
+    /// How its columns are read: a recipe file, or the name of one in recipes/ [default: by its name]
+    #[arg(long, value_name = "FILE.toml|NAME", requires = "dataset")]
+    recipe: Option<String>,
+    /// Seed of the built-in data set, or of the online tasks
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Sessions to learn from, of each material, of the built-in data set: those to test are in proportion
+    #[arg(long, value_name = "N", default_value_t = Sizes::DEFAULT_TRAIN, conflicts_with = "dataset")]
+    sessions: usize,
+    /// The paper's two tasks with the whole hand, instead of recordings
+    #[arg(long, conflicts_with_all = ["dataset", "sessions"])]
+    online: bool,
+    /// Online: times that each task is tried with each material
+    #[arg(long, value_name = "N", default_value_t = online::TIMES, requires = "online")]
+    times: usize,
+    /// The scenes where it may fail, instead of recordings
+    #[arg(long, conflicts_with_all = ["dataset", "sessions", "online"])]
+    failures: bool,
+    /// Online and failures: run the host's own build of the logic, no image, no emulator
+    #[arg(long)]
+    host: bool,
+    /// How to print the scores
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    report: Format,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// For people
+    Text,
+    /// For programs
+    Json,
+}
+
+pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
+    if args.online {
+        return online_tasks(args);
+    }
+    if args.failures {
+        return failing_scenes(args);
+    }
+    if args.host {
+        bail!("--host is for --online and --failures: recordings are always judged on this machine");
+    }
+    let recordings = test_split(recordings(args)?);
+    if recordings.is_empty() {
+        bail!("the data has no recording that is called test");
+    }
+    let said = judge(shipped_detector, &recordings);
+    // The network that ships looks back over one frame, itself: there is no other to compare it with.
+    let said_without = said.clone();
+    let report = Report::new(&recordings, &said, &said_without);
+    match args.report {
+        Format::Text => print!("{}", Text(&report)),
+        Format::Json => println!("{}", serde_json::to_string_pretty(&report)?),
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The network that ships, knowing nothing yet.
+fn shipped_detector() -> impl FnMut(&Reading) -> bool {
+    let mut detector = ShippedDetector::default();
+    move |reading| detector.push(reading).slip
+}
+
+fn recordings(args: &Args) -> anyhow::Result<Vec<Recording>> {
+    if let Some(path) = &args.dataset {
+        let recipe = library::choose(path, args.recipe.as_deref())?;
+        return Ok(labelled::read(path, &recipe)?);
+    }
+    if args.sessions == 0 {
+        bail!("--sessions must be at least 1");
+    }
+    let plan = Plan { seed: args.seed, sessions: args.sessions, label: Label::Truth };
+    let csv = with_bar("sessions", |progress| Dataset::make(plan, progress))?.csv()?;
+    // The same bytes that `tenax dataset` writes, read as a user's file is.
+    let name = "array_dataset.csv";
+    let recipe = library::choose(name.as_ref(), None)?;
+    Ok(labelled::parse(csv.as_slice(), &recipe, name)?)
+}
+
+fn online_tasks(args: &Args) -> anyhow::Result<ExitCode> {
+    let board = board(args)?;
+    let tries = with_bar("tasks", |progress| online::tasks(args.seed, args.times, &board, progress))?;
+    if args.report == Format::Json {
+        println!("{}", serde_json::to_string_pretty(&tries)?);
+        return Ok(ExitCode::SUCCESS);
+    }
+    println!("task  material    kept      slid, mm (oracle)   peak, N (oracle, needed)");
+    for row in online::rows(&tries) {
+        println!(
+            "{:<6}{:<12}{:>2} of {:<2}  {:>8.2} ({:>6.2})   {:>8.2} ({:>5.2}, {:>5.2})",
+            row.task,
+            row.material,
+            row.kept,
+            row.tries,
+            row.distance_mm,
+            row.oracle_distance_mm,
+            row.peak_force_n,
+            row.oracle_peak_force_n,
+            row.needed_force_n
+        );
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn failing_scenes(args: &Args) -> anyhow::Result<ExitCode> {
+    let board = board(args)?;
+    let rows = with_bar("scenes", |progress| failures::rows(shipped_detector, args.seed, &board, progress))?;
+    if args.report == Format::Json {
+        println!("{}", serde_json::to_string_pretty(&rows)?);
+        return Ok(ExitCode::SUCCESS);
+    }
+    println!(
+        "scene               steps right  missed  false  slips caught  false alarms  object   slid, mm (oracle)  peak, N (oracle)"
+    );
+    let or_dash = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.2}"));
+    for row in rows {
+        let [slips, caught, false_alarms] = row.slips;
+        println!(
+            "{:<20}{:>9.2} %{:>8}{:>7}{:>9} of {:<3}{:>12}   {:<8}{:>9} ({:>6}){:>12} ({:>6}) {}",
+            row.scene,
+            100.0 * row.steps.accuracy,
+            row.steps.missed,
+            row.steps.false_steps,
+            caught,
+            slips,
+            false_alarms,
+            row.kept.map_or("-", |kept| if kept { "kept" } else { "DROPPED" }),
+            or_dash(row.distance_mm[0]),
+            or_dash(row.distance_mm[1]),
+            or_dash(row.peak_force_n[0]),
+            or_dash(row.peak_force_n[1]),
+            row.faults.join("; ")
+        );
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn board(args: &Args) -> anyhow::Result<Board> {
+    if args.host { Ok(Board::Host) } else { Board::emulated(&workspace::root()?) }
+}
+
+/// Does something with a bar that it tells how much is done, from 0 to 1.
+fn with_bar<T>(what: &str, run: impl FnOnce(&(dyn Fn(f64) + Sync)) -> T) -> T {
+    let progress = Mutex::new(Progress::new(what, 1.0));
+    run(&|part| {
+        // A bar that a panicking thread left is still a bar.
+        progress.lock().unwrap_or_else(PoisonError::into_inner).at(part);
+    })
+}
