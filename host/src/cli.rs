@@ -12,6 +12,7 @@ mod run;
 mod scenes;
 mod size;
 mod test;
+mod train;
 mod wiring;
 mod workspace;
 
@@ -53,6 +54,8 @@ enum Command {
     Dataset(dataset::Args),
     /// Score the force array's network on what it never saw, or the whole hand in the paper's tasks
     Evaluate(evaluate::Args),
+    /// Train the force array's slip detector from labelled recordings
+    Train(train::Args),
     /// Draw the charts behind a page of docs/
     Chart(chart::Args),
     /// Flash a NUCLEO-F411RE through probe-rs
@@ -75,6 +78,7 @@ pub fn main() -> ExitCode {
         Command::Scenes => scenes::main(),
         Command::Test(args) => test::main(&args),
         Command::Check(args) => check::main(&args),
+        Command::Train(args) => train::main(&args),
         Command::Chart(args) => chart::main(&args),
         Command::Dataset(args) => dataset::main(&args),
         Command::Evaluate(args) => evaluate::main(&args),

@@ -1,0 +1,111 @@
+//! `tenax train`: learns the force array's detector, in a package of its own that nothing else compiles.
+
+use std::path::PathBuf;
+use std::process::{Command, ExitCode};
+
+use anyhow::{Context, bail};
+
+use super::workspace;
+
+const EXAMPLES: &str = "\
+Examples:
+  tenax train                                     from the data set of `tenax dataset`, which is made if it is not there
+  tenax train --compare                           the paper's five classifiers on it, and out/train/detectors.csv
+  tenax train --dataset mine.csv --recipe r.toml  from recordings of your own; docs/training.md says how to write a recipe
+  tenax train --dataset basic.csv --recipe biotac --test solids.csv";
+
+/// Where `tenax dataset` writes if nothing else is said.
+const DATASET: &str = "out/array_dataset.csv";
+
+/// Train the force array's slip detector from labelled recordings.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    /// Labelled recordings to learn from [default: what `tenax dataset` writes, out/array_dataset.csv]
+    #[arg(long, value_name = "FILE.csv")]
+    dataset: Option<PathBuf>,
+    /// How to read them: a recipe file, or the name of one in recipes/ [default: by the file's name]
+    #[arg(long, value_name = "FILE.toml|NAME")]
+    recipe: Option<String>,
+    /// More recordings, of the same recipe, to score on: nothing is learned or chosen from them
+    #[arg(long, value_name = "FILE.csv")]
+    test: Vec<PathBuf>,
+    /// Where the network (Rust), its model card and the report are written
+    #[arg(long, value_name = "DIR", default_value = "out/train")]
+    out: PathBuf,
+    /// Seed of first weights and of the order in which steps are learned
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// How to print the report: text or json
+    #[arg(long, default_value = "text", value_parser = ["text", "json"])]
+    report: String,
+    /// Instead: compare the paper's five classifiers
+    #[arg(long)]
+    compare: bool,
+    /// Put what was written where the firmware and the documentation have it
+    #[arg(long)]
+    ship: bool,
+}
+
+/// What `--ship` puts where, if it was written.
+const SHIPPED: [(&str, &str); 3] = [
+    ("network.rs", "logic/src/array/shipped.rs"),
+    ("model-card.md", "docs/model-card.md"),
+    ("detectors.csv", "docs/figures/detectors.csv"),
+];
+
+pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
+    let dataset = match &args.dataset {
+        Some(file) => file.clone(),
+        None => built_in()?,
+    };
+    let mut command = Command::new("cargo");
+    command.args(["run", "--release", "--quiet", "--ignore-rust-version", "--package", "tenax-train"]);
+    command.arg("--manifest-path").arg(workspace::root()?.join("Cargo.toml")).arg("--");
+    command.arg("--dataset").arg(dataset);
+    if let Some(recipe) = &args.recipe {
+        command.args(["--recipe", recipe]);
+    }
+    for file in &args.test {
+        command.arg("--test").arg(file);
+    }
+    command.arg("--out").arg(&args.out).args(["--seed", &args.seed.to_string(), "--report", &args.report]);
+    if args.compare {
+        command.arg("--compare");
+    }
+    // The matrices are small: a second thread costs more than it saves, and with one nothing depends on who was first.
+    command.env("RAYON_NUM_THREADS", "1");
+    eprintln!("the first time, the training package is compiled: a few minutes");
+    let status = command.status()?;
+    if status.success() && args.ship {
+        ship(args)?;
+    }
+    // It has said what is wrong.
+    Ok(status.code().and_then(|code| u8::try_from(code).ok()).map_or(ExitCode::from(2), ExitCode::from))
+}
+
+fn ship(args: &Args) -> anyhow::Result<()> {
+    let written = if args.compare { &SHIPPED[2..] } else { &SHIPPED[..2] };
+    for (name, to) in written {
+        let to = workspace::root()?.join(to);
+        std::fs::copy(args.out.join(name), &to).with_context(|| format!("cannot write {}", to.display()))?;
+        eprintln!("  {:<14}{}", "shipped", to.display());
+        if to.extension().is_some_and(|extension| extension == "rs") {
+            workspace::run(Command::new("rustfmt").args(["--edition", "2024"]).arg(&to))?;
+        }
+    }
+    Ok(())
+}
+
+/// The built-in data set, made if it is not there.
+fn built_in() -> anyhow::Result<PathBuf> {
+    let file = PathBuf::from(DATASET);
+    if !file.exists() {
+        eprintln!("no {DATASET} yet: making it");
+        let made = Command::new(std::env::current_exe()?).args(["dataset", "--out", DATASET]).status()?;
+        if !made.success() {
+            bail!("`tenax dataset` failed; its message is above");
+        }
+    }
+    Ok(file)
+}

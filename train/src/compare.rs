@@ -1,0 +1,222 @@
+//! The paper's five classifiers on one data set (Bamshad 2023, section 5.1), and the perceptron's variants.
+
+use std::fmt::Write;
+
+use anyhow::ensure;
+use tenax::labelled::{Part, Recording};
+use tenax_logic::array::FEATURES;
+
+use crate::features::{Recipe, Sequence, sequence};
+use crate::fit::{self, Candidate};
+use crate::linear::{Linear, logistic, svm};
+use crate::network::{H1, H2};
+use crate::quantise::Quantised;
+use crate::recurrent::{self, Recurrent};
+use crate::report::Test;
+use crate::score::{Aim, Judged, threshold};
+use crate::table::{Standard, Table};
+
+/// Steps that the support vector machine learns from; its kernel matrix is as large as their square.
+const SVM_ROWS: usize = 4_000;
+/// The penalty of a squared weight of the logistic regression, a row.
+const RIDGE: f64 = 1e-4;
+
+/// Ways for a perceptron to learn a large data set with validation sessions: from random weights, quickly and slowly, and
+/// from the logistic regression.
+#[must_use]
+pub fn perceptrons(look_back: usize) -> [Candidate; 3] {
+    let quick = Candidate {
+        shyness: 1.0,
+        ridge: RIDGE,
+        warm: false,
+        epochs: 12,
+        learning_rate: 2e-3,
+        decay: 1e-2,
+        look_back,
+    };
+    let slow = Candidate { learning_rate: 4e-4, decay: 0.3, ..quick };
+    [quick, slow, Candidate { shyness: 0.3, warm: true, ..slow }]
+}
+
+/// Ways to learn from a few objects: each begins as a logistic regression, and how far it leaves that is chosen on objects
+/// that were left out.
+pub const FEW_OBJECTS: [Candidate; 2] = [few(0.1), few(1.0)];
+
+const fn few(shyness: f32) -> Candidate {
+    Candidate { shyness, ridge: 4e-3, warm: true, epochs: 4, learning_rate: 3e-4, decay: 1e-1, look_back: 1 }
+}
+
+/// The layers' sizes, in words.
+#[must_use]
+pub fn sizes(look_back: usize) -> String {
+    match look_back {
+        1 => format!("{FEATURES}-{H1}-{H2}-1"),
+        frames => format!("{FEATURES}-{H1}-{H2}-1, of which the {H2} see {frames} frames of the {H1}"),
+    }
+}
+
+/// A classifier's line.
+#[derive(Clone, Debug)]
+pub struct Line {
+    /// Which, as `tenax chart detectors` knows it.
+    pub classifier: &'static str,
+    /// `float`, or the bits of a weight.
+    pub precision: &'static str,
+    /// Differences in the covariance and sums in the spectrum.
+    pub window: String,
+    /// Frames seen at once.
+    pub look_back: usize,
+    /// Scores on the test part.
+    pub test: Test,
+}
+
+/// Sequences by part.
+struct Parts {
+    all: Vec<Sequence>,
+    window: String,
+}
+
+impl Parts {
+    fn of(recordings: &[Recording], recipe: &Recipe) -> Self {
+        Self {
+            all: recordings.iter().map(|recording| sequence(recording, recipe)).collect(),
+            window: format!("{}/{}", recipe.window, recipe.spectrum),
+        }
+    }
+
+    fn part(&self, part: Part) -> Vec<&Sequence> {
+        self.all.iter().filter(|sequence| sequence.part == Some(part)).collect()
+    }
+
+    /// Scores a classifier: threshold from the validation part, scores from the test part.
+    fn line(
+        &self,
+        classifier: &'static str,
+        precision: &'static str,
+        look_back: usize,
+        logits: &dyn Fn(&Sequence) -> anyhow::Result<Vec<f64>>,
+    ) -> anyhow::Result<Line> {
+        let judge = |sequence: &&Sequence| -> anyhow::Result<Judged> {
+            let logits = logits(sequence)?;
+            let slips = sequence.slips[sequence.slips.len() - logits.len()..].to_vec();
+            Ok(Judged { logits, slips })
+        };
+        let mut all = Judged::default();
+        for judged in self.part(Part::Validation).iter().map(judge) {
+            all.extend(&judged?);
+        }
+        let tests = self.part(Part::Test);
+        let judged: Vec<Judged> = tests.iter().map(judge).collect::<Result<_, _>>()?;
+        let test = Test::of(&tests, &judged, threshold(&all, Aim::Accuracy));
+        Ok(Line { classifier, precision, window: self.window.clone(), look_back, test })
+    }
+
+    fn perceptron(
+        &self,
+        look_back: usize,
+        precisions: &[u32],
+        seed: u64,
+        progress: &mut dyn FnMut(f64),
+    ) -> anyhow::Result<Vec<Line>> {
+        let trained = fit::fit(&self.all, &perceptrons(look_back), Aim::Accuracy, seed, progress)?;
+        let learn = Table::of(self.part(Part::Train));
+        let mut lines = Vec::new();
+        for &bits in precisions {
+            let quantised = Quantised::of(&trained.network, &learn, bits.min(16));
+            lines.push(match bits {
+                32 => self.line("mlp", "float", look_back, &|sequence| {
+                    Ok(trained.network.logits(&Table::of([sequence])))
+                })?,
+                16 => self.line("mlp", "16", look_back, &|sequence| quantised.logits(sequence))?,
+                _ => self.line("mlp", "8", look_back, &|sequence| quantised.logits(sequence))?,
+            });
+        }
+        Ok(lines)
+    }
+}
+
+/// Trains all of them on the training part, chooses thresholds on the validation part and scores on the test part.
+///
+/// # Errors
+/// If the data set has not all three parts, or an optimiser fails.
+pub fn compare(
+    recordings: &[Recording],
+    recipe: &Recipe,
+    seed: u64,
+    progress: &mut dyn FnMut(f64, &str),
+) -> anyhow::Result<Vec<Line>> {
+    let parts = Parts::of(recordings, recipe);
+    for part in Part::ALL {
+        ensure!(!parts.part(part).is_empty(), "the comparison needs a {} part", part.name());
+    }
+    let learn = Table::of(parts.part(Part::Train));
+    let standard = Standard::of(&learn, 1.0);
+    let each = |sequence: &Sequence, linear: &Linear| -> Vec<f64> {
+        let table = Table::of([sequence]);
+        (0..table.len()).map(|row| linear.logit(table.row(row))).collect()
+    };
+    let mut lines = Vec::new();
+    progress(0.0, "SVM");
+    let machine = svm(&learn, &standard, SVM_ROWS, seed)?;
+    lines.push(parts.line("svm", "float", 1, &|sequence| Ok(each(sequence, &machine)))?);
+    progress(0.1, "logistic regression");
+    let linear = logistic(&learn, &standard, RIDGE, false)?;
+    lines.push(parts.line("logistic", "float", 1, &|sequence| Ok(each(sequence, &linear)))?);
+    for (autoencoder, name, from, share) in
+        [(true, "lstm-autoencoder", 0.15, 0.35), (false, "lstm", 0.5, 0.2)]
+    {
+        let settings = recurrent::Settings { autoencoder, epochs: 8, sequences: 20_000, seed };
+        let detector =
+            Recurrent::fit(&learn, &standard, settings, &mut |part| progress(from + share * part, name))?;
+        lines.push(parts.line(name, "float", 1, &|sequence| detector.logits(&Table::of([sequence])))?);
+    }
+    lines.extend(parts.perceptron(1, &[32, 16, 8], seed, &mut |part| progress(0.7 + 0.05 * part, "MLP"))?);
+    lines.extend(parts.perceptron(3, &[8], seed, &mut |part| progress(0.75 + 0.05 * part, "MLP"))?);
+    lines.extend(parts.perceptron(5, &[32, 8], seed, &mut |part| progress(0.8 + 0.1 * part, "MLP"))?);
+    for (n, (window, spectrum)) in [(5, 20), (1, 10)].into_iter().enumerate() {
+        let parts = Parts::of(recordings, &Recipe { window, spectrum, ..*recipe });
+        let from = 0.9 + 0.05 * n as f64;
+        lines.extend(parts.perceptron(1, &[8], seed, &mut |part| progress(from + 0.05 * part, "MLP"))?);
+    }
+    Ok(lines)
+}
+
+/// The table as CSV, for the chart.
+#[must_use]
+pub fn csv(lines: &[Line]) -> String {
+    let mut text = String::from("classifier,precision,window,lookback,accuracy,missed,false,shipped\n");
+    for Line { classifier, precision, window, look_back, test } in lines {
+        let _ = writeln!(
+            text,
+            "{classifier},{precision},{window},{look_back},{:.5},{},{},",
+            test.steps.accuracy, test.steps.missed, test.steps.false_alarms,
+        );
+    }
+    text
+}
+
+/// The table for people.
+#[must_use]
+pub fn text(lines: &[Line]) -> String {
+    let mut text = format!(
+        "{:<18}{:>6}{:>8}{:>8}{:>10}{:>8}{:>8}{:>8}  by material\n",
+        "classifier", "bits", "window", "frames", "accuracy", "missed", "false", "AUC"
+    );
+    for Line { classifier, precision, window, look_back, test } in lines {
+        let mut materials: Vec<_> = test.by_material.iter().collect();
+        materials.sort_by(|a, b| a.1.accuracy.total_cmp(&b.1.accuracy));
+        let materials: Vec<String> =
+            materials.iter().map(|(name, score)| format!("{name} {:.1}", 100.0 * score.accuracy)).collect();
+        let _ = writeln!(
+            text,
+            "{classifier:<18}{precision:>6}{window:>8}{look_back:>8}{:>9.2}%{:>8.0}{:>8.0}{:>8.3}  {}",
+            100.0 * test.steps.accuracy,
+            test.missed_per_2800,
+            test.false_per_2800,
+            test.steps.auc,
+            materials.join(", ")
+        );
+    }
+    text.push_str("missed and false in 2800 steps\n");
+    text
+}

@@ -1,0 +1,111 @@
+//! Logistic regression and the support vector machine, from linfa.
+
+use anyhow::{Context, ensure};
+use linfa::dataset::DatasetBase;
+use linfa::traits::Fit;
+use linfa_logistic::LogisticRegression;
+use linfa_svm::Svm;
+use ndarray::{Array1, Array2, ArrayView1};
+use rand::seq::SliceRandom;
+use rand::{SeedableRng, rngs::ChaCha8Rng};
+use tenax_logic::array::FEATURES;
+
+use crate::table::{Standard, Table};
+
+/// What a step inside the margin costs the support vector machine.
+const SVM_COST: f64 = 0.1;
+
+/// A weighted sum.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Linear {
+    /// Weights of the features as they are.
+    pub weights: Vec<f32>,
+    /// What is added.
+    pub bias: f32,
+}
+
+impl Linear {
+    /// From weights and bias on the common scale.
+    fn unscaled(weights: &[f64], bias: f64, standard: &Standard) -> Self {
+        let mut model = Self { weights: Vec::new(), bias: 0.0 };
+        let mut bias = bias;
+        for ((weight, mean), scale) in weights.iter().zip(&standard.mean).zip(&standard.scale) {
+            let weight = weight * f64::from(*scale);
+            bias -= weight * f64::from(*mean);
+            model.weights.push(weight as f32);
+        }
+        model.bias = bias as f32;
+        model
+    }
+
+    /// The logit of a row.
+    #[must_use]
+    pub fn logit(&self, row: &[f32]) -> f64 {
+        f64::from(self.bias)
+            + self.weights.iter().zip(row).map(|(w, x)| f64::from(*w) * f64::from(*x)).sum::<f64>()
+    }
+}
+
+/// Rows that both kinds have about as many of: the rarer kind is repeated.
+fn balanced(table: &Table, rows: impl Iterator<Item = usize>) -> Vec<usize> {
+    let (slips, rest): (Vec<usize>, Vec<usize>) = rows.partition(|&row| table.labels[row] > 0.5);
+    let (rare, often) = if slips.len() < rest.len() { (slips, rest) } else { (rest, slips) };
+    let times = (often.len() as f64 / rare.len().max(1) as f64).round().max(1.0) as usize;
+    let mut all = often;
+    for _ in 0..times {
+        all.extend(&rare);
+    }
+    all
+}
+
+fn dataset(table: &Table, rows: &[usize], standard: &Standard) -> DatasetBase<Array2<f64>, Array1<bool>> {
+    let records = Array2::from_shape_fn((rows.len(), FEATURES), |(n, feature)| {
+        f64::from((table.row(rows[n])[feature] - standard.mean[feature]) * standard.scale[feature])
+    });
+    let targets = rows.iter().map(|&row| table.labels[row] > 0.5).collect();
+    DatasetBase::new(records, targets)
+}
+
+/// Logistic regression; with `alike`, both kinds count alike in sum. `ridge` is the penalty of a squared weight for each
+/// row.
+///
+/// # Errors
+/// If there are not both kinds of rows, or the optimiser fails.
+pub fn logistic(table: &Table, standard: &Standard, ridge: f64, alike: bool) -> anyhow::Result<Linear> {
+    let rows = if alike { balanced(table, 0..table.len()) } else { (0..table.len()).collect() };
+    let model = LogisticRegression::default()
+        .alpha(ridge * rows.len() as f64)
+        .max_iterations(200)
+        .fit(&dataset(table, &rows, standard))
+        .context("logistic regression")?;
+    // linfa's positive class is the larger one, `true`; `labels` says if it ever were not.
+    let sign = if model.labels().pos.class { 1.0 } else { -1.0 };
+    let weights: Vec<f64> = model.params().iter().map(|weight| sign * weight).collect();
+    Ok(Linear::unscaled(&weights, sign * model.intercept(), standard))
+}
+
+/// A linear support vector machine; learns from at most `rows_max` rows, drawn with the seed: the solver's matrix is as
+/// large as their square.
+///
+/// # Errors
+/// If there are not both kinds of rows, or the optimiser fails.
+pub fn svm(table: &Table, standard: &Standard, rows_max: usize, seed: u64) -> anyhow::Result<Linear> {
+    let mut rows: Vec<usize> = (0..table.len()).collect();
+    rows.shuffle(&mut ChaCha8Rng::seed_from_u64(seed));
+    rows.truncate(rows_max);
+    let slips = rows.iter().filter(|&&row| table.labels[row] > 0.5).count();
+    ensure!(slips > 0 && slips < rows.len(), "a support vector machine needs steps of both kinds");
+    let svm = Svm::<f64, bool>::params()
+        .pos_neg_weights(SVM_COST, SVM_COST)
+        .linear_kernel()
+        .fit(&dataset(table, &rows, standard))
+        .context("support vector machine")?;
+    // The hyperplane on the common scale: what each feature alone adds.
+    let alone = |feature: usize| {
+        let mut row = vec![0.0; FEATURES];
+        row[feature] = 1.0;
+        svm.weighted_sum(&ArrayView1::from(&row))
+    };
+    let weights: Vec<f64> = (0..FEATURES).map(alone).collect();
+    Ok(Linear::unscaled(&weights, -svm.rho, standard))
+}

@@ -1,0 +1,211 @@
+//! `tenax-train`: what `tenax train` starts.
+#![forbid(unsafe_code)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::{Context, ensure};
+use clap::{Parser, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
+use tenax::labelled::recipe::ArrayRecipe;
+use tenax::labelled::{self, Part, library};
+use tenax_train::compare;
+use tenax_train::export;
+use tenax_train::features::{self, Recipe, Sequence};
+use tenax_train::fit::{self, Trained};
+use tenax_train::quantise::Quantised;
+use tenax_train::report::{Data, Report, Test};
+use tenax_train::score::{Aim, Judged};
+use tenax_train::table::Table;
+
+/// Train the force array's slip detector.
+#[derive(Debug, Parser)]
+#[command(name = "tenax-train", version)]
+struct Args {
+    /// Labelled recordings to learn from
+    #[arg(long, value_name = "FILE.csv")]
+    dataset: PathBuf,
+    /// How to read them: a recipe file, or the name of one in recipes/ [default: by the file's name]
+    #[arg(long, value_name = "FILE.toml|NAME")]
+    recipe: Option<String>,
+    /// More recordings, of the same recipe, to score on: nothing is learned or chosen from them
+    #[arg(long, value_name = "FILE.csv")]
+    test: Vec<PathBuf>,
+    /// Where the network, its model card and the report are written
+    #[arg(long, value_name = "DIR", default_value = "out/train")]
+    out: PathBuf,
+    /// Seed of first weights and of the order in which steps are learned
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// How to print the report
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    report: Format,
+    /// Instead: compare the paper's five classifiers, and write DIR/detectors.csv
+    #[arg(long)]
+    compare: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// For people
+    Text,
+    /// For programs
+    Json,
+}
+
+fn main() -> ExitCode {
+    match run(&Args::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run(args: &Args) -> anyhow::Result<()> {
+    let recipe = library::choose(&args.dataset, args.recipe.as_deref())?;
+    let features = features_of(&recipe);
+    let (data, sequences) = load(&args.dataset, &recipe, &features)?;
+    let bar = bar();
+    if args.compare {
+        let recordings = labelled::read(&args.dataset, &recipe)?;
+        let table = compare::compare(&recordings, &features, args.seed, &mut |part, what| {
+            bar.set_message(what.to_owned());
+            bar.set_position((1e3 * part) as u64);
+        })?;
+        bar.finish_and_clear();
+        print!("{}", compare::text(&table));
+        return write(&args.out, &[("detectors.csv", compare::csv(&table).into_bytes())]);
+    }
+    bar.set_message("training");
+    let parts = sequences.iter().any(|sequence| sequence.part.is_some());
+    let (aim, candidates) = if parts {
+        (Aim::Accuracy, [compare::perceptrons(1), compare::perceptrons(5)].concat())
+    } else {
+        (Aim::Balanced, compare::FEW_OBJECTS.to_vec())
+    };
+    let trained =
+        fit::fit(&sequences, &candidates, aim, args.seed, &mut |part| bar.set_position((1e3 * part) as u64))?;
+    bar.finish_and_clear();
+    let mut tests: Vec<Sequence> =
+        sequences.iter().filter(|sequence| sequence.part == Some(Part::Test)).cloned().collect();
+    let mut test_data = None;
+    for path in &args.test {
+        let (data, more) = load(path, &recipe, &features)?;
+        tests.extend(more);
+        test_data = Some(data);
+    }
+    let learned: Vec<&Sequence> =
+        sequences.iter().filter(|s| matches!(s.part, None | Some(Part::Train))).collect();
+    let quantised = Quantised::of(&trained.network, &Table::of(learned.iter().copied()), 8);
+    let report = Report {
+        seed: args.seed,
+        data,
+        test_data,
+        features,
+        choice: trained.choice,
+        threshold_permille: export::permille(&trained.choice),
+        sizes: compare::sizes(trained.choice.candidate.look_back),
+        float: test(&trained, &tests),
+        quantised: test_quantised(&trained, &quantised, &tests)?,
+        quantised_16: {
+            let wide = Quantised::of(&trained.network, &Table::of(learned.iter().copied()), 16);
+            test_quantised(&trained, &wide, &tests)?
+        },
+    };
+    let about = format!(
+        "Learned from `{}` (SHA-256 {}), seed {}; docs/model-card.md has its scores.",
+        report.data.file, report.data.sha256, report.seed
+    );
+    let rust = export::rust(&quantised, &features, &trained.choice, &about);
+    let json = serde_json::to_vec_pretty(&report)?;
+    match args.report {
+        Format::Text => print!("{}", report.card()),
+        Format::Json => println!("{}", String::from_utf8_lossy(&json)),
+    }
+    let files = [
+        ("network.rs", rust.into_bytes()),
+        ("model-card.md", report.card().into_bytes()),
+        ("report.json", json),
+    ];
+    write(&args.out, &files)
+}
+
+/// What the recipe says of features; what it does not say is the firmware's.
+fn features_of(recipe: &ArrayRecipe) -> Recipe {
+    let given = &recipe.features;
+    let frames = |frames: &Option<toml::Spanned<u8>>, default: usize| {
+        frames.as_ref().map_or(default, |frames| usize::from(*frames.get_ref()))
+    };
+    let window = frames(&given.window, Recipe::FIRMWARE.window);
+    Recipe {
+        lag: frames(&given.lag, Recipe::FIRMWARE.lag),
+        window,
+        // Figure 6 varies them together.
+        spectrum: match window {
+            1 => 10,
+            2..=5 => 20,
+            _ => 40,
+        },
+        covariance_knee: given.covariance_knee.unwrap_or(Recipe::FIRMWARE.covariance_knee),
+        spectrum_knee: given.spectrum_knee.unwrap_or(Recipe::FIRMWARE.spectrum_knee),
+    }
+}
+
+fn load(path: &Path, recipe: &ArrayRecipe, features: &Recipe) -> anyhow::Result<(Data, Vec<Sequence>)> {
+    let name = path.display().to_string();
+    let bytes = fs::read(path).with_context(|| format!("{name}: cannot be read"))?;
+    let recordings = labelled::parse(bytes.as_slice(), recipe, &name)?;
+    let sequences: Vec<Sequence> =
+        recordings.iter().map(|recording| features::sequence(recording, features)).collect();
+    ensure!(
+        sequences.iter().any(|sequence| !sequence.features.is_empty()),
+        "{name}: every recording is shorter than the windows, {} readings at 80 Hz",
+        features.ready_after()
+    );
+    let file = path.file_name().map_or(name.clone(), |file| file.to_string_lossy().into_owned());
+    let learned = sequences.iter().filter(|s| matches!(s.part, None | Some(Part::Train)));
+    Ok((Data::of(&file, &bytes, learned), sequences))
+}
+
+fn test(trained: &Trained, tests: &[Sequence]) -> Option<Test> {
+    let judged: Vec<Judged> =
+        tests.iter().map(|sequence| fit::judge(&trained.network, &Table::of([sequence]))).collect();
+    (!tests.is_empty())
+        .then(|| Test::of(&tests.iter().collect::<Vec<_>>(), &judged, trained.choice.threshold))
+}
+
+fn test_quantised(
+    trained: &Trained,
+    quantised: &Quantised,
+    tests: &[Sequence],
+) -> anyhow::Result<Option<Test>> {
+    let mut judged = Vec::new();
+    for sequence in tests {
+        let logits = quantised.logits(sequence)?;
+        let slips = sequence.slips[sequence.slips.len() - logits.len()..].to_vec();
+        judged.push(Judged { logits, slips });
+    }
+    let tests: Vec<&Sequence> = tests.iter().collect();
+    Ok((!tests.is_empty()).then(|| Test::of(&tests, &judged, trained.choice.threshold)))
+}
+
+/// Drawn to a terminal only.
+fn bar() -> ProgressBar {
+    let bar = ProgressBar::new(1_000);
+    let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %, {eta} left");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar
+}
+
+fn write(folder: &Path, files: &[(&str, Vec<u8>)]) -> anyhow::Result<()> {
+    fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    for (name, bytes) in files {
+        let path = folder.join(name);
+        fs::write(&path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
+        eprintln!("  {:<14}{}", "written", path.display());
+    }
+    Ok(())
+}
