@@ -9,17 +9,13 @@ pub mod report;
 pub mod text;
 
 use rayon::prelude::*;
-use tenax_hal_shim::channel::{ARRAY, CHANNELS, SLOW_HZ};
-use tenax_logic::array::{ELEMENTS, Reading};
-use tenax_logic::health::{Limits, SensorHealth};
+use tenax_logic::array::Reading;
+use tenax_logic::elements::Elements;
 
 use crate::labelled::{Part, Recording, Step};
 
 /// What a detector said of a recording, step by step: slip or not.
 pub type Verdicts = Vec<bool>;
-
-/// When a reading of an element is to be believed: as the fingertip has it.
-static LIMITS: Limits = Limits::of(&CHANNELS[ARRAY], SLOW_HZ);
 
 /// What a detector says of recordings. Each recording is read by a `fresh` one, which knows nothing yet: it is told the
 /// readings of one slow frame and says whether the object slips.
@@ -32,13 +28,12 @@ pub fn judge<D: FnMut(&Reading) -> bool>(
 
 /// What one detector says. An element that the fingertip would not believe has no reading.
 pub fn verdicts(mut detector: impl FnMut(&Reading) -> bool, steps: &[Step]) -> Verdicts {
-    let mut health: [SensorHealth; ELEMENTS] = Default::default();
+    let mut elements = Elements::default();
     let said = |step: &Step| {
-        let mut readings = health.iter_mut().zip(step.samples);
-        let reading: Reading = std::array::from_fn(|_| {
-            readings.next().and_then(|(health, sample)| health.take(&LIMITS, sample).0.ok())
-        });
-        detector(&reading)
+        for (element, &sample) in step.samples.iter().enumerate() {
+            elements.take(element, sample);
+        }
+        detector(elements.reading())
     };
     steps.iter().map(said).collect()
 }
