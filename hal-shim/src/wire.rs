@@ -243,7 +243,7 @@ pub enum Setting {
     MyoOnMv(u16),
     /// Normal force above which the reflex closes no further, mN.
     ForceCeilingMn(u32),
-    /// How far below 0 the network's o1 means slip, per mille.
+    /// How far below 0 the films' part of the network's o1 means slip, per mille.
     NetworkSlipPermille(u16),
 }
 
@@ -257,8 +257,8 @@ impl Setting {
             // Higher, and a plain contraction would no longer silence the reflex.
             Self::MyoOnMv(value) => ("myo on", "mV", value as u32, 20..=600),
             Self::ForceCeilingMn(value) => ("force ceiling", "mN", value, 500..=140_000),
-            // Below, a network that has hardly learned would move the hand; at 1000, o1 is at its end.
-            Self::NetworkSlipPermille(value) => ("network slip", "per mille", value as u32, 100..=1_000),
+            // Below, noise would move the hand; at 1000, o1 is at its end.
+            Self::NetworkSlipPermille(value) => ("network slip", "per mille", value as u32, 10..=1_000),
         }
     }
 

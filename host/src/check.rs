@@ -2,6 +2,7 @@
 
 pub mod agreement;
 pub mod default_scene;
+pub mod learn;
 pub mod mistakes;
 pub mod recordings;
 pub mod wearer;

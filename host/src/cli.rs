@@ -5,6 +5,7 @@ mod check;
 mod dataset;
 mod evaluate;
 mod flash;
+mod learn;
 mod lint_image;
 mod monitor;
 mod progress;
@@ -27,6 +28,7 @@ Examples:
   tenax run --replay touch.csv              a recording, with the recipe that its name calls for
   tenax run --replay my.csv --recipe my.toml
   tenax run --report json > report.json     for programs
+  tenax learn                               a fingertip teaches itself slip from a camera
   tenax scenes                              what there is to run
   tenax check                               every promise, measured
   tenax chart scenes                        how friction is stepped, where that fails, and what it costs
@@ -44,6 +46,8 @@ struct Cli {
 enum Command {
     /// Run a scene or a recording on a board; report and draw it
     Run(run::Args),
+    /// Let a fingertip teach itself slip from a camera, and measure what that is worth
+    Learn(learn::Args),
     /// List the scenes
     Scenes,
     /// Run every test of the workspace, the emulated ones included
@@ -75,6 +79,7 @@ enum Command {
 pub fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Run(args) => run::main(&args),
+        Command::Learn(args) => learn::main(&args),
         Command::Scenes => scenes::main(),
         Command::Test(args) => test::main(&args),
         Command::Check(args) => check::main(&args),

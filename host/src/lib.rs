@@ -11,6 +11,7 @@ pub mod dataset;
 pub mod evaluate;
 pub mod image;
 pub mod labelled;
+pub mod learn;
 pub mod monitor;
 pub mod plot;
 pub mod replay;

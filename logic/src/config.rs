@@ -16,6 +16,8 @@ pub const fn frames(ms: u32) -> u32 {
 pub struct VibrationConfig {
     /// S1: envelope that means slip, in samples (14 bits).
     pub s1: u16,
+    /// Envelope above the slip band that a knock has at least, in samples (14 bits).
+    pub knock_level: u16,
     /// A vibration whose envelope above the slip band is more than this part of the one inside it, per mille, is a
     /// knock. On real recordings slip onsets stay below 300, a shaken rig reaches 2500.
     pub knock_permille: u16,
@@ -37,10 +39,17 @@ pub struct FrictionConfig {
 /// What the network's output means, and how it learns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TouchConfig {
-    /// How far below 0 o1 means slip, per mille.
+    /// How far below 0 the films' part of o1 means slip, per mille.
     pub slip_permille: u16,
-    /// For how long, in frames.
+    /// For how long, in frames, if only some films hear it: slip begins somewhere.
     pub slip_frames: u32,
+    /// For how long if all of them hear it, in frames: longer than a knock.
+    pub everywhere_frames: u32,
+    /// How long after a knock or a run of the motor it means nothing, in frames: what the envelopes still have of it, and
+    /// the motor's dead time.
+    pub loud_frames: u32,
+    /// From this duty on the motor runs fast, per mille. Closing more slowly is a way to take something, and to learn.
+    pub loud_duty_permille: u16,
     /// When a teacher is believed.
     pub teacher: TeacherConfig,
     /// How fast it is learned from.
@@ -105,13 +114,17 @@ impl Default for Config {
         Self {
             vibration: VibrationConfig {
                 s1: sample_from_mv(100),
+                knock_level: sample_from_mv(20),
                 knock_permille: 500,
                 knock_frames: frames(30),
             },
             friction: FrictionConfig { s2_permille: 300, s2_of_mu_s_permille: 800, loaded_mn: 600 },
             touch: TouchConfig {
-                slip_permille: 400,
+                slip_permille: 20,
                 slip_frames: frames(5),
+                everywhere_frames: frames(40),
+                loud_frames: frames(100),
+                loud_duty_permille: 100,
                 teacher: TeacherConfig::default(),
                 rule: Rule::default(),
             },

@@ -57,6 +57,7 @@ pub struct Fingertip {
     journal: Journal,
     slow: Option<Slow>,
     save_asked: bool,
+    drive: MotorDrive,
 }
 
 impl Fingertip {
@@ -246,11 +247,16 @@ impl Fingertip {
     fn feel(&mut self, frame: &Frame) {
         let knock = self.senses.vibration.knock;
         let moves = mode::closes(self.mode) || self.mode == GripMode::Settle || self.senses.gate.is_active();
+        let duty = match self.drive {
+            MotorDrive::Close(duty) | MotorDrive::Open(duty) => duty.as_per_mille(),
+            MotorDrive::Coast => 0,
+        };
         let felt = Felt {
             envelopes: self.senses.envelopes(),
             loads: &self.senses.gauges().loads(),
             gauge: usize::from(frame.place()),
-            knock,
+            loud: knock || duty >= self.config.touch.loud_duty_permille,
+            unloaded: self.senses.is_unloaded(&self.config),
             situation: Situation {
                 grasp: matches!(self.senses.grip(&self.config), Grip::Holds(_)),
                 disturbed: knock || moves || !self.senses.hears(),
@@ -273,6 +279,7 @@ impl Fingertip {
         };
         // A lost frame says nothing about anybody's wish, so nobody's is carried out.
         let (drive, source) = if frame.valid { arbitrate(wishes) } else { Default::default() };
+        self.drive = drive;
         self.reflex.tick(self.mode, self.senses.grip(&self.config));
         let listens = mode::listens(self.mode);
         self.journal.tick(

@@ -186,7 +186,8 @@ impl Senses {
     }
 
     /// Known to touch nothing at all: far below where a finger counts as loaded.
-    fn is_unloaded(&self, config: &Config) -> bool {
+    #[must_use]
+    pub fn is_unloaded(&self, config: &Config) -> bool {
         !self.pressed && self.forces.is_some_and(|forces| forces.fn_mn < config.friction.loaded_mn / 4)
     }
 

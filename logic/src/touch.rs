@@ -5,10 +5,21 @@
 //! so that no tick does both. Learning and using go on at once: what the network says never holds the teacher's own
 //! codes (they are taken as 0), so it can be believed while it is being taught.
 //!
-//! Outputs mean slip while o1 is below 0 and the films' part of it far enough, for some ticks, on a finger that holds
-//! something, and not while a knock rings. The films' part, because the gauges' is a matter of how hard is held, which
-//! speaks against slip; and because a gauge that dies takes its part out of o1 for ever. An untaught network says 0, which
-//! is nothing.
+//! Outputs mean slip while the films' part of o1 is far enough below 0, for some ticks, on a finger that holds something,
+//! and not while a knock rings or the motor runs fast, or just did. The films' part, because the gauges' is a matter of how hard is held,
+//! which speaks against slip and hides its beginning; and because a gauge that dies takes its part out of o1 for ever. An
+//! untaught network says 0, which is nothing.
+//!
+//! Slip begins in one place of the contact, and is heard by whoever lies there. A knock, a swing and the motor are heard
+//! everywhere; so what is heard everywhere is slip only if it lasts.
+//!
+//! The direction is asked of the gauges alone: "vibration information only helps to detect micro slips, but not to detect
+//! the direction" (Tada 2006, section I), and a slip down that was louder than the slip up would be an offset of o2.
+//!
+//! What a film hears all the time, hum and noise, is none of the object's: its quiet level is taken off its envelope. It
+//! follows the envelope's median while the finger is known to be unloaded, and stands still in a grasp.
+
+use core::ops::Range;
 
 use tenax_hal_shim::channel::{PVDF_COUNT, STRAIN_COUNT};
 use tenax_hal_shim::wire::{NETWORK_OUTPUTS, NetworkState, RECEPTORS};
@@ -52,6 +63,10 @@ pub static NORMALISER: NormaliserConfig<RECEPTORS> = NormaliserConfig {
     average_shift: 8,
 };
 
+/// How far a quiet level goes after an envelope in a tick, 1/16 of a sample: 4 mV in 0.15 s. A step of one size, whatever
+/// the envelope's, makes it the median, which a knock does not move.
+const QUIET_STEP: i32 = 1;
+
 /// What the rest of the fingertip gives in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Felt<'a> {
@@ -61,11 +76,21 @@ pub struct Felt<'a> {
     pub loads: &'a [i32; STRAIN_COUNT],
     /// The gauge that was read in this tick.
     pub gauge: usize,
-    /// Whether a knock rings.
-    pub knock: bool,
+    /// Whether a knock rings, or the motor runs fast.
+    pub loud: bool,
+    /// Whether the finger is known to touch nothing.
+    pub unloaded: bool,
     /// Whether the finger holds something, and whether anything else than the object is felt.
     pub situation: Situation,
 }
+
+/// The films, and the gauges, among the receptors.
+const FILMS: Range<usize> = 0..PVDF_COUNT;
+const GAUGES: Range<usize> = PVDF_COUNT..RECEPTORS;
+/// 1, as an output.
+const ONE: i64 = 1 << 26;
+/// More films than this hear what is everywhere.
+const SOMEWHERE_MAX: usize = 6;
 
 /// How many lessons of one code may be ahead of its opposite's: 2 s.
 const AHEAD_MAX: i16 = 2_000;
@@ -101,6 +126,11 @@ pub struct Touch {
     teacher: Teacher,
     activations: Activations<RECEPTORS>,
     outputs: [Output; NETWORK_OUTPUTS],
+    /// The gauges' part of each output, since the last of them was read.
+    by_gauges: [i64; NETWORK_OUTPUTS],
+    /// What each film hears of nothing, 1/16 of a sample.
+    quiet: [i32; PVDF_COUNT],
+    since_loud_frames: u32,
     said_frames: u32,
     slips: bool,
     lesson: Result<Codes, NoLesson>,
@@ -118,6 +148,9 @@ impl Default for Touch {
             teacher: Teacher::default(),
             activations: Activations::default(),
             outputs: [Output::default(); NETWORK_OUTPUTS],
+            by_gauges: [0; NETWORK_OUTPUTS],
+            quiet: [0; PVDF_COUNT],
+            since_loud_frames: 0,
             said_frames: 0,
             slips: false,
             lesson: Err(NoLesson::Absent),
@@ -131,18 +164,35 @@ impl Default for Touch {
 impl Touch {
     /// Takes what is felt in one tick, learns if there is a lesson, and says what it means.
     pub fn tick(&mut self, config: &TouchConfig, felt: &Felt<'_>) {
-        for (film, &envelope) in felt.envelopes.iter().enumerate() {
-            let activation = self.normaliser.activation(&NORMALISER, film, envelope >> ENVELOPE_SHIFT);
-            self.activations.set(film, activation);
-        }
-        if let Some(&load) = felt.loads.get(felt.gauge) {
+        let heard = self.heard(felt);
+        self.normaliser.renew(&NORMALISER, 0, &heard, &mut self.activations);
+        if let Some(load) = felt.loads.get(felt.gauge) {
             let receptor = PVDF_COUNT + felt.gauge;
-            let activation = self.normaliser.activation(&NORMALISER, receptor, load);
-            self.activations.set(receptor, activation);
+            self.normaliser.renew(&NORMALISER, receptor, core::slice::from_ref(load), &mut self.activations);
+            self.by_gauges = [0, 1].map(|output| sum(self.network.parts(output, GAUGES, &self.activations)));
         }
-        self.outputs = self.network.output(&self.activations, &[Code::Zero; NETWORK_OUTPUTS]);
-        self.judge(config, felt);
-        self.learn(config, felt);
+        let mut parts = [0; PVDF_COUNT];
+        for (slot, part) in parts.iter_mut().zip(self.network.parts(0, FILMS, &self.activations)) {
+            *slot = part;
+        }
+        let by_films = sum(parts.iter().copied());
+        let [o1_by_gauges, o2_by_gauges] = self.by_gauges;
+        self.outputs = [output(by_films + o1_by_gauges), output(o2_by_gauges)];
+        self.judge(config, felt, &parts, by_films);
+        self.learn(config, felt, &heard);
+    }
+
+    /// What each film hears beyond its quiet level, 1/16 of a sample.
+    fn heard(&mut self, felt: &Felt<'_>) -> [i32; PVDF_COUNT] {
+        let mut heard = [0; PVDF_COUNT];
+        for ((heard, quiet), envelope) in heard.iter_mut().zip(&mut self.quiet).zip(felt.envelopes) {
+            let beyond = (envelope >> ENVELOPE_SHIFT) - *quiet;
+            if felt.unloaded {
+                *quiet += beyond.signum() * QUIET_STEP;
+            }
+            *heard = beyond.max(0);
+        }
+        heard
     }
 
     /// A frame was lost: nothing is felt.
@@ -162,6 +212,7 @@ impl Touch {
     pub fn forget(&mut self) {
         self.normaliser.reset(&NORMALISER);
         self.network = FingertipNetwork::default();
+        self.by_gauges = [0; NETWORK_OUTPUTS];
         self.balance = Balance::default();
         self.updates = 0;
     }
@@ -217,19 +268,28 @@ impl Touch {
         Ok(())
     }
 
-    fn judge(&mut self, config: &TouchConfig, felt: &Felt<'_>) {
-        let o1_permille = (i64::from(self.outputs[0].into_bits()) * 1_000) >> 26;
+    /// `parts` of o1 by each film, and their sum.
+    fn judge(&mut self, config: &TouchConfig, felt: &Felt<'_>, parts: &[i32; PVDF_COUNT], sum: i64) {
+        self.since_loud_frames = if felt.loud { 0 } else { self.since_loud_frames.saturating_add(1) };
         // Once said, half of it keeps it said: one slip has dips.
         let threshold = i64::from(config.slip_permille) / if self.slips { 2 } else { 1 };
-        let heard = self.network.share(0, PVDF_COUNT, &self.activations);
-        let heard_permille = (i64::from(heard.into_bits()) * 1_000) >> 26;
-        // The gauges know whether something is carried; that it slips must be heard.
-        let says = felt.situation.grasp && !felt.knock && o1_permille < 0 && heard_permille <= -threshold;
-        self.said_frames = if says { self.said_frames.saturating_add(1) } else { 0 };
-        self.slips = self.said_frames >= config.slip_frames;
+        let says = felt.situation.grasp
+            && self.since_loud_frames >= config.loud_frames
+            && sum * 1_000 <= -threshold * ONE;
+        if !says {
+            self.said_frames = 0;
+            self.slips = false;
+            return;
+        }
+        self.said_frames = self.said_frames.saturating_add(1);
+        // Somewhere: at most so many films have half of the mean.
+        let hears = |part: &&i32| i64::from(**part) * 2 * PVDF_COUNT as i64 <= sum;
+        let somewhere = parts.iter().filter(hears).count() <= SOMEWHERE_MAX;
+        let long_enough = if somewhere { config.slip_frames } else { config.everywhere_frames };
+        self.slips |= self.said_frames >= long_enough;
     }
 
-    fn learn(&mut self, config: &TouchConfig, felt: &Felt<'_>) {
+    fn learn(&mut self, config: &TouchConfig, felt: &Felt<'_>, heard: &[i32; PVDF_COUNT]) {
         self.lesson = self.teacher.lesson(&config.teacher, felt.situation);
         if let Ok(codes) = self.lesson {
             if self.odd {
@@ -237,7 +297,11 @@ impl Touch {
                 self.network.learn_some(&config.rule, &self.activations, &codes);
                 self.updates = self.updates.saturating_add(1);
             } else {
-                self.normaliser.observe(&NORMALISER, &readings(felt));
+                let mut readings = [0; RECEPTORS];
+                let (films, gauges) = readings.split_at_mut(PVDF_COUNT);
+                films.copy_from_slice(heard);
+                gauges.copy_from_slice(felt.loads);
+                self.normaliser.observe(&NORMALISER, &readings);
             }
         }
         self.pass();
@@ -251,12 +315,11 @@ impl Touch {
     }
 }
 
-fn readings(felt: &Felt<'_>) -> [i32; RECEPTORS] {
-    let mut readings = [0; RECEPTORS];
-    let (films, gauges) = readings.split_at_mut(PVDF_COUNT);
-    for (reading, envelope) in films.iter_mut().zip(felt.envelopes) {
-        *reading = envelope >> ENVELOPE_SHIFT;
-    }
-    gauges.copy_from_slice(felt.loads);
-    readings
+/// Equation 4, of a sum of parts.
+fn output(sum: i64) -> Output {
+    Output::from_bits(sum.clamp(-ONE, ONE) as i32)
+}
+
+fn sum(parts: impl Iterator<Item = i32>) -> i64 {
+    parts.map(i64::from).sum()
 }

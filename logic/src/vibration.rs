@@ -104,6 +104,7 @@ pub struct VibrationDetector {
     loudest: Heard,
     above: LowpassState<1>,
     loud_frames: u32,
+    ringing_frames: u32,
     s1: bool,
 }
 
@@ -137,11 +138,16 @@ impl VibrationDetector {
         let loud = envelope > if self.s1 { on / 2 } else { on };
         self.loud_frames = if loud { self.loud_frames.saturating_add(1) } else { 0 };
         // A quiet film's noise is mostly above the band too, but no knock is as quiet.
-        let knock = above > on / 4
-            && i64::from(above) * 1_000 > i64::from(envelope) * i64::from(config.knock_permille)
-            && self.loud_frames < config.knock_frames;
+        let rings = above > i32::from(config.knock_level) << Q
+            && i64::from(above) * 1_000 > i64::from(envelope) * i64::from(config.knock_permille);
+        self.ringing_frames = if rings { self.ringing_frames.saturating_add(1) } else { 0 };
+        let knock = rings && self.loud_frames < config.knock_frames;
         self.s1 = loud && (self.s1 || !knock);
-        Vibration { level: (envelope >> Q).clamp(0, i32::from(u16::MAX)) as u16, s1: self.s1, knock }
+        Vibration {
+            level: (envelope >> Q).clamp(0, i32::from(u16::MAX)) as u16,
+            s1: self.s1,
+            knock: rings && self.ringing_frames < config.knock_frames,
+        }
     }
 
     /// Each film's envelope in the slip band, Q16 samples; 0 of one that gives no number.

@@ -27,5 +27,6 @@ pub mod world;
 
 pub use builtin::builtin;
 pub use file::{SceneError, SceneFile};
+pub use random::Seeds;
 pub use truth::Truth;
 pub use world::World;

@@ -2,6 +2,22 @@
 
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
+/// What is random, and on its own: another hand in the same world, or the same hand in another world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Seeds {
+    /// How the fingertip came out in the making: where its films and gauges lie, their gains and offsets.
+    pub making: u64,
+    /// Every noise of one run.
+    pub noise: u64,
+}
+
+impl From<u64> for Seeds {
+    /// One seed for both.
+    fn from(seed: u64) -> Self {
+        Self { making: seed, noise: seed }
+    }
+}
+
 /// Who draws. New sources are added at the end: their place is their stream.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Source {

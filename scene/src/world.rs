@@ -16,9 +16,10 @@ use crate::physics::hand::Hand;
 use crate::physics::stroke::Stroke;
 use crate::physics::wearer::{Effort, Wearer};
 use crate::plant::{Pins, Plant};
+use crate::random::Seeds;
 use crate::schedule::STEP_S;
 use crate::sensor::array::{Elements, Shakes};
-use crate::sensor::camera::Eye;
+use crate::sensor::camera::{Eye, Seen};
 use crate::sensor::converter::Converter;
 use crate::sensor::fault::Faults;
 use crate::sensor::fsr::Quadrants;
@@ -69,6 +70,13 @@ impl World {
     /// The scene at its beginning. The seed decides all noise and how the films came out in the making.
     #[must_use]
     pub fn new(scene: &SceneFile, seed: u64) -> Self {
+        Self::seeded(scene, seed.into())
+    }
+
+    /// The scene at its beginning, with one seed for the fingertip's making and one for the noise.
+    #[must_use]
+    pub fn seeded(scene: &SceneFile, seeds: Seeds) -> Self {
+        let seed = seeds.noise;
         let task = match &scene.object {
             Some(object) => Task::Grasp {
                 grasp: Box::new(Grasp::new(scene, object.get_ref())),
@@ -88,10 +96,10 @@ impl World {
             gripper: Gripper::new(&scene.gripper),
             task,
             touch: Touch::default(),
-            films: Films::new(&scene.pvdf, &scene.knock, scene.contact.pitch_mm.get(), seed),
+            films: Films::new(&scene.pvdf, &scene.knock, scene.contact.pitch_mm.get(), seeds),
             quadrants: Quadrants::new(&scene.fsr),
             envelopes: Envelopes::new(&scene.myo, &scene.electrode_lift, scene.pvdf.mains_hz.get(), seed),
-            gauges: Gauges::new(&scene.strain, seed),
+            gauges: Gauges::new(&scene.strain, seeds),
             elements: Elements::new(scene, seed),
             eye: Eye::new(&scene.camera, seed),
             released_n: 0.0,
@@ -114,6 +122,12 @@ impl World {
     #[must_use]
     pub const fn touch(&self) -> &Touch {
         &self.touch
+    }
+
+    /// The camera's newest words that have come over the line.
+    #[must_use]
+    pub const fn said(&self) -> Option<Seen> {
+        self.eye.said()
     }
 
     fn strokes(&self) -> bool {
@@ -217,7 +231,10 @@ impl Plant for World {
     }
 
     fn commands(&mut self) -> Vec<Down> {
-        self.script.take(self.now_s())
+        let t_s = self.now_s();
+        let mut commands = self.script.take(t_s);
+        commands.extend(self.eye.teach(t_s));
+        commands
     }
 
     fn slipping(&self) -> bool {

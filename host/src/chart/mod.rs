@@ -4,13 +4,13 @@
 
 mod cost;
 pub mod detectors;
-mod draw;
+pub(crate) mod draw;
 pub mod features;
 mod growth;
 mod map;
 mod patch;
 pub mod sensors;
-mod sheet;
+pub(crate) mod sheet;
 
 use plotters::style::RGBColor;
 use tenax_scene::stepping::SHIPPED_S;

@@ -5,7 +5,7 @@ use std::process::{Command, ExitCode};
 
 use super::progress::Progress;
 use super::workspace;
-use crate::check::{Bar, Verdict, default_scene, mistakes, recordings, wearer};
+use crate::check::{Bar, Verdict, default_scene, learn, mistakes, recordings, wearer};
 use crate::session::{self, Board};
 
 /// Measure every promise of the project, one line each; fails if one is not kept.
@@ -47,6 +47,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             .current_dir(workspace::root()?),
     ));
     recordings::bars(&data, &board, &mut print)?;
+    learn::bars()?.into_iter().for_each(&mut print);
     mistakes::bars().into_iter().for_each(&mut print);
     println!("{passed} kept, {failed} not kept, {skipped} skipped");
     Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })

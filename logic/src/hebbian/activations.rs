@@ -45,13 +45,6 @@ impl<const N: usize> Activations<N> {
         Self(activations.map(|activation| activation.into_bits().clamp(-ONE, ONE)))
     }
 
-    /// One of them is new. Outside, nothing changes.
-    pub fn set(&mut self, receptor: usize, activation: Activation) {
-        if let Some(slot) = self.0.get_mut(receptor) {
-            *slot = activation.into_bits().clamp(-ONE, ONE);
-        }
-    }
-
     /// As integers, 2^26 is 1.
     #[must_use]
     pub const fn as_bits(&self) -> &[i32; N] {
@@ -159,12 +152,24 @@ impl<const N: usize> Normaliser<N> {
         Activations(core::array::from_fn(|n| self.scales[n].activation(config.senses[n], raw[n])))
     }
 
-    /// The activation of one receptor's reading; 0 for one that is not there.
+    /// New readings of the receptors from `first` on; the other activations stay.
     #[inline]
-    pub fn activation(&self, config: &NormaliserConfig<N>, receptor: usize, raw: i32) -> Activation {
-        match (self.scales.get(receptor), config.senses.get(receptor)) {
-            (Some(scale), Some(&sense)) => Activation::from_bits(scale.activation(sense, raw)),
-            _ => Activation::default(),
+    pub fn renew(
+        &self,
+        config: &NormaliserConfig<N>,
+        first: usize,
+        raw: &[i32],
+        activations: &mut Activations<N>,
+    ) {
+        // Slices, since an iterator that skips takes its steps.
+        let (Some(scales), Some(senses), Some(slots)) =
+            (self.scales.get(first..), config.senses.get(first..), activations.0.get_mut(first..))
+        else {
+            return;
+        };
+        for (((scale, &sense), slot), &raw) in scales.iter().zip(senses).zip(slots).zip(raw) {
+            // What is not felt needs no arithmetic, and most films are quiet most of the time.
+            *slot = if raw == scale.zero { 0 } else { scale.activation(sense, raw) };
         }
     }
 

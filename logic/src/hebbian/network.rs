@@ -17,6 +17,8 @@
 //! t of one step of the converter (2^-14) it is 3e-13, far below a unit of a 32-bit weight, and 2^17 units of a kept one.
 //! What alpha r loses in Q33 moves a weight by 1e-4 in a million updates at most.
 
+use core::ops::Range;
+
 use dsp_fixedpoint::Q32;
 
 use super::activations::Activations;
@@ -70,14 +72,23 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
         outputs
     }
 
-    /// The part of an output that the first `inputs` receptors have in it, before it is clipped; 0 of one that is not
-    /// there.
-    pub fn share(&self, output: usize, inputs: usize, activations: &Activations<INPUTS>) -> Output {
-        let weights = self.weights.get(output).map_or(&[][..], |weights| weights);
-        let terms = weights.iter().zip(activations.as_bits()).take(inputs);
-        let sum: i64 = terms.map(|(&weight, &t)| i64::from(in_use(weight)) * i64::from(t)).sum();
-        // 31 inputs of at most 8: below 2^8, and 2^34 in Q26.
-        Output::from_bits((sum >> 27).clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32)
+    /// What each of some receptors adds to an output, before it is clipped, units of [`Output`], rounded down; nothing for an
+    /// output or for receptors that are not there.
+    #[inline]
+    pub fn parts(
+        &self,
+        output: usize,
+        receptors: Range<usize>,
+        activations: &Activations<INPUTS>,
+    ) -> impl Iterator<Item = i32> {
+        let weights = self.weights.get(output).and_then(|weights| weights.get(receptors.clone()));
+        let activations = activations.as_bits().get(receptors);
+        // A weight of 8 and an activation of 1: 2^29.
+        weights
+            .unwrap_or_default()
+            .iter()
+            .zip(activations.unwrap_or_default())
+            .map(|(&weight, &t)| ((i64::from(in_use(weight)) * i64::from(t)) >> 27) as i32)
     }
 
     /// Equations 5 and 6, once. Two divisions for two outputs.

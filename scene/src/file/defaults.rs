@@ -140,7 +140,15 @@ impl Default for Array {
 
 impl Default for Camera {
     fn default() -> Self {
-        // Tada 2006, section III-A. The jitter is assumed.
-        Self { pixel_mm: Millimetres::of(1.32), rate_hz: Hertz::of(30.0), jitter_px: Part::of(0.02) }
+        Self {
+            // Tada 2006, section III-A.
+            pixel_mm: Millimetres::of(1.32),
+            rate_hz: Hertz::of(30.0),
+            // Assumed, as the rest: marks are found to a fiftieth of a pixel; an image is read out while the next is taken
+            // (33 ms), and its words are 20 ms on the way.
+            jitter_px: Part::of(0.02),
+            delay_ms: DeadTime::of(53.0),
+            teaches: false,
+        }
     }
 }

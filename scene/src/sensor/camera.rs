@@ -1,5 +1,10 @@
 //! A camera that watches a mark on the hand and one on the object, and says three words about it (Tada 2006, eqs 1, 2).
 
+use std::collections::VecDeque;
+
+use tenax_hal_shim::wire::Down;
+use tenax_hal_shim::words::Code;
+
 use crate::file::sections::Camera;
 use crate::random::{Noise, Source};
 
@@ -8,10 +13,21 @@ use crate::random::{Noise, Source};
 pub struct Seen {
     /// When the second image was taken, s.
     pub t_s: f64,
+    /// When the words have come over the line, s.
+    pub arrives_s: f64,
     /// v1: -1 the object moves relative to the hand, 1 they move as one, 0 neither moves.
     pub v1: i8,
     /// v2: 1 the hand moves upward, -1 downward, 0 not.
     pub v2: i8,
+}
+
+impl Post {
+    fn deliver(&mut self, t_s: f64) {
+        while self.under_way.front().is_some_and(|seen| seen.arrives_s <= t_s) {
+            self.arrived = self.under_way.pop_front();
+            self.unsent = self.arrived;
+        }
+    }
 }
 
 /// Marks on whole pixels, two images.
@@ -28,6 +44,17 @@ pub(crate) struct Eye {
     noise: Noise,
     images: u64,
     last_px: Option<[i64; 2]>,
+    post: Post,
+}
+
+/// The way of the words from the camera to the board.
+#[derive(Debug)]
+struct Post {
+    delay_s: f64,
+    teaches: bool,
+    under_way: VecDeque<Seen>,
+    arrived: Option<Seen>,
+    unsent: Option<Seen>,
 }
 
 impl Eye {
@@ -41,11 +68,19 @@ impl Eye {
             noise,
             images: 0,
             last_px: None,
+            post: Post {
+                delay_s: parameters.delay_ms.get() / 1e3,
+                teaches: parameters.teaches,
+                under_way: VecDeque::new(),
+                arrived: None,
+                unsent: None,
+            },
         }
     }
 
     /// Goes on to `t_s`; says something whenever an image is due and there is one before it.
     pub(crate) fn step(&mut self, t_s: f64, hand_mm: f64, object_mm: f64) -> Option<Seen> {
+        self.post.deliver(t_s);
         if t_s * self.rate_hz < self.images as f64 {
             return None;
         }
@@ -58,7 +93,22 @@ impl Eye {
         let last = self.last_px.replace(px)?;
         let hand = px[0].cmp(&last[0]) as i8;
         let relative = px[1] != last[1];
-        Some(Seen { t_s, v1: if relative { -1 } else { hand.abs() }, v2: hand })
+        let arrives_s = t_s + self.post.delay_s;
+        let seen = Seen { t_s, arrives_s, v1: if relative { -1 } else { hand.abs() }, v2: hand };
+        self.post.under_way.push_back(seen);
+        Some(seen)
+    }
+
+    /// The newest words that have arrived.
+    pub(crate) const fn said(&self) -> Option<Seen> {
+        self.post.arrived
+    }
+
+    /// The words that arrived just now, as they come down the serial line, if this camera teaches.
+    pub(crate) fn teach(&mut self, t_s: f64) -> Option<Down> {
+        let seen = self.post.unsent.take().filter(|_| self.post.teaches)?;
+        let age_ms = ((t_s - seen.t_s) * 1e3).round() as u16;
+        Some(Down::Teach { codes: [seen.v1, seen.v2].map(|v| Code::from_sign(v.into())), age_ms })
     }
 }
 

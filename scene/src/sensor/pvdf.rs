@@ -6,10 +6,11 @@ use tenax_hal_shim::channel::{PVDF_COUNT, SCANS_PER_FRAME};
 use tenax_hal_shim::front_end::PVDF_REST_MV;
 
 use super::front_end_v;
+use super::place::Place;
 use crate::file::sections::{Knock, Pvdf};
 use crate::physics::{TOUCH_N, Touch};
 use crate::pole::LowPass;
-use crate::random::{Noise, Source};
+use crate::random::{Noise, Seeds, Source};
 use crate::schedule::STEP_S;
 
 /// A knock is forgotten after this many times its decay: e^-12 of millivolts is below any code.
@@ -17,9 +18,13 @@ const KNOCK_DECAYS: f64 = 12.0;
 
 /// Twelve films, each with its own gain, sign, depth and place.
 ///
-/// What deforms the skin as a whole (load, shear, and the shear let go at a slip's onset) reaches a film through the
-/// skin, two poles, and the charge amplifier's high-pass: a step becomes the bump of about 25 ms that the recordings
-/// show. What the film hears directly (texture, settling, gear, knocks, hum, noise) is added at the film.
+/// What deforms the skin (load, shear, and the shear let go as places of it slip) reaches a film through the skin, two
+/// poles, and the charge amplifier's high-pass: a step becomes the bump of about 25 ms that the recordings show. What the
+/// film hears directly (texture, settling, gear, knocks, hum, noise) is added at the film.
+///
+/// Load and shear are those of the whole patch. What lets go and what slides is a film's own place first, and the rest of
+/// the patch as far as its depth spreads it: so a patch that lets go from its edge inwards is heard by one film after the
+/// other, before any of it is macro slip.
 #[derive(Debug)]
 pub(crate) struct Films {
     parameters: Pvdf,
@@ -27,8 +32,9 @@ pub(crate) struct Films {
     pitch_m: f64,
     films: [Film; PVDF_COUNT],
     noise: Noise,
-    released_n: f64,
     last_normal_n: f64,
+    /// The edge of what slides, before this step.
+    last_edge: f64,
     texture_phase: f64,
     motor_phase: f64,
 }
@@ -38,13 +44,16 @@ struct Film {
     gain: f64,
     /// Of the texture and of a knock's ring: where the film lies. In turns.
     phase: f64,
+    place: Place,
+    /// The shear that it has heard being let go, N.
+    released_n: f64,
     skin: [LowPass; 2],
     amplifier: LowPass,
 }
 
 impl Films {
-    pub(crate) fn new(parameters: &Pvdf, knocks: &[Knock], pitch_mm: f64, seed: u64) -> Self {
-        let mut making = Noise::new(seed, Source::FilmMaking);
+    pub(crate) fn new(parameters: &Pvdf, knocks: &[Knock], pitch_mm: f64, seeds: Seeds) -> Self {
+        let mut making = Noise::new(seeds.making, Source::FilmMaking);
         let spread = parameters.spread.get();
         let skin_s = parameters.skin_ms.get() / 1e3;
         let film = |_| {
@@ -53,18 +62,24 @@ impl Films {
             Film {
                 gain,
                 phase: making.between(0.0, 1.0),
+                place: Place::EVERYWHERE,
+                released_n: 0.0,
                 skin: [skin; 2],
                 amplifier: LowPass::with_corner_hz(parameters.high_pass_hz.get()),
             }
         };
+        let mut films: [Film; PVDF_COUNT] = std::array::from_fn(film);
+        for film in &mut films {
+            film.place = Place::random(&mut making);
+        }
         Self {
             parameters: parameters.clone(),
             knocks: knocks.to_vec(),
             pitch_m: pitch_mm / 1e3,
-            films: std::array::from_fn(film),
-            noise: Noise::new(seed, Source::Film),
-            released_n: 0.0,
+            films,
+            noise: Noise::new(seeds.noise, Source::Film),
             last_normal_n: 0.0,
+            last_edge: 0.0,
             texture_phase: 0.0,
             motor_phase: 0.0,
         }
@@ -73,10 +88,10 @@ impl Films {
     /// Voltages at the pins after one scan that ends at `t_s`. `motor_speed` is a part of the fastest.
     pub(crate) fn step(&mut self, t_s: f64, touch: &Touch, motor_speed: f64) -> [f64; PVDF_COUNT] {
         let p = &self.parameters;
-        self.released_n += touch.released_n;
-        let load_mv = p.normal_mv_per_n.get() * touch.normal_n
-            + p.shear_mv_per_n.get() * touch.shear_n
-            + p.release_mv_per_n.get() * self.released_n;
+        // Pressure over its peak at the edge of what slides: the brush's s.
+        let edge = if touch.sticks { (1.0 - touch.stuck_part).max(0.0).sqrt() } else { 1.0 };
+        let last_edge = std::mem::replace(&mut self.last_edge, edge);
+        let load_mv = p.normal_mv_per_n.get() * touch.normal_n + p.shear_mv_per_n.get() * touch.shear_n;
 
         let change_n_per_s = (touch.normal_n - self.last_normal_n).abs() / STEP_S;
         self.last_normal_n = touch.normal_n;
@@ -104,10 +119,14 @@ impl Films {
         let mut pins = [0.0; PVDF_COUNT];
         let draws: [f64; PVDF_COUNT] = self.noise.normals();
         for ((film, pin), draw) in self.films.iter_mut().zip(&mut pins).zip(draws) {
-            let deformed_mv = film.skin.iter_mut().fold(load_mv, |mv, pole| pole.step(mv));
+            if touch.released_n > 0.0 {
+                film.released_n += touch.released_n * film.place.hears_release(last_edge, edge);
+            }
+            let under_mv = load_mv + p.release_mv_per_n.get() * film.released_n;
+            let deformed_mv = film.skin.iter_mut().fold(under_mv, |mv, pole| pole.step(mv));
             let mut film_mv = deformed_mv - film.amplifier.step(deformed_mv);
             if texture_mv > 0.0 {
-                film_mv += texture_mv * spike(self.texture_phase + film.phase);
+                film_mv += texture_mv * film.place.slides(edge) * spike(self.texture_phase + film.phase);
             }
             for knock in &self.knocks {
                 film_mv += ring_mv(knock, t_s, film.phase);

@@ -6,7 +6,7 @@ use super::front_end_v;
 use crate::file::sections::Strain;
 use crate::physics::Touch;
 use crate::pole::LowPass;
-use crate::random::{Noise, Source};
+use crate::random::{Noise, Seeds, Source};
 use crate::schedule::FRAME_S;
 
 /// Twelve foil gauges, half of them in each layer.
@@ -35,8 +35,8 @@ struct Gauge {
 }
 
 impl Gauges {
-    pub(crate) fn new(parameters: &Strain, seed: u64) -> Self {
-        let mut making = Noise::new(seed, Source::StrainMaking);
+    pub(crate) fn new(parameters: &Strain, seeds: Seeds) -> Self {
+        let mut making = Noise::new(seeds.making, Source::StrainMaking);
         let gauge = |n: usize| {
             // Evenly over the area: the square of the radius is even.
             let height = (1.0 - making.between(0.0, 1.0)).sqrt();
@@ -59,7 +59,7 @@ impl Gauges {
             noise_mv: parameters.noise_mv.get(),
             creep: parameters.creep.get(),
             gauges: std::array::from_fn(gauge),
-            noise: Noise::new(seed, Source::Strain),
+            noise: Noise::new(seeds.noise, Source::Strain),
         }
     }
 
@@ -105,7 +105,7 @@ mod tests {
     #[test]
     fn some_feel_the_grasp_and_others_the_friction_with_either_sign() {
         let stuck = Touch { stuck_part: 1.0, ..Touch::default() };
-        let mut gauges = Gauges::new(&quiet(), 3);
+        let mut gauges = Gauges::new(&quiet(), 3.into());
         let up = above_rest_mv(&mut gauges, Touch { normal_n: 4.0, shear_n: 1.5, ..stuck });
         let down = above_rest_mv(&mut gauges, Touch { normal_n: 4.0, shear_n: -1.5, ..stuck });
         let normal = (0..STRAIN_COUNT).filter(|&n| up[n] > 0.0 && down[n] > 0.0).count();
@@ -116,7 +116,7 @@ mod tests {
     #[test]
     fn a_lasting_load_creeps_and_an_old_gauge_drifts() {
         let held = Touch { normal_n: 4.0, stuck_part: 1.0, ..Touch::default() };
-        let mut gauges = Gauges::new(&quiet(), 3);
+        let mut gauges = Gauges::new(&quiet(), 3.into());
         let first = above_rest_mv(&mut gauges, held);
         (0..2_000 * 60).for_each(|_| _ = gauges.step(&held));
         let later = above_rest_mv(&mut gauges, held);
@@ -125,7 +125,7 @@ mod tests {
         assert!((1.015..1.025).contains(&more), "{more} for a creep of 0.02");
 
         let drifts = Strain { drift_mv_per_min: Strain::default().drift_mv_per_min, ..quiet() };
-        let mut gauges = Gauges::new(&drifts, 3);
+        let mut gauges = Gauges::new(&drifts, 3.into());
         (0..2_000 * 60).for_each(|_| _ = gauges.step(&Touch::default()));
         let most = above_rest_mv(&mut gauges, Touch::default())
             .into_iter()
@@ -135,13 +135,13 @@ mod tests {
 
     #[test]
     fn what_begins_to_slide_shifts_the_shear_inwards_and_keeps_its_mean() {
-        let gauges = Gauges::new(&quiet(), 3);
+        let gauges = Gauges::new(&quiet(), 3.into());
         let (outer, inner) = (0..STRAIN_COUNT).fold((0, 0), |(outer, inner), n| {
             let is = |other: usize| gauges.gauges[n].pressure < gauges.gauges[other].pressure;
             (if is(outer) { n } else { outer }, if is(inner) { inner } else { n })
         });
         let shear = |n: usize, stuck_part: f64| {
-            let mut gauges = Gauges::new(&quiet(), 3);
+            let mut gauges = Gauges::new(&quiet(), 3.into());
             let touch = Touch { shear_n: 1.0, stuck_part, ..Touch::default() };
             above_rest_mv(&mut gauges, touch)[n].abs()
         };

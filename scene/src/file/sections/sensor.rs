@@ -3,7 +3,7 @@
 use serde::Deserialize;
 
 use crate::file::quantity::{
-    Duration, Gain, Hertz, Lever, Millimetres, Milliseconds, Millivolts, Part, Speed,
+    DeadTime, Duration, Gain, Hertz, Lever, Millimetres, Milliseconds, Millivolts, Part, Speed,
 };
 
 /// The PVDF films. Voltages are at the film; the front end multiplies them by `gain`.
@@ -132,4 +132,8 @@ pub struct Camera {
     pub rate_hz: Hertz,
     /// Jitter of a mark's place, rms, pixels.
     pub jitter_px: Part,
+    /// From the instant of an image until its words have come over the serial line.
+    pub delay_ms: DeadTime,
+    /// Whether its words go to the fingertip.
+    pub teaches: bool,
 }

@@ -1,0 +1,72 @@
+//! A fingertip that teaches itself slip: the bars of `tenax learn`, on the host's logic.
+
+use super::Bar;
+use crate::learn::report::of_judges;
+use crate::learn::{self, LESSONS, Options};
+use crate::session::Board;
+
+/// How much earlier than vision the network must be on average, s (Tada 2006: 0.89 s less 0.73 s).
+const LEAD_S: f64 = 0.16;
+/// How much earlier than by vision the object must be secured, s.
+const SECURED_S: f64 = 0.3;
+/// The part of vision's slip in the pour that may be left.
+const POUR_PART: f64 = 0.5;
+
+/// The bars.
+///
+/// # Errors
+/// If a scene cannot be made.
+pub fn bars() -> anyhow::Result<Vec<Bar>> {
+    let outcome = learn::run(&Options::default(), &Board::Host, &|_, _| ())?;
+    let (score, lead) = (&outcome.score, outcome.score.lead());
+    let [touch_s, vision_s, oracle_s] =
+        of_judges(&outcome.lifts, |run| run.secured_s).map(|spread| spread.mean);
+    let [touch_mm, vision_mm, oracle_mm] =
+        of_judges(&outcome.pours, |run| run.distance_mm).map(|spread| spread.mean);
+    let worst_s = outcome.worst_lead_s().unwrap_or(f64::NAN);
+    Ok(vec![
+        Bar::new(
+            "learn: before learning the network says nothing",
+            format!("largest output {} of 128", outcome.untaught),
+            outcome.untaught == 0,
+        ),
+        Bar::new(
+            format!(
+                "learn: after {LESSONS} trials the network sees the slip in all of {} others",
+                score.trials
+            ),
+            format!("{} missed, {} with a false alarm", score.missed, score.false_alarms),
+            score.missed == 0,
+        ),
+        Bar::new(
+            format!("learn: at least {LEAD_S} s before vision on average"),
+            format!("{:.3} s, sd {:.3}, worst {:.3}", lead.mean, lead.sd, lead.min),
+            lead.mean >= LEAD_S,
+        ),
+        Bar::new(
+            "learn: the direction is right in every trial, up and down",
+            format!("{} of {} wrong", score.direction_wrong, 2 * score.trials),
+            score.direction_wrong == 0,
+        ),
+        Bar::new(
+            "learn: no false alarm in an hour of holding with knocks, swings and motor noise",
+            format!("{} in {:.2} h", outcome.holding.false_alarms, outcome.holding.hours),
+            outcome.holding.false_alarms == 0,
+        ),
+        Bar::new(
+            format!("learn: secured at least {SECURED_S} s earlier than by vision"),
+            format!("{touch_s:.3} s against {vision_s:.3} s; oracle {oracle_s:.3} s"),
+            vision_s - touch_s >= SECURED_S,
+        ),
+        Bar::new(
+            "learn: in the pour it slips at most half as far as by vision",
+            format!("{touch_mm:.2} mm against {vision_mm:.2} mm; oracle {oracle_mm:.2} mm"),
+            touch_mm <= POUR_PART * vision_mm,
+        ),
+        Bar::new(
+            format!("learn: the same learning works on {} random fingertips", outcome.others.len()),
+            format!("worst mean lead {worst_s:.3} s"),
+            outcome.others_work() && worst_s > 0.0,
+        ),
+    ])
+}

@@ -1,0 +1,215 @@
+//! `tenax learn`: a fingertip teaches itself slip from a camera, and shows what that is worth (Tada 2006, section III).
+//!
+//! One [`finger`] goes through lessons and held-out [`trial`]s: on the host ([`bench`]), and as one [`chain`] on the
+//! emulated board. What it has learned is then tried on the host, whose logic is the image's bit for bit: in an hour of
+//! [`holding`], in a lift and a pour with the [`reflex`], and on fingers made by chance.
+
+pub mod bench;
+pub mod chain;
+pub mod figures;
+pub mod finger;
+pub mod holding;
+pub mod reflex;
+pub mod report;
+pub mod trial;
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use rayon::prelude::*;
+
+use crate::session::Board;
+use bench::Bench;
+use finger::Finger;
+use holding::Holding;
+use reflex::Three;
+use report::Score;
+use trial::{Setup, Trial};
+
+/// Trials of a lesson (Tada 2006, section III-C).
+pub const LESSONS: u64 = 7;
+/// Held-out trials of each finger made by chance.
+const TRIALS_OF_OTHERS: u64 = 10;
+
+/// What is tried.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Seed of everything.
+    pub seed: u64,
+    /// Held-out trials.
+    pub trials: u64,
+    /// Minutes of holding.
+    pub minutes: u64,
+    /// Lifts, and pours, with the reflex.
+    pub lifts: u64,
+    /// Fingers made by chance.
+    pub fingertips: u64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { seed: 1, trials: 50, minutes: 60, lifts: 20, fingertips: 20 }
+    }
+}
+
+/// What came of it.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// What was tried.
+    pub options: Options,
+    /// Who ran the trials.
+    pub board: &'static str,
+    /// Whether the board's trials are the host's, tick for tick. None if the host ran them.
+    pub agrees: Option<bool>,
+    /// A trial of the finger before it learned: the largest output, 128 would be 1.
+    pub untaught: u8,
+    /// The lessons.
+    pub lessons: Vec<Trial>,
+    /// The held-out trials.
+    pub trials: Vec<Trial>,
+    /// Their score.
+    pub score: Score,
+    /// The time of holding.
+    pub holding: Holding,
+    /// Lifts with the reflex.
+    pub lifts: Vec<Three>,
+    /// Pours.
+    pub pours: Vec<Three>,
+    /// The scores of the other fingers.
+    pub others: Vec<Score>,
+    /// What the receptors felt in the last three lessons.
+    pub felt: Vec<figures::Felt>,
+}
+
+/// Told what is being done, and how much of it is over, 0 to 1.
+pub type Progress<'a> = &'a (dyn Fn(&str, f64) + Sync);
+
+/// Does all of it.
+///
+/// # Errors
+/// If a scene cannot be made or the board cannot be run.
+pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Result<Outcome> {
+    let finger = Finger::plain(options.seed);
+    let mut untaught = Bench::default();
+    let silent = untaught.trial(Setup::new(&finger, held_out(options.seed, 0), false)?);
+    let loudest = silent.outputs.iter().flatten().map(|output| output.unsigned_abs()).max();
+
+    let (learned, lessons, trials, felt) = on_host(&finger, options, progress)?;
+    let (trials, agrees) = match board {
+        Board::Host => (trials, None),
+        #[cfg(feature = "emulator")]
+        Board::Emulated { .. } => {
+            let emulated = on_board(&finger, options, board, progress)?;
+            let same = |(host, board): (&Trial, &Trial)| {
+                (&host.outputs, &host.slips) == (&board.outputs, &board.slips)
+            };
+            let agrees = lessons.iter().chain(&trials).zip(&emulated).all(same);
+            (emulated.into_iter().skip(LESSONS as usize).collect(), Some(agrees))
+        }
+    };
+
+    let over = AtomicU64::new(0);
+    let holding = holding::hold(&finger, &learned, options.minutes, seed(options.seed, 3, 0), &|| {
+        let over = over.fetch_add(1, Ordering::Relaxed);
+        progress("holding", over as f64 / options.minutes as f64);
+    })?;
+    progress("lifting and pouring", 0.0);
+    let lifts = reflex::lifts(&finger, &learned, options.lifts, seed(options.seed, 4, 0))?;
+    let pours = reflex::pours(&finger, &learned, options.lifts, seed(options.seed, 5, 0))?;
+    let over = AtomicU64::new(0);
+    let others = (1..=options.fingertips).into_par_iter().map(|n| {
+        let score = other(options.seed, n);
+        let over = over.fetch_add(1, Ordering::Relaxed);
+        progress("other fingers", over as f64 / options.fingertips as f64);
+        score
+    });
+    let others = others.collect::<anyhow::Result<Vec<Score>>>()?;
+    Ok(Outcome {
+        options: *options,
+        board: board.name(),
+        agrees,
+        untaught: loudest.unwrap_or(0),
+        score: Score::of(&trials),
+        lessons,
+        trials,
+        holding,
+        lifts,
+        pours,
+        others,
+        felt,
+    })
+}
+
+/// A finger that has learned, on the host; its lessons and held-out trials, and what it felt in the last three lessons.
+type OnHost = (Bench, Vec<Trial>, Vec<Trial>, Vec<figures::Felt>);
+
+fn on_host(finger: &Finger, options: &Options, progress: Progress) -> anyhow::Result<OnHost> {
+    let mut bench = Bench::default();
+    let (mut lessons, mut felt) = (Vec::new(), Vec::new());
+    for n in 0..LESSONS {
+        let setup = Setup::new(finger, lesson(options.seed, n), true)?;
+        if n + 3 >= LESSONS {
+            let (trial, receptors) = figures::Felt::record(&mut bench, setup);
+            lessons.push(trial);
+            felt.push(receptors);
+        } else {
+            lessons.push(bench.trial(setup));
+        }
+        progress("learning", n as f64 / LESSONS as f64);
+    }
+    let learned = bench.clone();
+    let mut trials = Vec::new();
+    for n in 0..options.trials {
+        trials.push(bench.trial(Setup::new(finger, held_out(options.seed, n), false)?));
+        progress("held-out trials", n as f64 / options.trials as f64);
+    }
+    Ok((learned, lessons, trials, felt))
+}
+
+/// The same lessons and trials as one chain on a board.
+#[cfg(feature = "emulator")]
+fn on_board(
+    finger: &Finger,
+    options: &Options,
+    board: &Board,
+    progress: Progress,
+) -> anyhow::Result<Vec<Trial>> {
+    let mut setups = Vec::new();
+    for n in 0..LESSONS {
+        setups.push(Setup::new(finger, lesson(options.seed, n), true)?);
+    }
+    for n in 0..options.trials {
+        setups.push(Setup::new(finger, held_out(options.seed, n), false)?);
+    }
+    let chain = chain::Chain::new(setups);
+    let all_s = tenax_scene::plant::Plant::duration_s(&chain);
+    let (run, chain) = board.run(chain, &mut |s| progress("on the emulated board", s / all_s))?;
+    Ok(chain.trials(&run))
+}
+
+/// A finger made by chance: the same lessons, and some held-out trials.
+fn other(all: u64, n: u64) -> anyhow::Result<Score> {
+    let own = seed(all, 6, n);
+    let finger = Finger::random(own);
+    let mut bench = Bench::default();
+    for n in 0..LESSONS {
+        bench.trial(Setup::new(&finger, lesson(own, n), true)?);
+    }
+    let mut trials = Vec::new();
+    for n in 0..TRIALS_OF_OTHERS {
+        trials.push(bench.trial(Setup::new(&finger, held_out(own, n), false)?));
+    }
+    Ok(Score::of(&trials))
+}
+
+fn lesson(all: u64, n: u64) -> u64 {
+    seed(all, 1, n)
+}
+
+fn held_out(all: u64, n: u64) -> u64 {
+    seed(all, 2, n)
+}
+
+/// Room for a million of each.
+const fn seed(all: u64, what: u64, n: u64) -> u64 {
+    all.wrapping_mul(100).wrapping_add(what).wrapping_mul(1_000_000).wrapping_add(n)
+}

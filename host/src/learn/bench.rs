@@ -1,0 +1,82 @@
+//! A fingertip on the host that goes from one world to the next and keeps what it has learned.
+
+use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, SCANS_PER_FRAME};
+use tenax_hal_shim::frame::{Frame, Scan, scan_of_pins};
+use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::wire::{Down, NetworkState, Slow};
+use tenax_logic::fingertip::Fingertip;
+use tenax_scene::World;
+use tenax_scene::plant::Plant;
+
+use super::chain::slow_frames;
+use super::trial::{Setup, Trial};
+
+/// Who says that the object slips, for the reflex to answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Judge {
+    /// The fingertip's own detectors; the scenes silence all but the network.
+    Touch,
+    /// The camera's v1, as it comes over the line, and nothing else.
+    Vision,
+    /// The world, at once: the same gripper cannot do better after the fact.
+    Oracle,
+}
+
+/// The fingertip.
+#[derive(Clone, Debug, Default)]
+pub struct Bench {
+    fingertip: Fingertip,
+    frame: u32,
+}
+
+impl Bench {
+    /// Goes through a world to its end. `see` is shown every slow frame: its number in this world, what it tells, and what
+    /// the network knows and feels after it.
+    pub fn run(&mut self, mut world: World, judge: Judge, see: &mut dyn FnMut(usize, &Slow, &Self)) -> World {
+        let mut seen = 0;
+        let mut drive = MotorDrive::Coast;
+        for _ in 0..slow_frames(&world) * usize::from(FRAMES_PER_SLOW_FRAME) {
+            let select = Frame::lost(self.frame).select();
+            let mut scans = [Scan::default(); SCANS_PER_FRAME];
+            let mut commands: Vec<Down> = Vec::new();
+            for scan in &mut scans {
+                *scan = scan_of_pins(&world.scan(drive).codes(), select);
+                commands.extend(world.commands());
+            }
+            for command in &commands {
+                // A refusal goes back to whoever sent it; there is no line here.
+                let _ = self.fingertip.command(command);
+            }
+            let frame_in = Frame::from_scans(self.frame, &scans);
+            self.frame = self.frame.wrapping_add(1);
+            drive = match judge {
+                Judge::Touch => self.fingertip.tick(&frame_in),
+                Judge::Vision => {
+                    let slips = world.said().is_some_and(|seen| seen.v1 < 0);
+                    self.fingertip.tick_told(&frame_in, slips)
+                }
+                Judge::Oracle => self.fingertip.tick_told(&frame_in, world.slipping()),
+            };
+            if let Some(slow) = self.fingertip.take_slow() {
+                see(seen, &slow, self);
+                seen += 1;
+            }
+            while self.fingertip.next_event().is_some() {}
+        }
+        world
+    }
+
+    /// Goes through a trial.
+    pub fn trial(&mut self, setup: Setup) -> Trial {
+        let mut trial = Trial { lift_s: setup.lift_s, ..Trial::default() };
+        let world = self.run(setup.world, Judge::Touch, &mut |n, slow, _| trial.hear(n, slow));
+        trial.end(world.truth().clone());
+        trial
+    }
+
+    /// Weights and activations.
+    #[must_use]
+    pub fn network(&self) -> NetworkState {
+        self.fingertip.network()
+    }
+}

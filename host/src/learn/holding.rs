@@ -1,0 +1,143 @@
+//! Holding: minutes in which nothing slips, and much else happens.
+
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+use rayon::prelude::*;
+use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
+use tenax_scene::{SceneFile, Seeds, World};
+
+use super::bench::{Bench, Judge};
+use super::finger::{Finger, edited};
+use super::trial::Trial;
+
+const SCENE: &str = "hold";
+/// The block is in the air and the hand still, s.
+const FROM_S: f64 = 4.0;
+/// What happens in a minute, and how often.
+const KNOCKS: u32 = 6;
+const SWINGS: u32 = 2;
+const RUNS: u32 = 2;
+/// Slip said this long after a slip that was true is still that slip's, s.
+const AFTER_S: f64 = 0.1;
+
+/// What came of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Holding {
+    /// How long nothing slipped, h.
+    pub hours: f64,
+    /// How often slip was said.
+    pub false_alarms: u32,
+    /// Slips that were true: none is meant here.
+    pub slips: u32,
+}
+
+/// So many minutes with this fingertip, each by itself. `done` is told when one is over.
+///
+/// # Errors
+/// If a scene cannot be made.
+pub fn hold(
+    finger: &Finger,
+    learned: &Bench,
+    minutes: u64,
+    seed: u64,
+    done: &(dyn Fn() + Sync),
+) -> anyhow::Result<Holding> {
+    let all = (0..minutes).into_par_iter().map(|n| {
+        let minute = one(finger, learned, seed + n);
+        done();
+        minute
+    });
+    all.try_reduce(Holding::default, |a, b| {
+        Ok(Holding {
+            hours: a.hours + b.hours,
+            false_alarms: a.false_alarms + b.false_alarms,
+            slips: a.slips + b.slips,
+        })
+    })
+}
+
+fn one(finger: &Finger, learned: &Bench, seed: u64) -> anyhow::Result<Holding> {
+    let scene = minute(finger, seed)?;
+    let mut bench = learned.clone();
+    let mut said: Vec<f64> = Vec::new();
+    let mut before = false;
+    let world = World::seeded(&scene, Seeds { making: finger.making, noise: seed });
+    let world = bench.run(world, Judge::Touch, &mut |n, slow, _| {
+        for (place, tick) in slow.ticks.iter().enumerate() {
+            let t_s = Trial::time_s(n * usize::from(FRAMES_PER_SLOW_FRAME) + place);
+            if tick.slips && !before && t_s > FROM_S {
+                said.push(t_s);
+            }
+            before = tick.slips;
+        }
+    });
+    let slips = &world.truth().slips;
+    let is_true = |t_s: f64| {
+        slips
+            .iter()
+            .any(|slip| (slip.micro_onset_s..slip.end_s.unwrap_or(f64::INFINITY) + AFTER_S).contains(&t_s))
+    };
+    Ok(Holding {
+        hours: (scene.duration_s() - FROM_S) / 3_600.0,
+        false_alarms: said.iter().filter(|&&t_s| !is_true(t_s)).count() as u32,
+        slips: slips.iter().filter(|slip| slip.macro_onset_s > FROM_S).count() as u32,
+    })
+}
+
+/// A minute by chance.
+fn minute(finger: &Finger, seed: u64) -> anyhow::Result<SceneFile> {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let mut between = |low: f64, high: f64| rng.random_range(low..high);
+    // One after the other, so that no two are on top of each other.
+    let count = KNOCKS + SWINGS + RUNS;
+    let mut places: Vec<u32> = (0..count).collect();
+    for n in (1..places.len()).rev() {
+        places.swap(n, (between(0.0, 1.0) * (n + 1) as f64) as usize);
+    }
+    let slot_s = (59.0 - FROM_S - 1.0) / f64::from(count);
+    let at_s = |n: u32, within: f64| FROM_S + 1.0 + slot_s * (f64::from(places[n as usize]) + within);
+    let mut knocks = Vec::new();
+    for n in 0..KNOCKS {
+        knocks.push(table(&[
+            ("at_s", at_s(n, between(0.0, 0.5))),
+            ("peak_mv", 2.0 * (between(0.0, 40.0_f64.ln())).exp()),
+            ("ring_hz", between(200.0, 450.0)),
+            ("decay_ms", between(2.0, 8.0)),
+        ]));
+    }
+    let mut swings = Vec::new();
+    for n in KNOCKS..KNOCKS + SWINGS {
+        let mut swing = table(&[
+            ("at_s", at_s(n, 0.0)),
+            ("rate_hz", between(0.8, 1.5)),
+            ("peak_m_s2", between(1.0, 3.0)),
+        ]);
+        swing.insert("cycles".to_owned(), (between(1.0, 4.0) as i64).into());
+        swings.push(swing);
+    }
+    let mut runs = Vec::new();
+    for n in KNOCKS + SWINGS..count {
+        let mut run = table(&[("at_s", at_s(n, between(0.0, 0.5))), ("for_s", between(0.02, 0.1))]);
+        run.insert("kind".to_owned(), "close".into());
+        run.insert("duty_permille".to_owned(), (between(100.0, 300.0) as i64).into());
+        runs.push(run);
+    }
+    finger.edited_scene(
+        SCENE,
+        seed,
+        &[("command.grip.for_s", (2.0 + 16.7 * finger.force()) / 24.0)],
+        |scene| {
+            edited(scene, "knock", knocks);
+            edited(scene, "swing", swings);
+            let commands = scene.get_mut("command").and_then(toml::Value::as_array_mut);
+            if let Some(commands) = commands {
+                commands.truncate(2);
+                commands.extend(runs.into_iter().map(Into::into));
+            }
+        },
+    )
+}
+
+fn table(numbers: &[(&str, f64)]) -> toml::Table {
+    numbers.iter().map(|(key, value)| ((*key).to_owned(), (*value).into())).collect()
+}

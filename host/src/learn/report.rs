@@ -1,0 +1,228 @@
+//! What a fingertip's learning is worth, in figures: for programs the keys of issue 4, for people all of it.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use super::reflex::{JUDGES, Reflexed, Three};
+use super::trial::Trial;
+use super::{LESSONS, Outcome};
+
+/// Mean, standard deviation and least of a sample.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Spread {
+    /// Mean.
+    pub mean: f64,
+    /// Standard deviation of the sample.
+    pub sd: f64,
+    /// The least.
+    pub min: f64,
+}
+
+impl Spread {
+    /// Of these; zeros if there are none.
+    #[must_use]
+    pub fn of(values: &[f64]) -> Self {
+        let count = values.len() as f64;
+        if values.is_empty() {
+            return Self::default();
+        }
+        let mean = values.iter().sum::<f64>() / count;
+        let squares: f64 = values.iter().map(|value| (value - mean) * (value - mean)).sum();
+        let sd = if count > 1.0 { (squares / (count - 1.0)).sqrt() } else { 0.0 };
+        Self { mean, sd, min: values.iter().copied().fold(f64::INFINITY, f64::min) }
+    }
+}
+
+/// Held-out trials, scored.
+#[derive(Clone, Debug, Default)]
+pub struct Score {
+    /// How many.
+    pub trials: u64,
+    /// First said by the network, s after the lift began.
+    pub network_s: Vec<f64>,
+    /// First said by the camera, likewise.
+    pub vision_s: Vec<f64>,
+    /// When the first place let go, likewise.
+    pub micro_s: Vec<f64>,
+    /// When all of it slid, likewise.
+    pub macro_s: Vec<f64>,
+    /// How much earlier the network was.
+    pub lead_s: Vec<f64>,
+    /// Trials whose slip the network did not see.
+    pub missed: u64,
+    /// Slips, up or down, of which o2 said the wrong direction.
+    pub direction_wrong: u64,
+    /// Trials in which slip was said where nothing slipped.
+    pub false_alarms: u64,
+}
+
+impl Score {
+    /// Of these trials.
+    #[must_use]
+    pub fn of(trials: &[Trial]) -> Self {
+        let mut score = Self { trials: trials.len() as u64, ..Self::default() };
+        for trial in trials {
+            score.false_alarms += u64::from(trial.false_alarm());
+            let Some([up, down]) = trial.both_slips() else {
+                score.missed += 1;
+                continue;
+            };
+            score.micro_s.push(up.micro_onset_s - trial.lift_s);
+            score.macro_s.push(up.macro_onset_s - trial.lift_s);
+            score.direction_wrong +=
+                u64::from(trial.direction(&up) <= 0.0) + u64::from(trial.direction(&down) >= 0.0);
+            let vision_s = trial.vision_s();
+            score.vision_s.extend(vision_s.map(|t_s| t_s - trial.lift_s));
+            match trial.network_s() {
+                Some(network_s) => {
+                    score.network_s.push(network_s - trial.lift_s);
+                    score.lead_s.extend(vision_s.map(|vision_s| vision_s - network_s));
+                }
+                None => score.missed += 1,
+            }
+        }
+        score
+    }
+
+    /// Of the leads.
+    #[must_use]
+    pub fn lead(&self) -> Spread {
+        Spread::of(&self.lead_s)
+    }
+}
+
+/// For programs: the keys of issue 4, and no others.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Held-out trials.
+    pub trials: u64,
+    /// First said by the network, s after the lift began, mean.
+    pub network_first_s_mean: f64,
+    /// First said by the camera's codes, likewise.
+    pub vision_first_s_mean: f64,
+    /// How much earlier the network was, s.
+    pub lead_s: Spread,
+    /// Trials whose slip the network did not see.
+    pub missed: u64,
+    /// False alarms in an hour of holding.
+    pub false_per_hour: f64,
+    /// Slips, up or down, of which o2 said the wrong direction.
+    pub direction_wrong: u64,
+    /// The same learning on fingers made by chance.
+    pub fingertips: Fingertips,
+}
+
+/// Fingers made by chance.
+#[derive(Clone, Debug, Serialize)]
+pub struct Fingertips {
+    /// How many.
+    pub count: u64,
+    /// The mean lead of the worst of them, s. Null if one of them missed a slip or told a direction wrongly, or there are
+    /// none.
+    pub worst_lead_s: Option<f64>,
+}
+
+impl Report {
+    /// Of an outcome.
+    #[must_use]
+    pub fn of(outcome: &Outcome) -> Self {
+        let score = &outcome.score;
+        Self {
+            trials: score.trials,
+            network_first_s_mean: Spread::of(&score.network_s).mean,
+            vision_first_s_mean: Spread::of(&score.vision_s).mean,
+            lead_s: score.lead(),
+            missed: score.missed,
+            false_per_hour: outcome.false_per_hour(),
+            direction_wrong: score.direction_wrong,
+            fingertips: Fingertips {
+                count: outcome.others.len() as u64,
+                worst_lead_s: outcome.others_work().then(|| outcome.worst_lead_s()).flatten(),
+            },
+        }
+    }
+}
+
+impl Outcome {
+    /// False alarms in an hour of holding.
+    #[must_use]
+    pub fn false_per_hour(&self) -> f64 {
+        if self.holding.hours > 0.0 { f64::from(self.holding.false_alarms) / self.holding.hours } else { 0.0 }
+    }
+
+    /// Whether every finger made by chance saw every slip and its direction.
+    #[must_use]
+    pub fn others_work(&self) -> bool {
+        self.others.iter().all(|score| score.missed == 0 && score.direction_wrong == 0)
+    }
+
+    /// The mean lead of the worst finger made by chance, s.
+    #[must_use]
+    pub fn worst_lead_s(&self) -> Option<f64> {
+        self.others.iter().map(|score| score.lead().mean).min_by(f64::total_cmp)
+    }
+}
+
+/// A figure of each judge's runs, in the order of [`JUDGES`].
+#[must_use]
+pub fn of_judges(runs: &[Three], figure: impl Fn(&Reflexed) -> f64) -> [Spread; 3] {
+    [0, 1, 2].map(|judge| Spread::of(&runs.iter().map(|three| figure(&three[judge])).collect::<Vec<_>>()))
+}
+
+const _: () = assert!(JUDGES.len() == 3);
+
+/// For people.
+#[derive(Clone, Copy, Debug)]
+pub struct Text<'a>(pub &'a Outcome);
+
+impl fmt::Display for Text<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let outcome = self.0;
+        let (score, options) = (&outcome.score, &outcome.options);
+        let mut line = |what: &str, figure: String| writeln!(f, "  {what:<26}{figure}");
+        let seconds = |spread: Spread| format!("{:.3} s, sd {:.3}", spread.mean, spread.sd);
+        line("learned", format!("{LESSONS} trials, seed {}, {} board", options.seed, outcome.board))?;
+        if let Some(agrees) = outcome.agrees {
+            let says = if agrees { "says the same in every tick" } else { "DIFFERS" };
+            line("the host's logic", says.to_owned())?;
+        }
+        line("before", format!("largest output {} of 128", outcome.untaught))?;
+        line("held-out trials", format!("{}, {} missed", score.trials, score.missed))?;
+        line("first said by touch", seconds(Spread::of(&score.network_s)))?;
+        line("first said by vision", seconds(Spread::of(&score.vision_s)))?;
+        line("first place let go", seconds(Spread::of(&score.micro_s)))?;
+        line("all of it slid", seconds(Spread::of(&score.macro_s)))?;
+        let lead = score.lead();
+        line("touch is earlier by", format!("{}, worst {:.3}", seconds(lead), lead.min))?;
+        line("direction wrong", format!("{} of {} slips", score.direction_wrong, 2 * score.trials))?;
+        line("false in the trials", format!("{} of {}", score.false_alarms, score.trials))?;
+        line(
+            "false while holding",
+            format!("{} in {:.2} h", outcome.holding.false_alarms, outcome.holding.hours),
+        )?;
+        let three = |runs: &[Three], unit: &str, figure: fn(&Reflexed) -> f64| {
+            let [touch, vision, oracle] = of_judges(runs, figure);
+            format!(
+                "touch {:.3} {unit} (sd {:.3}), vision {:.3} (sd {:.3}), oracle {:.3} (sd {:.3})",
+                touch.mean, touch.sd, vision.mean, vision.sd, oracle.mean, oracle.sd
+            )
+        };
+        line("lift, secured after", three(&outcome.lifts, "s", |run| run.secured_s))?;
+        line("lift, slipped", three(&outcome.lifts, "mm", |run| run.distance_mm))?;
+        line("pour, slipped", three(&outcome.pours, "mm", |run| run.distance_mm))?;
+        let sum = |of: fn(&Score) -> u64| outcome.others.iter().map(of).sum::<u64>();
+        let trials = sum(|score| score.trials);
+        line(
+            "other fingers",
+            format!(
+                "{}: {} of {trials} trials missed, {} directions wrong, {} trials with a false alarm, worst mean lead {}",
+                outcome.others.len(),
+                sum(|score| score.missed),
+                sum(|score| score.direction_wrong),
+                sum(|score| score.false_alarms),
+                outcome.worst_lead_s().map_or("-".to_owned(), |s| format!("{s:.3} s")),
+            ),
+        )
+    }
+}

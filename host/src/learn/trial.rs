@@ -1,0 +1,132 @@
+//! One pick-up (Tada 2006, figure 5), and what is read off it.
+
+use std::ops::Range;
+
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+use tenax_hal_shim::channel::{FRAME_HZ, FRAMES_PER_SLOW_FRAME};
+use tenax_hal_shim::wire::Slow;
+use tenax_scene::truth::Slip;
+use tenax_scene::{Seeds, Truth, World};
+
+use super::finger::Finger;
+
+/// The scene of a trial.
+pub const SCENE: &str = "pick-up-trial";
+/// When its arm begins to lift, at the earliest, s. Chance adds up to six of the camera's images, so that no image has a
+/// favourite instant.
+const LIFT_S: f64 = 1.2;
+const LATER_S: f64 = 0.2;
+
+/// A trial before it is run.
+#[derive(Debug)]
+pub struct Setup {
+    /// Its world.
+    pub world: World,
+    /// When the arm begins to lift, s.
+    pub lift_s: f64,
+}
+
+impl Setup {
+    /// A trial of this finger. The seed decides all that differs from one trial to the next. A lesson is one in which the
+    /// camera teaches.
+    ///
+    /// # Errors
+    /// If the scene cannot be made.
+    pub fn new(finger: &Finger, seed: u64, lesson: bool) -> anyhow::Result<Self> {
+        let lift_s = LIFT_S + ChaCha8Rng::seed_from_u64(seed).random_range(0.0..LATER_S);
+        let scene = finger.edited_scene(SCENE, seed, &[("move.0.at_s", lift_s)], |scene| {
+            if let Some(camera) = scene.get_mut("camera").and_then(toml::Value::as_table_mut) {
+                camera.insert("teaches".to_owned(), lesson.into());
+            }
+        })?;
+        Ok(Self { world: World::seeded(&scene, Seeds { making: finger.making, noise: seed }), lift_s })
+    }
+}
+
+/// A trial that was run: what the fingertip said in every tick, and what was true.
+#[derive(Clone, Debug, Default)]
+pub struct Trial {
+    /// When the arm began to lift, s.
+    pub lift_s: f64,
+    /// What the network said in each tick, from the first.
+    pub outputs: Vec<[i8; 2]>,
+    /// Whether that meant slip.
+    pub slips: Vec<bool>,
+    /// What was true, and what the camera said.
+    pub truth: Truth,
+}
+
+impl Trial {
+    /// Takes what the nth slow frame of the trial tells. One that is missing says nothing.
+    pub fn hear(&mut self, n: usize, slow: &Slow) {
+        let ticks = usize::from(FRAMES_PER_SLOW_FRAME);
+        self.outputs.resize(n * ticks, [0; 2]);
+        self.slips.resize(n * ticks, false);
+        self.outputs.extend(slow.ticks.iter().map(|tick| tick.outputs));
+        self.slips.extend(slow.ticks.iter().map(|tick| tick.slips));
+    }
+
+    /// It is over; this was true.
+    pub fn end(&mut self, truth: Truth) {
+        self.truth = truth;
+    }
+
+    /// When a tick ran, s.
+    #[must_use]
+    pub fn time_s(tick: usize) -> f64 {
+        (tick as f64 + 1.0) / f64::from(FRAME_HZ)
+    }
+
+    /// The slips that were not meant: up, then down.
+    #[must_use]
+    pub fn both_slips(&self) -> Option<[Slip; 2]> {
+        let mut slips =
+            self.truth.slips.iter().filter(|slip| !slip.meant && slip.macro_onset_s > self.lift_s);
+        // A long slip is the one that is meant here; a slide of a fraction of a millimetre before or after is part of it.
+        let up = *slips.next()?;
+        let down = *slips.rfind(|slip| slip.macro_onset_s > up.macro_onset_s)?;
+        Some([up, down])
+    }
+
+    /// When the network first said slip, from the first place that let go until all of it stuck again, s.
+    #[must_use]
+    pub fn network_s(&self) -> Option<f64> {
+        let [up, _] = self.both_slips()?;
+        let mut ticks = self.ticks(up.micro_onset_s..up.end_s.unwrap_or(f64::INFINITY));
+        ticks.find(|&tick| self.slips[tick]).map(Self::time_s)
+    }
+
+    /// When the camera's first v1 = -1 after that came over the line, s.
+    #[must_use]
+    pub fn vision_s(&self) -> Option<f64> {
+        let seen = self.truth.camera.iter().find(|seen| seen.v1 < 0 && seen.t_s > self.lift_s)?;
+        Some(seen.arrives_s)
+    }
+
+    /// Ticks between two instants.
+    #[must_use]
+    pub fn ticks(&self, span_s: Range<f64>) -> Range<usize> {
+        let tick = |t_s: f64| ((t_s * f64::from(FRAME_HZ)) as usize).min(self.outputs.len());
+        tick(span_s.start)..tick(span_s.end)
+    }
+
+    /// What o2 said of the direction in a slip, the mean of it, -1 to 1.
+    #[must_use]
+    pub fn direction(&self, slip: &Slip) -> f64 {
+        let ticks = self.ticks(slip.macro_onset_s..slip.end_s.unwrap_or(f64::INFINITY));
+        let said = &self.outputs[ticks];
+        said.iter().map(|outputs| f64::from(outputs[1])).sum::<f64>() / (128.0 * said.len().max(1) as f64)
+    }
+
+    /// Whether slip was said before anything let go, or while the object was carried.
+    #[must_use]
+    pub fn false_alarm(&self) -> bool {
+        let Some([up, down]) = self.both_slips() else { return false };
+        // What the envelopes still have of the end of a slip is no new one.
+        let carried = up.end_s.unwrap_or(f64::INFINITY) + 0.1..down.micro_onset_s;
+        [0.0..up.micro_onset_s, carried]
+            .into_iter()
+            .any(|span_s| self.slips[self.ticks(span_s)].contains(&true))
+    }
+}

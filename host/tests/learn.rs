@@ -1,0 +1,69 @@
+//! A fingertip that teaches itself slip: the properties of `tenax learn` at small scale, on the host's logic.
+
+use tenax::learn::report::{Report, of_judges};
+use tenax::learn::{self, Options, Outcome};
+use tenax::session::Board;
+
+/// So few trials that a test may run them; the bars themselves are measured by `tenax check`.
+const FEW: Options = Options { seed: 11, trials: 4, minutes: 2, lifts: 3, fingertips: 1 };
+
+fn outcome() -> Outcome {
+    learn::run(&FEW, &Board::Host, &|_, _| ()).unwrap()
+}
+
+#[test]
+fn before_learning_it_says_nothing_and_afterwards_it_sees_micro_slip() {
+    let outcome = outcome();
+    assert_eq!(outcome.untaught, 0);
+    let score = &outcome.score;
+    assert_eq!((score.trials, score.missed, score.direction_wrong, score.false_alarms), (4, 0, 0, 0));
+    // After the first place has let go, and before all of it slides.
+    let onsets = score.micro_s.iter().zip(&score.macro_s);
+    for (said_s, (micro_s, macro_s)) in score.network_s.iter().zip(onsets) {
+        assert!(micro_s < said_s && said_s < macro_s, "{micro_s} {said_s} {macro_s}");
+    }
+    // Four leads of 0.18 s with a standard deviation of 0.09 s: three standard errors.
+    assert!(score.lead().mean > 0.04, "{:?}", score.lead_s);
+
+    assert_eq!(outcome.holding.false_alarms, 0);
+    assert!(outcome.holding.hours > 0.03);
+
+    let [touch_s, vision_s, oracle_s] =
+        of_judges(&outcome.lifts, |run| run.secured_s).map(|spread| spread.mean);
+    assert!(touch_s < oracle_s && oracle_s < vision_s, "secured after {touch_s} {oracle_s} {vision_s} s");
+    let [touch_mm, vision_mm, _] = of_judges(&outcome.pours, |run| run.distance_mm).map(|spread| spread.mean);
+    assert!(touch_mm <= vision_mm / 2.0, "{touch_mm} mm against {vision_mm} mm");
+
+    // Another finger, another object, the same learning.
+    assert!(outcome.others_work() && outcome.worst_lead_s() > Some(0.0), "{:?}", outcome.others);
+
+    let json = serde_json::to_value(Report::of(&outcome)).unwrap();
+    let keys = |value: &serde_json::Value| value.as_object().unwrap().keys().cloned().collect::<Vec<_>>();
+    assert_eq!(
+        keys(&json),
+        [
+            "trials",
+            "network_first_s_mean",
+            "vision_first_s_mean",
+            "lead_s",
+            "missed",
+            "false_per_hour",
+            "direction_wrong",
+            "fingertips"
+        ]
+    );
+    assert_eq!(keys(&json["lead_s"]), ["mean", "sd", "min"]);
+    assert_eq!(keys(&json["fingertips"]), ["count", "worst_lead_s"]);
+}
+
+#[test]
+fn the_same_seed_gives_the_same_learning() {
+    let few = Options { trials: 1, minutes: 0, lifts: 0, fingertips: 0, ..FEW };
+    let run = || learn::run(&few, &Board::Host, &|_, _| ()).unwrap();
+    let (one, other) = (run(), run());
+    assert_eq!(one.trials[0].outputs, other.trials[0].outputs);
+    assert!(
+        one.trials[0].outputs.iter().any(|outputs| outputs[0] == -128),
+        "a slip is said with all there is"
+    );
+}

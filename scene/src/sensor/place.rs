@@ -1,0 +1,95 @@
+//! Where in the contact a film lies, and so what of a patch's micro slip it hears.
+
+use crate::random::Noise;
+
+/// Half of what a film covers, in pressure over its peak (assumed: a film a third as wide as the contact).
+const HALF_WIDTH: f64 = 0.15;
+
+/// A place in the contact.
+///
+/// Places are told apart by the pressure there over its peak, w, as the brush's rings are: 0 at the edge of the contact, 1
+/// in its middle; what lies outside w is the part `w^2` of the area and carries `w^3` of the load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Place {
+    low: f64,
+    high: f64,
+    /// How much of what a film hears is of its own place; the skin spreads the rest evenly.
+    own: f64,
+}
+
+impl Place {
+    /// All of the contact.
+    pub(super) const EVERYWHERE: Self = Self { low: 0.0, high: 1.0, own: 0.0 };
+
+    /// Evenly over the area, at a depth of 0 (all that it hears is of its place) to 1 (half of it).
+    pub(super) fn random(making: &mut Noise) -> Self {
+        let middle = making.between(0.0, 1.0).sqrt();
+        let own = 1.0 - making.between(0.0, 1.0) / 2.0;
+        Self { low: (middle - HALF_WIDTH).max(0.0), high: (middle + HALF_WIDTH).min(1.0), own }
+    }
+
+    /// Of shear let go evenly over the load between two edges of what slides, how much more is heard here than on average:
+    /// the stress let go over the film. 1 where the edge did not move inwards: the places are not known then.
+    pub(super) fn hears_release(self, from: f64, to: f64) -> f64 {
+        let load = cube(to) - cube(from);
+        if load <= 0.0 {
+            return 1.0;
+        }
+        let here = cube(to.min(self.high)) - cube(from.max(self.low));
+        (1.0 - self.own) + self.own * here.max(0.0) / load / self.area()
+    }
+
+    /// The part of what is heard here that slides, while all outside of `edge` does.
+    pub(super) fn slides(self, edge: f64) -> f64 {
+        let here = (square(edge.min(self.high)) - square(self.low)).max(0.0) / self.area();
+        (1.0 - self.own) * square(edge) + self.own * here
+    }
+
+    fn area(self) -> f64 {
+        square(self.high) - square(self.low)
+    }
+}
+
+fn square(x: f64) -> f64 {
+    x * x
+}
+
+fn cube(x: f64) -> f64 {
+    x * x * x
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Source;
+
+    fn places() -> impl Iterator<Item = Place> {
+        let mut making = Noise::new(1, Source::FilmMaking);
+        (0..1_000).map(move |_| Place::random(&mut making))
+    }
+
+    #[test]
+    fn a_contact_that_lets_go_whole_is_heard_alike_on_average_and_slides_everywhere() {
+        let mean = places().map(|place| place.hears_release(0.0, 1.0)).sum::<f64>() / 1e3;
+        assert!((0.95..1.05).contains(&mean), "{mean}");
+        assert!(places().all(|place| (place.slides(1.0) - 1.0).abs() < 1e-12 && place.slides(0.0) == 0.0));
+    }
+
+    #[test]
+    fn what_is_heard_ring_by_ring_is_what_is_heard_at_once() {
+        for place in places().take(20) {
+            let rings = (0..24).map(|n| (f64::from(n) / 24.0, f64::from(n + 1) / 24.0));
+            let sum: f64 = rings.map(|(a, b)| place.hears_release(a, b) * (cube(b) - cube(a))).sum();
+            assert!((sum - place.hears_release(0.0, 1.0)).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn the_edge_is_heard_first_by_whoever_lies_there() {
+        let at = |low, high| Place { low, high, own: 0.8 };
+        let (edge, middle) = (at(0.0, 0.3), at(0.7, 1.0));
+        assert!(edge.hears_release(0.1, 0.2) > 5.0 && middle.hears_release(0.1, 0.2) < 0.3);
+        assert!(middle.hears_release(0.8, 0.9) > 1.5 && edge.hears_release(0.8, 0.9) < 0.3);
+        assert!(edge.slides(0.3) > 0.8 && middle.slides(0.3) < 0.1);
+    }
+}
