@@ -122,6 +122,8 @@ impl VibrationDetector {
             return;
         }
         let heard = film.process(sample);
+        // While a film is doubted nothing is heard of it, not even what it said before.
+        *own = 0;
         if trust == Trust::Full {
             *own = heard.envelope;
             self.loudest.envelope = self.loudest.envelope.max(heard.envelope);
