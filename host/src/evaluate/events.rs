@@ -103,7 +103,7 @@ mod tests {
             (2..=30, Some(0.0), 1),
         ] {
             let mut events = Events::default();
-            events.take(&steps(&[10..=20]), &verdicts(&[said.clone()]));
+            events.take(&steps(&[10..=20]), &verdicts(std::slice::from_ref(&said)));
             assert_eq!((events.latency_ms(0.5), events.false_alarms), (caught_ms, false_alarms), "{said:?}");
             assert_eq!(events.count, 1);
         }

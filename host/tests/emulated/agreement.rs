@@ -66,7 +66,10 @@ fn a_tick_costs_less_than_a_fifth_of_the_core() {
     // 0.5 ms at 100 MHz are 50 000 cycles; three cycles an instruction at worst.
     assert!(cost.count > 3_900 && cost.instructions_mean > 100.0, "{cost:?}");
     assert!(3.0 * cost.instructions_mean < 10_000.0, "{cost:?}");
-    assert!(3 * cost.instructions_max < 50_000, "the dearest tick ends in its own half millisecond: {cost:?}");
+    assert!(
+        3 * cost.instructions_max < 50_000,
+        "the dearest tick ends in its own half millisecond: {cost:?}"
+    );
     let stack = run.stack_bytes.expect("the stack was painted");
     assert!((256..32 * 1024).contains(&stack), "{stack} bytes");
 }
