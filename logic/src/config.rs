@@ -120,7 +120,7 @@ impl Default for Config {
             },
             friction: FrictionConfig { s2_permille: 300, s2_of_mu_s_permille: 800, loaded_mn: 600 },
             touch: TouchConfig {
-                slip_permille: 20,
+                slip_permille: 30,
                 slip_frames: frames(5),
                 everywhere_frames: frames(40),
                 loud_frames: frames(100),
