@@ -24,8 +24,11 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         "--ignore-rust-version",
         "--package",
         "tenax",
+        // It learns, which without optimisation takes minutes.
+        "--package",
+        "tenax-train",
         "--features",
-        "emulator",
+        "tenax/emulator",
     ]);
     emulated.args(&args.extra);
     // Before the tests, so that its messages are seen and what is to be installed is said once.
