@@ -89,8 +89,12 @@ impl Senses {
             let change = self.elements.take(place, frame.switch_b);
             report(journal, ARRAY + place, change);
         }
+        // Two ticks share the array's work: in one, it would end when the next frame has begun.
         if place == ARRAY_COUNT {
-            self.array.push(self.elements.reading());
+            self.array.feel(self.elements.reading());
+        }
+        if place == ARRAY_COUNT + 1 {
+            self.array.decide();
         }
         if let Some(quadrant) = select.checked_sub(FSR_SELECT).map(usize::from) {
             self.quadrant(config, quadrant, frame.switch_a, journal);

@@ -62,6 +62,8 @@ pub struct ArrayDetector<
     contradicted: u8,
     /// Slow frames since the last one that was judged.
     unjudged: u16,
+    /// Whether there are features that were not judged yet.
+    felt: bool,
     logit: Option<i32>,
     verdict: ArrayVerdict,
 }
@@ -78,6 +80,7 @@ impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const
             look_back: LookBack::default(),
             contradicted: 0,
             unjudged: u16::MAX,
+            felt: false,
             logit: None,
             verdict: ArrayVerdict::NONE,
         }
@@ -88,7 +91,18 @@ impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const
     /// Without features (windows not full, too many elements dead) it stands down: no slip, confidence 0, and an age that
     /// grows until there is something to judge by again.
     pub fn push(&mut self, reading: &Reading) -> ArrayVerdict {
-        self.logit = self.evidence(reading);
+        self.feel(reading);
+        self.decide()
+    }
+
+    /// The first half of [`push`](Self::push): features. A tick that did both would last into the next frame's first scan.
+    pub fn feel(&mut self, reading: &Reading) {
+        self.felt = self.preprocessor.push(reading).is_some();
+    }
+
+    /// The second half: network and verdict on what was felt. Once for each [`feel`](Self::feel).
+    pub fn decide(&mut self) -> ArrayVerdict {
+        self.logit = self.evidence();
         match self.logit {
             Some(logit) => self.judge(logit),
             None => self.stand_down(),
@@ -96,13 +110,13 @@ impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const
         self.verdict
     }
 
-    fn evidence(&mut self, reading: &Reading) -> Option<i32> {
-        let network = &self.model.network;
-        let Some(features) = self.preprocessor.push(reading) else {
+    fn evidence(&mut self) -> Option<i32> {
+        if !core::mem::take(&mut self.felt) {
             self.look_back.clear();
             return None;
-        };
-        Some(network.judge(self.look_back.push(network.see(features))?))
+        }
+        let network = &self.model.network;
+        Some(network.judge(self.look_back.push(network.see(self.preprocessor.features()))?))
     }
 
     /// The network's logit of the last slow frame. None if there was nothing to judge by.
