@@ -52,10 +52,10 @@ impl<'a> Timeline<'a> {
         rising(self.ticks().map(|(t, tick)| (t, tick.slips)))
     }
 
-    /// When the array said slip: the rising edges, s. It does so in the second tick after its last element was read.
+    /// When the array said slip: the rising edges, s. It does so in the third tick after its last element was read.
     #[must_use]
     pub fn array(self) -> Vec<f64> {
-        let ticks_before_end = u32::from(FRAMES_PER_SLOW_FRAME) - 2 - ARRAY_COUNT as u32;
+        let ticks_before_end = u32::from(FRAMES_PER_SLOW_FRAME) - 3 - ARRAY_COUNT as u32;
         let decided = |slow: &Slow| self.time_s(slow.frame.saturating_sub(ticks_before_end));
         rising(self.slows.iter().map(|slow| (decided(slow), slow.array.slip)))
     }

@@ -89,11 +89,14 @@ impl Senses {
             let change = self.elements.take(place, frame.switch_b);
             report(journal, ARRAY + place, change);
         }
-        // Two ticks share the array's work: in one, it would end when the next frame has begun.
+        // Three ticks share the array's work: in one or two, it would end when the next frame has begun.
         if place == ARRAY_COUNT {
             self.array.feel(self.elements.reading());
         }
         if place == ARRAY_COUNT + 1 {
+            self.array.see();
+        }
+        if place == ARRAY_COUNT + 2 {
             self.array.decide();
         }
         if let Some(quadrant) = select.checked_sub(FSR_SELECT).map(usize::from) {

@@ -47,9 +47,9 @@ fn the_simulated_board_keeps_the_images_time() {
 /// At two cycles an instruction, the slow end of the bracket, no code is lost; only ticks that end a slow frame may run
 /// into the next frame.
 #[test]
-fn half_as_fast_a_core_is_fast_enough() {
+fn three_quarters_as_fast_a_core_is_fast_enough() {
     let options = Options {
-        instructions_per_second: NonZeroU64::new(50_000_000).expect("not zero"),
+        instructions_per_second: NonZeroU64::new(75_000_000).expect("not zero"),
         ..Options::default()
     };
     let run = run(Swing::new(2.0), &options);

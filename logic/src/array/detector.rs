@@ -64,6 +64,8 @@ pub struct ArrayDetector<
     unjudged: u16,
     /// Whether there are features that were not judged yet.
     felt: bool,
+    /// What the first layer makes of them.
+    seen: [i16; H1],
     logit: Option<i32>,
     verdict: ArrayVerdict,
 }
@@ -81,6 +83,7 @@ impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const
             contradicted: 0,
             unjudged: u16::MAX,
             felt: false,
+            seen: [0; H1],
             logit: None,
             verdict: ArrayVerdict::NONE,
         }
@@ -92,15 +95,24 @@ impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const
     /// grows until there is something to judge by again.
     pub fn push(&mut self, reading: &Reading) -> ArrayVerdict {
         self.feel(reading);
+        self.see();
         self.decide()
     }
 
-    /// The first half of [`push`](Self::push): features. A tick that did both would last into the next frame's first scan.
+    /// The first third of [`push`](Self::push): features. A tick that did all would last into the next frame's first scan.
     pub fn feel(&mut self, reading: &Reading) {
         self.felt = self.preprocessor.push(reading).is_some();
     }
 
-    /// The second half: network and verdict on what was felt. Once for each [`feel`](Self::feel).
+    /// The second third: half of the first layer.
+    pub fn see(&mut self) {
+        if self.felt {
+            self.model.network.see_some(self.preprocessor.features(), 0..H1 / 2, &mut self.seen);
+        }
+    }
+
+    /// The last third: the other half, the rest of the network, and the verdict on what was felt. Once for each
+    /// [`feel`](Self::feel).
     pub fn decide(&mut self) -> ArrayVerdict {
         self.logit = self.evidence();
         match self.logit {
@@ -116,7 +128,8 @@ impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const
             return None;
         }
         let network = &self.model.network;
-        Some(network.judge(self.look_back.push(network.see(self.preprocessor.features()))?))
+        network.see_some(self.preprocessor.features(), H1 / 2..H1, &mut self.seen);
+        Some(network.judge(self.look_back.push(self.seen)?))
     }
 
     /// The network's logit of the last slow frame. None if there was nothing to judge by.

@@ -17,6 +17,8 @@
 //!
 //! A shift rounds down: who wants it to round to nearest adds half a step to the bias.
 
+use core::ops::Range;
+
 use super::dual::{self, Aligned, ROWS};
 
 /// What a hidden unit saturates at.
@@ -95,8 +97,33 @@ impl<const I: usize, const O: usize> Layer<I, O> {
         self.activations_of(self.sums(inputs))
     }
 
+    /// The activations of some outputs, where they belong in `activations`: for who has not the time for all at once.
+    /// Outputs that are not there are left out. Not inlined: its products are written out one by one, once is enough.
+    #[inline(never)]
+    pub fn activate(&self, inputs: &[i16; I], outputs: Range<usize>, activations: &mut [i16; O]) {
+        let Aligned(inputs) = &Aligned(*inputs);
+        let (Some(weights), Some(bias), Some(activations)) =
+            (self.weights.get(outputs.clone()), self.bias.get(outputs.clone()), activations.get_mut(outputs))
+        else {
+            return;
+        };
+        let (blocks, rest) = weights.as_chunks::<ROWS>();
+        let (biases, rest_biases) = bias.as_chunks::<ROWS>();
+        let (slots, rest_slots) = activations.as_chunks_mut::<ROWS>();
+        for ((slots, rows), bias) in slots.iter_mut().zip(blocks).zip(biases) {
+            *slots = dual::dot_rows(rows, inputs, *bias).map(|sum| self.activation(sum));
+        }
+        for ((slot, row), &bias) in rest_slots.iter_mut().zip(rest).zip(rest_biases) {
+            *slot = self.activation(dual::portable::dot(row, inputs, bias));
+        }
+    }
+
     fn activations_of(&self, sums: [i32; O]) -> [i16; O] {
-        sums.map(|sum| (sum >> self.shift).clamp(0, i32::from(ACTIVATION_MAX)) as i16)
+        sums.map(|sum| self.activation(sum))
+    }
+
+    fn activation(&self, sum: i32) -> i16 {
+        (sum >> self.shift).clamp(0, i32::from(ACTIVATION_MAX)) as i16
     }
 }
 
@@ -145,7 +172,14 @@ impl<const I: usize, const H1: usize, const L: usize, const H2: usize> Mlp<I, H1
     /// What is seen in one frame's features: to be queued.
     #[must_use]
     pub fn see(&self, features: &[i16; I]) -> [i16; H1] {
-        self.first.activations(features)
+        let mut seen = [0; H1];
+        self.see_some(features, 0..H1, &mut seen);
+        seen
+    }
+
+    /// The same, of some units only.
+    pub fn see_some(&self, features: &[i16; I], units: Range<usize>, seen: &mut [i16; H1]) {
+        self.first.activate(features, units, seen);
     }
 
     /// The logit of what was seen in the last `L` frames.
