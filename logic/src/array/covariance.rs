@@ -50,17 +50,19 @@ impl<const N: usize> SlidingCovariance<N> {
         }
     }
 
-    /// Takes an element out of the window, as if it had never changed: what it said last is not to be believed.
-    pub fn forget(&mut self, element: usize) {
+    /// Takes elements out of the window, as if they had never changed: what they said last is not to be believed. All in
+    /// one pass: ten that go at once must not cost ten.
+    pub fn forget(&mut self, gone: &[bool; ELEMENTS]) {
         for column in &mut self.window {
-            if let Some(difference) = column.get_mut(element) {
-                *difference = 0;
+            for (difference, &gone) in column.iter_mut().zip(gone) {
+                *difference = if gone { 0 } else { *difference };
             }
         }
-        let pairs = (0..ELEMENTS).flat_map(|row| (row..ELEMENTS).map(move |other| (row, other)));
-        for (entry, (row, other)) in self.entries.iter_mut().zip(pairs) {
-            if row == element || other == element {
-                *entry = 0;
+        let mut entries = self.entries.iter_mut();
+        for row in 0..ELEMENTS {
+            for other in row..ELEMENTS {
+                let Some(entry) = entries.next() else { return };
+                *entry = if gone[row] || gone[other] { 0 } else { *entry };
             }
         }
     }

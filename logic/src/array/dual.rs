@@ -3,10 +3,7 @@
 //! Stable Rust has no name for these instructions, so this is the one place of the crate with `unsafe` in it: assembly that
 //! touches nothing but its operands and the arrays that it is given. Each function has a twin in plain Rust, which every
 //! other machine runs; both wrap alike, and the tests on the emulated board hold one against the other.
-#![allow(
-    unsafe_code,
-    reason = "SMLAD and SMLSD, which stable Rust has no name for; three times fewer instructions"
-)]
+#![allow(unsafe_code, reason = "SMLAD and SMLSD have no name in stable Rust, and cost a third")]
 
 /// Rows that are multiplied in one go: there are registers for as many.
 pub const ROWS: usize = 4;

@@ -113,14 +113,13 @@ impl<const N: usize, const M: usize> Preprocessor<N, M> {
     fn take(&mut self, reading: &Reading) -> usize {
         let mut differences = [0; ELEMENTS];
         let (mut dead, mut missed) = (0, 0);
+        let mut gone = [false; ELEMENTS];
         let Some(past) = self.past.get_mut(self.oldest) else { return ELEMENTS };
         self.oldest = if self.oldest + 1 < self.lag { self.oldest + 1 } else { 0 };
-        let elements = self.last.iter_mut().zip(past).zip(reading).zip(&mut differences);
-        for (element, ((((last, alive), past), reading), difference)) in elements.enumerate() {
+        let elements = self.last.iter_mut().zip(past).zip(reading).zip(&mut differences).zip(&mut gone);
+        for (((((last, alive), past), reading), difference), gone) in elements {
             let Some(now) = *reading else {
-                if *alive > 0 {
-                    self.covariance.forget(element);
-                }
+                *gone = *alive > 0;
                 *alive = 0;
                 dead += 1;
                 continue;
@@ -136,6 +135,9 @@ impl<const N: usize, const M: usize> Preprocessor<N, M> {
                 *difference = i32::from(now) - i32::from(*past);
             }
             (*last, *past) = (now, now);
+        }
+        if gone.contains(&true) {
+            self.covariance.forget(&gone);
         }
         if missed != 0 {
             self.spectrum.shift(missed);
