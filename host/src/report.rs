@@ -82,7 +82,7 @@ impl Ticks {
         let cost = run.tick_cost;
         Self {
             count: run.counters.ticks,
-            dropped: run.counters.frames_lost,
+            dropped: run.counters.frames_lost + run.counters.ticks_late,
             instructions_mean: cost.map(|cost| cost.instructions_mean),
             instructions_max: cost.map(|cost| cost.instructions_max),
             load_percent: cost.map(|cost| load_percent(cost.instructions_mean * f64::from(FRAME_HZ))),

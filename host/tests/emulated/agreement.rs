@@ -12,9 +12,7 @@ fn ten_seconds_without_a_lost_code() {
     let run = run(Swing::new(10.0), &Options::default());
     assert_eq!(run.starts, [None]);
     let counters = run.counters;
-    assert_eq!((counters.overruns, counters.frames_lost), (0, 0));
-    // One tick in a slow frame ends after the next scan has begun; which one is still to be found.
-    assert!(counters.ticks_late <= 800, "{counters:?}");
+    assert_eq!((counters.overruns, counters.frames_lost, counters.ticks_late), (0, 0, 0));
     assert_eq!((counters.telemetry_dropped, counters.bad_frames), (0, 0));
     assert_eq!((run.bad_frames, run.messages_missed), (0, 0));
     assert_eq!(counters.ticks, counters.frames);
@@ -41,9 +39,7 @@ fn the_simulated_board_keeps_the_images_time() {
     let image = run(Swing::new(1.0), &Options::default());
     let (host, _) = simulated::run(Swing::new(1.0), &mut |_| {});
     assert!(host.scans == image.scans);
-    // A tick that ends late drives one scan later.
-    let same = |n: usize| image.drives[n] == host.drives[n] || n > 0 && image.drives[n] == host.drives[n - 1];
-    assert!(host.drives.len() == image.drives.len() && (0..host.drives.len()).all(same));
+    assert_eq!(host.drives, image.drives);
     assert_eq!(host.slows, image.slows);
     assert_eq!(host.events, image.events);
 }

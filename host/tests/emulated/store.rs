@@ -127,8 +127,7 @@ fn sampling_loses_nothing_while_the_network_is_saved() {
     assert_eq!(kept(&slow_flash), [Kept::Network]);
     assert_eq!(slow_flash.flash.words, 3 + 78, "the sector's opening and a record");
     let counters = slow_flash.counters;
-    assert_eq!((counters.overruns, counters.frames_lost), (0, 0), "{counters:?}");
-    assert!(counters.ticks_late <= 80, "no more than without saving, one in a slow frame: {counters:?}");
+    assert_eq!((counters.overruns, counters.frames_lost, counters.ticks_late), (0, 0, 0), "{counters:?}");
     assert_eq!((counters.telemetry_dropped, slow_flash.messages_missed), (0, 0));
     assert!(replay_scans(&slow_flash.scans, &[]) == slow_flash.slows);
     // The control: the core does stand still meanwhile. A flash twenty times as slow as any costs frames.
