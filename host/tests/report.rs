@@ -15,6 +15,8 @@ const KEYS: &str = "
     wearer.reflex_while_active wearer.open_latency_ms wearer.active_first_s wearer.active_permille wearer.reflex_ticks
     detectors.s1.first_s detectors.s1.detections detectors.s1.false_alarms
     detectors.s2.first_s detectors.s2.detections detectors.s2.false_alarms
+    detectors.network.first_s detectors.network.detections detectors.network.false_alarms
+    detectors.array.first_s detectors.array.detections detectors.array.false_alarms
     detectors.wearer.first_s detectors.wearer.detections detectors.wearer.false_alarms
     faults line.bytes line.messages_missed line.telemetry_dropped line.bad_frames replay
 ";
