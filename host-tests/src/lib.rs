@@ -6,7 +6,8 @@ pub mod teaching;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use tenax_hal_shim::channel::{
-    CHANNELS, COUNT, FSR, MYO_EXTENSOR, MYO_FLEXOR, PVDF, PVDF_COUNT, SAMPLE_MAX, sample_from_mv,
+    ARRAY, ARRAY_COUNT, CHANNELS, COUNT, FRAMES_PER_SLOW_FRAME, FSR, MYO_EXTENSOR, MYO_FLEXOR, PVDF,
+    PVDF_COUNT, SAMPLE_MAX, sample_from_mv,
 };
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::front_end::{MYO_REST_MV, fsr_mv, fsr_quadrants_n};
@@ -28,6 +29,9 @@ pub struct Bench {
     pub slows: Vec<Slow>,
     /// Amplitude of a 60 Hz vibration on all films, mV.
     pub vibration_mv: f64,
+    /// Load that goes from element to element of the array in a slow frame while the whole stays the same, mV at most:
+    /// an object that slides.
+    pub sliding_mv: f64,
     /// Frames given so far.
     pub frames: u32,
     noise: ChaCha8Rng,
@@ -43,6 +47,7 @@ impl Bench {
             events: Vec::new(),
             slows: Vec::new(),
             vibration_mv: 0.0,
+            sliding_mv: 0.0,
             frames: 0,
             noise: ChaCha8Rng::seed_from_u64(seed),
         }
@@ -66,6 +71,11 @@ impl Bench {
         }
     }
 
+    /// Presses every element of the array alike, mV above rest.
+    pub fn press(&mut self, mv: f64) {
+        self.pins_mv[ARRAY..ARRAY + ARRAY_COUNT].fill(f64::from(CHANNELS[ARRAY].rest_mv) + mv);
+    }
+
     /// Sets both muscles, mV above rest.
     pub fn muscles(&mut self, flexor_mv: f64, extensor_mv: f64) {
         self.pins_mv[MYO_FLEXOR] = f64::from(MYO_REST_MV) + flexor_mv;
@@ -78,6 +88,9 @@ impl Bench {
         self.frames += 1;
         let phase = f64::from(sequence) * 60.0 / 2_000.0 * std::f64::consts::TAU;
         let shake_mv = self.vibration_mv * phase.sin();
+        if self.sliding_mv > 0.0 && sequence.is_multiple_of(u32::from(FRAMES_PER_SLOW_FRAME)) {
+            self.slide();
+        }
         let mut samples = [0; COUNT];
         for (n, sample) in samples.iter_mut().enumerate() {
             let shake_mv = if (PVDF..PVDF + PVDF_COUNT).contains(&n) { shake_mv } else { 0.0 };
@@ -91,6 +104,18 @@ impl Bench {
         frame.switch_a = wired[tenax_hal_shim::channel::RANK_SWITCH_A];
         frame.switch_b = wired[tenax_hal_shim::channel::RANK_SWITCH_B];
         frame
+    }
+
+    /// Each element gives some load to another one.
+    fn slide(&mut self) {
+        for giver in ARRAY..ARRAY + ARRAY_COUNT {
+            let taker = self.noise.random_range(ARRAY..ARRAY + ARRAY_COUNT);
+            let mv = self.noise.random_range(0.0..=self.sliding_mv);
+            let [from, to] = [self.pins_mv[giver] - mv, self.pins_mv[taker] + mv];
+            if giver != taker && from > 300.0 && to < 3_000.0 {
+                (self.pins_mv[giver], self.pins_mv[taker]) = (from, to);
+            }
+        }
     }
 
     /// Gives one frame to the fingertip.
