@@ -171,6 +171,93 @@ fn the_same_vibration_fires_without_a_muscle_and_is_silent_with_one() {
     }
 }
 
+/// Holds something that slides, as the array alone feels it.
+fn sliding(seed: u64) -> Bench {
+    let mut bench = Bench::holding(seed);
+    bench.press(700.0);
+    bench.run(2_000);
+    bench.sliding_mv = 60.0;
+    bench.run(2_000);
+    bench.slows.clear();
+    bench
+}
+
+fn by_reflex(bench: &Bench) -> usize {
+    let ticks = bench.slows.iter().flat_map(|slow| &slow.ticks);
+    ticks.filter(|tick| tick.source == DriveSource::Reflex).count()
+}
+
+#[test]
+fn the_array_closes_a_hand_at_rest_and_not_one_that_its_wearer_moves() {
+    let mut bench = sliding(11);
+    bench.run(2_000);
+    assert!(by_reflex(&bench) > 100);
+    bench.muscles(400.0, 50.0);
+    bench.run(50);
+    bench.slows.clear();
+    bench.run(4_000);
+    assert!(bench.slows.iter().any(|slow| slow.array.slip), "it says so all the same");
+    assert_eq!(by_reflex(&bench), 0);
+}
+
+#[test]
+fn what_the_array_said_does_not_outlive_the_frames_that_would_renew_it() {
+    // In the first ticks after the last element is read it is judged. An object that slid, and then rests.
+    for lost in [10..11, 11..12, 12..13, 10..13, 0..20] {
+        let mut bench = sliding(12);
+        bench.sliding_mv = 0.0;
+        let lost: Vec<u8> = lost.collect();
+        run_losing(&mut bench, &lost, 2_000);
+        bench.slows.clear();
+        run_losing(&mut bench, &lost, 2_000);
+        assert_eq!(by_reflex(&bench), 0, "places {lost:?} are lost in every slow frame");
+    }
+}
+
+/// Gives many frames, of which those at these places of the slow frame are lost; how the motor was driven in each.
+fn run_losing(bench: &mut Bench, places: &[u8], frames: u32) -> Vec<MotorDrive> {
+    let give = |_| {
+        let frame = bench.frame();
+        let gone = places.contains(&frame.place());
+        bench.give(&if gone { Frame::lost(frame.sequence) } else { frame })
+    };
+    (0..frames).map(give).collect()
+}
+
+#[test]
+fn a_muscle_whose_frames_are_lost_asks_for_nothing_and_is_not_known_to_rest() {
+    const EXTENSOR: [u8; 3] = [11, 17, 23];
+    let mut bench = Bench::holding(13);
+    bench.muscles(50.0, 800.0);
+    assert!(bench.run(OPEN_WITHIN_FRAMES).last().unwrap().opens());
+    bench.muscles(50.0, 50.0);
+    run_losing(&mut bench, &EXTENSOR, OPEN_WITHIN_FRAMES);
+    assert!(run_losing(&mut bench, &EXTENSOR, 1_000).iter().all(|drive| *drive == MotorDrive::Coast));
+
+    let mut bench = Bench::holding(14);
+    bench.vibration_mv = 800.0;
+    run_losing(&mut bench, &EXTENSOR, OPEN_WITHIN_FRAMES);
+    assert!(run_losing(&mut bench, &EXTENSOR, 1_000).iter().all(|drive| *drive == MotorDrive::Coast));
+    // One of three readings is lost: it is still known.
+    let mut bench = Bench::holding(14);
+    bench.vibration_mv = 800.0;
+    assert!(run_losing(&mut bench, &EXTENSOR[..1], 1_000).iter().any(|drive| drive.closes()));
+}
+
+#[test]
+fn a_force_whose_frames_are_lost_is_not_the_force_of_now() {
+    for lost in [&[15][..], &[12, 13, 14, 15], &[13]] {
+        let mut bench = Bench::holding(15);
+        bench.load(4.0, 2.0);
+        assert!(bench.run(100).iter().any(|drive| drive.closes()), "it begins to slip");
+        bench.load(4.0, 0.4);
+        run_losing(&mut bench, lost, 400);
+        let drives = run_losing(&mut bench, lost, 4_000);
+        assert!(drives.iter().all(|drive| *drive == MotorDrive::Coast), "places {lost:?} are lost");
+        assert_eq!(bench.slows.last().unwrap().forces, None);
+    }
+}
+
 #[test]
 fn only_slip_moves_a_hand_that_nobody_commands() {
     let mut bench = Bench::holding(2);

@@ -27,9 +27,11 @@ impl Elements {
         change
     }
 
-    /// Frames were lost: what was read is too old.
-    pub fn lose(&mut self) {
-        self.reading = Reading::default();
+    /// The frame that shows this element was lost: what was read before is no reading of now.
+    pub fn lose(&mut self, element: usize) {
+        if let Some(slot) = self.reading.get_mut(element) {
+            *slot = None;
+        }
     }
 
     /// The last reading of every element.
@@ -61,8 +63,17 @@ mod tests {
         let lost_after = (0..400).position(|_| elements.take(0, 3_000).is_some());
         assert_eq!(lost_after, Some(160));
         assert_eq!(elements.reading()[0], None);
-        elements.take(0, 3_001);
-        elements.lose();
-        assert_eq!(elements.reading(), &Reading::default());
+    }
+
+    #[test]
+    fn an_element_whose_frame_was_lost_has_no_reading_until_the_next() {
+        let mut elements = Elements::default();
+        (0..ARRAY_COUNT).for_each(|element| _ = elements.take(element, 2_000));
+        elements.lose(3);
+        elements.lose(ARRAY_COUNT);
+        let expected: Reading = core::array::from_fn(|element| (element != 3).then_some(2_000));
+        assert_eq!(elements.reading(), &expected);
+        elements.take(3, 2_001);
+        assert_eq!(elements.reading()[3], Some(2_001));
     }
 }

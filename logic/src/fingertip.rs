@@ -233,7 +233,7 @@ impl Fingertip {
             self.senses.take(&self.config, frame, &mut self.journal);
             self.feel(frame);
         } else {
-            self.senses.lose(&self.config, &mut self.journal);
+            self.senses.lose(&self.config, frame, &mut self.journal);
             self.touch.lose();
         }
         if self.senses.forces.is_none() {

@@ -69,6 +69,11 @@ pub struct Gate {
 }
 
 impl Gate {
+    /// The muscle of this select, counted from the flexor's: 0 the flexor, others the extensor.
+    pub(crate) const fn muscle_mut(&mut self, muscle: usize) -> &mut Muscle {
+        if muscle == 0 { &mut self.flexor } else { &mut self.extensor }
+    }
+
     /// Goes on by one frame.
     pub fn tick(&mut self, config: &GateConfig) {
         if self.flexor.active || self.extensor.active {

@@ -25,6 +25,11 @@ use crate::vibration::{Trust, Vibration, VibrationDetector};
 const WARM_UP_FRAMES: u32 = frames(200);
 /// Frames lost in a row after which the last readings of the switched sensors are no longer believed: one slow frame.
 const STALE_FRAMES: u32 = tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME as u32;
+/// Readings in a row that a quadrant may miss, its frames lost, before its last one is no reading of now. A tick that is
+/// always late loses the same places of every slow frame, and never enough in a row to be [`STALE_FRAMES`].
+const QUADRANT_MISSES: u8 = 2;
+/// The same for a muscle: all of one slow frame.
+const MUSCLE_MISSES: u8 = 3;
 /// Readings of each myosensor a second: three places in every slow frame.
 const MYO_HZ: u32 = 3 * SLOW_HZ;
 /// Equal readings of an active muscle in a row that no muscle gives: 50 ms. At rest, the general limit holds.
@@ -46,6 +51,8 @@ pub struct Senses {
     fsr: [SensorHealth; FSR_COUNT],
     myo: [SensorHealth; 2],
     fsr_readings: [Option<u16>; FSR_COUNT],
+    fsr_missed: [u8; FSR_COUNT],
+    myo_missed: [u8; 2],
     fsr_seen: bool,
     pressed: bool,
     force_sensor: ForceSensor,
@@ -89,16 +96,7 @@ impl Senses {
             let change = self.elements.take(place, frame.switch_b);
             report(journal, ARRAY + place, change);
         }
-        // Three ticks share the array's work: in one or two, it would end when the next frame has begun.
-        if place == ARRAY_COUNT {
-            self.array.feel(self.elements.reading());
-        }
-        if place == ARRAY_COUNT + 1 {
-            self.array.see();
-        }
-        if place == ARRAY_COUNT + 2 {
-            self.array.decide();
-        }
+        self.judge_array(place);
         if let Some(quadrant) = select.checked_sub(FSR_SELECT).map(usize::from) {
             self.quadrant(config, quadrant, frame.switch_a, journal);
         }
@@ -111,19 +109,21 @@ impl Senses {
         }
     }
 
-    /// A frame was lost: the films say nothing, and after a while the rest is too old to be believed.
-    pub fn lose(&mut self, config: &Config, journal: &mut Journal) {
+    /// This frame was lost: the films say nothing, the element that it shows has no reading, and what else is behind the
+    /// switches is soon too old to be believed.
+    pub fn lose(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
         self.frames_lost = self.frames_lost.saturating_add(1);
         self.vibration = Vibration::default();
         self.forces_are_new = false;
+        let place = usize::from(frame.place());
+        self.elements.lose(place);
+        self.judge_array(place);
+        self.miss(config, frame.select());
         if self.frames_lost == STALE_FRAMES {
             journal.fault(Fault::FramesLost { count: self.frames_lost });
             self.forces = None;
             self.fsr_readings = [None; FSR_COUNT];
-            self.elements.lose();
             self.films_usable = false;
-            self.gate.flexor.take(&config.gate, None);
-            self.gate.extensor.take(&config.gate, None);
         }
         self.gate.tick(&config.gate);
         self.capabilities(journal);
@@ -218,7 +218,36 @@ impl Senses {
         self.vibration = self.detector.judge(&config.vibration);
     }
 
+    /// The array's work, shared by three ticks: in one or two, it would end when the next frame has begun. Lost frames do
+    /// their share, since it needs none of their samples: or an old verdict would stand for as long as they are lost.
+    fn judge_array(&mut self, place: usize) {
+        match place.checked_sub(ARRAY_COUNT) {
+            Some(0) => self.array.feel(self.elements.reading()),
+            Some(1) => self.array.see(),
+            Some(2) => _ = self.array.decide(),
+            _ => {}
+        }
+    }
+
+    /// The frame that shows what is at `select` was lost.
+    fn miss(&mut self, config: &Config, select: u8) {
+        if let Some(quadrant) = select.checked_sub(FSR_SELECT).map(usize::from) {
+            self.fsr_missed[quadrant] = self.fsr_missed[quadrant].saturating_add(1);
+            if self.fsr_missed[quadrant] >= QUADRANT_MISSES {
+                self.fsr_readings[quadrant] = None;
+                self.forces = None;
+            }
+        }
+        if let Some(muscle @ 0..=1) = select.checked_sub(MYO_SELECT).map(usize::from) {
+            self.myo_missed[muscle] = self.myo_missed[muscle].saturating_add(1);
+            if self.myo_missed[muscle] >= MUSCLE_MISSES {
+                self.gate.muscle_mut(muscle).take(&config.gate, None);
+            }
+        }
+    }
+
     fn quadrant(&mut self, config: &Config, quadrant: usize, sample: u16, journal: &mut Journal) {
+        self.fsr_missed[quadrant] = 0;
         let (reading, change) = self.fsr[quadrant].take(&FSR_LIMITS, sample);
         report(journal, FSR + quadrant, change);
         self.fsr_readings[quadrant] = reading.ok();
@@ -250,7 +279,8 @@ impl Senses {
     }
 
     fn muscle(&mut self, config: &Config, muscle: usize, sample: u16, journal: &mut Journal) {
-        let sensor = if muscle == 0 { &mut self.gate.flexor } else { &mut self.gate.extensor };
+        self.myo_missed[muscle] = 0;
+        let sensor = self.gate.muscle_mut(muscle);
         let channel = if muscle == 0 { MYO_FLEXOR } else { MYO_EXTENSOR };
         let limits = if sensor.is_active() {
             Limits { stuck_after: MYO_FROZEN_AFTER, ..MYO_LIMITS }
