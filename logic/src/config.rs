@@ -79,7 +79,7 @@ pub struct GripConfig {
     pub slip_duty_permille: u16,
     /// Its length, in frames.
     pub slip_frames: u32,
-    /// Its length at most while the vibration goes on, in frames.
+    /// Its length at most while a detector still says slip, in frames.
     pub slip_frames_max: u32,
     /// Duty of the pulse that answers incipient slip, per mille.
     pub incipient_duty_permille: u16,

@@ -1,7 +1,7 @@
 //! The grip reflex: how much to close, once slip or incipient slip is known.
 //!
-//! Slip is answered by a short pulse at full speed, prolonged while the vibration goes on; incipient slip by a shorter,
-//! slower one. After each, the object settles for longer than the motor's dead time before the detectors are asked
+//! Slip is answered by a short pulse at full speed, prolonged while a detector still says slip; incipient slip by a
+//! shorter, slower one. After each, the object settles for longer than the motor's dead time before the detectors are asked
 //! again. No pulse begins on a finger that is known to hold nothing or to press as hard as it may; without a known
 //! force, the pulses share a small budget that only the wearer can renew.
 
@@ -61,11 +61,11 @@ impl Reflex {
         }
     }
 
-    /// Whether the pulse of this mode is over. `s1`: the vibration goes on.
+    /// Whether the pulse of this mode is over. `slips`: a detector still says slip.
     #[must_use]
-    pub const fn pulse_over(&self, config: &GripConfig, mode: GripMode, s1: bool, grip: Grip) -> bool {
+    pub const fn pulse_over(&self, config: &GripConfig, mode: GripMode, slips: bool, grip: Grip) -> bool {
         let length = match mode {
-            GripMode::Slip if s1 => config.slip_frames_max,
+            GripMode::Slip if slips => config.slip_frames_max,
             GripMode::Slip => config.slip_frames,
             GripMode::Incipient => config.incipient_frames,
             _ => 0,
@@ -95,13 +95,13 @@ mod tests {
     use super::*;
     use crate::config::Config;
 
-    fn pulse_frames(mode: GripMode, s1: bool, grip: Grip) -> u32 {
+    fn pulse_frames(mode: GripMode, slips: bool, grip: Grip) -> u32 {
         let config = Config::default().grip;
         let mut reflex = Reflex::default();
         reflex.enter(mode);
         (0..10_000)
             .take_while(|_| {
-                let over = reflex.pulse_over(&config, mode, s1, grip);
+                let over = reflex.pulse_over(&config, mode, slips, grip);
                 reflex.tick(mode, grip);
                 !over
             })
