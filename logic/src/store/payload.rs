@@ -100,9 +100,8 @@ mod tests {
 
     #[test]
     fn every_allowed_setting_comes_back() {
-        for setting in
-            [Setting::S1Mv(0), Setting::S2Permille(0), Setting::MyoOnMv(0), Setting::ForceCeilingMn(0)]
-        {
+        // One of each: they are as many as a record has.
+        for setting in settings(&Config::default()) {
             let (.., allowed) = setting.describe();
             for value in allowed.step_by(7) {
                 let small = value as u16;
