@@ -18,6 +18,8 @@ pub enum Verdict {
     Fail,
     /// It could not be measured here.
     Skipped,
+    /// It says as much about the machine and its load as about the project, so nothing is kept or broken by it.
+    Noted,
 }
 
 /// One promise, measured.
@@ -41,6 +43,11 @@ impl Bar {
         }
     }
 
+    /// A figure that is told and not judged, such as a wall clock's.
+    pub fn noted(what: impl Into<String>, figure: impl Into<String>) -> Self {
+        Self { promise: what.into(), figure: figure.into(), verdict: Verdict::Noted }
+    }
+
     /// A promise that cannot be measured here.
     pub fn skipped(promise: impl Into<String>, why: impl Into<String>) -> Self {
         Self { promise: promise.into(), figure: why.into(), verdict: Verdict::Skipped }
@@ -53,6 +60,7 @@ impl Display for Bar {
             Verdict::Pass => "PASS",
             Verdict::Fail => "FAIL",
             Verdict::Skipped => "skipped",
+            Verdict::Noted => "noted",
         };
         write!(f, "{verdict:<8}{}: {}", self.promise, self.figure)
     }

@@ -32,6 +32,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             Verdict::Pass => passed += 1,
             Verdict::Fail => failed += 1,
             Verdict::Skipped => skipped += 1,
+            Verdict::Noted => {}
         }
     };
 
