@@ -5,6 +5,7 @@ mod check;
 mod dataset;
 mod evaluate;
 mod flash;
+mod format;
 mod learn;
 mod lint_image;
 mod monitor;

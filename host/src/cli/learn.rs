@@ -6,8 +6,8 @@ use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
 
 use anyhow::{Context, ensure};
-use clap::ValueEnum;
 
+use super::format::Format;
 use super::progress::Progress;
 use super::workspace;
 use crate::learn::report::{Report, Text};
@@ -44,20 +44,12 @@ pub struct Args {
     /// Seed of everything
     #[arg(long, default_value_t = Options::default().seed)]
     seed: u64,
-    /// How to print the report
+    /// How to print the report; docs/hebbian.md lists the keys of json
     #[arg(long, value_enum, default_value_t = Format::Text)]
     report: Format,
     /// Where report and figures are written
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Format {
-    /// For people
-    Text,
-    /// For programs: the keys that docs/hebbian.md lists
-    Json,
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
@@ -81,10 +73,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let board = if args.host { Board::Host } else { Board::emulated(&workspace::root()?)? };
     let outcome = run(&options, &board)?;
-    match args.report {
-        Format::Text => print!("{}", Text(&outcome)),
-        Format::Json => println!("{}", serde_json::to_string_pretty(&Report::of(&outcome))?),
-    }
+    args.report.print(&Text(&outcome), &Report::of(&outcome))?;
     for file in write(&args.out, &outcome)? {
         eprintln!("  {:<26}{}", "written", file.display());
     }

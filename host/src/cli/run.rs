@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context;
-use clap::ValueEnum;
 
+use super::format::Format;
 use super::progress::Progress;
 use super::workspace;
 use crate::plot::{draw, png};
@@ -40,14 +40,6 @@ pub struct Args {
     out: PathBuf,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Format {
-    /// For people
-    Text,
-    /// For programs
-    Json,
-}
-
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let board = if args.host { Board::Host } else { Board::emulated(&workspace::root()?)? };
     let outcome = match &args.replay {
@@ -63,10 +55,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         }
     };
     let files = write(&args.out, &outcome)?;
-    match args.report {
-        Format::Text => print!("{}", Text(&outcome.report)),
-        Format::Json => println!("{}", serde_json::to_string_pretty(&outcome.report)?),
-    }
+    args.report.print(&Text(&outcome.report), &outcome.report)?;
     // On stderr, so that a program that reads the report reads nothing else.
     for file in files {
         eprintln!("  {:<14}{}", "written", file.display());
