@@ -67,7 +67,8 @@ impl Fingertip {
         Self { config, ..Self::default() }
     }
 
-    /// Takes up what was kept through a power cut, before the first tick. What it cannot use it reports; the defaults stay.
+    /// Takes up what was kept through a power cut, before the first tick. What it cannot use it reports; the defaults
+    /// stay.
     #[inline(never)]
     pub fn restore(&mut self, kept: Kept, payload: &[u8]) {
         let restored = match kept {

@@ -6,9 +6,9 @@
 //! codes (they are taken as 0), so it can be believed while it is being taught.
 //!
 //! Outputs mean slip while the films' part of o1 is far enough below 0, for some ticks, on a finger that holds something,
-//! and not while a knock rings or the motor runs fast, or just did. The films' part, because the gauges' is a matter of how hard is held,
-//! which speaks against slip and hides its beginning; and because a gauge that dies takes its part out of o1 for ever. An
-//! untaught network says 0, which is nothing.
+//! and not while a knock rings or the motor runs fast, or just did. The films' part, because the gauges' is a matter of
+//! how hard is held, which speaks against slip and hides its beginning; and because a gauge that dies takes its part out
+//! of o1 for ever. An untaught network says 0, which is nothing.
 //!
 //! Slip begins in one place of the contact, and is heard by whoever lies there. A knock, a swing and the motor are heard
 //! everywhere; so what is heard everywhere is slip only if it lasts.

@@ -72,8 +72,8 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
         outputs
     }
 
-    /// What each of some receptors adds to an output, before it is clipped, units of [`Output`], rounded down; nothing for an
-    /// output or for receptors that are not there.
+    /// What each of some receptors adds to an output, before it is clipped, units of [`Output`], rounded down; nothing for
+    /// an output or for receptors that are not there.
     #[inline]
     pub fn parts(
         &self,

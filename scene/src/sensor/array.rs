@@ -37,8 +37,9 @@ const WAVE_RATIO: f64 = 1.7;
 /// At rest an element carries what the patch presses on it under the cover, the more the nearer it is to the contact's
 /// middle. The weight that hangs on the pad tilts the load along it and torsion tilts it across the diagonal. What slips
 /// moves load from one element to its neighbours: a ring of the patch that lets go (micro slip) once, an element that
-/// slides again and again, as its contacts are renewed at its own speed, and the unevenness of the surface with it. Most of that stays in the sum, so the covariance changes more than the spectrum of the sum:
-/// all that the detector of Bamshad 2023 (section 4) has to go by. A knock and the gear press on all of it.
+/// slides again and again, as its contacts are renewed at its own speed, and the unevenness of the surface with it. Most
+/// of that stays in the sum, so the covariance changes more than the spectrum of the sum: all that the detector of
+/// Bamshad 2023 (section 4) has to go by. A knock and the gear press on all of it.
 #[derive(Debug)]
 pub(crate) struct Elements {
     parameters: Array,
