@@ -2,11 +2,12 @@
 
 use tenax_hal_shim::channel::{SAMPLE_MAX, STRAIN, STRAIN_COUNT};
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::Down;
+use tenax_hal_shim::wire::{Down, Event, EventKind};
 use tenax_hal_shim::words::Cause;
 use tenax_host_tests::Bench;
 use tenax_host_tests::teaching::{PICTURE_FRAMES, SLIP_MV, SLIPS_UP};
 use tenax_logic::config::Config;
+use tenax_logic::store::record::PAYLOAD_BYTES;
 
 fn closes(drives: &[MotorDrive]) -> bool {
     drives.iter().any(|drive| drive.closes())
@@ -106,4 +107,32 @@ fn nothing_is_learned_from_a_disturbed_hand_a_late_picture_or_an_empty_one() {
     bench.muscles(400.0, 50.0);
     bench.teach(SLIPS_UP, 20);
     assert_eq!(before(&bench), updates, "the wearer moves the hand");
+}
+
+/// Switched off and on, with what it had learned.
+fn restarted(mut taught: Bench) -> Bench {
+    taught.fingertip.command(&Down::Save).unwrap();
+    let mut keeper = taught.fingertip.keeper();
+    let record = taught.fingertip.next_record(&mut keeper).expect("asked for");
+    let mut buffer = [0; PAYLOAD_BYTES];
+    let mut bench = Bench::new(7);
+    bench.fingertip.restore(record.kept(), record.payload(&mut buffer));
+    bench
+}
+
+#[test]
+fn switched_on_in_a_grasp_it_does_not_take_hum_for_slip() {
+    const HUM_MV: f64 = 25.0;
+    let mut bench = restarted(Bench::taught(7));
+    bench.load(4.0, 0.4);
+    bench.vibration_mv = HUM_MV;
+    assert!(!closes(&bench.run(8_000)), "it may have hummed all the time");
+    bench.load(0.0, 0.0);
+    bench.run(4_000);
+    bench.load(4.0, 0.4);
+    assert!(!closes(&bench.run(4_000)), "it knows the hum");
+    bench.vibration_mv = HUM_MV + SLIP_MV;
+    assert!(closes(&bench.run(200)), "and slip in it");
+    let said = |event: &Event| matches!(event.kind, EventKind::Mode { cause: Cause::Network, .. });
+    assert!(bench.events.iter().any(said), "{:?}", bench.events);
 }

@@ -17,7 +17,8 @@
 //! the direction" (Tada 2006, section I), and a slip down that was louder than the slip up would be an offset of o2.
 //!
 //! What a film hears all the time, hum and noise, is none of the object's: its quiet level is taken off its envelope. It
-//! follows the envelope's median while the finger is known to be unloaded, and stands still in a grasp.
+//! follows the envelope's median while the finger is known to be unloaded, and stands still in a grasp. A finger that was
+//! switched on in a grasp, by a reset for one, cannot tell hum from slip: its films are not heard until it lets go.
 
 use core::ops::Range;
 
@@ -130,6 +131,8 @@ pub struct Touch {
     by_gauges: [i64; NETWORK_OUTPUTS],
     /// What each film hears of nothing, 1/16 of a sample.
     quiet: [i32; PVDF_COUNT],
+    /// Whether the finger has been unloaded since the start.
+    quiet_known: bool,
     since_loud_frames: u32,
     said_frames: u32,
     slips: bool,
@@ -150,6 +153,7 @@ impl Default for Touch {
             outputs: [Output::default(); NETWORK_OUTPUTS],
             by_gauges: [0; NETWORK_OUTPUTS],
             quiet: [0; PVDF_COUNT],
+            quiet_known: false,
             since_loud_frames: 0,
             said_frames: 0,
             slips: false,
@@ -182,9 +186,13 @@ impl Touch {
         self.learn(config, felt, &heard);
     }
 
-    /// What each film hears beyond its quiet level, 1/16 of a sample.
+    /// What each film hears beyond its quiet level, 1/16 of a sample; nothing while that is not known.
     fn heard(&mut self, felt: &Felt<'_>) -> [i32; PVDF_COUNT] {
         let mut heard = [0; PVDF_COUNT];
+        self.quiet_known |= felt.unloaded;
+        if !self.quiet_known {
+            return heard;
+        }
         for ((heard, quiet), envelope) in heard.iter_mut().zip(&mut self.quiet).zip(felt.envelopes) {
             let beyond = (envelope >> ENVELOPE_SHIFT) - *quiet;
             if felt.unloaded {
