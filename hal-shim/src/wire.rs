@@ -101,7 +101,7 @@ pub struct Slow {
     pub wearer_active: bool,
     /// What the network is learning, None while nothing.
     pub lesson: Option<Codes>,
-    /// What the array says.
+    /// What the array says, believed or not.
     pub array: ArrayVerdict,
     /// Checksum of every valid sample that the slow frame's ticks were given: the two ends agree on the input too.
     pub samples_sum: u32,

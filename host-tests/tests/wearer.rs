@@ -6,7 +6,8 @@ use proptest::prelude::*;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use tenax_hal_shim::channel::{
-    CHANNELS, COUNT, FSR, MYO_EXTENSOR, MYO_FLEXOR, MYO_SELECT, SAMPLE_MAX, mv_from_sample,
+    ARRAY, ARRAY_COUNT, CHANNELS, COUNT, FSR, MYO_EXTENSOR, MYO_FLEXOR, MYO_SELECT, SAMPLE_MAX,
+    mv_from_sample,
 };
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::front_end::MYO_REST_MV;
@@ -212,6 +213,33 @@ fn what_the_array_said_does_not_outlive_the_frames_that_would_renew_it() {
         run_losing(&mut bench, &lost, 2_000);
         assert_eq!(by_reflex(&bench), 0, "places {lost:?} are lost in every slow frame");
     }
+}
+
+#[test]
+fn an_array_that_hears_slip_in_an_empty_hand_closes_no_full_one() {
+    // Three times the noise that it was trained with, on every element.
+    let noisy = |bench: &mut Bench, rng: &mut ChaCha8Rng, seconds: u32| {
+        for _ in 0..80 * seconds {
+            for element in &mut bench.pins_mv[ARRAY..ARRAY + ARRAY_COUNT] {
+                let sum: f64 = (0..12).map(|_| rng.random_range(-0.5..0.5)).sum();
+                *element = f64::from(CHANNELS[ARRAY].rest_mv) + 700.0 + 1.5 * sum;
+            }
+            bench.run(25);
+        }
+    };
+    let mut rng = ChaCha8Rng::seed_from_u64(16);
+    // The control: it does hear slip in that.
+    let mut bench = Bench::holding(16);
+    noisy(&mut bench, &mut rng, 5);
+    assert!(by_reflex(&bench) > 100);
+    bench.load(0.0, 0.0);
+    noisy(&mut bench, &mut rng, 5);
+    bench.load(4.0, 0.4);
+    bench.run(500);
+    bench.slows.clear();
+    noisy(&mut bench, &mut rng, 10);
+    assert!(bench.slows.iter().any(|slow| slow.array.slip), "it says so all the same");
+    assert_eq!(by_reflex(&bench), 0);
 }
 
 /// Gives many frames, of which those at these places of the slow frame are lost; how the motor was driven in each.

@@ -129,7 +129,7 @@ impl Fingertip {
         let verdict = Verdict {
             s1: self.senses.vibration.s1,
             network: self.touch.slips(),
-            array: self.senses.array().slip,
+            array: self.senses.array_slips(),
             incipient: self.s2,
         };
         self.act(frame, verdict)

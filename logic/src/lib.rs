@@ -2,9 +2,9 @@
 //!
 //! Data goes one way, and so do the modules: [`health`] says which readings can be believed; [`vibration`] (S1),
 //! [`fsr`], [`forces`] and [`friction`] (S2), [`strain`], [`array`] and [`gate`] (the wearer's muscles) say what they mean;
-//! [`senses`] puts a frame through all of them; [`touch`] learns slip from them ([`hebbian`]); [`mode`], [`grip`] and
-//! [`arbiter`] decide; [`fingertip`] is the whole, and [`journal`] is what it tells. [`config`] holds every number that
-//! can be chosen, and [`store`] keeps what must outlive a power cut.
+//! [`senses`] puts a frame through all of them, and [`credit`] says whether the array can be believed; [`touch`] learns
+//! slip from them ([`hebbian`]); [`mode`], [`grip`] and [`arbiter`] decide; [`fingertip`] is the whole, and [`journal`] is
+//! what it tells. [`config`] holds every number that can be chosen, and [`store`] keeps what must outlive a power cut.
 #![no_std]
 // One measured kernel is excepted, `array::dual`; nothing else may be.
 #![deny(unsafe_code)]
@@ -16,6 +16,7 @@ pub mod arbiter;
 pub mod array;
 mod checksum;
 pub mod config;
+pub mod credit;
 pub mod elements;
 pub mod fingertip;
 pub mod forces;

@@ -11,6 +11,7 @@ use tenax_hal_shim::words::{Capability, Fault};
 
 use crate::array::ShippedDetector;
 use crate::config::{Config, frames};
+use crate::credit::Credit;
 use crate::elements::Elements;
 use crate::forces::ForceSensor;
 use crate::fsr;
@@ -60,6 +61,7 @@ pub struct Senses {
     gauges: Gauges,
     elements: Elements,
     array: ShippedDetector,
+    array_credit: Credit,
     frames_seen: u32,
     frames_lost: u32,
     films_usable: bool,
@@ -96,7 +98,7 @@ impl Senses {
             let change = self.elements.take(place, frame.switch_b);
             report(journal, ARRAY + place, change);
         }
-        self.judge_array(place);
+        self.judge_array(config, place);
         if let Some(quadrant) = select.checked_sub(FSR_SELECT).map(usize::from) {
             self.quadrant(config, quadrant, frame.switch_a, journal);
         }
@@ -117,7 +119,7 @@ impl Senses {
         self.forces_are_new = false;
         let place = usize::from(frame.place());
         self.elements.lose(place);
-        self.judge_array(place);
+        self.judge_array(config, place);
         self.miss(config, frame.select());
         if self.frames_lost == STALE_FRAMES {
             journal.fault(Fault::FramesLost { count: self.frames_lost });
@@ -166,6 +168,12 @@ impl Senses {
     #[must_use]
     pub fn array(&self) -> ArrayVerdict {
         self.array.verdict()
+    }
+
+    /// Whether the array says slip, and can be believed.
+    #[must_use]
+    pub fn array_slips(&self) -> bool {
+        self.array.verdict().slip && !self.array_credit.is_lost()
     }
 
     /// Whether vibration can be heard at all.
@@ -220,11 +228,14 @@ impl Senses {
 
     /// The array's work, shared by three ticks: in one or two, it would end when the next frame has begun. Lost frames do
     /// their share, since it needs none of their samples: or an old verdict would stand for as long as they are lost.
-    fn judge_array(&mut self, place: usize) {
+    fn judge_array(&mut self, config: &Config, place: usize) {
         match place.checked_sub(ARRAY_COUNT) {
             Some(0) => self.array.feel(self.elements.reading()),
             Some(1) => self.array.see(),
-            Some(2) => _ = self.array.decide(),
+            Some(2) => {
+                let verdict = self.array.decide();
+                self.array_credit.take(self.is_unloaded(config), verdict.slip);
+            }
             _ => {}
         }
     }
