@@ -20,7 +20,7 @@ use tenax_hal_shim::channel::ARRAY_COUNT;
 
 use collect::{Recording, Step, record};
 use manifest::Manifest;
-use session::{Session, Sizes, sessions};
+use session::{Session, Sizes, Split, sessions};
 use story::Story;
 
 /// Who says that it slipped.
@@ -76,7 +76,20 @@ impl Dataset {
     /// # Errors
     /// If a drawn number is none that a scene may have.
     pub fn make(plan: Plan, progress: &(dyn Fn(f64) + Sync)) -> anyhow::Result<Self> {
-        let all = sessions(plan.seed, Sizes::of_train(plan.sessions));
+        Self::record(plan, sessions(plan.seed, Sizes::of_train(plan.sessions)), progress)
+    }
+
+    /// Makes the sessions of one split only: they are the same as in the whole.
+    ///
+    /// # Errors
+    /// As [`make`](Self::make).
+    pub fn make_split(plan: Plan, split: Split, progress: &(dyn Fn(f64) + Sync)) -> anyhow::Result<Self> {
+        let mut all = sessions(plan.seed, Sizes::of_train(plan.sessions));
+        all.retain(|session| session.split == split);
+        Self::record(plan, all, progress)
+    }
+
+    fn record(plan: Plan, all: Vec<Session>, progress: &(dyn Fn(f64) + Sync)) -> anyhow::Result<Self> {
         let (count, done) = (all.len(), AtomicUsize::new(0));
         let recorded = all.into_par_iter().map(|session| {
             let recordings =

@@ -7,7 +7,7 @@
 use tenax_hal_shim::channel::SLOW_HZ;
 
 use crate::array::SPECTRUM_WINDOW;
-use crate::array::preprocess::LAG_MAX;
+use crate::array::past::LAG_MAX;
 
 /// Slow frames after which an empty hand's windows hold nothing any more of what was held or dropped before: the longest,
 /// twice, for the verdict's own hold.

@@ -226,13 +226,14 @@ impl Senses {
         self.vibration = self.detector.judge(&config.vibration);
     }
 
-    /// The array's work, shared by three ticks: in one or two, it would end when the next frame has begun. Lost frames do
+    /// The array's work, shared by four ticks: in fewer, it would end when the next frame has begun. Lost frames do
     /// their share, since it needs none of their samples: or an old verdict would stand for as long as they are lost.
     fn judge_array(&mut self, config: &Config, place: usize) {
         match place.checked_sub(ARRAY_COUNT) {
             Some(0) => self.array.feel(self.elements.reading()),
-            Some(1) => self.array.see(),
-            Some(2) => {
+            Some(1) => self.array.compare(),
+            Some(2) => self.array.see(),
+            Some(3) => {
                 let verdict = self.array.decide();
                 self.array_credit.take(self.is_unloaded(config), verdict.slip);
             }

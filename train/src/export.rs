@@ -56,6 +56,7 @@ pub static MODEL: Model<{H1}, {back}, {H2}{windows}> = Model {{
     preprocessor: PreprocessorConfig {{
         covariance_knee: {covariance},
         spectrum_knee: {spectrum},
+        structure_knee: {structure},
         {lag}..PreprocessorConfig::DEFAULT
     }},
     network: match Mlp::new(
@@ -77,6 +78,7 @@ pub static MODEL: Model<{H1}, {back}, {H2}{windows}> = Model {{
 ",
         covariance = recipe.covariance_knee,
         spectrum = recipe.spectrum_knee,
+        structure = recipe.structure_knee,
         lag = if recipe.lag == 1 { String::new() } else { format!("lag: {},\n        ", recipe.lag) },
         first = matrix(&quantised.first),
         first_bias = quantised.first_bias,

@@ -1,9 +1,13 @@
 //! What the network sees of a recording: the firmware's own integers.
 
-use tenax::labelled::{Part, Recording, Step};
+use tenax::labelled::{Part, Recording};
 use tenax_logic::array::logarithm::Knee;
+use tenax_logic::array::past::Past;
 use tenax_logic::array::spectrum::SlidingSpectrum;
-use tenax_logic::array::{BINS, COVARIANCES, ELEMENTS, FEATURES, PreprocessorConfig, SPECTRUM_WINDOW};
+use tenax_logic::array::structure::{self, Structure};
+use tenax_logic::array::{
+    BINS, COVARIANCES, ELEMENTS, FEATURES, PAPER_FEATURES, PreprocessorConfig, SPECTRUM_WINDOW,
+};
 
 /// What features are made with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -18,6 +22,10 @@ pub struct Recipe {
     pub covariance_knee: u32,
     /// The same for a bin's power.
     pub spectrum_knee: u32,
+    /// The same for a frame of a structure function.
+    pub structure_knee: u32,
+    /// Whether only the paper's 76 are made: the structure functions are 0.
+    pub paper_only: bool,
 }
 
 impl Recipe {
@@ -28,12 +36,14 @@ impl Recipe {
         spectrum: SPECTRUM_WINDOW,
         covariance_knee: PreprocessorConfig::DEFAULT.covariance_knee,
         spectrum_knee: PreprocessorConfig::DEFAULT.spectrum_knee,
+        structure_knee: PreprocessorConfig::DEFAULT.structure_knee,
+        paper_only: false,
     };
 
     /// Readings before the first features.
     #[must_use]
     pub fn ready_after(&self) -> usize {
-        (self.lag + self.window).max(self.spectrum)
+        (self.lag + self.window).max(self.spectrum).max(structure::READY_AFTER)
     }
 
     /// Differences are cut at this, so that the window's sum of products fits in an `i32`: a power of two.
@@ -60,27 +70,32 @@ pub struct Sequence {
     pub slips: Vec<bool>,
 }
 
-/// Equations 1 to 4 and the transform, as the firmware computes them, over a whole recording.
+/// Equations 1 to 4, the transform and the structure functions, as the firmware computes them, over a whole recording.
 ///
 /// With a lag of 1 and a window of 10 it is what [`Preprocessor`](tenax_logic::array::Preprocessor) gives, bit for bit.
 #[must_use]
 pub fn sequence(recording: &Recording, recipe: &Recipe) -> Sequence {
     let knees = (Knee::at(recipe.covariance_knee), Knee::at(recipe.spectrum_knee));
-    let differences = differences(recording, recipe);
-    let powers = match recipe.spectrum {
-        10 => powers::<10>(recording),
-        20 => powers::<20>(recording),
-        _ => powers::<SPECTRUM_WINDOW>(recording),
-    };
+    let structure_knees = structure::knees(recipe.structure_knee);
+    let (mut past, mut structure) = (Past::default(), Structure::default());
+    let mut spectrum = Spectrum::of(recipe.spectrum);
+    let mut sum = 0;
+    let d_max = recipe.d_max();
+    let mut differences = Vec::new();
     let mut covariance = [0i32; COVARIANCES];
     let (mut features, mut slips) = (Vec::new(), Vec::new());
     for (n, step) in recording.steps.iter().enumerate() {
+        sum += past.push(&step.samples.map(Some)).change;
+        spectrum.push(sum);
+        structure.push(&past);
+        differences.push(past.changes(recipe.lag).of.map(|change| change.clamp(-d_max, d_max - 1)));
+        let new = differences[n];
         let old = n.checked_sub(recipe.window).map_or([0; ELEMENTS], |n| differences[n]);
         let mut entries = covariance.iter_mut();
         for row in 0..ELEMENTS {
             for other in row..ELEMENTS {
                 if let Some(entry) = entries.next() {
-                    *entry += differences[n][row] * differences[n][other] - old[row] * old[other];
+                    *entry += new[row] * new[other] - old[row] * old[other];
                 }
             }
         }
@@ -88,12 +103,16 @@ pub fn sequence(recording: &Recording, recipe: &Recipe) -> Sequence {
             continue;
         }
         let mut row = [0; FEATURES];
-        let (covariances, bins) = row.split_at_mut(COVARIANCES);
+        let (paper, structures) = row.split_at_mut(PAPER_FEATURES);
+        let (covariances, bins) = paper.split_at_mut(COVARIANCES);
         for (feature, &entry) in covariances.iter_mut().zip(&covariance) {
             *feature = knees.0.signed(entry);
         }
-        for (feature, power) in bins.iter_mut().zip(powers[n]) {
+        for (feature, power) in bins.iter_mut().zip(spectrum.powers()) {
             *feature = knees.1.of(power);
+        }
+        if !recipe.paper_only {
+            structure.compress(&structure_knees, structures);
         }
         features.push(row);
         slips.push(step.slip);
@@ -108,38 +127,69 @@ pub fn sequence(recording: &Recording, recipe: &Recipe) -> Sequence {
     }
 }
 
-/// Powers of the bins after each step.
-fn powers<const M: usize>(recording: &Recording) -> Vec<[f32; BINS]> {
-    let mut spectrum = SlidingSpectrum::<M>::default();
-    let after = |step: &Step| {
-        spectrum.push(step.samples.iter().map(|&sample| i32::from(sample)).sum());
-        spectrum.powers()
-    };
-    recording.steps.iter().map(after).collect()
+/// A transform of one of the firmware's lengths.
+enum Spectrum {
+    Ten(SlidingSpectrum<10>),
+    Twenty(SlidingSpectrum<20>),
+    Forty(SlidingSpectrum<SPECTRUM_WINDOW>),
 }
 
-/// Differences over the lag; none before there is something to differ from.
-fn differences(recording: &Recording, recipe: &Recipe) -> Vec<[i32; ELEMENTS]> {
-    let d_max = recipe.d_max();
-    let sample = |n: usize, element: usize| i32::from(recording.steps[n].samples[element]);
-    (0..recording.steps.len())
-        .map(|n| match n.checked_sub(recipe.lag) {
-            Some(before) => std::array::from_fn(|element| {
-                (sample(n, element) - sample(before, element)).clamp(-d_max, d_max - 1)
-            }),
-            None => [0; ELEMENTS],
-        })
-        .collect()
+impl Spectrum {
+    fn of(sums: usize) -> Self {
+        match sums {
+            10 => Self::Ten(SlidingSpectrum::default()),
+            20 => Self::Twenty(SlidingSpectrum::default()),
+            _ => Self::Forty(SlidingSpectrum::default()),
+        }
+    }
+
+    fn push(&mut self, sum: i32) {
+        match self {
+            Self::Ten(spectrum) => spectrum.push(sum),
+            Self::Twenty(spectrum) => spectrum.push(sum),
+            Self::Forty(spectrum) => spectrum.push(sum),
+        }
+    }
+
+    fn powers(&self) -> [f32; BINS] {
+        match self {
+            Self::Ten(spectrum) => spectrum.powers(),
+            Self::Twenty(spectrum) => spectrum.powers(),
+            Self::Forty(spectrum) => spectrum.powers(),
+        }
+    }
 }
 
-/// Whether a network is shown a feature. Bin 0 it is not: that is the force itself, whatever the object does.
-#[must_use]
-pub fn is_shown(feature: usize) -> bool {
-    feature != COVARIANCES
+/// What a feature is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// The diagonal of the covariance.
+    Variance,
+    /// The rest of it.
+    Covariance,
+    /// The spectrum of the sum.
+    Bin,
+    /// The structure functions.
+    Structure,
 }
 
-/// Whether a feature is a variance: the diagonal of the covariance, row by row of its upper triangle.
-#[must_use]
-pub fn is_variance(feature: usize) -> bool {
-    (0..ELEMENTS).any(|row| row * ELEMENTS + row - row * (row + 1) / 2 == feature)
+impl Kind {
+    /// Of a feature by its place.
+    #[must_use]
+    pub fn of(feature: usize) -> Self {
+        // Row by row of the upper triangle.
+        let is_diagonal = || (0..ELEMENTS).any(|row| row * ELEMENTS + row - row * (row + 1) / 2 == feature);
+        match feature {
+            PAPER_FEATURES.. => Self::Structure,
+            COVARIANCES.. => Self::Bin,
+            _ if is_diagonal() => Self::Variance,
+            _ => Self::Covariance,
+        }
+    }
+
+    /// Whether it says how much the elements move, rather than how they move together: what holds for other objects, too.
+    #[must_use]
+    pub fn is_believed_first(self) -> bool {
+        matches!(self, Self::Variance | Self::Structure)
+    }
 }

@@ -82,7 +82,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
     bar.set_message("training");
     let parts = sequences.iter().any(|sequence| sequence.part.is_some());
     let (aim, candidates) = if parts {
-        (Aim::Accuracy, [compare::perceptrons(1), compare::perceptrons(5)].concat())
+        (Aim::Accuracy, compare::perceptrons(1).to_vec())
     } else {
         (Aim::Balanced, compare::FEW_OBJECTS.to_vec())
     };
@@ -151,6 +151,8 @@ fn features_of(recipe: &ArrayRecipe) -> Recipe {
         },
         covariance_knee: given.covariance_knee.unwrap_or(Recipe::FIRMWARE.covariance_knee),
         spectrum_knee: given.spectrum_knee.unwrap_or(Recipe::FIRMWARE.spectrum_knee),
+        structure_knee: given.structure_knee.unwrap_or(Recipe::FIRMWARE.structure_knee),
+        paper_only: false,
     }
 }
 

@@ -158,11 +158,12 @@ impl Report {
             );
         }
         let _ = writeln!(text, "| seed | {} |", self.seed);
-        let Recipe { lag, window, spectrum, covariance_knee, spectrum_knee } = self.features;
+        let Recipe { lag, window, spectrum, covariance_knee, spectrum_knee, structure_knee, .. } =
+            self.features;
         let _ = writeln!(
             text,
-            "| features | 55 covariances (lag {lag}, window {window}, knee {covariance_knee}) and 20 of 21 spectral bins \
-             (window {spectrum}, knee {spectrum_knee}; not bin 0, the force itself) |"
+            "| features | 55 covariances (lag {lag}, window {window}, knee {covariance_knee}), 21 spectral bins (window \
+             {spectrum}, knee {spectrum_knee}), 24 structure functions (knee {structure_knee}) |"
         );
         let _ = writeln!(text, "| network | {}, 8-bit weights, 16-bit activations |", self.sizes);
         let _ = writeln!(

@@ -2,7 +2,7 @@
 
 use tenax_logic::array::FEATURES;
 
-use crate::features::{Sequence, is_shown, is_variance};
+use crate::features::{Kind, Sequence};
 
 /// Rows, one a time step.
 #[derive(Clone, Debug, Default)]
@@ -76,8 +76,8 @@ pub struct Standard {
 impl Standard {
     /// From the rows to learn from.
     ///
-    /// `shyness` scales down all features but the ten variances, which says before anything is learned that those are to
-    /// be believed first: with few objects, covariances and spectra tell the objects apart rather than their sliding. At 1
+    /// `shyness` scales down all features but variances and structure functions, which says before anything is learned that
+    /// those are to be believed first: with few objects, covariances and spectra tell the objects apart rather than their sliding. At 1
     /// every feature gets a deviation of 1; below, features of one kind share their scale, so that a quiet element is not
     /// made loud.
     #[must_use]
@@ -96,10 +96,9 @@ impl Standard {
         let mean: Vec<f64> = (0..FEATURES).map(|feature| moment(feature, 0.0, 1)).collect();
         let deviation: Vec<f64> =
             mean.iter().enumerate().map(|(feature, &mean)| moment(feature, mean, 2).sqrt()).collect();
-        let kind = |feature: usize| (is_variance(feature), feature < tenax_logic::array::COVARIANCES);
         let shared = |feature: usize| {
             let same: Vec<f64> = (0..FEATURES)
-                .filter(|&other| is_shown(other) && kind(other) == kind(feature))
+                .filter(|&other| Kind::of(other) == Kind::of(feature))
                 .map(|other| deviation[other])
                 .collect();
             same.iter().sum::<f64>() / same.len().max(1) as f64
@@ -107,9 +106,9 @@ impl Standard {
         let scale = (0..FEATURES)
             .map(|feature| match () {
                 // A feature that hardly ever changes would get a weight that nothing has taught it.
-                () if !is_shown(feature) || deviation[feature] < 1.0 => 0.0,
+                () if deviation[feature] < 1.0 => 0.0,
                 () if shyness >= 1.0 => 1.0 / deviation[feature].max(1.0) as f32,
-                () if is_variance(feature) => 1.0 / shared(feature).max(1.0) as f32,
+                () if Kind::of(feature).is_believed_first() => 1.0 / shared(feature).max(1.0) as f32,
                 () => shyness / shared(feature).max(1.0) as f32,
             })
             .collect();

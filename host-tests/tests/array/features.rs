@@ -6,10 +6,11 @@ use rand::{RngExt, SeedableRng};
 use tenax_hal_shim::channel::SAMPLE_MAX;
 use tenax_logic::array::covariance::SlidingCovariance;
 use tenax_logic::array::{
-    BINS, COVARIANCES, ELEMENTS, FEATURES, Preprocessor, PreprocessorConfig, Reading, SPECTRUM_WINDOW,
+    COVARIANCES, ELEMENTS, FEATURES, PAPER_FEATURES, Preprocessor, PreprocessorConfig, Reading,
+    SPECTRUM_WINDOW,
 };
 
-use crate::oracle::{compressed, covariances, magnitudes};
+use crate::oracle::{compressed, covariances, magnitudes, structures};
 use crate::{alive, readings};
 
 fn some(samples: &[u16; ELEMENTS]) -> Reading {
@@ -87,12 +88,18 @@ proptest! {
             prop_assert!((f64::from(feature.abs()) - size).abs() <= 1.01, "{feature} {exact}");
             prop_assert!(*feature == 0 || (*feature > 0) == (exact > 0), "{feature} {exact}");
         }
-        for (feature, exact) in features[COVARIANCES..].iter().zip(magnitudes(&frames)) {
+        for (feature, exact) in features[COVARIANCES..PAPER_FEATURES].iter().zip(magnitudes(&frames)) {
             // Each part of the transform is rounded down by less than one sample, and its magnitude by less than 1.5.
             let (low, high) = ((exact - 1.5).max(0.0), exact + 1.5);
             let low = compressed(low * low, config.spectrum_knee) - 1.01;
             let high = compressed(high * high, config.spectrum_knee) + 0.01;
             prop_assert!((low..=high).contains(&f64::from(*feature)), "{feature} {exact}");
+        }
+        let widths = [1, 1, 2, 4, 8, 16];
+        let sums = structures(&frames).into_iter().flat_map(|sums| sums.into_iter().zip(widths));
+        for (feature, (exact, width)) in features[PAPER_FEATURES..].iter().zip(sums) {
+            let size = compressed(exact as f64, config.structure_knee * width);
+            prop_assert!((f64::from(*feature) - size).abs() <= 1.01, "{feature} {exact}");
         }
     }
 
@@ -132,7 +139,8 @@ proptest! {
                     }
                 }
                 // Bin 0 alone knows what the element missed.
-                prop_assert_eq!(&found[COVARIANCES + 1..], &expected[COVARIANCES + 1..]);
+                let others = COVARIANCES + 1..PAPER_FEATURES;
+                prop_assert_eq!(&found[others.clone()], &expected[others]);
                 let others: Vec<_> =
                     (0..COVARIANCES).filter(|n| !entries_of(dead).any(|own| own == *n)).collect();
                 prop_assert!(others.iter().all(|&n| found[n] == expected[n]));
@@ -213,8 +221,10 @@ fn the_worst_that_a_converter_gives_stays_in_range() {
     }
     // 10 (2^13)^2 over the knee of 2^7 is 2^22.3; ten elements' 2^14, 40 times, squared over 2^11, is below 2^34.3.
     assert!(most[..COVARIANCES].iter().all(|&f| f > 11_000 && f < 12_000), "{most:?}");
-    assert!(most[COVARIANCES..].iter().all(|&f| f < 18_000), "{most:?}");
-    assert!(most[FEATURES - 1] > 16_000 && most.len() == COVARIANCES + BINS);
+    assert!(most[COVARIANCES..PAPER_FEATURES].iter().all(|&f| f < 18_000), "{most:?}");
+    assert!(most[PAPER_FEATURES - 1] > 16_000);
+    // All elements together: nothing that they do apart.
+    assert_eq!(most[PAPER_FEATURES..], [0; FEATURES - PAPER_FEATURES]);
 }
 
 fn worst_of_window<const N: usize>() {

@@ -4,6 +4,7 @@ mod detector;
 mod features;
 mod network;
 mod oracle;
+mod structure;
 
 use proptest::prelude::*;
 use tenax_hal_shim::channel::SAMPLE_MAX;

@@ -1,8 +1,9 @@
-//! Equations 1 to 4 and the transform, from the readings of the whole window, in `f64` and `i64`.
+//! Equations 1 to 4, the transform and the structure functions, from the readings of the whole window, in `f64` and `i64`.
 
 use std::f64::consts::PI;
 
 use tenax_hal_shim::channel::{ARRAY, CHANNELS, sample_from_mv};
+use tenax_logic::array::structure::{LAGS, WINDOWS};
 use tenax_logic::array::{BINS, COVARIANCE_WINDOW, COVARIANCES, ELEMENTS, SPECTRUM_WINDOW};
 
 /// Full scale of a difference, samples.
@@ -34,6 +35,22 @@ pub fn magnitudes(readings: &[[u16; ELEMENTS]]) -> [f64; BINS] {
         };
         part(f64::cos).hypot(part(f64::sin))
     })
+}
+
+/// For each lag and each window of it: ten times the squares of the elements' changes about the mean of all, samples^2.
+pub fn structures(readings: &[[u16; ELEMENTS]]) -> [[i64; WINDOWS]; LAGS.len()] {
+    // From so many frames ago to so many, the newest being none.
+    let windows = [0..1, 1..2, 2..4, 4..8, 8..16, 16..32];
+    let of = |lag: usize, ago: usize| -> i64 {
+        let now = readings.len() - 1 - ago;
+        let change = |n: usize| {
+            (f64::from(readings[now][n]) - f64::from(readings[now - lag][n])).clamp(-1_024.0, 1_024.0)
+        };
+        let mean = (0..ELEMENTS).map(change).sum::<f64>() / ELEMENTS as f64;
+        let squares: f64 = (0..ELEMENTS).map(|n| (change(n) - mean).powi(2)).sum();
+        (ELEMENTS as f64 * squares).round() as i64
+    };
+    LAGS.map(|lag| windows.clone().map(|window| window.map(|ago| of(lag, ago)).sum()))
 }
 
 /// `log2(1 + x / knee)` as straight lines between powers of two of `x + knee` in units of the knee, which has to be a

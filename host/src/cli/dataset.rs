@@ -15,7 +15,7 @@ use crate::dataset::{Dataset, Label, Plan};
 const EXAMPLES: &str = "\
 Examples:
   tenax dataset                                    out/array_dataset.csv, and its manifest beside it
-  tenax dataset --sessions 12 --out more.csv       three times as much
+  tenax dataset --sessions 4 --out less.csv        a sixth as much
   tenax dataset --label marker --out marker.csv    labelled by the marker's moving averages, as in the paper";
 
 /// Make a labelled data set of the normal-force array: Bamshad's collection method as scenes.

@@ -10,7 +10,7 @@ use tenax_logic::array::{Reading, ShippedDetector};
 
 use super::progress::Progress;
 use super::workspace;
-use crate::dataset::session::Sizes;
+use crate::dataset::session::{Sizes, Split};
 use crate::dataset::{Dataset, Label, Plan};
 use crate::evaluate::report::Report;
 use crate::evaluate::text::Text;
@@ -107,7 +107,7 @@ fn recordings(args: &Args) -> anyhow::Result<Vec<Recording>> {
         bail!("--sessions must be at least 1");
     }
     let plan = Plan { seed: args.seed, sessions: args.sessions, label: Label::Truth };
-    let csv = with_bar("sessions", |progress| Dataset::make(plan, progress))?.csv()?;
+    let csv = with_bar("sessions", |progress| Dataset::make_split(plan, Split::Test, progress))?.csv()?;
     // The same bytes that `tenax dataset` writes, read as a user's file is.
     let name = "array_dataset.csv";
     let recipe = library::choose(name.as_ref(), None)?;

@@ -46,7 +46,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let array_lines = [
         of_array("array covariance", "covariance", budgets.array_covariance_instructions),
         of_array("array spectrum", "spectrum", budgets.array_spectrum_instructions),
-        of_array("76-32-16-1", "mlp_8_1", budgets.array_network_instructions),
+        of_array("100-32-16-1", "mlp_structure_8_1", budgets.array_network_instructions),
         of_array("array, all of it", "slow_frame", budgets.array_slow_frame_instructions),
     ];
     let lines = || lines.iter().chain(&array_lines);

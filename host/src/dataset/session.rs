@@ -41,8 +41,8 @@ pub struct Sizes {
 }
 
 impl Sizes {
-    /// The default.
-    pub const DEFAULT_TRAIN: usize = 4;
+    /// The default: what the network that ships learned from.
+    pub const DEFAULT_TRAIN: usize = 24;
 
     /// In proportion to those to learn from.
     #[must_use]

@@ -15,7 +15,7 @@ pub enum Story {
     Pour,
     /// The first task of section 6: picked up, and placed back.
     Pick,
-    /// Knocks, arm swing, tremor, the motor: nothing slips.
+    /// Knocks, arm swing, tremor, the motor, a bad supply: nothing slips.
     Disturb,
 }
 
@@ -57,6 +57,8 @@ impl Story {
         let (_, text) = found.with_context(|| format!("the scene {name} is not there"))?;
         let mut scene: Table = text.parse()?;
         let duration_s = self.retell(&mut scene, rng);
+        // A bad supply or a motor's cable is one more disturbance, and no slip.
+        let noisier = if self == Self::Disturb { rng.random_range(NOISIER) } else { 1.0 };
         let numbers = [
             ("contact", "mu_s", session.mu_s),
             ("contact", "mu_d", session.mu_d),
@@ -69,7 +71,7 @@ impl Story {
             ("array", "place_mm", session.place_mm),
             ("array", "mv_per_n", session.mv_per_n),
             ("array", "spread", session.spread),
-            ("array", "noise_mv", session.noise_mv),
+            ("array", "noise_mv", session.noise_mv * noisier),
         ];
         for (section, key, value) in numbers {
             put(&mut scene, section, key, Value::from(value));
@@ -154,6 +156,9 @@ const POUR_S: f64 = 26.0;
 const PICK_S: f64 = 9.0;
 /// How long the disturbances last, s; in the last 3 s the grip changes.
 const DISTURB_S: f64 = 13.0;
+
+/// How much more noise than its session a disturbed recording has.
+const NOISIER: std::ops::Range<f64> = 1.0..5.0;
 
 /// How somebody closes on the box, and opens, per mille.
 const DUTY: i64 = 300;

@@ -32,7 +32,7 @@ pub struct KernelSymbols {
     pub orders: u64,
     /// The reading: ten half-words.
     pub reading: u64,
-    /// The answer: 76 half-words of features.
+    /// The answer: its features, a half-word each.
     pub features: u64,
     /// The answer's logit.
     pub logit: u64,

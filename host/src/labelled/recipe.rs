@@ -90,6 +90,8 @@ pub struct Features {
     pub covariance_knee: Option<u32>,
     /// Power of a spectral bin below which a feature is straight, samples^2.
     pub spectrum_knee: Option<u32>,
+    /// A frame of a structure function below which a feature is straight, samples^2 times ten.
+    pub structure_knee: Option<u32>,
 }
 
 fn one() -> Spanned<f64> {

@@ -95,23 +95,30 @@ impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const
     /// grows until there is something to judge by again.
     pub fn push(&mut self, reading: &Reading) -> ArrayVerdict {
         self.feel(reading);
+        self.compare();
         self.see();
         self.decide()
     }
 
-    /// The first third of [`push`](Self::push): features. A tick that did all would last into the next frame's first scan.
+    /// The first of four parts of [`push`](Self::push): covariance and spectrum. A tick that did all would last into the
+    /// next frame's first scan.
     pub fn feel(&mut self, reading: &Reading) {
-        self.felt = self.preprocessor.push(reading).is_some();
+        self.preprocessor.take(reading);
     }
 
-    /// The second third: half of the first layer.
+    /// The second part: structure functions, and the features. Once for each [`feel`](Self::feel).
+    pub fn compare(&mut self) {
+        self.felt = self.preprocessor.finish().is_some();
+    }
+
+    /// The third part: half of the first layer.
     pub fn see(&mut self) {
         if self.felt {
             self.model.network.see_some(self.preprocessor.features(), 0..H1 / 2, &mut self.seen);
         }
     }
 
-    /// The last third: the other half, the rest of the network, and the verdict on what was felt. Once for each
+    /// The last part: the other half, the rest of the network, and the verdict on what was felt. Once for each
     /// [`feel`](Self::feel).
     pub fn decide(&mut self) -> ArrayVerdict {
         self.logit = self.evidence();

@@ -51,7 +51,7 @@ impl<const I: usize, const O: usize> Layer<I, O> {
     /// to become an activation.
     ///
     /// # Errors
-    /// If `|bias| + 2^15 (sum of |weights|)` of a row is 2^31 or more, or the shift is. 76 weights of 8 bits always fit.
+    /// If `|bias| + 2^15 (sum of |weights|)` of a row is 2^31 or more, or the shift is. 100 weights of 8 bits always fit.
     pub const fn new(weights: [[i16; I]; O], bias: [i32; O], shift: u32) -> Result<Self, TooLarge> {
         let mut output = 0;
         while output < O {

@@ -16,17 +16,17 @@ use core::panic::PanicInfo;
 use cortex_m_rt::entry;
 // Brings the interrupt vectors that the linker's script asks for.
 use embassy_stm32 as _;
-use tenax_logic::array::specimen;
-use tenax_logic::array::{ArrayDetector, ArrayVerdict, Reading};
+use tenax_logic::array::{ArrayVerdict, Reading, ShippedDetector, shipped};
 
 use self::parts::Parts;
 use self::rivals::Rivals;
 
-type Detector = ArrayDetector<'static, 32, 1, 16>;
+type Detector = ShippedDetector;
+
 #[entry]
 fn main() -> ! {
     // The compiler is not to know the weights: it would write them into the code.
-    let model = black_box(&specimen::MODEL);
+    let model = black_box(&shipped::MODEL);
     let mut detector = Detector::new(model);
     let (mut parts, mut rivals) = (Parts::default(), Rivals::default());
     loop {

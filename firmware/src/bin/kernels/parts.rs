@@ -3,13 +3,19 @@
 use core::hint::black_box;
 
 use tenax_logic::array::covariance::SlidingCovariance;
+use tenax_logic::array::logarithm::Knee;
+use tenax_logic::array::past::Past;
 use tenax_logic::array::spectrum::SlidingSpectrum;
+use tenax_logic::array::structure::{self, STRUCTURES, Structure, WINDOWS};
 use tenax_logic::array::{BINS, ELEMENTS, Features, Preprocessor, PreprocessorConfig, Reading};
 
 /// Their state.
 pub struct Parts {
     covariance: SlidingCovariance<10>,
     spectrum: SlidingSpectrum<40>,
+    past: Past,
+    structure: Structure,
+    knees: [Knee; WINDOWS],
     /// The windows of the paper's figure 6.
     features: Preprocessor<10, 40>,
     features_half: Preprocessor<5, 20>,
@@ -22,6 +28,9 @@ impl Default for Parts {
         Self {
             covariance: SlidingCovariance::default(),
             spectrum: SlidingSpectrum::default(),
+            past: Past::default(),
+            structure: Structure::default(),
+            knees: structure::knees(config.structure_knee),
             features: Preprocessor::new(config),
             features_half: Preprocessor::new(config),
             features_least: Preprocessor::new(config),
@@ -36,6 +45,8 @@ impl Parts {
         tenax_kernel_covariance(&mut self.covariance, &numbers);
         black_box(self.covariance.entries());
         black_box(tenax_kernel_spectrum(&mut self.spectrum, numbers.iter().sum()));
+        self.past.push(reading);
+        black_box(tenax_kernel_structure(&mut self.structure, &self.past, &self.knees));
         black_box(tenax_kernel_features_10_40(&mut self.features, reading));
         black_box(tenax_kernel_features_5_20(&mut self.features_half, reading));
         black_box(tenax_kernel_features_1_10(&mut self.features_least, reading));
@@ -53,6 +64,19 @@ fn tenax_kernel_covariance(covariance: &mut SlidingCovariance<10>, differences: 
 fn tenax_kernel_spectrum(spectrum: &mut SlidingSpectrum<40>, sum: i32) -> [f32; BINS] {
     spectrum.push(sum);
     spectrum.powers()
+}
+
+#[inline(never)]
+#[unsafe(no_mangle)]
+fn tenax_kernel_structure(
+    structure: &mut Structure,
+    past: &Past,
+    knees: &[Knee; WINDOWS],
+) -> [i16; STRUCTURES] {
+    structure.push(past);
+    let mut features = [0; STRUCTURES];
+    structure.compress(knees, &mut features);
+    features
 }
 
 #[inline(never)]

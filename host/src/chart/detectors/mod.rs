@@ -135,10 +135,10 @@ mod tests {
 
     fn costs() -> BTreeMap<String, u64> {
         let costs =
-            [("features_10_40", 2_000), ("mlp_8_1", 3_500), ("mlp_8_5", 7_000), ("mlp_float_1", 9_600)];
+            [("features_10_40", 2_500), ("mlp_8_1", 3_500), ("mlp_8_5", 7_000), ("mlp_float_1", 9_600)];
         costs
             .iter()
-            .chain(&[("logistic_8_1", 200), ("slow_frame", 9_100)])
+            .chain(&[("logistic_8_1", 200), ("slow_frame", 9_100), ("structure", 500)])
             .map(|&(n, c)| (n.to_owned(), c))
             .collect()
     }

@@ -8,8 +8,9 @@ use serde::Deserialize;
 /// One line of the table.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 pub struct Row {
-    /// `mlp` (76-32-16-1), `queue` (the same on queued features, 380-32-16-1), `logistic`, `svm` (linear), `lstm`,
-    /// `lstm-autoencoder` (16 cells over ten frames).
+    /// On the paper's features `mlp` (76-32-16-1), `queue` (the same on queued features, 380-32-16-1), `logistic`, `svm`
+    /// (linear), `lstm`, `lstm-autoencoder` (16 cells over ten frames); with structure functions `mlp-structure`
+    /// (100-32-16-1).
     pub classifier: String,
     /// `float`, `16` or `8`: its weights.
     pub precision: String,
@@ -48,22 +49,25 @@ impl Row {
         variant
     }
 
-    /// The kernels that it takes.
-    fn kernels(&self) -> Vec<String> {
+    /// The kernels that it takes, and the one in them that it does not need.
+    fn kernels(&self) -> (Vec<String>, Option<String>) {
         if self.shipped {
-            return vec!["slow_frame".to_owned()];
+            return (vec!["slow_frame".to_owned()], None);
         }
         let classifier = match self.classifier.as_str() {
             // One weighted sum each.
             "svm" => "logistic",
             // An encoder is an LSTM; the decoder is only for training.
             "lstm-autoencoder" => "lstm",
+            "mlp-structure" => "mlp_structure",
             other => other,
         };
-        vec![
+        let kernels = vec![
             format!("features_{}", self.window.replace('/', "_")),
             format!("{classifier}_{}_{}", self.precision, self.lookback),
-        ]
+        ];
+        // The features' kernel makes all of them.
+        (kernels, (classifier != "mlp_structure").then(|| "structure".to_owned()))
     }
 }
 
@@ -92,13 +96,15 @@ pub fn read(table: &str, instructions: &BTreeMap<String, u64>) -> Result<Vec<Mea
         let row: Row = row.with_context(|| format!("line {line} of the detectors' table"))?;
         let is_part = (0.0..=1.0).contains(&row.accuracy);
         ensure!(is_part, "line {line}: the accuracy is a part of all steps, 0 to 1, not {}", row.accuracy);
-        let mut sum = 0;
-        for kernel in row.kernels() {
-            sum += instructions.get(&kernel).with_context(|| {
+        let cost = |kernel: &String| {
+            instructions.get(kernel).copied().with_context(|| {
                 let known: Vec<&str> = instructions.keys().map(String::as_str).collect();
                 format!("line {line}: the kernels' image has no `{kernel}`, only {}", known.join(", "))
-            })?;
-        }
+            })
+        };
+        let (needed, not_needed) = row.kernels();
+        let sum: u64 = needed.iter().map(cost).sum::<Result<u64>>()?;
+        let sum = sum.saturating_sub(not_needed.as_ref().map_or(Ok(0), cost)?);
         all.push(Measured { row, instructions: sum });
     }
     ensure!(!all.is_empty(), "the detectors' table is empty: `tenax train` writes it");

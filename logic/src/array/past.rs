@@ -1,0 +1,96 @@
+//! What the elements read in the last half second, and how much that changed.
+
+use tenax_hal_shim::channel::{ARRAY, CHANNELS, sample_from_mv};
+
+use super::{ELEMENTS, Reading};
+
+/// The longest lag of a change, slow frames: half a second, for sensors that creep.
+pub const LAG_MAX: usize = 40;
+const FRAMES: usize = LAG_MAX + 1;
+
+/// The last readings of every element.
+#[derive(Clone, Debug)]
+pub struct Past {
+    frames: [[u16; ELEMENTS]; FRAMES],
+    newest: usize,
+    /// For how many frames up to now each element has had a reading, `FRAMES` at most.
+    runs: [u8; ELEMENTS],
+}
+
+/// What one more reading brought.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Arrival {
+    /// Elements without a reading.
+    pub dead: usize,
+    /// Those that had one the frame before.
+    pub gone: [bool; ELEMENTS],
+    /// How much the sum of the elements changed, samples; one without a reading keeps what it had.
+    pub change: i32,
+    /// The part of it that belongs to elements that had no reading the frame before.
+    pub missed: i32,
+}
+
+/// How much each element changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Changes {
+    /// Samples; 0 where it is not known, since the element had no reading all the while.
+    pub of: [i32; ELEMENTS],
+    /// Of how many elements it is known.
+    pub known: i32,
+}
+
+impl Default for Past {
+    /// Nothing was read, and nothing presses.
+    fn default() -> Self {
+        let rest = sample_from_mv(CHANNELS[ARRAY].rest_mv);
+        Self { frames: [[rest; ELEMENTS]; FRAMES], newest: 0, runs: [0; ELEMENTS] }
+    }
+}
+
+impl Past {
+    /// Takes a slow frame's reading.
+    pub fn push(&mut self, reading: &Reading) -> Arrival {
+        let mut arrival = Arrival::default();
+        let mut now = self.frames.get(self.newest).copied().unwrap_or_default();
+        let elements = now.iter_mut().zip(&mut self.runs).zip(reading).zip(&mut arrival.gone);
+        for (((last, run), reading), gone) in elements {
+            let Some(sample) = *reading else {
+                *gone = *run > 0;
+                *run = 0;
+                arrival.dead += 1;
+                continue;
+            };
+            let change = i32::from(sample) - i32::from(*last);
+            arrival.change += change;
+            if *run == 0 {
+                arrival.missed += change;
+            }
+            *run = (*run + 1).min(FRAMES as u8);
+            *last = sample;
+        }
+        self.newest = if self.newest + 1 < FRAMES { self.newest + 1 } else { 0 };
+        if let Some(frame) = self.frames.get_mut(self.newest) {
+            *frame = now;
+        }
+        arrival
+    }
+
+    /// The change since `lag` slow frames before, 1 to [`LAG_MAX`] (equation 1: 1). What is beyond is cut.
+    #[must_use]
+    #[inline]
+    pub fn changes(&self, lag: usize) -> Changes {
+        let lag = lag.clamp(1, LAG_MAX);
+        let mut changes = Changes { of: [0; ELEMENTS], known: 0 };
+        let before = if self.newest >= lag { self.newest - lag } else { self.newest + FRAMES - lag };
+        let (Some(now), Some(then)) = (self.frames.get(self.newest), self.frames.get(before)) else {
+            return changes;
+        };
+        for (((change, now), then), &run) in changes.of.iter_mut().zip(now).zip(then).zip(&self.runs) {
+            if usize::from(run) > lag {
+                *change = i32::from(*now) - i32::from(*then);
+                changes.known += 1;
+            }
+        }
+        changes
+    }
+}

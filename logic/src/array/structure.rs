@@ -1,0 +1,111 @@
+//! How soon each element's force forgets: structure functions of what the elements do apart from each other.
+//!
+//! Where a surface slides over an element its contacts are renewed, and with them the element's share of the load; how
+//! far it has to slide for that does not depend on how fast it slides. So the mean square of a force's change over a time,
+//! its structure function (Kolmogorov 1941), rises with that time until the contacts are new ones, and **where it stops
+//! rising tells the speed**, whatever gain, load and noise are: noise alone gives the same at every lag. The covariance of
+//! changes over one frame (equations 1 to 4) sees how large they are and not how fast they come, and its window remembers a
+//! slip for as long as it is long; here each lag has six windows, one behind the other, so that the end of a slip is seen too.
+//!
+//! What all elements do together, a knock or the motor, is taken off: `n sum(q^2) - (sum q)^2` of the `n` changes `q` is `n`
+//! times their squares about their mean, and an integer. (Ours; the paper has no such thing.)
+
+use super::ELEMENTS;
+use super::logarithm::Knee;
+use super::past::{Changes, Past};
+
+/// Slow frames that a change is over.
+pub const LAGS: [usize; 4] = [1, 2, 4, 8];
+/// Windows of each lag.
+pub const WINDOWS: usize = 6;
+/// Where they begin and end, slow frames ago: the newest change, the one before, then octaves.
+const EDGES: [usize; WINDOWS + 1] = [0, 1, 2, 4, 8, 16, 32];
+const FRAMES: usize = EDGES[WINDOWS];
+/// Numbers that it gives.
+pub const STRUCTURES: usize = LAGS.len() * WINDOWS;
+/// Readings until all windows are full.
+pub const READY_AFTER: usize = FRAMES + LAGS[LAGS.len() - 1];
+
+/// A change counts as this at most, samples: 1 N of one element within 0.1 s. Sixteen sums of ten squares of it, times
+/// ten, fit in a `u32`.
+pub const CHANGE_MAX: i32 = 1 << 10;
+const _: () = assert!(
+    (ELEMENTS * ELEMENTS) as u64 * (CHANGE_MAX as u64 * CHANGE_MAX as u64) * (FRAMES / 2) as u64
+        <= u32::MAX as u64
+);
+
+/// The structure functions of the last 32 slow frames.
+#[derive(Clone, Debug)]
+pub struct Structure {
+    energies: [[u32; FRAMES]; LAGS.len()],
+    /// Where the newest energy of each lag is.
+    newest: usize,
+    sums: [[u32; WINDOWS]; LAGS.len()],
+}
+
+impl Default for Structure {
+    /// That of an array where nothing ever happened.
+    fn default() -> Self {
+        Self { energies: [[0; FRAMES]; LAGS.len()], newest: 0, sums: [[0; WINDOWS]; LAGS.len()] }
+    }
+}
+
+impl Structure {
+    /// Takes the newest changes.
+    pub fn push(&mut self, past: &Past) {
+        self.newest = (self.newest + FRAMES - 1) % FRAMES;
+        for ((energies, sums), lag) in self.energies.iter_mut().zip(&mut self.sums).zip(LAGS) {
+            let changed = apart(&past.changes(lag));
+            let mut entering = changed;
+            // What leaves a window enters the one behind it.
+            for (sum, edge) in sums.iter_mut().zip(&EDGES[1..]) {
+                let leaving = energies.get((self.newest + edge) % FRAMES).copied().unwrap_or_default();
+                *sum = *sum + entering - leaving;
+                entering = leaving;
+            }
+            if let Some(oldest) = energies.get_mut(self.newest) {
+                *oldest = changed;
+            }
+        }
+    }
+
+    /// Forgets all: an element is gone, and what it said last, which is in every sum, is not to be believed.
+    pub fn forget(&mut self) {
+        self.energies = [[0; FRAMES]; LAGS.len()];
+        self.sums = [[0; WINDOWS]; LAGS.len()];
+    }
+
+    /// For each lag, the newest window first: `n` times the sum over the window of squares about their mean, samples^2.
+    #[must_use]
+    pub fn sums(&self) -> &[[u32; WINDOWS]; LAGS.len()] {
+        &self.sums
+    }
+
+    /// The sums as features, lag by lag.
+    pub fn compress(&self, knees: &[Knee; WINDOWS], features: &mut [i16]) {
+        for (features, sums) in features.chunks_exact_mut(WINDOWS).zip(&self.sums) {
+            for ((feature, knee), &sum) in features.iter_mut().zip(knees).zip(sums) {
+                *feature = knee.of(sum as f32);
+            }
+        }
+    }
+}
+
+/// A knee for each window from that of a single frame.
+#[must_use]
+pub fn knees(of_frame: u32) -> [Knee; WINDOWS] {
+    core::array::from_fn(|window| Knee::at(of_frame * (EDGES[window + 1] - EDGES[window]) as u32))
+}
+
+/// What elements did apart from each other: `n` times the squares of their changes about the mean.
+#[inline]
+fn apart(changes: &Changes) -> u32 {
+    let (mut sum, mut squares) = (0, 0);
+    for change in changes.of {
+        let change = change.clamp(-CHANGE_MAX, CHANGE_MAX);
+        sum += change;
+        squares += change * change;
+    }
+    // Never negative (Cauchy and Schwarz): what is not known is 0 and not counted.
+    (changes.known * squares - sum * sum) as u32
+}
