@@ -10,6 +10,7 @@ use clap::ValueEnum;
 
 use super::progress::Progress;
 use super::workspace;
+use crate::board::agreement::Agreement;
 use crate::learn::report::{Report, Text};
 use crate::learn::{self, Options, Outcome, figures};
 use crate::plot::png;
@@ -83,12 +84,18 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let outcome = run(&options, &board)?;
     match args.report {
         Format::Text => print!("{}", Text(&outcome)),
-        Format::Json => println!("{}", serde_json::to_string_pretty(&Report::of(&outcome))?),
+        Format::Json => {
+            println!("{}", serde_json::to_string_pretty(&Report::of(&outcome))?);
+            if let Some(agreement) = &outcome.agreement {
+                eprintln!("  {:<26}{agreement}", "image and host's logic");
+            }
+        }
     }
     for file in write(&args.out, &outcome)? {
         eprintln!("  {:<26}{}", "written", file.display());
     }
-    Ok(ExitCode::SUCCESS)
+    let agrees = outcome.agreement.as_ref().is_none_or(Agreement::holds);
+    Ok(if agrees { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
 /// All of it, with a bar for each part.

@@ -5,7 +5,10 @@ use std::num::NonZeroU64;
 use tenax::board::agreement::Agreement;
 use tenax::board::emulated::Options;
 use tenax::board::simulated;
-use tenax_hal_shim::channel::SCAN_HZ;
+use tenax::learn::chain::Chain;
+use tenax::learn::finger::Finger;
+use tenax::learn::trial::Setup;
+use tenax_hal_shim::channel::{FRAME_HZ, SCAN_HZ};
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{Down, Setting};
 use tenax_hal_shim::words::Code;
@@ -86,6 +89,22 @@ fn the_host_says_the_same_when_it_takes_each_command_in_the_images_tick() {
         assert!(!Agreement::of(&run).holds(), "{other} instead of {own}");
         run.taken[40].0 = own;
     }
+}
+
+/// What `tenax learn` says of all its trials: the camera teaches over the line, and every weight is the host's.
+#[test]
+fn a_lesson_teaches_the_image_what_it_teaches_the_host() {
+    let lesson = || Chain::new(vec![Setup::new(&Finger::plain(1), 7, true).expect("a lesson")]);
+    let image = run(lesson(), &Options::default());
+    let agreement = Agreement::of(&image);
+    assert!(agreement.holds(), "{agreement}");
+    assert!(image.networks[0].updates > 1_000, "{:?}", image.networks);
+    // It is not the run that the host's own board makes of the lesson: there a command is taken in its own frame.
+    let (host, _) = simulated::run(lesson(), &mut |_| {});
+    let late = image.taken.iter().zip(&host.taken).filter(|(image, host)| image.0 > host.0).count();
+    assert!(late > 0 && image.slows != host.slows);
+    let latest = image.taken.iter().zip(&host.taken).map(|(image, host)| image.0 - host.0).max();
+    assert!(latest <= Some(FRAME_HZ / 1_000), "{latest:?} ticks late");
 }
 
 #[test]
