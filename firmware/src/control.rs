@@ -5,7 +5,7 @@ use embassy_stm32::wdg::IndependentWatchdog;
 use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, select_of_place};
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::{MotorBridge, MotorDrive};
-use tenax_hal_shim::wire::{Down, Up};
+use tenax_hal_shim::wire::{Down, Refusal, Up};
 use tenax_logic::fingertip::Fingertip;
 use tenax_logic::store::keeper::Keeper;
 
@@ -85,7 +85,7 @@ impl Control {
 
     fn take_commands(&mut self) {
         for command in core::iter::from_fn(mail::next_command).take(COMMANDS_PER_TICK) {
-            let refused = self.fingertip.command(&command.message).err();
+            let refused = tenax_control_command(&mut self.fingertip, &command.message).err();
             match command.message {
                 Down::Samples => mail::post(self.samples.message()),
                 Down::Network => mail::post(Up::Network(self.fingertip.network())),
@@ -101,6 +101,14 @@ impl Control {
 #[unsafe(no_mangle)]
 fn tenax_control_tick(fingertip: &mut Fingertip, frame: &Frame) -> MotorDrive {
     fingertip.tick(frame)
+}
+
+/// A command taken, before the tick of the frame that came last. Not inlined, so that the emulated board can tell by this
+/// name before which tick that was: a replay gives it to the host's logic there.
+#[inline(never)]
+#[unsafe(no_mangle)]
+fn tenax_control_command(fingertip: &mut Fingertip, command: &Down) -> Result<(), Refusal> {
+    fingertip.command(command)
 }
 
 /// Runs control from frame to frame, for ever.

@@ -1,5 +1,6 @@
 //! The boards that a plant can be connected to, and what a run on one leaves behind.
 
+pub mod agreement;
 #[cfg(feature = "emulator")]
 pub mod emulated;
 pub mod line_log;
@@ -7,7 +8,7 @@ pub mod simulated;
 
 use tenax_hal_shim::frame::Scan;
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{Counters, Event, NetworkState, Refusal, Slow};
+use tenax_hal_shim::wire::{Counters, Down, Event, NetworkState, Refusal, Slow};
 use tenax_hal_shim::words::{Fault, Kept};
 
 /// What the core spent, in instructions of the emulated Cortex-M4.
@@ -36,6 +37,9 @@ pub struct Run {
     pub drives: Vec<MotorDrive>,
     /// Whether the object moved relative to the finger at each scan, for the oracle and the scores.
     pub slipping: Vec<bool>,
+    /// Commands that the logic took, each with the sequence number of the frame before whose tick it took it. After a
+    /// restart the emulated board's count goes on.
+    pub taken: Vec<(u32, Down)>,
     /// Slow frames, as they came up the line.
     pub slows: Vec<Slow>,
     /// Events, as they came up the line.

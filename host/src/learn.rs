@@ -1,8 +1,12 @@
 //! `tenax learn`: a fingertip teaches itself slip from a camera, and shows what that is worth (Tada 2006, section III).
 //!
-//! One [`finger`] goes through lessons and held-out [`trial`]s: on the host ([`bench`]), and as one [`chain`] on the
-//! emulated board. What it has learned is then tried on the host, whose logic is the image's bit for bit: in an hour of
-//! [`holding`], in a lift and a pour with the [`reflex`], and on fingers made by chance.
+//! One [`finger`] goes through lessons and held-out [`trial`]s: on the host ([`bench`]), or as one [`chain`] on the
+//! emulated board. There most commands are taken a tick later, for the line needs more time than the end of a frame leaves:
+//! the hand moves half a millisecond later, and no code is quite what it would have been. So the two are compared by giving
+//! the host's logic the image's own codes, and each command in the tick in which the image took it ([`Agreement`]).
+//!
+//! What the same lessons teach on the host is then tried there: in an hour of [`holding`], in a lift and a pour with the
+//! [`reflex`], and on fingers made by chance.
 
 pub mod bench;
 pub mod chain;
@@ -17,6 +21,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
+use crate::board::agreement::Agreement;
 use crate::session::Board;
 use bench::Bench;
 use finger::Finger;
@@ -58,8 +63,9 @@ pub struct Outcome {
     pub options: Options,
     /// Who ran the trials.
     pub board: &'static str,
-    /// Whether the board's trials are the host's, tick for tick. None if the host ran them.
-    pub agrees: Option<bool>,
+    /// Whether the board said what the host's logic says to the same codes and commands, tick for tick. None if the host
+    /// ran the trials.
+    pub agreement: Option<Agreement>,
     /// A trial of the finger before it learned: the largest output, 128 would be 1.
     pub untaught: u8,
     /// The lessons.
@@ -93,17 +99,13 @@ pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Resu
     let silent = untaught.trial(Setup::new(&finger, held_out(options.seed, 0), false)?);
     let loudest = silent.outputs.iter().flatten().map(|output| output.unsigned_abs()).max();
 
-    let (learned, lessons, trials, felt) = on_host(&finger, options, progress)?;
-    let (trials, agrees) = match board {
-        Board::Host => (trials, None),
+    let (learned, lessons, felt) = lessons_on_host(&finger, options, progress)?;
+    let (trials, agreement) = match board {
+        Board::Host => (trials_on_host(&finger, learned.clone(), options, progress)?, None),
         #[cfg(feature = "emulator")]
         Board::Emulated { .. } => {
-            let emulated = on_board(&finger, options, board, progress)?;
-            let same = |(host, board): (&Trial, &Trial)| {
-                (&host.outputs, &host.slips) == (&board.outputs, &board.slips)
-            };
-            let agrees = lessons.iter().chain(&trials).zip(&emulated).all(same);
-            (emulated.into_iter().skip(LESSONS as usize).collect(), Some(agrees))
+            let (trials, agreement) = on_board(&finger, options, board, progress)?;
+            (trials, Some(agreement))
         }
     };
 
@@ -126,7 +128,7 @@ pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Resu
     Ok(Outcome {
         options: *options,
         board: board.name(),
-        agrees,
+        agreement,
         untaught: loudest.unwrap_or(0),
         score: Score::of(&trials),
         lessons,
@@ -139,10 +141,10 @@ pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Resu
     })
 }
 
-/// A finger that has learned, on the host; its lessons and held-out trials, and what it felt in the last three lessons.
-type OnHost = (Bench, Vec<Trial>, Vec<Trial>, Vec<figures::Felt>);
+/// A finger that has learned, on the host; its lessons, and what it felt in the last three.
+type Learned = (Bench, Vec<Trial>, Vec<figures::Felt>);
 
-fn on_host(finger: &Finger, options: &Options, progress: Progress) -> anyhow::Result<OnHost> {
+fn lessons_on_host(finger: &Finger, options: &Options, progress: Progress) -> anyhow::Result<Learned> {
     let mut bench = Bench::default();
     let (mut lessons, mut felt) = (Vec::new(), Vec::new());
     for n in 0..LESSONS {
@@ -156,23 +158,31 @@ fn on_host(finger: &Finger, options: &Options, progress: Progress) -> anyhow::Re
         }
         progress("learning", n as f64 / LESSONS as f64);
     }
-    let learned = bench.clone();
-    let mut trials = Vec::new();
-    for n in 0..options.trials {
-        trials.push(bench.trial(Setup::new(finger, held_out(options.seed, n), false)?));
-        progress("held-out trials", n as f64 / options.trials as f64);
-    }
-    Ok((learned, lessons, trials, felt))
+    Ok((bench, lessons, felt))
 }
 
-/// The same lessons and trials as one chain on a board.
+fn trials_on_host(
+    finger: &Finger,
+    mut learned: Bench,
+    options: &Options,
+    progress: Progress,
+) -> anyhow::Result<Vec<Trial>> {
+    let mut trials = Vec::new();
+    for n in 0..options.trials {
+        trials.push(learned.trial(Setup::new(finger, held_out(options.seed, n), false)?));
+        progress("held-out trials", n as f64 / options.trials as f64);
+    }
+    Ok(trials)
+}
+
+/// Lessons and trials as one chain on a board: the trials, and whether the host's logic says the same all the way.
 #[cfg(feature = "emulator")]
 fn on_board(
     finger: &Finger,
     options: &Options,
     board: &Board,
     progress: Progress,
-) -> anyhow::Result<Vec<Trial>> {
+) -> anyhow::Result<(Vec<Trial>, Agreement)> {
     let mut setups = Vec::new();
     for n in 0..LESSONS {
         setups.push(Setup::new(finger, lesson(options.seed, n), true)?);
@@ -183,7 +193,8 @@ fn on_board(
     let chain = chain::Chain::new(setups);
     let all_s = tenax_scene::plant::Plant::duration_s(&chain);
     let (run, chain) = board.run(chain, &mut |s| progress("on the emulated board", s / all_s))?;
-    Ok(chain.trials(&run))
+    let agreement = Agreement::of(&run);
+    Ok((chain.trials(&run).split_off(LESSONS as usize), agreement))
 }
 
 /// A finger made by chance: the same lessons, and some held-out trials.

@@ -1,5 +1,6 @@
 //! The emulated board: the real image, instruction by instruction, with a plant at its pins.
 
+mod commands;
 mod cost;
 mod flash;
 pub mod kernels;
@@ -109,10 +110,11 @@ pub fn run<P: Plant + 'static>(
     let frames = frames_in(plant.duration_s());
     let (sender, reports) = mpsc::channel();
     let cost = CostMeter::new(&symbols);
-    let watched = cost.watched();
+    let [tick, after_tick] = cost.watched();
     let mishaps = Mishaps::new(&options.mishaps);
     let flash = FlashArray::new(1_000 * options.word_us);
-    let world = World::new(plant, frames, mishaps, cost, flash, symbols.stack.clone(), sender);
+    let watched = [tick, after_tick, symbols.command];
+    let world = World::new(plant, frames, mishaps, cost, flash, &symbols, sender);
     let mut images =
         vec![Image::read(image, None).context("reading the image")?, cost::paint(&symbols.stack)?];
     if let Some((address, bytes)) = &options.flash {
@@ -136,7 +138,9 @@ pub fn run<P: Plant + 'static>(
     let mut run = world.run;
     run.flash = world.flash.done;
     line_log::decode(&mut run);
+    run.taken = world.commands.taken(&run.acks);
     // What the last scans led to had time to come up the line; what came after them was no part of the run.
+    run.taken.retain(|(before, _)| *before < frames);
     run.slows.retain(|slow| slow.frame < frames);
     run.events.retain(|event| event.frame < frames);
     run.virtual_s = run.scans.len() as f64 / f64::from(SCAN_HZ);
@@ -147,7 +151,7 @@ pub fn run<P: Plant + 'static>(
 fn execute<P: Plant + 'static>(
     images: &[Image],
     rate: NonZeroU64,
-    watched: [u64; 2],
+    watched: [u64; 3],
     world: World<P>,
 ) -> Result<Finished<Nucleo, World<P>>> {
     let board = Nucleo::new(rate, Line::default())?;

@@ -7,7 +7,7 @@ use std::time::Instant;
 use tenax_hal_shim::channel::{SCAN_HZ, SCANS_PER_FRAME};
 use tenax_hal_shim::frame::{Frame, Scan, scan_of_pins};
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{Counters, Down, Slow};
+use tenax_hal_shim::wire::{Counters, Down};
 use tenax_logic::fingertip::Fingertip;
 use tenax_scene::plant::Plant;
 
@@ -55,6 +55,7 @@ fn closed_loop<P: Plant>(mut plant: P, judge: Judge, progress: &mut dyn FnMut(f6
         for command in &commands {
             // A refusal goes back to whoever sent it; there is no line here.
             let _ = fingertip.command(command);
+            run.taken.push((sequence, *command));
             if *command == Down::Network {
                 run.networks.push(fingertip.network());
             }
@@ -90,23 +91,4 @@ fn seconds(scans: usize) -> f64 {
 /// Whole frames in `duration_s`.
 pub(super) fn frames_in(duration_s: f64) -> u32 {
     (duration_s * f64::from(SCAN_HZ) / SCANS_PER_FRAME as f64) as u32
-}
-
-/// What the host's logic makes of codes that were recorded on any board: its slow frames.
-///
-/// `commands` are those that the board took, each with the sequence number of the frame before whose tick it took it.
-/// Scans that do not fill a frame are left out.
-#[must_use]
-pub fn replay_scans(scans: &[Scan], commands: &[(u32, Down)]) -> Vec<Slow> {
-    let mut fingertip = Fingertip::default();
-    let (frames, _) = scans.as_chunks::<SCANS_PER_FRAME>();
-    let mut slows = Vec::new();
-    for (sequence, scans) in (0u32..).zip(frames) {
-        for (_, command) in commands.iter().filter(|(at, _)| *at == sequence) {
-            let _ = fingertip.command(command);
-        }
-        fingertip.tick(&Frame::from_scans(sequence, scans));
-        slows.extend(fingertip.take_slow());
-    }
-    slows
 }

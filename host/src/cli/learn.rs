@@ -10,6 +10,7 @@ use anyhow::{Context, ensure};
 use super::format::Format;
 use super::progress::Progress;
 use super::workspace;
+use crate::board::agreement::Agreement;
 use crate::learn::report::{Report, Text};
 use crate::learn::{self, Options, Outcome, figures};
 use crate::plot::png;
@@ -74,10 +75,14 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let board = if args.host { Board::Host } else { Board::emulated(&workspace::root()?)? };
     let outcome = run(&options, &board)?;
     args.report.print(&Text(&outcome), &Report::of(&outcome))?;
+    if let (Format::Json, Some(agreement)) = (args.report, &outcome.agreement) {
+        eprintln!("  {:<26}{agreement}", "image and host's logic");
+    }
     for file in write(&args.out, &outcome)? {
         eprintln!("  {:<26}{}", "written", file.display());
     }
-    Ok(ExitCode::SUCCESS)
+    let agrees = outcome.agreement.as_ref().is_none_or(Agreement::holds);
+    Ok(if agrees { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
 /// All of it, with a bar for each part.

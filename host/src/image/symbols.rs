@@ -1,4 +1,4 @@
-//! What an image's symbol table says: where its tick is, and which memory is nobody's but the stack's.
+//! What an image's symbol table says: where its tick and its commands are, and which memory is nobody's but the stack's.
 
 use std::ops::Range;
 use std::path::Path;
@@ -8,6 +8,8 @@ use object::{File, Object, ObjectSection, ObjectSymbol};
 
 /// The name of the tick of the logic in the image.
 const TICK: &str = "tenax_control_tick";
+/// The name of what gives the logic a command.
+const COMMAND: &str = "tenax_control_command";
 
 /// Addresses in an image.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -16,6 +18,8 @@ pub struct Symbols {
     pub tick: u64,
     /// The instruction that the tick returns to.
     pub after_tick: u64,
+    /// The first instruction of taking a command.
+    pub command: u64,
     /// RAM above the image's variables: the stack grows down into it.
     pub stack: Range<u64>,
 }
@@ -30,19 +34,25 @@ impl Symbols {
     fn parse(elf: &[u8]) -> Result<Self> {
         let file = File::parse(elf).context("not an ELF file")?;
         let (tick, after_tick) = entry_and_return(&file, TICK)?;
+        let command = entry(&file, COMMAND)?;
         let stack = address_of(&file, "__sheap")?..address_of(&file, "_stack_start")?;
         ensure!(stack.start < stack.end, "leaves no RAM for the stack");
-        Ok(Self { tick, after_tick, stack })
+        Ok(Self { tick, after_tick, command, stack })
     }
 }
 
 /// Where a function begins, and the instruction that it returns to. It must be called from one place only.
 pub(super) fn entry_and_return(file: &File<'_>, name: &str) -> Result<(u64, u64)> {
-    // Bit 0 of a function's address says that it is Thumb code.
-    let entry = address_of(file, name)? & !1;
+    let entry = entry(file, name)?;
     let text = file.section_by_name(".text").context("has no .text section")?;
     let after = only_return_address(text.data()?, text.address(), entry).with_context(|| name.to_owned())?;
     Ok((entry, after))
+}
+
+/// Where a function begins.
+fn entry(file: &File<'_>, name: &str) -> Result<u64> {
+    // Bit 0 of a function's address says that it is Thumb code.
+    Ok(address_of(file, name)? & !1)
 }
 
 pub(super) fn address_of(file: &File<'_>, name: &str) -> Result<u64> {

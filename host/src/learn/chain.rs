@@ -1,4 +1,5 @@
 //! Trials one after the other on a board that is never switched off: the image itself learns from each to the next.
+//! It is asked for its network at the end of each.
 
 use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, SCAN_HZ, SCANS_PER_FRAME};
 use tenax_hal_shim::motor::MotorDrive;
@@ -63,7 +64,11 @@ impl Plant for Chain {
     }
 
     fn commands(&mut self) -> Vec<Down> {
-        self.setups[self.now].world.commands()
+        let mut commands = self.setups[self.now].world.commands();
+        if self.left == SLOW_FRAME_SCANS {
+            commands.push(Down::Network);
+        }
+        commands
     }
 
     fn slipping(&self) -> bool {

@@ -183,9 +183,8 @@ impl fmt::Display for Text<'_> {
         let mut line = |what: &str, figure: String| writeln!(f, "  {what:<26}{figure}");
         let seconds = |spread: Spread| format!("{:.3} s, sd {:.3}", spread.mean, spread.sd);
         line("learned", format!("{LESSONS} trials, seed {}, {} board", options.seed, outcome.board))?;
-        if let Some(agrees) = outcome.agrees {
-            let says = if agrees { "says the same in every tick" } else { "DIFFERS" };
-            line("the host's logic", says.to_owned())?;
+        if let Some(agreement) = &outcome.agreement {
+            line("image and host's logic", agreement.to_string())?;
         }
         line("before", format!("largest output {} of 128", outcome.untaught))?;
         line("held-out trials", format!("{}, {} missed", score.trials, score.missed))?;

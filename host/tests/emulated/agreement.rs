@@ -2,8 +2,16 @@
 
 use std::num::NonZeroU64;
 
+use tenax::board::agreement::Agreement;
 use tenax::board::emulated::Options;
-use tenax::board::simulated::{self, replay_scans};
+use tenax::board::simulated;
+use tenax::learn::chain::Chain;
+use tenax::learn::finger::Finger;
+use tenax::learn::trial::Setup;
+use tenax_hal_shim::channel::{FRAME_HZ, SCAN_HZ};
+use tenax_hal_shim::motor::{Duty, MotorDrive};
+use tenax_hal_shim::wire::{Down, Setting};
+use tenax_hal_shim::words::Code;
 
 use crate::{Swing, run};
 
@@ -18,20 +26,18 @@ fn ten_seconds_without_a_lost_code() {
     assert_eq!(counters.ticks, counters.frames);
     assert!(counters.frames > 19_500, "{counters:?}");
     // Each slow frame carries the CRC of its samples, so this is every code of every channel too.
-    let host = replay_scans(&run.scans, &[]);
-    assert_eq!(host.len(), 800);
-    assert!(host == run.slows, "the image and the host disagree, first at slow frame {:?}", {
-        host.iter().zip(&run.slows).position(|(host, image)| host != image)
-    });
+    assert_eq!(run.slows.len(), 800);
+    let agreement = Agreement::of(&run);
+    assert!(agreement.holds(), "{agreement}");
 }
 
 /// The check above can fail: one code off by one is another CRC.
 #[test]
 fn one_wrong_code_is_noticed() {
     let mut run = run(Swing::new(0.1), &Options::default());
-    assert!(replay_scans(&run.scans, &[]) == run.slows);
+    assert!(Agreement::of(&run).holds());
     run.scans[250][3] ^= 1;
-    assert!(replay_scans(&run.scans, &[]) != run.slows);
+    assert!(!Agreement::of(&run).holds());
 }
 
 #[test]
@@ -56,7 +62,49 @@ fn three_quarters_as_fast_a_core_is_fast_enough() {
     assert_eq!((run.counters.overruns, run.counters.frames_lost), (0, 0));
     // In a slow frame, the tick that judges the array and those around its end are late at this speed, and nothing is lost.
     assert!(run.counters.ticks_late <= run.counters.ticks / 25 * 4, "{:?}", run.counters);
-    assert!(replay_scans(&run.scans, &[]) == run.slows);
+    assert!(Agreement::of(&run).holds());
+}
+
+/// Commands sent at every scan of a frame, and some at once: a late one is taken a tick later, and the host's logic says
+/// the same if it is given each of them where the image took it.
+#[test]
+fn the_host_says_the_same_when_it_takes_each_command_in_the_images_tick() {
+    let mut plant = Swing::new(1.5);
+    for n in 0..40 {
+        let at_s = 0.2 + f64::from(n) * 0.025 + f64::from(n % 4) / f64::from(SCAN_HZ);
+        let drive = MotorDrive::Open(Duty::per_mille(100 + n));
+        plant = plant.sending(at_s, Down::Drive { drive, hold_ms: 10 });
+        plant = plant.sending(at_s, Down::Teach { codes: [Code::Minus, Code::Plus], age_ms: 40 });
+        if n % 10 == 9 {
+            plant = plant.sending(at_s, Down::Set(Setting::S2Permille(n))).sending(at_s, Down::Network);
+        }
+    }
+    let mut run = run(plant, &Options::default());
+    assert_eq!((run.taken.len(), run.networks.len()), (88, 4));
+    let agreement = Agreement::of(&run);
+    assert!(agreement.holds(), "{agreement}");
+    // One of them a tick early or late is another run.
+    for other in [run.taken[40].0 - 1, run.taken[40].0 + 1] {
+        let own = std::mem::replace(&mut run.taken[40].0, other);
+        assert!(!Agreement::of(&run).holds(), "{other} instead of {own}");
+        run.taken[40].0 = own;
+    }
+}
+
+/// What `tenax learn` says of all its trials: the camera teaches over the line, and every weight is the host's.
+#[test]
+fn a_lesson_teaches_the_image_what_it_teaches_the_host() {
+    let lesson = || Chain::new(vec![Setup::new(&Finger::plain(1), 7, true).expect("a lesson")]);
+    let image = run(lesson(), &Options::default());
+    let agreement = Agreement::of(&image);
+    assert!(agreement.holds(), "{agreement}");
+    assert!(image.networks[0].updates > 1_000, "{:?}", image.networks);
+    // It is not the run that the host's own board makes of the lesson: there a command is taken in its own frame.
+    let (host, _) = simulated::run(lesson(), &mut |_| {});
+    let late = image.taken.iter().zip(&host.taken).filter(|(image, host)| image.0 > host.0).count();
+    assert!(late > 0 && image.slows != host.slows);
+    let latest = image.taken.iter().zip(&host.taken).map(|(image, host)| image.0 - host.0).max();
+    assert!(latest <= Some(FRAME_HZ / 1_000), "{latest:?} ticks late");
 }
 
 #[test]

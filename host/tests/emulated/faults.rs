@@ -1,7 +1,7 @@
 //! What the image survives, and that it says so.
 
+use tenax::board::agreement::host_says;
 use tenax::board::emulated::{Mishap, Options};
-use tenax::board::simulated::replay_scans;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{Down, EventKind};
 use tenax_hal_shim::words::Fault;
@@ -26,7 +26,7 @@ fn an_overrun_costs_a_few_frames_and_is_told() {
 
     // Sequence numbers kept time and the switches kept step: from the next slow frame on, the samples are those that
     // the world had at those instants.
-    let host = replay_scans(&run.scans, &[]);
+    let host = host_says(&run.scans, &[]).slows;
     let same: Vec<bool> =
         host.iter().zip(&run.slows).map(|(host, image)| host.samples_sum == image.samples_sum).collect();
     assert_eq!((same.len(), same.iter().filter(|same| !**same).count()), (160, 1));

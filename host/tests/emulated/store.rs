@@ -1,7 +1,7 @@
 //! What the image keeps through resets and power cuts, and that keeping it costs no frame.
 
+use tenax::board::agreement::Agreement;
 use tenax::board::emulated::{Mishap, Options};
-use tenax::board::simulated::replay_scans;
 use tenax_hal_shim::flash::{BLANK, FlashArea, FlashFailed, Sector};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Down, Event, EventKind, Setting};
@@ -129,7 +129,8 @@ fn sampling_loses_nothing_while_the_network_is_saved() {
     let counters = slow_flash.counters;
     assert_eq!((counters.overruns, counters.frames_lost, counters.ticks_late), (0, 0, 0), "{counters:?}");
     assert_eq!((counters.telemetry_dropped, slow_flash.messages_missed), (0, 0));
-    assert!(replay_scans(&slow_flash.scans, &[]) == slow_flash.slows);
+    let agreement = Agreement::of(&slow_flash);
+    assert!(agreement.holds(), "{agreement}");
     // The control: the core does stand still meanwhile. A flash twenty times as slow as any costs frames.
     let hopeless = run_with(2_000);
     assert!(hopeless.counters.frames_lost > 0, "{:?}", hopeless.counters);

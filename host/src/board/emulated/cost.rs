@@ -44,6 +44,11 @@ impl CostMeter {
         }
     }
 
+    /// Ticks that have ended.
+    pub const fn ticks(&self) -> u64 {
+        self.count
+    }
+
     /// What it counted, given everything that the core executed in a second. None if there was no tick.
     pub fn cost(&self, instructions_per_s: f64) -> Option<TickCost> {
         (self.count > 0).then(|| TickCost {

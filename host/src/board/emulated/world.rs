@@ -13,6 +13,7 @@ use tenax_hal_shim::wire::{FRAME_MAX, encode};
 use tenax_scene::plant::Plant;
 
 use super::Broken;
+use super::commands::Commands;
 use super::cost::{CostMeter, stack_used};
 use super::flash::FlashArray;
 use super::line::Line;
@@ -20,6 +21,7 @@ use super::mishaps::Mishaps;
 use super::nucleo::{Nucleo, USART2};
 use super::wires::Wires;
 use crate::board::Run;
+use crate::image::symbols::Symbols;
 
 const SCAN_NS: u64 = 1_000_000_000 / SCAN_HZ as u64;
 /// While the timer's phase is not known, every this often it is looked for.
@@ -41,6 +43,8 @@ pub struct World<P> {
     pub broken: Option<Broken>,
     /// What the ticks cost.
     pub cost: CostMeter,
+    /// What was sent, and when it was taken.
+    pub commands: Commands,
     /// The flash's words.
     pub flash: FlashArray,
     /// Whole scans that the plant lasts.
@@ -54,6 +58,7 @@ pub struct World<P> {
     resets: usize,
     executed: Option<(VirtualNanos, u64)>,
     stack: Range<u64>,
+    command_entry: u64,
     /// Who is told the virtual time. Given up when the run is over.
     pub progress: Option<Sender<f64>>,
 }
@@ -66,7 +71,7 @@ impl<P: Plant> World<P> {
         mishaps: Mishaps,
         cost: CostMeter,
         flash: FlashArray,
-        stack: Range<u64>,
+        symbols: &Symbols,
         progress: Sender<f64>,
     ) -> Self {
         Self {
@@ -74,6 +79,7 @@ impl<P: Plant> World<P> {
             run: Run::default(),
             broken: None,
             cost,
+            commands: Commands::default(),
             flash,
             scans: frames as usize * SCANS_PER_FRAME,
             drained: 0,
@@ -84,7 +90,8 @@ impl<P: Plant> World<P> {
             mishaps,
             resets: 0,
             executed: None,
-            stack,
+            stack: symbols.stack.clone(),
+            command_entry: symbols.command,
             progress: Some(progress),
         }
     }
@@ -124,6 +131,7 @@ impl<P: Plant> World<P> {
                         .into_iter()
                         .flat_map(|frame| frame.iter()),
                 );
+                self.commands.send(self.command_sequence, command);
                 self.command_sequence = self.command_sequence.wrapping_add(1);
             }
         }
@@ -149,6 +157,9 @@ impl<P: Plant> World<P> {
 impl<P: Plant> Driver<Nucleo> for World<P> {
     fn on_settled(&mut self, session: &mut Session<Nucleo>, host: &mut dyn Host, settled: Settled) {
         match settled {
+            Settled::Hit(hit) if hit.address == self.command_entry => {
+                self.commands.take(self.cost.ticks() as u32)
+            }
             Settled::Hit(hit) => self.cost.hit(hit),
             Settled::Access { access, .. } => self.flash.accessed(&access, session, host),
             Settled::Stop(stop) => self.flash.stopped(stop, session, host),

@@ -1,0 +1,138 @@
+//! Whether a board and the host's build of the logic, given the same codes and the same commands in the same ticks, say
+//! the same, bit for bit.
+
+use std::fmt;
+
+use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, SCANS_PER_FRAME};
+use tenax_hal_shim::frame::{Frame, Scan};
+use tenax_hal_shim::wire::{Down, Event, NetworkState, Refusal, Slow};
+use tenax_logic::fingertip::Fingertip;
+
+use super::Run;
+
+/// What the host's build says to a run's codes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Said {
+    /// Slow frames: every detector output and every command of every tick.
+    pub slows: Vec<Slow>,
+    /// Events.
+    pub events: Vec<Event>,
+    /// Why each command was not carried out.
+    pub refused: Vec<Option<Refusal>>,
+    /// The network, each time it was asked for.
+    pub networks: Vec<NetworkState>,
+}
+
+/// Puts codes that were recorded on any board through the host's build of the logic.
+///
+/// `commands` are those that the board took, in order, each with the sequence number of the frame before whose tick it took
+/// it. No frame may have been lost. Scans that do not fill a frame are left out.
+#[must_use]
+pub fn host_says(scans: &[Scan], commands: &[(u32, Down)]) -> Said {
+    let mut fingertip = Fingertip::default();
+    let mut said = Said::default();
+    let mut commands = commands.iter().peekable();
+    let (frames, _) = scans.as_chunks::<SCANS_PER_FRAME>();
+    for (sequence, scans) in (0..).zip(frames) {
+        while let Some((_, command)) = commands.next_if(|(at, _)| *at <= sequence) {
+            said.refused.push(fingertip.command(command).err());
+            if *command == Down::Network {
+                said.networks.push(fingertip.network());
+            }
+        }
+        fingertip.tick(&Frame::from_scans(sequence, scans));
+        said.slows.extend(fingertip.take_slow());
+        said.events.extend(std::iter::from_fn(|| fingertip.next_event()));
+    }
+    said
+}
+
+/// How much was compared, and where it first differs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Agreement {
+    slows: usize,
+    events: usize,
+    commands: usize,
+    networks: usize,
+    difference: Option<String>,
+}
+
+impl Agreement {
+    /// Of a run and the host's logic. The run must have lost no frame and not restarted.
+    #[must_use]
+    pub fn of(run: &Run) -> Self {
+        Self {
+            slows: run.slows.len(),
+            events: run.events.len(),
+            commands: run.taken.len(),
+            networks: run.networks.len(),
+            difference: difference(run, &host_says(&run.scans, &run.taken)),
+        }
+    }
+
+    /// Whether nothing differs.
+    #[must_use]
+    pub const fn holds(&self) -> bool {
+        self.difference.is_none()
+    }
+}
+
+impl fmt::Display for Agreement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(difference) = &self.difference {
+            return write!(f, "DIFFERS: {difference}");
+        }
+        let ticks = self.slows * usize::from(FRAMES_PER_SLOW_FRAME);
+        write!(f, "{} slow frames with {ticks} ticks, {} events", self.slows, self.events)?;
+        if self.commands > 0 {
+            write!(f, ", {} commands' answers", self.commands)?;
+        }
+        if self.networks > 0 {
+            write!(f, ", the network {} times", self.networks)?;
+        }
+        f.write_str(", equal")
+    }
+}
+
+/// The first difference.
+fn difference(run: &Run, host: &Said) -> Option<String> {
+    if let Some((image, host)) = run.slows.iter().zip(&host.slows).find(|(image, host)| image != host) {
+        return Some(of_slows(image, host));
+    }
+    // The board is switched off in the middle of a slow frame; what it had not yet sent cannot be compared.
+    let whole = host.slows.len().saturating_sub(1);
+    if run.slows.len() < whole {
+        return Some(format!("{} slow frames came up the line, {whole} were due", run.slows.len()));
+    }
+    let end = run.slows.last().map_or(0, |slow| slow.frame);
+    let due = host.events.iter().filter(|event| event.frame < end).count();
+    // What came after the last frame was answered too, and is no part of it.
+    let refused: Vec<_> = run.acks.iter().take(run.taken.len()).map(|(_, refused)| *refused).collect();
+    let networks = &run.networks[..host.networks.len().min(run.networks.len())];
+    first("event", &run.events, &host.events, due)
+        .or_else(|| first("answer", &refused, &host.refused, run.taken.len()))
+        .or_else(|| first("network", networks, &host.networks, host.networks.len()))
+}
+
+/// Where two lists begin to differ, of which the image's has at least `due`.
+fn first<T: PartialEq + fmt::Debug>(what: &str, image: &[T], host: &[T], due: usize) -> Option<String> {
+    if let Some((n, (image, host))) =
+        image.iter().zip(host).enumerate().find(|(_, (image, host))| image != host)
+    {
+        return Some(format!("{what} {n}: image {image:?}, host {host:?}"));
+    }
+    let (image, host) = (image.len(), host.len());
+    (image < due || image > host).then(|| format!("{what}s: image {image}, host {host}"))
+}
+
+/// Where two slow frames begin to differ.
+fn of_slows(image: &Slow, host: &Slow) -> String {
+    let first = image.frame.saturating_sub(u32::from(FRAMES_PER_SLOW_FRAME) - 1);
+    match (first..).zip(image.ticks.iter().zip(&host.ticks)).find(|(_, (image, host))| image != host) {
+        Some((frame, (image, host))) => format!("frame {frame}: image {image:?}, host {host:?}"),
+        None => {
+            let without_ticks = |slow: &Slow| Slow { ticks: Default::default(), ..slow.clone() };
+            format!("frame {}: image {:?}, host {:?}", image.frame, without_ticks(image), without_ticks(host))
+        }
+    }
+}

@@ -1,0 +1,37 @@
+//! Which command the image took before which tick.
+
+use std::collections::VecDeque;
+
+use tenax_hal_shim::wire::{Down, Refusal};
+
+/// What was sent, and when the image took something.
+///
+/// The line and the image's tasks take their time, so a command is not taken in the tick of the frame in which it was sent:
+/// one of the last scan always comes too late for it. When one is taken is seen at the core; which one, by its answer, for
+/// commands are taken and answered in one order.
+#[derive(Debug, Default)]
+pub struct Commands {
+    sent: VecDeque<(u16, Down)>,
+    taken_before: Vec<u32>,
+}
+
+impl Commands {
+    /// A command was sent.
+    pub fn send(&mut self, sequence: u16, command: Down) {
+        self.sent.push_back((sequence, command));
+    }
+
+    /// The image takes a command before this tick.
+    pub fn take(&mut self, tick: u32) {
+        self.taken_before.push(tick);
+    }
+
+    /// Each command that was answered, with the sequence number of the frame before whose tick it was taken.
+    pub fn taken(mut self, acks: &[(u16, Option<Refusal>)]) -> Vec<(u32, Down)> {
+        let answered = acks.iter().filter_map(|(of, _)| {
+            // What the line swallowed was never answered.
+            std::iter::from_fn(|| self.sent.pop_front()).find(|(sequence, _)| sequence == of)
+        });
+        self.taken_before.iter().copied().zip(answered.map(|(_, command)| command)).collect()
+    }
+}
