@@ -1,6 +1,8 @@
 //! `tenax evaluate`: the shipped network of the force array on recordings that it never saw, step by step and slip by
 //! slip; and with the hand around it, in the paper's two tasks and in the scenes where it has to fail.
 
+#[cfg(feature = "emulator")]
+pub mod core;
 pub mod events;
 pub mod failures;
 pub mod online;
@@ -26,16 +28,22 @@ pub fn judge<D: FnMut(&Reading) -> bool>(
     recordings.par_iter().map(|recording| verdicts(fresh(), &recording.steps)).collect()
 }
 
-/// What one detector says. An element that the fingertip would not believe has no reading.
+/// What one detector says.
 pub fn verdicts(mut detector: impl FnMut(&Reading) -> bool, steps: &[Step]) -> Verdicts {
+    readings(steps).iter().map(&mut detector).collect()
+}
+
+/// What a detector is told of a recording: an element that the fingertip would not believe has no reading.
+#[must_use]
+pub fn readings(steps: &[Step]) -> Vec<Reading> {
     let mut elements = Elements::default();
-    let said = |step: &Step| {
+    let read = |step: &Step| {
         for (element, &sample) in step.samples.iter().enumerate() {
             elements.take(element, sample);
         }
-        detector(elements.reading())
+        *elements.reading()
     };
-    steps.iter().map(said).collect()
+    steps.iter().map(read).collect()
 }
 
 /// The recordings to be judged by: those that their file calls test, or all if it says nothing of the kind.

@@ -37,6 +37,7 @@ pub const fn builtin() -> &'static [(&'static str, &'static str)] {
         "array-lost",
         "array-new-material",
         "array-load",
+        "array-noisy",
         "array-saturated",
         "array-opening",
         "can",

@@ -12,6 +12,10 @@ use crate::oracle::structures;
 use crate::{alive, readings};
 
 fn fed<'a>(readings: impl IntoIterator<Item = &'a Reading>) -> [[u32; WINDOWS]; LAGS.len()] {
+    *structure_of(readings).sums()
+}
+
+fn structure_of<'a>(readings: impl IntoIterator<Item = &'a Reading>) -> Structure {
     let (mut past, mut structure) = (Past::default(), Structure::default());
     for reading in readings {
         if past.push(reading).gone.contains(&true) {
@@ -19,7 +23,7 @@ fn fed<'a>(readings: impl IntoIterator<Item = &'a Reading>) -> [[u32; WINDOWS]; 
         }
         structure.push(&past);
     }
-    *structure.sums()
+    structure
 }
 
 proptest! {
@@ -83,6 +87,36 @@ fn the_worst_that_a_converter_gives_fits() {
         assert!(fed(&frames).as_flattened().iter().all(|&sum| i64::from(sum) <= most));
         assert!(half_period != 1 || fed(&frames)[0].map(i64::from)[WINDOWS - 1] == most);
     }
+}
+
+/// Elements that tremble by `size` samples, each for itself.
+fn trembling(random: &mut ChaCha8Rng, frames: usize, size: i32) -> Vec<Reading> {
+    let mut frame = || std::array::from_fn(|_| Some((4_000 + random.random_range(-size..=size)) as u16));
+    (0..frames).map(|_| frame()).collect()
+}
+
+#[test]
+fn the_quiet_level_is_the_noise_and_outlasts_a_slip_and_an_element() {
+    println!("seed 5");
+    let mut random = ChaCha8Rng::seed_from_u64(5);
+    assert_eq!(structure_of(&trembling(&mut random, 33, 3)).quiet(), u32::MAX, "nothing is known yet");
+    let noise = trembling(&mut random, 200, 3);
+    let level = structure_of(&noise).quiet();
+    // Sixteen frames of 90 times twice the variance of -3..3, 4; the least of many such sums is less than that.
+    let exact = 16 * 90 * 2 * 4;
+    assert!((exact / 2..exact).contains(&level), "{level}");
+    // A second of slip, and an element that goes in it and comes back.
+    let slip = trembling(&mut random, 80, 40);
+    let mut gone = slip.clone();
+    gone[20..40].iter_mut().for_each(|reading| reading[4] = None);
+    for slip in [slip, gone] {
+        let after = structure_of(noise.iter().chain(&slip)).quiet();
+        assert!((level..=level * 14 / 10).contains(&after), "{after} after {level}");
+    }
+    // A supply that has gone bad for good is what is quiet, some time later.
+    let worse = trembling(&mut random, 80 * 20, 40);
+    let after = structure_of(noise.iter().chain(&worse)).quiet();
+    assert!(after > 50 * level, "{after} after {level}");
 }
 
 /// The reason for all of it: the contacts' memory is a way, so what slides twice as fast forgets in half the time.

@@ -5,9 +5,9 @@ use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
 
 use anyhow::bail;
-use clap::ValueEnum;
 use tenax_logic::array::{Reading, ShippedDetector};
 
+use super::format::Format;
 use super::progress::Progress;
 use super::workspace;
 use crate::dataset::session::{Sizes, Split};
@@ -22,6 +22,7 @@ const EXAMPLES: &str = "\
 Examples:
   tenax evaluate                                   the shipped network on the test split of the built-in data set
   tenax evaluate --report json                     for programs
+  tenax evaluate --core                            and on the emulated core, bit for bit
   tenax evaluate --dataset my.csv --recipe my.toml on recordings of one's own
   tenax evaluate --online --host                   the paper's two tasks, ten times with each of four materials
   tenax evaluate --failures --host                 the scenes where it may fail, and what the hand does then";
@@ -51,20 +52,15 @@ pub struct Args {
     /// The scenes where it may fail, instead of recordings
     #[arg(long, conflicts_with_all = ["dataset", "sessions", "online"])]
     failures: bool,
+    /// Recordings: judge them on the emulated core, too, and compare features, logits and verdicts
+    #[arg(long, conflicts_with_all = ["online", "failures", "host"])]
+    core: bool,
     /// Online and failures: run the host's own build of the logic, no image, no emulator
     #[arg(long)]
     host: bool,
     /// How to print the scores
     #[arg(long, value_enum, default_value_t = Format::Text)]
     report: Format,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Format {
-    /// For people
-    Text,
-    /// For programs
-    Json,
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
@@ -85,11 +81,27 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     // The network that ships looks back over one frame, itself: there is no other to compare it with.
     let said_without = said.clone();
     let report = Report::new(&recordings, &said, &said_without);
-    match args.report {
-        Format::Text => print!("{}", Text(&report)),
-        Format::Json => println!("{}", serde_json::to_string_pretty(&report)?),
+    args.report.print(&Text(&report), &report)?;
+    if args.core {
+        on_the_core(&recordings)?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Says whether the emulated core judges recordings as this machine does.
+#[cfg(feature = "emulator")]
+fn on_the_core(recordings: &[Recording]) -> anyhow::Result<()> {
+    let image = crate::image::build_kernels(&workspace::root()?)?;
+    let mut progress = Progress::new("on the core", 1.0);
+    let steps = crate::evaluate::core::compare(&image, recordings, &mut |part| progress.at(part))?;
+    drop(progress);
+    eprintln!("the emulated core      says the same, bit for bit, in {steps} steps");
+    Ok(())
+}
+
+#[cfg(not(feature = "emulator"))]
+fn on_the_core(_recordings: &[Recording]) -> anyhow::Result<()> {
+    bail!("--core needs the emulator: run it as `cargo tenax evaluate --core`")
 }
 
 /// The network that ships, knowing nothing yet.

@@ -1,4 +1,4 @@
-//! Where the array's detector may fail: nine scenes, each with its score and with what the hand did then.
+//! Where the array's detector may fail: twelve scenes, each with its score and with what the hand did then.
 
 use anyhow::Context;
 use rayon::prelude::*;
@@ -11,7 +11,7 @@ use super::{ran, verdicts};
 use crate::session::{self, Board};
 
 /// The scenes: first the two that the others are the failures of.
-pub const SCENES: [&str; 11] = [
+pub const SCENES: [&str; 12] = [
     "array-pour",
     "array-disturb",
     "array-rotation",
@@ -21,6 +21,7 @@ pub const SCENES: [&str; 11] = [
     "array-lost",
     "array-new-material",
     "array-load",
+    "array-noisy",
     "array-saturated",
     "array-opening",
 ];

@@ -20,12 +20,12 @@ impl Display for Text<'_> {
             report.missed,
             report.false_steps
         )?;
-        writeln!(f, "  {:<16}{} missed, {} false", "no look-back", without.missed, without.false_steps)?;
-        write!(f, "  {:<16}{} of {} caught", "slips", events.caught, events.count)?;
+        writeln!(f, "  {:<20}{} missed, {} false", "no look-back", without.missed, without.false_steps)?;
+        write!(f, "  {:<20}{} of {} caught", "slips", events.caught, events.count)?;
         if let (Some(p50), Some(p95)) = (events.latency_ms_p50, events.latency_ms_p95) {
             write!(f, ", {p50:.1} ms after their first step, 95 % of those within {p95:.1} ms")?;
         }
-        writeln!(f, "\n  {:<16}{:.1} an hour", "false alarms", report.false_per_hour)?;
+        writeln!(f, "\n  {:<20}{:.1} an hour", "false alarms", report.false_per_hour)?;
         rows(f, "by material, the worst first", &report.by_material)?;
         rows(f, "by session, the worst first", &report.by_session)
     }
@@ -36,7 +36,7 @@ fn rows(f: &mut fmt::Formatter<'_>, title: &str, by: &By) -> fmt::Result {
     for (name, Steps { steps, missed, false_steps, accuracy }) in &by.0 {
         writeln!(
             f,
-            "  {name:<16}{:.2} % of {steps} steps, {missed} missed, {false_steps} false",
+            "  {name:<20}{:.2} % of {steps} steps, {missed} missed, {false_steps} false",
             100.0 * accuracy
         )?;
     }

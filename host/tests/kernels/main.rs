@@ -7,8 +7,12 @@ use std::sync::OnceLock;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use tenax::board::emulated::kernels::{self, Answer, Cost, Kernels};
+use tenax::dataset::session::Split;
+use tenax::dataset::{Dataset, Label, Plan};
+use tenax::evaluate::core;
+use tenax::labelled::{self, library};
 use tenax_hal_shim::channel::SAMPLE_MAX;
-use tenax_logic::array::{ArrayDetector, Reading, specimen};
+use tenax_logic::array::{Reading, ShippedDetector};
 
 fn image() -> &'static Path {
     static IMAGE: OnceLock<PathBuf> = OnceLock::new();
@@ -56,7 +60,7 @@ fn the_core_says_what_this_machine_says() {
     let outcome = kernels::run(image(), &recordings, Kernels::Detector, &mut |_| {}).unwrap();
     let (mut judged, mut slipping) = (0, 0);
     for (readings, answers) in recordings.iter().zip(&outcome.answers) {
-        let mut detector = ArrayDetector::new(&specimen::MODEL);
+        let mut detector = ShippedDetector::default();
         assert_eq!(readings.len(), answers.len());
         for (n, (reading, answer)) in readings.iter().zip(answers).enumerate() {
             assert_eq!(Answer::of(&mut detector, reading), *answer, "frame {n}: {reading:?}");
@@ -66,6 +70,19 @@ fn the_core_says_what_this_machine_says() {
     }
     // Both answers were given, or it would have been no test.
     assert!(judged > 1_500 && slipping > 20 && slipping < judged - 20, "{judged} {slipping}");
+}
+
+/// The shipped network on the first sessions of the built-in data's test split; `tenax evaluate --core` runs them all.
+#[test]
+fn the_core_judges_the_test_split_as_this_machine_does() {
+    let plan = Plan { seed: 1, sessions: 2, label: Label::Truth };
+    let csv = Dataset::make_split(plan, Split::Test, &|_| {}).unwrap().csv().unwrap();
+    let name = "array_dataset.csv";
+    let recipe = library::choose(name.as_ref(), None).unwrap();
+    let recordings = labelled::parse(csv.as_slice(), &recipe, name).unwrap();
+    let steps = core::compare(image(), &recordings, &mut |_| {}).unwrap();
+    // Six sessions, each of 48 s.
+    assert!(steps > 6 * 30 * 80, "{steps}");
 }
 
 #[test]

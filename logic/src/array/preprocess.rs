@@ -8,7 +8,7 @@ use super::structure::{self, Structure, WINDOWS};
 use super::{BINS, COVARIANCE_WINDOW, COVARIANCES, FEATURES, Reading, SPECTRUM_WINDOW};
 
 /// What the network sees of one slow frame: 55 covariances, row by row of the upper triangle, then 21 spectral bins, then
-/// 24 sums of structure functions, lag by lag, the newest window first.
+/// 24 sums of structure functions, lag by lag, the newest window first, one of them as its quiet level.
 ///
 /// Each is a logarithm, Q9 ([`logarithm`](super::logarithm)): `sign(c) log2(1 + |c| / knee)` of a covariance,
 /// `log2(1 + p / knee)` of a bin's power, `log2(1 + s / (knee frames))` of a sum over so many frames. 512 is one doubling.
@@ -47,7 +47,7 @@ impl Default for PreprocessorConfig {
 ///
 /// An element without a reading changes nothing: its differences are 0, its covariances are 0 from that very frame on
 /// (also those of the frames before, whose readings may have been its dying ones), the sum keeps what it had of it, and
-/// the structure functions, which cannot tell it from the others, begin anew. When it comes back, or reads for the first
+/// the structure functions, which cannot tell it from the others, begin anew but for the quiet level. When it comes back, or reads for the first
 /// time, that is no change either: the spectrum's window is given the force that it missed as a constant, and differences
 /// begin when there is a reading of its own to differ from.
 #[derive(Clone, Debug)]

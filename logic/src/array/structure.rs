@@ -7,6 +7,10 @@
 //! changes over one frame (equations 1 to 4) sees how large they are and not how fast they come, and its window remembers a
 //! slip for as long as it is long; here each lag has six windows, one behind the other, so that the end of a slip is seen too.
 //!
+//! Where contacts are new ones within a frame, a fast slip is as white as noise, and only the level tells them apart. So the
+//! oldest window of the shortest lag is shown as its **quiet level**: the least that it was, slowly forgotten. More noise
+//! than a detector was trained with, from a bad supply or a motor's cable, is then no slip.
+//!
 //! What all elements do together, a knock or the motor, is taken off: `n sum(q^2) - (sum q)^2` of the `n` changes `q` is `n`
 //! times their squares about their mean, and an integer. (Ours; the paper has no such thing.)
 
@@ -23,6 +27,8 @@ const EDGES: [usize; WINDOWS + 1] = [0, 1, 2, 4, 8, 16, 32];
 const FRAMES: usize = EDGES[WINDOWS];
 /// Numbers that it gives.
 pub const STRUCTURES: usize = LAGS.len() * WINDOWS;
+/// The quiet level rises by a part 2^-8 in each slow frame: to twice itself in 2.2 s.
+const QUIET_SHIFT: u32 = 8;
 /// Readings until all windows are full.
 pub const READY_AFTER: usize = FRAMES + LAGS[LAGS.len() - 1];
 
@@ -41,12 +47,21 @@ pub struct Structure {
     /// Where the newest energy of each lag is.
     newest: usize,
     sums: [[u32; WINDOWS]; LAGS.len()],
+    /// Slow frames since there was nothing, as many as matter.
+    pushed: usize,
+    quiet: u32,
 }
 
 impl Default for Structure {
     /// That of an array where nothing ever happened.
     fn default() -> Self {
-        Self { energies: [[0; FRAMES]; LAGS.len()], newest: 0, sums: [[0; WINDOWS]; LAGS.len()] }
+        Self {
+            energies: [[0; FRAMES]; LAGS.len()],
+            newest: 0,
+            sums: [[0; WINDOWS]; LAGS.len()],
+            pushed: 0,
+            quiet: u32::MAX,
+        }
     }
 }
 
@@ -67,10 +82,19 @@ impl Structure {
                 *oldest = changed;
             }
         }
+        // The first change is to a reading that there was not.
+        if self.pushed <= FRAMES {
+            self.pushed += 1;
+        } else {
+            let [[.., level], ..] = self.sums;
+            self.quiet = level.min(self.quiet.saturating_add((self.quiet >> QUIET_SHIFT) + 1));
+        }
     }
 
-    /// Forgets all: an element is gone, and what it said last, which is in every sum, is not to be believed.
+    /// Forgets all but the quiet level: an element is gone, and what it said last, which is in every sum, is not to be
+    /// believed.
     pub fn forget(&mut self) {
+        self.pushed = 0;
         self.energies = [[0; FRAMES]; LAGS.len()];
         self.sums = [[0; WINDOWS]; LAGS.len()];
     }
@@ -81,12 +105,22 @@ impl Structure {
         &self.sums
     }
 
-    /// The sums as features, lag by lag.
+    /// The quiet level: the least that the sum of the shortest lag's oldest window was, slowly forgotten. As large as can be
+    /// before that window was full.
+    #[must_use]
+    pub const fn quiet(&self) -> u32 {
+        self.quiet
+    }
+
+    /// The sums as features, lag by lag, the quiet level in place of the window that it is of.
     pub fn compress(&self, knees: &[Knee; WINDOWS], features: &mut [i16]) {
         for (features, sums) in features.chunks_exact_mut(WINDOWS).zip(&self.sums) {
             for ((feature, knee), &sum) in features.iter_mut().zip(knees).zip(sums) {
                 *feature = knee.of(sum as f32);
             }
+        }
+        if let (Some(feature), Some(knee)) = (features.get_mut(WINDOWS - 1), knees.last()) {
+            *feature = knee.of(self.quiet as f32);
         }
     }
 }
