@@ -51,6 +51,8 @@ fn recordings() -> Vec<Vec<Reading>> {
         // No sample at all, though a word could hold it.
         (0..60).map(|n| [Some(if n % 3 == 0 { 0 } else { u16::MAX - 1 }); 10]).collect(),
         vec![[None; 10]; 50],
+        // Something that slides now and then: what has always been so is noise.
+        (0..6).flat_map(|n| recording(random, 60, if n % 2 == 0 { 2 } else { 60 }, 0.0)).collect(),
     ]
 }
 
