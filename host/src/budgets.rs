@@ -21,7 +21,7 @@ pub struct Budgets {
     pub array_covariance_instructions: u64,
     /// Its sliding spectrum.
     pub array_spectrum_instructions: u64,
-    /// A network of 76-32-16-1.
+    /// The network that ships.
     pub array_network_instructions: u64,
     /// All that the array costs in a slow frame.
     pub array_slow_frame_instructions: u64,

@@ -6,7 +6,7 @@ use super::detector::{Judgement, Model};
 use super::network::{Layer, Mlp};
 use super::preprocess::PreprocessorConfig;
 
-/// A detector around the paper's 76-32-16-1.
+/// A detector of the shipped one's size.
 pub static MODEL: Model<32, 1, 16> = Model {
     preprocessor: PreprocessorConfig::DEFAULT,
     network: mlp::<FEATURES, 32, 1, 16>(1),
