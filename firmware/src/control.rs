@@ -5,14 +5,13 @@ use embassy_stm32::wdg::IndependentWatchdog;
 use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, select_of_place};
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::{MotorBridge, MotorDrive};
-use tenax_hal_shim::wire::{Down, Refusal, Up};
+use tenax_hal_shim::wire::{Down, Refusal};
+use tenax_logic::device::Device;
 use tenax_logic::fingertip::Fingertip;
-use tenax_logic::store::keeper::Keeper;
 
 use crate::bridge::Bridge;
 use crate::counts;
 use crate::mail;
-use crate::samples::LastSamples;
 use crate::scan::Scan;
 use crate::switches::Switches;
 
@@ -26,26 +25,21 @@ const PLACE_OF_SAVING: u8 = 19;
 
 /// What a tick works with.
 pub struct Control {
-    fingertip: Fingertip,
+    device: Device,
     bridge: Bridge,
     switches: Switches,
     watchdog: IndependentWatchdog<'static, IWDG>,
-    samples: LastSamples,
-    keeper: Keeper,
 }
 
 impl Control {
     /// A hand at rest.
     pub fn new(bridge: Bridge, switches: Switches, watchdog: IndependentWatchdog<'static, IWDG>) -> Self {
-        let fingertip = Fingertip::default();
-        let keeper = fingertip.keeper();
-        Self { fingertip, bridge, switches, watchdog, samples: LastSamples::default(), keeper }
+        Self { device: Device::default(), bridge, switches, watchdog }
     }
 
-    /// Lets the fingertip take up what was kept, before the first tick.
-    pub fn restore(&mut self, restore: impl FnOnce(&mut Fingertip)) {
-        restore(&mut self.fingertip);
-        self.keeper = self.fingertip.keeper();
+    /// Lets the device take up what was kept, before the first tick.
+    pub fn restore(&mut self, restore: impl FnOnce(&mut Device)) {
+        restore(&mut self.device);
     }
 
     /// Everything that a frame causes, the most urgent first.
@@ -54,20 +48,17 @@ impl Control {
         self.switches.show(select_of_place((next % u32::from(FRAMES_PER_SLOW_FRAME)) as u8));
 
         self.take_commands();
-        let drive = tenax_control_tick(&mut self.fingertip, frame);
+        let drive = tenax_control_tick(self.device.fingertip_mut(), frame);
         self.bridge.drive(drive);
         self.watchdog.pet();
         counts::TICKS.add_one();
 
-        self.samples.take(frame);
-        if let Some(slow) = self.fingertip.take_slow() {
-            mail::post(Up::Slow(slow));
+        self.device.sampled(frame);
+        while let Some(message) = self.device.next_message() {
+            mail::post(message);
         }
         if frame.place() == PLACE_OF_SAVING {
             self.save();
-        }
-        while let Some(event) = self.fingertip.next_event() {
-            mail::post(Up::Event(event));
         }
         mail::end_tick();
     }
@@ -75,9 +66,9 @@ impl Control {
     /// Not inlined: it is asked once in 25 ticks, and all of them would carry it.
     #[inline(never)]
     fn save(&mut self) {
-        self.keeper.pass(u32::from(FRAMES_PER_SLOW_FRAME));
+        self.device.slow_frame_passed();
         if mail::store_is_free()
-            && let Some(record) = self.fingertip.next_record(&mut self.keeper)
+            && let Some(record) = self.device.next_record()
         {
             mail::save(record);
         }
@@ -85,13 +76,8 @@ impl Control {
 
     fn take_commands(&mut self) {
         for command in core::iter::from_fn(mail::next_command).take(COMMANDS_PER_TICK) {
-            let refused = tenax_control_command(&mut self.fingertip, &command.message).err();
-            match command.message {
-                Down::Samples => mail::post(self.samples.message()),
-                Down::Network => mail::post(Up::Network(self.fingertip.network())),
-                _ => {}
-            }
-            mail::post(Up::Ack { of: command.sequence, refused });
+            let done = tenax_control_command(self.device.fingertip_mut(), &command.message);
+            mail::post(self.device.answer(&command, done));
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The bounded boxes between control, which never waits, and the tasks of the serial line and of the store, which do.
 
-use core::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use core::sync::atomic::{AtomicBool, AtomicU16, Ordering::Relaxed};
 
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::channel::Channel;
@@ -12,7 +12,9 @@ use crate::counts;
 
 /// Messages on their way up. A slow frame comes every 12.5 ms and takes 2 ms on the line, so this holds a burst of
 /// events and an answer or two; what does not fit is dropped.
-static UP: Channel<CriticalSectionRawMutex, Up, 16> = Channel::new();
+static UP: Channel<CriticalSectionRawMutex, Received<Up>, 16> = Channel::new();
+/// Number of the next message.
+static NUMBER: AtomicU16 = AtomicU16::new(0);
 /// Commands on their way to control.
 static DOWN: Channel<CriticalSectionRawMutex, Received<Down>, 8> = Channel::new();
 /// A record on its way to flash.
@@ -21,15 +23,17 @@ static RECORD: Channel<CriticalSectionRawMutex, Record, 1> = Channel::new();
 static TICK: Signal<CriticalSectionRawMutex, ()> = Signal::new();
 static TICK_WANTED: AtomicBool = AtomicBool::new(false);
 
-/// Hands a message to telemetry. Never waits: if the line is behind, the message is dropped and counted.
+/// Hands a message to telemetry, numbered. Never waits: if the line is behind, the message is dropped and counted, and the
+/// other end sees the gap in the numbers.
 pub fn post(message: Up) {
-    if UP.try_send(message).is_err() {
+    let sequence = NUMBER.fetch_add(1, Relaxed);
+    if UP.try_send(Received { sequence, message }).is_err() {
         counts::TELEMETRY_DROPPED.add_one();
     }
 }
 
 /// The oldest message posted; waits for one.
-pub async fn next_message() -> Up {
+pub async fn next_message() -> Received<Up> {
     UP.receive().await
 }
 

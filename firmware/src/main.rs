@@ -25,7 +25,6 @@ mod counts;
 mod flash;
 mod last_words;
 mod mail;
-mod samples;
 mod scan;
 mod store;
 mod switches;
@@ -40,7 +39,8 @@ use embassy_stm32::usart::{self, Uart};
 use embassy_stm32::wdg::IndependentWatchdog;
 use embassy_stm32::{bind_interrupts, dma, peripherals};
 use static_cell::{ConstStaticCell, StaticCell};
-use tenax_hal_shim::wire::BAUD;
+use tenax_hal_shim::channel::FRAME_HZ;
+use tenax_hal_shim::wire::{BAUD, Up};
 
 bind_interrupts!(struct Irqs {
     DMA2_STREAM0 => dma::InterruptHandler<peripherals::DMA2_CH0>;
@@ -110,11 +110,13 @@ async fn main(spawner: Spawner) {
         .expect("921 600 baud divides 50 MHz");
     let (up, down) = uart.split();
 
-    spawner.spawn(telemetry::telemetry(up, after).expect("one telemetry task"));
+    // The first of all messages: a hello that comes after others would look like a second start.
+    mail::post(Up::Hello { frame_hz: FRAME_HZ as u16, after });
+    spawner.spawn(telemetry::telemetry(up).expect("one telemetry task"));
     spawner
         .spawn(commands::commands(down.into_ring_buffered(COMMAND_RING.take())).expect("one commands task"));
     let control = CONTROL.init_with(|| control::Control::new(bridge, switches, watchdog));
-    control.restore(|fingertip| store::restore(fingertip, &flash, &found));
+    control.restore(|device| store::restore(device, &flash, &found));
     spawner.spawn(store::store(flash, log).expect("one store task"));
     let urgent = URGENT.start(interrupt::SPI5);
     urgent.spawn(control::control(scan, control).expect("one control task"));

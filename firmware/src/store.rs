@@ -6,7 +6,7 @@
 use tenax_hal_shim::flash::FlashFailed;
 use tenax_hal_shim::wire::{Event, EventKind, Up};
 use tenax_hal_shim::words::{Fault, Kept};
-use tenax_logic::fingertip::Fingertip;
+use tenax_logic::device::Device;
 use tenax_logic::store::record::{PAYLOAD_BYTES, Record};
 use tenax_logic::store::{Found, Log, Refused};
 
@@ -16,15 +16,15 @@ use crate::{counts, mail};
 /// Ticks from one word to the next: the network's 78 words take 0.16 s, and the serial line keeps its share of the core.
 const TICKS_PER_WORD: u32 = 4;
 
-/// Hands over to the fingertip what was kept.
-pub fn restore(fingertip: &mut Fingertip, flash: &Flash, found: &Found) {
+/// Hands over to the device what was kept.
+pub fn restore(device: &mut Device, flash: &Flash, found: &Found) {
     let mut buffer = [0; PAYLOAD_BYTES];
     for kept in Kept::ALL {
         if found.is_damaged(kept) {
-            fingertip.report(Fault::RecordDamaged(kept));
+            device.report(Fault::RecordDamaged(kept));
         }
         if let Some(payload) = found.read(flash, kept, &mut buffer) {
-            fingertip.restore(kept, payload);
+            device.restore(kept, payload);
         }
     }
 }

@@ -16,5 +16,6 @@ pub mod flash;
 pub mod frame;
 pub mod front_end;
 pub mod motor;
+pub mod setting;
 pub mod wire;
 pub mod words;

@@ -5,9 +5,8 @@
 //! Variants are only ever added at the end. `tests/golden.rs` holds the bytes of one of each: if those change, the
 //! version must.
 
-use core::ops::RangeInclusive;
-
 use crc::{CRC_32_ISO_HDLC, Crc};
+use heapless::Vec;
 use postcard::de_flavors::crc::from_bytes_u32;
 use postcard::ser_flavors::{Cobs, Flavor, Slice, crc::CrcModifier};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
@@ -17,7 +16,7 @@ use crate::motor::MotorDrive;
 use crate::words::{Cause, Codes, DriveSource, Fault, GripMode, Kept, NoLesson};
 
 /// The version of every message below. A receiver refuses frames of another.
-pub const VERSION: u8 = 2;
+pub const VERSION: u8 = 3;
 /// The serial line's rate, baud, 8N1.
 pub const BAUD: u32 = 921_600;
 /// The longest frame, bytes, the final zero included: what a sender's and a receiver's buffer must hold.
@@ -180,14 +179,52 @@ pub enum EventKind {
 /// Why a command was not carried out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Refusal {
-    /// The value is outside what [`Setting::allowed`] gives.
-    OutOfRange,
+    /// The value is outside this range.
+    OutOfRange {
+        /// The lowest value that is accepted.
+        min: i32,
+        /// The highest.
+        max: i32,
+    },
     /// A finger that is loaded cannot be zeroed.
     Loaded,
     /// The sensor that it needs gives no number.
     SensorLost,
     /// Not while the wearer's muscles are active.
     WearerActive,
+    /// There is no setting with this number: the board's image is another one.
+    UnknownSetting,
+}
+
+/// A setting's number (see [`SettingId`](crate::setting::SettingId)) and its value, in its unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Setting {
+    /// Its number.
+    pub id: u8,
+    /// Its value.
+    pub value: i32,
+}
+
+/// Settings in one [`Answer::Settings`] at most.
+pub const SETTINGS_PER_ANSWER: usize = 16;
+
+/// What a command is answered with.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[allow(clippy::large_enum_variant, reason = "there is no heap to put the large one on")]
+pub enum Answer {
+    /// It was carried out.
+    Done,
+    /// It was not, and nothing has changed.
+    Refused(Refusal),
+    /// To [`Down::Get`] and [`Down::Set`]: the value that is in force now.
+    Setting(Setting),
+    /// To [`Down::Settings`]. Fewer than [`SETTINGS_PER_ANSWER`] are the last.
+    Settings(Vec<Setting, SETTINGS_PER_ANSWER>),
+    /// To [`Down::Samples`]: the last sample of every channel, in the order of
+    /// [`CHANNELS`](crate::channel::CHANNELS).
+    Samples(#[serde(with = "samples")] [u16; COUNT]),
+    /// To [`Down::Network`].
+    Network(NetworkState),
 }
 
 /// From the board.
@@ -207,22 +244,14 @@ pub enum Up {
     /// The counters, ten times a second.
     Counters(Counters),
     /// A command was carried out, or was not.
-    Ack {
+    Answer {
         /// Sequence number of the command's frame.
         of: u16,
-        /// Why not.
-        refused: Option<Refusal>,
-    },
-    /// The last samples of every channel, on request.
-    Samples {
-        /// Sequence number of the last frame in it.
+        /// Sequence number of the last frame that was taken before the command.
         frame: u32,
-        /// In the order of [`CHANNELS`](crate::channel::CHANNELS).
-        #[serde(with = "samples")]
-        samples: [u16; COUNT],
+        /// The answer.
+        answer: Answer,
     },
-    /// The network, on request.
-    Network(NetworkState),
     /// This outlives a power cut from now on.
     Saved {
         /// Sequence number of the last frame before.
@@ -232,51 +261,13 @@ pub enum Up {
     },
 }
 
-/// A number that can be set from outside.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Setting {
-    /// S1: vibration envelope that means slip, mV at the pin.
-    S1Mv(u16),
-    /// S2: Ft/Fn that means incipient slip, per mille.
-    S2Permille(u16),
-    /// Envelope above rest at which a myosensor is active, mV.
-    MyoOnMv(u16),
-    /// Normal force above which the reflex closes no further, mN.
-    ForceCeilingMn(u32),
-    /// How far below 0 the films' part of the network's o1 means slip, per mille.
-    NetworkSlipPermille(u16),
-}
-
-impl Setting {
-    /// Name, unit, value, and the values that are accepted.
-    #[must_use]
-    pub const fn describe(self) -> (&'static str, &'static str, u32, RangeInclusive<u32>) {
-        match self {
-            Self::S1Mv(value) => ("S1", "mV", value as u32, 5..=1_500),
-            Self::S2Permille(value) => ("S2", "per mille", value as u32, 50..=1_500),
-            // Higher, and a plain contraction would no longer silence the reflex.
-            Self::MyoOnMv(value) => ("myo on", "mV", value as u32, 20..=600),
-            Self::ForceCeilingMn(value) => ("force ceiling", "mN", value, 500..=140_000),
-            // Below, noise would move the hand; at 1000, o1 is at its end.
-            Self::NetworkSlipPermille(value) => ("network slip", "per mille", value as u32, 10..=1_000),
-        }
-    }
-
-    /// Whether the value is accepted.
-    #[must_use]
-    pub fn is_allowed(self) -> bool {
-        let (_, _, value, allowed) = self.describe();
-        allowed.contains(&value)
-    }
-}
-
 /// The longest that one [`Down::Drive`] may hold, ms: a lost link stops the motor after that.
 pub const DRIVE_HOLD_MAX_MS: u16 = 250;
 
 /// To the board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Down {
-    /// Answer with [`Up::Ack`].
+    /// Answer with [`Answer::Done`].
     Ping,
     /// Drive the motor for `hold_ms`, at most [`DRIVE_HOLD_MAX_MS`]; sent again and again while a key is held.
     Drive {
@@ -291,7 +282,7 @@ pub enum Down {
     Stroke(bool),
     /// Take the force sensor's readings as zero. Refused while the finger is loaded.
     Zero,
-    /// Send [`Up::Samples`] once.
+    /// Answer with [`Answer::Samples`].
     Samples,
     /// A teacher's picture: what the object and the hand do (v1, v2). Some 30 times a second.
     Teach {
@@ -300,12 +291,16 @@ pub enum Down {
         /// Age of the picture that they were made from, ms.
         age_ms: u16,
     },
-    /// Send [`Up::Network`] once.
+    /// Answer with [`Answer::Network`].
     Network,
     /// Forget all that the network has learned.
     Forget,
     /// Save what the network has learned now, and not when nothing moves any more.
     Save,
+    /// Answer with the [`Answer::Setting`] of this number.
+    Get(u8),
+    /// Answer with the [`Answer::Settings`] from this number on, in the order of their numbers.
+    Settings(u8),
 }
 
 /// A frame's contents.

@@ -4,8 +4,8 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{
-    ArrayVerdict, BadFrame, Counters, Down, FRAME_MAX, NetworkState, Receiver, Setting, Slow, TickRecord, Up,
-    encode,
+    Answer, ArrayVerdict, BadFrame, Counters, Down, FRAME_MAX, NetworkState, Receiver, SETTINGS_PER_ANSWER,
+    Setting, Slow, TickRecord, Up, encode,
 };
 use tenax_hal_shim::words::{Code, DriveSource, GripMode, NoLesson};
 
@@ -18,13 +18,18 @@ fn down() -> impl Strategy<Value = Down> {
         Just(Down::Save),
         any::<u16>().prop_map(|age_ms| Down::Teach { codes: [Code::Minus, Code::Plus], age_ms }),
         any::<bool>().prop_map(Down::Stroke),
-        any::<u16>().prop_map(|mv| Down::Set(Setting::S1Mv(mv))),
-        any::<u32>().prop_map(|mn| Down::Set(Setting::ForceCeilingMn(mn))),
+        any::<(u8, i32)>().prop_map(|(id, value)| Down::Set(Setting { id, value })),
+        any::<u8>().prop_map(Down::Get),
+        any::<u8>().prop_map(Down::Settings),
         (0..=1_000u16, any::<u16>()).prop_map(|(duty, hold_ms)| Down::Drive {
             drive: MotorDrive::Open(Duty::per_mille(duty)),
             hold_ms
         }),
     ]
+}
+
+fn answer(answer: Answer) -> Up {
+    Up::Answer { of: u16::MAX, frame: u32::MAX, answer }
 }
 
 fn receive(bytes: &[u8]) -> Vec<Result<(u16, Down), BadFrame>> {
@@ -138,7 +143,9 @@ fn the_longest_message_fits_a_frame() {
         teacher_age_ms: Some(u16::MAX),
         no_lesson: Some(NoLesson::Disturbed),
     };
-    assert!(encode(u16::MAX, &Up::Network(network), &mut buffer).is_some());
+    assert!(encode(u16::MAX, &answer(Answer::Network(network)), &mut buffer).is_some());
+    let settings = [Setting { id: u8::MAX, value: i32::MIN }; SETTINGS_PER_ANSWER].into_iter().collect();
+    assert!(encode(u16::MAX, &answer(Answer::Settings(settings)), &mut buffer).is_some());
     let counters = Counters { frames: u32::MAX, ..Counters::default() };
     assert!(encode(0, &Up::Counters(counters), &mut [0; 40]).is_some());
     assert!(encode(0, &Up::Counters(counters), &mut [0; 8]).is_none(), "too small a buffer is no panic");

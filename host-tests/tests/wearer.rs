@@ -12,6 +12,7 @@ use tenax_hal_shim::channel::{
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::front_end::MYO_REST_MV;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
+use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{DRIVE_HOLD_MAX_MS, Down, EventKind, Setting};
 use tenax_hal_shim::words::{Cause, Code, DriveSource, GripMode};
 use tenax_host_tests::Bench;
@@ -63,6 +64,10 @@ fn disturb(bench: &mut Bench, rng: &mut ChaCha8Rng) {
     }
 }
 
+fn set(id: SettingId, value: i32) -> Down {
+    Down::Set(Setting { id: id as u8, value })
+}
+
 fn random_command(rng: &mut ChaCha8Rng) -> Down {
     let duty = Duty::per_mille(rng.random_range(0..=1_000));
     let drive = [MotorDrive::Coast, MotorDrive::Close(duty), MotorDrive::Open(duty)][rng.random_range(0..3)];
@@ -70,10 +75,10 @@ fn random_command(rng: &mut ChaCha8Rng) -> Down {
         6 => Down::Save,
         7 => Down::Network,
         0 => Down::Drive { drive, hold_ms: rng.random_range(0..=400) },
-        1 => Down::Set(Setting::S1Mv(rng.random())),
-        2 => Down::Set(Setting::S2Permille(rng.random())),
+        1 => set(SettingId::S1, rng.random::<u16>().into()),
+        2 => set(SettingId::S2, rng.random::<u16>().into()),
         3 => Down::Stroke(rng.random()),
-        4 => Down::Set(Setting::NetworkSlipPermille(rng.random_range(0..1_000))),
+        4 => set(SettingId::HebbianSlip, rng.random_range(0..1_000)),
         _ => Down::Zero,
     }
 }
@@ -303,7 +308,7 @@ fn only_slip_moves_a_hand_that_nobody_commands() {
 #[test]
 fn the_reflex_stops_at_the_force_ceiling() {
     let mut bench = Bench::holding(3);
-    bench.fingertip.command(&Down::Set(Setting::ForceCeilingMn(3_000))).unwrap();
+    bench.fingertip.command(&set(SettingId::ForceCeiling, 3_000)).unwrap();
     bench.vibration_mv = 800.0;
     assert!(
         bench.run(4_000).iter().all(|drive| *drive == MotorDrive::Coast),
@@ -467,6 +472,6 @@ fn a_stroke_that_nobody_ends_gives_the_reflex_back() {
 #[test]
 fn no_setting_makes_the_hand_deaf_to_a_contraction() {
     let mut bench = Bench::holding(10);
-    let refused = bench.fingertip.command(&Down::Set(Setting::MyoOnMv(601)));
-    assert_eq!(refused, Err(tenax_hal_shim::wire::Refusal::OutOfRange));
+    let refused = bench.fingertip.command(&set(SettingId::EmgOn, 601));
+    assert_eq!(refused, Err(tenax_hal_shim::wire::Refusal::OutOfRange { min: 20, max: 600 }));
 }

@@ -8,7 +8,7 @@ pub mod simulated;
 
 use tenax_hal_shim::frame::Scan;
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{Counters, Down, Event, NetworkState, Refusal, Slow};
+use tenax_hal_shim::wire::{Answer, Counters, Down, Event, NetworkState, Slow};
 use tenax_hal_shim::words::{Fault, Kept};
 
 /// What the core spent, in instructions of the emulated Cortex-M4.
@@ -44,10 +44,8 @@ pub struct Run {
     pub slows: Vec<Slow>,
     /// Events, as they came up the line.
     pub events: Vec<Event>,
-    /// The network, each time it was asked for.
-    pub networks: Vec<NetworkState>,
-    /// Commands that were answered: the sequence number of each, and why it was not carried out.
-    pub acks: Vec<(u16, Option<Refusal>)>,
+    /// Commands that were answered: the sequence number of each, and its answer.
+    pub answers: Vec<(u16, Answer)>,
     /// What was saved, with the sequence number of the last frame before.
     pub saved: Vec<(u32, Kept)>,
     /// Why the board started, each time it did.
@@ -66,6 +64,21 @@ pub struct Run {
     pub stack_bytes: Option<u64>,
     /// What was done to the flash.
     pub flash: FlashUse,
+}
+
+impl Run {
+    /// The network, each time it was asked for.
+    pub fn networks(&self) -> impl Iterator<Item = &NetworkState> {
+        networks(self.answers.iter().map(|(_, answer)| answer))
+    }
+}
+
+/// The networks among `answers`.
+fn networks<'a>(answers: impl Iterator<Item = &'a Answer>) -> impl Iterator<Item = &'a NetworkState> {
+    answers.filter_map(|answer| match answer {
+        Answer::Network(network) => Some(network),
+        _ => None,
+    })
 }
 
 /// What was done to the flash.

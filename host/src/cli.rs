@@ -12,6 +12,7 @@ mod monitor;
 mod progress;
 mod run;
 mod scenes;
+mod settings;
 mod size;
 mod test;
 mod train;
@@ -73,6 +74,8 @@ enum Command {
     LintImage,
     /// Print the channel map as a Markdown table
     Wiring,
+    /// Print every setting with unit, range, default and meaning as a Markdown table
+    Settings,
 }
 
 /// Runs the command line. 0: done. 1: something measured is not as promised. 2: it could not be run.
@@ -93,6 +96,7 @@ pub fn main() -> ExitCode {
         Command::Size(args) => size::main(&args),
         Command::LintImage => lint_image::main(),
         Command::Wiring => wiring::main(),
+        Command::Settings => settings::main(),
     };
     match done {
         Ok(code) => code,

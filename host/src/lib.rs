@@ -17,5 +17,6 @@ pub mod plot;
 pub mod replay;
 pub mod report;
 pub mod session;
+pub mod settings;
 pub mod timeline;
 pub mod wiring;

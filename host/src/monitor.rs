@@ -5,7 +5,10 @@ use std::io::{self, ErrorKind, Read, Write};
 
 use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ, mv_from_sample};
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{BadFrame, Event, EventKind, NetworkState, Receiver, Slow, Up, VERSION};
+use tenax_hal_shim::setting::SettingId;
+use tenax_hal_shim::wire::{
+    Answer, BadFrame, Event, EventKind, NetworkState, Receiver, Refusal, Setting, Slow, Up, VERSION,
+};
 
 use crate::report::{in_words, kept_in_words};
 
@@ -134,20 +137,41 @@ impl Display for Words<'_> {
                 counters.telemetry_dropped,
                 counters.bad_frames
             ),
-            Up::Ack { of, refused: None } => write!(f, "done: command {of}"),
-            Up::Ack { of, refused: Some(refusal) } => write!(f, "refused: command {of}: {refusal:?}"),
-            Up::Network(network) => network_words(f, network),
+            Up::Answer { of, frame, answer } => answer_words(f, *of, *frame, answer),
             Up::Saved { frame, kept } => {
                 write!(f, "{:10.4} s saved: {}", seconds(*frame), kept_in_words(*kept))
             }
-            Up::Samples { frame, samples } => {
-                write!(f, "{:10.4} s samples, mV:", seconds(*frame))?;
-                for (channel, &sample) in CHANNELS.iter().zip(samples) {
-                    write!(f, " {}={}", channel.name, mv_from_sample(sample))?;
-                }
-                Ok(())
-            }
         }
+    }
+}
+
+fn answer_words(f: &mut fmt::Formatter<'_>, of: u16, frame: u32, answer: &Answer) -> fmt::Result {
+    let setting = |f: &mut fmt::Formatter<'_>, setting: &Setting| match SettingId::from_number(setting.id) {
+        Some(id) => write!(f, "{} = {} {}", id.row().name, setting.value, id.row().unit),
+        None => write!(f, "setting {} = {}, which this tool does not know", setting.id, setting.value),
+    };
+    match answer {
+        Answer::Done => write!(f, "done: command {of}"),
+        Answer::Refused(Refusal::OutOfRange { min, max }) => {
+            write!(f, "refused: command {of}: outside {min}..={max}")
+        }
+        Answer::Refused(refusal) => write!(f, "refused: command {of}: {refusal:?}"),
+        Answer::Setting(own) => setting(f, own),
+        Answer::Settings(all) => {
+            write!(f, "settings:")?;
+            all.iter().try_for_each(|own| {
+                write!(f, "\n      ")?;
+                setting(f, own)
+            })
+        }
+        Answer::Samples(samples) => {
+            write!(f, "{:10.4} s samples, mV:", seconds(frame))?;
+            for (channel, &sample) in CHANNELS.iter().zip(samples) {
+                write!(f, " {}={}", channel.name, mv_from_sample(sample))?;
+            }
+            Ok(())
+        }
+        Answer::Network(network) => network_words(f, network),
     }
 }
 
@@ -256,7 +280,7 @@ mod tests {
 
     fn frame(sequence: u16) -> Vec<u8> {
         let mut buffer = [0; FRAME_MAX];
-        let message = Up::Ack { of: 7, refused: None };
+        let message = Up::Answer { of: 7, frame: 0, answer: Answer::Done };
         encode(sequence, &message, &mut buffer).expect("it fits").to_vec()
     }
 

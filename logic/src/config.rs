@@ -1,9 +1,7 @@
 //! Every number that can be chosen. Plain values, apart from all state, so that a whole set can be swapped at once.
 
-use tenax_hal_shim::channel::sample_from_mv;
-use tenax_hal_shim::wire::Setting;
-
-use crate::hebbian::{Rule, TeacherConfig};
+use crate::hebbian::{LearningConfig, Rule, TeacherConfig};
+use tenax_hal_shim::setting::SettingId;
 
 /// Frames in this many milliseconds.
 #[must_use]
@@ -53,6 +51,8 @@ pub struct TouchConfig {
     /// When a teacher is believed.
     pub teacher: TeacherConfig,
     /// How fast it is learned from.
+    pub learning: LearningConfig,
+    /// The same in the formats of the update.
     pub rule: Rule,
 }
 
@@ -109,60 +109,41 @@ pub struct Config {
     pub grip: GripConfig,
 }
 
-impl Default for Config {
-    fn default() -> Self {
-        Self {
-            vibration: VibrationConfig {
-                s1: sample_from_mv(100),
-                knock_level: sample_from_mv(20),
-                knock_permille: 500,
-                knock_frames: frames(30),
-            },
-            friction: FrictionConfig { s2_permille: 300, s2_of_mu_s_permille: 800, loaded_mn: 600 },
-            touch: TouchConfig {
-                slip_permille: 30,
-                slip_frames: frames(5),
-                everywhere_frames: frames(40),
-                loud_frames: frames(100),
-                loud_duty_permille: 100,
-                teacher: TeacherConfig::default(),
-                rule: Rule::default(),
-            },
-            gate: GateConfig {
-                on_mv: 160,
-                off_permille: 700,
-                hold_frames: frames(200),
-                full_mv: 1_000,
-                slowest_permille: 300,
-            },
-            grip: GripConfig {
-                slip_duty_permille: 1_000,
-                slip_frames: frames(30),
-                slip_frames_max: frames(50),
-                incipient_duty_permille: 400,
-                incipient_frames: frames(15),
-                settle_frames: frames(80),
-                ceiling_mn: 40_000,
-                blind_frames: frames(200),
-            },
-        }
-    }
+impl Config {
+    /// Numbers without a meaning yet: [`default`](Self::default) sets every one of them from its row.
+    const BLANK: Self = Self {
+        vibration: VibrationConfig { s1: 0, knock_level: 0, knock_permille: 0, knock_frames: 0 },
+        friction: FrictionConfig { s2_permille: 0, s2_of_mu_s_permille: 0, loaded_mn: 0 },
+        touch: TouchConfig {
+            slip_permille: 0,
+            slip_frames: 0,
+            everywhere_frames: 0,
+            loud_frames: 0,
+            loud_duty_permille: 0,
+            teacher: TeacherConfig { fresh_ms: 0 },
+            learning: LearningConfig::DEFAULT,
+            rule: Rule::DEFAULT,
+        },
+        gate: GateConfig { on_mv: 0, off_permille: 0, hold_frames: 0, full_mv: 0, slowest_permille: 0 },
+        grip: GripConfig {
+            slip_duty_permille: 0,
+            slip_frames: 0,
+            slip_frames_max: 0,
+            incipient_duty_permille: 0,
+            incipient_frames: 0,
+            settle_frames: 0,
+            ceiling_mn: 0,
+            blind_frames: 0,
+        },
+    };
 }
 
-impl Config {
-    /// Changes one setting; false, and nothing changed, if its value is not allowed.
-    #[must_use]
-    pub fn set(&mut self, setting: Setting) -> bool {
-        if !setting.is_allowed() {
-            return false;
+impl Default for Config {
+    fn default() -> Self {
+        let mut config = Self::BLANK;
+        for id in SettingId::ALL {
+            config.put(id, id.row().default);
         }
-        match setting {
-            Setting::S1Mv(mv) => self.vibration.s1 = sample_from_mv(u32::from(mv)),
-            Setting::S2Permille(permille) => self.friction.s2_permille = permille,
-            Setting::MyoOnMv(mv) => self.gate.on_mv = mv,
-            Setting::NetworkSlipPermille(permille) => self.touch.slip_permille = permille,
-            Setting::ForceCeilingMn(mn) => self.grip.ceiling_mn = i32::try_from(mn).unwrap_or(i32::MAX),
-        }
-        true
+        config
     }
 }

@@ -3,9 +3,12 @@
 //! In each tick the senses take the frame, the machine of figure 9 asks them its questions in the paper's order (first
 //! the wearer, then S1, then S2), and the arbiter says who drives the motor.
 
+use core::ops::RangeInclusive;
+
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{
     DRIVE_HOLD_MAX_MS, Down, Event, EventKind, NetworkState, Refusal, Setting, Slow, TickRecord,
 };
@@ -47,6 +50,8 @@ struct Verdict {
 #[derive(Clone, Debug, Default)]
 pub struct Fingertip {
     config: Config,
+    /// Changes of the settings, so that nobody has to compare them all.
+    settings_changed: u32,
     senses: Senses,
     friction: FrictionDetector,
     touch: Touch,
@@ -101,14 +106,14 @@ impl Fingertip {
                 Record::Network(self.touch.learned())
             }
             Kept::Zero => Record::Zero(now.zero),
-            Kept::Settings => Record::Settings(now.settings),
+            Kept::Settings => Record::Settings(payload::of_settings(&self.config)),
         })
     }
 
     /// What there is to keep.
     fn now(&self) -> Now {
         Now {
-            settings: payload::of_settings(&self.config),
+            settings_changed: self.settings_changed,
             zero: payload::of_zero(self.senses.force_sensor().zero_uv()),
             updates: self.touch.updates(),
             at_rest: self.is_at_rest(),
@@ -147,8 +152,10 @@ impl Fingertip {
     /// Says why it was not carried out; then nothing has changed.
     pub fn command(&mut self, command: &Down) -> Result<(), Refusal> {
         match *command {
-            Down::Ping | Down::Samples | Down::Network => Ok(()),
-            Down::Drive { hold_ms, .. } if hold_ms > DRIVE_HOLD_MAX_MS => Err(Refusal::OutOfRange),
+            Down::Ping | Down::Samples | Down::Network | Down::Get(_) | Down::Settings(_) => Ok(()),
+            Down::Drive { hold_ms, .. } if hold_ms > DRIVE_HOLD_MAX_MS => {
+                Err(Refusal::OutOfRange { min: 0, max: DRIVE_HOLD_MAX_MS.into() })
+            }
             Down::Drive { drive: MotorDrive::Close(_), .. } if self.senses.gate.is_active() => {
                 Err(Refusal::WearerActive)
             }
@@ -157,12 +164,9 @@ impl Fingertip {
                 self.link = Some(LinkDrive { drive, frames_left });
                 Ok(())
             }
-            Down::Set(setting) => {
-                if self.config.set(setting) {
-                    Ok(())
-                } else {
-                    Err(Refusal::OutOfRange)
-                }
+            Down::Set(Setting { id, value }) => {
+                let id = SettingId::from_number(id).ok_or(Refusal::UnknownSetting)?;
+                self.set(id, value)
             }
             Down::Stroke(true) => self.begin_stroke(),
             Down::Stroke(false) => {
@@ -194,6 +198,22 @@ impl Fingertip {
         }
     }
 
+    fn set(&mut self, id: SettingId, value: i32) -> Result<(), Refusal> {
+        let out_of_range = |range: RangeInclusive<i32>| {
+            let (min, max) = range.into_inner();
+            Refusal::OutOfRange { min, max }
+        };
+        self.config.set(id, value).map_err(out_of_range)?;
+        self.settings_changed = self.settings_changed.wrapping_add(1);
+        Ok(())
+    }
+
+    /// Every number that can be chosen, as it is in force.
+    #[must_use]
+    pub const fn config(&self) -> &Config {
+        &self.config
+    }
+
     /// The slow frame that the last tick ended, if it ended one.
     pub fn take_slow(&mut self) -> Option<Slow> {
         self.slow.take()
@@ -202,6 +222,12 @@ impl Fingertip {
     /// The oldest thing that happened and has not been taken yet.
     pub fn next_event(&mut self) -> Option<Event> {
         self.journal.next_event()
+    }
+
+    /// Sequence number of the last frame taken.
+    #[must_use]
+    pub const fn frame(&self) -> u32 {
+        self.journal.frame()
     }
 
     /// What the reflex is doing.
@@ -369,7 +395,7 @@ impl Fingertip {
         let Some(measured) = self.friction.end_stroke(&self.config.friction) else {
             return;
         };
-        if self.config.set(Setting::S2Permille(measured.s2_permille)) {
+        if self.set(SettingId::S2, measured.s2_permille.into()).is_ok() {
             self.journal.event(EventKind::Stroke {
                 mu_s_permille: measured.mu_s_permille,
                 s2_permille: measured.s2_permille,

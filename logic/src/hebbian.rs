@@ -25,7 +25,7 @@ pub mod teacher;
 
 pub use activations::{Activation, Activations, Normaliser, NormaliserConfig, Sense};
 pub use network::{Network, Output, Weight};
-pub use rule::{Config, NotAllowed, Rule};
+pub use rule::{Config, Config as LearningConfig, NotAllowed, Rule};
 pub use snapshot::Damaged;
 pub use teacher::{Situation, Teacher, TeacherConfig};
 pub use tenax_hal_shim::words::{Code, Codes, NoLesson};

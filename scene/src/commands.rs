@@ -10,19 +10,6 @@ use crate::file::sections::{Command, CommandKind};
 /// How often a tool repeats a drive while its key is held, s: well inside [`DRIVE_HOLD_MAX_MS`].
 const REPEAT_S: f64 = 0.1;
 
-/// The setting that a command of this kind makes of `value`. None if it is no setting or the value does not fit.
-pub(crate) fn setting(kind: CommandKind, value: u32) -> Option<Setting> {
-    let small = u16::try_from(value);
-    match kind {
-        CommandKind::SetS1Mv => small.ok().map(Setting::S1Mv),
-        CommandKind::SetS2Permille => small.ok().map(Setting::S2Permille),
-        CommandKind::SetMyoOnMv => small.ok().map(Setting::MyoOnMv),
-        CommandKind::SetNetworkSlipPermille => small.ok().map(Setting::NetworkSlipPermille),
-        CommandKind::SetForceCeilingMn => Some(Setting::ForceCeilingMn(value)),
-        _ => None,
-    }
-}
-
 /// The commands of a scene, in the order in which they are sent.
 #[derive(Clone, Debug)]
 pub(crate) struct Script(VecDeque<(f64, Down)>);
@@ -52,9 +39,10 @@ fn expand(command: &Command) -> Vec<(f64, Down)> {
         CommandKind::Zero => once(Down::Zero),
         CommandKind::Close => held(at_s, command, MotorDrive::Close(duty)),
         CommandKind::Open => held(at_s, command, MotorDrive::Open(duty)),
-        _ => {
-            let value = command.value.as_ref().map_or(0, |value| *value.get_ref());
-            setting(kind, value).map_or(Vec::new(), |setting| once(Down::Set(setting)))
+        CommandKind::Set(id) => {
+            // A file without it was refused.
+            let value = command.value.as_ref().map_or(id.row().default, |value| *value.get_ref());
+            once(Down::Set(Setting { id: id as u8, value }))
         }
     }
 }
@@ -75,6 +63,7 @@ fn held(at_s: f64, command: &Command, drive: MotorDrive) -> Vec<(f64, Down)> {
 mod tests {
     use super::*;
     use crate::SceneFile;
+    use tenax_hal_shim::setting::SettingId;
 
     #[test]
     fn a_held_key_is_repeated_and_let_go_in_time() {
@@ -103,7 +92,7 @@ mod tests {
         let scene = SceneFile::parse(text, "t.toml").unwrap();
         let mut script = Script::new(&scene.command);
         assert_eq!(script.take(0.499), []);
-        assert_eq!(script.take(0.5), [Down::Set(Setting::S2Permille(400))]);
+        assert_eq!(script.take(0.5), [Down::Set(Setting { id: SettingId::S2 as u8, value: 400 })]);
         let drive = MotorDrive::Close(Duty::per_mille(300));
         assert_eq!(script.take(1.0), [Down::Drive { drive, hold_ms: 250 }]);
         assert_eq!(script.take(1.25).len(), 2);

@@ -68,7 +68,7 @@ fn every_mistake_is_named_where_it_stands() {
         ("\"fsr_a\"", "\"fsr_e\"", 17, &["fsr_e", "fsr_a", "fsr_b"]),
         ("\"dead\"", "\"gone\"", 18, &["gone", "dead", "stuck"]),
         ("\"dead\"", "\"pressed\"", 17, &["press_n"]),
-        ("value = 300", "value = 9000", 23, &["9000", "50..=1500", "S2"]),
+        ("value = 300", "value = 9000", 23, &["9000", "50..=1500", "s2-permille"]),
         ("value = 300", "value = -1", 23, &["value"]),
         ("value = 300\n", "", 22, &["needs value"]),
         ("\"close\"", "\"shut\"", 27, &["shut", "close", "open", "both"]),

@@ -5,8 +5,8 @@ use std::fmt;
 
 use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, SCANS_PER_FRAME};
 use tenax_hal_shim::frame::{Frame, Scan};
-use tenax_hal_shim::wire::{Down, Event, NetworkState, Refusal, Slow};
-use tenax_logic::fingertip::Fingertip;
+use tenax_hal_shim::wire::{Answer, Down, Event, NetworkState, Received, Slow, Up};
+use tenax_logic::device::Device;
 
 use super::Run;
 
@@ -17,10 +17,24 @@ pub struct Said {
     pub slows: Vec<Slow>,
     /// Events.
     pub events: Vec<Event>,
-    /// Why each command was not carried out.
-    pub refused: Vec<Option<Refusal>>,
+    /// The answer to each command.
+    pub answers: Vec<Answer>,
+}
+
+impl Said {
     /// The network, each time it was asked for.
-    pub networks: Vec<NetworkState>,
+    pub fn networks(&self) -> impl Iterator<Item = &NetworkState> {
+        super::networks(self.answers.iter())
+    }
+
+    fn take(&mut self, message: Up) {
+        match message {
+            Up::Slow(slow) => self.slows.push(slow),
+            Up::Event(event) => self.events.push(event),
+            Up::Answer { answer, .. } => self.answers.push(answer),
+            Up::Hello { .. } | Up::Counters(_) | Up::Saved { .. } => {}
+        }
+    }
 }
 
 /// Puts codes that were recorded on any board through the host's build of the logic.
@@ -29,20 +43,16 @@ pub struct Said {
 /// it. No frame may have been lost. Scans that do not fill a frame are left out.
 #[must_use]
 pub fn host_says(scans: &[Scan], commands: &[(u32, Down)]) -> Said {
-    let mut fingertip = Fingertip::default();
+    let mut device = Device::default();
     let mut said = Said::default();
     let mut commands = commands.iter().peekable();
     let (frames, _) = scans.as_chunks::<SCANS_PER_FRAME>();
     for (sequence, scans) in (0..).zip(frames) {
-        while let Some((_, command)) = commands.next_if(|(at, _)| *at <= sequence) {
-            said.refused.push(fingertip.command(command).err());
-            if *command == Down::Network {
-                said.networks.push(fingertip.network());
-            }
+        while let Some((_, message)) = commands.next_if(|(at, _)| *at <= sequence) {
+            said.take(device.command(&Received { sequence: 0, message: *message }));
         }
-        fingertip.tick(&Frame::from_scans(sequence, scans));
-        said.slows.extend(fingertip.take_slow());
-        said.events.extend(std::iter::from_fn(|| fingertip.next_event()));
+        device.tick(&Frame::from_scans(sequence, scans));
+        std::iter::from_fn(|| device.next_message()).for_each(|message| said.take(message));
     }
     said
 }
@@ -65,7 +75,7 @@ impl Agreement {
             slows: run.slows.len(),
             events: run.events.len(),
             commands: run.taken.len(),
-            networks: run.networks.len(),
+            networks: run.networks().count(),
             difference: difference(run, &host_says(&run.scans, &run.taken)),
         }
     }
@@ -107,11 +117,10 @@ fn difference(run: &Run, host: &Said) -> Option<String> {
     let end = run.slows.last().map_or(0, |slow| slow.frame);
     let due = host.events.iter().filter(|event| event.frame < end).count();
     // What came after the last frame was answered too, and is no part of it.
-    let refused: Vec<_> = run.acks.iter().take(run.taken.len()).map(|(_, refused)| *refused).collect();
-    let networks = &run.networks[..host.networks.len().min(run.networks.len())];
+    let answers: Vec<_> =
+        run.answers.iter().take(run.taken.len()).map(|(_, answer)| answer.clone()).collect();
     first("event", &run.events, &host.events, due)
-        .or_else(|| first("answer", &refused, &host.refused, run.taken.len()))
-        .or_else(|| first("network", networks, &host.networks, host.networks.len()))
+        .or_else(|| first("answer", &answers, &host.answers, run.taken.len()))
 }
 
 /// Where two lists begin to differ, of which the image's has at least `due`.

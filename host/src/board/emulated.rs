@@ -138,7 +138,7 @@ pub fn run<P: Plant + 'static>(
     let mut run = world.run;
     run.flash = world.flash.done;
     line_log::decode(&mut run);
-    run.taken = world.commands.taken(&run.acks);
+    run.taken = world.commands.taken(&run.answers);
     // What the last scans led to had time to come up the line; what came after them was no part of the run.
     run.taken.retain(|(before, _)| *before < frames);
     run.slows.retain(|slow| slow.frame < frames);

@@ -24,10 +24,8 @@ pub fn decode(run: &mut Run) {
                     Up::Slow(slow) => run.slows.push(slow),
                     Up::Event(event) => run.events.push(event),
                     Up::Counters(counters) => run.counters = counters,
-                    Up::Ack { of, refused } => run.acks.push((of, refused)),
-                    Up::Network(network) => run.networks.push(network),
+                    Up::Answer { of, answer, .. } => run.answers.push((of, answer)),
                     Up::Saved { frame, kept } => run.saved.push((frame, kept)),
-                    Up::Samples { .. } => {}
                 }
             }
         }

@@ -7,8 +7,8 @@ use std::time::Instant;
 use tenax_hal_shim::channel::{SCAN_HZ, SCANS_PER_FRAME};
 use tenax_hal_shim::frame::{Frame, Scan, scan_of_pins};
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{Counters, Down};
-use tenax_logic::fingertip::Fingertip;
+use tenax_hal_shim::wire::{Counters, Received, Up};
+use tenax_logic::device::Device;
 use tenax_scene::plant::Plant;
 
 use super::Run;
@@ -39,7 +39,7 @@ fn closed_loop<P: Plant>(mut plant: P, judge: Judge, progress: &mut dyn FnMut(f6
     let began = Instant::now();
     let frames = frames_in(plant.duration_s());
     let mut run = Run { starts: vec![None], ..Run::default() };
-    let mut fingertip = Fingertip::default();
+    let mut device = Device::default();
     let mut drive = MotorDrive::Coast;
     for sequence in 0..frames {
         let select = Frame::lost(sequence).select();
@@ -53,19 +53,16 @@ fn closed_loop<P: Plant>(mut plant: P, judge: Judge, progress: &mut dyn FnMut(f6
         }
         run.scans.extend(scans);
         for command in &commands {
-            // A refusal goes back to whoever sent it; there is no line here.
-            let _ = fingertip.command(command);
+            let of = run.taken.len() as u16;
             run.taken.push((sequence, *command));
-            if *command == Down::Network {
-                run.networks.push(fingertip.network());
-            }
+            take(device.command(&Received { sequence: of, message: *command }), &mut run);
         }
         let frame = Frame::from_scans(sequence, &scans);
         drive = match judge {
-            Judge::Detectors => fingertip.tick(&frame),
-            Judge::Plant => fingertip.tick_told(&frame, plant.slipping()),
+            Judge::Detectors => device.tick(&frame),
+            Judge::Plant => device.fingertip_mut().tick_told(&frame, plant.slipping()),
         };
-        collect(&mut fingertip, &mut run);
+        std::iter::from_fn(|| device.next_message()).for_each(|message| take(message, &mut run));
         if sequence % PROGRESS_FRAMES == 0 {
             progress(seconds(run.scans.len()));
         }
@@ -79,9 +76,14 @@ fn closed_loop<P: Plant>(mut plant: P, judge: Judge, progress: &mut dyn FnMut(f6
 /// Frames between two calls of `progress`: a tenth of a virtual second.
 const PROGRESS_FRAMES: u32 = 200;
 
-fn collect(fingertip: &mut Fingertip, run: &mut Run) {
-    run.slows.extend(fingertip.take_slow());
-    run.events.extend(std::iter::from_fn(|| fingertip.next_event()));
+fn take(message: Up, run: &mut Run) {
+    match message {
+        Up::Slow(slow) => run.slows.push(slow),
+        Up::Event(event) => run.events.push(event),
+        Up::Answer { of, answer, .. } => run.answers.push((of, answer)),
+        // What a board says of its start, its store and its counts: there is none here.
+        Up::Hello { .. } | Up::Counters(_) | Up::Saved { .. } => {}
+    }
 }
 
 fn seconds(scans: usize) -> f64 {

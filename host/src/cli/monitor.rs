@@ -7,10 +7,12 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use anyhow::{Context, bail};
-use tenax_hal_shim::wire::{BAUD, Down};
+use tenax_hal_shim::setting::SettingId;
+use tenax_hal_shim::wire::{BAUD, Down, SETTINGS_PER_ANSWER, Setting};
 
 use crate::commander::Commander;
 use crate::monitor::{End, Monitor};
+use crate::settings;
 
 /// Watch a board's serial line.
 #[derive(Debug, clap::Args)]
@@ -24,6 +26,15 @@ pub struct Args {
     /// First ask the board for something, or tell it something; may be given more than once
     #[arg(long, value_name = "COMMAND", requires = "port")]
     send: Vec<Send>,
+    /// Change a setting, such as s1-mv=120; may be given more than once
+    #[arg(long, requires = "port", value_name = "NAME=VALUE", value_parser = |text: &str| settings::parse(text))]
+    set: Vec<Setting>,
+    /// Ask for a setting; may be given more than once
+    #[arg(long, requires = "port", value_name = "NAME", value_parser = |name: &str| settings::named(name))]
+    get: Vec<SettingId>,
+    /// Ask for every setting
+    #[arg(long, requires = "port")]
+    settings: bool,
     /// Pass a camera's words on to the board, from standard input: a line `v1 v2 [age_ms]` for each picture
     #[arg(long, requires = "port")]
     teach: bool,
@@ -92,8 +103,13 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
 /// Sends what is to be sent at once, and lets the teacher talk beside the watching.
 fn tell(args: &Args, line: &dyn serialport::SerialPort) -> anyhow::Result<()> {
     let mut commander = Commander::new(line.try_clone().context("cannot write to the port")?);
-    for &command in &args.send {
-        commander.send(&command.into()).context("cannot write to the port")?;
+    let set = args.set.iter().map(|&setting| Down::Set(setting));
+    let get = args.get.iter().map(|&id| Down::Get(id as u8));
+    // The first of each part of the table that one answer has room for.
+    let all = SettingId::ALL.into_iter().step_by(SETTINGS_PER_ANSWER).map(|id| Down::Settings(id as u8));
+    let all = all.filter(|_| args.settings);
+    for command in args.send.iter().map(|&send| send.into()).chain(set).chain(get).chain(all) {
+        commander.send(&command).context("cannot write to the port")?;
     }
     if args.teach {
         // It ends with its input, or with the process.

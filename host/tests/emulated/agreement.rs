@@ -10,6 +10,7 @@ use tenax::learn::finger::Finger;
 use tenax::learn::trial::Setup;
 use tenax_hal_shim::channel::{FRAME_HZ, SCAN_HZ};
 use tenax_hal_shim::motor::{Duty, MotorDrive};
+use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{Down, Setting};
 use tenax_hal_shim::words::Code;
 
@@ -76,11 +77,13 @@ fn the_host_says_the_same_when_it_takes_each_command_in_the_images_tick() {
         plant = plant.sending(at_s, Down::Drive { drive, hold_ms: 10 });
         plant = plant.sending(at_s, Down::Teach { codes: [Code::Minus, Code::Plus], age_ms: 40 });
         if n % 10 == 9 {
-            plant = plant.sending(at_s, Down::Set(Setting::S2Permille(n))).sending(at_s, Down::Network);
+            plant = plant
+                .sending(at_s, Down::Set(Setting { id: SettingId::S2 as u8, value: n.into() }))
+                .sending(at_s, Down::Network);
         }
     }
     let mut run = run(plant, &Options::default());
-    assert_eq!((run.taken.len(), run.networks.len()), (88, 4));
+    assert_eq!((run.taken.len(), run.networks().count()), (88, 4));
     let agreement = Agreement::of(&run);
     assert!(agreement.holds(), "{agreement}");
     // One of them a tick early or late is another run.
@@ -98,7 +101,8 @@ fn a_lesson_teaches_the_image_what_it_teaches_the_host() {
     let image = run(lesson(), &Options::default());
     let agreement = Agreement::of(&image);
     assert!(agreement.holds(), "{agreement}");
-    assert!(image.networks[0].updates > 1_000, "{:?}", image.networks);
+    let network = image.networks().next().expect("it was asked for");
+    assert!(network.updates > 1_000, "{network:?}");
     // It is not the run that the host's own board makes of the lesson: there a command is taken in its own frame.
     let (host, _) = simulated::run(lesson(), &mut |_| {});
     let late = image.taken.iter().zip(&host.taken).filter(|(image, host)| image.0 > host.0).count();

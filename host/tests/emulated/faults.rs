@@ -3,7 +3,7 @@
 use tenax::board::agreement::host_says;
 use tenax::board::emulated::{Mishap, Options};
 use tenax_hal_shim::motor::{Duty, MotorDrive};
-use tenax_hal_shim::wire::{Down, EventKind};
+use tenax_hal_shim::wire::{Answer, Down, EventKind};
 use tenax_hal_shim::words::Fault;
 
 use crate::{Rest, Swing, drives, run};
@@ -43,7 +43,7 @@ fn garbage_on_the_line_is_counted_and_moves_nothing() {
     let run = run(plant, &with(0.3, Mishap::Garbage(garbage)));
     assert_eq!(run.starts, [None]);
     assert!(run.counters.bad_frames >= 3, "{:?}", run.counters);
-    assert_eq!(run.acks, [(1, None)], "the second command after it was heard");
+    assert_eq!(run.answers, [(1, Answer::Done)], "the second command after it was heard");
     assert!(drives(&run, 0.0, 1.0).iter().all(|drive| *drive == MotorDrive::Coast));
     assert_eq!((run.counters.overruns, run.counters.ticks_late), (0, 0));
 }

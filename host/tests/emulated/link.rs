@@ -2,19 +2,28 @@
 
 use tenax::board::emulated::Options;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
-use tenax_hal_shim::wire::{Down, Refusal, Setting};
+use tenax_hal_shim::setting::SettingId;
+use tenax_hal_shim::wire::{Answer, Down, Refusal, Setting};
 
 use crate::{Rest, Swing, drives, run};
+
+const fn s2(permille: i32) -> Setting {
+    Setting { id: SettingId::S2 as u8, value: permille }
+}
 
 #[test]
 fn every_command_is_answered_in_order() {
     let plant = Swing::new(0.6)
         .sending(0.2, Down::Ping)
-        .sending(0.2, Down::Set(Setting::S2Permille(400)))
-        .sending(0.2, Down::Set(Setting::S2Permille(40)))
+        .sending(0.2, Down::Set(s2(400)))
+        .sending(0.2, Down::Set(s2(40)))
         .sending(0.3, Down::Samples);
     let run = run(Rest::new(plant), &Options::default());
-    assert_eq!(run.acks, [(0, None), (1, None), (2, Some(Refusal::OutOfRange)), (3, None)]);
+    let [(0, Answer::Done), (1, first), (2, second), (3, Answer::Samples(_))] = &run.answers[..] else {
+        panic!("{:?}", run.answers);
+    };
+    assert_eq!(*first, Answer::Setting(s2(400)));
+    assert_eq!(*second, Answer::Refused(Refusal::OutOfRange { min: 50, max: 1_500 }));
     assert_eq!(run.slows.last().map(|slow| slow.s2_permille), Some(400));
 }
 

@@ -4,6 +4,7 @@ use tenax::board::agreement::Agreement;
 use tenax::board::emulated::{Mishap, Options};
 use tenax_hal_shim::flash::{BLANK, FlashArea, FlashFailed, Sector};
 use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{Down, Event, EventKind, Setting};
 use tenax_hal_shim::words::{Code, Fault, Kept};
 use tenax_logic::config::Config;
@@ -58,12 +59,12 @@ impl FlashArea for Sectors {
 }
 
 fn s2(permille: u16) -> Down {
-    Down::Set(Setting::S2Permille(permille))
+    Down::Set(Setting { id: SettingId::S2 as u8, value: permille.into() })
 }
 
 fn settings(s2_permille: u16) -> payload::SettingsBytes {
     let mut config = Config::default();
-    assert!(config.set(Setting::S2Permille(s2_permille)));
+    assert!(config.set(SettingId::S2, s2_permille.into()).is_ok());
     payload::of_settings(&config)
 }
 
@@ -158,7 +159,7 @@ fn what_the_network_learned_is_used_and_saved_again() {
         .sending(1.4, Down::Forget)
         .sending(2.8, Down::Network);
     let run = run(Rest::new(plant), &options);
-    let seen: Vec<_> = run.networks.iter().map(|network| network.weights).collect();
+    let seen: Vec<_> = run.networks().map(|network| network.weights).collect();
     assert_eq!(seen, [learned, learned, [[0; 24]; 2]], "restored, saved and restored, forgotten for good");
     assert_eq!(kept(&run), [Kept::Network, Kept::Network]);
     assert_eq!(faults(&run), []);

@@ -68,8 +68,11 @@ impl Rule {
         Ok(Self::of(config))
     }
 
+    /// Of the default rates.
+    pub const DEFAULT: Self = Self::of(&Config::DEFAULT);
+
     /// Of rates within their ranges.
-    const fn of(config: &Config) -> Self {
+    pub(crate) const fn of(config: &Config) -> Self {
         // 60e6 < 2^26, so nothing below leaves 64 bits, and the ranges above keep each result in its type.
         let beta = (((config.beta_ppb as u64) << 32) + 500_000_000) / 1_000_000_000;
         let delta = (((config.delta_ppm as u64) << 23) + 500_000) / 1_000_000;
@@ -84,7 +87,7 @@ impl Rule {
 impl Default for Rule {
     /// Of the default rates.
     fn default() -> Self {
-        Self::of(&Config::DEFAULT)
+        Self::DEFAULT
     }
 }
 

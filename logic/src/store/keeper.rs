@@ -2,7 +2,7 @@
 
 use tenax_hal_shim::words::Kept;
 
-use super::payload::{SettingsBytes, ZeroBytes};
+use super::payload::ZeroBytes;
 use crate::config::frames;
 
 /// Settings and zero are saved when they have changed, and then not again for this long, in frames.
@@ -13,8 +13,8 @@ const LEARNED_FRAMES: u32 = frames(60_000);
 /// What there is to save.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Now {
-    /// The settings.
-    pub settings: SettingsBytes,
+    /// How often a setting was changed.
+    pub settings_changed: u32,
     /// The force sensor's zero.
     pub zero: ZeroBytes,
     /// How often the network's weights have been updated.
@@ -28,7 +28,7 @@ pub struct Now {
 /// What was saved last, and when.
 #[derive(Clone, Debug)]
 pub struct Keeper {
-    settings: SettingsBytes,
+    settings_changed: u32,
     zero: ZeroBytes,
     /// Updates of the weights that the saved network had had.
     updates: u32,
@@ -41,7 +41,7 @@ impl Keeper {
     #[must_use]
     pub const fn new(now: &Now) -> Self {
         Self {
-            settings: now.settings,
+            settings_changed: now.settings_changed,
             zero: now.zero,
             updates: now.updates,
             since: [u32::MAX; Kept::ALL.len()],
@@ -59,8 +59,9 @@ impl Keeper {
     pub fn next(&mut self, now: &Now) -> Option<Kept> {
         let since = |kept: Kept| self.since[kept as usize];
         let learned = now.updates != self.updates;
-        let kept = if now.settings != self.settings && since(Kept::Settings) >= CHANGED_FRAMES {
-            self.settings = now.settings;
+        let kept = if now.settings_changed != self.settings_changed && since(Kept::Settings) >= CHANGED_FRAMES
+        {
+            self.settings_changed = now.settings_changed;
             Kept::Settings
         } else if now.zero != self.zero && since(Kept::Zero) >= CHANGED_FRAMES {
             self.zero = now.zero;
@@ -80,8 +81,8 @@ impl Keeper {
 mod tests {
     use super::*;
 
-    fn now(settings: u8, zero: u8, updates: u32, at_rest: bool) -> Now {
-        Now { settings: [settings; _], zero: [zero; _], updates, at_rest, asked: false }
+    fn now(settings_changed: u32, zero: u8, updates: u32, at_rest: bool) -> Now {
+        Now { settings_changed, zero: [zero; _], updates, at_rest, asked: false }
     }
 
     #[test]

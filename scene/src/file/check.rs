@@ -9,7 +9,6 @@ use super::SceneFile;
 use super::quantity::{Instant, Mu};
 use super::sections::{Command, CommandKind, FaultKind, Level, SensorFault};
 use super::step::step;
-use crate::commands;
 
 /// The first thing that does not fit.
 pub(super) struct Wrong {
@@ -179,19 +178,19 @@ fn command(command: &Command) -> Checked {
             demand(command.for_s.is_some(), command.kind.span(), || "a drive needs for_s".to_owned())
         }
         CommandKind::StrokeBegin | CommandKind::StrokeEnd | CommandKind::Zero => Ok(()),
-        _ => {
+        CommandKind::Set(id) => {
             let Some(value) = &command.value else {
                 return wrong(command.kind.span(), "a setting needs value".to_owned());
             };
-            let Some(setting) = commands::setting(kind, *value.get_ref()) else {
-                return wrong(value.span(), format!("value = {} does not fit the setting", value.get_ref()));
-            };
-            let (name, unit, number, allowed) = setting.describe();
-            demand(setting.is_allowed(), value.span(), || {
+            let row = id.row();
+            demand(row.range().contains(value.get_ref()), value.span(), || {
                 format!(
-                    "value = {number} {unit} is outside {}..={} of {name}",
-                    allowed.start(),
-                    allowed.end()
+                    "value = {} {} is outside {}..={} of {}",
+                    value.get_ref(),
+                    row.unit,
+                    row.min,
+                    row.max,
+                    row.name
                 )
             })
         }

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use tenax_hal_shim::wire::{Down, Refusal};
+use tenax_hal_shim::wire::{Answer, Down};
 
 /// What was sent, and when the image took something.
 ///
@@ -27,8 +27,8 @@ impl Commands {
     }
 
     /// Each command that was answered, with the sequence number of the frame before whose tick it was taken.
-    pub fn taken(mut self, acks: &[(u16, Option<Refusal>)]) -> Vec<(u32, Down)> {
-        let answered = acks.iter().filter_map(|(of, _)| {
+    pub fn taken(mut self, answers: &[(u16, Answer)]) -> Vec<(u32, Down)> {
+        let answered = answers.iter().filter_map(|(of, _)| {
             // What the line swallowed was never answered.
             std::iter::from_fn(|| self.sent.pop_front()).find(|(sequence, _)| sequence == of)
         });

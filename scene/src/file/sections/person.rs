@@ -1,6 +1,7 @@
 //! What the wearer wants, and what somebody types.
 
 use serde::Deserialize;
+use tenax_hal_shim::setting::SettingId;
 use toml::Spanned;
 
 use crate::file::quantity::{Duration, Instant, Millivolts, Newtons};
@@ -35,7 +36,7 @@ pub struct Muscle {
 
 /// What somebody types.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[serde(try_from = "String")]
 pub enum CommandKind {
     /// A stroke begins.
     StrokeBegin,
@@ -47,16 +48,32 @@ pub enum CommandKind {
     Close,
     /// The hand is opened, likewise.
     Open,
-    /// S1 is set to `value`, mV.
-    SetS1Mv,
-    /// S2 is set to `value`, per mille.
-    SetS2Permille,
-    /// The threshold of the myosensors is set to `value`, mV.
-    SetMyoOnMv,
-    /// The force ceiling is set to `value`, mN.
-    SetForceCeilingMn,
-    /// How far below 0 the network's o1 means slip is set to `value`, per mille.
-    SetNetworkSlipPermille,
+    /// A setting is set to `value`, in its unit: `set-` and the setting's name.
+    Set(SettingId),
+}
+
+impl TryFrom<String> for CommandKind {
+    type Error = String;
+
+    fn try_from(kind: String) -> Result<Self, String> {
+        let setting = || {
+            let name = kind.strip_prefix("set-")?;
+            SettingId::by_name(name).map(Self::Set)
+        };
+        Ok(match kind.as_str() {
+            "stroke-begin" => Self::StrokeBegin,
+            "stroke-end" => Self::StrokeEnd,
+            "zero" => Self::Zero,
+            "close" => Self::Close,
+            "open" => Self::Open,
+            _ => setting().ok_or_else(|| {
+                let settings = SettingId::ALL.map(|id| format!("set-{}", id.row().name)).join(", ");
+                format!(
+                    "kind = \"{kind}\" is no command; allowed: stroke-begin, stroke-end, zero, close, open, {settings}"
+                )
+            })?,
+        })
+    }
 }
 
 /// A command over the serial line.
@@ -68,7 +85,7 @@ pub struct Command {
     /// What.
     pub kind: Spanned<CommandKind>,
     /// Of a setting, in the unit that the kind names.
-    pub value: Option<Spanned<u32>>,
+    pub value: Option<Spanned<i32>>,
     /// Of a drive.
     pub duty_permille: Option<Spanned<u16>>,
     /// Of a drive: how long the key is held.

@@ -1,14 +1,12 @@
 //! The last sample of every channel, for whoever asks over the line.
 
-use tenax_hal_shim::channel::{CHANNELS, Input, PVDF_COUNT, SWITCH_INPUTS};
+use tenax_hal_shim::channel::{CHANNELS, COUNT, Input, PVDF_COUNT, SWITCH_INPUTS};
 use tenax_hal_shim::frame::Frame;
-use tenax_hal_shim::wire::Up;
 
 /// The last samples, each as old as its channel is slow. Kept as they come, twelve and two a frame; only who asks pays
 /// for putting them in order.
-#[derive(Default)]
+#[derive(Clone, Debug, Default)]
 pub struct LastSamples {
-    frame: u32,
     pvdf: [u16; PVDF_COUNT],
     switch_a: [u16; SWITCH_INPUTS as usize],
     switch_b: [u16; SWITCH_INPUTS as usize],
@@ -21,21 +19,18 @@ impl LastSamples {
             return;
         }
         let select = usize::from(frame.select());
-        self.frame = frame.sequence;
         self.pvdf = frame.pvdf;
         self.switch_a[select] = frame.switch_a;
         self.switch_b[select] = frame.switch_b;
     }
 
-    /// The answer to [`Down::Samples`](tenax_hal_shim::wire::Down::Samples).
-    pub fn message(&self) -> Up {
-        Up::Samples {
-            frame: self.frame,
-            samples: CHANNELS.map(|channel| match channel.input {
-                Input::Direct { rank } => self.pvdf[usize::from(rank)],
-                Input::SwitchA { select } => self.switch_a[usize::from(select)],
-                Input::SwitchB { select } => self.switch_b[usize::from(select)],
-            }),
-        }
+    /// The last sample of every channel, in the order of [`CHANNELS`].
+    #[must_use]
+    pub fn in_order(&self) -> [u16; COUNT] {
+        CHANNELS.map(|channel| match channel.input {
+            Input::Direct { rank } => self.pvdf[usize::from(rank)],
+            Input::SwitchA { select } => self.switch_a[usize::from(select)],
+            Input::SwitchB { select } => self.switch_b[usize::from(select)],
+        })
     }
 }

@@ -1,0 +1,173 @@
+//! The settings: every number of the fingertip that a person may choose, one row each.
+//!
+//! The table drives the wire (set, get, list), the flash, scene files, the command line and `docs/settings.md`. A new
+//! setting is a row here and an arm in `tenax_logic::config::Config`, which the compiler asks for.
+
+use core::ops::RangeInclusive;
+
+/// What a person needs to know of a setting.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Row {
+    /// What it is called on the command line and in scene files. It ends with the unit.
+    pub name: &'static str,
+    /// A name that it had before and that scene files may still use.
+    pub was: Option<&'static str>,
+    /// Its unit, for a person.
+    pub unit: &'static str,
+    /// The lowest value that is accepted.
+    pub min: i32,
+    /// The highest.
+    pub max: i32,
+    /// Its value until somebody changes it.
+    pub default: i32,
+    /// What it does.
+    pub meaning: &'static str,
+}
+
+impl Row {
+    /// The values that are accepted.
+    #[must_use]
+    pub const fn range(&self) -> RangeInclusive<i32> {
+        self.min..=self.max
+    }
+}
+
+/// Makes the enum and the table out of the same rows.
+macro_rules! settings {
+    ($($(#[doc = $meaning:literal])+ $number:literal $id:ident $name:literal $(($was:literal))? $unit:literal
+        [$min:literal, $max:literal] = $default:literal;)+) => {
+        /// A setting. Its number is what the wire and the flash call it; numbers are never given twice.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[repr(u8)]
+        pub enum SettingId {
+            $($(#[doc = $meaning])+ $id = $number,)+
+        }
+
+        impl SettingId {
+            /// Every setting, in the order of the table.
+            pub const ALL: [Self; [$($number),+].len()] = [$(Self::$id),+];
+
+            /// Its row of the table.
+            #[must_use]
+            pub const fn row(self) -> Row {
+                match self {
+                    $(Self::$id => Row {
+                        name: $name,
+                        was: settings!(@was $($was)?),
+                        unit: $unit,
+                        min: $min,
+                        max: $max,
+                        default: $default,
+                        meaning: concat!($($meaning),+).trim_ascii(),
+                    },)+
+                }
+            }
+        }
+    };
+    (@was) => { None };
+    (@was $was:literal) => { Some($was) };
+}
+
+settings! {
+    /// S1: vibration envelope of a PVDF channel that means slip
+    1 S1 "s1-mv" "mV" [5, 1_500] = 100;
+    /// S2: Ft/Fn that means incipient slip, until a stroke measures it
+    2 S2 "s2-permille" "per mille" [50, 1_500] = 300;
+    /// EMG envelope above rest from which a muscle is active
+    3 EmgOn "emg-on-mv" ("myo-on-mv") "mV" [20, 600] = 160;
+    /// Normal force above which the reflex closes no further
+    4 ForceCeiling "force-ceiling-mn" "mN" [500, 140_000] = 40_000;
+    /// Hebbian: how far below 0 the PVDF part of o1 means slip
+    5 HebbianSlip "hebbian-slip-permille" ("network-slip-permille") "per mille" [10, 1_000] = 30;
+    /// Vibration above the slip band that a knock has at least
+    6 KnockLevel "knock-level-mv" "mV" [5, 1_500] = 20;
+    /// A vibration with more than this part of its envelope above the slip band is a knock
+    7 KnockRatio "knock-ratio-permille" "per mille" [100, 10_000] = 500;
+    /// A knock is over after this long; what lasts longer is slip
+    8 KnockLength "knock-ms" "ms" [1, 200] = 30;
+    /// The part of a measured static friction that becomes S2
+    9 S2OfMuS "s2-of-mu-s-permille" "per mille" [300, 950] = 800;
+    /// Normal force from which the finger counts as loaded
+    10 Loaded "loaded-mn" "mN" [200, 5_000] = 600;
+    /// Hebbian: how long o1 must mean slip if only some PVDF channels show it
+    11 HebbianTime "hebbian-ms" "ms" [1, 100] = 5;
+    /// Hebbian: how long if all PVDF channels show it, longer than a knock
+    12 HebbianEverywhere "hebbian-everywhere-ms" "ms" [1, 500] = 40;
+    /// Hebbian: how long after a knock or a fast run of the motor it is not evaluated
+    13 HebbianAfterNoise "hebbian-after-noise-ms" "ms" [0, 1_000] = 100;
+    /// Motor duty from which its noise disturbs the Hebbian detector
+    14 NoisyDuty "noisy-duty-permille" "per mille" [10, 1_000] = 100;
+    /// Age of a teacher's picture beyond which it teaches nothing
+    15 TeacherFresh "teacher-fresh-ms" "ms" [40, 1_000] = 120;
+    /// Hebbian: learning rate alpha of one update (Tada 2006, equation 5)
+    16 HebbianAlpha "hebbian-alpha-ppb" "ppb" [0, 16_000_000] = 50_000;
+    /// Hebbian: forgetting rate beta of one update (Tada 2006, equation 5)
+    17 HebbianBeta "hebbian-beta-ppb" "ppb" [0, 16_000_000] = 10_000;
+    /// Hebbian: weight delta that every connection has for the variable rate (Tada 2006, equation 6)
+    18 HebbianDelta "hebbian-delta-ppm" "ppm" [1_000, 8_000_000] = 300_000;
+    /// Part of emg-on-mv below which an active muscle becomes inactive
+    19 EmgOff "emg-off-permille" "per mille" [300, 950] = 700;
+    /// How long a muscle counts as active after its last activity
+    20 EmgHold "emg-hold-ms" "ms" [100, 2_000] = 200;
+    /// EMG envelope above rest that asks for full speed
+    21 EmgFull "emg-full-mv" "mV" [700, 3_000] = 1_000;
+    /// Motor duty that an envelope at emg-on-mv asks for
+    22 EmgSlowest "emg-slowest-permille" "per mille" [100, 1_000] = 300;
+    /// Motor duty of the pulse that answers slip
+    23 SlipDuty "slip-duty-permille" "per mille" [200, 1_000] = 1_000;
+    /// Length of the pulse that answers slip
+    24 SlipPulse "slip-pulse-ms" "ms" [5, 100] = 30;
+    /// Its length at most while a detector still reports slip
+    25 SlipPulseMax "slip-pulse-max-ms" "ms" [5, 500] = 50;
+    /// Motor duty of the pulse that answers incipient slip
+    26 IncipientDuty "incipient-duty-permille" "per mille" [100, 1_000] = 400;
+    /// Length of the pulse that answers incipient slip
+    27 IncipientPulse "incipient-pulse-ms" "ms" [5, 100] = 15;
+    /// How long the object is given to settle after a pulse, longer than the motor's dead time
+    28 Settle "settle-ms" "ms" [20, 500] = 80;
+    /// How long the reflex may close altogether while no force is known, until a muscle takes over once
+    29 Blind "blind-ms" "ms" [0, 1_000] = 200;
+}
+
+impl SettingId {
+    /// The setting with this number, if there is one.
+    #[must_use]
+    pub fn from_number(number: u8) -> Option<Self> {
+        Self::ALL.into_iter().find(|id| *id as u8 == number)
+    }
+
+    /// The setting with this name, or with one that it had before.
+    #[must_use]
+    pub fn by_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|id| id.row().name == name || id.row().was == Some(name))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn numbers_and_names_are_given_once_and_defaults_are_accepted() {
+        let mut names = HashSet::new();
+        for id in SettingId::ALL {
+            let row = id.row();
+            assert!(names.insert(row.name) && row.was.is_none_or(|was| names.insert(was)), "{}", row.name);
+            assert!(row.range().contains(&row.default) && row.min < row.max, "{}", row.name);
+            assert!(row.min >= 0 && row.max < 1 << 24, "{}: a record keeps 24 bits of it", row.name);
+            assert_eq!(SettingId::from_number(id as u8), Some(id));
+            assert_eq!(SettingId::by_name(row.name), Some(id));
+            assert!(id as u8 != 0, "0 marks a record of the first format");
+        }
+    }
+
+    #[test]
+    fn names_end_with_their_unit() {
+        for id in SettingId::ALL {
+            let row = id.row();
+            let unit = row.unit.replace(' ', "").to_lowercase();
+            assert!(row.name.ends_with(&std::format!("-{unit}")), "{} in {}", row.name, row.unit);
+        }
+    }
+}

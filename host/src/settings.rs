@@ -1,0 +1,89 @@
+//! The settings as a page for people: `docs/settings.md`. A test holds that file against this.
+
+use std::fmt::Write;
+
+use anyhow::{Context, bail};
+use tenax_hal_shim::setting::SettingId;
+use tenax_hal_shim::wire::Setting;
+
+const HEAD: &str = "\
+# Settings
+
+Printed from `hal-shim/src/setting.rs` by `cargo tenax settings`; do not edit.
+
+`cargo tenax monitor --port P --set NAME=VALUE` changes one, `--get NAME` and `--settings` show what is in force; a scene
+file uses `kind = \"set-NAME\"` with `value`. A value out of range is refused with the range. Changed settings outlive a power
+cut. The number is what the wire and the flash call the setting.
+
+| number | name | unit | range | default | meaning |
+|---|---|---|---|---|---|
+";
+
+/// The whole page.
+#[must_use]
+pub fn markdown() -> String {
+    let mut page = String::from(HEAD);
+    for id in SettingId::ALL {
+        let row = id.row();
+        let (number, range) = (id as u8, row.range());
+        // Writing into a String cannot fail.
+        let _ = writeln!(
+            page,
+            "| {number} | `{}` | {} | {} to {} | {} | {} |",
+            row.name,
+            row.unit,
+            range.start(),
+            range.end(),
+            row.default,
+            row.meaning
+        );
+    }
+    page
+}
+
+/// The setting of this name.
+///
+/// # Errors
+/// Names all that there are.
+pub fn named(name: &str) -> anyhow::Result<SettingId> {
+    SettingId::by_name(name).with_context(|| {
+        let names = SettingId::ALL.map(|id| id.row().name).join(", ");
+        format!("no setting is called {name}; the settings are {names}")
+    })
+}
+
+/// A setting and its value from `NAME=VALUE`.
+///
+/// # Errors
+/// Says what is wrong with it, and which values are accepted.
+pub fn parse(text: &str) -> anyhow::Result<Setting> {
+    let (name, value) = text.split_once('=').with_context(|| format!("{text} is no NAME=VALUE"))?;
+    let id = named(name.trim())?;
+    let row = id.row();
+    let value: i32 = value.trim().parse().with_context(|| format!("{value} is no whole number"))?;
+    if !row.range().contains(&value) {
+        bail!("{} = {value} {} is outside {} to {}", row.name, row.unit, row.min, row.max);
+    }
+    Ok(Setting { id: id as u8, value })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_setting_is_read_by_either_name_and_a_wrong_one_says_what_is_right() {
+        let set = Setting { id: SettingId::EmgOn as u8, value: 200 };
+        assert_eq!(parse("emg-on-mv=200").unwrap(), set);
+        assert_eq!(parse("myo-on-mv = 200").unwrap(), set);
+        for (text, word) in [
+            ("emg-on-mv", "NAME=VALUE"),
+            ("emg=1", "emg-on-mv"),
+            ("emg-on-mv=1", "20 to 600"),
+            ("emg-on-mv=x", "whole"),
+        ] {
+            let wrong = format!("{:#}", parse(text).unwrap_err());
+            assert!(wrong.contains(word), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! The fingertip as a device on a line: frames and commands in, drives, messages and records out.
+//!
+//! The flashed image, the host's board and the comparison of the two share it, so that what a command is answered with is
+//! decided in one place.
+//!
+//! ```
+//! use tenax_hal_shim::frame::Frame;
+//! use tenax_hal_shim::motor::MotorDrive;
+//! use tenax_hal_shim::wire::{Answer, Down, Received, Up};
+//! use tenax_logic::device::Device;
+//!
+//! let mut device = Device::default();
+//! let Up::Answer { answer, .. } = device.command(&Received { sequence: 0, message: Down::Ping }) else { unreachable!() };
+//! assert_eq!(answer, Answer::Done);
+//! // Half a millisecond goes by; its samples were lost.
+//! assert_eq!(device.tick(&Frame::lost(0)), MotorDrive::Coast);
+//! while let Some(message) = device.next_message() {
+//!     println!("{message:?}");
+//! }
+//! ```
+
+use heapless::Vec;
+use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
+use tenax_hal_shim::frame::Frame;
+use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::setting::SettingId;
+use tenax_hal_shim::wire::{Answer, Down, Received, Refusal, Setting, Up};
+use tenax_hal_shim::words::{Fault, Kept};
+
+use crate::fingertip::Fingertip;
+use crate::samples::LastSamples;
+use crate::store::keeper::Keeper;
+use crate::store::record::Record;
+
+/// A fingertip, and what it takes to answer for it.
+#[derive(Clone, Debug)]
+pub struct Device {
+    fingertip: Fingertip,
+    samples: LastSamples,
+    keeper: Keeper,
+}
+
+impl Default for Device {
+    fn default() -> Self {
+        Self::new(Fingertip::default())
+    }
+}
+
+impl Device {
+    /// With a fingertip that has not ticked yet.
+    #[must_use]
+    pub fn new(fingertip: Fingertip) -> Self {
+        let keeper = fingertip.keeper();
+        Self { fingertip, samples: LastSamples::default(), keeper }
+    }
+
+    /// The fingertip.
+    #[must_use]
+    pub const fn fingertip(&self) -> &Fingertip {
+        &self.fingertip
+    }
+
+    /// The fingertip, to be ticked by somebody who measures it: see [`tick`](Self::tick).
+    pub const fn fingertip_mut(&mut self) -> &mut Fingertip {
+        &mut self.fingertip
+    }
+
+    /// Takes up what was kept through a power cut, before the first tick.
+    pub fn restore(&mut self, kept: Kept, payload: &[u8]) {
+        self.fingertip.restore(kept, payload);
+        self.keeper = self.fingertip.keeper();
+    }
+
+    /// Reports something that went wrong outside.
+    pub fn report(&mut self, fault: Fault) {
+        self.fingertip.report(fault);
+    }
+
+    /// Takes one frame, and says how to drive the motor until the next.
+    pub fn tick(&mut self, frame: &Frame) -> MotorDrive {
+        let drive = self.fingertip.tick(frame);
+        self.sampled(frame);
+        drive
+    }
+
+    /// What a frame read, for whoever asks. Part of [`tick`](Self::tick).
+    pub fn sampled(&mut self, frame: &Frame) {
+        self.samples.take(frame);
+    }
+
+    /// Carries out a command, and gives the answer to it.
+    pub fn command(&mut self, received: &Received<Down>) -> Up {
+        let done = self.fingertip.command(&received.message);
+        self.answer(received, done)
+    }
+
+    /// The answer to a command that was `done`. Part of [`command`](Self::command).
+    pub fn answer(&self, received: &Received<Down>, done: Result<(), Refusal>) -> Up {
+        let answer = match (done, received.message) {
+            (Err(refusal), _) => Answer::Refused(refusal),
+            (Ok(()), Down::Set(Setting { id, .. }) | Down::Get(id)) => SettingId::from_number(id)
+                .map_or(Answer::Refused(Refusal::UnknownSetting), |id| Answer::Setting(self.setting(id))),
+            (Ok(()), Down::Settings(from)) => {
+                let asked = SettingId::ALL.into_iter().filter(|id| *id as u8 >= from);
+                // As many as an answer has room for.
+                let mut settings = Vec::new();
+                asked
+                    .map(|id| self.setting(id))
+                    .take_while(|setting| settings.push(*setting).is_ok())
+                    .for_each(drop);
+                Answer::Settings(settings)
+            }
+            (Ok(()), Down::Samples) => Answer::Samples(self.samples.in_order()),
+            (Ok(()), Down::Network) => Answer::Network(self.fingertip.network()),
+            (Ok(()), _) => Answer::Done,
+        };
+        Up::Answer { of: received.sequence, frame: self.fingertip.frame(), answer }
+    }
+
+    fn setting(&self, id: SettingId) -> Setting {
+        Setting { id: id as u8, value: self.fingertip.config().get(id) }
+    }
+
+    /// The oldest message that was not taken yet. Ask after every tick.
+    pub fn next_message(&mut self) -> Option<Up> {
+        self.fingertip.take_slow().map(Up::Slow).or_else(|| self.fingertip.next_event().map(Up::Event))
+    }
+
+    /// What has to be kept and is not yet. Ask once a slow frame; who asks saves it: it is given once.
+    pub fn next_record(&mut self) -> Option<Record> {
+        self.fingertip.next_record(&mut self.keeper)
+    }
+
+    /// A slow frame has gone by: what was saved is a while ago. Call it once a slow frame.
+    pub fn slow_frame_passed(&mut self) {
+        self.keeper.pass(FRAMES_PER_SLOW_FRAME.into());
+    }
+}
