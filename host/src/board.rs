@@ -1,15 +1,23 @@
 //! The boards that a plant can be connected to, and what a run on one leaves behind.
+//!
+//! What comes 80 times a second or more is handed to a [`Recorder`] while the run goes, so that a long run takes no more
+//! memory than a short one. What is rare is in the [`Summary`]. A [`Run`] is the recorder that keeps everything.
 
 pub mod agreement;
 #[cfg(feature = "emulator")]
 pub mod emulated;
 pub mod line_log;
+pub mod recorder;
 pub mod simulated;
+
+use std::ops::{Deref, DerefMut};
 
 use tenax_hal_shim::frame::Scan;
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{Answer, Counters, Down, Event, NetworkState, Slow};
+use tenax_hal_shim::wire::{Answer, Counters, Down, Event, NetworkState, Slow, Up};
 use tenax_hal_shim::words::{Fault, Kept};
+
+pub use recorder::Recorder;
 
 /// What the core spent, in instructions of the emulated Cortex-M4.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,24 +32,16 @@ pub struct TickCost {
     pub instructions_per_s: f64,
 }
 
-/// What a run leaves behind.
+/// What a run leaves behind in any case.
 #[derive(Clone, Debug, Default)]
-pub struct Run {
+pub struct Summary {
     /// Virtual time run, s.
     pub virtual_s: f64,
     /// Time it took, s.
     pub wall_s: f64,
-    /// The codes at the converter's inputs at every trigger of a scan, in order: four make a frame.
-    pub scans: Vec<Scan>,
-    /// How the motor was driven when each scan period ended, as the plant saw it.
-    pub drives: Vec<MotorDrive>,
-    /// Whether the object moved relative to the finger at each scan, for the oracle and the scores.
-    pub slipping: Vec<bool>,
     /// Commands that the logic took, each with the sequence number of the frame before whose tick it took it. After a
     /// restart the emulated board's count goes on.
     pub taken: Vec<(u32, Down)>,
-    /// Slow frames, as they came up the line.
-    pub slows: Vec<Slow>,
     /// Events, as they came up the line.
     pub events: Vec<Event>,
     /// Commands that were answered: the sequence number of each, and its answer.
@@ -56,8 +56,8 @@ pub struct Run {
     pub messages_missed: u64,
     /// Frames that came up the line and were no message.
     pub bad_frames: u64,
-    /// Every byte that came up the line: what `tenax monitor` would have read.
-    pub line: Vec<u8>,
+    /// Bytes that came up the line.
+    pub line_bytes: usize,
     /// None where instructions cannot be counted.
     pub tick_cost: Option<TickCost>,
     /// The deepest that the stack was, bytes. None where it cannot be measured.
@@ -66,19 +66,58 @@ pub struct Run {
     pub flash: FlashUse,
 }
 
-impl Run {
-    /// The network, each time it was asked for.
-    pub fn networks(&self) -> impl Iterator<Item = &NetworkState> {
-        networks(self.answers.iter().map(|(_, answer)| answer))
+/// Everything of a run: its summary, and what a [`Recorder`] hears, kept. An hour takes a gigabyte, so this is for short
+/// runs that are compared code by code.
+#[derive(Clone, Debug, Default)]
+pub struct Run {
+    /// What is rare. A run dereferences to it.
+    pub summary: Summary,
+    /// The codes at the converter's inputs at every trigger of a scan, in order: four make a frame.
+    pub scans: Vec<Scan>,
+    /// How the motor was driven when each scan period ended, as the plant saw it.
+    pub drives: Vec<MotorDrive>,
+    /// Whether the object moved relative to the finger at each scan.
+    pub slipping: Vec<bool>,
+    /// Slow frames, as they came up the line.
+    pub slows: Vec<Slow>,
+    /// Every byte that came up the line: what `tenax monitor` would have read.
+    pub line: Vec<u8>,
+}
+
+impl Deref for Run {
+    type Target = Summary;
+
+    fn deref(&self) -> &Summary {
+        &self.summary
     }
 }
 
-/// The networks among `answers`.
-fn networks<'a>(answers: impl Iterator<Item = &'a Answer>) -> impl Iterator<Item = &'a NetworkState> {
-    answers.filter_map(|answer| match answer {
-        Answer::Network(network) => Some(network),
-        _ => None,
-    })
+impl DerefMut for Run {
+    fn deref_mut(&mut self) -> &mut Summary {
+        &mut self.summary
+    }
+}
+
+impl Summary {
+    /// The network, each time it was asked for.
+    pub fn networks(&self) -> impl Iterator<Item = &NetworkState> {
+        self.answers.iter().filter_map(|(_, answer)| match answer {
+            Answer::Network(network) => Some(network),
+            _ => None,
+        })
+    }
+
+    /// Puts a message where it belongs.
+    fn take(&mut self, message: Up, recorder: &mut dyn Recorder) {
+        match message {
+            Up::Hello { after, .. } => self.starts.push(after),
+            Up::Slow(slow) => recorder.slow(&slow),
+            Up::Event(event) => self.events.push(event),
+            Up::Counters(counters) => self.counters = counters,
+            Up::Answer { of, answer, .. } => self.answers.push((of, answer)),
+            Up::Saved { frame, kept } => self.saved.push((frame, kept)),
+        }
+    }
 }
 
 /// What was done to the flash.

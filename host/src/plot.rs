@@ -4,6 +4,7 @@ pub mod draw;
 pub mod figure;
 pub mod panels;
 pub mod png;
+pub mod sketch;
 pub mod thin;
 
 pub use figure::Figure;

@@ -12,7 +12,7 @@ use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ};
 use tenax_hal_shim::wire::EventKind;
 use tenax_hal_shim::words::{Fault, Kept};
 
-use crate::board::Run;
+use crate::board::Summary;
 use crate::timeline::Timeline;
 
 /// The core's clock, Hz.
@@ -78,7 +78,7 @@ pub struct Ticks {
 }
 
 impl Ticks {
-    fn of(run: &Run) -> Self {
+    fn of(run: &Summary) -> Self {
         let cost = run.tick_cost;
         Self {
             count: run.counters.ticks,
@@ -143,9 +143,11 @@ pub struct Subject<'a> {
     /// Seed of every noise.
     pub seed: u64,
     /// The run.
-    pub run: &'a Run,
-    /// What to add to virtual time to get the report's, s.
-    pub zero_s: f64,
+    pub run: &'a Summary,
+    /// When its detectors spoke.
+    pub timeline: &'a Timeline,
+    /// Who judged whether the wearer came first.
+    pub judge: &'a wearer::Judge,
     /// What really happened, where it is known.
     pub truth: Option<&'a fate::Fate>,
     /// The oracle's run, where there is one.
@@ -156,8 +158,7 @@ impl Report {
     /// Makes a report; [`Report::replay`] is for whoever played a recording.
     #[must_use]
     pub fn new(subject: &Subject) -> Self {
-        let run = subject.run;
-        let timeline = Timeline::new(run, subject.zero_s);
+        let (run, timeline) = (subject.run, subject.timeline);
         Self {
             scene: subject.scene.to_owned(),
             board: subject.board,
@@ -176,11 +177,11 @@ impl Report {
                 dent_mm: truth.crushed_at_s.map(|_| truth.dent_mm),
                 broken_at_s: truth.broken_at_s,
             }),
-            wearer: wearer::Wearer::of(run, timeline),
-            detectors: scores::Detectors::of(timeline, subject.truth),
+            wearer: subject.judge.verdict(timeline.wearer(&run.events).first().copied()),
+            detectors: scores::Detectors::of(timeline, &run.events, subject.truth),
             faults: faults(run, timeline),
             line: Line {
-                bytes: run.line.len(),
+                bytes: run.line_bytes,
                 messages_missed: run.messages_missed,
                 telemetry_dropped: run.counters.telemetry_dropped,
                 bad_frames: run.counters.bad_frames,
@@ -190,7 +191,7 @@ impl Report {
     }
 }
 
-fn faults(run: &Run, timeline: Timeline) -> Vec<FaultLine> {
+fn faults(run: &Summary, timeline: &Timeline) -> Vec<FaultLine> {
     let starts = run.starts.iter().flatten().map(|fault| FaultLine { at_s: None, what: in_words(fault) });
     let events = run.events.iter().filter_map(|event| match event.kind {
         EventKind::Fault(fault) => {

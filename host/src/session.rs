@@ -5,16 +5,22 @@ use std::path::Path;
 use std::path::PathBuf;
 
 use anyhow::{Context, bail};
-use tenax_scene::plant::Plant;
+use tenax_hal_shim::frame::Scan;
+use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::wire::{Down, Slow};
+use tenax_scene::plant::{Pins, Plant};
 use tenax_scene::{SceneFile, World, builtin};
 
 #[cfg(feature = "emulator")]
 use crate::board::emulated;
-use crate::board::{Run, simulated};
+use crate::board::simulated::{frames_in, seconds_of};
+use crate::board::{Recorder, Run, Summary, simulated};
+use crate::plot::sketch::{Needs, Sketch};
 use crate::plot::{Figure, panels};
 use crate::replay::{Recording, ReplayPlant, library};
 use crate::report::fate::Fate;
-use crate::report::replay::Replay;
+use crate::report::replay::{ActivePart, Replay};
+use crate::report::wearer::Judge;
 use crate::report::{Report, Subject};
 use crate::timeline::Timeline;
 
@@ -61,16 +67,29 @@ impl Board {
         }
     }
 
-    /// Connects a plant and runs it to its end. `progress` hears of the virtual time that has gone by, s.
+    /// Connects a plant, runs it to its end and keeps everything. `progress` hears of the virtual time that has gone by, s.
     pub fn run<P: Plant + 'static>(
         &self,
         plant: P,
         progress: &mut dyn FnMut(f64),
     ) -> anyhow::Result<(Run, P)> {
+        let mut run = Run::default();
+        let (summary, plant) = self.record(plant, &mut run, progress)?;
+        run.summary = summary;
+        Ok((run, plant))
+    }
+
+    /// Connects a plant and runs it to its end; `recorder` is told of the run as it goes.
+    pub fn record<P: Plant + 'static>(
+        &self,
+        plant: P,
+        recorder: &mut dyn Recorder,
+        progress: &mut dyn FnMut(f64),
+    ) -> anyhow::Result<(Summary, P)> {
         match self {
-            Self::Host => Ok(simulated::run(plant, progress)),
+            Self::Host => Ok(simulated::record(plant, recorder, progress)),
             #[cfg(feature = "emulator")]
-            Self::Emulated { image, options } => emulated::run(image, plant, options, progress),
+            Self::Emulated { image, options } => emulated::record(image, plant, options, recorder, progress),
         }
     }
 }
@@ -79,7 +98,7 @@ impl Board {
 #[derive(Clone, Debug)]
 pub struct Outcome {
     /// What the board left behind.
-    pub run: Run,
+    pub run: Summary,
     /// The report.
     pub report: Report,
     /// The figure.
@@ -100,6 +119,67 @@ pub fn load_scene(asked: &str) -> anyhow::Result<SceneFile> {
     Ok(SceneFile::parse(&text, asked)?)
 }
 
+/// What a report and a figure are made from, gathered while the run goes.
+struct Witness {
+    timeline: Timeline,
+    judge: Judge,
+    sketch: Sketch,
+}
+
+impl Witness {
+    fn new(zero_s: f64, span_s: (f64, f64)) -> Self {
+        let sketch = Sketch::new(zero_s, span_s);
+        Self { timeline: Timeline::new(zero_s), judge: Judge::default(), sketch }
+    }
+}
+
+impl Recorder for Witness {
+    fn scan(&mut self, codes: &Scan, drive: MotorDrive, slipping: bool) {
+        self.judge.scan(codes, drive, slipping);
+    }
+
+    fn slow(&mut self, slow: &Slow) {
+        self.timeline.slow(slow);
+        self.judge.slow(slow);
+        self.sketch.slow(slow);
+    }
+}
+
+/// A world whose trace is drawn while it goes, and not kept.
+struct Drawn {
+    world: World,
+    needs: Needs,
+}
+
+impl Drawn {
+    fn new(world: World, span_s: (f64, f64)) -> Self {
+        Self { world, needs: Needs::new(span_s) }
+    }
+
+    fn draw(&mut self) {
+        self.world.take_trace().for_each(|row| self.needs.push(&row));
+    }
+}
+
+impl Plant for Drawn {
+    fn scan(&mut self, drive: MotorDrive) -> &Pins {
+        self.draw();
+        self.world.scan(drive)
+    }
+
+    fn commands(&mut self) -> Vec<Down> {
+        self.world.commands()
+    }
+
+    fn slipping(&self) -> bool {
+        self.world.slipping()
+    }
+
+    fn duration_s(&self) -> f64 {
+        self.world.duration_s()
+    }
+}
+
 /// Runs a scene, and its oracle beside it.
 pub fn scene(
     file: &SceneFile,
@@ -107,21 +187,39 @@ pub fn scene(
     board: &Board,
     progress: &mut dyn FnMut(f64),
 ) -> anyhow::Result<Outcome> {
-    let (run, world) = board.run(World::new(file, seed), progress)?;
+    scene_with(file, seed, board, &mut (), progress)
+}
+
+/// Runs a scene, and its oracle beside it; `recorder` is told of the scene's run as it goes.
+pub fn scene_with(
+    file: &SceneFile,
+    seed: u64,
+    board: &Board,
+    recorder: &mut dyn Recorder,
+    progress: &mut dyn FnMut(f64),
+) -> anyhow::Result<Outcome> {
+    let span_s = (0.0, seconds_of(frames_in(file.duration_s())));
+    let mut witness = Witness::new(0.0, span_s);
+    let plant = Drawn::new(World::new(file, seed), span_s);
+    let (run, mut plant) = board.record(plant, &mut (&mut witness, recorder), progress)?;
+    plant.draw();
     // The oracle's is always the host's: it is a bound on the gripper, not on the image.
-    let (_, oracle) = simulated::run_oracle(World::new(file, seed), &mut |_| {});
-    let (truth, oracle) = (Fate::of(world.truth()), Fate::of(oracle.truth()));
+    let oracle = simulated::run_oracle(Drawn::new(World::new(file, seed), span_s), &mut |_| {});
+    let (truth, oracle) = (Fate::of(plant.world.truth()), Fate::of(oracle.world.truth()));
+    let Witness { timeline, judge, mut sketch } = witness;
+    sketch.needs = Some(plant.needs);
     let subject = Subject {
         scene: &file.name,
         board: board.name(),
         seed,
         run: &run,
-        zero_s: 0.0,
+        timeline: &timeline,
+        judge: &judge,
         truth: Some(&truth),
         oracle: Some(&oracle),
     };
     let report = Report::new(&subject);
-    let mut figure = panels::figure(&subject, (0.0, run.virtual_s));
+    let mut figure = panels::figure(&subject, sketch);
     figure.subtitle = format!("{}; {}", file.title, figure.subtitle);
     Ok(Outcome { run, report, figure })
 }
@@ -134,6 +232,18 @@ pub fn replay(
     board: &Board,
     progress: &mut dyn FnMut(f64),
 ) -> anyhow::Result<Outcome> {
+    replay_with(path, recipe, seed, board, &mut (), progress)
+}
+
+/// Plays a recording; `recorder` is told of the run as it goes.
+pub fn replay_with(
+    path: &Path,
+    recipe: Option<&str>,
+    seed: u64,
+    board: &Board,
+    recorder: &mut dyn Recorder,
+    progress: &mut dyn FnMut(f64),
+) -> anyhow::Result<Outcome> {
     let recording = Recording::read(path)?;
     let named = library::choose(&recording, path, recipe)?;
     let plant = match &named {
@@ -142,23 +252,40 @@ pub fn replay(
         None => ReplayPlant::plain(&recording, seed)?,
     };
     let (zero_s, end_s) = (plant.time_zero_s(), plant.time_zero_s() + plant.duration_s());
-    let (run, _) = board.run(plant, progress)?;
-    let scene = path
-        .file_name()
-        .map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned());
-    let subject =
-        Subject { scene: &scene, board: board.name(), seed, run: &run, zero_s, truth: None, oracle: None };
-    let mut report = Report::new(&subject);
-    let lead_in_s = recording.first_s() - zero_s;
-    let timeline = Timeline::new(&run, zero_s);
-    report.replay = Some(Replay::new(&recording, named.as_ref(), lead_in_s, timeline, &report.wearer)?);
     // Of the rows held before and after, as much as shows where the recording begins and ends.
     let margin_s = (0.05 * recording.duration_s()).max(0.02);
     let last_s = recording.first_s() + recording.duration_s();
     let span_s = (zero_s.max(recording.first_s() - margin_s), end_s.min(last_s + margin_s));
-    let mut figure = panels::figure(&subject, span_s);
+    let mut witness = Witness::new(zero_s, span_s);
+    let mut active = ActivePart::new(&recording, zero_s);
+    let (run, _) = board.record(plant, &mut (&mut (&mut witness, &mut active), recorder), progress)?;
+    let scene = name_of(path);
+    let Witness { timeline, judge, sketch } = witness;
+    let subject = Subject {
+        scene: &scene,
+        board: board.name(),
+        seed,
+        run: &run,
+        timeline: &timeline,
+        judge: &judge,
+        truth: None,
+        oracle: None,
+    };
+    let mut report = Report::new(&subject);
+    let lead_in_s = recording.first_s() - zero_s;
+    report.replay =
+        Some(Replay::new(&recording, named.as_ref(), lead_in_s, &timeline, &active, &report.wearer)?);
+    let mut figure = panels::figure(&subject, sketch);
     if let Some(named) = &named {
         figure.subtitle = format!("{} ({}), {}", named.recipe.title, named.name, figure.subtitle);
     }
     Ok(Outcome { run, report, figure })
+}
+
+/// What a recording is called: its file's name.
+#[must_use]
+pub fn name_of(recording: &Path) -> String {
+    recording
+        .file_name()
+        .map_or_else(|| recording.display().to_string(), |name| name.to_string_lossy().into_owned())
 }

@@ -6,7 +6,8 @@ use std::thread;
 use std::time::Duration;
 
 use serialport::{SerialPort, TTYPort};
-use tenax::monitor::{Counts, End, Monitor};
+use tenax::link::Counts;
+use tenax::monitor::{End, Monitor};
 use tenax_hal_shim::wire::{Counters, FRAME_MAX, Up, encode};
 
 fn frame(sequence: u16) -> Vec<u8> {

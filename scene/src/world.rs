@@ -27,7 +27,7 @@ use crate::sensor::hand;
 use crate::sensor::myo::Envelopes;
 use crate::sensor::pvdf::Films;
 use crate::sensor::strain::Gauges;
-use crate::truth::{self, State, TRACE_HZ, Truth};
+use crate::truth::{self, Row, State, TRACE_HZ, Truth};
 
 /// Scans between two rows of the trace.
 const TRACE_EVERY: u64 = (SCAN_HZ / TRACE_HZ) as u64;
@@ -116,6 +116,11 @@ impl World {
     #[must_use]
     pub const fn truth(&self) -> &Truth {
         &self.truth
+    }
+
+    /// Takes the rows of the trace that have come since they were last taken, so that a long run need not keep them.
+    pub fn take_trace(&mut self) -> std::vec::Drain<'_, Row> {
+        self.truth.trace.drain(..)
     }
 
     /// What the sensed fingertip feels at this instant.

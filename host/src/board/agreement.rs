@@ -5,7 +5,7 @@ use std::fmt;
 
 use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, SCANS_PER_FRAME};
 use tenax_hal_shim::frame::{Frame, Scan};
-use tenax_hal_shim::wire::{Answer, Down, Event, NetworkState, Received, Slow, Up};
+use tenax_hal_shim::wire::{Answer, Down, Event, Received, Slow, Up};
 use tenax_logic::device::Device;
 
 use super::Run;
@@ -22,11 +22,6 @@ pub struct Said {
 }
 
 impl Said {
-    /// The network, each time it was asked for.
-    pub fn networks(&self) -> impl Iterator<Item = &NetworkState> {
-        super::networks(self.answers.iter())
-    }
-
     fn take(&mut self, message: Up) {
         match message {
             Up::Slow(slow) => self.slows.push(slow),

@@ -28,9 +28,10 @@ use self::flash::FlashArray;
 use self::line::Line;
 use self::mishaps::Mishaps;
 use self::nucleo::Nucleo;
-use self::world::World;
+use self::world::{Stretch, World};
+use super::line_log::LineLog;
 use super::simulated::frames_in;
-use super::{Run, line_log};
+use super::{Recorder, Run, Summary};
 use crate::image::symbols::Symbols;
 
 /// How to run.
@@ -93,7 +94,7 @@ pub enum Broken {
     NeverScanned,
 }
 
-/// Boots `image` and runs the plant to its end.
+/// Boots `image`, runs the plant to its end and keeps everything.
 ///
 /// `progress` is told the virtual time now and then, s.
 ///
@@ -105,6 +106,23 @@ pub fn run<P: Plant + 'static>(
     options: &Options,
     progress: &mut dyn FnMut(f64),
 ) -> Result<(Run, P)> {
+    let mut run = Run::default();
+    let (summary, plant) = record(image, plant, options, &mut run, progress)?;
+    run.summary = summary;
+    Ok((run, plant))
+}
+
+/// Boots `image` and runs the plant to its end; `recorder` is told of it as it goes.
+///
+/// # Errors
+/// As [`run`].
+pub fn record<P: Plant + 'static>(
+    image: &Path,
+    plant: P,
+    options: &Options,
+    recorder: &mut dyn Recorder,
+    progress: &mut dyn FnMut(f64),
+) -> Result<(Summary, P)> {
     let began = Instant::now();
     let symbols = Symbols::read(image)?;
     let frames = frames_in(plant.duration_s());
@@ -123,10 +141,16 @@ pub fn run<P: Plant + 'static>(
     let rate = options.instructions_per_second;
 
     // The emulator keeps its driver for itself, so it runs on a thread of its own and reports to this one.
+    let (mut heard, mut log, mut scanned) = (Summary::default(), LineLog::new(frames), 0);
     let finished = std::thread::scope(|scope| {
         let emulator = scope.spawn(move || execute(&images, rate, watched, world));
-        for virtual_s in reports {
-            progress(virtual_s);
+        for Stretch { scans, line } in reports {
+            scanned += scans.len();
+            for (codes, drive, slipping) in scans {
+                recorder.scan(&codes, drive, slipping);
+            }
+            log.hear(&line, &mut heard, recorder);
+            progress(scanned as f64 / f64::from(SCAN_HZ));
         }
         emulator.join().map_err(|_| anyhow!("the emulator panicked; its message is above"))?
     })?;
@@ -135,17 +159,19 @@ pub fn run<P: Plant + 'static>(
     if let Some(broken) = world.broken {
         return Err(broken.into());
     }
-    let mut run = world.run;
-    run.flash = world.flash.done;
-    line_log::decode(&mut run);
-    run.taken = world.commands.taken(&run.answers);
     // What the last scans led to had time to come up the line; what came after them was no part of the run.
-    run.taken.retain(|(before, _)| *before < frames);
-    run.slows.retain(|slow| slow.frame < frames);
-    run.events.retain(|event| event.frame < frames);
-    run.virtual_s = run.scans.len() as f64 / f64::from(SCAN_HZ);
-    run.wall_s = began.elapsed().as_secs_f64();
-    Ok((run, world.plant))
+    let mut taken = world.commands.taken(&heard.answers);
+    taken.retain(|(before, _)| *before < frames);
+    let summary = Summary {
+        virtual_s: scanned as f64 / f64::from(SCAN_HZ),
+        wall_s: began.elapsed().as_secs_f64(),
+        taken,
+        tick_cost: world.tick_cost,
+        stack_bytes: world.stack_bytes,
+        flash: world.flash.done,
+        ..heard
+    };
+    Ok((summary, world.plant))
 }
 
 fn execute<P: Plant + 'static>(
@@ -160,6 +186,6 @@ fn execute<P: Plant + 'static>(
         session.watch(Watch::Instruction(address));
     }
     let mut finished = emulator::run(session, &Start::new(images), world).context("the emulator")?;
-    finished.driver.progress = None;
+    finished.driver.reports = None;
     Ok(finished)
 }

@@ -1,33 +1,37 @@
-//! What came up a serial line, made into messages. Nothing on it is trusted.
+//! What came up a serial line, put where it belongs in a run.
 
-use tenax_hal_shim::wire::{Received, Receiver, Up};
+use tenax_hal_shim::wire::Up;
 
-use super::Run;
+use super::{Recorder, Summary};
+use crate::link::Inbox;
 
-/// Puts the messages in `run.line` where they belong in `run`.
-pub fn decode(run: &mut Run) {
-    let mut receiver = Receiver::new();
-    let mut expected = None;
-    for &byte in &run.line {
-        match receiver.push::<Up>(byte) {
-            None => {}
-            Some(Err(_)) => run.bad_frames += 1,
-            Some(Ok(Received { sequence, message })) => {
-                // A board that starts anew counts anew.
-                let restarted = matches!(message, Up::Hello { .. });
-                if let Some(expected) = expected.filter(|_| !restarted) {
-                    run.messages_missed += u64::from(sequence.wrapping_sub(expected));
-                }
-                expected = Some(sequence.wrapping_add(1));
-                match message {
-                    Up::Hello { after, .. } => run.starts.push(after),
-                    Up::Slow(slow) => run.slows.push(slow),
-                    Up::Event(event) => run.events.push(event),
-                    Up::Counters(counters) => run.counters = counters,
-                    Up::Answer { of, answer, .. } => run.answers.push((of, answer)),
-                    Up::Saved { frame, kept } => run.saved.push((frame, kept)),
-                }
+/// Reads a line, byte by byte.
+pub struct LineLog {
+    inbox: Inbox,
+    /// Frames that are part of the run; what is said of later ones is not.
+    frames: u32,
+}
+
+impl LineLog {
+    /// The line of a run of so many frames.
+    #[must_use]
+    pub fn new(frames: u32) -> Self {
+        Self { inbox: Inbox::default(), frames }
+    }
+
+    /// Puts the messages in `bytes` where they belong.
+    pub fn hear(&mut self, bytes: &[u8], summary: &mut Summary, recorder: &mut dyn Recorder) {
+        summary.line_bytes += bytes.len();
+        recorder.line(bytes);
+        for heard in bytes.iter().filter_map(|&byte| self.inbox.push(byte)).flatten() {
+            match heard.received.message {
+                Up::Slow(slow) if slow.frame >= self.frames => {}
+                Up::Event(event) if event.frame >= self.frames => {}
+                message => summary.take(message, recorder),
             }
         }
+        let counts = self.inbox.counts();
+        summary.bad_frames = counts.bad_frames;
+        summary.messages_missed = counts.missed;
     }
 }

@@ -1,6 +1,7 @@
 //! The default scene on a board: nothing lost, the glass kept, close to the oracle, in budget.
 
 use super::{Bar, agreement};
+use crate::board::Run;
 use crate::report::CYCLES_PER_INSTRUCTION;
 use crate::session::Outcome;
 
@@ -9,9 +10,9 @@ const OF_ORACLE: f64 = 2.0;
 /// The ticks may take so much of the core, per cent.
 const LOAD_PERCENT: f64 = 20.0;
 
-/// The bars of one run of the default scene.
+/// The bars of one run of the default scene. On the emulated board everything of it was kept, in `run`.
 #[must_use]
-pub fn bars(outcome: &Outcome, emulated: bool) -> Vec<Bar> {
+pub fn bars(outcome: &Outcome, run: Option<&Run>) -> Vec<Bar> {
     let report = &outcome.report;
     let name = &report.scene;
     let mut bars = vec![
@@ -35,15 +36,15 @@ pub fn bars(outcome: &Outcome, emulated: bool) -> Vec<Bar> {
         of_oracle(name, "slip distance", "mm", report.slip.distance_mm, report.oracle.distance_mm),
         of_oracle(name, "peak force", "N", report.grip.peak_force_n, report.oracle.peak_force_n),
     ];
-    if !emulated {
+    let Some(run) = run else {
         bars.push(Bar::skipped("emulated image: bit-exactness, load", "run on the host's logic"));
         return bars;
-    }
+    };
     bars.push(Bar::noted(
         format!("{name}: how fast the board is emulated here"),
         format!("{:.1} s virtual in {:.1} s", report.virtual_s, report.wall_s),
     ));
-    bars.push(agreement::bar(&outcome.run));
+    bars.push(agreement::bar(run));
     bars.push(load(outcome));
     bars
 }

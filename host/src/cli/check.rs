@@ -5,6 +5,7 @@ use std::process::{Command, ExitCode};
 
 use super::progress::Progress;
 use super::workspace;
+use crate::board::Run;
 use crate::check::{Bar, Verdict, default_scene, learn, mistakes, recordings, wearer};
 use crate::session::{self, Board};
 
@@ -38,9 +39,11 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
 
     let file = session::load_scene(session::DEFAULT_SCENE)?;
     let mut progress = Progress::new(&file.name, file.duration_s());
-    let outcome = session::scene(&file, 1, &board, &mut |s| progress.at(s))?;
+    let mut run = Run::default();
+    let outcome = session::scene_with(&file, 1, &board, &mut run, &mut |s| progress.at(s))?;
     drop(progress);
-    default_scene::bars(&outcome, !args.host).into_iter().for_each(&mut print);
+    run.summary = outcome.run.clone();
+    default_scene::bars(&outcome, (!args.host).then_some(&run)).into_iter().for_each(&mut print);
     wearer::scenes()?.into_iter().for_each(&mut print);
     print(wearer::random(
         Command::new("cargo")

@@ -10,7 +10,7 @@ use anyhow::{Context, bail};
 use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{BAUD, Down, SETTINGS_PER_ANSWER, Setting};
 
-use crate::commander::Commander;
+use crate::link::Outbox;
 use crate::monitor::{End, Monitor};
 use crate::settings;
 
@@ -102,19 +102,19 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
 
 /// Sends what is to be sent at once, and lets the teacher talk beside the watching.
 fn tell(args: &Args, line: &dyn serialport::SerialPort) -> anyhow::Result<()> {
-    let mut commander = Commander::new(line.try_clone().context("cannot write to the port")?);
+    let mut outbox = Outbox::new(line.try_clone().context("cannot write to the port")?);
     let set = args.set.iter().map(|&setting| Down::Set(setting));
     let get = args.get.iter().map(|&id| Down::Get(id as u8));
     // The first of each part of the table that one answer has room for.
     let all = SettingId::ALL.into_iter().step_by(SETTINGS_PER_ANSWER).map(|id| Down::Settings(id as u8));
     let all = all.filter(|_| args.settings);
     for command in args.send.iter().map(|&send| send.into()).chain(set).chain(get).chain(all) {
-        commander.send(&command).context("cannot write to the port")?;
+        outbox.send(&command).context("cannot write to the port")?;
     }
     if args.teach {
         // It ends with its input, or with the process.
         std::thread::spawn(move || {
-            if let Err(error) = commander.teach(io::stdin().lock()) {
+            if let Err(error) = outbox.teach(io::stdin().lock()) {
                 eprintln!("tenax: {error:#}; the teacher is not heard any more");
             }
         });

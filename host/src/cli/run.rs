@@ -5,8 +5,11 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context;
+use tenax_scene::SceneFile;
 
+use super::folder;
 use super::format::Format;
+use super::line_file::LineFile;
 use super::progress::Progress;
 use super::workspace;
 use crate::plot::{draw, png};
@@ -41,20 +44,33 @@ pub struct Args {
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
+    let folder = folder::made(&args.out)?;
+    // What is to be run is looked at before the image is built, which can take minutes.
+    let subject = match &args.replay {
+        Some(path) => Subject::Recording(path, Recording::read(path)?),
+        None => Subject::Scene(session::load_scene(&args.scene)?),
+    };
+    let name = match &subject {
+        Subject::Recording(path, _) => session::name_of(path),
+        Subject::Scene(file) => file.name.clone(),
+    };
+    let stem = Path::new(&name).file_stem().map_or("run".into(), |stem| stem.to_string_lossy());
+    let path = |extension: &str| folder.join(format!("{stem}.{extension}"));
     let board = if args.host { Board::Host } else { Board::emulated(&workspace::root()?)? };
-    let outcome = match &args.replay {
-        Some(path) => {
-            let recording = Recording::read(path)?;
+    let mut line = LineFile::new(path("line.bin"));
+    let outcome = match &subject {
+        Subject::Recording(file, recording) => {
             let mut progress = Progress::new("replay", recording.duration_s());
-            session::replay(path, args.recipe.as_deref(), args.seed, &board, &mut |s| progress.at(s))?
+            let (recipe, told) = (args.recipe.as_deref(), &mut |s| progress.at(s));
+            session::replay_with(file, recipe, args.seed, &board, &mut line, told)?
         }
-        None => {
-            let file = session::load_scene(&args.scene)?;
+        Subject::Scene(file) => {
             let mut progress = Progress::new(&file.name, file.duration_s());
-            session::scene(&file, args.seed, &board, &mut |s| progress.at(s))?
+            session::scene_with(file, args.seed, &board, &mut line, &mut |s| progress.at(s))?
         }
     };
-    let files = write(&args.out, &outcome)?;
+    let mut files = write(&outcome, &path)?;
+    files.extend(line.close()?);
     args.report.print(&Text(&outcome.report), &outcome.report)?;
     // On stderr, so that a program that reads the report reads nothing else.
     for file in files {
@@ -63,25 +79,24 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Writes everything that a run leaves, and says where.
-fn write(folder: &Path, outcome: &Outcome) -> anyhow::Result<Vec<PathBuf>> {
-    let cannot = |path: &Path| format!("cannot write {}", path.display());
-    fs::create_dir_all(folder).with_context(|| cannot(folder))?;
+/// What is run.
+enum Subject<'a> {
+    Recording(&'a Path, Recording),
+    Scene(SceneFile),
+}
+
+/// Writes figure and report, and says where.
+fn write(outcome: &Outcome, path: &dyn Fn(&str) -> PathBuf) -> anyhow::Result<Vec<PathBuf>> {
     let svg = draw::svg(&outcome.figure)?;
-    let stem =
-        Path::new(&outcome.report.scene).file_stem().map_or("run".into(), |stem| stem.to_string_lossy());
-    let mut contents = vec![
+    let contents = [
         ("png", png::png(&svg)?),
         ("svg", svg.into_bytes()),
         ("json", serde_json::to_vec_pretty(&outcome.report)?),
     ];
-    if !outcome.run.line.is_empty() {
-        contents.push(("line.bin", outcome.run.line.clone()));
-    }
     let mut files = Vec::new();
     for (extension, bytes) in contents {
-        let path = folder.join(format!("{stem}.{extension}"));
-        fs::write(&path, bytes).with_context(|| cannot(&path))?;
+        let path = path(extension);
+        fs::write(&path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
         files.push(path);
     }
     Ok(files)

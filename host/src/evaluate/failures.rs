@@ -58,9 +58,10 @@ pub fn rows<D: FnMut(&Reading) -> bool>(
     let done = std::sync::atomic::AtomicUsize::new(0);
     let row = |scene: &&'static str| {
         let file = session::load_scene(scene)?;
-        let outcome =
-            session::scene(&file, seed, board, &mut |_| {}).with_context(|| format!("scene {scene}"))?;
-        let steps = ran::steps(&outcome.run);
+        let mut ran = ran::Steps::default();
+        let outcome = session::scene_with(&file, seed, board, &mut ran, &mut |_| {})
+            .with_context(|| format!("scene {scene}"))?;
+        let steps = ran.steps;
         let said = verdicts(fresh(), &steps);
         let (mut events, report) = (Events::default(), outcome.report);
         events.take(&steps, &said);

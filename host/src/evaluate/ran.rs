@@ -1,29 +1,52 @@
 //! A run of a board as a labelled recording: what its converter read of the array, and when the object slipped.
 
 use tenax_hal_shim::channel::{ARRAY_COUNT, FRAMES_PER_SLOW_FRAME, RANK_SWITCH_B, SCANS_PER_FRAME};
+use tenax_hal_shim::frame::Scan;
+use tenax_hal_shim::motor::MotorDrive;
 
-use crate::board::Run;
+use crate::board::Recorder;
 use crate::labelled::Step;
 
-/// The steps of a run. A step slipped if the object did for at least half of the time since the step before.
-#[must_use]
-pub fn steps(run: &Run) -> Vec<Step> {
-    let (mut steps, mut samples) = (Vec::new(), [0; ARRAY_COUNT]);
-    let (mut slipped, mut scanned) = (0, 0);
-    let frames = run.scans.chunks_exact(SCANS_PER_FRAME).zip(run.slipping.chunks_exact(SCANS_PER_FRAME));
-    for (frame, (scans, slipping)) in frames.enumerate() {
-        slipped += slipping.iter().filter(|slips| **slips).count();
-        scanned += SCANS_PER_FRAME;
-        let place = frame % usize::from(FRAMES_PER_SLOW_FRAME);
-        if let Some(sample) = samples.get_mut(place) {
-            *sample = scans.iter().map(|scan| scan[RANK_SWITCH_B]).sum();
-        }
-        if place == ARRAY_COUNT - 1 {
-            steps.push(Step { samples, slip: 2 * slipped >= scanned });
-            (slipped, scanned) = (0, 0);
+/// The steps of a run, gathered while it goes. A step slipped if the object did for at least half of the time since the
+/// step before.
+#[derive(Clone, Debug, Default)]
+pub struct Steps {
+    /// They.
+    pub steps: Vec<Step>,
+    samples: [u16; ARRAY_COUNT],
+    /// The sum of the codes of the frame that is not yet whole.
+    sum: u16,
+    /// Scans so far, those since the last step, and those of them in which it slipped.
+    scans: usize,
+    scanned: usize,
+    slipped: usize,
+}
+
+impl Recorder for Steps {
+    fn scan(&mut self, codes: &Scan, _drive: MotorDrive, slipping: bool) {
+        self.sum += codes[RANK_SWITCH_B];
+        self.slipped += usize::from(slipping);
+        self.scanned += 1;
+        self.scans += 1;
+        if self.scans.is_multiple_of(SCANS_PER_FRAME) {
+            self.frame(self.scans / SCANS_PER_FRAME - 1);
         }
     }
-    steps
+}
+
+impl Steps {
+    /// A frame is whole.
+    fn frame(&mut self, frame: usize) {
+        let place = frame % usize::from(FRAMES_PER_SLOW_FRAME);
+        let sum = std::mem::take(&mut self.sum);
+        if let Some(sample) = self.samples.get_mut(place) {
+            *sample = sum;
+        }
+        if place == ARRAY_COUNT - 1 {
+            self.steps.push(Step { samples: self.samples, slip: 2 * self.slipped >= self.scanned });
+            (self.slipped, self.scanned) = (0, 0);
+        }
+    }
 }
 
 #[cfg(test)]
@@ -37,8 +60,9 @@ mod tests {
     #[test]
     fn a_run_has_eighty_steps_a_second_and_slips_where_its_world_does() {
         let scene = load_scene("array-pick").unwrap();
-        let (run, world) = simulated::run(World::new(&scene, 1), &mut |_| {});
-        let steps = steps(&run);
+        let mut ran = Steps::default();
+        let (_, world) = simulated::record(World::new(&scene, 1), &mut ran, &mut |_| {});
+        let steps = ran.steps;
         assert_eq!(steps.len(), 9 * 80);
         assert!(
             steps.iter().flat_map(|step| step.samples).all(|sample| sample > 500 && sample <= SAMPLE_MAX)

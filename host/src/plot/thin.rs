@@ -3,39 +3,97 @@
 /// At most this many columns of pixels matter in one panel.
 const COLUMNS: usize = 1_000;
 
-/// Keeps the first, lowest, highest and last point of each column of pixels, so that no spike is lost.
-#[must_use]
-pub fn thin(points: impl IntoIterator<Item = (f64, f64)>, (from_s, to_s): (f64, f64)) -> Vec<(f64, f64)> {
-    let mut kept = Vec::new();
-    let mut column: Vec<(f64, f64)> = Vec::new();
-    let mut current = usize::MAX;
-    let width_s = ((to_s - from_s) / COLUMNS as f64).max(f64::MIN_POSITIVE);
-    for point in points.into_iter().filter(|point| (from_s..=to_s).contains(&point.0)) {
-        let place = ((point.0 - from_s) / width_s) as usize;
-        if place != current {
-            flush(&mut column, &mut kept);
-            current = place;
-        }
-        column.push(point);
-    }
-    flush(&mut column, &mut kept);
-    kept
+/// A curve that is thinned as it comes, so that it takes the same memory however long it gets: of each column of pixels
+/// the first, lowest, highest and last point are kept, so that no spike is lost.
+#[derive(Clone, Debug)]
+pub struct Thin {
+    from_s: f64,
+    to_s: f64,
+    width_s: f64,
+    kept: Vec<(f64, f64)>,
+    column: Option<Column>,
 }
 
-fn flush(column: &mut Vec<(f64, f64)>, kept: &mut Vec<(f64, f64)>) {
-    let by_value = |a: &usize, b: &usize| column[*a].1.total_cmp(&column[*b].1);
-    let (Some(low), Some(high)) = ((0..column.len()).min_by(by_value), (0..column.len()).max_by(by_value))
-    else {
-        return;
-    };
-    let mut places = [0, low, high, column.len() - 1];
-    places.sort_unstable();
-    for (n, &place) in places.iter().enumerate() {
-        if n == 0 || places[n - 1] != place {
-            kept.push(column[place]);
+/// All of a curve at once.
+#[must_use]
+pub fn thin(points: impl IntoIterator<Item = (f64, f64)>, span_s: (f64, f64)) -> Vec<(f64, f64)> {
+    let mut thin = Thin::new(span_s);
+    points.into_iter().for_each(|point| thin.push(point));
+    thin.points()
+}
+
+/// The points of the column that is not yet full, each with its place among all that came.
+#[derive(Clone, Copy, Debug)]
+struct Column {
+    at: usize,
+    count: usize,
+    first: Point,
+    low: Point,
+    high: Point,
+    last: Point,
+}
+
+/// A place in the column, and what stands there.
+type Point = (usize, (f64, f64));
+
+impl Thin {
+    /// A curve without points, from and to these times, s.
+    #[must_use]
+    pub fn new((from_s, to_s): (f64, f64)) -> Self {
+        let width_s = ((to_s - from_s) / COLUMNS as f64).max(f64::MIN_POSITIVE);
+        Self { from_s, to_s, width_s, kept: Vec::new(), column: None }
+    }
+
+    /// The next point in order of time. What lies outside the curve's span is left out.
+    pub fn push(&mut self, point: (f64, f64)) {
+        if !(self.from_s..=self.to_s).contains(&point.0) {
+            return;
+        }
+        let at = ((point.0 - self.from_s) / self.width_s) as usize;
+        match &mut self.column {
+            Some(column) if column.at == at => column.take(point),
+            _ => {
+                self.flush();
+                let first = (0, point);
+                self.column = Some(Column { at, count: 1, first, low: first, high: first, last: first });
+            }
         }
     }
-    column.clear();
+
+    /// The points that are left.
+    #[must_use]
+    pub fn points(mut self) -> Vec<(f64, f64)> {
+        self.flush();
+        self.kept
+    }
+
+    fn flush(&mut self) {
+        let Some(Column { first, low, high, last, .. }) = self.column.take() else {
+            return;
+        };
+        let mut points = [first, low, high, last];
+        points.sort_unstable_by_key(|(place, _)| *place);
+        for (n, (place, point)) in points.iter().enumerate() {
+            if n == 0 || points[n - 1].0 != *place {
+                self.kept.push(*point);
+            }
+        }
+    }
+}
+
+impl Column {
+    fn take(&mut self, point: (f64, f64)) {
+        let new = (self.count, point);
+        self.count += 1;
+        self.last = new;
+        // The first of the lowest and the last of the highest; what is no number is higher than all.
+        if point.1.total_cmp(&self.low.1.1).is_lt() {
+            self.low = new;
+        }
+        if point.1.total_cmp(&self.high.1.1).is_ge() {
+            self.high = new;
+        }
+    }
 }
 
 #[cfg(test)]

@@ -36,10 +36,6 @@ pub struct Fate {
     pub broken_at_s: Option<f64>,
     /// The least force that would have held it at its heaviest, N.
     pub needed_force_n: Option<f64>,
-    /// Grip force over time, s and N.
-    pub grip_n: Vec<(f64, f64)>,
-    /// The least force that holds the object, over time, s and N.
-    pub needed_n: Vec<(f64, f64)>,
 }
 
 impl Fate {
@@ -63,13 +59,6 @@ impl Fate {
             broken_at_s: truth.broken_at_s,
             peak_grip_n: (truth.peak_grip_n > 0.0).then_some(truth.peak_grip_n),
             needed_force_n: held.then_some(truth.needed_grip_n),
-            grip_n: truth.trace.iter().map(|row| (row.t_s, row.grip_n)).collect(),
-            // While the hand carries nothing, nothing is needed: a gap in the curve.
-            needed_n: truth
-                .trace
-                .iter()
-                .map(|row| (row.t_s, if row.needed_n > 0.0 { row.needed_n } else { f64::NAN }))
-                .collect(),
         }
     }
 }

@@ -1,12 +1,16 @@
 //! What only a recording has to tell: its own peak and onset beside the fingertip's detections.
 
+use std::ops::RangeInclusive;
+
 use serde::Serialize;
+use tenax_hal_shim::wire::Slow;
 
 use super::wearer::Wearer;
+use crate::board::Recorder;
 use crate::replay::facts::{Crest, crest, muscle_onset_s};
 use crate::replay::library::Named;
 use crate::replay::{Recipe, Recording};
-use crate::timeline::Timeline;
+use crate::timeline::{Timeline, frame_end_s};
 
 /// The recording's part of a report. Times are the recording's own.
 #[derive(Clone, Debug, Serialize)]
@@ -66,13 +70,41 @@ pub struct Muscle {
     pub reflex_while_active: u64,
 }
 
+/// How much of a recording a muscle was active in, counted while it plays.
+#[derive(Clone, Debug)]
+pub struct ActivePart {
+    zero_s: f64,
+    within_s: RangeInclusive<f64>,
+    all: u32,
+    active: u32,
+}
+
+impl ActivePart {
+    /// Of a recording that is to be played; `zero_s` is added to virtual time.
+    #[must_use]
+    pub fn new(recording: &Recording, zero_s: f64) -> Self {
+        let first_s = recording.first_s();
+        Self { zero_s, within_s: first_s..=first_s + recording.duration_s(), all: 0, active: 0 }
+    }
+}
+
+impl Recorder for ActivePart {
+    fn slow(&mut self, slow: &Slow) {
+        if self.within_s.contains(&(self.zero_s + frame_end_s(slow.frame))) {
+            self.all += 1;
+            self.active += u32::from(slow.wearer_active);
+        }
+    }
+}
+
 impl Replay {
     /// Holds a run's detections against its recording.
     pub fn new(
         recording: &Recording,
         named: Option<&Named>,
         lead_in_s: f64,
-        timeline: Timeline,
+        timeline: &Timeline,
+        active: &ActivePart,
         wearer: &Wearer,
     ) -> anyhow::Result<Self> {
         let recipe = named.map(|named| &named.recipe);
@@ -94,7 +126,7 @@ impl Replay {
             },
             muscle: match recipe {
                 Some(recipe) if recipe.maps_a_muscle() => {
-                    Some(Muscle::new(muscle_onset_s(recording, recipe)?, recording, timeline, wearer))
+                    Some(Muscle::new(muscle_onset_s(recording, recipe)?, active, wearer))
                 }
                 _ => None,
             },
@@ -103,7 +135,7 @@ impl Replay {
 }
 
 impl Force {
-    fn new(crest: Option<Crest>, timeline: Timeline) -> Self {
+    fn new(crest: Option<Crest>, timeline: &Timeline) -> Self {
         let (s1, s2) = (timeline.s1().first().copied(), timeline.s2().first().copied());
         let before_ms = |first: Option<f64>| Some((crest?.peak_s - first?) * 1e3);
         Self {
@@ -118,19 +150,13 @@ impl Force {
 }
 
 impl Muscle {
-    fn new(onset_s: Option<f64>, recording: &Recording, timeline: Timeline, wearer: &Wearer) -> Self {
+    fn new(onset_s: Option<f64>, active: &ActivePart, wearer: &Wearer) -> Self {
         let noticed_s = wearer.active_first_s;
-        let within = |t: f64| t >= recording.first_s() && t <= recording.first_s() + recording.duration_s();
-        let (mut all, mut active) = (0u32, 0u32);
-        for (_, slow) in timeline.slows().filter(|&(t, _)| within(t)) {
-            all += 1;
-            active += u32::from(slow.wearer_active);
-        }
         Self {
             onset_s,
             noticed_s,
             onset_delay_ms: onset_s.zip(noticed_s).map(|(onset, noticed)| (noticed - onset) * 1e3),
-            active_part: f64::from(active) / f64::from(all.max(1)),
+            active_part: f64::from(active.active) / f64::from(active.all.max(1)),
             reflex_while_active: wearer.reflex_while_active,
         }
     }

@@ -2,6 +2,7 @@
 //! its macro onset; a detection outside every slip is a false alarm. A detection is a rising edge of a detector.
 
 use serde::Serialize;
+use tenax_hal_shim::wire::Event;
 
 use super::fate::{Fate, SlipSpan};
 use crate::timeline::Timeline;
@@ -33,7 +34,7 @@ pub struct Slip {
 impl Slip {
     /// Scores a run.
     #[must_use]
-    pub fn of(timeline: Timeline, truth: Option<&Fate>) -> Self {
+    pub fn of(timeline: &Timeline, truth: Option<&Fate>) -> Self {
         let Some(truth) = truth else {
             return Self::default();
         };
@@ -90,14 +91,14 @@ pub struct Detectors {
 impl Detectors {
     /// Scores a run.
     #[must_use]
-    pub fn of(timeline: Timeline, truth: Option<&Fate>) -> Self {
+    pub fn of(timeline: &Timeline, events: &[Event], truth: Option<&Fate>) -> Self {
         let slips = truth.map(|truth| truth.slips.as_slice());
         Self {
             s1: detector(&timeline.s1(), slips),
             s2: detector(&timeline.s2(), slips),
             network: detector(&timeline.network(), slips),
             array: detector(&timeline.array(), slips),
-            wearer: detector(&timeline.wearer(), None),
+            wearer: detector(&timeline.wearer(events), None),
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Whether the wearer came first, judged from the pins and not from what the fingertip says of itself.
 
+use std::ops::Range;
+
 use serde::Serialize;
 use tenax_hal_shim::channel::{
     CHANNELS, FRAME_HZ, FRAMES_PER_SLOW_FRAME, MYO_EXTENSOR, MYO_SELECT, RANK_SWITCH_B, SCANS_PER_FRAME,
@@ -8,13 +10,13 @@ use tenax_hal_shim::channel::{
 use tenax_hal_shim::frame::Scan;
 use tenax_hal_shim::front_end::MYO_REST_MV;
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::TickRecord;
+use tenax_hal_shim::wire::{Slow, TickRecord};
 use tenax_hal_shim::words::DriveSource;
 use tenax_logic::config::Config;
 use tenax_logic::gate::DOMINANCE_PERMILLE;
 
-use crate::board::Run;
-use crate::timeline::Timeline;
+use crate::board::Recorder;
+use crate::timeline::ticks;
 
 /// The wearer's part of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -62,47 +64,124 @@ impl Muscles {
     }
 }
 
-impl Wearer {
-    /// Judges a run.
-    #[must_use]
-    pub fn of(run: &Run, timeline: Timeline) -> Self {
-        let on_mv = i64::from(Config::default().gate.on_mv);
-        let mut muscles = Muscles::default();
-        let mut active = Vec::with_capacity(run.scans.len() / SCANS_PER_FRAME);
-        let mut wish_since: Option<usize> = None;
-        let mut slowest: Option<usize> = None;
-        for (frame, scans) in run.scans.chunks_exact(SCANS_PER_FRAME).enumerate() {
-            muscles.take(frame, scans);
-            active.push(muscles.active(on_mv));
-            let opens = run
-                .drives
-                .get(frame * SCANS_PER_FRAME + SCANS_PER_FRAME - 1)
-                .is_some_and(|drive| drive.opens());
-            match (muscles.wish_to_open(on_mv), opens) {
-                (true, false) => wish_since = wish_since.or(Some(frame)),
-                // Answered; or given up before it was: then it waited for as long as it lasted.
-                (true, true) | (false, _) => {
-                    let since = wish_since.take().or(opens.then_some(frame));
-                    slowest = slowest.max(since.map(|since| frame - since));
-                }
-            }
+/// Judges a run while it goes.
+#[derive(Clone, Debug)]
+pub struct Judge {
+    on_mv: i64,
+    muscles: Muscles,
+    /// The scans of the frame that is not yet whole.
+    scans: Vec<Scan>,
+    /// Frames so far.
+    frames: usize,
+    active: Frames,
+    wish_since: Option<usize>,
+    slowest: Option<usize>,
+    reflex_ticks: u64,
+    reflex_while_active: u64,
+    slow_frames: u64,
+    active_slow_frames: u64,
+}
+
+impl Default for Judge {
+    fn default() -> Self {
+        Self {
+            on_mv: i64::from(Config::default().gate.on_mv),
+            muscles: Muscles::default(),
+            scans: Vec::with_capacity(SCANS_PER_FRAME),
+            frames: 0,
+            active: Frames::default(),
+            wish_since: None,
+            slowest: None,
+            reflex_ticks: 0,
+            reflex_while_active: 0,
+            slow_frames: 0,
+            active_slow_frames: 0,
         }
+    }
+}
+
+impl Recorder for Judge {
+    fn scan(&mut self, codes: &Scan, drive: MotorDrive, _slipping: bool) {
+        self.scans.push(*codes);
+        if self.scans.len() == SCANS_PER_FRAME {
+            self.muscles.take(self.frames, &self.scans);
+            self.scans.clear();
+            self.frame(drive.opens());
+        }
+    }
+
+    fn slow(&mut self, slow: &Slow) {
+        self.slow_frames += 1;
+        self.active_slow_frames += u64::from(slow.wearer_active);
         let by_reflex =
             |tick: &TickRecord| tick.source == DriveSource::Reflex && tick.drive != MotorDrive::Coast;
-        let reflex_frames = run.slows.iter().flat_map(|slow| {
-            let first = slow.frame.saturating_sub(u32::from(FRAMES_PER_SLOW_FRAME) - 1);
-            (first as usize..).zip(&slow.ticks).filter(|(_, tick)| by_reflex(tick)).map(|(frame, _)| frame)
-        });
-        let reflex_frames: Vec<usize> = reflex_frames.collect();
-        let silent = |frame: &&usize| active.get(**frame).copied().unwrap_or(false);
-        let slow_frames = run.slows.len() as u64;
-        let active_slow_frames = run.slows.iter().filter(|slow| slow.wearer_active).count() as u64;
-        Self {
-            reflex_while_active: reflex_frames.iter().filter(silent).count() as u64,
-            open_latency_ms: slowest.map(|frames| frames as f64 * 1e3 / f64::from(FRAME_HZ)),
-            active_first_s: timeline.wearer().first().copied(),
-            active_permille: (1_000 * active_slow_frames).checked_div(slow_frames).unwrap_or(0),
-            reflex_ticks: reflex_frames.len() as u64,
+        for (frame, _) in ticks(slow).filter(|(_, tick)| by_reflex(tick)) {
+            self.reflex_ticks += 1;
+            self.reflex_while_active += u64::from(self.active.contains(frame as usize));
         }
+    }
+}
+
+impl Judge {
+    /// A frame is whole.
+    fn frame(&mut self, opens: bool) {
+        let frame = self.frames;
+        self.frames += 1;
+        if self.muscles.active(self.on_mv) {
+            self.active.push(frame);
+        }
+        match (self.muscles.wish_to_open(self.on_mv), opens) {
+            (true, false) => self.wish_since = self.wish_since.or(Some(frame)),
+            // Answered; or given up before it was: then it waited for as long as it lasted.
+            (true, true) | (false, _) => {
+                let since = self.wish_since.take().or(opens.then_some(frame));
+                self.slowest = self.slowest.max(since.map(|since| frame - since));
+            }
+        }
+    }
+
+    /// The verdict over the run; `active_first_s` is when a myosensor first became active.
+    #[must_use]
+    pub fn verdict(&self, active_first_s: Option<f64>) -> Wearer {
+        Wearer {
+            reflex_while_active: self.reflex_while_active,
+            open_latency_ms: self.slowest.map(|frames| frames as f64 * 1e3 / f64::from(FRAME_HZ)),
+            active_first_s,
+            active_permille: (1_000 * self.active_slow_frames).checked_div(self.slow_frames).unwrap_or(0),
+            reflex_ticks: self.reflex_ticks,
+        }
+    }
+}
+
+/// Frames in which something was so: from the first to before the last of each stretch.
+#[derive(Clone, Debug, Default)]
+struct Frames(Vec<Range<usize>>);
+
+impl Frames {
+    /// The next one, later than all before.
+    fn push(&mut self, frame: usize) {
+        match self.0.last_mut() {
+            Some(stretch) if stretch.end == frame => stretch.end += 1,
+            _ => self.0.push(frame..frame + 1),
+        }
+    }
+
+    fn contains(&self, frame: usize) -> bool {
+        let begun = self.0.partition_point(|stretch| stretch.start <= frame);
+        begun.checked_sub(1).is_some_and(|last| self.0[last].contains(&frame))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_are_found_in_their_stretches() {
+        let mut frames = Frames::default();
+        [3, 4, 5, 9, 20].into_iter().for_each(|frame| frames.push(frame));
+        assert_eq!(frames.0, [3..6, 9..10, 20..21]);
+        let found: Vec<usize> = (0..25).filter(|&frame| frames.contains(frame)).collect();
+        assert_eq!(found, [3, 4, 5, 9, 20]);
     }
 }

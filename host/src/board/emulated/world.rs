@@ -9,6 +9,7 @@ use rigless::session::Session;
 use rigless::time::VirtualNanos;
 use tenax_hal_shim::channel::{SCAN_HZ, SCANS_PER_FRAME};
 use tenax_hal_shim::frame::{Scan, scan_of_pins};
+use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{FRAME_MAX, encode};
 use tenax_scene::plant::Plant;
 
@@ -20,7 +21,7 @@ use super::line::Line;
 use super::mishaps::Mishaps;
 use super::nucleo::{Nucleo, USART2};
 use super::wires::Wires;
-use crate::board::Run;
+use crate::board::TickCost;
 use crate::image::symbols::Symbols;
 
 const SCAN_NS: u64 = 1_000_000_000 / SCAN_HZ as u64;
@@ -30,15 +31,26 @@ const SEEK_NS: u64 = 5_000;
 const BOOT_NS: u64 = 3_000_000_000;
 /// Scans after the plant's last, so that what they led to comes up the line.
 const DRAIN_SCANS: u32 = 64;
-/// Scans between two reports of progress: a tenth of a virtual second.
-const PROGRESS_SCANS: usize = 800;
+/// Scans between two reports: a tenth of a virtual second.
+const REPORT_SCANS: usize = 800;
 
-/// The world and the record of it.
+/// What happened since the last report.
+#[derive(Debug, Default)]
+pub struct Stretch {
+    /// Of each scan: its codes, how the motor was driven, and whether the object moved relative to the finger.
+    pub scans: Vec<(Scan, MotorDrive, bool)>,
+    /// What came up the line.
+    pub line: Vec<u8>,
+}
+
+/// The world, and what goes out of it.
 pub struct World<P> {
     /// The plant.
     pub plant: P,
-    /// What happened so far; the line is decoded afterwards.
-    pub run: Run,
+    /// What the ticks took, once the run is over.
+    pub tick_cost: Option<TickCost>,
+    /// How deep the stack was, once the run is over, bytes.
+    pub stack_bytes: Option<u64>,
     /// Why the run ended early, if it did.
     pub broken: Option<Broken>,
     /// What the ticks cost.
@@ -49,6 +61,7 @@ pub struct World<P> {
     pub flash: FlashArray,
     /// Whole scans that the plant lasts.
     scans: usize,
+    scanned: usize,
     drained: u32,
     pulses: u64,
     stepped_at: Option<VirtualNanos>,
@@ -59,8 +72,9 @@ pub struct World<P> {
     executed: Option<(VirtualNanos, u64)>,
     stack: Range<u64>,
     command_entry: u64,
-    /// Who is told the virtual time. Given up when the run is over.
-    pub progress: Option<Sender<f64>>,
+    stretch: Stretch,
+    /// Who is told what happened. Given up when the run is over.
+    pub reports: Option<Sender<Stretch>>,
 }
 
 impl<P: Plant> World<P> {
@@ -72,16 +86,18 @@ impl<P: Plant> World<P> {
         cost: CostMeter,
         flash: FlashArray,
         symbols: &Symbols,
-        progress: Sender<f64>,
+        reports: Sender<Stretch>,
     ) -> Self {
         Self {
             plant,
-            run: Run::default(),
+            tick_cost: None,
+            stack_bytes: None,
             broken: None,
             cost,
             commands: Commands::default(),
             flash,
             scans: frames as usize * SCANS_PER_FRAME,
+            scanned: 0,
             drained: 0,
             pulses: 0,
             stepped_at: None,
@@ -92,7 +108,8 @@ impl<P: Plant> World<P> {
             executed: None,
             stack: symbols.stack.clone(),
             command_entry: symbols.command,
-            progress: Some(progress),
+            stretch: Stretch::default(),
+            reports: Some(reports),
         }
     }
 
@@ -105,16 +122,15 @@ impl<P: Plant> World<P> {
         pulse: bool,
     ) -> Option<()> {
         let mut wires = Wires::new(&mut session.board_mut().mcu, stop.at);
-        if self.run.scans.len() < self.scans {
+        if self.scanned < self.scans {
             let Ok(drive) = wires.motor() else {
                 self.broken = Some(Broken::BothSides { at_s: seconds(stop.at) });
                 return None;
             };
             let pins = self.plant.scan(drive).codes();
             self.codes = scan_of_pins(&pins, wires.select());
-            self.run.scans.push(self.codes);
-            self.run.drives.push(drive);
-            self.run.slipping.push(self.plant.slipping());
+            self.stretch.scans.push((self.codes, drive, self.plant.slipping()));
+            self.scanned += 1;
         } else {
             self.drained += 1;
         }
@@ -122,7 +138,7 @@ impl<P: Plant> World<P> {
         if pulse {
             wires.trigger();
         }
-        let scan = self.run.scans.len();
+        let scan = self.scanned;
         if let Some(line) = session.board_mut().mcu.usart[USART2].chip_mut::<Line>() {
             for command in self.plant.commands() {
                 let mut buffer = [0; FRAME_MAX];
@@ -136,21 +152,29 @@ impl<P: Plant> World<P> {
             }
         }
         self.mishaps.happen(scan, session, stop.at, &mut self.flash, host);
-        if let Some(progress) = self.progress.as_ref().filter(|_| scan.is_multiple_of(PROGRESS_SCANS)) {
-            // Nobody listening is no reason to stop.
-            let _ = progress.send(scan as f64 / f64::from(SCAN_HZ));
+        if scan.is_multiple_of(REPORT_SCANS) {
+            self.report(session);
         }
         (self.drained < DRAIN_SCANS).then_some(())
+    }
+
+    /// Hands on what happened since the last report.
+    fn report(&mut self, session: &mut Session<Nucleo>) {
+        if let Some(line) = session.board_mut().mcu.usart[USART2].chip_mut::<Line>() {
+            self.stretch.line = std::mem::take(&mut line.up);
+        }
+        if let Some(reports) = &self.reports {
+            // Nobody listening is no reason to stop.
+            let _ = reports.send(std::mem::take(&mut self.stretch));
+        }
     }
 
     fn end(&mut self, session: &mut Session<Nucleo>, stop: Stop, host: &mut dyn Host) {
         let (began, executed) = self.executed.unwrap_or((stop.at, stop.instruction_count));
         let lasted_s = seconds(stop.at) - seconds(began);
-        self.run.tick_cost = self.cost.cost((stop.instruction_count - executed) as f64 / lasted_s);
-        self.run.stack_bytes = Some(stack_used(&self.stack, host));
-        if let Some(line) = session.board_mut().mcu.usart[USART2].chip_mut::<Line>() {
-            self.run.line = std::mem::take(&mut line.up);
-        }
+        self.tick_cost = self.cost.cost((stop.instruction_count - executed) as f64 / lasted_s);
+        self.stack_bytes = Some(stack_used(&self.stack, host));
+        self.report(session);
     }
 }
 

@@ -8,12 +8,12 @@ use tenax_hal_shim::words::Code;
 
 /// Numbers commands and writes them as frames.
 #[derive(Debug)]
-pub struct Commander<W> {
+pub struct Outbox<W> {
     line: W,
     sequence: u16,
 }
 
-impl<W: Write> Commander<W> {
+impl<W: Write> Outbox<W> {
     /// One that has sent nothing.
     pub fn new(line: W) -> Self {
         Self { line, sequence: 0 }
@@ -82,7 +82,7 @@ mod tests {
     fn a_cameras_words_arrive_in_order() {
         let mut line = Vec::new();
         let words = "# v1 v2 age\n-1 1 40\n\n1,+1\n0 -1 12\n";
-        Commander::new(&mut line).teach(words.as_bytes()).unwrap();
+        Outbox::new(&mut line).teach(words.as_bytes()).unwrap();
         let mut receiver = Receiver::new();
         let heard: Vec<_> =
             line.iter().filter_map(|&byte| receiver.push::<Down>(byte)).map(Result::unwrap).collect();
@@ -99,7 +99,7 @@ mod tests {
     #[test]
     fn a_line_that_is_no_word_is_named() {
         for wrong in ["-1", "2 0", "1 1 soon", "1 1 70000", "1 1 1 1"] {
-            let error = Commander::new(Vec::new()).teach(format!("1 1\n{wrong}\n").as_bytes()).unwrap_err();
+            let error = Outbox::new(Vec::new()).teach(format!("1 1\n{wrong}\n").as_bytes()).unwrap_err();
             assert!(format!("{error:#}").contains(&format!("line 2 of the teacher: `{wrong}`")), "{error:#}");
         }
     }
