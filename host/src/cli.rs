@@ -11,6 +11,7 @@ mod learn;
 mod line_file;
 mod lint_image;
 mod monitor;
+mod out;
 mod progress;
 mod run;
 mod scenes;
@@ -102,8 +103,10 @@ pub fn main() -> ExitCode {
     };
     match done {
         Ok(code) => code,
+        // Whoever read our output has read enough.
+        Err(error) if error.is::<out::Closed>() => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error:#}");
+            out::note!("error: {error:#}");
             ExitCode::from(2)
         }
     }

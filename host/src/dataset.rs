@@ -12,8 +12,6 @@ pub mod operator;
 pub mod session;
 pub mod story;
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use rayon::prelude::*;
 use serde::Serialize;
 use tenax_hal_shim::channel::ARRAY_COUNT;
@@ -22,6 +20,8 @@ use collect::{Recording, Step, record};
 use manifest::Manifest;
 use session::{Session, Sizes, Split, sessions};
 use story::Story;
+
+use crate::jobs::{Jobs, Told};
 
 /// Who says that it slipped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, clap::ValueEnum)]
@@ -75,7 +75,7 @@ impl Dataset {
     ///
     /// # Errors
     /// If a drawn number is none that a scene may have.
-    pub fn make(plan: Plan, progress: &(dyn Fn(f64) + Sync)) -> anyhow::Result<Self> {
+    pub fn make(plan: Plan, progress: Told) -> anyhow::Result<Self> {
         Self::record(plan, sessions(plan.seed, Sizes::of_train(plan.sessions)), progress)
     }
 
@@ -83,19 +83,20 @@ impl Dataset {
     ///
     /// # Errors
     /// As [`make`](Self::make).
-    pub fn make_split(plan: Plan, split: Split, progress: &(dyn Fn(f64) + Sync)) -> anyhow::Result<Self> {
+    pub fn make_split(plan: Plan, split: Split, progress: Told) -> anyhow::Result<Self> {
         let mut all = sessions(plan.seed, Sizes::of_train(plan.sessions));
         all.retain(|session| session.split == split);
         Self::record(plan, all, progress)
     }
 
-    fn record(plan: Plan, all: Vec<Session>, progress: &(dyn Fn(f64) + Sync)) -> anyhow::Result<Self> {
-        let (count, done) = (all.len(), AtomicUsize::new(0));
+    fn record(plan: Plan, all: Vec<Session>, progress: Told) -> anyhow::Result<Self> {
+        let jobs = Jobs::new(all.len() * Story::ALL.len(), progress);
         let recorded = all.into_par_iter().map(|session| {
-            let recordings =
-                Story::ALL.iter().map(|&story| record(&session, story)).collect::<Result<_, _>>()?;
-            let done = 1 + done.fetch_add(1, Ordering::Relaxed);
-            progress(done as f64 / count as f64);
+            let recorded = |&story| {
+                let _job = jobs.begin();
+                record(&session, story)
+            };
+            let recordings = Story::ALL.iter().map(recorded).collect::<Result<_, _>>()?;
             Ok((session, recordings))
         });
         Ok(Self { sessions: recorded.collect::<anyhow::Result<_>>()?, plan })

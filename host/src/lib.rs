@@ -9,6 +9,8 @@ pub mod cli;
 pub mod dataset;
 pub mod evaluate;
 pub mod image;
+pub mod input;
+pub mod jobs;
 pub mod labelled;
 pub mod learn;
 pub mod link;

@@ -15,6 +15,7 @@ use tenax_scene::{SceneFile, World, builtin};
 use crate::board::emulated;
 use crate::board::simulated::{frames_in, seconds_of};
 use crate::board::{Recorder, Run, Summary, simulated};
+use crate::input;
 use crate::plot::sketch::{Needs, Sketch};
 use crate::plot::{Figure, panels};
 use crate::replay::{Recording, ReplayPlant, library};
@@ -115,7 +116,7 @@ pub fn load_scene(asked: &str) -> anyhow::Result<SceneFile> {
         let names: Vec<&str> = builtin().iter().map(|(name, _)| *name).collect();
         bail!("no scene is called {asked}, and there is no such file; the scenes are {}", names.join(", "));
     }
-    let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {asked}"))?;
+    let text = input::text(path).with_context(|| format!("cannot read {asked}"))?;
     Ok(SceneFile::parse(&text, asked)?)
 }
 

@@ -13,10 +13,11 @@ use statrs::stats_tests::NaNPolicy;
 use statrs::stats_tests::ks_test::{KSTwoSampleAlternativeMethod, ks_twosample};
 
 use super::sheet::{Axis, Mark, Panel, Series, Sheet};
-use super::{Chart, csv, draw};
+use super::{Chart, Progress, csv, draw};
 use crate::dataset::collect::{Recording, record};
 use crate::dataset::session::{Sizes, sessions};
 use crate::dataset::story::Story;
+use crate::jobs::Jobs;
 use crate::plot::figure::colour;
 
 /// Steps a second.
@@ -164,15 +165,23 @@ fn quantile(mut values: Vec<f64>, part: f64) -> f64 {
 ///
 /// # Errors
 /// If a recording or the chart cannot be made.
-pub fn chart() -> anyhow::Result<Chart> {
+pub fn chart(progress: Progress) -> anyhow::Result<Chart> {
     let first = Sizes { train: 1, validation: 0, test: 0 };
-    let recordings: Vec<Recording> = sessions(1, first)
+    let drawn = sessions(1, first);
+    let jobs = Jobs::new(drawn.len() + CANDIDATES.len(), progress);
+    let recordings: Vec<Recording> = drawn
         .par_iter()
-        .map(|session| record(session, Story::Pour))
+        .map(|session| {
+            let _job = jobs.begin();
+            record(session, Story::Pour)
+        })
         .collect::<Result<_, _>>()?;
     let verdicts: Vec<Verdict> = CANDIDATES
         .par_iter()
-        .map(|&candidate| Verdict::of(candidate, &recordings))
+        .map(|&candidate| {
+            let _job = jobs.begin();
+            Verdict::of(candidate, &recordings)
+        })
         .collect::<Result<_, _>>()?;
     let rows = verdicts.iter().map(|verdict| {
         vec![

@@ -29,7 +29,7 @@ pub struct Chart {
 }
 
 /// Told how much is done, from 0 to 1.
-pub type Progress<'a> = &'a (dyn Fn(f64) + Sync);
+pub type Progress<'a> = crate::jobs::Told<'a>;
 
 /// Runs everything and draws it. Times are of this machine; all else is the same on every one.
 ///

@@ -3,12 +3,13 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::{Mutex, PoisonError};
 
 use anyhow::Context;
 use clap::ValueEnum;
 
-use super::progress::Progress;
+use super::folder;
+use super::out;
+use super::progress::with_bar;
 use super::workspace;
 use crate::chart;
 use crate::plot::png;
@@ -43,26 +44,26 @@ enum Subject {
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
+    let folder = folder::made(&args.out)?;
     let charts = match args.subject {
-        Subject::Scenes => scenes()?,
-        Subject::Features => vec![chart::features::chart()?],
+        Subject::Scenes => with_bar("charts", |progress| chart::scenes(progress))?,
+        Subject::Features => vec![with_bar("features", |progress| chart::features::chart(progress))?],
         Subject::Sensors => {
             let recordings = match &args.recordings {
                 Some(folder) => folder.clone(),
                 None => workspace::root()?.join("../shared/data"),
             };
-            vec![chart::sensors::chart(&recordings)?]
+            vec![with_bar("sensors", |progress| chart::sensors::chart(&recordings, progress))?]
         }
         Subject::Detectors => vec![detectors(args.scores.as_deref())?],
     };
-    fs::create_dir_all(&args.out).with_context(|| format!("cannot make {}", args.out.display()))?;
     for chart in charts {
         let files =
             [("svg", chart.svg.as_bytes()), ("png", &png::png(&chart.svg)?), ("csv", chart.csv.as_bytes())];
         for (extension, bytes) in files {
-            let path = args.out.join(chart.name).with_extension(extension);
+            let path = folder.join(chart.name).with_extension(extension);
             fs::write(&path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
-            println!("{}", path.display());
+            out::unless_closed(out::say!("{}", path.display()))?;
         }
     }
     Ok(ExitCode::SUCCESS)
@@ -75,7 +76,7 @@ fn detectors(scores: Option<&Path>) -> anyhow::Result<chart::Chart> {
     let table = fs::read_to_string(&scores)
         .with_context(|| format!("cannot read the detectors' scores {}", scores.display()))?;
     let image = crate::image::build_kernels(&root)?;
-    let costs = crate::board::emulated::kernels::costs(&image)?;
+    let costs = with_bar("detectors", |_| crate::board::emulated::kernels::costs(&image))?;
     let instructions = costs.into_iter().map(|cost| (cost.name, cost.most)).collect();
     chart::detectors::chart(&table, &instructions)
 }
@@ -86,12 +87,4 @@ fn detectors(_scores: Option<&Path>) -> anyhow::Result<chart::Chart> {
         "instructions are counted on the emulated board, and this `tenax` was built without it: use `cargo tenax chart \
          detectors` in a checkout"
     )
-}
-
-fn scenes() -> anyhow::Result<Vec<chart::Chart>> {
-    let progress = Mutex::new(Progress::new("charts", 1.0));
-    chart::scenes(&|part| {
-        // A bar that a panicking thread left is still a bar.
-        progress.lock().unwrap_or_else(PoisonError::into_inner).at(part);
-    })
 }

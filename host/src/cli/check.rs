@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::process::{Command, ExitCode};
 
+use super::out;
 use super::progress::Progress;
 use super::workspace;
 use crate::board::Run;
@@ -27,8 +28,12 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     };
     let board = if args.host { Board::Host } else { Board::emulated(&workspace::root()?)? };
     let (mut failed, mut skipped, mut passed) = (0, 0, 0);
+    // Whoever stops reading still wants the verdict: it is the exit code.
+    let mut printed = Ok(());
     let mut print = |bar: Bar| {
-        println!("{bar}");
+        if printed.is_ok() {
+            printed = out::say!("{bar}");
+        }
         match bar.verdict {
             Verdict::Pass => passed += 1,
             Verdict::Fail => failed += 1,
@@ -53,6 +58,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     recordings::bars(&data, &board, &mut print)?;
     learn::bars()?.into_iter().for_each(&mut print);
     mistakes::bars().into_iter().for_each(&mut print);
-    println!("{passed} kept, {failed} not kept, {skipped} skipped");
+    let last = || out::say!("{passed} kept, {failed} not kept, {skipped} skipped");
+    out::unless_closed(printed.and_then(|()| last()))?;
     Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

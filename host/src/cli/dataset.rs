@@ -1,13 +1,14 @@
 //! `tenax dataset`: a labelled data set of the normal-force array.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::{Mutex, PoisonError};
 
 use anyhow::{Context, bail};
 
-use super::progress::Progress;
+use super::folder;
+use super::out;
+use super::progress::with_bar;
 use crate::dataset::manifest::Manifest;
 use crate::dataset::session::Sizes;
 use crate::dataset::{Dataset, Label, Plan};
@@ -46,35 +47,31 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if args.out.extension().is_some_and(|extension| extension == "toml") {
         bail!("--out is the data's file, a .csv; the manifest goes beside it as .toml");
     }
+    // What cannot be written is said now, not after minutes.
+    if let Some(parent) = args.out.parent() {
+        folder::made(if parent.as_os_str().is_empty() { Path::new(".") } else { parent })?;
+    }
     let plan = Plan { seed: args.seed, sessions: args.sessions, label: args.label };
-    let progress = Mutex::new(Progress::new("sessions", 1.0));
-    let dataset = Dataset::make(plan, &|part| {
-        // A bar that a panicking thread left is still a bar.
-        progress.lock().unwrap_or_else(PoisonError::into_inner).at(part);
-    })?;
-    drop(progress);
+    let dataset = with_bar("sessions", |progress| Dataset::make(plan, progress))?;
     let csv = dataset.csv()?;
     let manifest = dataset.manifest(&file, &csv);
-    if let Some(folder) = args.out.parent() {
-        fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
-    }
     let beside = args.out.with_extension("toml");
     let files = [(&args.out, csv), (&beside, toml::to_string(&manifest)?.into_bytes())];
     for (path, bytes) in &files {
         fs::write(path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
     }
-    print(&manifest);
+    print(&manifest)?;
     for (path, _) in files {
-        eprintln!("  {:<14}{}", "written", path.display());
+        out::note!("  {:<14}{}", "written", path.display());
     }
     Ok(ExitCode::SUCCESS)
 }
 
-fn print(manifest: &Manifest) {
-    println!("data set of seed {}, SHA-256 {}", manifest.seed, manifest.sha256);
+fn print(manifest: &Manifest) -> anyhow::Result<()> {
+    out::say!("data set of seed {}, SHA-256 {}", manifest.seed, manifest.sha256)?;
     for (split, counts) in &manifest.split {
         let percent = 100.0 * counts.slip_steps as f64 / counts.steps.max(1) as f64;
-        println!(
+        out::say!(
             "  {:<14}{} sessions, {} steps, {percent:.1} % of them slip, {} slips, {} of {} recordings end in a fall",
             split.name(),
             counts.sessions,
@@ -82,7 +79,8 @@ fn print(manifest: &Manifest) {
             counts.slips,
             counts.dropped,
             counts.recordings
-        );
+        )?;
     }
-    println!("  {:<14}agrees with the world in {:.1} % of steps", "marker", manifest.marker_agrees_percent);
+    out::say!("  {:<14}agrees with the world in {:.1} % of steps", "marker", manifest.marker_agrees_percent)?;
+    Ok(())
 }

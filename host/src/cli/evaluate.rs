@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::{Mutex, PoisonError};
 
 use anyhow::bail;
 use tenax_logic::array::{Reading, ShippedDetector};
 
 use super::format::Format;
-use super::progress::Progress;
+use super::out;
+use super::progress::with_bar;
 use super::workspace;
 use crate::dataset::session::{Sizes, Split};
 use crate::dataset::{Dataset, Label, Plan};
@@ -77,11 +77,11 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if recordings.is_empty() {
         bail!("the data has no recording that is called test");
     }
-    let said = judge(shipped_detector, &recordings);
+    let said = with_bar("judging", |_| judge(shipped_detector, &recordings));
     // The network that ships looks back over one frame, itself: there is no other to compare it with.
     let said_without = said.clone();
     let report = Report::new(&recordings, &said, &said_without);
-    args.report.print(&Text(&report), &report)?;
+    out::unless_closed(args.report.print(&Text(&report), &report))?;
     if args.core {
         on_the_core(&recordings)?;
     }
@@ -92,10 +92,10 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
 #[cfg(feature = "emulator")]
 fn on_the_core(recordings: &[Recording]) -> anyhow::Result<()> {
     let image = crate::image::build_kernels(&workspace::root()?)?;
-    let mut progress = Progress::new("on the core", 1.0);
-    let steps = crate::evaluate::core::compare(&image, recordings, &mut |part| progress.at(part))?;
-    drop(progress);
-    eprintln!("the emulated core      says the same, bit for bit, in {steps} steps");
+    let steps = with_bar("on the core", |progress| {
+        crate::evaluate::core::compare(&image, recordings, &mut |part| progress(part))
+    })?;
+    out::note!("the emulated core      says the same, bit for bit, in {steps} steps");
     Ok(())
 }
 
@@ -113,7 +113,7 @@ fn shipped_detector() -> impl FnMut(&Reading) -> bool {
 fn recordings(args: &Args) -> anyhow::Result<Vec<Recording>> {
     if let Some(path) = &args.dataset {
         let recipe = library::choose(path, args.recipe.as_deref())?;
-        return Ok(labelled::read(path, &recipe)?);
+        return Ok(with_bar("reading", |_| labelled::read(path, &recipe))?);
     }
     if args.sessions == 0 {
         bail!("--sessions must be at least 1");
@@ -130,12 +130,12 @@ fn online_tasks(args: &Args) -> anyhow::Result<ExitCode> {
     let board = board(args)?;
     let tries = with_bar("tasks", |progress| online::tasks(args.seed, args.times, &board, progress))?;
     if args.report == Format::Json {
-        println!("{}", serde_json::to_string_pretty(&tries)?);
+        out::say!("{}", serde_json::to_string_pretty(&tries)?)?;
         return Ok(ExitCode::SUCCESS);
     }
-    println!("task  material    kept      slid, mm (oracle)   peak, N (oracle, needed)");
+    out::say!("task  material    kept      slid, mm (oracle)   peak, N (oracle, needed)")?;
     for row in online::rows(&tries) {
-        println!(
+        out::say!(
             "{:<6}{:<12}{:>2} of {:<2}  {:>8.2} ({:>6.2})   {:>8.2} ({:>5.2}, {:>5.2})",
             row.task,
             row.material,
@@ -146,7 +146,7 @@ fn online_tasks(args: &Args) -> anyhow::Result<ExitCode> {
             row.peak_force_n,
             row.oracle_peak_force_n,
             row.needed_force_n
-        );
+        )?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -155,16 +155,16 @@ fn failing_scenes(args: &Args) -> anyhow::Result<ExitCode> {
     let board = board(args)?;
     let rows = with_bar("scenes", |progress| failures::rows(shipped_detector, args.seed, &board, progress))?;
     if args.report == Format::Json {
-        println!("{}", serde_json::to_string_pretty(&rows)?);
+        out::say!("{}", serde_json::to_string_pretty(&rows)?)?;
         return Ok(ExitCode::SUCCESS);
     }
-    println!(
+    out::say!(
         "scene               steps right  missed  false  slips caught  false alarms  object   slid, mm (oracle)  peak, N (oracle)"
-    );
+    )?;
     let or_dash = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.2}"));
     for row in rows {
         let [slips, caught, false_alarms] = row.slips;
-        println!(
+        out::say!(
             "{:<20}{:>9.2} %{:>8}{:>7}{:>9} of {:<3}{:>12}   {:<8}{:>9} ({:>6}){:>12} ({:>6}) {}",
             row.scene,
             100.0 * row.steps.accuracy,
@@ -179,20 +179,11 @@ fn failing_scenes(args: &Args) -> anyhow::Result<ExitCode> {
             or_dash(row.peak_force_n[0]),
             or_dash(row.peak_force_n[1]),
             row.faults.join("; ")
-        );
+        )?;
     }
     Ok(ExitCode::SUCCESS)
 }
 
 fn board(args: &Args) -> anyhow::Result<Board> {
     if args.host { Ok(Board::Host) } else { Board::emulated(&workspace::root()?) }
-}
-
-/// Does something with a bar that it tells how much is done, from 0 to 1.
-fn with_bar<T>(what: &str, run: impl FnOnce(&(dyn Fn(f64) + Sync)) -> T) -> T {
-    let progress = Mutex::new(Progress::new(what, 1.0));
-    run(&|part| {
-        // A bar that a panicking thread left is still a bar.
-        progress.lock().unwrap_or_else(PoisonError::into_inner).at(part);
-    })
 }

@@ -5,6 +5,7 @@ use std::process::{Command, ExitCode};
 
 use anyhow::{Context, bail};
 
+use super::out;
 use super::workspace;
 
 const CHIP: &str = "STM32F411RETx";
@@ -53,6 +54,6 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             );
         }
     }
-    println!("flashed {}; watch it with   tenax monitor", image.display());
+    out::say!("flashed {}; watch it with   tenax monitor", image.display())?;
     Ok(ExitCode::SUCCESS)
 }

@@ -5,6 +5,8 @@ use std::fmt::Display;
 use clap::ValueEnum;
 use serde::Serialize;
 
+use super::out;
+
 /// The two ways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Format {
@@ -18,12 +20,11 @@ impl Format {
     /// Prints a report on stdout: as `text`, or as the keys and numbers of `report`.
     ///
     /// # Errors
-    /// If the report cannot be written as JSON.
-    pub fn print(self, text: &impl Display, report: &impl Serialize) -> serde_json::Result<()> {
+    /// If the report cannot be written as JSON, or not printed.
+    pub fn print(self, text: &impl Display, report: &impl Serialize) -> anyhow::Result<()> {
         match self {
-            Self::Text => print!("{text}"),
-            Self::Json => println!("{}", serde_json::to_string_pretty(report)?),
+            Self::Text => out::print(format_args!("{text}")),
+            Self::Json => out::say!("{}", serde_json::to_string_pretty(report)?),
         }
-        Ok(())
     }
 }

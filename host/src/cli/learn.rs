@@ -8,6 +8,7 @@ use std::sync::{Mutex, PoisonError};
 use anyhow::{Context, ensure};
 
 use super::format::Format;
+use super::out;
 use super::progress::Progress;
 use super::workspace;
 use crate::board::agreement::Agreement;
@@ -74,12 +75,12 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let board = if args.host { Board::Host } else { Board::emulated(&workspace::root()?)? };
     let outcome = run(&options, &board)?;
-    args.report.print(&Text(&outcome), &Report::of(&outcome))?;
+    out::unless_closed(args.report.print(&Text(&outcome), &Report::of(&outcome)))?;
     if let (Format::Json, Some(agreement)) = (args.report, &outcome.agreement) {
-        eprintln!("  {:<26}{agreement}", "image and host's logic");
+        out::note!("  {:<26}{agreement}", "image and host's logic");
     }
     for file in write(&args.out, &outcome)? {
-        eprintln!("  {:<26}{}", "written", file.display());
+        out::note!("  {:<26}{}", "written", file.display());
     }
     let agrees = outcome.agreement.as_ref().is_none_or(Agreement::holds);
     Ok(if agrees { ExitCode::SUCCESS } else { ExitCode::FAILURE })

@@ -2,11 +2,12 @@
 
 use std::process::ExitCode;
 
+use super::out;
 use super::workspace;
 use crate::image;
 
 pub fn main() -> anyhow::Result<ExitCode> {
     image::clippy(&workspace::root()?)?;
-    println!("image: no warnings");
+    out::say!("image: no warnings")?;
     Ok(ExitCode::SUCCESS)
 }

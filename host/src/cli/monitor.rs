@@ -10,6 +10,7 @@ use anyhow::{Context, bail};
 use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{BAUD, Down, SETTINGS_PER_ANSWER, Setting};
 
+use super::out;
 use crate::link::Outbox;
 use crate::monitor::{End, Monitor};
 use crate::settings;
@@ -90,7 +91,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(ExitCode::SUCCESS),
         other => other.context("cannot print")?,
     };
-    eprintln!("{}", monitor.counts());
+    out::note!("{}", monitor.counts());
     match (end, &args.port) {
         (End::Unplugged(error), Some(port)) => {
             bail!("{port} went away ({error}): was the board unplugged? Plug it in and start again")
@@ -115,7 +116,7 @@ fn tell(args: &Args, line: &dyn serialport::SerialPort) -> anyhow::Result<()> {
         // It ends with its input, or with the process.
         std::thread::spawn(move || {
             if let Err(error) = outbox.teach(io::stdin().lock()) {
-                eprintln!("tenax: {error:#}; the teacher is not heard any more");
+                out::note!("tenax: {error:#}; the teacher is not heard any more");
             }
         });
     }

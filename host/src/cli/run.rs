@@ -10,6 +10,7 @@ use tenax_scene::SceneFile;
 use super::folder;
 use super::format::Format;
 use super::line_file::LineFile;
+use super::out;
 use super::progress::Progress;
 use super::workspace;
 use crate::plot::{draw, png};
@@ -74,7 +75,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     args.report.print(&Text(&outcome.report), &outcome.report)?;
     // On stderr, so that a program that reads the report reads nothing else.
     for file in files {
-        eprintln!("  {:<14}{}", "written", file.display());
+        out::note!("  {:<14}{}", "written", file.display());
     }
     Ok(ExitCode::SUCCESS)
 }

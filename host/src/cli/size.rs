@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::process::ExitCode;
 
+use super::out;
 use super::progress::Progress;
 use super::workspace;
 use crate::budgets::{Budgets, Line};
@@ -50,9 +51,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         of_array("array, all of it", "slow_frame", budgets.array_slow_frame_instructions),
     ];
     let lines = || lines.iter().chain(&array_lines);
-    for line in lines() {
-        println!("{line}");
-    }
+    out::unless_closed(lines().try_for_each(|line| out::say!("{line}")))?;
     let kept = lines().all(Line::is_kept);
     Ok(if kept || !args.check { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

@@ -1,11 +1,16 @@
 //! `tenax train`: learns the force array's detector, in a package of its own that nothing else compiles.
 
-use std::path::PathBuf;
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
 use anyhow::{Context, bail};
 
+use super::folder;
+use super::out;
+use super::progress::with_bar;
 use super::workspace;
+use crate::labelled::{self, library};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -55,12 +60,18 @@ const SHIPPED: [(&str, &str); 3] = [
 ];
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
+    folder::made(&args.out)?;
     let dataset = match &args.dataset {
         Some(file) => file.clone(),
         None => built_in()?,
     };
+    let files = || std::iter::once(&dataset).chain(&args.test);
+    with_bar("reading", |_| files().try_for_each(|file| readable(file, &dataset, args.recipe.as_deref())))?;
     let mut command = Command::new("cargo");
-    command.args(["run", "--release", "--quiet", "--ignore-rust-version", "--package", "tenax-train"]);
+    command.args(["run", "--release", "--ignore-rust-version", "--package", "tenax-train"]);
+    if !std::io::stderr().is_terminal() {
+        command.arg("--quiet");
+    }
     command.arg("--manifest-path").arg(workspace::root()?.join("Cargo.toml")).arg("--");
     command.arg("--dataset").arg(dataset);
     if let Some(recipe) = &args.recipe {
@@ -75,7 +86,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     }
     // The matrices are small: a second thread costs more than it saves, and with one nothing depends on who was first.
     command.env("RAYON_NUM_THREADS", "1");
-    eprintln!("the first time, the training package is compiled: a few minutes");
+    out::note!("the first time, the training package is compiled: a few minutes");
     let status = command.status()?;
     if status.success() && args.ship {
         ship(args)?;
@@ -84,12 +95,19 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     Ok(status.code().and_then(|code| u8::try_from(code).ok()).map_or(ExitCode::from(2), ExitCode::from))
 }
 
+/// Reads a file as the training will, so that a mistake in it is said before anything is compiled or learned.
+fn readable(file: &Path, dataset: &Path, recipe: Option<&str>) -> anyhow::Result<()> {
+    // Files to score on have the recipe of those to learn from.
+    labelled::read(file, &library::choose(dataset, recipe)?)?;
+    Ok(())
+}
+
 fn ship(args: &Args) -> anyhow::Result<()> {
     let written = if args.compare { &SHIPPED[2..] } else { &SHIPPED[..2] };
     for (name, to) in written {
         let to = workspace::root()?.join(to);
         std::fs::copy(args.out.join(name), &to).with_context(|| format!("cannot write {}", to.display()))?;
-        eprintln!("  {:<14}{}", "shipped", to.display());
+        out::note!("  {:<14}{}", "shipped", to.display());
         if to.extension().is_some_and(|extension| extension == "rs") {
             workspace::run(Command::new("rustfmt").args(["--edition", "2024"]).arg(&to))?;
         }
@@ -101,7 +119,7 @@ fn ship(args: &Args) -> anyhow::Result<()> {
 fn built_in() -> anyhow::Result<PathBuf> {
     let file = PathBuf::from(DATASET);
     if !file.exists() {
-        eprintln!("no {DATASET} yet: making it");
+        out::note!("no {DATASET} yet: making it");
         let made = Command::new(std::env::current_exe()?).args(["dataset", "--out", DATASET]).status()?;
         if !made.success() {
             bail!("`tenax dataset` failed; its message is above");

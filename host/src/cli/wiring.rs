@@ -2,7 +2,9 @@
 
 use std::process::ExitCode;
 
+use super::out;
+
 pub fn main() -> anyhow::Result<ExitCode> {
-    print!("{}", crate::wiring::markdown());
+    out::print(format_args!("{}", crate::wiring::markdown()))?;
     Ok(ExitCode::SUCCESS)
 }

@@ -8,6 +8,7 @@ use tenax_logic::array::Reading;
 use super::events::Events;
 use super::report::Steps;
 use super::{ran, verdicts};
+use crate::jobs::{Jobs, Told};
 use crate::session::{self, Board};
 
 /// The scenes: first the two that the others are the failures of.
@@ -53,20 +54,19 @@ pub fn rows<D: FnMut(&Reading) -> bool>(
     fresh: impl Fn() -> D + Sync,
     seed: u64,
     board: &Board,
-    progress: &(dyn Fn(f64) + Sync),
+    progress: Told,
 ) -> anyhow::Result<Vec<Row>> {
-    let done = std::sync::atomic::AtomicUsize::new(0);
+    let jobs = Jobs::new(SCENES.len(), progress);
     let row = |scene: &&'static str| {
         let file = session::load_scene(scene)?;
-        let mut ran = ran::Steps::default();
-        let outcome = session::scene_with(&file, seed, board, &mut ran, &mut |_| {})
+        let (mut job, mut ran) = (jobs.begin(), ran::Steps::default());
+        let mut told = |s: f64| job.at(s / file.duration_s());
+        let outcome = session::scene_with(&file, seed, board, &mut ran, &mut told)
             .with_context(|| format!("scene {scene}"))?;
         let steps = ran.steps;
         let said = verdicts(fresh(), &steps);
         let (mut events, report) = (Events::default(), outcome.report);
         events.take(&steps, &said);
-        let done = 1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-        progress(done as f64 / SCENES.len() as f64);
         Ok(Row {
             scene,
             steps: Steps::of(&steps, &said),

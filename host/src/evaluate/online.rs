@@ -9,6 +9,7 @@ use serde::Serialize;
 use crate::dataset::material::SEEN;
 use crate::dataset::session::{Session, Sizes, sessions};
 use crate::dataset::story::Story;
+use crate::jobs::{Job, Jobs, Told};
 use crate::session::{self, Board};
 
 /// Times that each task is tried with each material.
@@ -68,32 +69,22 @@ pub struct Row {
 ///
 /// # Errors
 /// If a board cannot be run.
-pub fn tasks(
-    seed: u64,
-    times: usize,
-    board: &Board,
-    progress: &(dyn Fn(f64) + Sync),
-) -> anyhow::Result<Vec<Try>> {
+pub fn tasks(seed: u64, times: usize, board: &Board, progress: Told) -> anyhow::Result<Vec<Try>> {
     let drawn = sessions(SEED_OFFSET + seed, Sizes { train: times, validation: 0, test: 0 });
     let jobs: Vec<(Story, &Session)> =
         TASKS.iter().flat_map(|&task| drawn.iter().map(move |session| (task, session))).collect();
-    let done = std::sync::atomic::AtomicUsize::new(0);
-    let tried = jobs.par_iter().map(|&(task, session)| {
-        let tried = attempt(task, session, board)?;
-        let done = 1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-        progress(done as f64 / jobs.len() as f64);
-        Ok(tried)
-    });
-    tried.collect()
+    let all = Jobs::new(jobs.len(), progress);
+    jobs.par_iter().map(|&(task, session)| attempt(task, session, board, all.begin())).collect()
 }
 
 /// Away from the seeds that anybody gives to a data set.
 const SEED_OFFSET: u64 = 1 << 40;
 
-fn attempt(task: Story, session: &Session, board: &Board) -> anyhow::Result<Try> {
+fn attempt(task: Story, session: &Session, board: &Board, mut job: Job) -> anyhow::Result<Try> {
     let mut rng = ChaCha8Rng::seed_from_u64(session.seed);
     let scene = task.task_in(session, &mut rng)?;
-    let report = session::scene(&scene, session.seed, board, &mut |_| {})?.report;
+    let mut told = |s: f64| job.at(s / scene.duration_s());
+    let report = session::scene(&scene, session.seed, board, &mut told)?.report;
     let known = "a scene knows what became of its object";
     Ok(Try {
         material: session.material,

@@ -12,6 +12,7 @@ use thiserror::Error;
 use super::recipe::ArrayRecipe;
 use super::resample::instants;
 use super::{Part, Recording, Step};
+use crate::input::{Rows, TooLong, too_long};
 
 /// The longest time between two rows of a recording, s: over a longer one a straight line is an invention.
 const GAP_MAX_S: f64 = 0.5;
@@ -70,7 +71,8 @@ pub fn read(path: &Path, recipe: &ArrayRecipe) -> Result<Vec<Recording>, Labelle
 /// # Errors
 /// Says which row is wrong, and what is allowed.
 pub fn parse(source: impl Read, recipe: &ArrayRecipe, file: &str) -> Result<Vec<Recording>, LabelledError> {
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(source);
+    let mut reader =
+        csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(Rows::new(source));
     let header = reader.headers().map_err(|error| from_csv(file, error))?.clone();
     let columns = Columns::find(&header, recipe, file)?;
     let mut order: Vec<Open> = Vec::new();
@@ -275,7 +277,10 @@ fn from_csv(file: &str, error: csv::Error) -> LabelledError {
     let line = error.position().map_or(1, csv::Position::line);
     let file = file.to_owned();
     match error.into_kind() {
-        csv::ErrorKind::Io(source) => LabelledError::Unreadable { file, source },
+        csv::ErrorKind::Io(source) => match too_long(&source) {
+            Some(TooLong { line, what }) => LabelledError::Row { file, line, what: what.to_owned() },
+            None => LabelledError::Unreadable { file, source },
+        },
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
             LabelledError::Row { file, line, what: format!("{len} cells, but the header has {expected_len}") }
         }

@@ -106,8 +106,8 @@ impl ArrayRecipe {
     /// If it cannot be read or is wrong; says in which line and what is allowed.
     pub fn read(path: &Path) -> anyhow::Result<Self> {
         let file = path.display().to_string();
-        let text = std::fs::read_to_string(path)
-            .map_err(|error| anyhow::anyhow!("{file}: cannot be read: {error}"))?;
+        let text =
+            crate::input::text(path).map_err(|error| anyhow::anyhow!("{file}: cannot be read: {error}"))?;
         Ok(Self::parse(&text, &file)?)
     }
 

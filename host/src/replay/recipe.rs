@@ -170,8 +170,8 @@ impl Recipe {
     /// Reads a recipe file.
     pub fn read(path: &Path) -> anyhow::Result<Self> {
         let file = path.display().to_string();
-        let text = std::fs::read_to_string(path)
-            .map_err(|error| anyhow::anyhow!("{file}: cannot be read: {error}"))?;
+        let text =
+            crate::input::text(path).map_err(|error| anyhow::anyhow!("{file}: cannot be read: {error}"))?;
         Ok(Self::parse(&text, &file)?)
     }
 

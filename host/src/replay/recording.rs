@@ -7,6 +7,8 @@ use std::path::Path;
 use csv::StringRecord;
 use thiserror::Error;
 
+use crate::input::{Rows, TooLong, too_long};
+
 /// Names under which the time column is looked for.
 const TIME_COLUMNS: [&str; 2] = ["t", "t_s"];
 /// The longest recording that is played, s. A longer one is nearly always one whose time is in milliseconds.
@@ -82,13 +84,45 @@ pub enum RecordingError {
     },
 }
 
-/// A recording. Signals are parsed when asked for, so that a column of words which nobody maps does no harm.
+/// A recording. Its rows are read one by one, and only numbers are kept.
 #[derive(Clone, Debug)]
 pub struct Recording {
     file: String,
     columns: Vec<String>,
     t_s: Vec<f64>,
-    rows: Vec<StringRecord>,
+    signals: Vec<Signal>,
+}
+
+/// A column. What is wrong in it is said when it is asked for, so that a column of words which nobody maps does no harm.
+#[derive(Clone, Debug, Default)]
+struct Signal {
+    values: Vec<f64>,
+    /// The first cell that is no finite number: its line, and what is wrong.
+    wrong: Option<(u64, String)>,
+}
+
+impl Signal {
+    fn take(&mut self, column: &str, cell: &str, line: u64) {
+        if self.wrong.is_some() {
+            return;
+        }
+        match number(column, cell) {
+            Ok(value) => self.values.push(value),
+            Err(what) => {
+                self.wrong = Some((line, what));
+                self.values = Vec::new();
+            }
+        }
+    }
+}
+
+/// A cell's number.
+fn number(column: &str, text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        Ok(_) => Err(format!("column `{column}` is `{text}`; only finite numbers are allowed")),
+        Err(_) => Err(format!("column `{column}` is `{text}`, which is not a number")),
+    }
 }
 
 impl Recording {
@@ -104,45 +138,60 @@ impl Recording {
     pub fn parse(source: impl Read, file: &str) -> Result<Self, RecordingError> {
         let file = file.to_owned();
         let mut reader =
-            csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(source);
+            csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(Rows::new(source));
         let header = reader.headers().map_err(|error| from_csv(&file, error))?;
         let columns: Vec<String> = header.iter().map(str::to_owned).collect();
+        if columns.is_empty() {
+            return Err(RecordingError::TooShort { file, rows: 0 });
+        }
         for (index, column) in columns.iter().enumerate() {
             if columns[..index].contains(column) {
                 return Err(RecordingError::TwiceTheSameColumn { file, column: column.clone() });
             }
         }
-        let rows: Vec<StringRecord> =
-            reader.into_records().collect::<Result<_, _>>().map_err(|error| from_csv(&file, error))?;
-        if rows.len() < 2 {
-            return Err(RecordingError::TooShort { file, rows: rows.len() });
-        }
-        let mut recording = Self { file, columns, t_s: Vec::new(), rows };
-        let Some(time) = TIME_COLUMNS.iter().find(|name| recording.has(name)) else {
-            return Err(RecordingError::NoTime { columns: recording.column_list(), file: recording.file });
-        };
-        recording.t_s = recording.series(time)?;
-        recording.check_time()?;
-        Ok(recording)
-    }
-
-    fn check_time(&self) -> Result<(), RecordingError> {
-        for (index, pair) in self.t_s.windows(2).enumerate() {
-            if pair[1] < pair[0] {
-                return Err(RecordingError::Row {
-                    file: self.file.clone(),
-                    line: self.line(index + 1),
-                    what: format!(
-                        "time goes backwards, from {} s to {} s; rows must be in order of time",
-                        pair[0], pair[1]
-                    ),
+        let signals = vec![Signal::default(); columns.len()];
+        let mut recording = Self { file, columns, t_s: Vec::new(), signals };
+        let place = TIME_COLUMNS.iter().find_map(|name| recording.place(name));
+        let mut row = StringRecord::new();
+        // Of a recording that is too long, only the time is read on: the error says how long it is.
+        let mut too_long_s = None;
+        while reader.read_record(&mut row).map_err(|error| from_csv(&recording.file, error))? {
+            let Some(place) = place else {
+                return Err(RecordingError::NoTime {
+                    columns: recording.column_list(),
+                    file: recording.file,
                 });
+            };
+            let line = row.position().map_or(0, csv::Position::line);
+            let t_s = recording.time_s(place, &row[place], line)?;
+            let first_s = *recording.t_s.first().unwrap_or(&t_s);
+            if t_s - first_s > LONGEST_S {
+                too_long_s = Some(t_s - first_s);
+                continue;
+            }
+            recording.t_s.push(t_s);
+            for ((signal, column), cell) in recording.signals.iter_mut().zip(&recording.columns).zip(&row) {
+                signal.take(column, cell, line);
             }
         }
-        if self.duration_s() > LONGEST_S {
-            return Err(RecordingError::TooLong { file: self.file.clone(), duration_s: self.duration_s() });
+        let rows = recording.t_s.len();
+        match too_long_s {
+            Some(duration_s) => Err(RecordingError::TooLong { file: recording.file, duration_s }),
+            None if rows < 2 => Err(RecordingError::TooShort { file: recording.file, rows }),
+            None => Ok(recording),
         }
-        Ok(())
+    }
+
+    /// The time stamp of the next row, which may not be earlier than the last one's.
+    fn time_s(&self, place: usize, cell: &str, line: u64) -> Result<f64, RecordingError> {
+        let wrong = |what| RecordingError::Row { file: self.file.clone(), line, what };
+        let t_s = number(&self.columns[place], cell).map_err(wrong)?;
+        match self.t_s.last() {
+            Some(&last_s) if t_s < last_s => Err(wrong(format!(
+                "time goes backwards, from {last_s} s to {t_s} s; rows must be in order of time"
+            ))),
+            _ => Ok(t_s),
+        }
     }
 
     /// The file, as errors call it.
@@ -188,42 +237,29 @@ impl Recording {
 
     /// The values of a column, one a row.
     pub fn series(&self, column: &str) -> Result<Vec<f64>, RecordingError> {
-        let Some(place) = self.columns.iter().position(|name| name == column) else {
+        let Some(place) = self.place(column) else {
             return Err(RecordingError::NoColumn {
                 file: self.file.clone(),
                 column: column.to_owned(),
                 columns: self.column_list(),
             });
         };
-        self.rows
-            .iter()
-            .enumerate()
-            .map(|(row, cells)| {
-                let text = &cells[place];
-                let error =
-                    |what| RecordingError::Row { file: self.file.clone(), line: self.line(row), what };
-                match text.parse::<f64>() {
-                    Ok(value) if value.is_finite() => Ok(value),
-                    Ok(_) => {
-                        Err(error(format!("column `{column}` is `{text}`; only finite numbers are allowed")))
-                    }
-                    Err(_) => Err(error(format!("column `{column}` is `{text}`, which is not a number"))),
-                }
-            })
-            .collect()
+        let signal = &self.signals[place];
+        match &signal.wrong {
+            Some((line, what)) => {
+                Err(RecordingError::Row { file: self.file.clone(), line: *line, what: what.clone() })
+            }
+            None => Ok(signal.values.clone()),
+        }
     }
 
-    fn has(&self, column: &str) -> bool {
-        self.columns.iter().any(|name| name == column)
+    fn place(&self, column: &str) -> Option<usize> {
+        self.columns.iter().position(|name| name == column)
     }
 
     fn column_list(&self) -> String {
         let quoted: Vec<String> = self.columns.iter().map(|name| format!("`{name}`")).collect();
         quoted.join(", ")
-    }
-
-    fn line(&self, row: usize) -> u64 {
-        self.rows[row].position().map_or(0, csv::Position::line)
     }
 }
 
@@ -232,7 +268,10 @@ fn from_csv(file: &str, error: csv::Error) -> RecordingError {
     let line = error.position().map_or(1, csv::Position::line);
     let file = file.to_owned();
     match error.into_kind() {
-        csv::ErrorKind::Io(source) => RecordingError::Unreadable { file, source },
+        csv::ErrorKind::Io(source) => match too_long(&source) {
+            Some(TooLong { line, what }) => RecordingError::Row { file, line, what: what.to_owned() },
+            None => RecordingError::Unreadable { file, source },
+        },
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => RecordingError::Row {
             file,
             line,

@@ -7,7 +7,7 @@ mod recorded;
 use std::path::Path;
 
 use super::sheet::{Axis, Mark, Panel, Series, Sheet};
-use super::{Chart, csv, draw};
+use super::{Chart, Progress, csv, draw};
 use crate::plot::figure::colour;
 use model::{Curve, PickUp};
 
@@ -20,10 +20,11 @@ const TO_HZ: f64 = 1_000.0;
 ///
 /// # Errors
 /// If a scene or the chart cannot be made.
-pub fn chart(recordings: &Path) -> anyhow::Result<Chart> {
-    let films = model::films()?;
+pub fn chart(recordings: &Path, progress: Progress) -> anyhow::Result<Chart> {
+    // Parts of the whole time, as measured.
+    let films = model::films(&mut |part| progress(0.7 * part))?;
     let rig = model::rig()?;
-    let pick_up = model::pick_up()?;
+    let pick_up = model::pick_up(&mut |part| progress(0.75 + 0.2 * part))?;
     let real_films = recorded::films(recordings);
     let real_rig = recorded::rig(recordings);
     let present = if real_films.is_empty() || real_rig.is_empty() {
@@ -157,7 +158,7 @@ mod tests {
 
     #[test]
     fn without_recordings_it_is_drawn_all_the_same() {
-        let chart = chart(Path::new("nowhere")).unwrap();
+        let chart = chart(Path::new("nowhere"), &|_| ()).unwrap();
         assert!(chart.svg.contains("Recordings not present") && chart.csv.lines().count() > 1_000);
     }
 }

@@ -35,10 +35,12 @@ pub struct PickUp {
 }
 
 /// Three of the twelve films when the held glass gets wet, under the fingertip: the quietest, the middle, the loudest.
-pub fn films() -> anyhow::Result<Vec<Curve>> {
+/// `progress` is told the part that is done, 0 to 1.
+pub fn films(progress: &mut dyn FnMut(f64)) -> anyhow::Result<Vec<Curve>> {
     let glass = text("glass")?.replace("[contact]\n", "[contact]\nlevel = \"l1\"\n");
-    let world = World::new(&SceneFile::parse(&glass, "glass, l1")?, 1);
-    let (run, world) = simulated::run(world, &mut |_| ());
+    let glass = SceneFile::parse(&glass, "glass, l1")?;
+    let mut told = |s: f64| progress(s / glass.duration_s());
+    let (run, world) = simulated::run(World::new(&glass, 1), &mut told);
     let onset_s = world.truth().slips.first().map_or(0.0, |slip| slip.macro_onset_s);
     let (frames, _) = run.scans.as_chunks::<SCANS_PER_FRAME>();
     let middle = (onset_s * f64::from(FRAME_HZ)) as usize;
@@ -85,10 +87,11 @@ pub fn rig() -> anyhow::Result<Vec<Curve>> {
     Ok(vec![Curve { name: "rig".to_owned(), points }])
 }
 
-/// The first of the three pick-ups, under the fingertip.
-pub fn pick_up() -> anyhow::Result<PickUp> {
-    let world = World::new(&SceneFile::parse(text("pick-up")?, "pick-up")?, 1);
-    let (_, world) = simulated::run(world, &mut |_| ());
+/// The first of the three pick-ups, under the fingertip. `progress` is told the part that is done, 0 to 1.
+pub fn pick_up(progress: &mut dyn FnMut(f64)) -> anyhow::Result<PickUp> {
+    let scene = SceneFile::parse(text("pick-up")?, "pick-up")?;
+    let mut told = |s: f64| progress(s / scene.duration_s());
+    let (_, world) = simulated::record(World::new(&scene, 1), &mut (), &mut told);
     let truth = world.truth();
     Ok(PickUp {
         v1: truth.camera.iter().map(|seen| (seen.t_s, f64::from(seen.v1))).collect(),

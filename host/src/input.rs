@@ -1,0 +1,118 @@
+//! Files that somebody gives, read within bounds: neither a device nor the wrong file fills the memory.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+/// The longest scene or recipe, bytes: fifty times the longest of the repository.
+pub const TEXT_MAX_BYTES: u64 = 1_000_000;
+/// The longest line of a CSV file, bytes.
+pub const LINE_MAX_BYTES: u64 = 100_000;
+/// The longest CSV file, bytes: ten minutes of sixteen columns at 8 kHz.
+pub const CSV_MAX_BYTES: u64 = 1_000_000_000;
+
+/// The text of a scene or a recipe.
+///
+/// # Errors
+/// If it cannot be read, is too long, or is no text.
+pub fn text(path: &Path) -> io::Result<String> {
+    text_of(File::open(path)?)
+}
+
+fn text_of(source: impl Read) -> io::Result<String> {
+    let mut bytes = Vec::new();
+    source.take(TEXT_MAX_BYTES + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > TEXT_MAX_BYTES {
+        return Err(io::Error::other(format!(
+            "it is longer than {} MB, the most allowed",
+            TEXT_MAX_BYTES / 1_000_000
+        )));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let line = 1 + error.as_bytes()[..valid].iter().filter(|&&byte| byte == b'\n').count();
+        io::Error::other(format!("line {line} is not text (UTF-8)"))
+    })
+}
+
+/// What a CSV file may not be, and in which line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{what}")]
+pub struct TooLong {
+    /// Line in the file, from 1.
+    pub line: u64,
+    /// What is too long.
+    pub what: &'static str,
+}
+
+/// The source of a CSV file, cut off with [`TooLong`] where it is longer than allowed.
+#[derive(Debug)]
+pub struct Rows<R> {
+    source: R,
+    line: u64,
+    in_line: u64,
+    in_all: u64,
+}
+
+impl<R: Read> Rows<R> {
+    /// From its beginning.
+    pub const fn new(source: R) -> Self {
+        Self { source, line: 1, in_line: 0, in_all: 0 }
+    }
+
+    fn count(&mut self, bytes: &[u8]) -> Result<(), TooLong> {
+        self.in_all += bytes.len() as u64;
+        for piece in bytes.split_inclusive(|&byte| byte == b'\n') {
+            self.in_line += piece.len() as u64;
+            if self.in_line > LINE_MAX_BYTES {
+                return Err(TooLong { line: self.line, what: "longer than 100 kB: no row of a CSV file" });
+            }
+            if piece.ends_with(b"\n") {
+                self.line += 1;
+                self.in_line = 0;
+            }
+        }
+        if self.in_all > CSV_MAX_BYTES {
+            return Err(TooLong { line: self.line, what: "the file is longer than 1 GB, the most allowed" });
+        }
+        Ok(())
+    }
+}
+
+impl<R: Read> Read for Rows<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let length = self.source.read(buffer)?;
+        self.count(&buffer[..length]).map_err(io::Error::other)?;
+        Ok(length)
+    }
+}
+
+/// Whether reading ended because something is [`TooLong`].
+pub fn too_long(error: &io::Error) -> Option<TooLong> {
+    error.get_ref()?.downcast_ref().copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_has_an_end() {
+        assert_eq!(text_of(&b"name = 'a'"[..]).unwrap(), "name = 'a'");
+        let error = text_of(io::repeat(0)).unwrap_err().to_string();
+        assert_eq!(error, "it is longer than 1 MB, the most allowed");
+        let error = text_of(&b"a\nb\n\xff"[..]).unwrap_err().to_string();
+        assert_eq!(error, "line 3 is not text (UTF-8)");
+    }
+
+    #[test]
+    fn a_line_has_an_end() {
+        let csv = || &b"t,a\n0,1\n"[..];
+        let mut read = Vec::new();
+        Rows::new(csv()).read_to_end(&mut read).unwrap();
+        assert_eq!(read, csv());
+        let error = Rows::new(csv().chain(io::repeat(b'0'))).read_to_end(&mut read).unwrap_err();
+        assert_eq!(too_long(&error).map(|error| error.line), Some(3));
+        assert_eq!(too_long(&io::Error::other("else")), None);
+    }
+}

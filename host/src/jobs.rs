@@ -1,0 +1,68 @@
+//! How much is done of jobs that run side by side.
+
+use std::sync::{Mutex, PoisonError};
+
+/// Told how much is done, from 0 to 1.
+pub type Told<'a> = &'a (dyn Fn(f64) + Sync);
+
+/// Jobs of about one length.
+pub struct Jobs<'a> {
+    count: usize,
+    done: Mutex<f64>,
+    told: Told<'a>,
+}
+
+impl<'a> Jobs<'a> {
+    /// So many, none of them begun.
+    pub const fn new(count: usize, told: Told<'a>) -> Self {
+        Self { count, done: Mutex::new(0.0), told }
+    }
+
+    /// One of them begins.
+    pub const fn begin(&self) -> Job<'_> {
+        Job { jobs: self, part: 0.0 }
+    }
+}
+
+/// One job. It is done when it is dropped.
+pub struct Job<'a> {
+    jobs: &'a Jobs<'a>,
+    part: f64,
+}
+
+impl Job<'_> {
+    /// So much of it is done, 0 to 1.
+    pub fn at(&mut self, part: f64) {
+        let more = part.clamp(self.part, 1.0) - self.part;
+        self.part += more;
+        // A sum that a panicking thread left is still a sum.
+        let mut done = self.jobs.done.lock().unwrap_or_else(PoisonError::into_inner);
+        *done += more;
+        (self.jobs.told)((*done / self.jobs.count.max(1) as f64).min(1.0));
+    }
+}
+
+impl Drop for Job<'_> {
+    fn drop(&mut self) {
+        self.at(1.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_add_up_and_what_is_over_is_done() {
+        let heard = Mutex::new(Vec::new());
+        let told = |part: f64| heard.lock().unwrap().push(part);
+        let jobs = Jobs::new(2, &told);
+        let mut one = jobs.begin();
+        one.at(0.5);
+        // Backwards is not at all.
+        one.at(0.25);
+        jobs.begin().at(1.0);
+        drop(one);
+        assert_eq!(*heard.lock().unwrap(), [0.25, 0.25, 0.75, 0.75, 1.0]);
+    }
+}

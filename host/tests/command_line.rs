@@ -1,0 +1,76 @@
+//! The tool as it is started: what it says of files that cannot be meant, and what it does when nobody reads.
+
+use std::io::Read;
+use std::process::{Command, Output, Stdio};
+
+fn tenax(args: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_tenax"));
+    command.args(args).stdin(Stdio::null());
+    command
+}
+
+fn failed(args: &[&str]) -> String {
+    let Output { status, stderr, .. } = tenax(args).output().expect("it starts");
+    assert_eq!(status.code(), Some(2), "{args:?}");
+    String::from_utf8(stderr).expect("text")
+}
+
+/// As `tenax ... | head -1`: one byte is read, then nobody reads.
+fn cut_off(args: &[&str]) -> Output {
+    let mut child = tenax(args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts");
+    let mut out = child.stdout.take().expect("a pipe");
+    out.read_exact(&mut [0]).expect("a byte");
+    drop(out);
+    child.wait_with_output().expect("it ends")
+}
+
+#[test]
+fn an_output_that_nobody_reads_is_no_error() {
+    for args in [&["scenes"][..], &["wiring"]] {
+        let Output { status, stderr, .. } = cut_off(args);
+        assert!(status.success(), "{args:?}: {status}");
+        assert_eq!(String::from_utf8_lossy(&stderr), "", "{args:?}");
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn a_device_is_no_scene_no_recipe_and_no_recording() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    let run = |what: &[&str]| failed(&[&["run", "--host", "--out", out], what].concat());
+    assert_eq!(
+        run(&["--scene", "/dev/zero"]),
+        "error: cannot read /dev/zero: it is longer than 1 MB, the most allowed\n"
+    );
+    assert_eq!(
+        run(&["--replay", "/dev/zero"]),
+        "error: /dev/zero:1: longer than 100 kB: no row of a CSV file\n"
+    );
+    assert_eq!(
+        failed(&["evaluate", "--dataset", "/dev/zero", "--recipe", "array"]),
+        "error: /dev/zero:1: longer than 100 kB: no row of a CSV file\n"
+    );
+    assert_eq!(
+        failed(&["evaluate", "--dataset", "/dev/null", "--recipe", "/dev/zero"]),
+        "error: /dev/zero: cannot be read: it is longer than 1 MB, the most allowed\n"
+    );
+}
+
+#[test]
+fn what_is_missing_or_cannot_be_written_is_said_before_work_begins() {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    let out = file.path().to_str().unwrap();
+    let is_a_file = format!("error: cannot write to the folder {out}: is a file, and a folder is needed\n");
+    // The first would take minutes, the second compiles a package.
+    assert_eq!(failed(&["chart", "features", "--out", out]), is_a_file);
+    assert_eq!(failed(&["train", "--out", out]), is_a_file);
+    assert_eq!(failed(&["run", "--host", "--out", out]), is_a_file);
+    let folder = tempfile::tempdir().unwrap();
+    let train = ["train", "--out", folder.path().to_str().unwrap(), "--recipe", "array", "--dataset"];
+    let missing = failed(&[&train[..], &["no/such.csv"]].concat());
+    assert!(missing.starts_with("error: no/such.csv: cannot be read"), "{missing}");
+    std::fs::write(file.path(), "a1\n1\n").unwrap();
+    let wrong = failed(&[&train[..], &[out]].concat());
+    assert!(wrong.contains(":1: no column"), "{wrong}");
+}
