@@ -2,8 +2,10 @@
 
 pub mod draw;
 pub mod figure;
+mod lettering;
 pub mod panels;
 pub mod png;
+mod shapes;
 pub mod sketch;
 pub mod thin;
 

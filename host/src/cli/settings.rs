@@ -2,7 +2,9 @@
 
 use std::process::ExitCode;
 
+use super::out;
+
 pub fn main() -> anyhow::Result<ExitCode> {
-    print!("{}", crate::settings::markdown());
+    out::print(format_args!("{}", crate::settings::markdown()))?;
     Ok(ExitCode::SUCCESS)
 }
