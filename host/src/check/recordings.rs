@@ -7,6 +7,7 @@ use std::fs;
 use std::path::Path;
 
 use super::Bar;
+use super::side_by_side::Group;
 use crate::report::Report;
 use crate::session::{self, Board};
 
@@ -58,33 +59,37 @@ const RULES: [Rule; 7] = [
     },
 ];
 
-/// The bars of every recording in `folder`.
-pub fn bars(folder: &Path, board: &Board, each: &mut dyn FnMut(Bar)) -> anyhow::Result<()> {
+/// A group for each recording in `folder` that a rule is for, and for each rule that has none.
+pub fn groups<'a>(folder: &Path, board: &'a Board) -> anyhow::Result<Vec<Group<'a, Vec<Bar>>>> {
     let mut files: Vec<_> = fs::read_dir(folder)
         .map(|entries| entries.filter_map(|entry| Some(entry.ok()?.path())).collect())
         .unwrap_or_default();
     files.sort();
+    let mut groups = Vec::new();
     for rule in &RULES {
         let pattern = glob::Pattern::new(rule.pattern)?;
-        let mut any = false;
+        let before = groups.len();
         for file in &files {
-            let Some(name) = file.file_name().map(|name| name.to_string_lossy()) else {
+            let Some(name) = file.file_name().map(|name| name.to_string_lossy().into_owned()) else {
                 continue;
             };
-            if !pattern.matches(&name) {
-                continue;
+            if pattern.matches(&name) {
+                let file = file.clone();
+                groups.push(Group::new(name.clone(), move || {
+                    let outcome = session::replay(&file, None, 1, board, &mut |_| {})?;
+                    let (figure, holds) = (rule.judge)(&outcome.report);
+                    Ok(vec![Bar::new(format!("{name}: {}", rule.promise), figure, holds)])
+                }));
             }
-            any = true;
-            let outcome = session::replay(file, None, 1, board, &mut |_| {})?;
-            let (figure, holds) = (rule.judge)(&outcome.report);
-            each(Bar::new(format!("{name}: {}", rule.promise), figure, holds));
         }
-        if !any {
+        if groups.len() == before {
             let promise = format!("{}: {}", rule.pattern, rule.promise);
-            each(Bar::skipped(promise, "recording not present"));
+            groups.push(Group::new(rule.pattern, move || {
+                Ok(vec![Bar::skipped(promise.clone(), "recording not present")])
+            }));
         }
     }
-    Ok(())
+    Ok(groups)
 }
 
 fn rig(report: &Report) -> (String, bool) {

@@ -1,12 +1,14 @@
 //! `tenax check`: every promise, measured, one line each.
 
-use std::path::PathBuf;
-use std::process::{Command, ExitCode};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
-use super::out;
-use super::progress::Progress;
-use super::workspace;
+use tenax_launch::status::Status;
+
+use super::{out, size, test, workspace};
 use crate::board::Run;
+use crate::budgets::Line;
+use crate::check::side_by_side::{Group, measure};
 use crate::check::{Bar, Verdict, default_scene, learn, mistakes, recordings, wearer};
 use crate::session::{self, Board};
 
@@ -19,46 +21,68 @@ pub struct Args {
     /// On the host's build of the logic: no image, no emulator, and so not every promise
     #[arg(long)]
     host: bool,
+    /// The budgets of `tenax size --check` too, from the same run of the default scene
+    #[arg(long, conflicts_with = "host")]
+    size: bool,
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    let data = match &args.data {
-        Some(data) => data.clone(),
-        None => workspace::root()?.join("../shared/data"),
-    };
-    let board = if args.host { Board::Host } else { Board::emulated(&workspace::root()?)? };
+    let root = workspace::root()?;
+    let data = args.data.clone().unwrap_or_else(|| root.join("../shared/data"));
+    let board = if args.host { Board::Host } else { Board::emulated(&root)? };
+    if args.size {
+        // Here, and not in the middle of what is measured side by side.
+        crate::image::build_kernels(&root)?;
+    }
+    let mut groups = vec![
+        Group::new("default scene", || default_scene(&root, &board, args)),
+        Group::new("wearer in all scenes", wearer::scenes),
+        Group::new("random hands", || {
+            Ok(vec![wearer::random(test::logic().args(["--quiet", "--test", "wearer"]).current_dir(&root))])
+        }),
+    ];
+    groups.extend(recordings::groups(&data, &board)?);
+    groups.push(Group::new("learn", learn::bars));
+    groups.push(Group::new("mistakes", || Ok(mistakes::bars())));
+
+    let status = Status::new("check");
     let (mut failed, mut skipped, mut passed) = (0, 0, 0);
     // Whoever stops reading still wants the verdict: it is the exit code.
     let mut printed = Ok(());
-    let mut print = |bar: Bar| {
-        if printed.is_ok() {
-            printed = out::say!("{bar}");
+    let print = |bars: Vec<Bar>| {
+        for bar in &bars {
+            match bar.verdict {
+                Verdict::Pass => passed += 1,
+                Verdict::Fail => failed += 1,
+                Verdict::Skipped => skipped += 1,
+                Verdict::Noted => {}
+            }
         }
-        match bar.verdict {
-            Verdict::Pass => passed += 1,
-            Verdict::Fail => failed += 1,
-            Verdict::Skipped => skipped += 1,
-            Verdict::Noted => {}
+        if printed.is_ok() {
+            status.print(|| printed = bars.iter().try_for_each(|bar| out::say!("{bar}")));
         }
     };
-
-    let file = session::load_scene(session::DEFAULT_SCENE)?;
-    let mut progress = Progress::new(&file.name, file.duration_s());
-    let mut run = Run::default();
-    let outcome = session::scene_with(&file, 1, &board, &mut run, &mut |s| progress.at(s))?;
-    drop(progress);
-    run.summary = outcome.run.clone();
-    default_scene::bars(&outcome, (!args.host).then_some(&run)).into_iter().for_each(&mut print);
-    wearer::scenes()?.into_iter().for_each(&mut print);
-    print(wearer::random(
-        Command::new("cargo")
-            .args(["test", "--quiet", "--release", "--package", "tenax-host-tests", "--test", "wearer"])
-            .current_dir(workspace::root()?),
-    ));
-    recordings::bars(&data, &board, &mut print)?;
-    learn::bars()?.into_iter().for_each(&mut print);
-    mistakes::bars().into_iter().for_each(&mut print);
+    measure(&groups, |running| status.say(running), print)?;
+    drop(status);
     let last = || out::say!("{passed} kept, {failed} not kept, {skipped} skipped");
     out::unless_closed(printed.and_then(|()| last()))?;
     Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// One run of the default scene, and all that is told from it.
+fn default_scene(root: &Path, board: &Board, args: &Args) -> anyhow::Result<Vec<Bar>> {
+    let file = session::load_scene(session::DEFAULT_SCENE)?;
+    let mut run = Run::default();
+    let outcome = session::scene_with(&file, 1, board, &mut run, &mut |_| {})?;
+    run.summary = outcome.run.clone();
+    let mut bars = default_scene::bars(&outcome, (!args.host).then_some(&run));
+    if args.size {
+        bars.extend(size::lines(root, &outcome.report)?.iter().map(budget));
+    }
+    Ok(bars)
+}
+
+/// A line of `tenax size` as a promise.
+fn budget(line: &Line) -> Bar {
+    Bar::new("within its budget", line.to_string(), line.is_kept())
 }

@@ -1,61 +1,60 @@
-//! A progress bar on a terminal, silence elsewhere.
+//! How far a run is, on standard error, for as long as it takes.
 
-use std::sync::mpsc::{self, RecvTimeoutError, Sender};
-use std::thread::JoinHandle;
-use std::time::Duration;
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use tenax_launch::status::{SHOWN_AFTER, Status};
 
-/// A run shorter than this shows no bar.
-const SHOWN_AFTER: Duration = Duration::from_secs(2);
-/// The bar moves this often, even while nobody says how far it is.
-const TICK: Duration = Duration::from_millis(200);
+use super::out;
 
-/// Work going by: virtual time, or a part of the whole.
+/// Saying it more often would only cost time.
+const SAID_EVERY: Duration = Duration::from_millis(100);
+
+/// Virtual time going by, or any other part of a whole. When it is dropped, it says how long it took, if it was long.
 pub struct Progress {
-    bar: ProgressBar,
-    /// Dropped when the work is over.
-    over: Option<Sender<()>>,
-    shows: Option<JoinHandle<()>>,
+    what: String,
+    virtual_s: f64,
+    said: Mutex<Instant>,
+    status: Status,
 }
 
 impl Progress {
-    /// A bar for so many virtual seconds, drawn to stderr once it is clear that it takes a while.
+    /// So many virtual seconds are to go by.
     pub fn new(what: &str, virtual_s: f64) -> Self {
-        let bar = ProgressBar::with_draw_target(Some((virtual_s * 1e3) as u64), ProgressDrawTarget::hidden());
-        let style =
-            ProgressStyle::with_template("{spinner} {msg} {wide_bar} {percent:>3} %, {elapsed}, {eta} left");
-        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        bar.set_message(what.to_owned());
-        let (over, work) = mpsc::channel();
-        let shown = bar.clone();
-        let shows = std::thread::spawn(move || {
-            if work.recv_timeout(SHOWN_AFTER) == Err(RecvTimeoutError::Timeout) {
-                // indicatif itself draws nothing where stderr is no terminal.
-                shown.set_draw_target(ProgressDrawTarget::stderr());
-                shown.enable_steady_tick(TICK);
-            }
-        });
-        Self { bar, over: Some(over), shows: Some(shows) }
+        Self {
+            what: what.to_owned(),
+            virtual_s,
+            said: Mutex::new(Instant::now()),
+            status: Status::new(what),
+        }
     }
 
     /// So many virtual seconds have gone by.
-    pub fn at(&mut self, virtual_s: f64) {
-        self.bar.set_position((virtual_s * 1e3) as u64);
+    pub fn at(&self, virtual_s: f64) {
+        let part = (virtual_s / self.virtual_s).clamp(0.0, 1.0);
+        // Whoever finds another thread saying it has nothing to add.
+        let Ok(mut said) = self.said.try_lock() else {
+            return;
+        };
+        if part > 0.0 && said.elapsed() >= SAID_EVERY {
+            *said = Instant::now();
+            let left_s = self.status.elapsed().as_secs_f64() * (1.0 - part) / part;
+            self.status.say(format!("{} {:.0} %, {left_s:.0} s left", self.what, 100.0 * part));
+        }
     }
 }
 
 impl Drop for Progress {
     fn drop(&mut self) {
-        drop(self.over.take());
-        // It has nothing to panic about, and a bar is no reason to.
-        let _ = self.shows.take().map(JoinHandle::join);
-        self.bar.finish_and_clear();
+        let elapsed = self.status.elapsed();
+        if elapsed >= SHOWN_AFTER {
+            self.status.print(|| out::note!("  {} took {:.0} s", self.what, elapsed.as_secs_f64()));
+        }
     }
 }
 
-/// Does something with a bar that it tells how much is done, from 0 to 1.
+/// Does something that says how much of it is done, from 0 to 1.
 pub fn with_bar<T>(what: &str, run: impl FnOnce(&(dyn Fn(f64) + Sync)) -> T) -> T {
     let progress = Progress::new(what, 1.0);
-    run(&|part| progress.bar.set_position((part * 1e3) as u64))
+    run(&|part| progress.at(part))
 }

@@ -61,12 +61,12 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let mut line = LineFile::new(path("line.bin"));
     let outcome = match &subject {
         Subject::Recording(file, recording) => {
-            let mut progress = Progress::new("replay", recording.duration_s());
+            let progress = Progress::new("replay", recording.duration_s());
             let (recipe, told) = (args.recipe.as_deref(), &mut |s| progress.at(s));
             session::replay_with(file, recipe, args.seed, &board, &mut line, told)?
         }
         Subject::Scene(file) => {
-            let mut progress = Progress::new(&file.name, file.duration_s());
+            let progress = Progress::new(&format!("scene {}", file.name), file.duration_s());
             session::scene_with(file, args.seed, &board, &mut line, &mut |s| progress.at(s))?
         }
     };

@@ -2,8 +2,10 @@
 
 use std::process::{Command, ExitCode};
 
+use tenax_launch::image::{Binary, job};
+use tenax_launch::{jobs, tool};
+
 use super::workspace;
-use crate::image;
 
 /// Run every test of the workspace, the emulated ones included.
 #[derive(Debug, clap::Args)]
@@ -13,30 +15,38 @@ pub struct Args {
     extra: Vec<String>,
 }
 
+/// Tests of all that is not the tool, with the checks of a debug build: in the logic's arithmetic an overflow is an error.
+pub fn logic() -> Command {
+    let mut command = Command::new("cargo");
+    command.arg("test");
+    for package in ["logic", "hal-shim", "scene", "launch", "host-tests"] {
+        command.args(["--package", &format!("tenax-{package}")]);
+    }
+    command
+}
+
+/// Tests of the tool, as it is built to be run, so that everything that it is made of is compiled once.
+fn tool() -> Command {
+    let mut command = Command::new("cargo");
+    command.arg("test").args(tool::BUILD);
+    command
+}
+
+/// Tests of the training. It learns, which without optimisation takes minutes. Apart from the tool's, as `tenax train` builds
+/// it: together they would share features, and the emulator would be compiled again.
+fn training() -> Command {
+    let mut command = Command::new("cargo");
+    command.args(["test", "--release", "--ignore-rust-version", "--package", "tenax-train"]);
+    command
+}
+
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    let mut plain = Command::new("cargo");
-    plain.arg("test").args(&args.extra);
-    // rigless asks for rustc 1.98 and builds on 1.95: see docs/tools.md.
-    let mut emulated = Command::new("cargo");
-    emulated.args([
-        "test",
-        "--release",
-        "--ignore-rust-version",
-        "--package",
-        "tenax",
-        // It learns, which without optimisation takes minutes.
-        "--package",
-        "tenax-train",
-        "--features",
-        "tenax/emulator",
-    ]);
-    emulated.args(&args.extra);
     // Before the tests, so that its messages are seen and what is to be installed is said once.
-    image::build(&workspace::root()?)?;
+    jobs::run(vec![job(&workspace::root()?, &[Binary::Image, Binary::Kernels])])?;
     let mut passed = true;
-    for command in [&mut plain, &mut emulated] {
-        // The second is run even if the first fails: a person wants to know of all that is broken.
-        passed &= workspace::run(command)?;
+    for mut command in [logic(), tool(), training()] {
+        // The next is run even if one fails: a person wants to know of all that is broken.
+        passed &= workspace::run(command.args(&args.extra))?;
     }
     Ok(if passed { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

@@ -10,6 +10,7 @@ use std::process::Command;
 use anyhow::{Result, bail};
 
 use super::{TARGET, debian, output};
+use crate::jobs::Desk;
 
 /// What Cargo sets for the processes it runs, or a person for the build of the tool: none of it is meant for the image.
 const NOT_FOR_THE_IMAGE: [&str; 10] = [
@@ -39,7 +40,7 @@ pub enum Toolchain {
 
 impl Toolchain {
     /// The first that works, made to work if this process may.
-    pub fn find(root: &Path) -> Result<Self> {
+    pub fn find(root: &Path, desk: &Desk) -> Result<Self> {
         if has_target(root) {
             return Ok(Self::OnPath);
         }
@@ -49,7 +50,7 @@ impl Toolchain {
         if output(&mut rustup).is_some() && has_target(root) {
             return Ok(Self::OnPath);
         }
-        match debian::compiler() {
+        match debian::compiler(desk) {
             Ok(linker) => Ok(Self::Debian { linker }),
             Err(why) => bail!(
                 "the image needs Rust's {TARGET} target, and neither way to it is open:\n\
@@ -85,11 +86,11 @@ impl Toolchain {
     }
 
     /// Sees to it that there is a Clippy.
-    pub fn fetch_clippy(&self) -> Result<()> {
+    pub fn fetch_clippy(&self, desk: &Desk) -> Result<()> {
         match self {
             // `rust-toolchain.toml` names it as a component.
             Self::OnPath => Ok(()),
-            Self::Debian { .. } => debian::clippy(),
+            Self::Debian { .. } => debian::clippy(desk),
         }
     }
 }

@@ -7,6 +7,7 @@ use std::process::Command;
 use anyhow::{Context, Result, bail, ensure};
 
 use super::output;
+use crate::jobs::Desk;
 
 /// Debian's compiler.
 pub const RUSTC: &str = "/usr/bin/rustc";
@@ -27,23 +28,23 @@ const PACKAGES: [[&str; 4]; 2] = [
 const OLDEST_MINOR: u32 = 88;
 
 /// Sees to it that there is a compiler with sources; gives the linker to use with it.
-pub fn compiler() -> Result<PathBuf> {
+pub fn compiler(desk: &Desk) -> Result<PathBuf> {
     if !has_compiler() {
-        install_first(|[rustc, cargo, sources, _]| vec![rustc, cargo, sources])?;
+        install_first(desk, |[rustc, cargo, sources, _]| vec![rustc, cargo, sources])?;
         ensure!(
             has_compiler(),
             "{RUSTC}, {CARGO} or {SOURCES} is still missing or too old (before 1.{OLDEST_MINOR})"
         );
     }
-    linker()
+    linker(desk)
 }
 
 /// Sees to it that there is a Clippy beside the compiler.
-pub fn clippy() -> Result<()> {
+pub fn clippy(desk: &Desk) -> Result<()> {
     if Path::new(CLIPPY).exists() {
         return Ok(());
     }
-    install_first(|[.., clippy]| vec![clippy])
+    install_first(desk, |[.., clippy]| vec![clippy])
 }
 
 fn has_compiler() -> bool {
@@ -59,12 +60,12 @@ fn minor_version(version: &str) -> Option<u32> {
 }
 
 /// Rust's own linker from any toolchain that rustup has, else LLVM's, which Debian has.
-fn linker() -> Result<PathBuf> {
+fn linker(desk: &Desk) -> Result<PathBuf> {
     if let Some(linker) = rustup_home().and_then(|home| rust_lld(&home)) {
         return Ok(linker);
     }
     if !Path::new(LLD).exists() {
-        install(&["lld"])?;
+        install(desk, &["lld"])?;
     }
     Ok(PathBuf::from(LLD))
 }
@@ -75,26 +76,36 @@ fn rustup_home() -> Option<PathBuf> {
 }
 
 fn rust_lld(rustup_home: &Path) -> Option<PathBuf> {
-    let pattern = rustup_home.join("toolchains/*/lib/rustlib/*/bin/rust-lld");
-    glob::glob(pattern.to_str()?).ok()?.flatten().next()
+    // toolchains/NAME/lib/rustlib/HOST/bin/rust-lld
+    let toolchains = folders(&rustup_home.join("toolchains"));
+    let mut hosts = toolchains.flat_map(|toolchain| folders(&toolchain.join("lib/rustlib")));
+    hosts.find_map(|host| Some(host.join("bin/rust-lld")).filter(|linker| linker.exists()))
+}
+
+/// What is in a folder, by name; nothing if there is no such folder.
+fn folders(folder: &Path) -> impl Iterator<Item = PathBuf> + use<> {
+    let mut inside: Vec<PathBuf> =
+        std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).collect();
+    inside.sort();
+    inside.into_iter()
 }
 
 /// Installs what `choose` takes from the first row of [`PACKAGES`] that this Debian has.
-fn install_first(choose: fn([&'static str; 4]) -> Vec<&'static str>) -> Result<()> {
+fn install_first(desk: &Desk, choose: fn([&'static str; 4]) -> Vec<&'static str>) -> Result<()> {
     let rows = PACKAGES.map(choose);
     may_install(&rows[0])?;
-    update()?;
+    update(desk)?;
     let known = |row: &Vec<&str>| row.iter().all(|package| is_known(package));
     match rows.iter().find(|row| known(row)) {
-        Some(row) => apt(row),
+        Some(row) => apt(desk, row),
         None => bail!("this system's package sources have neither of {rows:?}"),
     }
 }
 
-fn install(packages: &[&str]) -> Result<()> {
+fn install(desk: &Desk, packages: &[&str]) -> Result<()> {
     may_install(packages)?;
-    update()?;
-    apt(packages)
+    update(desk)?;
+    apt(desk, packages)
 }
 
 fn may_install(packages: &[&str]) -> Result<()> {
@@ -115,13 +126,15 @@ fn is_known(package: &str) -> bool {
     })
 }
 
-fn update() -> Result<()> {
-    eprintln!("a tool that makes the image is missing: asking Debian what it has (apt-get update)");
+fn update(desk: &Desk) -> Result<()> {
+    desk.state("its compiler is missing: asking Debian (apt-get update)");
     quietly(Command::new("apt-get").args(["update", "--quiet"]))
 }
 
-fn apt(packages: &[&str]) -> Result<()> {
-    eprintln!("installing {} (apt-get install)", packages.join(" "));
+fn apt(desk: &Desk, packages: &[&str]) -> Result<()> {
+    let packages_named = packages.join(" ");
+    desk.state(format!("installing {packages_named} (apt-get install)"));
+    desk.tell(&format!("installed for the image: {packages_named}"));
     let mut apt = Command::new("apt-get");
     apt.env("DEBIAN_FRONTEND", "noninteractive");
     quietly(apt.args(["install", "--yes", "--quiet", "--no-install-recommends"]).args(packages))

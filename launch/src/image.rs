@@ -1,0 +1,95 @@
+//! Building the image for the microcontroller.
+
+mod debian;
+mod toolchain;
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, Result, ensure};
+
+use self::toolchain::Toolchain;
+use crate::cargo;
+use crate::jobs::{self, Desk, Job};
+
+/// What the image is compiled for: Cortex-M4F, hard float.
+pub const TARGET: &str = "thumbv7em-none-eabihf";
+/// The package that it is made of.
+const PACKAGE: &str = "tenax-firmware";
+/// The Cargo profile that it is made with.
+const PROFILE: &str = "firmware";
+
+/// What the package can be made into.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Binary {
+    /// What is flashed.
+    Image,
+    /// The array detector's arithmetic alone.
+    Kernels,
+}
+
+impl Binary {
+    /// Its file's name.
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Image => PACKAGE,
+            Self::Kernels => "tenax-kernels",
+        }
+    }
+}
+
+/// Builds what is asked for of the workspace at `root`, fetching what it takes, and gives its ELF file.
+///
+/// # Errors
+/// Says what to install, or what the compiler said.
+pub fn build(root: &Path, binary: Binary) -> Result<PathBuf> {
+    jobs::run(vec![job(root, &[binary])])?;
+    let elf = target_dir(root).join(TARGET).join(PROFILE).join(binary.name());
+    ensure!(elf.exists(), "the build succeeded, but there is no {}", elf.display());
+    Ok(elf)
+}
+
+/// The same, beside other jobs.
+#[must_use]
+pub fn job<'a>(root: &'a Path, binaries: &[Binary]) -> Job<'a> {
+    let bins: Vec<_> = binaries.iter().flat_map(|binary| ["--bin", binary.name()]).collect();
+    Job { name: "image", run: Box::new(move |desk| run(root, "build", &bins, desk)) }
+}
+
+/// Lints the image's package with the toolchain that builds it; a warning is an error.
+///
+/// # Errors
+/// Says what to install, or what Clippy said.
+pub fn clippy(root: &Path) -> Result<()> {
+    let run = move |desk: &Desk| run(root, "clippy", &["--", "--deny", "warnings"], desk);
+    jobs::run(vec![Job { name: "image's lints", run: Box::new(run) }])
+}
+
+fn run(root: &Path, verb: &str, more: &[&str], desk: &Desk) -> Result<()> {
+    desk.state("looking for its compiler");
+    let toolchain = Toolchain::find(root, desk)?;
+    if verb == "clippy" {
+        toolchain.fetch_clippy(desk)?;
+    }
+    let mut command = toolchain.cargo(verb);
+    command
+        .current_dir(root)
+        .args(["--profile", PROFILE, "--package", PACKAGE, "--target", TARGET])
+        .args(toolchain.build_std())
+        .arg("--target-dir")
+        .arg(target_dir(root))
+        .args(more);
+    cargo::run(&mut command, desk).with_context(|| format!("cargo {verb} of the image with {toolchain}"))
+}
+
+/// The image has a folder of its own: its std is another, and the tool's own build never waits for it.
+fn target_dir(root: &Path) -> PathBuf {
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
+    root.join(target).join("image")
+}
+
+/// What a command prints, if it starts and succeeds.
+fn output(command: &mut Command) -> Option<String> {
+    let output = command.output().ok().filter(|output| output.status.success())?;
+    Some(String::from_utf8_lossy(&output.stdout).trim().to_owned())
+}
