@@ -62,11 +62,17 @@ impl SensorHealth {
         let plain =
             sample >= limits.low && sample <= limits.high && self.last != sample && self.lost.is_none();
         if plain {
-            self.last = sample;
-            self.same = 0;
-            self.bad = 0;
+            self.was_plain(sample);
         }
         plain
+    }
+
+    /// Readings went by that were plain, the last of them this one, of a sensor that is not lost: as if each had been
+    /// taken.
+    pub const fn was_plain(&mut self, last: u16) {
+        self.last = last;
+        self.same = 0;
+        self.bad = 0;
     }
 
     /// Takes a reading: its value, or why it has none; and what changed with it.
@@ -116,6 +122,12 @@ impl SensorHealth {
     #[must_use]
     pub const fn same(&self) -> u32 {
         self.same
+    }
+
+    /// Whether it gives no number any more.
+    #[must_use]
+    pub const fn is_lost(&self) -> bool {
+        self.lost.is_some()
     }
 }
 

@@ -1,7 +1,7 @@
 //! What the fingertip decides. No heap, no I/O, no clock of its own: time arrives as frames.
 //!
-//! Data goes one way, and so do the modules: [`health`] says which readings can be believed; [`vibration`] (S1),
-//! [`fsr`], [`forces`] and [`friction`] (S2), [`strain`], [`array`] and [`gate`] (the wearer's muscles) say what they mean;
+//! Data goes one way, and so do the modules: [`health`] says which readings can be believed, [`films`] those of the
+//! films; [`vibration`] (S1), [`fsr`], [`forces`] and [`friction`] (S2), [`strain`], [`array`] and [`gate`] (the wearer's muscles) say what they mean;
 //! [`senses`] puts a frame through all of them, and [`credit`] says whether the array can be believed; [`touch`] learns
 //! slip from them ([`hebbian`]); [`mode`], [`grip`] and [`arbiter`] decide; [`fingertip`] is the whole, and [`journal`] is
 //! what it tells. [`config`] holds every number that can be chosen, and [`store`] keeps what must outlive a power cut.
@@ -19,6 +19,7 @@ pub mod config;
 pub mod credit;
 pub mod device;
 pub mod elements;
+pub mod films;
 pub mod fingertip;
 pub mod forces;
 pub mod friction;

@@ -1,8 +1,8 @@
 //! From frames to what the fingertip knows: which sensors can be believed, and what they say.
 
 use tenax_hal_shim::channel::{
-    ARRAY, ARRAY_COUNT, CHANNELS, FRAME_HZ, FSR, FSR_COUNT, FSR_SELECT, MYO_EXTENSOR, MYO_FLEXOR, MYO_SELECT,
-    PVDF, PVDF_COUNT, SLOW_HZ, STRAIN, STRAIN_COUNT,
+    ARRAY, ARRAY_COUNT, CHANNELS, FSR, FSR_COUNT, FSR_SELECT, MYO_EXTENSOR, MYO_FLEXOR, MYO_SELECT, PVDF,
+    PVDF_COUNT, SLOW_HZ, STRAIN, STRAIN_COUNT,
 };
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::front_end::FSR_REST_MV;
@@ -13,6 +13,7 @@ use crate::array::ShippedDetector;
 use crate::config::{Config, frames};
 use crate::credit::Credit;
 use crate::elements::Elements;
+use crate::films::Films;
 use crate::forces::ForceSensor;
 use crate::fsr;
 use crate::gate::Gate;
@@ -35,20 +36,16 @@ const MUSCLE_MISSES: u8 = 3;
 const MYO_HZ: u32 = 3 * SLOW_HZ;
 /// Equal readings of an active muscle in a row that no muscle gives: 50 ms. At rest, the general limit holds.
 const MYO_FROZEN_AFTER: u32 = MYO_HZ / 20;
-/// Equal samples in a row that a live film, with 30 of them rms of noise, hardly ever gives: before the jump of a film
-/// that freezes has come through its filters, it is doubted.
-const FILM_DOUBTED_AFTER: u32 = 2;
 /// A quadrant this far above its zero when the hand is switched on is pressed, uV.
 const PRESSED_UV: i32 = 100_000;
 
-static PVDF_LIMITS: Limits = Limits::of(&CHANNELS[PVDF], FRAME_HZ);
 static FSR_LIMITS: Limits = Limits::of(&CHANNELS[FSR], SLOW_HZ);
 static MYO_LIMITS: Limits = Limits::of(&CHANNELS[MYO_FLEXOR], MYO_HZ);
 
 /// What the fingertip knows.
 #[derive(Clone, Debug, Default)]
 pub struct Senses {
-    pvdf: [SensorHealth; PVDF_COUNT],
+    films: Films,
     fsr: [SensorHealth; FSR_COUNT],
     myo: [SensorHealth; 2],
     fsr_readings: [Option<u16>; FSR_COUNT],
@@ -84,7 +81,7 @@ impl Senses {
             self.frames_lost = 0;
         }
         self.frames_seen = self.frames_seen.saturating_add(1);
-        self.films(config, frame, journal);
+        self.listen(config, frame, journal);
         self.forces_are_new = false;
         let select = frame.select();
         // The first frames show each input once, in order; the later ones show some of them again.
@@ -206,24 +203,10 @@ impl Senses {
         !self.pressed && self.forces.is_some_and(|forces| forces.fn_mn < config.friction.loaded_mn / 4)
     }
 
-    fn films(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
-        self.films_usable = false;
-        for (n, (health, &sample)) in self.pvdf.iter_mut().zip(&frame.pvdf).enumerate() {
-            let trust = if health.is_plain(&PVDF_LIMITS, sample) {
-                Trust::Full
-            } else {
-                let (reading, change) = health.take(&PVDF_LIMITS, sample);
-                report(journal, PVDF + n, change);
-                match reading {
-                    Err(_) => Trust::None,
-                    Ok(_) if health.same() >= FILM_DOUBTED_AFTER => Trust::Doubtful,
-                    Ok(_) => Trust::Full,
-                }
-            };
-            self.films_usable |= trust != Trust::None;
-            self.detector.hear(n, sample, trust);
-        }
-        self.vibration = self.detector.judge(&config.vibration);
+    fn listen(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
+        let trusts = self.films.take(&frame.pvdf, |film, change| report(journal, PVDF + film, Some(change)));
+        self.films_usable = trusts.is_none_or(|trusts| trusts.iter().any(|&trust| trust != Trust::None));
+        self.vibration = self.detector.hear(&config.vibration, &frame.pvdf, trusts.as_ref());
     }
 
     /// The array's work, shared by four ticks: in fewer, it would end when the next frame has begun. Lost frames do

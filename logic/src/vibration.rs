@@ -59,18 +59,37 @@ pub struct Heard {
 }
 
 impl Film {
-    /// Takes a 14-bit sample. The first one is taken as the offset, so that being switched on is no vibration.
-    #[inline]
-    pub fn process(&mut self, sample: u16) -> Heard {
-        let x = (i32::from(sample) - MIDDLE) << Q;
+    /// Takes its first sample as the offset, so that being switched on is no vibration; later ones change nothing.
+    pub fn prime(&mut self, sample: u16) {
         if !self.primed {
-            self.offset.0[0] = i64::from(x) << 32;
+            self.offset.0[0] = i64::from(centred(sample)) << 32;
             self.primed = true;
         }
+    }
+
+    /// Takes a 14-bit sample of a film that was primed.
+    #[inline]
+    pub fn process(&mut self, sample: u16) -> Heard {
+        let x = centred(sample);
         let ac = x - HIGH_PASS.process(&mut self.offset, x);
         let low = LOW_PASS.process(&mut self.band, ac);
         Heard { envelope: ENVELOPE.process(&mut self.envelope, low.abs()), above: (ac - low).abs() }
     }
+}
+
+impl Heard {
+    /// The louder of the two, each of its parts by itself.
+    #[inline]
+    fn raise(&mut self, other: Self) {
+        self.envelope = self.envelope.max(other.envelope);
+        self.above = self.above.max(other.above);
+    }
+}
+
+/// A 14-bit sample around mid-scale, Q16.
+#[inline]
+const fn centred(sample: u16) -> i32 {
+    (sample as i32 - MIDDLE) << Q
 }
 
 /// How far a film's sample can be believed.
@@ -101,7 +120,8 @@ pub struct Vibration {
 pub struct VibrationDetector {
     films: [Film; PVDF_COUNT],
     envelopes: [i32; PVDF_COUNT],
-    loudest: Heard,
+    /// Whether no film waits for its first sample.
+    all_primed: bool,
     above: LowpassState<1>,
     loud_frames: u32,
     ringing_frames: u32,
@@ -109,31 +129,61 @@ pub struct VibrationDetector {
 }
 
 impl VibrationDetector {
-    /// Takes one film's sample of this tick, and how far it can be believed.
-    #[inline]
-    pub fn hear(&mut self, film: usize, sample: u16, trust: Trust) {
-        let (Some(film), Some(own)) = (self.films.get_mut(film), self.envelopes.get_mut(film)) else {
-            return;
+    /// Takes every film's sample of one tick, and how far each can be believed: None if all of them can.
+    pub fn hear(
+        &mut self,
+        config: &VibrationConfig,
+        samples: &[u16; PVDF_COUNT],
+        trusts: Option<&[Trust; PVDF_COUNT]>,
+    ) -> Vibration {
+        let loudest = match trusts {
+            None if self.all_primed => self.hear_all(samples),
+            None => self.hear_each(samples, &[Trust::Full; PVDF_COUNT]),
+            Some(trusts) => self.hear_each(samples, trusts),
         };
-        if trust == Trust::None {
-            // Primed anew when it comes back: its jump back is no vibration.
-            *film = Film::default();
-            *own = 0;
-            return;
-        }
-        let heard = film.process(sample);
-        // While a film is doubted nothing is heard of it, not even what it said before.
-        *own = 0;
-        if trust == Trust::Full {
-            *own = heard.envelope;
-            self.loudest.envelope = self.loudest.envelope.max(heard.envelope);
-            self.loudest.above = self.loudest.above.max(heard.above);
-        }
+        self.judge(config, loudest)
     }
 
-    /// What all films said in this tick; the next one begins.
-    pub fn judge(&mut self, config: &VibrationConfig) -> Vibration {
-        let Heard { envelope, above } = core::mem::take(&mut self.loudest);
+    /// Every film at once, when all of them can be believed: the usual tick.
+    #[inline]
+    fn hear_all(&mut self, samples: &[u16; PVDF_COUNT]) -> Heard {
+        let mut loudest = Heard::default();
+        for ((film, own), &sample) in self.films.iter_mut().zip(&mut self.envelopes).zip(samples) {
+            let heard = film.process(sample);
+            *own = heard.envelope;
+            loudest.raise(heard);
+        }
+        loudest
+    }
+
+    #[inline(never)]
+    fn hear_each(&mut self, samples: &[u16; PVDF_COUNT], trusts: &[Trust; PVDF_COUNT]) -> Heard {
+        let mut loudest = Heard::default();
+        self.all_primed = true;
+        for (((film, own), &sample), &trust) in
+            self.films.iter_mut().zip(&mut self.envelopes).zip(samples).zip(trusts)
+        {
+            // While a film is doubted nothing is heard of it, not even what it said before.
+            *own = 0;
+            if trust == Trust::None {
+                // Primed anew when it comes back: its jump back is no vibration.
+                *film = Film::default();
+                self.all_primed = false;
+                continue;
+            }
+            film.prime(sample);
+            let heard = film.process(sample);
+            if trust == Trust::Full {
+                *own = heard.envelope;
+                loudest.raise(heard);
+            }
+        }
+        loudest
+    }
+
+    /// What all films said in this tick.
+    fn judge(&mut self, config: &VibrationConfig, loudest: Heard) -> Vibration {
+        let Heard { envelope, above } = loudest;
         let above = ENVELOPE.process(&mut self.above, above);
         let on = i32::from(config.s1) << Q;
         // Once on, half the threshold keeps it on: the envelope of one slip has dips.
@@ -195,6 +245,7 @@ mod tests {
     fn worst_error(samples: impl Iterator<Item = u16>) -> f64 {
         let (mut film, mut reference) = (Film::default(), Reference::default());
         samples.fold(0.0f64, |worst, sample| {
+            film.prime(sample);
             let fixed = film.process(sample);
             let (inside, above) = reference.process(sample);
             worst
@@ -217,10 +268,7 @@ mod tests {
     }
 
     fn tick(detector: &mut VibrationDetector, sample: u16, trust: Trust) -> Vibration {
-        for film in 0..PVDF_COUNT {
-            detector.hear(film, sample, trust);
-        }
-        detector.judge(&Config::default().vibration)
+        detector.hear(&Config::default().vibration, &[sample; PVDF_COUNT], Some(&[trust; PVDF_COUNT]))
     }
 
     fn levels(samples: &[u16]) -> Vec<Vibration> {
