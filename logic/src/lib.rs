@@ -29,6 +29,7 @@ pub mod grip;
 pub mod health;
 pub mod hebbian;
 pub mod journal;
+pub mod low_pass;
 pub mod mode;
 mod samples;
 pub mod senses;
