@@ -5,7 +5,7 @@
 //! | who | runs in | priority | worst if it were wrong |
 //! |---|---|---|---|
 //! | `bridge::off` in a panic or fault | the faulting context | all interrupts off | the motor stays driven |
-//! | scan's DMA, time driver | their interrupts | 1 | a deadline is noticed late: a lost frame stays unnoticed |
+//! | scan's DMA, its deadline, time driver | their interrupts | 1 | a deadline is noticed late: a lost frame stays unnoticed |
 //! | [`control`]: frame, logic, bridge, watchdog | executor in interrupt SPI5 | 2 | switches step late, ticks run late |
 //! | the serial line's interrupts | USART2, DMA1 | 6 | below control or control jitters by them |
 //! | [`telemetry`], [`commands`] | thread executor | none | messages are dropped and counted, control goes on |
@@ -22,7 +22,9 @@ mod clock;
 mod commands;
 mod control;
 mod counts;
+mod deadline;
 mod flash;
+mod halves;
 mod last_words;
 mod mail;
 mod scan;
@@ -43,7 +45,8 @@ use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::wire::{BAUD, Up};
 
 bind_interrupts!(struct Irqs {
-    DMA2_STREAM0 => dma::InterruptHandler<peripherals::DMA2_CH0>;
+    DMA2_STREAM0 => halves::OnHalf;
+    TIM2 => deadline::OnDeadline;
     DMA1_STREAM5 => dma::InterruptHandler<peripherals::DMA1_CH5>;
     DMA1_STREAM6 => dma::InterruptHandler<peripherals::DMA1_CH6>;
     USART2 => usart::InterruptHandler<peripherals::USART2>;
@@ -59,7 +62,7 @@ unsafe fn SPI5() {
 }
 
 /// The box that a DMA ring stands in for as long as the image runs.
-static SCAN_RING: ConstStaticCell<[u16; scan::RING_LEN]> = ConstStaticCell::new([0; scan::RING_LEN]);
+static SCAN_RING: ConstStaticCell<[u32; halves::RING_LEN]> = ConstStaticCell::new([0; halves::RING_LEN]);
 static COMMAND_RING: ConstStaticCell<[u8; commands::RING_LEN]> =
     ConstStaticCell::new([0; commands::RING_LEN]);
 
@@ -100,7 +103,8 @@ async fn main(spawner: Spawner) {
         p.PC4.degrade_adc(),
         p.PC5.degrade_adc(),
     ];
-    let scan = scan::Scan::new(p.ADC1, p.TIM3, dma::Channel::new(p.DMA2_CH0, Irqs), SCAN_RING.take(), pins);
+    let deadline = deadline::Deadline::new(p.TIM2);
+    let scan = scan::Scan::new(p.ADC1, p.TIM3, p.DMA2_CH0, SCAN_RING.take(), deadline, pins);
     let switches = switches::Switches::new(p.PB12, p.PB13, p.PB14, p.PB15);
     let watchdog = IndependentWatchdog::new(p.IWDG, control::WATCHDOG_US);
 

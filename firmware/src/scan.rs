@@ -2,44 +2,34 @@
 //!
 //! embassy's own ring-buffered converter cannot do this: it writes every rank into SQR3, which holds six; it never looks
 //! at OVR, after which the converter is silent for ever; and it starts one scan by software ahead of the first timed one.
-//! So the sequence is written here, through the PAC, and the DMA is embassy's public ring buffer.
+//! So the sequence is written here, through the PAC, and so is its DMA ([`halves`](crate::halves)).
 //!
-//! The scan's timer and the time driver count the same clock, so the two never drift apart and the instant of every
+//! The scan's timer and the deadline's count the same clock, so the two never drift apart and the instant of every
 //! frame is known without asking the converter: a frame that does not come in time is lost, and after a restart the
 //! sequence numbers go on where time has got to.
 
 use embassy_stm32::Peri;
 use embassy_stm32::adc::{Adc, AnyAdcChannel};
-use embassy_stm32::dma::{self, ReadableRingBuffer};
 use embassy_stm32::pac;
 use embassy_stm32::pac::adc::vals::{Dds, Exten, SampleTime};
-use embassy_stm32::peripherals::{ADC1, TIM3};
+use embassy_stm32::peripherals::{ADC1, DMA2_CH0, TIM3};
 use embassy_stm32::time::Hertz;
 use embassy_stm32::timer::low_level::{MasterMode, RoundTo, Timer as HardwareTimer};
-use embassy_time::{Duration, Instant, Timer, with_deadline};
-use tenax_hal_shim::channel::{FRAME_HZ, SCAN, SCAN_HZ, SCAN_LEN, SCANS_PER_FRAME};
-use tenax_hal_shim::frame::{Frame, Scan as Codes};
+use tenax_hal_shim::channel::{FRAME_HZ, SCAN, SCAN_HZ, SCAN_LEN};
+use tenax_hal_shim::frame::Frame;
 
 use crate::counts;
+use crate::deadline::{Deadline, Micros};
+use crate::halves::{Halves, RING_LEN};
 
-/// Codes in one frame.
-const FRAME_LEN: usize = SCAN_LEN * SCANS_PER_FRAME;
-/// Two frames: one is read while the other is written.
-pub const RING_LEN: usize = 2 * FRAME_LEN;
-
-const SCAN_PERIOD: Duration = Duration::from_hz(SCAN_HZ as u64);
-const FRAME_PERIOD: Duration = Duration::from_hz(FRAME_HZ as u64);
+const SCAN_US: u32 = 1_000_000 / SCAN_HZ;
+const FRAME_US: u32 = 1_000_000 / FRAME_HZ;
 /// EXTSEL of the regular group: TIM3's TRGO (RM0383, section 11.12.3).
 const EXTSEL_TIM3_TRGO: u8 = 0b1000;
-/// ADC1 on DMA2 stream 0 (RM0383, table 28).
-const DMA_REQUEST_ADC1: dma::Request = 0;
 /// 56 + 12 cycles at 25 MHz: a scan takes 38 us of its 125, and sources of up to 20 kohm settle (DS10314, equation 1).
 const SAMPLE_TIME: SampleTime = SampleTime::CYCLES56;
-/// A frame that is this late is not waited for any more.
-///
-/// Not shorter: a deadline that is given up because its frame came wakes the task once more when it would have passed,
-/// so each costs half a tick.
-const PATIENCE: Duration = Duration::from_hz(FRAME_HZ as u64 / 3);
+/// A frame that is this late is not waited for any more, us: the switches have begun to show the following one.
+const PATIENCE_US: u32 = SCAN_US;
 
 /// Why a recording ended.
 #[derive(defmt::Format)]
@@ -55,9 +45,10 @@ enum Trouble {
 /// The converter, its timer and its DMA.
 pub struct Scan {
     adc: Peri<'static, ADC1>,
-    channel: dma::Channel<'static>,
-    ring: &'static mut [u16; RING_LEN],
+    stream: Peri<'static, DMA2_CH0>,
+    ring: &'static mut [u32; RING_LEN],
     timer: HardwareTimer<'static, TIM3>,
+    deadline: Deadline,
     due: Due,
 }
 
@@ -65,13 +56,13 @@ pub struct Scan {
 struct Due {
     sequence: u32,
     /// When its first scan is triggered.
-    begins: Instant,
+    begins: Micros,
 }
 
 impl Due {
     fn step(&mut self) {
         self.sequence = self.sequence.wrapping_add(1);
-        self.begins += FRAME_PERIOD;
+        self.begins = self.begins.after(FRAME_US);
     }
 }
 
@@ -82,8 +73,9 @@ impl Scan {
     pub fn new(
         adc: Peri<'static, ADC1>,
         timer: Peri<'static, TIM3>,
-        channel: dma::Channel<'static>,
-        ring: &'static mut [u16; RING_LEN],
+        stream: Peri<'static, DMA2_CH0>,
+        ring: &'static mut [u32; RING_LEN],
+        deadline: Deadline,
         pins: [AnyAdcChannel<'static, ADC1>; SCAN_LEN],
     ) -> Self {
         for (pin, rank) in pins.iter().zip(&SCAN) {
@@ -92,7 +84,8 @@ impl Scan {
         let timer = HardwareTimer::new(timer);
         timer.set_frequency(Hertz(SCAN_HZ), RoundTo::Faster);
         timer.set_master_mode(MasterMode::UPDATE);
-        Self { adc, channel, ring, timer, due: Due { sequence: 0, begins: Instant::MAX } }
+        let due = Due { sequence: 0, begins: deadline.now() };
+        Self { adc, stream, ring, timer, deadline, due }
     }
 
     /// Hands every frame to `on_frame` as soon as its last code has been converted, for ever. Frames that are lost are
@@ -102,7 +95,7 @@ impl Scan {
     pub async fn run(mut self, mut on_frame: impl FnMut(&Frame)) -> ! {
         self.timer.start();
         // The first trigger comes one period after the start.
-        self.due.begins = Instant::now() + SCAN_PERIOD;
+        self.due.begins = self.deadline.now().after(SCAN_US);
         loop {
             self.catch_up(&mut on_frame).await;
             let trouble = self.record(&mut on_frame).await;
@@ -114,9 +107,10 @@ impl Scan {
     /// Gives up the frames that have begun, and waits until the scan before the next one has been triggered.
     async fn catch_up(&mut self, on_frame: &mut impl FnMut(&Frame)) {
         loop {
-            let arm_at = self.due.begins - SCAN_PERIOD / 2;
-            if Instant::now() <= arm_at {
-                Timer::at(arm_at).await;
+            let arm_at = self.due.begins.before(SCAN_US / 2);
+            if !self.deadline.now().is_after(arm_at) {
+                let never = || None::<()>;
+                self.deadline.until(arm_at, never).await;
                 return;
             }
             counts::FRAMES_LOST.add_one();
@@ -127,40 +121,25 @@ impl Scan {
 
     /// Sets the converter and its DMA up from reset, and hands over frames until something goes wrong.
     async fn record(&mut self, on_frame: &mut impl FnMut(&Frame)) -> Trouble {
-        let Self { adc, channel, ring, due, .. } = self;
+        let Self { adc, stream, ring, deadline, due, .. } = self;
         // Resets the converter: whatever it was doing is over.
         let _adc = Adc::new(adc.reborrow());
         let converter = pac::ADC1;
-        // SAFETY: the stream is ours (`channel`), DR is the address that its requests belong to, and the ring is
-        // borrowed for as long as the stream writes to it.
-        let mut ring = unsafe {
-            ReadableRingBuffer::new(
-                channel.reborrow(),
-                DMA_REQUEST_ADC1,
-                converter.dr().as_ptr().cast(),
-                &mut ring[..],
-                dma::TransferOptions::default(),
-            )
-        };
-        ring.set_alignment(SCAN_LEN);
-        ring.start();
+        let mut halves = Halves::start(stream.reborrow(), ring, converter.dr().as_ptr().cast());
         listen(converter);
 
         loop {
-            let mut scans = [Codes::default(); SCANS_PER_FRAME];
-            let following_begins = due.begins + FRAME_PERIOD;
-            let read = ring.read_exact(scans.as_flattened_mut());
-            match with_deadline(following_begins + PATIENCE, read).await {
-                Ok(Ok(_)) => {}
-                Ok(Err(_)) => return Trouble::Behind,
-                Err(_) if converter.sr().read().ovr() => return Trouble::Overrun,
-                Err(_) => return Trouble::Silent,
+            let following_begins = due.begins.after(FRAME_US);
+            let filled = || halves.is_filled().then_some(());
+            if deadline.until(following_begins.after(PATIENCE_US), filled).await.is_none() {
+                return if converter.sr().read().ovr() { Trouble::Overrun } else { Trouble::Silent };
             }
+            let Ok(frame) = halves.read(due.sequence) else { return Trouble::Behind };
             // Then the switches do not show yet what the following frame is reading.
-            let behind = Instant::now() > following_begins;
-            on_frame(&Frame::from_scans(due.sequence, &scans));
+            let behind = deadline.now().is_after(following_begins);
+            on_frame(&frame);
             counts::FRAMES.add_one();
-            if Instant::now() > following_begins {
+            if deadline.now().is_after(following_begins) {
                 counts::TICKS_LATE.add_one();
             }
             due.step();

@@ -23,19 +23,44 @@ pub struct Frame {
     pub switch_b: u16,
 }
 
+/// Pairs of codes in a scan: the films', then the two switches'.
+pub const PAIRS: usize = SCAN_LEN / 2;
+const _: () = assert!(
+    PVDF_COUNT.is_multiple_of(2)
+        && RANK_SWITCH_A == PVDF_COUNT
+        && RANK_SWITCH_B == RANK_SWITCH_A + 1
+        && SCAN_LEN == PVDF_COUNT + 2
+);
+
+/// A word's two halves, the lower first.
+const fn halves(word: u32) -> [u16; 2] {
+    [word as u16, (word >> 16) as u16]
+}
+
 impl Frame {
     /// Adds up a frame's scans.
     #[must_use]
     pub fn from_scans(sequence: u32, scans: &[Scan; SCANS_PER_FRAME]) -> Self {
-        let mut sum = [0u16; SCAN_LEN];
-        for scan in scans {
-            for (total, code) in sum.iter_mut().zip(scan) {
-                *total += code;
-            }
-        }
+        Self::from_pairs(sequence, |scan, pair| {
+            let [first, second] = [2 * pair, 2 * pair + 1].map(|rank| u32::from(scans[scan][rank]));
+            first | second << 16
+        })
+    }
+
+    /// Adds up a frame's scans, two codes at a time: `pair_of(scan, n)` is the codes of ranks `2 n` and `2 n + 1`, the
+    /// first in the lower half, as they lie in a little-endian memory. Each is asked for once.
+    #[must_use]
+    #[inline]
+    pub fn from_pairs(sequence: u32, pair_of: impl Fn(usize, usize) -> u32) -> Self {
+        // Four codes of 12 bits stay in their half of the word.
+        let sums: [u32; PAIRS] =
+            core::array::from_fn(|n| (0..SCANS_PER_FRAME).map(|scan| pair_of(scan, n)).sum());
         let mut pvdf = [0; PVDF_COUNT];
-        pvdf.copy_from_slice(&sum[..PVDF_COUNT]);
-        Self { sequence, valid: true, pvdf, switch_a: sum[RANK_SWITCH_A], switch_b: sum[RANK_SWITCH_B] }
+        for (samples, sum) in pvdf.as_chunks_mut().0.iter_mut().zip(sums) {
+            *samples = halves(sum);
+        }
+        let [switch_a, switch_b] = halves(sums[PAIRS - 1]);
+        Self { sequence, valid: true, pvdf, switch_a, switch_b }
     }
 
     /// A frame that was lost: its samples say nothing.
@@ -90,6 +115,16 @@ mod tests {
         let frame = Frame::from_scans(7, &[[4_095; SCAN_LEN]; SCANS_PER_FRAME]);
         assert_eq!(frame.pvdf, [SAMPLE_MAX; PVDF_COUNT]);
         assert_eq!((frame.switch_a, frame.switch_b, frame.place()), (SAMPLE_MAX, SAMPLE_MAX, 7));
+    }
+
+    #[test]
+    fn each_rank_is_summed_by_itself() {
+        let scans: [Scan; SCANS_PER_FRAME] =
+            core::array::from_fn(|scan| core::array::from_fn(|rank| 4_095 - (100 * scan + 7 * rank) as u16));
+        let frame = Frame::from_scans(7, &scans);
+        let sum = |rank: usize| scans.iter().map(|scan| scan[rank]).sum::<u16>();
+        assert_eq!(frame.pvdf, core::array::from_fn(sum));
+        assert_eq!((frame.switch_a, frame.switch_b), (sum(RANK_SWITCH_A), sum(RANK_SWITCH_B)));
     }
 
     #[test]

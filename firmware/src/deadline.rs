@@ -1,0 +1,96 @@
+//! The scan's own clock, and the one deadline on it: what waits for the converter waits until then at the longest.
+//!
+//! A deadline in the time driver's queue costs more instructions a frame than adding up the frame does. This one is a
+//! compare register of TIM2, which counts microseconds in 32 bits: a new deadline is one store, and an old one that was
+//! not reached needs no taking back.
+
+use core::future::poll_fn;
+use core::task::Poll;
+
+use embassy_stm32::interrupt::typelevel::{self, Handler, Interrupt};
+use embassy_stm32::pac;
+use embassy_stm32::peripherals::TIM2;
+use embassy_stm32::time::Hertz;
+use embassy_stm32::timer::low_level::Timer;
+use embassy_stm32::{Peri, interrupt::Priority};
+use embassy_sync::waitqueue::AtomicWaker;
+
+/// Who waits: control alone, for one thing at a time.
+pub static WAITING: AtomicWaker = AtomicWaker::new();
+
+/// An instant, us; they wrap after 71 minutes, so two of them are compared only if they are less than half of that apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Micros(u32);
+
+impl Micros {
+    /// So much later.
+    pub const fn after(self, us: u32) -> Self {
+        Self(self.0.wrapping_add(us))
+    }
+
+    /// So much earlier.
+    pub const fn before(self, us: u32) -> Self {
+        Self(self.0.wrapping_sub(us))
+    }
+
+    /// Whether this instant is later than the other.
+    pub const fn is_after(self, other: Self) -> bool {
+        self.0.wrapping_sub(other.0) as i32 > 0
+    }
+}
+
+/// The clock and its compare register.
+pub struct Deadline {
+    _timer: Timer<'static, TIM2>,
+}
+
+impl Deadline {
+    /// Starts the clock.
+    pub fn new(timer: Peri<'static, TIM2>) -> Self {
+        let mut timer = Timer::new(timer);
+        timer.set_tick_freq(Hertz(1_000_000));
+        // Before the period is written nothing is compared; the update takes the prescaler up.
+        pac::TIM2.arr().write_value(u32::MAX);
+        pac::TIM2.egr().write(|w| w.set_ug(true));
+        pac::TIM2.sr().write(|w| w.0 = 0);
+        pac::TIM2.dier().write(|w| w.set_ccie(0, true));
+        timer.start();
+        typelevel::TIM2::set_priority(Priority::P1);
+        // SAFETY: the handler is bound in `main`, and nothing is in a critical section yet.
+        unsafe { typelevel::TIM2::enable() };
+        Self { _timer: timer }
+    }
+
+    /// Now.
+    pub fn now(&self) -> Micros {
+        Micros(pac::TIM2.cnt().read())
+    }
+
+    /// Waits until `ready` gives something, or until after `at`: then None. Ready is asked once more at the end, so what
+    /// came in time is not missed.
+    pub async fn until<T>(&self, at: Micros, mut ready: impl FnMut() -> Option<T>) -> Option<T> {
+        // Not `at` itself: at the interrupt it has to be over.
+        pac::TIM2.ccr(0).write_value(at.after(1).0);
+        poll_fn(|context| {
+            WAITING.register(context.waker());
+            let over = self.now().is_after(at);
+            match ready() {
+                Some(ready) => Poll::Ready(Some(ready)),
+                None if over => Poll::Ready(None),
+                None => Poll::Pending,
+            }
+        })
+        .await
+    }
+}
+
+/// TIM2's interrupt: the deadline is over.
+pub struct OnDeadline;
+
+impl Handler<typelevel::TIM2> for OnDeadline {
+    unsafe fn on_interrupt() {
+        // Flags are cleared by writing 0.
+        pac::TIM2.sr().write(|w| w.0 = 0);
+        WAITING.wake();
+    }
+}

@@ -1,0 +1,130 @@
+//! The ring that DMA writes the converter's codes to: two halves of a frame each, one of which is read while the other is
+//! written.
+//!
+//! embassy's ring buffer gives any number of codes from anywhere in the ring, one by one. Here a frame is a half, which is
+//! read where it lies, two codes in a word.
+
+use core::sync::atomic::{AtomicU32, Ordering, fence};
+
+use embassy_stm32::Peri;
+use embassy_stm32::interrupt::typelevel::{self, Handler};
+use embassy_stm32::pac::dma::vals::{Dir, Dmdis, Pl, Size};
+use embassy_stm32::pac::{self, dma::regs::Ndtr};
+use embassy_stm32::peripherals::DMA2_CH0;
+use tenax_hal_shim::channel::{SCAN_LEN, SCANS_PER_FRAME};
+use tenax_hal_shim::frame::{Frame, PAIRS};
+
+use crate::deadline::WAITING;
+
+/// Words of one half.
+const HALF: usize = PAIRS * SCANS_PER_FRAME;
+/// Words of the ring, two codes in each.
+pub const RING_LEN: usize = 2 * HALF;
+/// The converter's stream (RM0383, table 28), whose request is the stream's channel 0.
+const STREAM: usize = 0;
+
+/// Halves that DMA has filled since it was started. Only the interrupt counts up.
+static FILLED: AtomicU32 = AtomicU32::new(0);
+
+/// Why a half cannot be read any more: DMA is writing to it again.
+pub struct WrittenOver;
+
+/// The ring, while DMA writes to it.
+pub struct Halves<'r> {
+    _stream: Peri<'r, DMA2_CH0>,
+    ring: &'r mut [u32; RING_LEN],
+    /// Halves that were read.
+    read: u32,
+}
+
+impl<'r> Halves<'r> {
+    /// Lets DMA fetch every code from `source`, the converter's data register, whose requests come afterwards.
+    pub fn start(stream: Peri<'r, DMA2_CH0>, ring: &'r mut [u32; RING_LEN], source: *mut u32) -> Self {
+        stop();
+        FILLED.store(0, Ordering::Relaxed);
+        let registers = pac::DMA2.st(STREAM);
+        registers.par().write_value(source as u32);
+        registers.m0ar().write_value(ring.as_mut_ptr() as u32);
+        registers.ndtr().write_value(Ndtr((2 * RING_LEN) as u32));
+        registers.fcr().write(|w| w.set_dmdis(Dmdis::ENABLED));
+        // What is written above and to the ring comes before.
+        fence(Ordering::SeqCst);
+        registers.cr().write(|w| {
+            w.set_dir(Dir::PERIPHERAL_TO_MEMORY);
+            w.set_msize(Size::BITS16);
+            w.set_psize(Size::BITS16);
+            w.set_minc(true);
+            w.set_circ(true);
+            w.set_pl(Pl::VERY_HIGH);
+            w.set_teie(true);
+            w.set_htie(true);
+            w.set_tcie(true);
+            w.set_en(true);
+        });
+        Self { _stream: stream, ring, read: 0 }
+    }
+
+    /// Whether there is a half to read.
+    pub fn is_filled(&self) -> bool {
+        FILLED.load(Ordering::Acquire) != self.read
+    }
+
+    /// Reads the half that was filled, as the frame of this number.
+    pub fn read(&mut self, sequence: u32) -> Result<Frame, WrittenOver> {
+        let first = if self.read.is_multiple_of(2) { 0 } else { HALF };
+        let half: *const u32 = &raw const self.ring[first];
+        let frame = Frame::from_pairs(sequence, |scan, pair| {
+            // SAFETY: `scan` and `pair` are below their numbers, so this word is in the half; DMA changes it behind the
+            // compiler's back, hence volatile.
+            unsafe { half.add(scan * PAIRS + pair).read_volatile() }
+        });
+        self.read = self.read.wrapping_add(1);
+        // DMA comes back to this half when it has filled the other one, and its interrupt is above control's.
+        if FILLED.load(Ordering::Acquire) == self.read { Ok(frame) } else { Err(WrittenOver) }
+    }
+}
+
+impl Drop for Halves<'_> {
+    fn drop(&mut self) {
+        stop();
+    }
+}
+
+/// Stops the stream; when this returns, nothing is written any more and no flag stands.
+fn stop() {
+    let registers = pac::DMA2.st(STREAM);
+    registers.cr().write(|w| w.set_en(false));
+    // A single transfer is all that it can be in the middle of.
+    while registers.cr().read().en() {}
+    clear(pac::DMA2.isr(0).read());
+    fence(Ordering::SeqCst);
+}
+
+/// Clears those flags of the stream that were seen.
+fn clear(seen: pac::dma::regs::Ixr) {
+    pac::DMA2.ifcr(0).write(|w| {
+        w.set_feif(STREAM, seen.feif(STREAM));
+        w.set_dmeif(STREAM, seen.dmeif(STREAM));
+        w.set_teif(STREAM, seen.teif(STREAM));
+        w.set_htif(STREAM, seen.htif(STREAM));
+        w.set_tcif(STREAM, seen.tcif(STREAM));
+    });
+}
+
+/// The stream's interrupt: a half was filled.
+pub struct OnHalf;
+
+impl Handler<typelevel::DMA2_STREAM0> for OnHalf {
+    unsafe fn on_interrupt() {
+        let seen = pac::DMA2.isr(0).read();
+        assert!(!seen.teif(STREAM), "DMA could not reach the ring");
+        clear(seen);
+        // Both at once if the interrupt was kept waiting for a frame.
+        let filled = u32::from(seen.htif(STREAM)) + u32::from(seen.tcif(STREAM));
+        // No other code writes to it while the stream runs, so this needs no exclusive access.
+        FILLED.store(FILLED.load(Ordering::Relaxed).wrapping_add(filled), Ordering::Release);
+        WAITING.wake();
+    }
+}
+
+const _: () = assert!(SCAN_LEN == 2 * PAIRS);
