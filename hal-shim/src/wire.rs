@@ -5,6 +5,8 @@
 //! Variants are only ever added at the end. `tests/golden.rs` holds the bytes of one of each: if those change, the
 //! version must.
 
+mod tick;
+
 use crc::{CRC_32_ISO_HDLC, Crc};
 use heapless::Vec;
 use postcard::de_flavors::crc::from_bytes_u32;
@@ -13,7 +15,9 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 use crate::channel::{COUNT, FRAMES_PER_SLOW_FRAME, PVDF_COUNT, STRAIN_COUNT};
 use crate::motor::MotorDrive;
-use crate::words::{Cause, Codes, DriveSource, Fault, GripMode, Kept, NoLesson};
+use crate::words::{Cause, Codes, Fault, GripMode, Kept, NoLesson};
+
+pub use self::tick::TickRecord;
 
 /// The version of every message below. A receiver refuses frames of another.
 pub const VERSION: u8 = 3;
@@ -28,23 +32,6 @@ static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 pub const RECEPTORS: usize = PVDF_COUNT + STRAIN_COUNT;
 /// Outputs of the network: relative motion (o1) and direction (o2).
 pub const NETWORK_OUTPUTS: usize = 2;
-
-/// What one tick (0.5 ms) decided.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct TickRecord {
-    /// The largest vibration envelope of all films, in samples (14 bits).
-    pub vibration: u16,
-    /// Whether it is above S1.
-    pub s1: bool,
-    /// What touch alone makes the network say, relative motion (o1) and direction (o2): 128 would be 1.
-    pub outputs: [i8; NETWORK_OUTPUTS],
-    /// Whether that means slip, whoever listens.
-    pub slips: bool,
-    /// What drives the motor.
-    pub drive: MotorDrive,
-    /// Who drives it.
-    pub source: DriveSource,
-}
 
 /// The force sensor's readings of a slow frame (Prosthesis, section 4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

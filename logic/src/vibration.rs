@@ -14,6 +14,7 @@
 //! is the bound of the tests against `f64`.
 
 use tenax_hal_shim::channel::PVDF_COUNT;
+use tenax_hal_shim::wire::TickRecord;
 
 use crate::config::VibrationConfig;
 use crate::low_pass::LowPass;
@@ -190,7 +191,7 @@ impl VibrationDetector {
         let knock = rings && self.loud_frames < config.knock_frames;
         self.s1 = loud && (self.s1 || !knock);
         Vibration {
-            level: (envelope >> Q).clamp(0, i32::from(u16::MAX)) as u16,
+            level: (envelope >> Q).clamp(0, i32::from(TickRecord::VIBRATION_MAX)) as u16,
             s1: self.s1,
             knock: rings && self.ringing_frames < config.knock_frames,
         }

@@ -21,12 +21,7 @@ pub struct Progress {
 impl Progress {
     /// So many virtual seconds are to go by.
     pub fn new(what: &str, virtual_s: f64) -> Self {
-        Self {
-            what: what.to_owned(),
-            virtual_s,
-            said: Mutex::new(Instant::now()),
-            status: Status::new(what),
-        }
+        Self { what: what.to_owned(), virtual_s, said: Mutex::new(Instant::now()), status: Status::new(what) }
     }
 
     /// So many virtual seconds have gone by.
