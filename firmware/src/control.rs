@@ -2,9 +2,10 @@
 
 use embassy_stm32::peripherals::IWDG;
 use embassy_stm32::wdg::IndependentWatchdog;
-use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, select_of_place};
+use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::{MotorBridge, MotorDrive};
+use tenax_hal_shim::schedule::{Job, select_of_slot, slot_of};
 use tenax_hal_shim::wire::{Down, Refusal};
 use tenax_logic::device::Device;
 use tenax_logic::fingertip::Fingertip;
@@ -19,9 +20,6 @@ use crate::switches::Switches;
 pub const WATCHDOG_US: u32 = 100_000;
 /// Commands taken in one tick, so that a flood of them cannot make it late.
 const COMMANDS_PER_TICK: usize = 2;
-/// The place in the slow frame at which the fingertip is asked for something to save: the lines rest there, and the last
-/// one, whose tick has the most to do, is far.
-const PLACE_OF_SAVING: u8 = 19;
 
 /// What a tick works with.
 pub struct Control {
@@ -45,7 +43,7 @@ impl Control {
     /// Everything that a frame causes, the most urgent first.
     fn on_frame(&mut self, frame: &Frame) {
         let next = frame.sequence.wrapping_add(1);
-        self.switches.show(select_of_place((next % u32::from(FRAMES_PER_SLOW_FRAME)) as u8));
+        self.switches.show(select_of_slot((next % u32::from(FRAMES_PER_SLOW_FRAME)) as u8));
 
         self.take_commands();
         let drive = tenax_control_tick(self.device.fingertip_mut(), frame);
@@ -57,7 +55,7 @@ impl Control {
         while let Some(message) = self.device.next_message() {
             mail::post(message);
         }
-        if frame.place() == PLACE_OF_SAVING {
+        if frame.slot() == slot_of(Job::Save) {
             self.save();
         }
         mail::end_tick();

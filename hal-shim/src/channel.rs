@@ -237,45 +237,6 @@ pub const SCAN: [Rank; SCAN_LEN] = [
     Rank { pin: "PC5", adc: 15 },
 ];
 
-/// What the select lines show during the frame at each place (0 to 24) in the slow frame.
-///
-/// The sixteen inputs take the first sixteen frames. The wearer comes first, so the nine frames left over read the
-/// myosensors twice more: their readings are never more than 6.5 ms apart. In between the lines rest on input 0, which
-/// has long settled when its turn comes.
-const SELECTS: [u8; FRAMES_PER_SLOW_FRAME as usize] = [
-    0,
-    1,
-    2,
-    3,
-    4,
-    5,
-    6,
-    7,
-    8,
-    9,
-    10,
-    11,
-    12,
-    13,
-    14,
-    15,
-    MYO_SELECT,
-    MYO_SELECT + 1,
-    0,
-    0,
-    0,
-    0,
-    MYO_SELECT,
-    MYO_SELECT + 1,
-    0,
-];
-
-/// What the select lines show during the frame at this place in the slow frame. A place above 24 is taken modulo 25.
-#[must_use]
-pub const fn select_of_place(place: u8) -> u8 {
-    SELECTS[(place % FRAMES_PER_SLOW_FRAME) as usize]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -314,12 +275,5 @@ mod tests {
             assert_eq!(mv_from_sample(sample_from_mv(mv)), mv);
         }
         assert_eq!(sample_from_mv(9_999), SAMPLE_MAX);
-    }
-
-    #[test]
-    fn every_input_has_its_frame() {
-        for select in 0..SWITCH_INPUTS {
-            assert!((0..FRAMES_PER_SLOW_FRAME).any(|place| select_of_place(place) == select));
-        }
     }
 }

@@ -2,8 +2,9 @@
 
 use crate::channel::{
     CHANNELS, COUNT, FRAMES_PER_SLOW_FRAME, Input, PVDF_COUNT, RANK_SWITCH_A, RANK_SWITCH_B, SCAN_LEN,
-    SCANS_PER_FRAME, select_of_place,
+    SCANS_PER_FRAME,
 };
+use crate::schedule::select_of_slot;
 
 /// One scan's codes, 12 bits each, in the order of [`SCAN`](crate::channel::SCAN).
 pub type Scan = [u16; SCAN_LEN];
@@ -69,22 +70,22 @@ impl Frame {
         Self { sequence, valid: false, pvdf: [0; PVDF_COUNT], switch_a: 0, switch_b: 0 }
     }
 
-    /// Place in the slow frame, 0 to 24.
+    /// Slot in the cycle, 0 to 24.
     #[must_use]
-    pub const fn place(&self) -> u8 {
+    pub const fn slot(&self) -> u8 {
         (self.sequence % FRAMES_PER_SLOW_FRAME as u32) as u8
     }
 
     /// What the select lines showed while it was taken.
     #[must_use]
     pub const fn select(&self) -> u8 {
-        select_of_place(self.place())
+        select_of_slot(self.slot())
     }
 
     /// Whether it is the last one of its slow frame.
     #[must_use]
     pub const fn ends_slow_frame(&self) -> bool {
-        self.place() == FRAMES_PER_SLOW_FRAME - 1
+        self.slot() == FRAMES_PER_SLOW_FRAME - 1
     }
 }
 
@@ -114,7 +115,7 @@ mod tests {
     fn four_full_scale_codes_are_full_scale() {
         let frame = Frame::from_scans(7, &[[4_095; SCAN_LEN]; SCANS_PER_FRAME]);
         assert_eq!(frame.pvdf, [SAMPLE_MAX; PVDF_COUNT]);
-        assert_eq!((frame.switch_a, frame.switch_b, frame.place()), (SAMPLE_MAX, SAMPLE_MAX, 7));
+        assert_eq!((frame.switch_a, frame.switch_b, frame.slot()), (SAMPLE_MAX, SAMPLE_MAX, 7));
     }
 
     #[test]

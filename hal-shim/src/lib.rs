@@ -12,10 +12,12 @@
 extern crate std;
 
 pub mod channel;
+pub mod detector;
 pub mod flash;
 pub mod frame;
 pub mod front_end;
 pub mod motor;
+pub mod schedule;
 pub mod setting;
 pub mod wire;
 pub mod words;

@@ -2,7 +2,7 @@
 //!
 //! A frame is `COBS(postcard(version, sequence, message) ++ CRC-32)` and a zero byte. The version and the sequence number
 //! come first, so that a receiver of another version can say so, and a receiver that missed frames can count them.
-//! Variants are only ever added at the end. `tests/golden.rs` holds the bytes of one of each: if those change, the
+//! Variants are only ever added at the end. `tests/golden.txt` holds the bytes of one of each: if those change, the
 //! version must.
 
 mod tick;
@@ -14,6 +14,7 @@ use postcard::ser_flavors::{Cobs, Flavor, Slice, crc::CrcModifier};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 use crate::channel::{COUNT, FRAMES_PER_SLOW_FRAME, PVDF_COUNT, STRAIN_COUNT};
+use crate::detector::{DetectorId, Evidence};
 use crate::motor::MotorDrive;
 use crate::words::{Cause, Codes, Fault, GripMode, Kept, NoLesson};
 
@@ -48,21 +49,8 @@ pub struct Forces {
     pub ratio_permille: Option<u16>,
 }
 
-/// What the normal-force array says (Bamshad 2023).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct ArrayVerdict {
-    /// Whether the object slips.
-    pub slip: bool,
-    /// How likely that is, per mille: the calibrated logit's logistic function.
-    pub confidence_permille: u16,
-    /// How long ago, at the end of the last slow frame, there was something to judge by, ms: 0 while the detector works.
-    pub age_ms: u16,
-}
-
-impl ArrayVerdict {
-    /// Nothing has been judged yet.
-    pub const NONE: Self = Self { slip: false, confidence_permille: 0, age_ms: u16::MAX };
-}
+/// Detectors that a slow frame has room for.
+pub const DETECTORS_MAX: usize = 8;
 
 /// Everything a slow frame (12.5 ms) decided.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -75,8 +63,6 @@ pub struct Slow {
     pub mode: GripMode,
     /// Forces, None while the force sensor gives no number.
     pub forces: Option<Forces>,
-    /// Whether Ft/Fn is above S2.
-    pub s2: bool,
     /// The S2 in force, per mille.
     pub s2_permille: u16,
     /// The flexor's envelope above rest, mV. None while the sensor gives no number.
@@ -87,8 +73,8 @@ pub struct Slow {
     pub wearer_active: bool,
     /// What the network is learning, None while nothing.
     pub lesson: Option<Codes>,
-    /// What the array says, believed or not.
-    pub array: ArrayVerdict,
+    /// What each detector concluded last, believed or not.
+    pub evidence: Vec<(DetectorId, Evidence), DETECTORS_MAX>,
     /// Checksum of every valid sample that the slow frame's ticks were given: the two ends agree on the input too.
     pub samples_sum: u32,
 }

@@ -6,6 +6,8 @@ use core::cmp::Ordering;
 
 use serde::{Deserialize, Serialize};
 
+use crate::detector::DetectorId;
+
 /// What the grip reflex is doing (Prosthesis, figure 9).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum GripMode {
@@ -38,10 +40,10 @@ pub enum Cause {
     TakenOver,
     /// Both myosensors are inactive and no drive command holds.
     Released,
-    /// Vibration above S1.
-    S1,
-    /// Ft/Fn above S2.
-    S2,
+    /// This detector says that the object slips.
+    Slip(DetectorId),
+    /// This one warns that it is about to.
+    Incipient(DetectorId),
     /// The closing pulse is over, or the force ceiling is reached.
     PulseOver,
     /// The object has settled.
@@ -50,10 +52,6 @@ pub enum Cause {
     StrokeBegun,
     /// The stroke is over.
     StrokeOver,
-    /// The network's first output says slip.
-    Network,
-    /// The normal-force array says slip.
-    Array,
 }
 
 /// Why a sensor gives no number.

@@ -10,10 +10,11 @@ use std::fmt::Write as _;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use tenax_hal_shim::channel::COUNT;
+use tenax_hal_shim::detector::{DetectorHealth, DetectorId, DetectorSet, Direction, Evidence};
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{
-    Answer, ArrayVerdict, Counters, Down, Event, EventKind, FRAME_MAX, Forces, NetworkState, Receiver,
-    Refusal, Setting, Slow, TickRecord, Up, VERSION, encode,
+    Answer, Counters, Down, Event, EventKind, FRAME_MAX, Forces, NetworkState, Receiver, Refusal, Setting,
+    Slow, TickRecord, Up, VERSION, encode,
 };
 use tenax_hal_shim::words::{Capability, Cause, Code, DriveSource, Fault, GripMode, Kept, NoLesson, Reason};
 
@@ -46,12 +47,23 @@ fn down() -> Vec<Down> {
     ]
 }
 
+const WORKING: Evidence = Evidence {
+    slip: false,
+    incipient: false,
+    confidence_permille: 0,
+    direction: Direction::Unknown,
+    decided_at: 0,
+    health: DetectorHealth::Working,
+    raw: 0,
+};
+
 fn slow() -> Slow {
     let record = TickRecord {
         vibration: 500,
-        s1: true,
         outputs: [-128, 64],
-        slips: true,
+        said: DetectorSet::ALL,
+        believed: DetectorSet::only(DetectorId::S1),
+        acted: DetectorSet::only(DetectorId::S1),
         drive: MotorDrive::Close(Duty::FULL),
         source: DriveSource::Reflex,
     };
@@ -63,13 +75,23 @@ fn slow() -> Slow {
         ticks,
         mode: GripMode::Slip,
         forces: Some(forces),
-        s2: false,
         s2_permille: 300,
         flexor_mv: Some(40),
         extensor_mv: None,
         wearer_active: false,
         lesson: Some([Code::Minus, Code::Plus]),
-        array: ArrayVerdict { slip: true, confidence_permille: 870, age_ms: 0 },
+        evidence: [
+            (
+                DetectorId::S1,
+                Evidence { slip: true, confidence_permille: 910, decided_at: 49, raw: 500, ..WORKING },
+            ),
+            (
+                DetectorId::Mlp,
+                Evidence { direction: Direction::Down, decided_at: 38, raw: -70_000, ..WORKING },
+            ),
+        ]
+        .into_iter()
+        .collect(),
         samples_sum: 0xDEAD_BEEF,
     }
 }
@@ -109,7 +131,11 @@ fn up() -> Vec<Up> {
         Up::Saved { frame: 74, kept: Kept::Settings },
     ];
     let events = [
-        EventKind::Mode { from: GripMode::Watch, to: GripMode::Slip, cause: Cause::S1 },
+        EventKind::Mode {
+            from: GripMode::Watch,
+            to: GripMode::Slip,
+            cause: Cause::Slip(DetectorId::Hebbian),
+        },
         EventKind::Fault(Fault::SensorLost { channel: 38, reason: Reason::Dead }),
         EventKind::Fault(Fault::CapabilityLost(Capability::WearerIntent)),
         EventKind::Fault(Fault::PressedAtBoot { channel: 24 }),

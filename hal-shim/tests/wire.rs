@@ -2,9 +2,10 @@
 
 use proptest::collection::vec;
 use proptest::prelude::*;
+use tenax_hal_shim::detector::{DetectorHealth, DetectorId, DetectorSet, Direction, Evidence};
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{
-    Answer, ArrayVerdict, BadFrame, Counters, Down, FRAME_MAX, NetworkState, Receiver, SETTINGS_PER_ANSWER,
+    Answer, BadFrame, Counters, DETECTORS_MAX, Down, FRAME_MAX, NetworkState, Receiver, SETTINGS_PER_ANSWER,
     Setting, Slow, TickRecord, Up, encode,
 };
 use tenax_hal_shim::words::{Code, DriveSource, GripMode, NoLesson};
@@ -103,11 +104,21 @@ fn an_endless_frame_is_too_long_and_the_next_arrives() {
 fn the_longest_message_fits_a_frame() {
     let longest = TickRecord {
         vibration: u16::MAX,
-        s1: true,
         outputs: [i8::MIN; 2],
-        slips: true,
+        said: DetectorSet::ALL,
+        believed: DetectorSet::ALL,
+        acted: DetectorSet::ALL,
         drive: MotorDrive::Close(Duty::FULL),
         source: DriveSource::Reflex,
+    };
+    let longest_evidence = Evidence {
+        slip: true,
+        incipient: true,
+        confidence_permille: u16::MAX,
+        direction: Direction::Up,
+        decided_at: u32::MAX,
+        health: DetectorHealth::Blind,
+        raw: i32::MIN,
     };
     let forces = tenax_hal_shim::wire::Forces {
         fn_mn: i32::MIN,
@@ -121,13 +132,12 @@ fn the_longest_message_fits_a_frame() {
         ticks: [longest; 25],
         mode: GripMode::Explore,
         forces: Some(forces),
-        s2: true,
         s2_permille: u16::MAX,
         flexor_mv: Some(i16::MIN),
         extensor_mv: Some(i16::MIN),
         wearer_active: true,
         lesson: Some([Code::Minus; 2]),
-        array: ArrayVerdict { slip: true, confidence_permille: u16::MAX, age_ms: u16::MAX },
+        evidence: [(DetectorId::Injected, longest_evidence); DETECTORS_MAX].into_iter().collect(),
         samples_sum: u32::MAX,
     };
     let mut buffer = [0; FRAME_MAX];

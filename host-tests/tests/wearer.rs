@@ -126,7 +126,7 @@ fn a_million_random_steps() {
             extensor.see(step, frame.switch_b);
         }
         let drive = bench.give(&frame);
-        active[usize::from(frame.place())] = flexor.is_active(step) || extensor.is_active(step);
+        active[usize::from(frame.slot())] = flexor.is_active(step) || extensor.is_active(step);
         if drive.opens() {
             opens += 1;
             let muscle = extensor.last_mv >= Some(100);
@@ -252,7 +252,7 @@ fn an_array_that_hears_slip_in_an_empty_hand_closes_no_full_one() {
 fn run_losing(bench: &mut Bench, places: &[u8], frames: u32) -> Vec<MotorDrive> {
     let give = |_| {
         let frame = bench.frame();
-        let gone = places.contains(&frame.place());
+        let gone = places.contains(&frame.slot());
         bench.give(&if gone { Frame::lost(frame.sequence) } else { frame })
     };
     (0..frames).map(give).collect()

@@ -30,11 +30,16 @@ pub mod spectrum;
 pub mod structure;
 
 use tenax_hal_shim::channel::ARRAY_COUNT;
+use tenax_hal_shim::schedule::{Job, slot_of};
 
-pub use detector::{ArrayDetector, Judgement, Model};
+pub use detector::{ArrayDetector, ArrayVerdict, Judgement, Model};
 pub use network::{Layer, LookBack, Mlp, TooLarge};
 pub use preprocess::{Features, Preprocessor, PreprocessorConfig};
-pub use tenax_hal_shim::wire::ArrayVerdict;
+
+/// The slot in which every element has been read.
+pub const ARRAY_READ: u8 = slot_of(Job::ArrayFeatures);
+/// The slot in which the network decides.
+pub const MLP_DECIDES: u8 = slot_of(Job::MlpDecides);
 
 /// Elements of the array: two pads of five (Bamshad 2023, section 2.1).
 pub const ELEMENTS: usize = ARRAY_COUNT;

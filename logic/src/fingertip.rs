@@ -3,29 +3,27 @@
 //! In each tick the senses take the frame, the machine of figure 9 asks them its questions in the paper's order (first
 //! the wearer, then S1, then S2), and the arbiter says who drives the motor.
 
-use core::ops::RangeInclusive;
+mod commands;
+mod heard;
 
-use tenax_hal_shim::channel::FRAME_HZ;
+use tenax_hal_shim::detector::DetectorSet;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::setting::SettingId;
-use tenax_hal_shim::wire::{
-    DRIVE_HOLD_MAX_MS, Down, Event, EventKind, NetworkState, Refusal, Setting, Slow, TickRecord,
-};
-use tenax_hal_shim::words::{Cause, Fault, GripMode, Kept};
+use tenax_hal_shim::wire::{Event, EventKind, NetworkState, Slow, TickRecord};
+use tenax_hal_shim::words::{Cause, DriveSource, Fault, GripMode, Kept};
 
+use self::heard::{Acting, Heard};
 use crate::arbiter::{Wishes, arbitrate};
 use crate::config::{Config, frames};
-use crate::friction::FrictionDetector;
+use crate::detectors::{Detectors, Said, Sensed};
 use crate::grip::{Grip, Reflex};
-use crate::hebbian::Situation;
 use crate::journal::Journal;
 use crate::mode;
 use crate::senses::Senses;
 use crate::store::keeper::{Keeper, Now};
 use crate::store::payload;
 use crate::store::record::Record;
-use crate::touch::{Felt, Touch};
 
 /// A stroke that nobody ends is over after this long, in frames: a lost link must not leave the reflex silent.
 const STROKE_FRAMES_MAX: u32 = frames(60_000);
@@ -37,15 +35,6 @@ struct LinkDrive {
     frames_left: u32,
 }
 
-/// The detectors' verdict of one tick.
-#[derive(Clone, Copy, Debug, Default)]
-struct Verdict {
-    s1: bool,
-    network: bool,
-    array: bool,
-    incipient: bool,
-}
-
 /// The fingertip's memory between ticks.
 #[derive(Clone, Debug, Default)]
 pub struct Fingertip {
@@ -53,9 +42,9 @@ pub struct Fingertip {
     /// Changes of the settings, so that nobody has to compare them all.
     settings_changed: u32,
     senses: Senses,
-    friction: FrictionDetector,
-    touch: Touch,
-    s2: bool,
+    detectors: Detectors,
+    /// Those that the reflex may act on.
+    acting: Acting,
     mode: GripMode,
     reflex: Reflex,
     link: Option<LinkDrive>,
@@ -77,7 +66,7 @@ impl Fingertip {
     #[inline(never)]
     pub fn restore(&mut self, kept: Kept, payload: &[u8]) {
         let restored = match kept {
-            Kept::Network => self.touch.restore(payload).is_ok(),
+            Kept::Network => self.detectors.hebbian.restore(payload).is_ok(),
             Kept::Zero => {
                 let zero_uv = payload::zero(payload);
                 zero_uv.map(|zero_uv| self.senses.force_sensor_mut().restore_zero(zero_uv)).is_some()
@@ -103,7 +92,7 @@ impl Fingertip {
         Some(match keeper.next(&now)? {
             Kept::Network => {
                 self.save_asked = false;
-                Record::Network(self.touch.learned())
+                Record::Network(self.detectors.hebbian.learned())
             }
             Kept::Zero => Record::Zero(now.zero),
             Kept::Settings => Record::Settings(payload::of_settings(&self.config)),
@@ -115,7 +104,7 @@ impl Fingertip {
         Now {
             settings_changed: self.settings_changed,
             zero: payload::of_zero(self.senses.force_sensor().zero_uv()),
-            updates: self.touch.updates(),
+            updates: self.detectors.hebbian.updates(),
             at_rest: self.is_at_rest(),
             asked: self.save_asked,
         }
@@ -131,81 +120,17 @@ impl Fingertip {
     /// Frames come one by one, lost ones included ([`Frame::lost`]): time is counted by them.
     pub fn tick(&mut self, frame: &Frame) -> MotorDrive {
         self.sense(frame);
-        let verdict = Verdict {
-            s1: self.senses.vibration.s1,
-            network: self.touch.slips(),
-            array: self.senses.array_slips(),
-            incipient: self.s2,
-        };
-        self.act(frame, verdict)
+        self.act(frame)
     }
 
-    /// The oracle's tick: the same fingertip, told by somebody who knows whether the object slips.
-    pub fn tick_told(&mut self, frame: &Frame, slips: bool) -> MotorDrive {
-        self.sense(frame);
-        self.act(frame, Verdict { s1: slips, ..Verdict::default() })
+    /// Evidence from outside, from the next frame on.
+    pub const fn inject(&mut self, said: Said) {
+        self.detectors.injected.inject(said);
     }
 
-    /// Carries out a command.
-    ///
-    /// # Errors
-    /// Says why it was not carried out; then nothing has changed.
-    pub fn command(&mut self, command: &Down) -> Result<(), Refusal> {
-        match *command {
-            Down::Ping | Down::Samples | Down::Network | Down::Get(_) | Down::Settings(_) => Ok(()),
-            Down::Drive { hold_ms, .. } if hold_ms > DRIVE_HOLD_MAX_MS => {
-                Err(Refusal::OutOfRange { min: 0, max: DRIVE_HOLD_MAX_MS.into() })
-            }
-            Down::Drive { drive: MotorDrive::Close(_), .. } if self.senses.gate.is_active() => {
-                Err(Refusal::WearerActive)
-            }
-            Down::Drive { drive, hold_ms } => {
-                let frames_left = u32::from(hold_ms) * FRAME_HZ / 1_000;
-                self.link = Some(LinkDrive { drive, frames_left });
-                Ok(())
-            }
-            Down::Set(Setting { id, value }) => {
-                let id = SettingId::from_number(id).ok_or(Refusal::UnknownSetting)?;
-                self.set(id, value)
-            }
-            Down::Stroke(true) => self.begin_stroke(),
-            Down::Stroke(false) => {
-                self.end_stroke();
-                Ok(())
-            }
-            Down::Teach { codes, age_ms } => {
-                self.touch.hear(&self.config.touch, codes, age_ms);
-                Ok(())
-            }
-            Down::Forget => {
-                self.touch.forget();
-                // What is forgotten does not come back with the power.
-                self.save_asked = true;
-                Ok(())
-            }
-            Down::Save => {
-                self.save_asked = true;
-                Ok(())
-            }
-            Down::Zero if self.senses.forces.is_none() => Err(Refusal::SensorLost),
-            Down::Zero => {
-                if self.senses.zero() {
-                    Ok(())
-                } else {
-                    Err(Refusal::Loaded)
-                }
-            }
-        }
-    }
-
-    fn set(&mut self, id: SettingId, value: i32) -> Result<(), Refusal> {
-        let out_of_range = |range: RangeInclusive<i32>| {
-            let (min, max) = range.into_inner();
-            Refusal::OutOfRange { min, max }
-        };
-        self.config.set(id, value).map_err(out_of_range)?;
-        self.settings_changed = self.settings_changed.wrapping_add(1);
-        Ok(())
+    /// The reflex acts on these detectors alone from now on: for a scene's controls and its oracle.
+    pub const fn act_on(&mut self, detectors: DetectorSet) {
+        self.acting = Acting(detectors);
     }
 
     /// Every number that can be chosen, as it is in force.
@@ -245,59 +170,56 @@ impl Fingertip {
     /// What the network knows and feels.
     #[must_use]
     pub fn network(&self) -> NetworkState {
-        self.touch.state(self.journal.frame())
+        self.detectors.hebbian.state(self.journal.frame())
     }
 
     /// Nobody moves the hand and nobody teaches.
     fn is_at_rest(&self) -> bool {
         let listening = matches!(self.mode, GripMode::Standby | GripMode::Watch);
-        listening && !self.senses.gate.is_active() && self.link.is_none() && self.touch.lesson().is_err()
+        listening
+            && !self.senses.gate.is_active()
+            && self.link.is_none()
+            && self.detectors.hebbian.lesson().is_err()
     }
 
     fn sense(&mut self, frame: &Frame) {
         self.journal.begin(frame);
         if frame.valid {
             self.senses.take(&self.config, frame, &mut self.journal);
-            self.feel(frame);
         } else {
             self.senses.lose(&self.config, frame, &mut self.journal);
-            self.touch.lose();
         }
-        if self.senses.forces.is_none() {
-            self.s2 = self.friction.process(&self.config.friction, None);
-        } else if self.senses.forces_are_new {
-            let ratio = self.senses.forces.and_then(|forces| forces.ratio_permille);
-            self.s2 = self.friction.process(&self.config.friction, ratio);
-        }
-    }
-
-    fn feel(&mut self, frame: &Frame) {
-        let knock = self.senses.vibration.knock;
-        let moves = mode::closes(self.mode) || self.mode == GripMode::Settle || self.senses.gate.is_active();
         let duty = match self.drive {
             MotorDrive::Close(duty) | MotorDrive::Open(duty) => duty.as_per_mille(),
             MotorDrive::Coast => 0,
         };
-        let felt = Felt {
+        let vibration = self.senses.vibration;
+        let sensed = Sensed {
+            frame: frame.sequence,
+            slot: frame.slot(),
+            valid: frame.valid,
+            vibration,
             envelopes: self.senses.envelopes(),
+            vibration_known: self.senses.hears(),
             loads: &self.senses.gauges().loads(),
-            gauge: usize::from(frame.place()),
-            loud: knock || duty >= self.config.touch.loud_duty_permille,
+            forces: self.senses.forces,
+            forces_are_new: self.senses.forces_are_new,
+            taxels: self.senses.taxels(),
             unloaded: self.senses.is_unloaded(&self.config),
-            situation: Situation {
-                grasp: matches!(self.senses.grip(&self.config), Grip::Holds(_)),
-                disturbed: knock || moves || !self.senses.hears(),
-            },
+            grasp: matches!(self.senses.grip(&self.config), Grip::Holds(_)),
+            noisy: vibration.knock || duty >= self.config.touch.loud_duty_permille,
+            moves: mode::closes(self.mode) || self.mode == GripMode::Settle || self.senses.gate.is_active(),
         };
-        self.touch.tick(&self.config.touch, &felt);
+        self.detectors.step(&self.config, &sensed);
     }
 
-    fn act(&mut self, frame: &Frame, verdict: Verdict) -> MotorDrive {
+    fn act(&mut self, frame: &Frame) -> MotorDrive {
         self.link = self.link.and_then(|link| {
             let frames_left = link.frames_left.checked_sub(1)?;
             Some(LinkDrive { frames_left, ..link })
         });
-        self.step_mode(verdict);
+        let heard = Heard::of(&self.detectors, self.acting);
+        self.step_mode(heard);
         let wishes = Wishes {
             wearer_active: self.senses.gate.is_active(),
             wearer: self.senses.gate.wish(&self.config.gate),
@@ -308,14 +230,18 @@ impl Fingertip {
         let (drive, source) = if frame.valid { arbitrate(wishes) } else { Default::default() };
         self.drive = drive;
         self.reflex.tick(self.mode, self.senses.grip(&self.config));
-        let listens = mode::listens(self.mode);
         self.journal.tick(
-            frame.place(),
+            frame.slot(),
             TickRecord {
                 vibration: self.senses.vibration.level,
-                s1: listens && self.senses.vibration.s1,
-                outputs: self.touch.outputs(),
-                slips: self.touch.slips(),
+                outputs: self.detectors.hebbian.outputs(),
+                said: heard.said,
+                believed: heard.slip.or(heard.incipient),
+                acted: match (self.mode, source) {
+                    (GripMode::Slip, DriveSource::Reflex) => heard.slip,
+                    (GripMode::Incipient, DriveSource::Reflex) => heard.incipient,
+                    _ => DetectorSet::NONE,
+                },
                 drive,
                 source,
             },
@@ -327,25 +253,19 @@ impl Fingertip {
     }
 
     /// The flow chart, asked from the top in every tick.
-    fn step_mode(&mut self, verdict: Verdict) {
+    fn step_mode(&mut self, heard: Heard) {
         let grip = self.senses.grip(&self.config);
         let config = self.config.grip;
         let taken_over = self.senses.gate.is_active() || self.link.is_some();
         self.cause(if self.senses.ready(&self.config) { Cause::SensorsReady } else { Cause::SensorsLost });
         self.cause(if taken_over { Cause::TakenOver } else { Cause::Released });
         let may_close = self.reflex.may_close(&config, grip);
-        let slips = verdict.s1 || verdict.network || verdict.array;
-        if verdict.s1 && may_close {
-            self.cause(Cause::S1);
+        let slips = !heard.slip.is_empty();
+        if may_close && let Some(id) = heard.slip.first() {
+            self.cause(Cause::Slip(id));
         }
-        if verdict.network && may_close {
-            self.cause(Cause::Network);
-        }
-        if verdict.array && may_close {
-            self.cause(Cause::Array);
-        }
-        if verdict.incipient && may_close {
-            self.cause(Cause::S2);
+        if may_close && let Some(id) = heard.incipient.first() {
+            self.cause(Cause::Incipient(id));
         }
         if mode::closes(self.mode) && self.reflex.pulse_over(&config, self.mode, slips, grip) {
             self.cause(Cause::PulseOver);
@@ -371,28 +291,9 @@ impl Fingertip {
         }
     }
 
-    fn begin_stroke(&mut self) -> Result<(), Refusal> {
-        if self.senses.gate.is_active() {
-            return Err(Refusal::WearerActive);
-        }
-        if self.senses.forces.is_none() {
-            return Err(Refusal::SensorLost);
-        }
-        self.cause(Cause::StrokeBegun);
-        if self.mode != GripMode::Explore {
-            return Err(Refusal::SensorLost);
-        }
-        self.friction.begin_stroke();
-        Ok(())
-    }
-
-    fn end_stroke(&mut self) {
-        self.cause(Cause::StrokeOver);
-    }
-
     /// A stroke is over, by command or because somebody took over: what it measured becomes S2, if that is allowed.
     fn measured(&mut self) {
-        let Some(measured) = self.friction.end_stroke(&self.config.friction) else {
+        let Some(measured) = self.detectors.s2.end_stroke(&self.config.friction) else {
             return;
         };
         if self.set(SettingId::S2, measured.s2_permille.into()).is_ok() {
@@ -410,13 +311,12 @@ impl Fingertip {
             ticks,
             mode: self.mode,
             forces: self.senses.forces,
-            s2: mode::listens(self.mode) && self.s2,
             s2_permille: self.config.friction.s2_permille,
             flexor_mv: self.senses.gate.flexor.mv(),
             extensor_mv: self.senses.gate.extensor.mv(),
             wearer_active: self.senses.gate.is_active(),
-            lesson: self.touch.lesson().ok(),
-            array: self.senses.array(),
+            lesson: self.detectors.hebbian.lesson().ok(),
+            evidence: self.detectors.evidence(&self.config),
             samples_sum,
         }
     }

@@ -46,12 +46,14 @@ pub struct Measured {
 #[derive(Clone, Debug, Default)]
 pub struct FrictionDetector {
     s2: bool,
+    ratio_permille: Option<u16>,
     stroke: Option<Stroke>,
 }
 
 impl FrictionDetector {
     /// Takes a ratio, None while there is none. Gives whether it warns.
     pub fn process(&mut self, config: &FrictionConfig, ratio_permille: Option<u16>) -> bool {
+        self.ratio_permille = ratio_permille;
         let Some(ratio) = ratio_permille else {
             self.s2 = false;
             return false;
@@ -62,6 +64,12 @@ impl FrictionDetector {
         let threshold = u32::from(config.s2_permille) * if self.s2 { OFF_PERMILLE } else { 1_000 };
         self.s2 = u32::from(ratio) * 1_000 > threshold;
         self.s2
+    }
+
+    /// The last ratio, None while there is none.
+    #[must_use]
+    pub const fn ratio_permille(&self) -> Option<u16> {
+        self.ratio_permille
     }
 
     /// Begins a stroke.

@@ -22,7 +22,7 @@ impl Journal {
     /// A frame begins: what is told from now on happened in it.
     pub fn begin(&mut self, frame: &Frame) {
         self.frame = frame.sequence;
-        if frame.place() == 0 {
+        if frame.slot() == 0 {
             self.ticks = Default::default();
         }
         if frame.valid {

@@ -2,8 +2,8 @@
 //!
 //! Data goes one way, and so do the modules: [`health`] says which readings can be believed, [`films`] those of the
 //! films; [`vibration`] (S1), [`fsr`], [`forces`] and [`friction`] (S2), [`strain`], [`array`] and [`gate`] (the wearer's muscles) say what they mean;
-//! [`senses`] puts a frame through all of them, and [`credit`] says whether the array can be believed; [`touch`] learns
-//! slip from them ([`hebbian`]); [`mode`], [`grip`] and [`arbiter`] decide; [`fingertip`] is the whole, and [`journal`] is
+//! [`senses`] puts a frame through all of them; [`detectors`] is the list of what judges it, guarded by [`plausibility`],
+//! and [`touch`] learns slip ([`hebbian`]); [`mode`], [`grip`] and [`arbiter`] decide; [`fingertip`] is the whole, and [`journal`] is
 //! what it tells. [`config`] holds every number that can be chosen, and [`store`] keeps what must outlive a power cut.
 #![no_std]
 // One measured kernel is excepted, `array::dual`; nothing else may be.
@@ -16,7 +16,7 @@ pub mod arbiter;
 pub mod array;
 mod checksum;
 pub mod config;
-pub mod credit;
+pub mod detectors;
 pub mod device;
 pub mod elements;
 pub mod films;
@@ -31,6 +31,7 @@ pub mod hebbian;
 pub mod journal;
 pub mod low_pass;
 pub mod mode;
+pub mod plausibility;
 mod samples;
 pub mod senses;
 pub mod settings;

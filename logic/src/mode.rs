@@ -1,36 +1,37 @@
 //! The flow chart of Prosthesis, figure 9, as a machine whose every legal step is one row of a table.
 
+use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::words::{Cause, GripMode};
 
 use Cause::{
-    Array, Network, PulseOver, Released, S1, S2, SensorsLost, SensorsReady, Settled, StrokeBegun, StrokeOver,
-    TakenOver,
+    Incipient as Warned, PulseOver, Released, SensorsLost, SensorsReady, Settled, Slip as Slips, StrokeBegun,
+    StrokeOver, TakenOver,
 };
 use GripMode::{Explore, Incipient, Settle, Slip, Standby, Watch, Wearer};
 
-/// Every legal step: from, why, to. A cause that has no row for the mode changes nothing.
+/// Stands for every detector in the table: whichever says it, the step is the same.
+const ANY: DetectorId = DetectorId::S1;
+
+/// Every legal step: from, why, to. A cause that has no row for the mode changes nothing; which detector says slip or warns
+/// of it makes no difference.
 ///
 /// Who may enter: [`Slip`] and [`Incipient`], the only two that close the hand, are entered from [`Watch`] alone (and
 /// [`Slip`] from [`Incipient`]), and [`Watch`] is left for [`Wearer`] or [`Standby`] before a detector is asked.
-pub const TRANSITIONS: [(GripMode, Cause, GripMode); 26] = [
+pub const TRANSITIONS: [(GripMode, Cause, GripMode); 22] = [
     (Standby, SensorsReady, Watch),
     (Wearer, SensorsLost, Standby),
     (Wearer, Released, Settle),
     (Watch, SensorsLost, Standby),
     (Watch, TakenOver, Wearer),
-    (Watch, S1, Slip),
-    (Watch, Network, Slip),
-    (Watch, Array, Slip),
-    (Watch, S2, Incipient),
+    (Watch, Slips(ANY), Slip),
+    (Watch, Warned(ANY), Incipient),
     (Watch, StrokeBegun, Explore),
     (Slip, SensorsLost, Standby),
     (Slip, TakenOver, Wearer),
     (Slip, PulseOver, Settle),
     (Incipient, SensorsLost, Standby),
     (Incipient, TakenOver, Wearer),
-    (Incipient, S1, Slip),
-    (Incipient, Network, Slip),
-    (Incipient, Array, Slip),
+    (Incipient, Slips(ANY), Slip),
     (Incipient, PulseOver, Settle),
     (Settle, SensorsLost, Standby),
     (Settle, TakenOver, Wearer),
@@ -42,7 +43,23 @@ pub const TRANSITIONS: [(GripMode, Cause, GripMode); 26] = [
 ];
 
 const MODES: usize = Explore as usize + 1;
-const CAUSES: usize = Array as usize + 1;
+const CAUSES: usize = 10;
+
+/// A cause's place in the table.
+const fn index(cause: Cause) -> usize {
+    match cause {
+        SensorsReady => 0,
+        SensorsLost => 1,
+        TakenOver => 2,
+        Released => 3,
+        Slips(_) => 4,
+        Warned(_) => 5,
+        PulseOver => 6,
+        Settled => 7,
+        StrokeBegun => 8,
+        StrokeOver => 9,
+    }
+}
 
 /// The table by mode and cause: it is asked three times in every tick, which is no time to search.
 static NEXT: [[Option<GripMode>; CAUSES]; MODES] = {
@@ -50,7 +67,7 @@ static NEXT: [[Option<GripMode>; CAUSES]; MODES] = {
     let mut row = 0;
     while row < TRANSITIONS.len() {
         let (from, cause, to) = TRANSITIONS[row];
-        next[from as usize][cause as usize] = Some(to);
+        next[from as usize][index(cause)] = Some(to);
         row += 1;
     }
     next
@@ -59,7 +76,7 @@ static NEXT: [[Option<GripMode>; CAUSES]; MODES] = {
 /// Where a cause leads, None where it changes nothing.
 #[must_use]
 pub const fn next(from: GripMode, cause: Cause) -> Option<GripMode> {
-    NEXT[from as usize][cause as usize]
+    NEXT[from as usize][index(cause)]
 }
 
 /// Whether the reflex may drive the motor in this mode.
@@ -105,7 +122,7 @@ mod tests {
     #[test]
     fn closing_is_entered_by_a_detector_alone() {
         for (_, cause, _) in TRANSITIONS.iter().filter(|row| closes(row.2)) {
-            assert!(matches!(cause, S1 | S2 | Network | Array));
+            assert!(matches!(cause, Slips(_) | Warned(_)));
         }
         for (from, ..) in TRANSITIONS.iter().filter(|row| closes(row.2)) {
             assert!(matches!(from, Watch | Incipient));

@@ -1,17 +1,16 @@
 //! From frames to what the fingertip knows: which sensors can be believed, and what they say.
 
 use tenax_hal_shim::channel::{
-    ARRAY, ARRAY_COUNT, CHANNELS, FSR, FSR_COUNT, FSR_SELECT, MYO_EXTENSOR, MYO_FLEXOR, MYO_SELECT, PVDF,
-    PVDF_COUNT, SLOW_HZ, STRAIN, STRAIN_COUNT,
+    ARRAY, CHANNELS, FSR, FSR_COUNT, MYO_EXTENSOR, MYO_FLEXOR, PVDF, PVDF_COUNT, SLOW_HZ, STRAIN,
 };
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::front_end::FSR_REST_MV;
-use tenax_hal_shim::wire::{ArrayVerdict, Forces};
+use tenax_hal_shim::schedule::SCHEDULE;
+use tenax_hal_shim::wire::Forces;
 use tenax_hal_shim::words::{Capability, Fault};
 
-use crate::array::ShippedDetector;
+use crate::array::Reading;
 use crate::config::{Config, frames};
-use crate::credit::Credit;
 use crate::elements::Elements;
 use crate::films::Films;
 use crate::forces::ForceSensor;
@@ -57,8 +56,6 @@ pub struct Senses {
     detector: VibrationDetector,
     gauges: Gauges,
     elements: Elements,
-    array: ShippedDetector,
-    array_credit: Credit,
     frames_seen: u32,
     frames_lost: u32,
     films_usable: bool,
@@ -83,24 +80,12 @@ impl Senses {
         self.frames_seen = self.frames_seen.saturating_add(1);
         self.listen(config, frame, journal);
         self.forces_are_new = false;
-        let select = frame.select();
-        // The first frames show each input once, in order; the later ones show some of them again.
-        let place = usize::from(frame.place());
-        if place < STRAIN_COUNT {
-            let unloaded = self.is_unloaded(config);
-            let change = self.gauges.take(place, frame.switch_a, unloaded);
-            report(journal, STRAIN + place, change);
+        let slot = &SCHEDULE[usize::from(frame.slot())];
+        if let Some(channel) = slot.switch_a {
+            self.on_switch_a(config, usize::from(channel), frame.switch_a, journal);
         }
-        if place < ARRAY_COUNT {
-            let change = self.elements.take(place, frame.switch_b);
-            report(journal, ARRAY + place, change);
-        }
-        self.judge_array(config, place);
-        if let Some(quadrant) = select.checked_sub(FSR_SELECT).map(usize::from) {
-            self.quadrant(config, quadrant, frame.switch_a, journal);
-        }
-        if let Some(muscle @ 0..=1) = select.checked_sub(MYO_SELECT).map(usize::from) {
-            self.muscle(config, muscle, frame.switch_b, journal);
+        if let Some(channel) = slot.switch_b {
+            self.on_switch_b(config, usize::from(channel), frame.switch_b, journal);
         }
         self.gate.tick(&config.gate);
         if frame.ends_slow_frame() {
@@ -114,10 +99,10 @@ impl Senses {
         self.frames_lost = self.frames_lost.saturating_add(1);
         self.vibration = Vibration::default();
         self.forces_are_new = false;
-        let place = usize::from(frame.place());
-        self.elements.lose(place);
-        self.judge_array(config, place);
-        self.miss(config, frame.select());
+        let slot = &SCHEDULE[usize::from(frame.slot())];
+        for channel in [slot.switch_a, slot.switch_b].into_iter().flatten() {
+            self.miss(config, usize::from(channel));
+        }
         if self.frames_lost == STALE_FRAMES {
             journal.fault(Fault::FramesLost { count: self.frames_lost });
             self.forces = None;
@@ -161,16 +146,10 @@ impl Senses {
         &self.gauges
     }
 
-    /// What the normal-force array says.
+    /// The last readings of the normal-force array.
     #[must_use]
-    pub fn array(&self) -> ArrayVerdict {
-        self.array.verdict()
-    }
-
-    /// Whether the array says slip, and can be believed.
-    #[must_use]
-    pub fn array_slips(&self) -> bool {
-        self.array.verdict().slip && !self.array_credit.is_lost()
+    pub const fn taxels(&self) -> &Reading {
+        self.elements.reading()
     }
 
     /// Whether vibration can be heard at all.
@@ -209,35 +188,47 @@ impl Senses {
         self.vibration = self.detector.hear(&config.vibration, &frame.pvdf, trusts.as_ref());
     }
 
-    /// The array's work, shared by four ticks: in fewer, it would end when the next frame has begun. Lost frames do
-    /// their share, since it needs none of their samples: or an old verdict would stand for as long as they are lost.
-    fn judge_array(&mut self, config: &Config, place: usize) {
-        match place.checked_sub(ARRAY_COUNT) {
-            Some(0) => self.array.feel(self.elements.reading()),
-            Some(1) => self.array.compare(),
-            Some(2) => self.array.see(),
-            Some(3) => {
-                let verdict = self.array.decide();
-                self.array_credit.take(self.is_unloaded(config), verdict.slip);
+    fn on_switch_a(&mut self, config: &Config, channel: usize, sample: u16, journal: &mut Journal) {
+        if let Some(quadrant) = channel.checked_sub(FSR) {
+            self.quadrant(config, quadrant, sample, journal);
+        } else if let Some(gauge) = channel.checked_sub(STRAIN) {
+            let unloaded = self.is_unloaded(config);
+            let change = self.gauges.take(gauge, sample, unloaded);
+            report(journal, channel, change);
+        }
+    }
+
+    fn on_switch_b(&mut self, config: &Config, channel: usize, sample: u16, journal: &mut Journal) {
+        match channel {
+            ARRAY..MYO_FLEXOR => {
+                let change = self.elements.take(channel - ARRAY, sample);
+                report(journal, channel, change);
             }
+            MYO_FLEXOR..=MYO_EXTENSOR => self.muscle(config, channel - MYO_FLEXOR, sample, journal),
             _ => {}
         }
     }
 
-    /// The frame that shows what is at `select` was lost.
-    fn miss(&mut self, config: &Config, select: u8) {
-        if let Some(quadrant) = select.checked_sub(FSR_SELECT).map(usize::from) {
-            self.fsr_missed[quadrant] = self.fsr_missed[quadrant].saturating_add(1);
-            if self.fsr_missed[quadrant] >= QUADRANT_MISSES {
-                self.fsr_readings[quadrant] = None;
-                self.forces = None;
+    /// The frame that shows this channel was lost.
+    fn miss(&mut self, config: &Config, channel: usize) {
+        match channel {
+            FSR..ARRAY => {
+                let quadrant = channel - FSR;
+                self.fsr_missed[quadrant] = self.fsr_missed[quadrant].saturating_add(1);
+                if self.fsr_missed[quadrant] >= QUADRANT_MISSES {
+                    self.fsr_readings[quadrant] = None;
+                    self.forces = None;
+                }
             }
-        }
-        if let Some(muscle @ 0..=1) = select.checked_sub(MYO_SELECT).map(usize::from) {
-            self.myo_missed[muscle] = self.myo_missed[muscle].saturating_add(1);
-            if self.myo_missed[muscle] >= MUSCLE_MISSES {
-                self.gate.muscle_mut(muscle).take(&config.gate, None);
+            ARRAY..MYO_FLEXOR => self.elements.lose(channel - ARRAY),
+            MYO_FLEXOR..=MYO_EXTENSOR => {
+                let muscle = channel - MYO_FLEXOR;
+                self.myo_missed[muscle] = self.myo_missed[muscle].saturating_add(1);
+                if self.myo_missed[muscle] >= MUSCLE_MISSES {
+                    self.gate.muscle_mut(muscle).take(&config.gate, None);
+                }
             }
+            _ => {}
         }
     }
 

@@ -129,6 +129,8 @@ pub struct Touch {
     outputs: [Output; NETWORK_OUTPUTS],
     /// The gauges' part of each output, since the last of them was read.
     by_gauges: [i64; NETWORK_OUTPUTS],
+    /// The films' part of o1.
+    by_films: i64,
     /// What each film hears of nothing, 1/16 of a sample.
     quiet: [i32; PVDF_COUNT],
     /// Whether the finger has been unloaded since the start.
@@ -152,6 +154,7 @@ impl Default for Touch {
             activations: Activations::default(),
             outputs: [Output::default(); NETWORK_OUTPUTS],
             by_gauges: [0; NETWORK_OUTPUTS],
+            by_films: 0,
             quiet: [0; PVDF_COUNT],
             quiet_known: false,
             since_loud_frames: 0,
@@ -180,6 +183,7 @@ impl Touch {
             *slot = part;
         }
         let by_films = sum(parts.iter().copied());
+        self.by_films = by_films;
         let [o1_by_gauges, o2_by_gauges] = self.by_gauges;
         self.outputs = [output(by_films + o1_by_gauges), output(o2_by_gauges)];
         self.judge(config, felt, &parts, by_films);
@@ -235,6 +239,18 @@ impl Touch {
     #[must_use]
     pub fn outputs(&self) -> [i8; NETWORK_OUTPUTS] {
         self.outputs.map(|output| (output.into_bits() >> 19).clamp(-128, 127) as i8)
+    }
+
+    /// The PVDF part of o1, per mille.
+    #[must_use]
+    pub const fn by_films_permille(&self) -> i32 {
+        (self.by_films * 1_000 / ONE) as i32
+    }
+
+    /// Whether it has seen the finger unloaded, so that it can tell hum from slip.
+    #[must_use]
+    pub const fn is_quiet_known(&self) -> bool {
+        self.quiet_known
     }
 
     /// What it is learning, or why nothing.

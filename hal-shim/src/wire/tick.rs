@@ -1,18 +1,20 @@
-//! What one tick decided, and its six bytes on the line.
+//! What one tick decided, and its nine bytes on the line.
 //!
 //! Twenty-five of these go up 80 times a second, more than everything else together; numbers of any length would cost the
-//! core more to write than the films to condition. So the fields are fixed, in three little-endian words:
+//! core more to write than the films to condition. So the fields are fixed:
 //!
-//! | bits | 15 | 14 | 13..12 | 11..10 | 9..0 |
-//! |---|---|---|---|---|---|
-//! | word 0 | slips | s1 | vibration, 13..0 | | |
-//! | word 1 | o2, 15..8 | | | | o1, 7..0 |
-//! | word 2 | 0 | 0 | source | drive: coast, close, open | duty, per mille |
+//! | bytes | what |
+//! |---|---|
+//! | 0, 1 | vibration, 14 bits, little-endian |
+//! | 2, 3 | o1, o2 |
+//! | 4, 5 | duty per mille (bits 9..0), drive (11..10: coast, close, open), source (13..12), little-endian |
+//! | 6, 7, 8 | the detectors that say slip or warn of it, that are believed, that the reflex acts on; a bit each |
 
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::NETWORK_OUTPUTS;
+use crate::detector::DetectorSet;
 use crate::motor::{Duty, MotorDrive};
 use crate::words::DriveSource;
 
@@ -21,12 +23,14 @@ use crate::words::DriveSource;
 pub struct TickRecord {
     /// The largest vibration envelope of all films, in samples (14 bits): at most [`TickRecord::VIBRATION_MAX`].
     pub vibration: u16,
-    /// Whether it is above S1.
-    pub s1: bool,
-    /// What touch alone makes the network say, relative motion (o1) and direction (o2): 128 would be 1.
+    /// What touch alone makes the Hebbian network say, relative motion (o1) and direction (o2): 128 would be 1.
     pub outputs: [i8; NETWORK_OUTPUTS],
-    /// Whether that means slip, whoever listens.
-    pub slips: bool,
+    /// The detectors that say slip, or warn of it, whoever listens.
+    pub said: DetectorSet,
+    /// Those of them that are believed.
+    pub believed: DetectorSet,
+    /// Those of them that the reflex closes the hand for.
+    pub acted: DetectorSet,
     /// What drives the motor.
     pub drive: MotorDrive,
     /// Who drives it.
@@ -34,20 +38,17 @@ pub struct TickRecord {
 }
 
 /// Bytes of a tick on the line.
-type Bytes = [u8; 6];
+type Bytes = [u8; 9];
 
-const S1: u16 = 1 << 14;
-const SLIPS: u16 = 1 << 15;
 const DRIVE_SHIFT: u32 = 10;
 const SOURCE_SHIFT: u32 = 12;
 
 impl TickRecord {
     /// The largest vibration that its field holds; more would go up as this.
-    pub const VIBRATION_MAX: u16 = S1 - 1;
+    pub const VIBRATION_MAX: u16 = (1 << 14) - 1;
 
     fn bytes(self) -> Bytes {
-        let heard =
-            self.vibration.min(Self::VIBRATION_MAX) | u16::from(self.s1) << 14 | u16::from(self.slips) << 15;
+        let heard = self.vibration.min(Self::VIBRATION_MAX);
         let (kind, duty) = match self.drive {
             MotorDrive::Coast => (0, 0),
             MotorDrive::Close(duty) => (1, duty.as_per_mille()),
@@ -56,11 +57,11 @@ impl TickRecord {
         let driven = duty | kind << DRIVE_SHIFT | (self.source as u16) << SOURCE_SHIFT;
         let ([h0, h1], [o1, o2], [d0, d1]) =
             (heard.to_le_bytes(), self.outputs.map(|output| output as u8), driven.to_le_bytes());
-        [h0, h1, o1, o2, d0, d1]
+        [h0, h1, o1, o2, d0, d1, self.said.bits(), self.believed.bits(), self.acted.bits()]
     }
 
     /// None of bytes that no tick has.
-    fn from_bytes([h0, h1, o1, o2, d0, d1]: Bytes) -> Option<Self> {
+    fn from_bytes([h0, h1, o1, o2, d0, d1, said, believed, acted]: Bytes) -> Option<Self> {
         let (heard, driven) = (u16::from_le_bytes([h0, h1]), u16::from_le_bytes([d0, d1]));
         let permille = driven & ((1 << DRIVE_SHIFT) - 1);
         let duty = Duty::per_mille(permille);
@@ -78,10 +79,11 @@ impl TickRecord {
             _ => return None,
         };
         Some(Self {
-            vibration: heard & Self::VIBRATION_MAX,
-            s1: heard & S1 != 0,
+            vibration: Some(heard).filter(|&heard| heard <= Self::VIBRATION_MAX)?,
             outputs: [o1 as i8, o2 as i8],
-            slips: heard & SLIPS != 0,
+            said: DetectorSet::from_bits(said)?,
+            believed: DetectorSet::from_bits(believed)?,
+            acted: DetectorSet::from_bits(acted)?,
             drive,
             source,
         })
@@ -104,6 +106,7 @@ impl<'de> Deserialize<'de> for TickRecord {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::detector::DetectorId;
 
     #[test]
     fn every_field_survives_its_bytes_at_its_ends() {
@@ -113,14 +116,17 @@ mod tests {
         let drives = drives.into_iter().flatten().chain([MotorDrive::Coast]);
         let sources = [DriveSource::Nobody, DriveSource::Wearer, DriveSource::Link, DriveSource::Reflex];
         for (drive, source) in drives.flat_map(|drive| sources.map(|source| (drive, source))) {
-            for (vibration, [s1, slips]) in [0, 1, 8_191, TickRecord::VIBRATION_MAX].into_iter().zip([
-                [false, false],
-                [true, false],
-                [false, true],
-                [true, true],
-            ]) {
+            let [s1, mlp] = [DetectorId::S1, DetectorId::Mlp].map(DetectorSet::only);
+            for (vibration, [said, believed, acted]) in
+                [0, 1, 8_191, TickRecord::VIBRATION_MAX].into_iter().zip([
+                    [DetectorSet::NONE; 3],
+                    [DetectorSet::ALL; 3],
+                    [s1.or(mlp), mlp, DetectorSet::NONE],
+                    [DetectorSet::ALL, s1, s1],
+                ])
+            {
                 for outputs in [[0, 0], [-128, 127], [127, -128], [-1, 1]] {
-                    let record = TickRecord { vibration, s1, outputs, slips, drive, source };
+                    let record = TickRecord { vibration, outputs, said, believed, acted, drive, source };
                     assert_eq!(TickRecord::from_bytes(record.bytes()), Some(record));
                 }
             }
@@ -129,10 +135,16 @@ mod tests {
 
     #[test]
     fn bytes_that_no_tick_has_are_refused() {
-        let with = |driven: u16| TickRecord::from_bytes([0, 0, 0, 0, driven as u8, (driven >> 8) as u8]);
+        let with =
+            |driven: u16| TickRecord::from_bytes([0, 0, 0, 0, driven as u8, (driven >> 8) as u8, 0, 0, 0]);
         assert!(with(0).is_some());
         for driven in [1, 1 << 10 | 1_001, 2 << 10 | 1_023, 3 << 10, 1 << 14, 1 << 15] {
             assert_eq!(with(driven), None, "{driven:#x}");
+        }
+        for place in [1, 6, 7, 8] {
+            let mut bytes = [0; 9];
+            bytes[place] = 0x80;
+            assert_eq!(TickRecord::from_bytes(bytes), None, "byte {place}");
         }
     }
 }

@@ -104,7 +104,7 @@ impl Camera<'_> {
                 self.marker.see(world.now_s(), height_mm, pitch_rad.to_degrees());
             }
             let frame = Frame::from_scans(sequence, &scans);
-            let place = usize::from(frame.place());
+            let place = usize::from(frame.slot());
             if let Some(sample) = samples.get_mut(place) {
                 *sample = frame.switch_b;
             }

@@ -1,11 +1,26 @@
 //! The verdict: features, network and a threshold with two edges.
 
 use tenax_hal_shim::channel::SLOW_HZ;
-use tenax_hal_shim::wire::ArrayVerdict;
 
 use super::network::{LookBack, Mlp};
 use super::preprocess::{Features, Preprocessor, PreprocessorConfig};
 use super::{COVARIANCE_WINDOW, FEATURES, Reading, SPECTRUM_WINDOW};
+
+/// What the normal-force array says (Bamshad 2023).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ArrayVerdict {
+    /// Whether the object slips.
+    pub slip: bool,
+    /// How likely that is, per mille: the calibrated logit's logistic function.
+    pub confidence_permille: u16,
+    /// How long ago, at the end of the last slow frame, there was something to judge by, ms: 0 while the detector works.
+    pub age_ms: u16,
+}
+
+impl ArrayVerdict {
+    /// Nothing has been judged yet.
+    pub const NONE: Self = Self { slip: false, confidence_permille: 0, age_ms: u16::MAX };
+}
 
 /// How a logit is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,0 +1,201 @@
+//! What detectors say, in the same words for all of them.
+//!
+//! Three things are kept apart. A detector **says** slip: its own verdict, whoever listens. It is **believed** unless the
+//! plausibility guard ignores it. It is **acted** on while the reflex closes because of it.
+
+use serde::{Deserialize, Serialize};
+
+/// A detector. Its number is its bit in a [`DetectorSet`]; new ones are added at the end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[repr(u8)]
+pub enum DetectorId {
+    /// S1: vibration of the PVDF film (Prosthesis, section 5).
+    S1,
+    /// S2: Ft/Fn, which warns of slip before it happens (Prosthesis, section 5).
+    S2,
+    /// The Hebbian network that a camera teaches (Tada 2006).
+    Hebbian,
+    /// The multilayer perceptron on normal forces (Bamshad 2023).
+    Mlp,
+    /// Evidence from outside: the oracle of a scene.
+    Injected,
+}
+
+impl DetectorId {
+    /// Every detector, in the order of their numbers.
+    pub const ALL: [Self; 5] = [Self::S1, Self::S2, Self::Hebbian, Self::Mlp, Self::Injected];
+    /// How many there are.
+    pub const COUNT: usize = Self::ALL.len();
+
+    /// What it is called in reports and on the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::S1 => "s1",
+            Self::S2 => "s2",
+            Self::Hebbian => "hebbian",
+            Self::Mlp => "mlp",
+            Self::Injected => "injected",
+        }
+    }
+
+    /// What it goes by, for a person.
+    #[must_use]
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::S1 => "S1 vibration",
+            Self::S2 => "S2 Ft/Fn",
+            Self::Hebbian => "Hebbian",
+            Self::Mlp => "MLP",
+            Self::Injected => "injected",
+        }
+    }
+}
+
+/// A set of detectors.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct DetectorSet(u8);
+
+impl DetectorSet {
+    /// None of them.
+    pub const NONE: Self = Self(0);
+    /// All of them.
+    pub const ALL: Self = Self(((1u16 << DetectorId::COUNT) - 1) as u8);
+
+    /// One of them.
+    #[must_use]
+    pub const fn only(id: DetectorId) -> Self {
+        Self(1 << id as u8)
+    }
+
+    /// The same, with or without one of them.
+    #[must_use]
+    pub const fn with(self, id: DetectorId, is_in: bool) -> Self {
+        let bit = 1 << id as u8;
+        Self(if is_in { self.0 | bit } else { self.0 & !bit })
+    }
+
+    /// Those that are in both.
+    #[must_use]
+    pub const fn and(self, other: Self) -> Self {
+        Self(self.0 & other.0)
+    }
+
+    /// Those that are in either.
+    #[must_use]
+    pub const fn or(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Those that are not in `other`.
+    #[must_use]
+    pub const fn without(self, other: Self) -> Self {
+        Self(self.0 & !other.0)
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub const fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    /// Whether one is in it.
+    #[must_use]
+    pub const fn contains(self, id: DetectorId) -> bool {
+        self.0 & 1 << id as u8 != 0
+    }
+
+    /// The one with the lowest number.
+    #[must_use]
+    pub const fn first(self) -> Option<DetectorId> {
+        let mut n = 0;
+        while n < DetectorId::COUNT {
+            if self.contains(DetectorId::ALL[n]) {
+                return Some(DetectorId::ALL[n]);
+            }
+            n += 1;
+        }
+        None
+    }
+
+    /// Its bits.
+    #[must_use]
+    pub const fn bits(self) -> u8 {
+        self.0
+    }
+
+    /// From bits. None if one of them is no detector's.
+    #[must_use]
+    pub const fn from_bits(bits: u8) -> Option<Self> {
+        if bits & !Self::ALL.0 == 0 { Some(Self(bits)) } else { None }
+    }
+}
+
+/// Where to an object slips, if the detector can tell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Direction {
+    /// The detector cannot tell.
+    #[default]
+    Unknown,
+    /// Down in the hand.
+    Down,
+    /// Up in the hand.
+    Up,
+}
+
+/// Whether a detector has something to judge by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum DetectorHealth {
+    /// Not yet: its windows fill, or it has not seen the finger unloaded.
+    #[default]
+    Starting,
+    /// It works.
+    Working,
+    /// Its sensors give no numbers.
+    Blind,
+}
+
+/// What a detector concluded when it last decided.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Evidence {
+    /// The object slips.
+    pub slip: bool,
+    /// It is about to.
+    pub incipient: bool,
+    /// How sure it is, per mille: 500 where it changes its mind.
+    pub confidence_permille: u16,
+    /// Where to.
+    pub direction: Direction,
+    /// Sequence number of the frame in which it decided this.
+    pub decided_at: u32,
+    /// Whether it can be asked at all.
+    pub health: DetectorHealth,
+    /// What it decided by, on its own scale: the envelope (S1, 14-bit samples), Ft/Fn (S2, per mille), the PVDF part of o1
+    /// (Hebbian, per mille), the logit (MLP).
+    pub raw: i32,
+}
+
+impl Evidence {
+    /// Whether it says anything.
+    #[must_use]
+    pub const fn says(&self) -> bool {
+        self.slip || self.incipient
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_detectors_number_is_its_place() {
+        for (n, id) in DetectorId::ALL.into_iter().enumerate() {
+            assert_eq!(id as usize, n);
+            let only = DetectorSet::only(id);
+            assert_eq!((only.first(), DetectorSet::from_bits(only.bits())), (Some(id), Some(only)));
+            assert!(DetectorSet::ALL.without(only).with(id, true) == DetectorSet::ALL);
+        }
+        assert_eq!(DetectorSet::NONE.first(), None);
+        assert_eq!(DetectorSet::from_bits(1 << DetectorId::COUNT), None);
+    }
+}

@@ -1,0 +1,178 @@
+//! What happens in which of the 25 slots of a cycle (a slow frame): which inputs of the switches are shown, which channels
+//! are read from them, and which job of the logic runs.
+//!
+//! Derived from the channel map; nobody counts slots by himself. Sixteen slots show each input once. The wearer comes
+//! first, so the nine slots left over read the myosensors twice more: their readings are never more than 6.5 ms apart. In
+//! between the lines rest on input 0, which has long settled when its turn comes; what is read there counts for nothing.
+
+use crate::channel::{
+    ARRAY, ARRAY_COUNT, CHANNELS, FRAMES_PER_SLOW_FRAME, FSR, FSR_COUNT, Input, MYO_EXTENSOR, MYO_FLEXOR,
+    SWITCH_INPUTS,
+};
+
+/// Slots in a cycle.
+pub const SLOTS: usize = FRAMES_PER_SLOW_FRAME as usize;
+
+/// A job that runs once a cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Job {
+    /// All quadrants of the force sensor have been read: forces, Ft/Fn, S2.
+    Forces,
+    /// All elements of the array have been read: covariance and spectrum.
+    ArrayFeatures,
+    /// Structure functions.
+    ArrayStructure,
+    /// Half of the network's first layer.
+    ArrayFirstLayer,
+    /// The rest of the network, and its verdict.
+    MlpDecides,
+    /// The fingertip is asked for something to save: the lines rest, and the last slot, which has the most to do, is far.
+    Save,
+    /// The record of the cycle is closed.
+    EndOfCycle,
+}
+
+/// One slot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Slot {
+    /// What the select lines show.
+    pub select: u8,
+    /// The channel that is read from switch A, an index in [`CHANNELS`].
+    pub switch_a: Option<u8>,
+    /// The channel that is read from switch B.
+    pub switch_b: Option<u8>,
+}
+
+/// The slots that are left when each input has been shown once, and the channel that each reads. None: the lines rest.
+const AGAIN: [Option<usize>; SLOTS - SWITCH_INPUTS as usize] = [
+    Some(MYO_FLEXOR),
+    Some(MYO_EXTENSOR),
+    None,
+    None,
+    None,
+    None,
+    Some(MYO_FLEXOR),
+    Some(MYO_EXTENSOR),
+    None,
+];
+
+/// Every slot of a cycle.
+pub static SCHEDULE: [Slot; SLOTS] = {
+    let mut slots = [Slot { select: 0, switch_a: None, switch_b: None }; SLOTS];
+    let mut select = 0;
+    while select < SWITCH_INPUTS {
+        slots[select as usize].select = select;
+        select += 1;
+    }
+    let mut channel = 0;
+    while channel < CHANNELS.len() {
+        match CHANNELS[channel].input {
+            Input::Direct { .. } => {}
+            Input::SwitchA { select } => slots[select as usize].switch_a = Some(channel as u8),
+            Input::SwitchB { select } => slots[select as usize].switch_b = Some(channel as u8),
+        }
+        channel += 1;
+    }
+    let mut n = 0;
+    while n < AGAIN.len() {
+        let slot = &mut slots[SWITCH_INPUTS as usize + n];
+        if let Some(channel) = AGAIN[n]
+            && let Input::SwitchB { select } = CHANNELS[channel].input
+        {
+            *slot = Slot { select, switch_a: None, switch_b: Some(channel as u8) };
+        }
+        n += 1;
+    }
+    slots
+};
+
+/// The last slot that reads one of `count` channels from `first` on.
+const fn last_reading(first: usize, count: usize) -> u8 {
+    let mut last = 0;
+    let mut channel = first;
+    while channel < first + count {
+        if let Input::SwitchA { select } | Input::SwitchB { select } = CHANNELS[channel].input
+            && select > last
+        {
+            last = select;
+        }
+        channel += 1;
+    }
+    last
+}
+
+/// The slot in which a job runs, after its readings.
+#[must_use]
+pub const fn slot_of(job: Job) -> u8 {
+    // A verdict in fewer slots would end when the next frame has begun.
+    let array = last_reading(ARRAY, ARRAY_COUNT) + 1;
+    match job {
+        Job::Forces => last_reading(FSR, FSR_COUNT),
+        Job::ArrayFeatures => array,
+        Job::ArrayStructure => array + 1,
+        Job::ArrayFirstLayer => array + 2,
+        Job::MlpDecides => array + 3,
+        Job::Save => 19,
+        Job::EndOfCycle => FRAMES_PER_SLOW_FRAME - 1,
+    }
+}
+
+/// What the select lines show in this slot. A number above 24 is taken modulo 25.
+#[must_use]
+pub const fn select_of_slot(slot: u8) -> u8 {
+    SCHEDULE[(slot % FRAMES_PER_SLOW_FRAME) as usize].select
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_switched_channel_is_read_where_its_input_is_shown() {
+        for (n, channel) in CHANNELS.iter().enumerate() {
+            let reads = |slot: &&Slot| [slot.switch_a, slot.switch_b].contains(&Some(n as u8));
+            let times = SCHEDULE.iter().filter(reads).count();
+            match channel.input {
+                Input::Direct { .. } => assert_eq!(times, 0, "{}", channel.name),
+                Input::SwitchA { select } | Input::SwitchB { select } => {
+                    let expected = if [MYO_FLEXOR, MYO_EXTENSOR].contains(&n) { 3 } else { 1 };
+                    assert_eq!(times, expected, "{}", channel.name);
+                    assert!(
+                        SCHEDULE.iter().filter(reads).all(|slot| slot.select == select),
+                        "{}",
+                        channel.name
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_muscles_are_read_at_most_13_slots_apart() {
+        for muscle in [MYO_FLEXOR, MYO_EXTENSOR] {
+            let reads = (0..2 * SLOTS).filter(|n| SCHEDULE[n % SLOTS].switch_b == Some(muscle as u8));
+            let reads: std::vec::Vec<_> = reads.collect();
+            assert!(reads.windows(2).all(|two| two[1] - two[0] <= 13), "{reads:?}");
+        }
+    }
+
+    #[test]
+    fn a_job_comes_after_its_readings_and_before_the_cycle_ends() {
+        let reads_after = |job, first: usize, count: usize| {
+            SCHEDULE[usize::from(slot_of(job)) + 1..].iter().any(|slot| {
+                [slot.switch_a, slot.switch_b]
+                    .into_iter()
+                    .flatten()
+                    .any(|channel| (first..first + count).contains(&usize::from(channel)))
+            })
+        };
+        assert!(
+            !reads_after(Job::Forces, FSR, FSR_COUNT) && !reads_after(Job::ArrayFeatures, ARRAY, ARRAY_COUNT)
+        );
+        assert!(
+            slot_of(Job::MlpDecides) < slot_of(Job::Save) && slot_of(Job::Save) < slot_of(Job::EndOfCycle)
+        );
+        assert_eq!(usize::from(slot_of(Job::EndOfCycle)), SLOTS - 1);
+        assert_eq!(SCHEDULE[usize::from(slot_of(Job::Save))].switch_b, None);
+    }
+}

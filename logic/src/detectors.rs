@@ -1,0 +1,254 @@
+//! The detectors: one trait, one static list, one record of what was said and what is believed.
+//!
+//! `docs/adding-a-detector.md` says what one more takes.
+
+mod hebbian;
+mod injected;
+mod mlp;
+mod s1;
+mod s2;
+
+use heapless::Vec;
+use tenax_hal_shim::channel::{PVDF_COUNT, STRAIN_COUNT};
+use tenax_hal_shim::detector::{DetectorHealth, DetectorId, DetectorSet, Direction, Evidence};
+use tenax_hal_shim::wire::{DETECTORS_MAX, Forces};
+
+use crate::array::{MLP_DECIDES, Reading};
+use crate::config::Config;
+use crate::friction::FrictionDetector;
+use crate::plausibility::Plausibility;
+use crate::touch::Touch;
+use crate::vibration::Vibration;
+
+pub use injected::Injected;
+pub use mlp::MlpDetector;
+pub use s1::S1;
+
+/// What was sensed in one frame, conditioned: what every detector judges by.
+#[derive(Clone, Copy, Debug)]
+pub struct Sensed<'a> {
+    /// Sequence number of the frame.
+    pub frame: u32,
+    /// Its slot in the cycle, 0 to 24.
+    pub slot: u8,
+    /// Whether the frame came in whole. Then only time has passed.
+    pub valid: bool,
+    /// The vibration of all PVDF channels.
+    pub vibration: Vibration,
+    /// Each PVDF channel's envelope in the slip band, Q16 samples.
+    pub envelopes: &'a [i32; PVDF_COUNT],
+    /// Whether any PVDF channel gives numbers.
+    pub vibration_known: bool,
+    /// Each strain gauge's load, 1/16 of a sample.
+    pub loads: &'a [i32; STRAIN_COUNT],
+    /// Forces, None while the force sensor gives no number.
+    pub forces: Option<Forces>,
+    /// Whether this frame brought new ones.
+    pub forces_are_new: bool,
+    /// The normal-force array's last readings.
+    pub taxels: &'a Reading,
+    /// The finger is known to touch nothing.
+    pub unloaded: bool,
+    /// The finger holds something.
+    pub grasp: bool,
+    /// The motor runs fast, or a knock rings: vibration that is not the object's.
+    pub noisy: bool,
+    /// The reflex or the wearer moves the hand.
+    pub moves: bool,
+}
+
+/// What a detector says: the object slips, or is about to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Said {
+    /// It slips.
+    pub slip: bool,
+    /// It is about to.
+    pub incipient: bool,
+}
+
+impl Said {
+    /// Nothing.
+    pub const NOTHING: Self = Self { slip: false, incipient: false };
+
+    /// It slips, or nothing.
+    #[must_use]
+    pub const fn slip(slip: bool) -> Self {
+        Self { slip, incipient: false }
+    }
+}
+
+/// What else there is to tell of a verdict. Asked once a cycle, so it may cost something.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Description {
+    /// How sure it is, per mille.
+    pub confidence_permille: u16,
+    /// Where to the object slips.
+    pub direction: Direction,
+    /// Whether it can be asked at all.
+    pub health: DetectorHealth,
+    /// What it decided by, on its own scale: see [`Evidence::raw`].
+    pub raw: i32,
+}
+
+/// A detector. Its state is its own, its configuration is not.
+pub trait Detector {
+    /// Who it is.
+    const ID: DetectorId;
+    /// Cycles in a row for which it may report slip of an empty hand before it is ignored.
+    const IMPLAUSIBLE_AFTER: u16 = 0;
+    /// What can be chosen about it.
+    type Config;
+
+    /// Takes one frame. None if it decides nothing in it: what it said before stands.
+    fn step(&mut self, config: &Self::Config, sensed: &Sensed<'_>) -> Option<Said>;
+
+    /// What there is to tell of its last verdict.
+    fn describe(&self, config: &Self::Config) -> Description;
+}
+
+/// Runs a piece of code with each detector and its configuration: the static list of them.
+macro_rules! for_each_detector {
+    ($self:ident, $config:expr, |$detector:ident, $own:ident| $body:expr) => {{
+        {
+            let ($detector, $own) = (&mut $self.s1, &$config.vibration);
+            $body;
+        }
+        {
+            let ($detector, $own) = (&mut $self.s2, &$config.friction);
+            $body;
+        }
+        {
+            let ($detector, $own) = (&mut $self.hebbian, &$config.touch);
+            $body;
+        }
+        {
+            let ($detector, $own) = (&mut $self.mlp, &());
+            $body;
+        }
+        {
+            let ($detector, $own) = (&mut $self.injected, &());
+            $body;
+        }
+    }};
+}
+
+/// All detectors, and what they say.
+#[derive(Clone, Debug, Default)]
+pub struct Detectors {
+    s1: S1,
+    /// S2, which a stroke measures.
+    pub s2: FrictionDetector,
+    /// The Hebbian network, which a teacher teaches.
+    pub hebbian: Touch,
+    mlp: MlpDetector,
+    /// Evidence from outside.
+    pub injected: Injected,
+    record: Record,
+}
+
+/// Who said what, when, and is it believed.
+#[derive(Clone, Debug, Default)]
+struct Record {
+    slip: DetectorSet,
+    incipient: DetectorSet,
+    ignored: DetectorSet,
+    decided_at: [u32; DetectorId::COUNT],
+    guards: [Plausibility; DetectorId::COUNT],
+}
+
+impl Record {
+    #[inline]
+    fn take(&mut self, id: DetectorId, said: Said, frame: u32) {
+        self.slip = self.slip.with(id, said.slip);
+        self.incipient = self.incipient.with(id, said.incipient);
+        self.decided_at[id as usize] = frame;
+    }
+
+    fn guard(&mut self, id: DetectorId, tolerated: u16, sensed: &Sensed<'_>) {
+        let says = self.slip.or(self.incipient).contains(id);
+        let guard = &mut self.guards[id as usize];
+        guard.take(sensed.unloaded, says, tolerated);
+        self.ignored = self.ignored.with(id, guard.is_ignored());
+    }
+}
+
+/// The detector's number, from a reference to it.
+const fn id_of<D: Detector>(_: &D) -> DetectorId {
+    D::ID
+}
+
+const fn tolerance_of<D: Detector>(_: &D) -> u16 {
+    D::IMPLAUSIBLE_AFTER
+}
+
+impl Detectors {
+    /// Takes one frame.
+    pub fn step(&mut self, config: &Config, sensed: &Sensed<'_>) {
+        for_each_detector!(self, config, |detector, own| {
+            if let Some(said) = detector.step(own, sensed) {
+                self.record.take(id_of(detector), said, sensed.frame);
+            }
+        });
+        // When the detector that decides once a cycle has just decided: what is implausible is not believed for a tick.
+        if sensed.slot == MLP_DECIDES {
+            self.guard(config, sensed);
+        }
+    }
+
+    #[inline(never)]
+    fn guard(&mut self, config: &Config, sensed: &Sensed<'_>) {
+        for_each_detector!(self, config, |detector, _own| {
+            let (id, tolerated) = (id_of(detector), tolerance_of(detector));
+            self.record.guard(id, tolerated, sensed);
+        });
+    }
+
+    /// The detectors that say slip.
+    #[must_use]
+    pub const fn slip(&self) -> DetectorSet {
+        self.record.slip
+    }
+
+    /// The detectors that warn of it.
+    #[must_use]
+    pub const fn incipient(&self) -> DetectorSet {
+        self.record.incipient
+    }
+
+    /// The detectors that the plausibility guard ignores.
+    #[must_use]
+    pub const fn ignored(&self) -> DetectorSet {
+        self.record.ignored
+    }
+
+    /// What each detector concluded last.
+    #[must_use]
+    #[inline(never)]
+    pub fn evidence(&mut self, config: &Config) -> Vec<(DetectorId, Evidence), DETECTORS_MAX> {
+        let mut all = Vec::new();
+        for_each_detector!(self, config, |detector, own| {
+            let id = id_of(detector);
+            let Description { confidence_permille, direction, health, raw } = detector.describe(own);
+            let evidence = Evidence {
+                slip: self.record.slip.contains(id),
+                incipient: self.record.incipient.contains(id),
+                confidence_permille,
+                direction,
+                decided_at: self.record.decided_at[id as usize],
+                health,
+                raw,
+            };
+            // There is room for every detector.
+            let _fits = all.push((id, evidence));
+        });
+        all
+    }
+}
+
+const _: () = assert!(DetectorId::COUNT <= DETECTORS_MAX);
+
+/// How sure a threshold is: 500 per mille at it, 0 at nothing, 1000 at twice it.
+fn confidence(value: i32, threshold: i32) -> u16 {
+    let permille = i64::from(value.max(0)) * 500 / i64::from(threshold.max(1));
+    permille.min(1_000) as u16
+}

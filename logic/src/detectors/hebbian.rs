@@ -1,0 +1,56 @@
+//! The Hebbian network as a detector.
+
+use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
+
+use super::{Description, Detector, Said, Sensed, confidence};
+use crate::config::TouchConfig;
+use crate::hebbian::Situation;
+use crate::touch::{Felt, Touch};
+
+/// From this part of its range on, the second output tells a direction, of 128.
+const DIRECTION_FROM: i8 = 16;
+
+impl Detector for Touch {
+    const ID: DetectorId = DetectorId::Hebbian;
+    type Config = TouchConfig;
+
+    fn step(&mut self, config: &TouchConfig, sensed: &Sensed<'_>) -> Option<Said> {
+        if !sensed.valid {
+            self.lose();
+            return Some(Said::NOTHING);
+        }
+        let knock = sensed.vibration.knock;
+        self.tick(
+            config,
+            &Felt {
+                envelopes: sensed.envelopes,
+                loads: sensed.loads,
+                gauge: usize::from(sensed.slot),
+                loud: sensed.noisy,
+                unloaded: sensed.unloaded,
+                situation: Situation {
+                    grasp: sensed.grasp,
+                    disturbed: knock || sensed.moves || !sensed.vibration_known,
+                },
+            },
+        );
+        Some(Said::slip(self.slips()))
+    }
+
+    fn describe(&self, config: &TouchConfig) -> Description {
+        let raw = self.by_films_permille();
+        let [_, o2] = self.outputs();
+        let direction = match (self.slips(), o2) {
+            (true, o2) if o2 <= -DIRECTION_FROM => Direction::Down,
+            (true, o2) if o2 >= DIRECTION_FROM => Direction::Up,
+            _ => Direction::Unknown,
+        };
+        let health = if self.is_quiet_known() { DetectorHealth::Working } else { DetectorHealth::Starting };
+        Description {
+            confidence_permille: confidence(-raw, config.slip_permille.into()),
+            direction,
+            health,
+            raw,
+        }
+    }
+}

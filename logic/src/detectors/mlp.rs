@@ -1,0 +1,44 @@
+//! The multilayer perceptron on normal forces as a detector: its work is shared by several ticks of a cycle.
+
+use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
+
+use super::{Description, Detector, Said, Sensed};
+use crate::array::{ARRAY_READ, MLP_DECIDES, ShippedDetector};
+
+/// The detector, and where in its work it is.
+#[derive(Clone, Debug, Default)]
+pub struct MlpDetector(ShippedDetector);
+
+impl Detector for MlpDetector {
+    const ID: DetectorId = DetectorId::Mlp;
+    type Config = ();
+
+    /// Lost frames do their share, since it needs none of their samples: or an old verdict would stand for as long as they
+    /// are lost.
+    fn step(&mut self, _config: &(), sensed: &Sensed<'_>) -> Option<Said> {
+        const COMPARES: u8 = ARRAY_READ + 1;
+        const SEES: u8 = ARRAY_READ + 2;
+        match sensed.slot {
+            ARRAY_READ => self.0.feel(sensed.taxels),
+            COMPARES => self.0.compare(),
+            SEES => self.0.see(),
+            MLP_DECIDES => return Some(Said::slip(self.0.decide().slip)),
+            _ => {}
+        }
+        None
+    }
+
+    fn describe(&self, _config: &()) -> Description {
+        let verdict = self.0.verdict();
+        Description {
+            confidence_permille: verdict.confidence_permille,
+            direction: Direction::Unknown,
+            health: match verdict.age_ms {
+                0 => DetectorHealth::Working,
+                u16::MAX => DetectorHealth::Starting,
+                _ => DetectorHealth::Blind,
+            },
+            raw: self.0.logit().unwrap_or(0),
+        }
+    }
+}

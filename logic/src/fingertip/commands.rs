@@ -1,0 +1,94 @@
+//! What a command does to the fingertip.
+
+use core::ops::RangeInclusive;
+
+use tenax_hal_shim::channel::FRAME_HZ;
+use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::setting::SettingId;
+use tenax_hal_shim::wire::{DRIVE_HOLD_MAX_MS, Down, Refusal, Setting};
+use tenax_hal_shim::words::{Cause, GripMode};
+
+use super::{Fingertip, LinkDrive};
+
+impl Fingertip {
+    /// Carries out a command.
+    ///
+    /// # Errors
+    /// Says why it was not carried out; then nothing has changed.
+    pub fn command(&mut self, command: &Down) -> Result<(), Refusal> {
+        match *command {
+            Down::Ping | Down::Samples | Down::Network | Down::Get(_) | Down::Settings(_) => Ok(()),
+            Down::Drive { hold_ms, .. } if hold_ms > DRIVE_HOLD_MAX_MS => {
+                Err(Refusal::OutOfRange { min: 0, max: DRIVE_HOLD_MAX_MS.into() })
+            }
+            Down::Drive { drive: MotorDrive::Close(_), .. } if self.senses.gate.is_active() => {
+                Err(Refusal::WearerActive)
+            }
+            Down::Drive { drive, hold_ms } => {
+                let frames_left = u32::from(hold_ms) * FRAME_HZ / 1_000;
+                self.link = Some(LinkDrive { drive, frames_left });
+                Ok(())
+            }
+            Down::Set(Setting { id, value }) => {
+                let id = SettingId::from_number(id).ok_or(Refusal::UnknownSetting)?;
+                self.set(id, value)
+            }
+            Down::Stroke(true) => self.begin_stroke(),
+            Down::Stroke(false) => {
+                self.end_stroke();
+                Ok(())
+            }
+            Down::Teach { codes, age_ms } => {
+                self.detectors.hebbian.hear(&self.config.touch, codes, age_ms);
+                Ok(())
+            }
+            Down::Forget => {
+                self.detectors.hebbian.forget();
+                // What is forgotten does not come back with the power.
+                self.save_asked = true;
+                Ok(())
+            }
+            Down::Save => {
+                self.save_asked = true;
+                Ok(())
+            }
+            Down::Zero if self.senses.forces.is_none() => Err(Refusal::SensorLost),
+            Down::Zero => {
+                if self.senses.zero() {
+                    Ok(())
+                } else {
+                    Err(Refusal::Loaded)
+                }
+            }
+        }
+    }
+
+    pub(super) fn set(&mut self, id: SettingId, value: i32) -> Result<(), Refusal> {
+        let out_of_range = |range: RangeInclusive<i32>| {
+            let (min, max) = range.into_inner();
+            Refusal::OutOfRange { min, max }
+        };
+        self.config.set(id, value).map_err(out_of_range)?;
+        self.settings_changed = self.settings_changed.wrapping_add(1);
+        Ok(())
+    }
+
+    fn begin_stroke(&mut self) -> Result<(), Refusal> {
+        if self.senses.gate.is_active() {
+            return Err(Refusal::WearerActive);
+        }
+        if self.senses.forces.is_none() {
+            return Err(Refusal::SensorLost);
+        }
+        self.cause(Cause::StrokeBegun);
+        if self.mode != GripMode::Explore {
+            return Err(Refusal::SensorLost);
+        }
+        self.detectors.s2.begin_stroke();
+        Ok(())
+    }
+
+    fn end_stroke(&mut self) {
+        self.cause(Cause::StrokeOver);
+    }
+}

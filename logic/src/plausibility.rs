@@ -1,0 +1,80 @@
+//! Plausibility: a detector that reports slip while nothing is held is ignored.
+//!
+//! A detector knows the noise that it was made with. With more of it, from a bad supply, a motor's cable or a broken film,
+//! it takes noise for slip, and the reflex would answer with pulse after pulse up to the force ceiling: nothing that is
+//! held ever stops it. What it reports while the finger is known to touch nothing is certainly wrong.
+
+use tenax_hal_shim::channel::SLOW_HZ;
+
+use crate::array::SPECTRUM_WINDOW;
+use crate::array::past::LAG_MAX;
+
+/// Slow frames after which an empty hand's windows hold nothing any more of what was held or dropped before: the longest,
+/// twice, for the verdict's own hold.
+const EMPTY_AFTER: u16 = (2 * if SPECTRUM_WINDOW > LAG_MAX { SPECTRUM_WINDOW } else { LAG_MAX }) as u16;
+/// Slow frames of silence in an empty hand after which the detector is believed again: ten seconds.
+const SILENT_FOR: u16 = 10 * SLOW_HZ as u16;
+
+/// Whether one detector is believed. It is until it was implausible.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Plausibility {
+    empty: u16,
+    says: u16,
+    silent: u16,
+    ignored: bool,
+}
+
+impl Plausibility {
+    /// Takes a slow frame: whether the finger is known to touch nothing, and whether the detector reports slip all the same.
+    /// A report of up to `tolerated` slow frames in a row is forgiven.
+    pub fn take(&mut self, unloaded: bool, says: bool, tolerated: u16) {
+        self.empty = if unloaded { self.empty.saturating_add(1) } else { 0 };
+        if self.empty <= EMPTY_AFTER {
+            return;
+        }
+        self.says = if says { self.says.saturating_add(1) } else { 0 };
+        self.silent = if says { 0 } else { self.silent.saturating_add(1) };
+        self.ignored = self.says > tolerated || (self.ignored && self.silent < SILENT_FOR);
+    }
+
+    /// Whether it is to be ignored.
+    #[must_use]
+    pub const fn is_ignored(&self) -> bool {
+        self.ignored
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn after(guard: &mut Plausibility, frames: u16, unloaded: bool, says: bool) -> bool {
+        (0..frames).for_each(|_| guard.take(unloaded, says, 0));
+        guard.is_ignored()
+    }
+
+    #[test]
+    fn slip_of_an_empty_hand_is_implausible_and_silence_there_mends_it() {
+        let mut guard = Plausibility::default();
+        assert!(!after(&mut guard, 1_000, false, true), "something is held");
+        assert!(!after(&mut guard, EMPTY_AFTER, true, true), "something was held");
+        assert!(after(&mut guard, 1, true, true));
+        assert!(after(&mut guard, 10_000, false, false), "silence in a grasp proves nothing");
+        assert!(after(&mut guard, EMPTY_AFTER + SILENT_FOR - 1, true, false));
+        assert!(after(&mut guard, 1, true, true), "it has spoken again");
+        assert!(after(&mut guard, SILENT_FOR - 1, true, false));
+        assert!(!after(&mut guard, 1, true, false));
+    }
+
+    #[test]
+    fn a_short_report_is_forgiven_where_it_may_be() {
+        let mut guard = Plausibility::default();
+        after(&mut guard, EMPTY_AFTER, true, false);
+        for _ in 0..16 {
+            guard.take(true, true, 16);
+        }
+        assert!(!guard.is_ignored());
+        guard.take(true, true, 16);
+        assert!(guard.is_ignored());
+    }
+}
