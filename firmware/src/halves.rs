@@ -26,8 +26,9 @@ const STREAM: usize = 0;
 /// Halves that DMA has filled since it was started. Only the interrupt counts up.
 static FILLED: AtomicU32 = AtomicU32::new(0);
 
-/// Why a half cannot be read any more: DMA is writing to it again.
-pub struct WrittenOver;
+/// Why a half cannot be read: DMA is in it, for it came round again, or was stopped there. A stream that is switched off
+/// reports an end that it did not reach.
+pub struct NotWhole;
 
 /// The ring, while DMA writes to it.
 pub struct Halves<'r> {
@@ -70,8 +71,9 @@ impl<'r> Halves<'r> {
     }
 
     /// Reads the half that was filled, as the frame of this number.
-    pub fn read(&mut self, sequence: u32) -> Result<Frame, WrittenOver> {
-        let first = if self.read.is_multiple_of(2) { 0 } else { HALF };
+    pub fn read(&mut self, sequence: u32) -> Result<Frame, NotWhole> {
+        let is_first = self.read.is_multiple_of(2);
+        let first = if is_first { 0 } else { HALF };
         let half: *const u32 = &raw const self.ring[first];
         let frame = Frame::from_pairs(sequence, |scan, pair| {
             // SAFETY: `scan` and `pair` are below their numbers, so this word is in the half; DMA changes it behind the
@@ -79,8 +81,10 @@ impl<'r> Halves<'r> {
             unsafe { half.add(scan * PAIRS + pair).read_volatile() }
         });
         self.read = self.read.wrapping_add(1);
-        // DMA comes back to this half when it has filled the other one, and its interrupt is above control's.
-        if FILLED.load(Ordering::Acquire) == self.read { Ok(frame) } else { Err(WrittenOver) }
+        // Codes left until the ring's end: those of a half or fewer while DMA is in the second.
+        let in_second = pac::DMA2.st(STREAM).ndtr().read().0 <= 2 * HALF as u32;
+        let whole = in_second == is_first && FILLED.load(Ordering::Acquire) == self.read;
+        if whole { Ok(frame) } else { Err(NotWhole) }
     }
 }
 

@@ -38,7 +38,7 @@ enum Trouble {
     Overrun,
     /// A frame did not come in time.
     Silent,
-    /// A frame was read only after the following one had begun, or was written over before it was read.
+    /// A frame was read only after the following one had begun, or DMA was in it when it was read.
     Behind,
 }
 
