@@ -13,18 +13,17 @@ use crate::channel::{
 /// Slots in a cycle.
 pub const SLOTS: usize = FRAMES_PER_SLOW_FRAME as usize;
 
+/// Slots that share the array's work, one after the other: in fewer, a tick would last into the next frame.
+pub const ARRAY_SHARES: u8 = 5;
+
 /// A job that runs once a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Job {
     /// All quadrants of the force sensor have been read: forces, Ft/Fn, S2.
     Forces,
-    /// All elements of the array have been read: covariance and spectrum.
-    ArrayFeatures,
-    /// Structure functions.
-    ArrayStructure,
-    /// Half of the network's first layer.
-    ArrayFirstLayer,
-    /// The rest of the network, and its verdict.
+    /// All elements of the array have been read: the first of [`ARRAY_SHARES`] shares of what there is to compute.
+    ArrayBegins,
+    /// The last of them: the MLP's verdict.
     MlpDecides,
     /// The fingertip is asked for something to save: the lines rest, and the last slot, which has the most to do, is far.
     Save,
@@ -104,14 +103,11 @@ const fn last_reading(first: usize, count: usize) -> u8 {
 /// The slot in which a job runs, after its readings.
 #[must_use]
 pub const fn slot_of(job: Job) -> u8 {
-    // A verdict in fewer slots would end when the next frame has begun.
     let array = last_reading(ARRAY, ARRAY_COUNT) + 1;
     match job {
         Job::Forces => last_reading(FSR, FSR_COUNT),
-        Job::ArrayFeatures => array,
-        Job::ArrayStructure => array + 1,
-        Job::ArrayFirstLayer => array + 2,
-        Job::MlpDecides => array + 3,
+        Job::ArrayBegins => array,
+        Job::MlpDecides => array + ARRAY_SHARES - 1,
         Job::Save => 19,
         Job::EndOfCycle => FRAMES_PER_SLOW_FRAME - 1,
     }
@@ -167,7 +163,7 @@ mod tests {
             })
         };
         assert!(
-            !reads_after(Job::Forces, FSR, FSR_COUNT) && !reads_after(Job::ArrayFeatures, ARRAY, ARRAY_COUNT)
+            !reads_after(Job::Forces, FSR, FSR_COUNT) && !reads_after(Job::ArrayBegins, ARRAY, ARRAY_COUNT)
         );
         assert!(
             slot_of(Job::MlpDecides) < slot_of(Job::Save) && slot_of(Job::Save) < slot_of(Job::EndOfCycle)

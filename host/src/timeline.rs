@@ -1,8 +1,9 @@
 //! When things happened in a run, in seconds.
 
-use tenax_hal_shim::channel::{ARRAY_COUNT, FRAME_HZ, FRAMES_PER_SLOW_FRAME, FSR_COUNT, FSR_SELECT};
+use tenax_hal_shim::channel::{FRAME_HZ, FRAMES_PER_SLOW_FRAME, FSR_COUNT, FSR_SELECT};
 use tenax_hal_shim::wire::{Event, EventKind, Slow, TickRecord};
 use tenax_hal_shim::words::Cause;
+use tenax_logic::array::detector::VERDICT_PLACE;
 
 use crate::board::Recorder;
 
@@ -60,7 +61,7 @@ impl Timeline {
         self.times_s(&self.network)
     }
 
-    /// When the array said slip: the rising edges, s. It does so in the third tick after its last element was read.
+    /// When the array said slip: the rising edges, s. It does so in the tick of its last share.
     #[must_use]
     pub fn array(&self) -> Vec<f64> {
         self.times_s(&self.array)

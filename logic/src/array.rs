@@ -37,7 +37,7 @@ pub use network::{Layer, LookBack, Mlp, TooLarge};
 pub use preprocess::{Features, Preprocessor, PreprocessorConfig};
 
 /// The slot in which every element has been read.
-pub const ARRAY_READ: u8 = slot_of(Job::ArrayFeatures);
+pub const ARRAY_READ: u8 = slot_of(Job::ArrayBegins);
 /// The slot in which the network decides.
 pub const MLP_DECIDES: u8 = slot_of(Job::MlpDecides);
 

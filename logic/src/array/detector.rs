@@ -1,10 +1,19 @@
 //! The verdict: features, network and a threshold with two edges.
 
+use core::ops::Range;
+
 use tenax_hal_shim::channel::SLOW_HZ;
+use tenax_hal_shim::schedule::ARRAY_SHARES;
 
 use super::network::{LookBack, Mlp};
 use super::preprocess::{Features, Preprocessor, PreprocessorConfig};
 use super::{COVARIANCE_WINDOW, FEATURES, Reading, SPECTRUM_WINDOW};
+
+/// Shares of a slow frame's work, one a tick: covariance and spectrum; structure functions and features; either half of
+/// the first layer; the rest of the network and the verdict. A tick that did all would last into the next frame.
+pub const SHARES: usize = ARRAY_SHARES as usize;
+const VERDICT_SHARE: usize = SHARES - 1;
+const _: () = assert!(VERDICT_SHARE == 4);
 
 /// What the normal-force array says (Bamshad 2023).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,7 +88,7 @@ pub struct ArrayDetector<
     unjudged: u16,
     /// Whether there are features that were not judged yet.
     felt: bool,
-    /// What the first layer makes of them.
+    /// What the first layer makes of them: half of it in one share, half in the next.
     seen: [i16; H1],
     logit: Option<i32>,
     verdict: ArrayVerdict,
@@ -109,33 +118,32 @@ impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const
     /// Without features (windows not full, too many elements dead) it stands down: no slip, confidence 0, and an age that
     /// grows until there is something to judge by again.
     pub fn push(&mut self, reading: &Reading) -> ArrayVerdict {
-        self.feel(reading);
-        self.compare();
-        self.see();
-        self.decide()
+        (0..SHARES).for_each(|share| _ = self.work(share, reading));
+        self.verdict
     }
 
-    /// The first of four parts of [`push`](Self::push): covariance and spectrum. A tick that did all would last into the
-    /// next frame's first scan.
-    pub fn feel(&mut self, reading: &Reading) {
-        self.preprocessor.take(reading);
+    /// Does one share of [`push`](Self::push), 0 to [`SHARES`] less one in this order, and gives the verdict with the last.
+    /// `reading` counts in the first; other shares are none.
+    pub fn work(&mut self, share: usize, reading: &Reading) -> Option<ArrayVerdict> {
+        match share {
+            0 => self.preprocessor.take(reading),
+            1 => self.felt = self.preprocessor.finish().is_some(),
+            2 => self.see(0..H1 / 2),
+            3 => self.see(H1 / 2..H1),
+            VERDICT_SHARE => return Some(self.decide()),
+            _ => {}
+        }
+        None
     }
 
-    /// The second part: structure functions, and the features. Once for each [`feel`](Self::feel).
-    pub fn compare(&mut self) {
-        self.felt = self.preprocessor.finish().is_some();
-    }
-
-    /// The third part: half of the first layer.
-    pub fn see(&mut self) {
+    /// Some units of the first layer.
+    fn see(&mut self, units: Range<usize>) {
         if self.felt {
-            self.model.network.see_some(self.preprocessor.features(), 0..H1 / 2, &mut self.seen);
+            self.model.network.see_some(self.preprocessor.features(), units, &mut self.seen);
         }
     }
 
-    /// The last part: the other half, the rest of the network, and the verdict on what was felt. Once for each
-    /// [`feel`](Self::feel).
-    pub fn decide(&mut self) -> ArrayVerdict {
+    fn decide(&mut self) -> ArrayVerdict {
         self.logit = self.evidence();
         match self.logit {
             Some(logit) => self.judge(logit),
@@ -149,9 +157,7 @@ impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const
             self.look_back.clear();
             return None;
         }
-        let network = &self.model.network;
-        network.see_some(self.preprocessor.features(), H1 / 2..H1, &mut self.seen);
-        Some(network.judge(self.look_back.push(self.seen)?))
+        Some(self.model.network.judge(self.look_back.push(self.seen)?))
     }
 
     /// The network's logit of the last slow frame. None if there was nothing to judge by.

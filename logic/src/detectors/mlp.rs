@@ -3,7 +3,7 @@
 use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
 
 use super::{Description, Detector, Said, Sensed};
-use crate::array::{ARRAY_READ, MLP_DECIDES, ShippedDetector};
+use crate::array::{ARRAY_READ, ShippedDetector};
 
 /// The detector, and where in its work it is.
 #[derive(Clone, Debug, Default)]
@@ -16,16 +16,8 @@ impl Detector for MlpDetector {
     /// Lost frames do their share, since it needs none of their samples: or an old verdict would stand for as long as they
     /// are lost.
     fn step(&mut self, _config: &(), sensed: &Sensed<'_>) -> Option<Said> {
-        const COMPARES: u8 = ARRAY_READ + 1;
-        const SEES: u8 = ARRAY_READ + 2;
-        match sensed.slot {
-            ARRAY_READ => self.0.feel(sensed.taxels),
-            COMPARES => self.0.compare(),
-            SEES => self.0.see(),
-            MLP_DECIDES => return Some(Said::slip(self.0.decide().slip)),
-            _ => {}
-        }
-        None
+        let share = sensed.slot.checked_sub(ARRAY_READ)?;
+        self.0.work(share.into(), sensed.taxels).map(|verdict| Said::slip(verdict.slip))
     }
 
     fn describe(&self, _config: &()) -> Description {
