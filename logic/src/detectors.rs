@@ -9,7 +9,7 @@ mod s1;
 mod s2;
 
 use heapless::Vec;
-use tenax_hal_shim::channel::{PVDF_COUNT, STRAIN_COUNT};
+use tenax_hal_shim::channel::PVDF_COUNT;
 use tenax_hal_shim::detector::{DetectorHealth, DetectorId, DetectorSet, Direction, Evidence};
 use tenax_hal_shim::wire::{DETECTORS_MAX, Forces};
 
@@ -17,6 +17,7 @@ use crate::array::{MLP_DECIDES, Reading};
 use crate::config::Config;
 use crate::friction::FrictionDetector;
 use crate::plausibility::Plausibility;
+use crate::strain::Gauges;
 use crate::touch::Touch;
 use crate::vibration::Vibration;
 
@@ -39,8 +40,8 @@ pub struct Sensed<'a> {
     pub envelopes: &'a [i32; PVDF_COUNT],
     /// Whether any PVDF channel gives numbers.
     pub vibration_known: bool,
-    /// Each strain gauge's load, 1/16 of a sample.
-    pub loads: &'a [i32; STRAIN_COUNT],
+    /// The strain gauges.
+    pub strain: &'a Gauges,
     /// Forces, None while the force sensor gives no number.
     pub forces: Option<Forces>,
     /// Whether this frame brought new ones.

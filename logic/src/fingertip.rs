@@ -201,7 +201,7 @@ impl Fingertip {
             vibration,
             envelopes: self.senses.envelopes(),
             vibration_known: self.senses.hears(),
-            loads: &self.senses.gauges().loads(),
+            strain: self.senses.gauges(),
             forces: self.senses.forces,
             forces_are_new: self.senses.forces_are_new,
             taxels: self.senses.taxels(),

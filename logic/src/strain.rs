@@ -58,6 +58,12 @@ impl Gauges {
         }
     }
 
+    /// One of the [`loads`](Self::loads); None of a gauge that is not there.
+    #[must_use]
+    pub fn load(&self, gauge: usize) -> Option<i32> {
+        self.0.get(gauge).map(|gauge| gauge.load)
+    }
+
     /// Loads above zero, 1/16 of a sample. A gauge that gives no number has none.
     #[must_use]
     pub fn loads(&self) -> [i32; STRAIN_COUNT] {

@@ -22,7 +22,7 @@
 
 use core::ops::Range;
 
-use tenax_hal_shim::channel::{PVDF_COUNT, STRAIN_COUNT};
+use tenax_hal_shim::channel::PVDF_COUNT;
 use tenax_hal_shim::wire::{NETWORK_OUTPUTS, NetworkState, RECEPTORS};
 use tenax_hal_shim::words::{Code, Codes, NoLesson};
 
@@ -30,6 +30,7 @@ use crate::config::TouchConfig;
 use crate::hebbian::{
     Activations, FingertipNetwork, Normaliser, NormaliserConfig, Output, Sense, Situation, Teacher, snapshot,
 };
+use crate::strain::Gauges;
 
 /// All that was learned.
 pub type Learned = snapshot::Contents<RECEPTORS, NETWORK_OUTPUTS>;
@@ -73,8 +74,8 @@ const QUIET_STEP: i32 = 1;
 pub struct Felt<'a> {
     /// Each film's envelope, Q16 samples.
     pub envelopes: &'a [i32; PVDF_COUNT],
-    /// Each gauge's load, 1/16 of a sample.
-    pub loads: &'a [i32; STRAIN_COUNT],
+    /// The gauges: loads in 1/16 of a sample.
+    pub gauges: &'a Gauges,
     /// The gauge that was read in this tick.
     pub gauge: usize,
     /// Whether a knock rings, or the motor runs fast.
@@ -131,6 +132,8 @@ pub struct Touch {
     by_gauges: [i64; NETWORK_OUTPUTS],
     /// The films' part of o1.
     by_films: i64,
+    /// Whether a weight has changed since.
+    weights_changed: bool,
     /// What each film hears of nothing, 1/16 of a sample.
     quiet: [i32; PVDF_COUNT],
     /// Whether the finger has been unloaded since the start.
@@ -155,6 +158,7 @@ impl Default for Touch {
             outputs: [Output::default(); NETWORK_OUTPUTS],
             by_gauges: [0; NETWORK_OUTPUTS],
             by_films: 0,
+            weights_changed: false,
             quiet: [0; PVDF_COUNT],
             quiet_known: false,
             since_loud_frames: 0,
@@ -173,38 +177,46 @@ impl Touch {
     pub fn tick(&mut self, config: &TouchConfig, felt: &Felt<'_>) {
         let heard = self.heard(felt);
         self.normaliser.renew(&NORMALISER, 0, &heard, &mut self.activations);
-        if let Some(load) = felt.loads.get(felt.gauge) {
-            let receptor = PVDF_COUNT + felt.gauge;
-            self.normaliser.renew(&NORMALISER, receptor, core::slice::from_ref(load), &mut self.activations);
-            self.by_gauges = [0, 1].map(|output| sum(self.network.parts(output, GAUGES, &self.activations)));
+        if let Some(load) = felt.gauges.load(felt.gauge) {
+            self.weigh(PVDF_COUNT + felt.gauge, load);
         }
-        let mut parts = [0; PVDF_COUNT];
-        for (slot, part) in parts.iter_mut().zip(self.network.parts(0, FILMS, &self.activations)) {
-            *slot = part;
-        }
-        let by_films = sum(parts.iter().copied());
+        let by_films = self.network.sum_of_parts(0, FILMS, &self.activations);
         self.by_films = by_films;
         let [o1_by_gauges, o2_by_gauges] = self.by_gauges;
         self.outputs = [output(by_films + o1_by_gauges), output(o2_by_gauges)];
-        self.judge(config, felt, &parts, by_films);
+        self.judge(config, felt, by_films);
         self.learn(config, felt, &heard);
+    }
+
+    /// Takes a new reading of one gauge into the gauges' part. While no weight has changed, no other gauge's has.
+    fn weigh(&mut self, receptor: usize, load: i32) {
+        let before = self.network.parts_of(receptor, &self.activations);
+        self.normaliser.renew(&NORMALISER, receptor, &[load], &mut self.activations);
+        if core::mem::take(&mut self.weights_changed) {
+            self.by_gauges =
+                [0, 1].map(|output| self.network.sum_of_parts(output, GAUGES, &self.activations));
+            return;
+        }
+        let after = self.network.parts_of(receptor, &self.activations);
+        for ((sum, before), after) in self.by_gauges.iter_mut().zip(before).zip(after) {
+            *sum += i64::from(after) - i64::from(before);
+        }
     }
 
     /// What each film hears beyond its quiet level, 1/16 of a sample; nothing while that is not known.
     fn heard(&mut self, felt: &Felt<'_>) -> [i32; PVDF_COUNT] {
-        let mut heard = [0; PVDF_COUNT];
         self.quiet_known |= felt.unloaded;
         if !self.quiet_known {
-            return heard;
+            return [0; PVDF_COUNT];
         }
-        for ((heard, quiet), envelope) in heard.iter_mut().zip(&mut self.quiet).zip(felt.envelopes) {
-            let beyond = (envelope >> ENVELOPE_SHIFT) - *quiet;
-            if felt.unloaded {
+        let beyond: [i32; PVDF_COUNT] =
+            core::array::from_fn(|n| (felt.envelopes[n] >> ENVELOPE_SHIFT) - self.quiet[n]);
+        if felt.unloaded {
+            for (quiet, beyond) in self.quiet.iter_mut().zip(beyond) {
                 *quiet += beyond.signum() * QUIET_STEP;
             }
-            *heard = beyond.max(0);
         }
-        heard
+        beyond.map(|beyond| beyond.max(0))
     }
 
     /// A frame was lost: nothing is felt.
@@ -225,6 +237,7 @@ impl Touch {
         self.normaliser.reset(&NORMALISER);
         self.network = FingertipNetwork::default();
         self.by_gauges = [0; NETWORK_OUTPUTS];
+        self.weights_changed = true;
         self.balance = Balance::default();
         self.updates = 0;
     }
@@ -289,11 +302,12 @@ impl Touch {
     /// Says why the bytes are refused; then nothing has changed.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), snapshot::Damaged> {
         (self.normaliser, self.network) = snapshot::restore(&NORMALISER, bytes)?;
+        self.weights_changed = true;
         Ok(())
     }
 
-    /// `parts` of o1 by each film, and their sum.
-    fn judge(&mut self, config: &TouchConfig, felt: &Felt<'_>, parts: &[i32; PVDF_COUNT], sum: i64) {
+    /// `sum` is the films' part of o1.
+    fn judge(&mut self, config: &TouchConfig, felt: &Felt<'_>, sum: i64) {
         self.since_loud_frames = if felt.loud { 0 } else { self.since_loud_frames.saturating_add(1) };
         // Once said, half of it keeps it said: one slip has dips.
         let threshold = i64::from(config.slip_permille) / if self.slips { 2 } else { 1 };
@@ -307,8 +321,9 @@ impl Touch {
         }
         self.said_frames = self.said_frames.saturating_add(1);
         // Somewhere: at most so many films have half of the mean.
-        let hears = |part: &&i32| i64::from(**part) * 2 * PVDF_COUNT as i64 <= sum;
-        let somewhere = parts.iter().filter(hears).count() <= SOMEWHERE_MAX;
+        let hears = |part: &i32| i64::from(*part) * 2 * PVDF_COUNT as i64 <= sum;
+        let parts = self.network.parts(0, FILMS, &self.activations);
+        let somewhere = parts.filter(hears).count() <= SOMEWHERE_MAX;
         let long_enough = if somewhere { config.slip_frames } else { config.everywhere_frames };
         self.slips |= self.said_frames >= long_enough;
     }
@@ -319,12 +334,13 @@ impl Touch {
             if self.odd {
                 let codes = self.balance.admit(codes);
                 self.network.learn_some(&config.rule, &self.activations, &codes);
+                self.weights_changed = true;
                 self.updates = self.updates.saturating_add(1);
             } else {
                 let mut readings = [0; RECEPTORS];
                 let (films, gauges) = readings.split_at_mut(PVDF_COUNT);
                 films.copy_from_slice(heard);
-                gauges.copy_from_slice(felt.loads);
+                gauges.copy_from_slice(&felt.gauges.loads());
                 self.normaliser.observe(&NORMALISER, &readings);
             }
         }
@@ -342,8 +358,4 @@ impl Touch {
 /// Equation 4, of a sum of parts.
 fn output(sum: i64) -> Output {
     Output::from_bits(sum.clamp(-ONE, ONE) as i32)
-}
-
-fn sum(parts: impl Iterator<Item = i32>) -> i64 {
-    parts.map(i64::from).sum()
 }

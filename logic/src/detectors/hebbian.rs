@@ -24,7 +24,7 @@ impl Detector for Touch {
             config,
             &Felt {
                 envelopes: sensed.envelopes,
-                loads: sensed.loads,
+                gauges: sensed.strain,
                 gauge: usize::from(sensed.slot),
                 loud: sensed.noisy,
                 unloaded: sensed.unloaded,

@@ -45,13 +45,15 @@ const INPUTS_MAX: usize = 31;
 pub struct Network<const INPUTS: usize, const OUTPUTS: usize> {
     /// Q59.
     weights: [[i64; INPUTS]; OUTPUTS],
+    /// For each output, the sum of the weights' magnitudes, Q23: what the next update divides by.
+    magnitudes: [u32; OUTPUTS],
 }
 
 impl<const INPUTS: usize, const OUTPUTS: usize> Default for Network<INPUTS, OUTPUTS> {
     /// The network before learning: all weights 0, so its outputs are what the teacher says.
     fn default() -> Self {
         const { assert!(INPUTS >= 1 && INPUTS <= INPUTS_MAX, "a network has 1 to 31 inputs") }
-        Self { weights: [[0; INPUTS]; OUTPUTS] }
+        Self { weights: [[0; INPUTS]; OUTPUTS], magnitudes: [0; OUTPUTS] }
     }
 }
 
@@ -83,12 +85,29 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
     ) -> impl Iterator<Item = i32> {
         let weights = self.weights.get(output).and_then(|weights| weights.get(receptors.clone()));
         let activations = activations.as_bits().get(receptors);
-        // A weight of 8 and an activation of 1: 2^29.
         weights
             .unwrap_or_default()
             .iter()
             .zip(activations.unwrap_or_default())
-            .map(|(&weight, &t)| ((i64::from(in_use(weight)) * i64::from(t)) >> 27) as i32)
+            .map(|(&weight, &t)| part(weight, t))
+    }
+
+    /// What one receptor adds to each output; 0 of one that is not there.
+    #[inline]
+    pub fn parts_of(&self, receptor: usize, activations: &Activations<INPUTS>) -> [i32; OUTPUTS] {
+        let Some(&t) = activations.as_bits().get(receptor) else { return [0; OUTPUTS] };
+        core::array::from_fn(|output| part(self.weights[output][receptor], t))
+    }
+
+    /// All that some receptors add to an output: the sum of their [`parts`](Self::parts).
+    #[inline]
+    pub fn sum_of_parts(
+        &self,
+        output: usize,
+        receptors: Range<usize>,
+        activations: &Activations<INPUTS>,
+    ) -> i64 {
+        self.parts(output, receptors, activations).map(i64::from).sum()
     }
 
     /// Equations 5 and 6, once. Two divisions for two outputs.
@@ -106,15 +125,15 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
         activations: &Activations<INPUTS>,
         codes: &[Option<Code>; OUTPUTS],
     ) {
-        for (weights, code) in self.weights.iter_mut().zip(codes) {
+        for ((weights, magnitudes), code) in self.weights.iter_mut().zip(&mut self.magnitudes).zip(codes) {
             let Some(code) = code else { continue };
-            let divisor = weights.iter().fold(rule.delta, |sum, &weight| sum + magnitude(weight));
-            let reciprocal = Reciprocal::of(divisor);
+            let reciprocal = Reciprocal::of(rule.delta + *magnitudes);
             // alpha <= 0.06 in Q35 and the mantissa <= 2 in Q30: at most 0.12 in Q34, below 2^31.
             let scaled_alpha = ((u64::from(rule.alpha) * u64::from(reciprocal.mantissa)) >> 31) as i32;
             let scaled_alpha_v = code.sign() * scaled_alpha;
             // The divisor is below 2^31, so it has a leading zero to spare: a share of it stays a positive i32.
             let shift = reciprocal.shift - 1;
+            *magnitudes = 0;
             for (weight, &t) in weights.iter_mut().zip(activations.as_bits()) {
                 let share = ((magnitude(*weight) + rule.delta) << shift) as i32;
                 let alpha_r_v = (i64::from(share) * i64::from(scaled_alpha_v)) >> 32;
@@ -124,6 +143,7 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
                         + i64::from(alpha_r_v as i32) * i64::from(t)
                         + i64::from(rule.minus_beta) * i64::from(in_use(*weight)),
                 );
+                *magnitudes += magnitude(*weight);
             }
         }
     }
@@ -143,9 +163,11 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
     #[must_use]
     pub fn from_weights(weights: &[[Weight; INPUTS]; OUTPUTS]) -> Self {
         let mut network = Self::default();
-        for (row, from) in network.weights.iter_mut().zip(weights) {
+        let rows = network.weights.iter_mut().zip(&mut network.magnitudes);
+        for ((row, magnitudes), from) in rows.zip(weights) {
             for (weight, from) in row.iter_mut().zip(from) {
                 *weight = limited(i64::from(from.into_bits()) << 32);
+                *magnitudes += magnitude(*weight);
             }
         }
         network
@@ -155,6 +177,13 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
 /// The part of a kept weight that is used, Q27. Rounds down.
 const fn in_use(weight: i64) -> i32 {
     (weight >> 32) as i32
+}
+
+/// What a weight and an activation add to an output, rounded down. With a weight of 8 and an activation of 1 it is 2^29.
+///
+/// `(w t) >> 27` is the upper word of `(2 w) (16 t)`, one instruction; neither factor leaves 32 bits.
+const fn part(weight: i64, t: i32) -> i32 {
+    (((in_use(weight) << 1) as i64 * (t << 4) as i64) >> 32) as i32
 }
 
 /// |w|, Q23, below 2^26. A negative number's complement is its magnitude less 2^-27, and takes one instruction.
@@ -218,6 +247,42 @@ mod tests {
             network.output(&t, &[Code::Minus, Code::Plus]).map(Output::into_bits),
             [ONE as i32, -ONE as i32]
         );
+    }
+
+    #[test]
+    fn a_part_is_the_products_floor_at_every_end() {
+        let weights = [0, 1, -1, 5 << 20, LIMIT, -LIMIT - 1, LIMIT - 1];
+        let ts = [0, 1, -1, 12_345_678, -12_345_678, 1 << 26, -(1 << 26)];
+        for weight in weights {
+            for t in ts {
+                assert_eq!(
+                    i64::from(part(i64::from(weight) << 32, t)),
+                    (i64::from(weight) * i64::from(t)) >> 27
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_kept_sum_of_magnitudes_is_that_of_the_weights() {
+        let rule = Rule::new(&Config { alpha_ppb: 60_000_000, beta_ppb: 1_000, delta_ppm: 1_000 }).unwrap();
+        let mut network = Network::<24, 2>::default();
+        let mut random = 1u32;
+        for step in 0..3_000 {
+            let t = core::array::from_fn(|_| {
+                random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                Activation::from_bits((random as i32) >> 5)
+            });
+            let codes = [[Code::Plus, Code::Minus], [Code::Minus, Code::Zero]][step / 500 % 2];
+            network.learn_some(
+                &rule,
+                &Activations::new(t),
+                &[Some(codes[0]), (step % 3 > 0).then_some(codes[1])],
+            );
+            let sums = network.weights.map(|row| row.iter().map(|&weight| magnitude(weight)).sum::<u32>());
+            assert_eq!(network.magnitudes, sums, "{step}");
+        }
+        assert_eq!(Network::from_weights(&network.weights()).magnitudes, network.magnitudes);
     }
 
     #[test]
