@@ -17,6 +17,8 @@ pub struct Budgets {
     pub tick_instructions_mean: u64,
     /// A tick's instructions, worst.
     pub tick_instructions_max: u64,
+    /// Everything that the core executes in a period of 0.5 ms, mean.
+    pub period_instructions_mean: u64,
     /// The array's sliding covariance, a slow frame.
     pub array_covariance_instructions: u64,
     /// Its sliding spectrum.

@@ -40,6 +40,8 @@ pub struct Report {
     pub overruns: u32,
     /// Control ticks.
     pub ticks: Ticks,
+    /// What the core executes, in instructions.
+    pub load: Load,
     /// The deepest that the stack was, bytes. Null where it cannot be measured.
     pub stack_bytes: Option<u64>,
     /// The first macro slip, and the object's whole fate.
@@ -87,6 +89,25 @@ impl Ticks {
             instructions_max: cost.map(|cost| cost.instructions_max),
             load_percent: cost.map(|cost| load_percent(cost.instructions_mean * f64::from(FRAME_HZ))),
             core_load_percent: cost.map(|cost| load_percent(cost.instructions_per_s)),
+        }
+    }
+}
+
+/// What the core executes, in instructions. Null on a board whose instructions are not counted.
+#[derive(Clone, Debug, Serialize)]
+pub struct Load {
+    /// One tick of the logic, mean, what interrupted it included.
+    pub tick_instructions_mean: Option<f64>,
+    /// A period of 0.5 ms, mean: everything that the core executed, by the number of frames.
+    pub period_instructions_mean: Option<f64>,
+}
+
+impl Load {
+    fn of(run: &Run) -> Self {
+        let cost = run.tick_cost;
+        Self {
+            tick_instructions_mean: cost.map(|cost| cost.instructions_mean),
+            period_instructions_mean: cost.map(|cost| cost.instructions_per_s / f64::from(FRAME_HZ)),
         }
     }
 }
@@ -167,6 +188,7 @@ impl Report {
             wall_s: run.wall_s,
             overruns: run.counters.overruns,
             ticks: Ticks::of(run),
+            load: Load::of(run),
             stack_bytes: run.stack_bytes,
             slip: scores::Slip::of(timeline, subject.truth),
             oracle: oracle::Oracle::of(subject.truth, subject.oracle),

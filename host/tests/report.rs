@@ -7,7 +7,7 @@ use tenax::session::{self, Board};
 const KEYS: &str = "
     scene board seed virtual_s wall_s overruns
     ticks.count ticks.dropped ticks.instructions_mean ticks.instructions_max ticks.load_percent
-    ticks.core_load_percent stack_bytes
+    ticks.core_load_percent load.tick_instructions_mean load.period_instructions_mean stack_bytes
     slip.micro_onset_s slip.macro_onset_s slip.caught slip.latency_ms slip.distance_mm slip.dropped
     slip.macro_slips slip.macro_slips_caught
     oracle.distance_mm oracle.peak_force_n oracle.distance_ratio oracle.peak_force_ratio

@@ -43,7 +43,7 @@ pub fn lines(root: &Path, report: &Report) -> anyhow::Result<Vec<Line>> {
     let bytes = |what, measured, budget, of| Line { what, unit: "bytes", measured, budget, of: Some(of) };
     let instructions =
         |what, measured, budget| Line { what, unit: "instructions", measured, budget, of: None };
-    let mean = report.ticks.instructions_mean.map(|mean| mean.round() as u64);
+    let mean = |mean: Option<f64>| mean.map(|mean| mean.round() as u64);
     let array = array_costs(root)?;
     let of_array = |what, name: &str, budget| {
         instructions(what, array.iter().find(|(own, _)| own == name).map(|(_, most)| *most), budget)
@@ -52,8 +52,13 @@ pub fn lines(root: &Path, report: &Report) -> anyhow::Result<Vec<Line>> {
         bytes("flash", Some(size.flash), budgets.flash_bytes, FLASH_BYTES),
         bytes("RAM, variables", Some(size.ram), budgets.ram_bytes, RAM_BYTES),
         bytes("worst stack", report.stack_bytes, budgets.stack_bytes, RAM_BYTES - size.ram),
-        instructions("tick, mean", mean, budgets.tick_instructions_mean),
+        instructions("tick, mean", mean(report.load.tick_instructions_mean), budgets.tick_instructions_mean),
         instructions("tick, worst", report.ticks.instructions_max, budgets.tick_instructions_max),
+        instructions(
+            "period, mean",
+            mean(report.load.period_instructions_mean),
+            budgets.period_instructions_mean,
+        ),
         of_array("array covariance", "covariance", budgets.array_covariance_instructions),
         of_array("array spectrum", "spectrum", budgets.array_spectrum_instructions),
         of_array("100-32-16-1", "mlp_structure_8_1", budgets.array_network_instructions),
