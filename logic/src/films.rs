@@ -42,7 +42,7 @@ impl Films {
             self.behind = true;
             return None;
         }
-        Some(self.take_each(samples, changed))
+        self.take_each(samples, changed)
     }
 
     #[inline(never)]
@@ -50,31 +50,34 @@ impl Films {
         &mut self,
         samples: &[u16; PVDF_COUNT],
         mut changed: impl FnMut(usize, Change),
-    ) -> [Trust; PVDF_COUNT] {
-        if core::mem::take(&mut self.behind) {
-            for (health, &last) in self.health.iter_mut().zip(&self.last) {
-                health.was_plain(last);
-            }
-        }
-        self.last = *samples;
-        self.any_lost = false;
+    ) -> Option<[Trust; PVDF_COUNT]> {
+        let behind = core::mem::take(&mut self.behind);
         let mut trusts = [Trust::Full; PVDF_COUNT];
-        for (n, (health, &sample)) in self.health.iter_mut().zip(samples).enumerate() {
-            if health.is_plain(&LIMITS, sample) {
+        let mut all_believed = true;
+        self.any_lost = false;
+        let films = self.health.iter_mut().zip(&mut self.last).zip(samples).zip(&mut trusts);
+        for (n, (((health, last), &sample), trust)) in films.enumerate() {
+            let last = core::mem::replace(last, sample);
+            if sample != last && sample >= LIMITS.low && sample <= LIMITS.high && !health.is_lost() {
+                health.was_plain(sample);
                 continue;
+            }
+            if behind {
+                health.was_plain(last);
             }
             let (reading, change) = health.take(&LIMITS, sample);
             if let Some(change) = change {
                 changed(n, change);
             }
-            trusts[n] = match reading {
+            *trust = match reading {
                 Err(_) => Trust::None,
                 Ok(_) if health.same() >= DOUBTED_AFTER => Trust::Doubtful,
                 Ok(_) => Trust::Full,
             };
+            all_believed &= *trust == Trust::Full;
             self.any_lost |= health.is_lost();
         }
-        trusts
+        (!all_believed).then_some(trusts)
     }
 }
 
