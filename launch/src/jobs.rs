@@ -10,14 +10,19 @@ use anyhow::Result;
 use crate::status::{SHOWN_AFTER, Status};
 
 const LOOKED_AT_EVERY: Duration = Duration::from_millis(200);
+/// Characters of one job's state while another runs too.
+const STATE_BESIDE_OTHERS: usize = 28;
 
 /// Something that takes a while.
 pub struct Job<'a> {
     /// What it makes.
     pub name: &'static str,
     /// Makes it.
-    pub run: Box<dyn FnOnce(&Desk) -> Result<()> + Send + 'a>,
+    pub run: Work<'a>,
 }
+
+/// What a job does, told where to say how far it is.
+pub type Work<'a> = Box<dyn FnOnce(&Desk) -> Result<()> + Send + 'a>;
 
 /// Where a job says how far it is.
 #[derive(Default)]
@@ -88,9 +93,13 @@ pub fn run(jobs: Vec<Job<'_>>) -> Result<()> {
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => break,
             }
-            let states = (0..names.len())
-                .filter(|&n| running[n])
-                .map(|n| format!("{} {}", names[n], lock(&desks[n].state)));
+            let left = running.iter().filter(|running| **running).count();
+            let states = (0..names.len()).filter(|&n| running[n]).map(|n| {
+                // So that the others are seen too.
+                let most = if left > 1 { STATE_BESIDE_OTHERS } else { usize::MAX };
+                let state: String = lock(&desks[n].state).chars().take(most).collect();
+                format!("{} {state}", names[n])
+            });
             status.say(states.collect::<Vec<_>>().join(" | "));
         }
         first_error.map_or(Ok(()), Err)

@@ -6,7 +6,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// What takes no longer than this is not worth a line.
-pub const SHOWN_AFTER: Duration = Duration::from_secs(2);
+pub const SHOWN_AFTER: Duration = Duration::from_secs(1);
 /// In a log, a line so often.
 const REPEATED_AFTER: Duration = Duration::from_secs(4);
 const REDRAWN_AFTER: Duration = Duration::from_millis(500);
@@ -101,9 +101,9 @@ impl Line {
         if due && !self.over {
             let text = format!("{:>5} s  {}", self.begun.elapsed().as_secs(), self.text);
             let text: String = text.chars().take(COLUMNS).collect();
-            // Nobody can be told that standard error is gone.
-            let _ =
-                if self.terminal { write!(stderr(), "\r{text}\x1b[K") } else { writeln!(stderr(), "{text}") };
+            let text = if self.terminal { format!("\r{text}\x1b[K") } else { format!("{text}\n") };
+            // In one piece: others write there too. Nobody can be told that standard error is gone.
+            let _ = stderr().write_all(text.as_bytes());
             let _ = stderr().flush();
             self.drawn = self.terminal;
             self.shown = Some(Instant::now());

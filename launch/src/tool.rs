@@ -17,11 +17,16 @@ use crate::jobs::Job;
 pub const BUILD: [&str; 6] =
     ["--release", "--ignore-rust-version", "--package", "tenax", "--features", "tenax/emulator"];
 
-/// Builds the tool of the workspace at `root`.
+/// Builds the tool of the workspace at `root` into the target folder that this program is in.
 #[must_use]
 pub fn job(root: &Path) -> Job<'_> {
-    let run =
-        move |desk: &_| cargo::run(Command::new("cargo").arg("build").args(BUILD).current_dir(root), desk);
+    let run = move |desk: &_| {
+        let mut cargo = Command::new("cargo");
+        cargo.arg("build").args(BUILD).arg("--target-dir").arg(target()?).current_dir(root);
+        // If a person has set it, the target folder is already the one of that target.
+        cargo.env_remove("CARGO_BUILD_TARGET");
+        cargo::run(&mut cargo, desk)
+    };
     Job { name: "tool", run: Box::new(run) }
 }
 
@@ -59,13 +64,17 @@ pub fn become_it(arguments: &[OsString]) -> Result<ExitCode> {
     }
 }
 
-/// `target/debug/tenax-launch` and `target/release/tenax`, wherever Cargo was told to put its target folder.
 fn path() -> Result<PathBuf> {
-    let own = std::env::current_exe().context("cannot tell where this program is")?;
-    let target = own.ancestors().nth(2).context("this program is not in a target folder")?;
-    let path = target.join("release").join(format!("tenax{EXE_SUFFIX}"));
+    let path = target()?.join("release").join(format!("tenax{EXE_SUFFIX}"));
     ensure!(path.exists(), "the build succeeded, but there is no {}", path.display());
     Ok(path)
+}
+
+/// Wherever Cargo was told to put it: this program is its `debug/tenax-launch`, and the tool its `release/tenax`.
+fn target() -> Result<PathBuf> {
+    let own = std::env::current_exe().context("cannot tell where this program is")?;
+    let target = own.ancestors().nth(2).context("this program is not in a target folder")?;
+    Ok(target.to_owned())
 }
 
 #[cfg(test)]

@@ -157,6 +157,18 @@ mod tests {
     use super::*;
 
     #[test]
+    fn the_linker_of_any_toolchain_is_found() {
+        let home = std::env::temp_dir().join(format!("tenax-launch-{}", std::process::id()));
+        assert_eq!(rust_lld(&home), None);
+        let folder = home.join("toolchains/1.95.0-x86_64/lib/rustlib/x86_64/bin");
+        std::fs::create_dir_all(&folder).unwrap();
+        std::fs::create_dir_all(home.join("toolchains/empty")).unwrap();
+        std::fs::write(folder.join("rust-lld"), "").unwrap();
+        assert_eq!(rust_lld(&home), Some(folder.join("rust-lld")));
+        std::fs::remove_dir_all(&home).unwrap();
+    }
+
+    #[test]
     fn versions_are_read_as_debian_prints_them() {
         assert_eq!(
             minor_version("rustc 1.96.0 (ac68faa20 2026-05-25) (built from a source tarball)"),
