@@ -73,11 +73,15 @@ impl Noise {
         const VARIANCE: f64 = COINS as f64 / 4.0 + 1.0 / 12.0;
         const DEVIATION: f64 = 3.476_108_935_769_035;
         const { assert!((DEVIATION * DEVIATION - VARIANCE).abs() < 1e-12) };
-        let bits: [u64; N] = std::array::from_fn(|_| self.0.random());
+        // As whole numbers: a head is 2^17, and the filling an odd number around 0.
+        const HEAD: i32 = 1 << 17;
+        const MIDDLE: i32 = COINS as i32 / 2 * HEAD + HEAD / 2;
+        let mut bits = [0_u64; N];
+        self.0.fill(&mut bits);
         bits.map(|bits| {
-            let heads = f64::from((bits >> (u64::BITS - COINS)).count_ones());
-            let filled = (f64::from(bits as u16) + 0.5) / 65_536.0 - 0.5;
-            (heads - f64::from(COINS) / 2.0 + filled) * (1.0 / DEVIATION)
+            let heads = (bits >> (u64::BITS - COINS)).count_ones() as i32;
+            let filled = 2 * i32::from(bits as u16) + 1;
+            f64::from(heads * HEAD + filled - MIDDLE) * (1.0 / DEVIATION / HEAD as f64)
         })
     }
 

@@ -223,15 +223,15 @@ impl Plant for World {
         if (self.scans - 1).is_multiple_of(SCANS_PER_FRAME as u64) {
             self.slow(t_s, &effort);
         }
-        let mut pins_v = self.slow_v;
+        let Pins(pins_v) = &mut self.pins;
+        *pins_v = self.slow_v;
         pins_v[PVDF..PVDF + PVDF_COUNT].copy_from_slice(&self.films.step(
             t_s,
             &self.touch,
             self.gripper.speed_part(),
         ));
-        self.converter.step(&mut pins_v);
-        self.faults.apply(t_s, &mut pins_v);
-        self.pins = Pins(pins_v);
+        self.converter.step(pins_v);
+        self.faults.apply(t_s, pins_v);
         &self.pins
     }
 

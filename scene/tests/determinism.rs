@@ -37,10 +37,17 @@ fn the_bytes_are_those_of_every_other_build() {
         checksum("explore-wood", 1, 4),
         checksum("rig", 1, 3),
         checksum("steel-balls", 1, 12),
+        checksum("pick-up", 1, 8),
     ];
     assert_eq!(
         sums,
-        [0x1a60_ba24_1f39_8bac, 0xbaa8_d7d3_9cc7_b10c, 0x7a85_0f43_04a5_c67a, 0x1d4c_9f18_dbfd_d9c9],
+        [
+            0x1a60_ba24_1f39_8bac,
+            0xbaa8_d7d3_9cc7_b10c,
+            0x7a85_0f43_04a5_c67a,
+            0x1d4c_9f18_dbfd_d9c9,
+            0x46b9_86c3_b680_7a40
+        ],
         "{sums:#018x?}"
     );
 }

@@ -41,6 +41,8 @@ pub struct Element {
     radius_part: f64,
     area_part: f64,
     load_part: f64,
+    /// Of the ring while it sticks, N/m.
+    stiffness_n_per_m: f64,
     bristle_m: f64,
     sticks: bool,
     released_n: f64,
@@ -87,6 +89,8 @@ pub struct Outcome {
     pub let_go: usize,
     /// The shear that they let go of, N.
     pub released_n: f64,
+    /// The part of the area that sticks after the step.
+    pub stuck_part: f64,
 }
 
 /// The patch: rings whose pressures are evenly spaced.
@@ -113,6 +117,7 @@ impl BrushPatch {
                 radius_part: (1.0 - (low * low + high * high) / 2.0).sqrt(),
                 area_part: high * high - low * low,
                 load_part: high * high * high - low * low * low,
+                stiffness_n_per_m: (high * high - low * low) * pad.stiffness_n_per_m(),
                 bristle_m: 0.0,
                 sticks: true,
                 released_n: 0.0,
@@ -126,32 +131,34 @@ impl BrushPatch {
     /// Each element holds until it carries `mu_s` of its load, drops to `mu_d` and slides there until the motion stops or
     /// turns. It is exact at any step in which the direction does not change.
     pub fn step(&mut self, normal_n: f64, friction: Friction, by_m: f64) -> Outcome {
-        let stiffness_n_per_m = self.pad.stiffness_n_per_m();
         let normal_n = normal_n.max(0.0);
+        let drop = friction.mu_s - friction.mu_d;
+        let rests = by_m == 0.0;
         let mut outcome = Outcome::default();
         for element in &mut self.elements {
             // The deflection at which the friction coefficient is 1, m.
-            let whole_m = element.load_part * normal_n / (element.area_part * stiffness_n_per_m);
+            let whole_m = element.load_part * normal_n / element.stiffness_n_per_m;
             let trial_m = element.bristle_m + by_m;
+            let slides_m = friction.mu_d * whole_m;
             let slid = !element.sticks;
-            let mu = if slid { friction.mu_d } else { friction.mu_s };
-            element.sticks = if slid {
-                trial_m.abs() < mu * whole_m || by_m == 0.0
-            } else {
-                trial_m.abs() <= mu * whole_m
-            };
             element.released_n = 0.0;
+            element.sticks = if slid {
+                trial_m.abs() < slides_m || rests
+            } else {
+                trial_m.abs() <= friction.mu_s * whole_m
+            };
             if element.sticks {
                 element.bristle_m = trial_m;
+                outcome.stuck_part += element.area_part;
             } else {
-                element.bristle_m = (friction.mu_d * whole_m).copysign(trial_m);
+                element.bristle_m = slides_m.copysign(trial_m);
                 if !slid {
-                    element.released_n = (friction.mu_s - friction.mu_d) * element.load_part * normal_n;
+                    element.released_n = drop * element.load_part * normal_n;
                     outcome.let_go += 1;
                     outcome.released_n += element.released_n;
                 }
             }
-            outcome.shear_n += element.area_part * stiffness_n_per_m * element.bristle_m;
+            outcome.shear_n += element.stiffness_n_per_m * element.bristle_m;
         }
         outcome
     }

@@ -1,6 +1,6 @@
 //! L1 at work: a mass that is held by brush patches, moved by one scan at a time.
 
-use super::brush::{BrushPatch, ELEMENTS, Element, Pad};
+use super::brush::{BrushPatch, ELEMENTS, Pad};
 use super::level::{Outcome, Push};
 
 /// The skin of one pad: a [`BrushPatch`] whose bristles are damped as rubber is.
@@ -56,8 +56,7 @@ impl Patch {
 
         let outcome = self.brush.step(normal_n, friction, speed_m_s * dt_s);
         self.shear_n = outcome.shear_n;
-        let stuck = |ring: &Element| if ring.sticks() { ring.area_part() } else { 0.0 };
-        self.stuck_part = self.brush.elements().iter().map(stuck).sum::<f64>().min(1.0);
+        self.stuck_part = outcome.stuck_part.min(1.0);
         Outcome {
             speed_m_s,
             force_n: mass_kg * (speed_m_s - free_m_s) / dt_s,

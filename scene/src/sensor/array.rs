@@ -75,6 +75,8 @@ struct Element {
     part: f64,
     /// How far the surface went over it, m.
     travel_m: f64,
+    /// What the surface adds to its load there, rms 1 over a long way.
+    uneven: f64,
     moved_n: f64,
 }
 
@@ -93,7 +95,7 @@ impl Elements {
         let mut making = Noise::new(parameters.specimen.map_or(seed, u64::from), Source::ArrayMaking);
         let spread = parameters.spread.get();
         let place = parameters.place_mm.get() / 1e3 / patch_m;
-        let mut elements = std::array::from_fn(|n| {
+        let mut elements: [Element; ARRAY_COUNT] = std::array::from_fn(|n| {
             let across = if n / LONG == 0 { -1.0 } else { 1.0 };
             let along = (n % LONG) as f64 * 2.0 / (LONG - 1) as f64 - 1.0;
             // The rows are half an element from the middle, an element being two fifths of the radius long.
@@ -106,6 +108,7 @@ impl Elements {
                 along,
                 part: inside.max(EDGE_PART * EDGE_PART).sqrt(),
                 travel_m: 0.0,
+                uneven: 0.0,
                 moved_n: 0.0,
             }
         });
@@ -113,11 +116,14 @@ impl Elements {
         elements.iter_mut().for_each(|element| element.part /= whole);
         let mut surface = Noise::new(seed, Source::ArraySurface);
         let mut length_m = pitch_m;
-        let waves = std::array::from_fn(|_| {
+        let waves: [Wave; WAVES] = std::array::from_fn(|_| {
             let wave = Wave { length_m, begins: std::array::from_fn(|_| surface.between(0.0, 1.0)) };
             length_m *= WAVE_RATIO;
             wave
         });
+        for element in &mut elements {
+            element.uneven = uneven(&waves, element, patch_m);
+        }
         Self {
             parameters: parameters.clone(),
             knocks: scene.knock.clone(),
@@ -147,7 +153,7 @@ impl Elements {
         let tilts = |element: &Element| {
             p.tilt.get() * (weight * element.along + twist * element.across * element.along)
         };
-        let uneven = |element: &Element| p.uneven.get() * self.uneven(element);
+        let uneven = |element: &Element| p.uneven.get() * element.uneven;
         let mean = |what: &dyn Fn(&Element) -> f64| {
             self.elements.iter().map(|element| element.part * what(element)).sum::<f64>()
         };
@@ -165,14 +171,6 @@ impl Elements {
             pins[n] = front_end_v(rest_mv + read_mv + p.noise_mv.get() * draws[n]);
         }
         pins
-    }
-
-    /// What the surface under an element adds to its load, rms 1 over a long way.
-    fn uneven(&self, element: &Element) -> f64 {
-        let row = usize::from(element.across > 0.0);
-        let at_m = element.travel_m + element.along * self.patch_m;
-        let wave = |wave: &Wave| libm::sin(TAU * (at_m / wave.length_m + wave.begins[row]));
-        self.waves.iter().map(wave).sum::<f64>() * (2.0 / WAVES as f64).sqrt()
     }
 
     /// What a knock and the gear press on the whole pad, N.
@@ -199,7 +197,10 @@ impl Elements {
                 continue;
             }
             let by_m = rub_m_s(touch, element, self.patch_m) * FRAME_S;
-            element.travel_m += by_m;
+            if by_m > 0.0 {
+                element.travel_m += by_m;
+                element.uneven = uneven(&self.waves, element, self.patch_m);
+            }
             // New contacts deal the load out anew.
             let keeps = libm::exp(-by_m / RENEWS_M);
             let dealt_n = part * touch.drop_n * element.part * (1.0 - keeps * keeps).sqrt();
@@ -219,6 +220,14 @@ impl Elements {
             }
         }
     }
+}
+
+/// What the surface under an element adds to its load, rms 1 over a long way.
+fn uneven(waves: &[Wave; WAVES], element: &Element, patch_m: f64) -> f64 {
+    let row = usize::from(element.across > 0.0);
+    let at_m = element.travel_m + element.along * patch_m;
+    let wave = |wave: &Wave| libm::sin(TAU * (at_m / wave.length_m + wave.begins[row]));
+    waves.iter().map(wave).sum::<f64>() * (2.0 / WAVES as f64).sqrt()
 }
 
 /// How fast the surface goes over an element that is off the middle of what turns, m/s.

@@ -9,7 +9,7 @@ use super::front_end_v;
 use super::place::Place;
 use crate::file::sections::{Knock, Pvdf};
 use crate::physics::{TOUCH_N, Touch};
-use crate::pole::LowPass;
+use crate::pole::{LowPass, LowPasses};
 use crate::random::{Noise, Seeds, Source};
 use crate::schedule::STEP_S;
 
@@ -31,6 +31,9 @@ pub(crate) struct Films {
     knocks: Vec<Knock>,
     pitch_m: f64,
     films: [Film; PVDF_COUNT],
+    gains: [f64; PVDF_COUNT],
+    skin: [LowPasses<PVDF_COUNT>; 2],
+    amplifiers: LowPasses<PVDF_COUNT>,
     noise: Noise,
     last_normal_n: f64,
     /// The edge of what slides, before this step.
@@ -41,14 +44,11 @@ pub(crate) struct Films {
 
 #[derive(Clone, Copy, Debug)]
 struct Film {
-    gain: f64,
     /// Of the texture and of a knock's ring: where the film lies. In turns.
     phase: f64,
     place: Place,
     /// The shear that it has heard being let go, N.
     released_n: f64,
-    skin: [LowPass; 2],
-    amplifier: LowPass,
 }
 
 impl Films {
@@ -56,19 +56,13 @@ impl Films {
         let mut making = Noise::new(seeds.making, Source::FilmMaking);
         let spread = parameters.spread.get();
         let skin_s = parameters.skin_ms.get() / 1e3;
-        let film = |_| {
-            let gain = making.sign() * making.between(1.0 - spread, 1.0 + spread);
-            let skin = LowPass::with_tau_s(skin_s * making.between(0.67, 1.5));
-            Film {
-                gain,
-                phase: making.between(0.0, 1.0),
-                place: Place::EVERYWHERE,
-                released_n: 0.0,
-                skin: [skin; 2],
-                amplifier: LowPass::with_corner_hz(parameters.high_pass_hz.get()),
-            }
-        };
-        let mut films: [Film; PVDF_COUNT] = std::array::from_fn(film);
+        let (mut gains, mut skin) = ([0.0; PVDF_COUNT], [LowPass::with_tau_s(skin_s); PVDF_COUNT]);
+        let mut films: [Film; PVDF_COUNT] = std::array::from_fn(|n| {
+            gains[n] = making.sign() * making.between(1.0 - spread, 1.0 + spread);
+            skin[n] = LowPass::with_tau_s(skin_s * making.between(0.67, 1.5));
+            Film { phase: making.between(0.0, 1.0), place: Place::EVERYWHERE, released_n: 0.0 }
+        });
+        let amplifier = LowPass::with_corner_hz(parameters.high_pass_hz.get());
         for film in &mut films {
             film.place = Place::random(&mut making);
         }
@@ -77,6 +71,9 @@ impl Films {
             knocks: knocks.to_vec(),
             pitch_m: pitch_mm / 1e3,
             films,
+            gains,
+            skin: [LowPasses::new(skin); 2],
+            amplifiers: LowPasses::new([amplifier; PVDF_COUNT]),
             noise: Noise::new(seeds.noise, Source::Film),
             last_normal_n: 0.0,
             last_edge: 0.0,
@@ -116,25 +113,33 @@ impl Films {
             0.0
         } + p.mains_mv.get() * libm::sin(TAU * p.mains_hz.get() * t_s);
 
-        let mut pins = [0.0; PVDF_COUNT];
-        let draws: [f64; PVDF_COUNT] = self.noise.normals();
-        for ((film, pin), draw) in self.films.iter_mut().zip(&mut pins).zip(draws) {
-            if touch.released_n > 0.0 {
+        if touch.released_n > 0.0 {
+            for film in &mut self.films {
                 film.released_n += touch.released_n * film.place.hears_release(last_edge, edge);
             }
-            let under_mv = load_mv + p.release_mv_per_n.get() * film.released_n;
-            let deformed_mv = film.skin.iter_mut().fold(under_mv, |mv, pole| pole.step(mv));
-            let mut film_mv = deformed_mv - film.amplifier.step(deformed_mv);
-            if texture_mv > 0.0 {
-                film_mv += texture_mv * film.place.slides(edge) * spike(self.texture_phase + film.phase);
-            }
-            for knock in &self.knocks {
-                film_mv += ring_mv(knock, t_s, film.phase);
-            }
-            film_mv = film.gain * (film_mv + everywhere_mv) + noise_mv * draw;
-            *pin = front_end_v(f64::from(PVDF_REST_MV) + p.gain.get() * film_mv);
         }
-        pins
+        let release_mv_per_n = p.release_mv_per_n.get();
+        let under_mv = std::array::from_fn(|n| load_mv + release_mv_per_n * self.films[n].released_n);
+        let [upper, lower] = &mut self.skin;
+        let deformed_mv = *lower.step(upper.step(&under_mv));
+        let slow_mv = self.amplifiers.step(&deformed_mv);
+        let mut films_mv: [f64; PVDF_COUNT] = std::array::from_fn(|n| deformed_mv[n] - slow_mv[n]);
+        if texture_mv > 0.0 {
+            for (film_mv, film) in films_mv.iter_mut().zip(&self.films) {
+                *film_mv += texture_mv * film.place.slides(edge) * spike(self.texture_phase + film.phase);
+            }
+        }
+        for knock in self.knocks.iter().filter(|knock| rings(knock, t_s)) {
+            for (film_mv, film) in films_mv.iter_mut().zip(&self.films) {
+                *film_mv += ring_mv(knock, t_s, film.phase);
+            }
+        }
+        let draws: [f64; PVDF_COUNT] = self.noise.normals();
+        let gain = p.gain.get();
+        std::array::from_fn(|n| {
+            let film_mv = self.gains[n] * (films_mv[n] + everywhere_mv) + noise_mv * draws[n];
+            front_end_v(f64::from(PVDF_REST_MV) + gain * film_mv)
+        })
     }
 }
 
@@ -144,12 +149,18 @@ fn spike(turns: f64) -> f64 {
     hump * hump * hump * hump - 35.0 / 128.0
 }
 
-pub(super) fn ring_mv(knock: &Knock, t_s: f64, phase: f64) -> f64 {
-    let since_s = t_s - knock.at_s.get_ref().get();
+/// Whether a knock is still heard.
+fn rings(knock: &Knock, t_s: f64) -> bool {
     let decay_s = knock.decay_ms.get() / 1e3;
-    if !(0.0..KNOCK_DECAYS * decay_s).contains(&since_s) {
+    (0.0..KNOCK_DECAYS * decay_s).contains(&(t_s - knock.at_s.get_ref().get()))
+}
+
+pub(super) fn ring_mv(knock: &Knock, t_s: f64, phase: f64) -> f64 {
+    if !rings(knock, t_s) {
         return 0.0;
     }
+    let since_s = t_s - knock.at_s.get_ref().get();
+    let decay_s = knock.decay_ms.get() / 1e3;
     let ring = libm::sin(TAU * (knock.ring_hz.get() * since_s + phase));
     knock.peak_mv.get() * libm::exp(-since_s / decay_s) * ring
 }

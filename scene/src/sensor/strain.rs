@@ -69,6 +69,7 @@ impl Gauges {
         let slid = (1.0 - touch.stuck_part).max(0.0).sqrt();
         let mean = slid * (1.0 - slid * slid / 3.0);
         let mut pins = [0.0; STRAIN_COUNT];
+        let draws: [f64; STRAIN_COUNT] = self.noise.normals();
         for (n, gauge) in self.gauges.iter_mut().enumerate() {
             let shear =
                 if slid > 0.0 { mixed((gauge.pressure / 1.5).min(slid) / mean, gauge.depth) } else { 1.0 };
@@ -77,7 +78,7 @@ impl Gauges {
             gauge.offset_mv += gauge.drift_mv_per_s * FRAME_S;
             let read_mv = felt_mv + self.creep * gauge.crept.step(felt_mv) + gauge.offset_mv;
             let rest_mv = f64::from(CHANNELS[STRAIN + n].rest_mv);
-            pins[n] = front_end_v(rest_mv + read_mv + self.noise_mv * self.noise.normal());
+            pins[n] = front_end_v(rest_mv + read_mv + self.noise_mv * draws[n]);
         }
         pins
     }
