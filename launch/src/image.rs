@@ -53,7 +53,7 @@ pub fn build(root: &Path, binary: Binary) -> Result<PathBuf> {
 #[must_use]
 pub fn job<'a>(root: &'a Path, binaries: &[Binary]) -> Job<'a> {
     let bins: Vec<_> = binaries.iter().flat_map(|binary| ["--bin", binary.name()]).collect();
-    Job { name: "image", run: Box::new(move |desk| run(root, "build", &bins, desk)) }
+    Job { name: "image", done: "built", run: Box::new(move |desk| run(root, "build", &bins, desk)) }
 }
 
 /// Lints the image's package with the toolchain that builds it; a warning is an error.
@@ -62,7 +62,7 @@ pub fn job<'a>(root: &'a Path, binaries: &[Binary]) -> Job<'a> {
 /// Says what to install, or what Clippy said.
 pub fn clippy(root: &Path) -> Result<()> {
     let run = move |desk: &Desk| run(root, "clippy", &["--", "--deny", "warnings"], desk);
-    jobs::run(vec![Job { name: "image's lints", run: Box::new(run) }])
+    jobs::run(vec![Job { name: "image", done: "linted", run: Box::new(run) }])
 }
 
 fn run(root: &Path, verb: &str, more: &[&str], desk: &Desk) -> Result<()> {

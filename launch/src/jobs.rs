@@ -17,6 +17,8 @@ const STATE_BESIDE_OTHERS: usize = 28;
 pub struct Job<'a> {
     /// What it makes.
     pub name: &'static str,
+    /// What has happened to it when it has succeeded: `built`.
+    pub done: &'static str,
     /// Makes it.
     pub run: Work<'a>,
 }
@@ -62,6 +64,7 @@ impl Desk {
 /// The first job's that failed.
 pub fn run(jobs: Vec<Job<'_>>) -> Result<()> {
     let names: Vec<&str> = jobs.iter().map(|job| job.name).collect();
+    let done: Vec<&str> = jobs.iter().map(|job| job.done).collect();
     let desks: Vec<Desk> = jobs.iter().map(|_| Desk::default()).collect();
     let mut running = vec![true; jobs.len()];
     let status = Status::new(&names.join(", "));
@@ -82,7 +85,7 @@ pub fn run(jobs: Vec<Job<'_>>) -> Result<()> {
                     if first_error.is_none() {
                         status.print(|| eprint!("{}", lock(&desks[n].said)));
                         match result {
-                            Ok(()) => tell_time(&status, names[n], begun),
+                            Ok(()) => tell_time(&status, names[n], done[n], begun),
                             Err(error) => {
                                 first_error = Some(error);
                                 end_all(&desks);
@@ -106,9 +109,9 @@ pub fn run(jobs: Vec<Job<'_>>) -> Result<()> {
     })
 }
 
-fn tell_time(status: &Status, name: &str, begun: Instant) {
+fn tell_time(status: &Status, name: &str, done: &str, begun: Instant) {
     if begun.elapsed() >= SHOWN_AFTER {
-        status.print(|| eprintln!("  {name} built in {:.0} s", begun.elapsed().as_secs_f64()));
+        status.print(|| eprintln!("  {name} {done} in {:.0} s", begun.elapsed().as_secs_f64()));
     }
 }
 

@@ -27,7 +27,7 @@ pub fn job(root: &Path) -> Job<'_> {
         cargo.env_remove("CARGO_BUILD_TARGET");
         cargo::run(&mut cargo, desk)
     };
-    Job { name: "tool", run: Box::new(run) }
+    Job { name: "tool", done: "built", run: Box::new(run) }
 }
 
 /// What the tool will ask for when it is called with these arguments. If this is wrong, the tool builds it itself.
