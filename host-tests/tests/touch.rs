@@ -1,6 +1,7 @@
 //! Learning and using at once, on the bench: what a network that was taught may do to the hand, and what it may not.
 
 use tenax_hal_shim::channel::{SAMPLE_MAX, STRAIN, STRAIN_COUNT};
+use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Down, Event, EventKind};
 use tenax_hal_shim::words::Cause;
@@ -26,7 +27,7 @@ fn untaught_it_says_nothing_and_taught_it_answers_a_slip_that_s1_does_not_hear()
     assert!(!closes(&bench.run(4_000)), "nothing slips");
     bench.vibration_mv = SLIP_MV;
     assert!(closes(&bench.run(100)), "50 ms of slip");
-    assert_eq!(bench.last_cause(), Some(Cause::Network));
+    assert_eq!(bench.last_cause(), Some(Cause::Slip(DetectorId::Hebbian)));
     bench.fingertip.command(&Down::Forget).unwrap();
     bench.vibration_mv = 0.0;
     bench.run(400);
@@ -133,6 +134,7 @@ fn switched_on_in_a_grasp_it_does_not_take_hum_for_slip() {
     assert!(!closes(&bench.run(4_000)), "it knows the hum");
     bench.vibration_mv = HUM_MV + SLIP_MV;
     assert!(closes(&bench.run(200)), "and slip in it");
-    let said = |event: &Event| matches!(event.kind, EventKind::Mode { cause: Cause::Network, .. });
+    let said =
+        |event: &Event| matches!(event.kind, EventKind::Mode { cause: Cause::Slip(DetectorId::Hebbian), .. });
     assert!(bench.events.iter().any(said), "{:?}", bench.events);
 }

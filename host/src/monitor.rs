@@ -4,10 +4,11 @@ use std::fmt::{self, Display};
 use std::io::{self, ErrorKind, Read, Write};
 
 use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ, mv_from_sample};
+use tenax_hal_shim::detector::{DetectorHealth, DetectorId, DetectorSet};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{
-    Answer, BadFrame, Event, EventKind, NetworkState, Refusal, Setting, Slow, Up, VERSION,
+    Answer, BadFrame, Event, EventKind, NetworkState, Refusal, Setting, Slow, TickRecord, Up, VERSION,
 };
 
 use crate::link::{Counts, Heard, Inbox};
@@ -182,27 +183,33 @@ fn slow_words(f: &mut fmt::Formatter<'_>, slow: &Slow) -> fmt::Result {
     if slow.lesson.is_some() {
         f.write_str(" learning")?;
     }
-    let slips = slow.ticks.iter().any(|tick| tick.slips);
-    if slow.array.age_ms == 0 {
-        write!(f, " p(slip) {:5.3}", f64::from(slow.array.confidence_permille) / 1e3)?;
+    let mlp = slow
+        .evidence
+        .iter()
+        .find(|(id, own)| *id == DetectorId::Mlp && own.health == DetectorHealth::Working);
+    if let Some((_, mlp)) = mlp {
+        write!(f, " p(slip) {:5.3}", f64::from(mlp.confidence_permille) / 1e3)?;
     }
     match last.map(|tick| tick.drive) {
         Some(MotorDrive::Close(duty)) => write!(f, " closing {}", duty.as_per_mille())?,
         Some(MotorDrive::Open(duty)) => write!(f, " opening {}", duty.as_per_mille())?,
         Some(MotorDrive::Coast) | None => {}
     }
-    for (spoke, name) in [
-        (slow.ticks.iter().any(|tick| tick.s1), " S1"),
-        (slow.s2, " S2"),
-        (slips, " network"),
-        (slow.array.slip, " array"),
-        (slow.wearer_active, " wearer"),
-    ] {
-        if spoke {
-            f.write_str(name)?;
-        }
+    // Said, and what became of it.
+    let ever = |set: fn(&TickRecord) -> DetectorSet| {
+        slow.ticks.iter().fold(DetectorSet::NONE, |ever, tick| ever.or(set(tick)))
+    };
+    let (said, believed, acted) =
+        (ever(|tick| tick.said), ever(|tick| tick.believed), ever(|tick| tick.acted));
+    for id in DetectorId::ALL.into_iter().filter(|id| said.contains(*id)) {
+        let fate = match (acted.contains(id), believed.contains(id)) {
+            (true, _) => "!",
+            (false, true) => "",
+            (false, false) => " ignored",
+        };
+        write!(f, " {}{fate}", id.name())?;
     }
-    Ok(())
+    f.write_str(if slow.wearer_active { " wearer" } else { "" })
 }
 
 fn network_words(f: &mut fmt::Formatter<'_>, network: &NetworkState) -> fmt::Result {

@@ -103,7 +103,7 @@ pub struct Load {
 }
 
 impl Load {
-    fn of(run: &Run) -> Self {
+    fn of(run: &Summary) -> Self {
         let cost = run.tick_cost;
         Self {
             tick_instructions_mean: cost.map(|cost| cost.instructions_mean),

@@ -1,9 +1,9 @@
 //! When things happened in a run, in seconds.
 
-use tenax_hal_shim::channel::{FRAME_HZ, FRAMES_PER_SLOW_FRAME, FSR_COUNT, FSR_SELECT};
+use tenax_hal_shim::channel::{FRAME_HZ, FRAMES_PER_SLOW_FRAME};
+use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::wire::{Event, EventKind, Slow, TickRecord};
 use tenax_hal_shim::words::Cause;
-use tenax_logic::array::detector::VERDICT_PLACE;
 
 use crate::board::Recorder;
 
@@ -11,22 +11,27 @@ use crate::board::Recorder;
 #[derive(Clone, Debug, Default)]
 pub struct Timeline {
     zero_s: f64,
-    s1: Edges,
-    s2: Edges,
-    network: Edges,
-    array: Edges,
+    said: [Edges; DetectorId::COUNT],
+    believed: [Edges; DetectorId::COUNT],
+    acted: [Edges; DetectorId::COUNT],
     wearer: Edges,
 }
 
 impl Recorder for Timeline {
     fn slow(&mut self, slow: &Slow) {
         for (frame, tick) in ticks(slow) {
-            self.s1.push(frame, tick.s1);
-            self.network.push(frame, tick.slips);
+            let by_set = [&mut self.said, &mut self.believed, &mut self.acted];
+            for (edges, set) in by_set.into_iter().zip([tick.said, tick.believed, tick.acted]) {
+                push(edges, set, frame, slow.wearer_active);
+            }
         }
-        self.s2.push(s2_frame(slow), slow.s2);
-        self.array.push(array_frame(slow), slow.array.slip);
-        self.wearer.push(slow.frame, slow.wearer_active);
+        self.wearer.push(slow.frame, slow.wearer_active, true);
+    }
+}
+
+fn push(all: &mut [Edges; DetectorId::COUNT], set: DetectorSet, frame: u32, by_wearer: bool) {
+    for (edges, id) in all.iter_mut().zip(DetectorId::ALL) {
+        edges.push(frame, set.contains(id), by_wearer);
     }
 }
 
@@ -49,29 +54,35 @@ impl Timeline {
         self.zero_s + frame_end_s(frame)
     }
 
-    /// When S1 spoke: the rising edges, s.
+    /// When a detector began to say slip or to warn of it, believed or not, s.
     #[must_use]
-    pub fn s1(&self) -> Vec<f64> {
-        self.times_s(&self.s1)
+    pub fn said(&self, id: DetectorId) -> Vec<f64> {
+        self.times_s(&self.said[id as usize])
     }
 
-    /// When the network said slip: the rising edges, s.
+    /// When it began to say so and was believed, s.
     #[must_use]
-    pub fn network(&self) -> Vec<f64> {
-        self.times_s(&self.network)
+    pub fn believed(&self, id: DetectorId) -> Vec<f64> {
+        self.times_s(&self.believed[id as usize])
     }
 
-    /// When the array said slip: the rising edges, s. It does so in the tick of its last share.
+    /// The same, without what began while the wearer moved the hand: what they do on purpose is neither caught nor false.
     #[must_use]
-    pub fn array(&self) -> Vec<f64> {
-        self.times_s(&self.array)
+    pub fn unmeant(&self, id: DetectorId) -> Vec<f64> {
+        let edges = &self.believed[id as usize];
+        edges
+            .frames
+            .iter()
+            .zip(&edges.by_wearer)
+            .filter(|(_, by)| !**by)
+            .map(|(&frame, _)| self.time_s(frame))
+            .collect()
     }
 
-    /// When S2 spoke: the rising edges, s. A slow frame says only that it did; it does so in the tick that reads the last
-    /// of the four quadrants.
+    /// When the reflex began to act on it, s.
     #[must_use]
-    pub fn s2(&self) -> Vec<f64> {
-        self.times_s(&self.s2)
+    pub fn acted(&self, id: DetectorId) -> Vec<f64> {
+        self.times_s(&self.acted[id as usize])
     }
 
     /// When a muscle became active, s: the tick in which the wearer took over if it was this that changed the mode, else
@@ -104,30 +115,20 @@ pub(crate) fn ticks(slow: &Slow) -> impl Iterator<Item = (u32, &TickRecord)> {
     (first..).zip(&slow.ticks)
 }
 
-/// The frame in whose tick the array's detector spoke.
-fn array_frame(slow: &Slow) -> u32 {
-    let ticks_before_end = u32::from(FRAMES_PER_SLOW_FRAME) - 3 - ARRAY_COUNT as u32;
-    slow.frame.saturating_sub(ticks_before_end)
-}
-
-/// The frame in whose tick S2 was judged.
-fn s2_frame(slow: &Slow) -> u32 {
-    let last_quadrant = u32::from(FSR_SELECT) + FSR_COUNT as u32 - 1;
-    let ticks_before_end = u32::from(FRAMES_PER_SLOW_FRAME) - 1 - last_quadrant;
-    slow.frame.saturating_sub(ticks_before_end)
-}
-
 /// The frames in which something becomes true, the first one included if it is true then.
 #[derive(Clone, Debug, Default)]
 struct Edges {
     before: bool,
     frames: Vec<u32>,
+    /// Whether the wearer moved the hand in each.
+    by_wearer: Vec<bool>,
 }
 
 impl Edges {
-    fn push(&mut self, frame: u32, now: bool) {
+    fn push(&mut self, frame: u32, now: bool, by_wearer: bool) {
         if now && !self.before {
             self.frames.push(frame);
+            self.by_wearer.push(by_wearer);
         }
         self.before = now;
     }
@@ -141,7 +142,7 @@ mod tests {
     fn an_edge_is_where_it_becomes_true() {
         let mut edges = Edges::default();
         for (frame, on) in (0..).zip([true, true, false, true, false]) {
-            edges.push(frame, on);
+            edges.push(frame, on, false);
         }
         assert_eq!(edges.frames, [0, 3]);
         assert!(Edges::default().frames.is_empty());

@@ -6,6 +6,7 @@ mod common;
 use common::{played, recipe, recording};
 use tenax::replay::ReplayPlant;
 use tenax_hal_shim::channel::{self, COUNT, SCAN_HZ};
+use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::front_end::fsr_mv;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_scene::plant::Plant;
@@ -125,7 +126,7 @@ fn s1_sees_the_onset_of_slip_and_neither_quiet_nor_contact() {
         [("pvdf_slip_onset.csv", true), ("pvdf_quiet.csv", false), ("pvdf_contact.csv", false)]
     {
         let Some(outcome) = played(name) else { continue };
-        assert_eq!(outcome.report.detectors.s1.detections > 0, speaks, "{name}");
+        assert_eq!(outcome.report.detectors.of_id(DetectorId::S1).detections > 0, speaks, "{name}");
     }
 }
 

@@ -14,9 +14,15 @@ const KEYS: &str = "
     grip.peak_force_n grip.needed_force_n grip.crushed_at_s grip.dent_mm grip.broken_at_s
     wearer.reflex_while_active wearer.open_latency_ms wearer.active_first_s wearer.active_permille wearer.reflex_ticks
     detectors.s1.first_s detectors.s1.detections detectors.s1.false_alarms
+    detectors.s1.said detectors.s1.acted
     detectors.s2.first_s detectors.s2.detections detectors.s2.false_alarms
-    detectors.network.first_s detectors.network.detections detectors.network.false_alarms
-    detectors.array.first_s detectors.array.detections detectors.array.false_alarms
+    detectors.s2.said detectors.s2.acted
+    detectors.hebbian.first_s detectors.hebbian.detections detectors.hebbian.false_alarms
+    detectors.hebbian.said detectors.hebbian.acted
+    detectors.mlp.first_s detectors.mlp.detections detectors.mlp.false_alarms
+    detectors.mlp.said detectors.mlp.acted
+    detectors.injected.first_s detectors.injected.detections detectors.injected.false_alarms
+    detectors.injected.said detectors.injected.acted
     detectors.wearer.first_s detectors.wearer.detections detectors.wearer.false_alarms
     faults line.bytes line.messages_missed line.telemetry_dropped line.bad_frames replay
 ";

@@ -5,9 +5,11 @@
 use std::time::Instant;
 
 use tenax_hal_shim::channel::{SCAN_HZ, SCANS_PER_FRAME};
+use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::frame::{Frame, Scan, scan_of_pins};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Counters, Received};
+use tenax_logic::detectors::Said;
 use tenax_logic::device::Device;
 use tenax_scene::plant::Plant;
 
@@ -57,6 +59,9 @@ fn closed_loop<P: Plant>(
     let frames = frames_in(plant.duration_s());
     let mut summary = Summary { starts: vec![None], ..Summary::default() };
     let mut device = Device::default();
+    if judge == Judge::Plant {
+        device.fingertip_mut().act_on(DetectorSet::only(DetectorId::Injected));
+    }
     let mut drive = MotorDrive::Coast;
     for sequence in 0..frames {
         let select = Frame::lost(sequence).select();
@@ -73,10 +78,10 @@ fn closed_loop<P: Plant>(
             summary.take(device.command(&Received { sequence: of, message: *command }), recorder);
         }
         let frame = Frame::from_scans(sequence, &scans);
-        drive = match judge {
-            Judge::Detectors => device.tick(&frame),
-            Judge::Plant => device.fingertip_mut().tick_told(&frame, plant.slipping()),
-        };
+        if judge == Judge::Plant {
+            device.fingertip_mut().inject(Said::slip(plant.slipping()));
+        }
+        drive = device.tick(&frame);
         while let Some(message) = device.next_message() {
             summary.take(message, recorder);
         }

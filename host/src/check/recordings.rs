@@ -6,6 +6,8 @@
 use std::fs;
 use std::path::Path;
 
+use tenax_hal_shim::detector::DetectorId;
+
 use super::Bar;
 use super::side_by_side::Group;
 use crate::report::Report;
@@ -132,7 +134,7 @@ fn contracted(report: &Report) -> (String, bool) {
 }
 
 fn s1(report: &Report, speaks: bool) -> (String, bool) {
-    let s1 = &report.detectors.s1;
+    let s1 = report.detectors.of_id(DetectorId::S1);
     let figure = match s1.first_s {
         Some(first_s) => format!("S1 spoke at {first_s:.4} s, {} times in all", s1.detections),
         None => "S1 did not speak".to_owned(),

@@ -1,9 +1,11 @@
 //! A fingertip on the host that goes from one world to the next and keeps what it has learned.
 
 use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, SCANS_PER_FRAME};
+use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::frame::{Frame, Scan, scan_of_pins};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Down, NetworkState, Slow};
+use tenax_logic::detectors::Said;
 use tenax_logic::fingertip::Fingertip;
 use tenax_scene::World;
 use tenax_scene::plant::Plant;
@@ -33,6 +35,10 @@ impl Bench {
     /// Goes through a world to its end. `see` is shown every slow frame: its number in this world, what it tells, and what
     /// the network knows and feels after it.
     pub fn run(&mut self, mut world: World, judge: Judge, see: &mut dyn FnMut(usize, &Slow, &Self)) -> World {
+        self.fingertip.act_on(match judge {
+            Judge::Touch => DetectorSet::ALL,
+            Judge::Vision | Judge::Oracle => DetectorSet::only(DetectorId::Injected),
+        });
         let mut seen = 0;
         let mut drive = MotorDrive::Coast;
         for _ in 0..slow_frames(&world) * usize::from(FRAMES_PER_SLOW_FRAME) {
@@ -49,14 +55,15 @@ impl Bench {
             }
             let frame_in = Frame::from_scans(self.frame, &scans);
             self.frame = self.frame.wrapping_add(1);
-            drive = match judge {
-                Judge::Touch => self.fingertip.tick(&frame_in),
-                Judge::Vision => {
-                    let slips = world.said().is_some_and(|seen| seen.v1 < 0);
-                    self.fingertip.tick_told(&frame_in, slips)
-                }
-                Judge::Oracle => self.fingertip.tick_told(&frame_in, world.slipping()),
+            let told = match judge {
+                Judge::Touch => None,
+                Judge::Vision => Some(world.said().is_some_and(|seen| seen.v1 < 0)),
+                Judge::Oracle => Some(world.slipping()),
             };
+            if let Some(slips) = told {
+                self.fingertip.inject(Said::slip(slips));
+            }
+            drive = self.fingertip.tick(&frame_in);
             if let Some(slow) = self.fingertip.take_slow() {
                 see(seen, &slow, self);
                 seen += 1;

@@ -4,6 +4,7 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
+use tenax_hal_shim::detector::DetectorId;
 use tenax_scene::{SceneFile, Seeds, World};
 
 use super::bench::{Bench, Judge};
@@ -65,10 +66,10 @@ fn one(finger: &Finger, learned: &Bench, seed: u64) -> anyhow::Result<Holding> {
     let world = bench.run(world, Judge::Touch, &mut |n, slow, _| {
         for (place, tick) in slow.ticks.iter().enumerate() {
             let t_s = Trial::time_s(n * usize::from(FRAMES_PER_SLOW_FRAME) + place);
-            if tick.slips && !before && t_s > FROM_S {
+            if tick.said.contains(DetectorId::Hebbian) && !before && t_s > FROM_S {
                 said.push(t_s);
             }
-            before = tick.slips;
+            before = tick.said.contains(DetectorId::Hebbian);
         }
     });
     let slips = &world.truth().slips;

@@ -5,6 +5,7 @@ use std::ops::Range;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use tenax_hal_shim::channel::{FRAME_HZ, FRAMES_PER_SLOW_FRAME};
+use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::wire::Slow;
 use tenax_scene::truth::Slip;
 use tenax_scene::{Seeds, Truth, World};
@@ -64,7 +65,7 @@ impl Trial {
         self.outputs.resize(n * ticks, [0; 2]);
         self.slips.resize(n * ticks, false);
         self.outputs.extend(slow.ticks.iter().map(|tick| tick.outputs));
-        self.slips.extend(slow.ticks.iter().map(|tick| tick.slips));
+        self.slips.extend(slow.ticks.iter().map(|tick| tick.said.contains(DetectorId::Hebbian)));
     }
 
     /// It is over; this was true.

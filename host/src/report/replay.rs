@@ -3,6 +3,7 @@
 use std::ops::RangeInclusive;
 
 use serde::Serialize;
+use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::wire::Slow;
 
 use super::wearer::Wearer;
@@ -136,7 +137,8 @@ impl Replay {
 
 impl Force {
     fn new(crest: Option<Crest>, timeline: &Timeline) -> Self {
-        let (s1, s2) = (timeline.s1().first().copied(), timeline.s2().first().copied());
+        let first = |id| timeline.believed(id).first().copied();
+        let (s1, s2) = (first(DetectorId::S1), first(DetectorId::S2));
         let before_ms = |first: Option<f64>| Some((crest?.peak_s - first?) * 1e3);
         Self {
             peak_ratio: crest.map(|crest| crest.peak_ratio),

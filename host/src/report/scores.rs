@@ -1,7 +1,10 @@
 //! Event scores (DESIGN.md, "Words"): a macro slip is caught if a detection falls between its micro onset and 50 ms after
-//! its macro onset; a detection outside every slip is a false alarm. A detection is a rising edge of a detector.
+//! its macro onset; a detection outside every slip is a false alarm. A detection is where a detector begins to say slip, or to
+//! warn of it, and is believed.
 
-use serde::Serialize;
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::wire::Event;
 
 use super::fate::{Fate, SlipSpan};
@@ -17,7 +20,7 @@ pub struct Slip {
     pub micro_onset_s: Option<f64>,
     /// When all of it did, s.
     pub macro_onset_s: Option<f64>,
-    /// Whether S1 or S2 caught it.
+    /// Whether any detector caught it.
     pub caught: Option<bool>,
     /// Detection minus macro onset, ms: negative is early.
     pub latency_ms: Option<f64>,
@@ -38,7 +41,7 @@ impl Slip {
         let Some(truth) = truth else {
             return Self::default();
         };
-        let mut detections = [timeline.s1(), timeline.s2(), timeline.network(), timeline.array()].concat();
+        let mut detections = DetectorId::ALL.map(|id| timeline.believed(id)).concat();
         detections.sort_by(f64::total_cmp);
         let macro_slips: Vec<&SlipSpan> =
             truth.slips.iter().filter(|slip| slip.macro_onset_s.is_some()).collect();
@@ -65,27 +68,48 @@ impl Slip {
 /// One detector's part.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Detector {
-    /// When it first spoke, s.
+    /// When it was first believed, s.
     pub first_s: Option<f64>,
-    /// How often it began to speak.
+    /// How often it began to speak and was believed.
     pub detections: usize,
-    /// How often outside every slip. Null where nobody knows when it slipped.
+    /// How often that was outside every slip, and not while the wearer moved the hand. Null where nobody knows when it
+    /// slipped.
+    pub false_alarms: Option<usize>,
+    /// How often it began to speak, believed or not.
+    pub said: usize,
+    /// How often the reflex began to act on it.
+    pub acted: usize,
+}
+
+/// The myoelectric gate's part; it has no false alarms here, since its truth is not slip.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Gate {
+    /// When a muscle first became active, s.
+    pub first_s: Option<f64>,
+    /// How often one did.
+    pub detections: usize,
+    /// Never known.
     pub false_alarms: Option<usize>,
 }
 
 /// Every detector's.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default)]
 pub struct Detectors {
-    /// Vibration.
-    pub s1: Detector,
-    /// Ft/Fn.
-    pub s2: Detector,
-    /// The network that learned from a camera.
-    pub network: Detector,
-    /// The normal-force array.
-    pub array: Detector,
-    /// The myoelectric gate; it has no false alarms here, since its truth is not slip.
-    pub wearer: Detector,
+    /// Those of slip.
+    pub all: Vec<(DetectorId, Detector)>,
+    /// The wearer's muscles.
+    pub wearer: Gate,
+}
+
+impl Serialize for Detectors {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.all.len() + 1))?;
+        for (id, detector) in &self.all {
+            map.serialize_entry(id.name(), detector)?;
+        }
+        map.serialize_entry("wearer", &self.wearer)?;
+        map.end()
+    }
 }
 
 impl Detectors {
@@ -93,26 +117,35 @@ impl Detectors {
     #[must_use]
     pub fn of(timeline: &Timeline, events: &[Event], truth: Option<&Fate>) -> Self {
         let slips = truth.map(|truth| truth.slips.as_slice());
+        let wearer = timeline.wearer(events);
         Self {
-            s1: detector(&timeline.s1(), slips),
-            s2: detector(&timeline.s2(), slips),
-            network: detector(&timeline.network(), slips),
-            array: detector(&timeline.array(), slips),
-            wearer: detector(&timeline.wearer(events), None),
+            all: DetectorId::ALL.map(|id| (id, detector(timeline, id, slips))).into(),
+            wearer: Gate { first_s: wearer.first().copied(), detections: wearer.len(), false_alarms: None },
         }
+    }
+
+    /// One of them.
+    #[must_use]
+    pub fn of_id(&self, id: DetectorId) -> Detector {
+        self.all.iter().find(|(own, _)| *own == id).map_or_else(Detector::default, |(_, own)| own.clone())
     }
 }
 
-fn detector(detections: &[f64], slips: Option<&[SlipSpan]>) -> Detector {
-    let outside = |slips: &[SlipSpan]| {
-        let in_slip = |t: f64| slips.iter().any(|slip| (slip.micro_onset_s..=last_s(slip)).contains(&t));
-        detections.iter().filter(|&&t| !in_slip(t)).count()
-    };
+fn detector(timeline: &Timeline, id: DetectorId, slips: Option<&[SlipSpan]>) -> Detector {
+    let believed = timeline.believed(id);
     Detector {
-        first_s: detections.first().copied(),
-        detections: detections.len(),
-        false_alarms: slips.map(outside),
+        first_s: believed.first().copied(),
+        detections: believed.len(),
+        false_alarms: slips.map(|slips| outside(&timeline.unmeant(id), slips)),
+        said: timeline.said(id).len(),
+        acted: timeline.acted(id).len(),
     }
+}
+
+/// How many of these instants belong to no slip.
+fn outside(detections: &[f64], slips: &[SlipSpan]) -> usize {
+    let in_slip = |t: f64| slips.iter().any(|slip| (slip.micro_onset_s..=last_s(slip)).contains(&t));
+    detections.iter().filter(|&&t| !in_slip(t)).count()
 }
 
 /// Until when a detection belongs to this slip, s.
@@ -134,12 +167,6 @@ mod tests {
 
     #[test]
     fn a_detection_belongs_to_a_slip_from_its_micro_onset_to_50_ms_after_its_macro_onset() {
-        let scored = detector(&[0.99, 1.0, 1.1499, 1.16], Some(&[SLIP]));
-        assert_eq!(scored, Detector { first_s: Some(0.99), detections: 4, false_alarms: Some(2) });
-    }
-
-    #[test]
-    fn nobody_knows_of_false_alarms_without_a_truth() {
-        assert_eq!(detector(&[1.0], None).false_alarms, None);
+        assert_eq!(outside(&[0.99, 1.0, 1.1499, 1.16], &[SLIP]), 2);
     }
 }

@@ -2,6 +2,8 @@
 
 use std::fmt::{self, Display};
 
+use tenax_hal_shim::detector::DetectorId;
+
 use super::replay::{Force, Muscle, Replay};
 use super::scores::Detector;
 use super::{CYCLES_PER_INSTRUCTION, Report};
@@ -44,10 +46,12 @@ impl Display for Text<'_> {
         ticks(f, report)?;
         slip(f, report)?;
         wearer(f, report)?;
-        detector(f, "S1 vibration", &report.detectors.s1)?;
-        detector(f, "S2 Ft/Fn", &report.detectors.s2)?;
-        detector(f, "network", &report.detectors.network)?;
-        detector(f, "array", &report.detectors.array)?;
+        for (id, own) in &report.detectors.all {
+            // Nothing is injected but by an oracle.
+            if *id != DetectorId::Injected || own.said > 0 {
+                detector(f, id.title(), own)?;
+            }
+        }
         if let Some(recorded) = &report.replay {
             replay(f, recorded)?;
         }
@@ -147,9 +151,11 @@ fn detector(f: &mut fmt::Formatter<'_>, label: &str, detector: &Detector) -> fmt
     line!(
         f,
         label,
-        "first {:.4}, {} detections{false_alarms}",
+        "first {:.4}, said {}, believed {}, acted on {}{false_alarms}",
         Or(detector.first_s, "s"),
-        detector.detections
+        detector.said,
+        detector.detections,
+        detector.acted
     )
 }
 

@@ -4,12 +4,13 @@ use std::ops::Range;
 
 use serde::Serialize;
 use tenax_hal_shim::channel::{
-    CHANNELS, FRAME_HZ, FRAMES_PER_SLOW_FRAME, MYO_EXTENSOR, MYO_SELECT, RANK_SWITCH_B, SCANS_PER_FRAME,
-    mv_from_sample, select_of_place,
+    CHANNELS, FRAME_HZ, FRAMES_PER_SLOW_FRAME, MYO_EXTENSOR, MYO_FLEXOR, RANK_SWITCH_B, SCANS_PER_FRAME,
+    mv_from_sample,
 };
 use tenax_hal_shim::frame::Scan;
 use tenax_hal_shim::front_end::MYO_REST_MV;
 use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::schedule::SCHEDULE;
 use tenax_hal_shim::wire::{Slow, TickRecord};
 use tenax_hal_shim::words::DriveSource;
 use tenax_logic::config::Config;
@@ -41,7 +42,8 @@ impl Muscles {
     /// Takes a frame's scans in.
     fn take(&mut self, frame: usize, scans: &[Scan]) {
         let place = frame % usize::from(FRAMES_PER_SLOW_FRAME);
-        let Some(muscle @ 0..=1) = select_of_place(place as u8).checked_sub(MYO_SELECT) else {
+        let channel = SCHEDULE[place].switch_b.map(usize::from);
+        let Some(muscle @ 0..=1) = channel.and_then(|channel| channel.checked_sub(MYO_FLEXOR)) else {
             return;
         };
         let sample: u16 = scans.iter().map(|scan| scan[RANK_SWITCH_B]).sum();
