@@ -22,10 +22,18 @@ pub enum Grip {
 }
 
 /// The reflex's memory.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct Reflex {
     elapsed: u32,
+    /// Frames since the last pulse that answered incipient slip, saturating.
+    since_incipient: u32,
     blind: u32,
+}
+
+impl Default for Reflex {
+    fn default() -> Self {
+        Self { elapsed: 0, since_incipient: u32::MAX, blind: 0 }
+    }
 }
 
 impl Reflex {
@@ -42,6 +50,9 @@ impl Reflex {
     /// The mode has changed: what is timed begins now.
     pub fn enter(&mut self, mode: GripMode) {
         self.elapsed = 0;
+        if mode == GripMode::Incipient {
+            self.since_incipient = 0;
+        }
         if mode == GripMode::Wearer {
             self.blind = 0;
         }
@@ -56,6 +67,7 @@ impl Reflex {
     /// Goes on by one frame.
     pub fn tick(&mut self, mode: GripMode, grip: Grip) {
         self.elapsed = self.elapsed.saturating_add(1);
+        self.since_incipient = self.since_incipient.saturating_add(1);
         if crate::mode::closes(mode) && grip == Grip::Unknown {
             self.blind = self.blind.saturating_add(1);
         }
@@ -71,6 +83,13 @@ impl Reflex {
             _ => 0,
         };
         self.elapsed >= length || !self.may_close(config, grip)
+    }
+
+    /// Whether incipient slip may be answered again: the last answer has had its time to show in Ft/Fn. Slip itself is
+    /// answered meanwhile.
+    #[must_use]
+    pub const fn may_tighten(&self, config: &GripConfig) -> bool {
+        self.since_incipient >= config.incipient_frames + config.settle_frames
     }
 
     /// Whether the object has had its time to settle.
