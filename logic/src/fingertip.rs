@@ -264,7 +264,10 @@ impl Fingertip {
         if may_close && let Some(id) = heard.slip.first() {
             self.cause(Cause::Slip(id));
         }
-        if may_close && self.reflex.may_tighten(&config) && let Some(id) = heard.incipient.first() {
+        if may_close
+            && self.reflex.may_tighten(&config)
+            && let Some(id) = heard.incipient.first()
+        {
             self.cause(Cause::Incipient(id));
         }
         if mode::closes(self.mode) && self.reflex.pulse_over(&config, self.mode, slips, grip) {

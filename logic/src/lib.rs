@@ -19,6 +19,7 @@ pub mod config;
 pub mod detectors;
 pub mod device;
 pub mod elements;
+pub mod emg;
 pub mod films;
 pub mod fingertip;
 pub mod forces;
