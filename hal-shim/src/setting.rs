@@ -84,7 +84,7 @@ settings! {
     /// A vibration with more than this part of its envelope above the slip band is a knock
     7 KnockRatio "knock-ratio-permille" "per mille" [100, 10_000] = 500;
     /// A knock is over after this long; what lasts longer is slip
-    8 KnockLength "knock-ms" "ms" [1, 200] = 30;
+    8 KnockLength "knock-ms" "ms" [1, 200] = 45;
     /// The part of a measured static friction that becomes S2
     9 S2OfMuS "s2-of-mu-s-permille" "per mille" [300, 950] = 800;
     /// Normal force from which the finger counts as loaded

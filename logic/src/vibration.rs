@@ -26,6 +26,11 @@ pub const BAND_HIGH_HZ: u32 = 150;
 /// Time constant of the envelope, us.
 pub const ENVELOPE_US: u32 = 8_000;
 
+/// A loud vibration that has rung for this long is a knock's, in frames: what slides rings for a tick now and then.
+const KNOCK_RINGS: u32 = 12;
+/// A peak of the envelope is forgotten over `2^PEAK_SHIFT` frames, 0.13 s.
+const PEAK_SHIFT: u32 = 8;
+
 /// Fraction bits of a conditioned sample.
 const Q: u32 = 16;
 /// The sample in the middle of the converter's range.
@@ -120,6 +125,11 @@ pub struct VibrationDetector {
     above: i32,
     loud_frames: u32,
     ringing_frames: u32,
+    /// The largest envelope since it became loud, slowly forgotten, and how many loud frames it took.
+    peak: i32,
+    peak_at: u32,
+    /// For how many frames it has rung since it became loud.
+    rang_frames: u32,
     s1: bool,
 }
 
@@ -188,8 +198,17 @@ impl VibrationDetector {
         let rings = above > i32::from(config.knock_level) << Q
             && i64::from(above) * 1_000 > i64::from(envelope) * i64::from(config.knock_permille);
         self.ringing_frames = if rings { self.ringing_frames.saturating_add(1) } else { 0 };
-        let knock = rings && self.loud_frames < config.knock_frames;
-        self.s1 = loud && (self.s1 || !knock);
+        self.rang_frames = if loud { self.rang_frames.saturating_add(rings.into()) } else { 0 };
+        self.peak -= self.peak >> PEAK_SHIFT;
+        if !loud || envelope >= self.peak {
+            self.peak = envelope;
+            self.peak_at = self.loud_frames;
+        }
+        // What has rung is a knock until it has lasted longer than one and has not died away as one: a knock is loudest as
+        // it begins.
+        let lasts = self.loud_frames >= config.knock_frames && 4 * self.peak_at >= 3 * config.knock_frames;
+        let knock = rings || self.rang_frames >= KNOCK_RINGS;
+        self.s1 = loud && (self.s1 || !knock || lasts);
         Vibration {
             level: (envelope >> Q).clamp(0, i32::from(TickRecord::VIBRATION_MAX)) as u16,
             s1: self.s1,
