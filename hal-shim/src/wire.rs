@@ -41,6 +41,8 @@ pub const NETWORK_OUTPUTS: usize = 2;
 pub struct Forces {
     /// The paper's Fn, mN: see `tenax_logic::forces` for what it is not.
     pub fn_mn: i32,
+    /// The load, mN: the sum of the quadrants. What is decided by a force is decided by this.
+    pub load_mn: i32,
     /// Shear along x, mN.
     pub fx_mn: i32,
     /// Shear along y, mN.

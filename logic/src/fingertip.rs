@@ -229,6 +229,7 @@ impl Fingertip {
         // A lost frame says nothing about anybody's wish, so nobody's is carried out.
         let (drive, source) = if frame.valid { arbitrate(wishes) } else { Default::default() };
         self.drive = drive;
+        self.senses.driven(drive);
         self.reflex.tick(self.mode, self.senses.grip(&self.config));
         self.journal.tick(
             frame.slot(),

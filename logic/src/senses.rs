@@ -5,6 +5,7 @@ use tenax_hal_shim::channel::{
 };
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::front_end::FSR_REST_MV;
+use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::SCHEDULE;
 use tenax_hal_shim::wire::Forces;
 use tenax_hal_shim::words::{Capability, Fault};
@@ -35,6 +36,9 @@ const MUSCLE_MISSES: u8 = 3;
 const MYO_HZ: u32 = 3 * SLOW_HZ;
 /// Equal readings of an active muscle in a row that no muscle gives: 50 ms. At rest, the general limit holds.
 const MYO_FROZEN_AFTER: u32 = MYO_HZ / 20;
+/// The hand is surely open when it has been opened for this long since it was last closed, in frames: at its slowest it has
+/// gone 2 cm.
+const OPEN_FRAMES: u32 = frames(600);
 /// A quadrant this far above its zero when the hand is switched on is pressed, uV.
 const PRESSED_UV: i32 = 100_000;
 
@@ -57,6 +61,8 @@ pub struct Senses {
     gauges: Gauges,
     elements: Elements,
     frames_seen: u32,
+    /// Frames in which the hand was opened since it was last closed.
+    open_frames: u32,
     frames_lost: u32,
     films_usable: bool,
     lost: [bool; 3],
@@ -111,6 +117,15 @@ impl Senses {
         }
         self.gate.tick(&config.gate);
         self.capabilities(journal);
+    }
+
+    /// How the motor was driven in the last frame: what has been opened for a while, and not closed since, holds nothing.
+    pub const fn driven(&mut self, drive: MotorDrive) {
+        match drive {
+            MotorDrive::Open(_) => self.open_frames = self.open_frames.saturating_add(1),
+            MotorDrive::Close(_) => self.open_frames = 0,
+            MotorDrive::Coast => {}
+        }
     }
 
     /// Takes the last readings of the force sensor and of the gauges as their zeros; false if the finger is loaded.
@@ -171,15 +186,15 @@ impl Senses {
     pub fn grip(&self, config: &Config) -> Grip {
         match self.forces {
             None => Grip::Unknown,
-            Some(forces) if forces.fn_mn < config.friction.loaded_mn => Grip::Unloaded,
-            Some(forces) => Grip::Holds(forces.fn_mn),
+            Some(forces) if forces.load_mn < config.friction.loaded_mn => Grip::Unloaded,
+            Some(forces) => Grip::Holds(forces.load_mn),
         }
     }
 
     /// Known to touch nothing at all: far below where a finger counts as loaded.
     #[must_use]
     pub fn is_unloaded(&self, config: &Config) -> bool {
-        !self.pressed && self.forces.is_some_and(|forces| forces.fn_mn < config.friction.loaded_mn / 4)
+        !self.pressed && self.forces.is_some_and(|forces| forces.load_mn < config.friction.loaded_mn / 4)
     }
 
     fn listen(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
@@ -262,6 +277,9 @@ impl Senses {
             forces.ratio_permille = None;
         }
         self.forces = Some(forces);
+        if self.open_frames >= OPEN_FRAMES {
+            self.force_sensor.follow();
+        }
     }
 
     fn muscle(&mut self, config: &Config, muscle: usize, sample: u16, journal: &mut Journal) {
