@@ -63,6 +63,8 @@ pub enum Reason {
     Saturated,
     /// The same code for longer than the noise of any working sensor allows.
     Stuck,
+    /// Loud by itself, again and again, while its neighbours are quiet: hum, a bad contact, a crack.
+    Noisy,
 }
 
 /// What the fingertip can no longer do.

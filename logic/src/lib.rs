@@ -36,6 +36,7 @@ pub mod plausibility;
 mod samples;
 pub mod senses;
 pub mod settings;
+pub mod solo;
 pub mod store;
 pub mod strain;
 pub mod touch;

@@ -8,7 +8,7 @@ use tenax_hal_shim::front_end::FSR_REST_MV;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::SCHEDULE;
 use tenax_hal_shim::wire::Forces;
-use tenax_hal_shim::words::{Capability, Fault};
+use tenax_hal_shim::words::{Capability, Fault, Reason};
 
 use crate::array::Reading;
 use crate::config::{Config, frames};
@@ -103,7 +103,7 @@ impl Senses {
     /// switches is soon too old to be believed.
     pub fn lose(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
         self.frames_lost = self.frames_lost.saturating_add(1);
-        self.vibration = Vibration::default();
+        self.vibration = Vibration { masked: self.vibration.masked, ..Vibration::default() };
         self.forces_are_new = false;
         let slot = &SCHEDULE[usize::from(frame.slot())];
         for channel in [slot.switch_a, slot.switch_b].into_iter().flatten() {
@@ -200,7 +200,21 @@ impl Senses {
     fn listen(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
         let trusts = self.films.take(&frame.pvdf, |film, change| report(journal, PVDF + film, Some(change)));
         self.films_usable = trusts.is_none_or(|trusts| trusts.iter().any(|&trust| trust != Trust::None));
+        let masked = self.vibration.masked;
         self.vibration = self.detector.hear(&config.vibration, &frame.pvdf, trusts.as_ref());
+        if self.vibration.masked != masked {
+            self.mask(masked ^ self.vibration.masked, journal);
+        }
+    }
+
+    /// Reports the films that are masked now and were not, or the other way round.
+    #[inline(never)]
+    fn mask(&self, changed: u16, journal: &mut Journal) {
+        for film in (0..PVDF_COUNT).filter(|film| changed >> film & 1 != 0) {
+            let lost = self.vibration.masked >> film & 1 != 0;
+            let change = if lost { Change::Lost(Reason::Noisy) } else { Change::Back };
+            report(journal, PVDF + film, Some(change));
+        }
     }
 
     fn on_switch_a(&mut self, config: &Config, channel: usize, sample: u16, journal: &mut Journal) {

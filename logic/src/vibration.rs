@@ -18,6 +18,7 @@ use tenax_hal_shim::wire::TickRecord;
 
 use crate::config::VibrationConfig;
 use crate::low_pass::LowPass;
+use crate::solo::Solo;
 
 /// Lower edge of the slip band, Hz.
 pub const BAND_LOW_HZ: u32 = 20;
@@ -59,6 +60,11 @@ pub struct Heard {
 }
 
 impl Film {
+    /// Its envelope, or what it would be if the film were believed, Q16 samples.
+    const fn level(&self) -> i32 {
+        self.envelope
+    }
+
     /// Takes its first sample as the offset, so that being switched on is no vibration; later ones change nothing.
     pub fn prime(&mut self, sample: u16) {
         if !self.primed {
@@ -113,6 +119,8 @@ pub struct Vibration {
     pub s1: bool,
     /// Whether it rings above the slip band as a knock does, and has not lasted longer than one.
     pub knock: bool,
+    /// The films that are masked because each was loud alone, a bit each.
+    pub masked: u16,
 }
 
 /// The detector.
@@ -131,6 +139,7 @@ pub struct VibrationDetector {
     /// For how many frames it has rung since it became loud.
     rang_frames: u32,
     s1: bool,
+    solo: Solo,
 }
 
 impl VibrationDetector {
@@ -141,12 +150,35 @@ impl VibrationDetector {
         samples: &[u16; PVDF_COUNT],
         trusts: Option<&[Trust; PVDF_COUNT]>,
     ) -> Vibration {
+        if self.solo.masked() != 0 {
+            let trusts = self.with_masks(config, trusts);
+            let loudest = self.hear_each(samples, &trusts);
+            return self.judge(config, loudest);
+        }
         let loudest = match trusts {
             None if self.all_primed => self.hear_all(samples),
             None => self.hear_each(samples, &[Trust::Full; PVDF_COUNT]),
             Some(trusts) => self.hear_each(samples, trusts),
         };
         self.judge(config, loudest)
+    }
+
+    /// What a masked film hears is as doubtful as what a freezing one does.
+    #[inline(never)]
+    fn with_masks(
+        &mut self,
+        config: &VibrationConfig,
+        trusts: Option<&[Trust; PVDF_COUNT]>,
+    ) -> [Trust; PVDF_COUNT] {
+        let mut masked = trusts.copied().unwrap_or([Trust::Full; PVDF_COUNT]);
+        let on = i32::from(config.s1) << Q;
+        for (n, (trust, film)) in masked.iter_mut().zip(&self.films).enumerate() {
+            if *trust == Trust::Full && self.solo.is_masked(n) {
+                self.solo.masked_channel(n, film.level(), on);
+                *trust = Trust::Doubtful;
+            }
+        }
+        masked
     }
 
     /// Every film at once, when all of them can be believed: the usual tick.
@@ -193,6 +225,11 @@ impl VibrationDetector {
         let on = i32::from(config.s1) << Q;
         // Once on, half the threshold keeps it on: the envelope of one slip has dips.
         let loud = envelope > if self.s1 { on / 2 } else { on };
+        if loud {
+            self.solo.loud(&self.envelopes, on);
+        } else {
+            self.solo.rest();
+        }
         self.loud_frames = if loud { self.loud_frames.saturating_add(1) } else { 0 };
         // A quiet film's noise is mostly above the band too, but no knock is as quiet.
         let rings = above > i32::from(config.knock_level) << Q
@@ -213,6 +250,7 @@ impl VibrationDetector {
             level: (envelope >> Q).clamp(0, i32::from(TickRecord::VIBRATION_MAX)) as u16,
             s1: self.s1,
             knock: rings && self.ringing_frames < config.knock_frames,
+            masked: self.solo.masked(),
         }
     }
 
