@@ -88,7 +88,8 @@ fn an_offset_of_the_force_sensor_is_gone_once_the_hand_has_opened() {
             *pin = f64::from(FSR_REST_MV) + mv;
         }
         bench.run(1_000);
-        let load_mn = |bench: &Bench| bench.slows.last().and_then(|slow| slow.forces).expect("forces").load_mn;
+        let load_mn =
+            |bench: &Bench| bench.slows.last().and_then(|slow| slow.forces).expect("forces").load_mn;
         assert!(load_mn(&bench) > 100, "{mv} mV read as a load");
         bench.muscles(50.0, 900.0);
         let opened = bench.run(8_000);
