@@ -4,6 +4,18 @@
 //! come first, so that a receiver of another version can say so, and a receiver that missed frames can count them.
 //! Variants are only ever added at the end. `tests/golden.txt` holds the bytes of one of each: if those change, the
 //! version must.
+//!
+//! ```
+//! use tenax_hal_shim::setting::SettingId;
+//! use tenax_hal_shim::wire::{Down, FRAME_MAX, Receiver, Setting, encode};
+//!
+//! let command = Down::Set(Setting { id: SettingId::S1 as u8, value: 120 });
+//! let mut buffer = [0; FRAME_MAX];
+//! let frame = encode(7, &command, &mut buffer).expect("a frame has room for every message");
+//! let mut receiver = Receiver::new();
+//! let received = frame.iter().find_map(|&byte| receiver.push::<Down>(byte)).expect("whole").expect("valid");
+//! assert_eq!((received.sequence, received.message), (7, command));
+//! ```
 
 mod samples;
 mod tick;

@@ -1,6 +1,7 @@
 //! What the tests in `tests/` share: a fingertip on a bench, with a knob for the voltage of every pin.
 #![forbid(unsafe_code)]
 
+pub mod onsets;
 pub mod teaching;
 
 use rand::rngs::ChaCha8Rng;

@@ -1,4 +1,4 @@
-//! Every promise of issue 2 as a bar: what is promised, what was measured, whether it holds.
+//! Every promise of the README as a bar: what is promised, what was measured, whether it holds.
 
 pub mod agreement;
 pub mod default_scene;

@@ -27,7 +27,7 @@ use crate::jobs::{Jobs, Told};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Label {
-    /// The world: the box moved over the pads faster than the floor (DESIGN.md, sample scores)
+    /// The world: the box moved over the pads faster than the floor (docs/glossary.md, sample scores)
     #[default]
     Truth,
     /// The marker: the moving averages of its height and pitch moved (Bamshad 2023, section 3.2)

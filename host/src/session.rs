@@ -1,4 +1,16 @@
 //! One run: from what is to be run, on which board, to its report and its figure.
+//!
+//! ```
+//! use tenax::session::{self, Board};
+//! use tenax_hal_shim::detector::DetectorId;
+//!
+//! let file = session::load_scene("glass")?;
+//! let outcome = session::scene(&file, 1, &Board::Host, &mut |_virtual_s| {})?;
+//! assert_eq!(outcome.report.slip.dropped, Some(false));
+//! let s1 = outcome.report.detectors.of_id(DetectorId::S1);
+//! println!("S1 said slip {} times, was believed {} times", s1.said, s1.detections);
+//! # Ok::<(), anyhow::Error>(())
+//! ```
 
 use std::path::Path;
 #[cfg(feature = "emulator")]

@@ -92,6 +92,28 @@ pub struct Description {
 }
 
 /// A detector. Its state is its own, its configuration is not.
+///
+/// ```
+/// use tenax_hal_shim::detector::DetectorId;
+/// use tenax_logic::detectors::{Description, Detector, Said, Sensed};
+///
+/// /// Says slip while a knock rings.
+/// struct Toy;
+///
+/// impl Detector for Toy {
+///     // One that joins the list has a number of its own.
+///     const ID: DetectorId = DetectorId::Injected;
+///     type Config = ();
+///
+///     fn step(&mut self, _config: &(), sensed: &Sensed<'_>) -> Option<Said> {
+///         Some(Said::slip(sensed.vibration.knock))
+///     }
+///
+///     fn describe(&self, _config: &()) -> Description {
+///         Description::default()
+///     }
+/// }
+/// ```
 pub trait Detector {
     /// Who it is.
     const ID: DetectorId;

@@ -1,10 +1,18 @@
 //! What the fingertip decides. No heap, no I/O, no clock of its own: time arrives as frames.
 //!
-//! Data goes one way, and so do the modules: [`health`] says which readings can be believed, [`films`] those of the
-//! films; [`vibration`] (S1), [`fsr`], [`forces`] and [`friction`] (S2), [`strain`], [`array`] and [`gate`] (the wearer's muscles) say what they mean;
-//! [`senses`] puts a frame through all of them; [`detectors`] is the list of what judges it, guarded by [`plausibility`],
-//! and [`touch`] learns slip ([`hebbian`]); [`mode`], [`grip`] and [`arbiter`] decide; [`fingertip`] is the whole, and [`journal`] is
-//! what it tells. [`config`] holds every number that can be chosen, and [`store`] keeps what must outlive a power cut.
+//! Data goes one way, and so do the modules:
+//!
+//! | step | modules |
+//! |---|---|
+//! | which readings can be used | [`health`], [`films`] for PVDF channels |
+//! | what they mean | [`vibration`], [`fsr`], [`forces`], [`friction`], [`strain`], [`elements`] and [`mod@array`], [`gate`] (EMG) |
+//! | a frame through all of them | [`senses`] |
+//! | whether the object slips | [`detectors`], the list of them; [`hebbian`] and [`touch`] learn; [`plausibility`] guards |
+//! | what to do | [`mode`], [`grip`], [`arbiter`] |
+//! | the whole | [`fingertip`]; [`journal`] is what it reports |
+//! | a fingertip on a line | [`device`]: frames and commands in, drives and messages out. Begin there |
+//!
+//! [`config`] and [`settings`] hold every number that can be chosen, and [`store`] keeps what must outlive a power cut.
 #![no_std]
 // One measured kernel is excepted, `array::dual`; nothing else may be.
 #![deny(unsafe_code)]

@@ -14,9 +14,10 @@
 //!
 //! # Wear
 //! A record takes its payload and [`OVERHEAD_WORDS`](record::OVERHEAD_WORDS) words. Of 128 KiB sectors at least half is
-//! filled between two erases, so the network's 78 words are saved 210 times for one erase, settings (9 words) 1 800
-//! times. The chip's 10 000 erases of each of two sectors (DS10314, flash memory endurance) are 4.2 million saves of the
-//! network: eight years of one a minute, day and night.
+//! filled between two erases, so the network's 78 words are saved 210 times for one erase, settings (4 words and one
+//! for each that is not at its default, 33 at most) 490 times or more. The chip's 10 000 erases
+//! of each of two sectors (DS10314, flash memory endurance) are 4.2 million saves of the network: eight years of one a
+//! minute, day and night.
 //!
 //! The crate `sequential-storage` does most of this, but erases whenever a page is full.
 

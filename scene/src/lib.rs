@@ -5,6 +5,22 @@
 //! world one scan at a time through [`plant::Plant`]. The same file and seed give the same bytes, on every machine and
 //! in every build: noise is ChaCha8, and the functions that platforms disagree about are `libm`'s, in plain Rust.
 //!
+//! ```
+//! use tenax_hal_shim::motor::MotorDrive;
+//! use tenax_scene::plant::Plant;
+//! use tenax_scene::{SceneFile, World, builtin};
+//!
+//! let (name, text) = builtin()[0];
+//! let mut world = World::new(&SceneFile::parse(text, name)?, 1);
+//! // A second goes by; nobody drives the motor.
+//! for _ in 0..8_000 {
+//!     let pins = world.scan(MotorDrive::Coast);
+//!     assert!(pins.codes().iter().all(|&code| code < 4_096));
+//! }
+//! assert!(world.truth().slips.is_empty() && (world.now_s() - 1.0).abs() < 1e-9);
+//! # Ok::<(), tenax_scene::SceneError>(())
+//! ```
+//!
 //! | module | one type with one step function for each of |
 //! |---|---|
 //! | [`physics`] | contact at three levels, gripper, grasped object, stroked surface, hand, wearer |

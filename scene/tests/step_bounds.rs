@@ -102,7 +102,7 @@ fn an_oscillator_under_the_scenes_step() {
         let (inside, outside) = (swing(&Moreau, &body, 0.9 * bound_s), swing(&Moreau, &body, 1.1 * bound_s));
         assert!(inside <= 1.01 && outside > 100.0, "damping {damping}: {inside}, {outside}");
     }
-    // Undamped it is the 2 / omega of SCENES.md.
+    // Undamped it is the textbook's 2 / omega.
     assert!((bounds::semi_implicit_oscillator_s(0.2, 2_000.0, 0.0) - 0.02).abs() < 1e-15);
 }
 

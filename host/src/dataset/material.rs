@@ -43,7 +43,7 @@ pub const SEEN: [Material; 4] = [
         uneven: 0.04,
         stiffness_n_per_mm: 2.0,
     },
-    // Ra 0.8 um (SCENES.md): smooth, hard and slippery, and the one that Bamshad's detector was weakest on (figure 9).
+    // Ra 0.8 um: smooth, hard and slippery, and the one that Bamshad's detector was weakest on (figure 9).
     Material {
         name: "aluminium",
         mu_s: 0.42,

@@ -1,4 +1,4 @@
-//! Slips as events: whether each was caught, how soon, and what was called slip and was none (DESIGN.md, "Words").
+//! Slips as events: whether each was caught, how soon, and what was called slip and was none (`docs/glossary.md`, event scores).
 //!
 //! A labelled recording does not say when micro slip began, so what speaks up to 50 ms before the first step of a slip is
 //! taken as that slip's, and no earlier.

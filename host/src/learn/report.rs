@@ -1,4 +1,4 @@
-//! What a fingertip's learning is worth, in figures: for programs the keys of issue 4, for people all of it.
+//! What a fingertip's learning is worth, in figures: for programs the keys of [`Report`], for people all of it.
 
 use std::fmt;
 
@@ -92,7 +92,7 @@ impl Score {
     }
 }
 
-/// For programs: the keys of issue 4, and no others.
+/// For programs: these keys, and no others (`docs/hebbian.md`).
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// Held-out trials.

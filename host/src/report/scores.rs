@@ -1,4 +1,4 @@
-//! Event scores (DESIGN.md, "Words"): a macro slip is caught if a detection falls between its micro onset and 50 ms after
+//! Event scores (`docs/glossary.md`): a macro slip is caught if a detection falls between its micro onset and 50 ms after
 //! its macro onset; a detection outside every slip is a false alarm. A detection is where a detector begins to say slip, or to
 //! warn of it, and is believed.
 

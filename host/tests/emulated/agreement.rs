@@ -9,11 +9,13 @@ use tenax::learn::chain::Chain;
 use tenax::learn::finger::Finger;
 use tenax::learn::trial::Setup;
 use tenax_hal_shim::channel::{FRAME_HZ, SCAN_HZ};
+use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{Down, Setting};
 use tenax_hal_shim::words::Code;
 
+use crate::onsets::held_against_evidence;
 use crate::{Swing, run};
 
 #[test]
@@ -30,6 +32,8 @@ fn ten_seconds_without_a_lost_code() {
     assert_eq!(run.slows.len(), 800);
     let agreement = Agreement::of(&run);
     assert!(agreement.holds(), "{agreement}");
+    let onsets = held_against_evidence(&run.slows);
+    assert!(onsets.iter().any(|frames| !frames.is_empty()), "a detector has spoken");
 }
 
 /// The check above can fail: one code off by one is another CRC.
@@ -101,6 +105,8 @@ fn a_lesson_teaches_the_image_what_it_teaches_the_host() {
     let image = run(lesson(), &Options::default());
     let agreement = Agreement::of(&image);
     assert!(agreement.holds(), "{agreement}");
+    let onsets = held_against_evidence(&image.slows);
+    assert!(!onsets[DetectorId::Hebbian as usize].is_empty(), "it says what it learned");
     let network = image.networks().next().expect("it was asked for");
     assert!(network.updates > 1_000, "{network:?}");
     // It is not the run that the host's own board makes of the lesson: there a command is taken in its own frame.

@@ -4,6 +4,8 @@
 mod agreement;
 mod faults;
 mod link;
+#[path = "../../../host-tests/src/onsets.rs"]
+mod onsets;
 mod store;
 
 use std::path::{Path, PathBuf};

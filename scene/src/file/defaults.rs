@@ -14,7 +14,7 @@ impl Default for Gripper {
             // Prosthesis, section 1: "average speed of 120 mm/s", "maximum force 140 N".
             speed_mm_s: Speed::of(120.0),
             force_n: NewtonsMax::of(140.0),
-            // SCENES.md: 20 to 50 ms.
+            // Assumed: motors and gears of such hands start to move 20 to 50 ms after the voltage.
             dead_time_ms: DeadTime::of(30.0),
             // Assumed: the Ottobock's opening width is about 100 mm.
             range_mm: Millimetres::of(100.0),

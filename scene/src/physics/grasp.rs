@@ -15,7 +15,7 @@ const PADS: f64 = 2.0;
 
 /// The object, what is poured into it, the table under it, and the two pads at its sides.
 ///
-/// Vertical motion, and pitch where the scene asks for it: `m(t) v' = Q_1 + Q_2 - m(t) g + N` (`SCENES.md`, object and gripper), stepped in the hand's
+/// Vertical motion, and pitch where the scene asks for it: `m(t) v' = Q_1 + Q_2 - m(t) g + N` stepped in the hand's
 /// frame, where the arm's acceleration is an inertial force and sticking is rest. The two fingers press alike and share
 /// the shear; one of them is sensed. The table wears a mat, a spring and damper, so that the weight passes from the
 /// table to the hand over a millimetre and not between two scans.

@@ -1,6 +1,6 @@
 //! Where theory says that a step stops being stable. Each bound is the longest step, s.
 
-/// Explicit Euler on a sliding LuGre bristle: `2 g(v) / (sigma0 |v|)` (`SCENES.md`, time stepping).
+/// Explicit Euler on a sliding LuGre bristle: `2 g(v) / (sigma0 |v|)` (`docs/stepping.md`).
 ///
 /// A sliding bristle forgets at the rate `sigma0 |v| / g`; the step multiplies what is left by `1 - rate dt`.
 #[must_use]

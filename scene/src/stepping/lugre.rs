@@ -5,7 +5,7 @@ use crate::physics::stribeck::Stribeck;
 
 /// z' = v - sigma0 |v| z / g(v), friction = sigma0 z + sigma1 z'.
 ///
-/// g is `P mu(v)` with the exponential of `SCENES.md`, L2. With a small Stribeck speed it is Coulomb's mu_s and mu_d made
+/// g is `P mu(v)`, where `mu(v) = mu_d + (mu_s - mu_d) exp(-v/v_s)`. With a small Stribeck speed it is Coulomb's mu_s and mu_d made
 /// smooth, so that it can be held against the same closed forms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LuGre {

@@ -5,7 +5,7 @@ use toml::Spanned;
 
 use crate::file::quantity::{Instant, Millimetres, Milliseconds, Mu, Part, Speed, Stiffness};
 
-/// How much of the contact is modelled (`SCENES.md`, contact, three levels).
+/// How much of the contact is modelled (`docs/scenes.md`, which level of contact).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Level {

@@ -36,7 +36,7 @@ pub trait Problem: Send + Sync {
     }
 }
 
-/// The five problems of `SCENES.md`, as they ship.
+/// The problems, as they ship.
 #[must_use]
 pub fn problems() -> [Box<dyn Problem>; 5] {
     [

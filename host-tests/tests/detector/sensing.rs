@@ -1,0 +1,59 @@
+//! What the detectors are given, built from frames outside the fingertip.
+
+use tenax_hal_shim::frame::Frame;
+use tenax_hal_shim::wire::Down;
+use tenax_host_tests::Bench;
+use tenax_logic::config::Config;
+use tenax_logic::detectors::{Detectors, Sensed};
+use tenax_logic::grip::Grip;
+use tenax_logic::journal::Journal;
+use tenax_logic::senses::Senses;
+use tenax_logic::store::record::{PAYLOAD_BYTES, Record};
+
+/// The senses alone: no reflex, no motor.
+#[derive(Debug, Default)]
+pub struct Sensing {
+    pub config: Config,
+    senses: Senses,
+    journal: Journal,
+}
+
+impl Sensing {
+    /// Takes a frame that came in whole, while nobody moves the hand.
+    pub fn take(&mut self, frame: &Frame) -> Sensed<'_> {
+        self.journal.begin(frame);
+        self.senses.take(&self.config, frame, &mut self.journal);
+        let senses = &self.senses;
+        Sensed {
+            frame: frame.sequence,
+            slot: frame.slot(),
+            valid: frame.valid,
+            vibration: senses.vibration,
+            envelopes: senses.envelopes(),
+            vibration_known: senses.hears(),
+            strain: senses.gauges(),
+            forces: senses.forces,
+            forces_are_new: senses.forces_are_new,
+            taxels: senses.taxels(),
+            unloaded: senses.is_unloaded(&self.config),
+            grasp: matches!(senses.grip(&self.config), Grip::Holds(_)),
+            noisy: senses.vibration.knock,
+            moves: false,
+        }
+    }
+}
+
+/// Every detector, the Hebbian one with what the fingertip of a bench was taught.
+pub fn taught_detectors(seed: u64) -> Detectors {
+    let mut fingertip = Bench::taught(seed).fingertip;
+    let mut keeper = fingertip.keeper();
+    fingertip.command(&Down::Save).expect("never refused");
+    let mut detectors = Detectors::default();
+    while let Some(record) = fingertip.next_record(&mut keeper) {
+        if let Record::Network(_) = record {
+            let mut buffer = [0; PAYLOAD_BYTES];
+            detectors.hebbian.restore(record.payload(&mut buffer)).expect("a network's record");
+        }
+    }
+    detectors
+}

@@ -1,0 +1,73 @@
+//! A toy detector: the trait is enough to write one, and to step it over what was sensed.
+
+use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
+use tenax_host_tests::Bench;
+use tenax_logic::detectors::{Description, Detector, Said, Sensed};
+
+use crate::sensing::Sensing;
+
+/// What can be chosen about it: a normal force that falls by so much in one cycle means that the object leaves the hand.
+struct FallConfig {
+    fall_mn: i32,
+}
+
+/// Compares each normal force with the one before.
+#[derive(Debug, Default)]
+struct Fall {
+    last_mn: Option<i32>,
+    fall_mn: i32,
+}
+
+impl Detector for Fall {
+    // One that joined the list would have a number of its own.
+    const ID: DetectorId = DetectorId::Injected;
+    type Config = FallConfig;
+
+    fn step(&mut self, config: &FallConfig, sensed: &Sensed<'_>) -> Option<Said> {
+        if !sensed.forces_are_new {
+            return None;
+        }
+        let now_mn = sensed.forces.map(|forces| forces.fn_mn);
+        self.fall_mn = match (self.last_mn, now_mn) {
+            (Some(last_mn), Some(now_mn)) => last_mn - now_mn,
+            _ => 0,
+        };
+        self.last_mn = now_mn;
+        Some(Said::slip(self.fall_mn >= config.fall_mn))
+    }
+
+    fn describe(&self, config: &FallConfig) -> Description {
+        Description {
+            confidence_permille: (self.fall_mn.max(0) * 500 / config.fall_mn).min(1_000) as u16,
+            direction: Direction::Unknown,
+            health: if self.last_mn.is_some() { DetectorHealth::Working } else { DetectorHealth::Blind },
+            raw: self.fall_mn,
+        }
+    }
+}
+
+/// Steps it for so many frames of the bench: the frames in which it said slip.
+fn run(bench: &mut Bench, sensing: &mut Sensing, toy: &mut Fall, frames: u32) -> Vec<u32> {
+    let config = FallConfig { fall_mn: 500 };
+    let mut slips = Vec::new();
+    for _ in 0..frames {
+        let frame = bench.frame();
+        let said = toy.step(&config, &sensing.take(&frame));
+        assert_eq!(said.is_some(), frame.slot() == 15, "it decides when the last quadrant has been read");
+        slips.extend(said.filter(|said| said.slip).map(|_| frame.sequence));
+    }
+    slips
+}
+
+#[test]
+fn a_detector_written_outside_the_logic_judges_what_the_logic_senses() {
+    let (mut bench, mut sensing, mut toy) = (Bench::new(1), Sensing::default(), Fall::default());
+    assert_eq!(toy.describe(&FallConfig { fall_mn: 500 }).health, DetectorHealth::Blind);
+    bench.load(4.0, 0.4);
+    assert!(run(&mut bench, &mut sensing, &mut toy, 2_000).is_empty(), "a steady force falls nowhere");
+    bench.load(2.0, 0.2);
+    let slips = run(&mut bench, &mut sensing, &mut toy, 500);
+    assert!(slips.first() == Some(&2_015), "in the first cycle of the smaller force: {slips:?}");
+    let Description { confidence_permille, health, .. } = toy.describe(&FallConfig { fall_mn: 500 });
+    assert!(confidence_permille < 500 && health == DetectorHealth::Working);
+}
