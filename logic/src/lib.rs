@@ -13,6 +13,7 @@
 extern crate std;
 
 pub mod arbiter;
+pub mod arming;
 pub mod array;
 mod checksum;
 pub mod config;
@@ -34,6 +35,7 @@ pub mod mode;
 pub mod plausibility;
 mod samples;
 pub mod senses;
+pub mod session;
 pub mod settings;
 pub mod store;
 pub mod strain;
