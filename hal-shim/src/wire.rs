@@ -29,7 +29,7 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use crate::channel::{COUNT, FRAMES_PER_SLOW_FRAME, PVDF_COUNT, STRAIN_COUNT};
 use crate::detector::{DetectorId, Evidence};
 use crate::motor::MotorDrive;
-use crate::words::{Cause, Codes, Fault, GripMode, Kept, NoLesson};
+use crate::words::{Cause, Codes, Consent, Fault, GripMode, Kept, Line, NoLesson};
 
 pub use self::samples::SamplesSum;
 pub use self::tick::TickRecord;
@@ -93,6 +93,8 @@ pub struct Slow {
     pub evidence: Vec<(DetectorId, Evidence), DETECTORS_MAX>,
     /// Checksum of every valid sample that the slow frame's ticks were given: the two ends agree on the input too.
     pub samples_sum: u32,
+    /// What the serial line may do.
+    pub line: Line,
 }
 
 /// What the network knows and feels (Tada 2006, equations 3 to 6).
@@ -163,6 +165,13 @@ pub enum EventKind {
     },
     /// More events happened in one tick than are kept; this many were lost.
     EventsLost(u16),
+    /// Somebody at the hand consented: the line's commands are carried out for a while.
+    Armed(Consent),
+    /// The consent is over.
+    Disarmed,
+    /// From here on the line's commands are carried out without consent (true), or with it only (false). Told at the start
+    /// if it is so, and when the setting changes.
+    LineTrusted(bool),
 }
 
 /// Why a command was not carried out.
@@ -183,6 +192,14 @@ pub enum Refusal {
     WearerActive,
     /// There is no setting with this number: the board's image is another one.
     UnknownSetting,
+    /// It could move the hand or bears on its safety, and nobody at the hand has consented.
+    NotArmed,
+    /// Only reading is answered before a session is open: see [`Down::Hello`].
+    NoSession,
+    /// The number of this frame or of this opening was used before.
+    Replayed,
+    /// The line has held the hand for too long: a muscle, a consent or silence renews it.
+    HeldTooLong,
 }
 
 /// A setting's number (see [`SettingId`](crate::setting::SettingId)) and its value, in its unit.
@@ -214,6 +231,8 @@ pub enum Answer {
     Samples(#[serde(with = "samples")] [u16; COUNT]),
     /// To [`Down::Network`].
     Network(NetworkState),
+    /// To [`Down::Hello`]: what [`Down::Open`] gives back.
+    Nonce(u32),
 }
 
 /// From the board.
@@ -290,6 +309,30 @@ pub enum Down {
     Get(u8),
     /// Answer with the [`Answer::Settings`] from this number on, in the order of their numbers.
     Settings(u8),
+    /// Answer with an [`Answer::Nonce`].
+    Hello,
+    /// Open a session with the last [`Answer::Nonce`]. From here on the numbers of frames only rise.
+    Open {
+        /// That number.
+        nonce: u32,
+    },
+}
+
+impl Down {
+    /// Whether it only reads: answered without session and consent.
+    #[must_use]
+    pub const fn reads(&self) -> bool {
+        matches!(
+            self,
+            Self::Ping
+                | Self::Samples
+                | Self::Network
+                | Self::Get(_)
+                | Self::Settings(_)
+                | Self::Hello
+                | Self::Open { .. }
+        )
+    }
 }
 
 /// A frame's contents.

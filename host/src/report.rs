@@ -49,14 +49,14 @@ pub struct Report {
     pub slip: scores::Slip,
     /// The same controller told the true onset without delay: the gripper's physical limit in this scene.
     pub oracle: oracle::Oracle,
-    /// What the reflex did.
-    pub reflex: reflex::Reflex,
-    /// What became of the object.
-    pub object: reflex::Object,
     /// Grip force.
     pub grip: Grip,
     /// The wearer's part.
     pub wearer: wearer::Wearer,
+    /// What the reflex did.
+    pub reflex: reflex::Reflex,
+    /// What became of the object.
+    pub object: reflex::Object,
     /// Each detector's.
     pub detectors: scores::Detectors,
     /// Everything that went wrong, as it was reported.

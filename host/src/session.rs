@@ -187,6 +187,14 @@ impl Plant for Drawn {
         self.world.commands()
     }
 
+    fn trusts_line(&self) -> bool {
+        self.world.trusts_line()
+    }
+
+    fn button(&self) -> bool {
+        self.world.button()
+    }
+
     fn slipping(&self) -> bool {
         self.world.slipping()
     }

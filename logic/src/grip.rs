@@ -47,14 +47,29 @@ impl Reflex {
         }
     }
 
+    /// Whether a drive command may close: an empty hand, or one that the reflex might close.
+    #[must_use]
+    pub const fn link_may_close(&self, config: &GripConfig, grip: Grip) -> bool {
+        matches!(grip, Grip::Unloaded) || self.may_close(config, grip)
+    }
+
     /// The mode has changed: what is timed begins now.
     pub fn enter(&mut self, mode: GripMode) {
         self.elapsed = 0;
         if mode == GripMode::Incipient {
             self.since_incipient = 0;
         }
-        if mode == GripMode::Wearer {
-            self.blind = 0;
+    }
+
+    /// A muscle is active: whoever sees the hand has taken over, and the budget of the blind begins anew.
+    pub const fn renew(&mut self) {
+        self.blind = 0;
+    }
+
+    /// A drive command closes in this frame: without a known force it spends the same budget.
+    pub fn spend(&mut self, grip: Grip) {
+        if grip == Grip::Unknown {
+            self.blind = self.blind.saturating_add(1);
         }
     }
 
@@ -68,8 +83,8 @@ impl Reflex {
     pub fn tick(&mut self, mode: GripMode, grip: Grip) {
         self.elapsed = self.elapsed.saturating_add(1);
         self.since_incipient = self.since_incipient.saturating_add(1);
-        if crate::mode::closes(mode) && grip == Grip::Unknown {
-            self.blind = self.blind.saturating_add(1);
+        if crate::mode::closes(mode) {
+            self.spend(grip);
         }
     }
 
@@ -117,7 +132,7 @@ mod tests {
     fn pulse_frames(mode: GripMode, slips: bool, grip: Grip) -> u32 {
         let config = Config::default().grip;
         let mut reflex = Reflex::default();
-        reflex.enter(mode);
+        reflex.enter();
         (0..10_000)
             .take_while(|_| {
                 let over = reflex.pulse_over(&config, mode, slips, grip);
@@ -146,9 +161,22 @@ mod tests {
             reflex.tick(GripMode::Slip, Grip::Unknown);
         }
         assert!(!reflex.may_close(&config, Grip::Unknown));
-        reflex.enter(GripMode::Watch);
-        assert!(!reflex.may_close(&config, Grip::Unknown));
-        reflex.enter(GripMode::Wearer);
+        reflex.enter();
+        assert!(!reflex.may_close(&config, Grip::Unknown) && !reflex.link_may_close(&config, Grip::Unknown));
+        reflex.renew();
         assert!(reflex.may_close(&config, Grip::Unknown));
+    }
+
+    #[test]
+    fn the_line_is_bound_by_the_ceiling_and_shares_the_budget() {
+        let config = Config::default().grip;
+        let mut reflex = Reflex::default();
+        assert!(reflex.link_may_close(&config, Grip::Unloaded), "an empty hand may take something");
+        assert!(!reflex.link_may_close(&config, Grip::Holds(config.ceiling_mn)));
+        for _ in 0..config.blind_frames {
+            assert!(reflex.link_may_close(&config, Grip::Unknown));
+            reflex.spend(Grip::Unknown);
+        }
+        assert!(!reflex.link_may_close(&config, Grip::Unknown) && !reflex.may_close(&config, Grip::Unknown));
     }
 }

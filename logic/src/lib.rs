@@ -21,6 +21,7 @@
 extern crate std;
 
 pub mod arbiter;
+pub mod arming;
 pub mod array;
 mod checksum;
 pub mod config;
@@ -43,6 +44,7 @@ pub mod mode;
 pub mod plausibility;
 mod samples;
 pub mod senses;
+pub mod session;
 pub mod settings;
 pub mod solo;
 pub mod store;
