@@ -108,14 +108,12 @@ impl DetectorSet {
     /// The one with the lowest number.
     #[must_use]
     pub const fn first(self) -> Option<DetectorId> {
-        let mut n = 0;
-        while n < DetectorId::COUNT {
-            if self.contains(DetectorId::ALL[n]) {
-                return Some(DetectorId::ALL[n]);
-            }
-            n += 1;
+        // Asked in every tick, and nearly always of none.
+        if self.0 == 0 {
+            None
+        } else {
+            Some(DetectorId::ALL[self.0.trailing_zeros() as usize % DetectorId::COUNT])
         }
-        None
     }
 
     /// Its bits.

@@ -43,7 +43,7 @@ pub struct Sensed<'a> {
     /// The strain gauges.
     pub strain: &'a Gauges,
     /// Forces, None while the force sensor gives no number.
-    pub forces: Option<Forces>,
+    pub forces: Option<&'a Forces>,
     /// Whether this frame brought new ones.
     pub forces_are_new: bool,
     /// The normal-force array's last readings.
@@ -180,7 +180,7 @@ struct Record {
 }
 
 impl Record {
-    #[inline]
+    #[inline(always)]
     fn take(&mut self, id: DetectorId, said: Said, frame: u32) {
         self.slip = self.slip.with(id, said.slip);
         self.incipient = self.incipient.with(id, said.incipient);

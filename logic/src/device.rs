@@ -155,11 +155,16 @@ impl Device {
 
     /// The oldest message that was not taken yet. Ask after every tick.
     pub fn next_message(&mut self) -> Option<Up> {
-        let slow = self.fingertip.take_slow();
-        if let Some(slow) = &slow {
+        // Moving a slow frame that is not there would cost as much as moving one that is.
+        if self.fingertip.has_slow() {
+            let slow = self.fingertip.take_slow()?;
             self.session.stir(slow.samples_sum ^ slow.frame);
+            return Some(Up::Slow(slow));
         }
-        slow.map(Up::Slow).or_else(|| self.fingertip.next_event().map(Up::Event))
+        if self.fingertip.has_event() {
+            return self.fingertip.next_event().map(Up::Event);
+        }
+        None
     }
 
     /// What has to be kept and is not yet. Ask once a slow frame; who asks saves it: it is given once.

@@ -151,6 +151,18 @@ impl Fingertip {
         self.slow.take()
     }
 
+    /// Whether the last tick ended a slow frame that was not taken yet.
+    #[must_use]
+    pub const fn has_slow(&self) -> bool {
+        self.slow.is_some()
+    }
+
+    /// Whether something happened that was not taken yet.
+    #[must_use]
+    pub fn has_event(&self) -> bool {
+        self.journal.has_event()
+    }
+
     /// The oldest thing that happened and has not been taken yet.
     pub fn next_event(&mut self) -> Option<Event> {
         self.journal.next_event()
@@ -209,7 +221,7 @@ impl Fingertip {
             envelopes: self.senses.envelopes(),
             vibration_known: self.senses.hears(),
             strain: self.senses.gauges(),
-            forces: self.senses.forces,
+            forces: self.senses.forces.as_ref(),
             forces_are_new: self.senses.forces_are_new,
             taxels: self.senses.taxels(),
             unloaded: self.senses.is_unloaded(&self.config),

@@ -132,7 +132,7 @@ mod tests {
     fn pulse_frames(mode: GripMode, slips: bool, grip: Grip) -> u32 {
         let config = Config::default().grip;
         let mut reflex = Reflex::default();
-        reflex.enter();
+        reflex.enter(mode);
         (0..10_000)
             .take_while(|_| {
                 let over = reflex.pulse_over(&config, mode, slips, grip);
@@ -161,7 +161,7 @@ mod tests {
             reflex.tick(GripMode::Slip, Grip::Unknown);
         }
         assert!(!reflex.may_close(&config, Grip::Unknown));
-        reflex.enter();
+        reflex.enter(GripMode::Slip);
         assert!(!reflex.may_close(&config, Grip::Unknown) && !reflex.link_may_close(&config, Grip::Unknown));
         reflex.renew();
         assert!(reflex.may_close(&config, Grip::Unknown));

@@ -67,6 +67,12 @@ impl Journal {
         }
     }
 
+    /// Whether there is one.
+    #[must_use]
+    pub fn has_event(&self) -> bool {
+        !self.events.is_empty() || self.events_lost > 0
+    }
+
     /// The oldest event not yet taken.
     pub fn next_event(&mut self) -> Option<Event> {
         self.events.pop_front().or_else(|| {

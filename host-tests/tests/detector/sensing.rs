@@ -32,7 +32,7 @@ impl Sensing {
             envelopes: senses.envelopes(),
             vibration_known: senses.hears(),
             strain: senses.gauges(),
-            forces: senses.forces,
+            forces: senses.forces.as_ref(),
             forces_are_new: senses.forces_are_new,
             taxels: senses.taxels(),
             unloaded: senses.is_unloaded(&self.config),
