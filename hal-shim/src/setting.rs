@@ -16,8 +16,10 @@ pub struct Row {
     pub unit: &'static str,
     /// The lowest value that is accepted.
     pub min: i32,
-    /// The highest.
+    /// The highest: no combination of values in this range crushes, opens or deafens.
     pub max: i32,
+    /// The highest where the line is trusted, for a laboratory: a detector may be silenced there.
+    pub max_if_trusted: i32,
     /// Its value until somebody changes it.
     pub default: i32,
     /// What it does.
@@ -30,12 +32,18 @@ impl Row {
     pub const fn range(&self) -> RangeInclusive<i32> {
         self.min..=self.max
     }
+
+    /// The values that are accepted where the line is trusted.
+    #[must_use]
+    pub const fn range_if_trusted(&self) -> RangeInclusive<i32> {
+        self.min..=self.max_if_trusted
+    }
 }
 
 /// Makes the enum and the table out of the same rows.
 macro_rules! settings {
     ($($(#[doc = $meaning:literal])+ $number:literal $id:ident $name:literal $(($was:literal))? $unit:literal
-        [$min:literal, $max:literal] = $default:literal;)+) => {
+        [$min:literal, $max:literal $(, trusted $trusted:literal)?] = $default:literal;)+) => {
         /// A setting. Its number is what the wire and the flash call it; numbers are never given twice.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         #[repr(u8)]
@@ -57,6 +65,7 @@ macro_rules! settings {
                         unit: $unit,
                         min: $min,
                         max: $max,
+                        max_if_trusted: settings!(@max $max $(, $trusted)?),
                         default: $default,
                         meaning: concat!($($meaning),+).trim_ascii(),
                     },)+
@@ -64,31 +73,33 @@ macro_rules! settings {
             }
         }
     };
+    (@max $max:literal) => { $max };
+    (@max $max:literal, $trusted:literal) => { $trusted };
     (@was) => { None };
     (@was $was:literal) => { Some($was) };
 }
 
 settings! {
     /// S1: vibration envelope of a PVDF channel that means slip
-    1 S1 "s1-mv" "mV" [5, 1_500] = 100;
+    1 S1 "s1-mv" "mV" [20, 600, trusted 1_500] = 100;
     /// S2: Ft/Fn that means incipient slip, until a stroke measures it
-    2 S2 "s2-permille" "per mille" [50, 1_500] = 300;
+    2 S2 "s2-permille" "per mille" [150, 900, trusted 1_500] = 300;
     /// EMG envelope above rest from which a muscle is active
-    3 EmgOn "emg-on-mv" ("myo-on-mv") "mV" [20, 600] = 160;
+    3 EmgOn "emg-on-mv" ("myo-on-mv") "mV" [80, 400] = 160;
     /// Normal force above which the reflex closes no further
-    4 ForceCeiling "force-ceiling-mn" "mN" [500, 140_000] = 40_000;
+    4 ForceCeiling "force-ceiling-mn" "mN" [3_000, 60_000] = 40_000;
     /// Hebbian: how far below 0 the PVDF part of o1 means slip
     5 HebbianSlip "hebbian-slip-permille" ("network-slip-permille") "per mille" [10, 1_000] = 30;
     /// Vibration above the slip band that a knock has at least
-    6 KnockLevel "knock-level-mv" "mV" [5, 1_500] = 20;
+    6 KnockLevel "knock-level-mv" "mV" [10, 300] = 20;
     /// A vibration with more than this part of its envelope above the slip band is a knock
-    7 KnockRatio "knock-ratio-permille" "per mille" [100, 10_000] = 500;
+    7 KnockRatio "knock-ratio-permille" "per mille" [300, 3_000] = 500;
     /// A knock is over after this long; what lasts longer is slip
-    8 KnockLength "knock-ms" "ms" [1, 200] = 30;
+    8 KnockLength "knock-ms" "ms" [5, 100] = 45;
     /// The part of a measured static friction that becomes S2
     9 S2OfMuS "s2-of-mu-s-permille" "per mille" [300, 950] = 800;
     /// Normal force from which the finger counts as loaded
-    10 Loaded "loaded-mn" "mN" [200, 5_000] = 600;
+    10 Loaded "loaded-mn" "mN" [300, 2_000] = 600;
     /// Hebbian: how long o1 must mean slip if only some PVDF channels show it
     11 HebbianTime "hebbian-ms" "ms" [1, 100] = 5;
     /// Hebbian: how long if all PVDF channels show it, longer than a knock
@@ -106,27 +117,29 @@ settings! {
     /// Hebbian: weight delta that every connection has for the variable rate (Tada 2006, equation 6)
     18 HebbianDelta "hebbian-delta-ppm" "ppm" [1_000, 8_000_000] = 300_000;
     /// Part of emg-on-mv below which an active muscle becomes inactive
-    19 EmgOff "emg-off-permille" "per mille" [300, 950] = 700;
+    19 EmgOff "emg-off-permille" "per mille" [650, 950] = 700;
     /// How long a muscle counts as active after its last activity
-    20 EmgHold "emg-hold-ms" "ms" [100, 2_000] = 200;
+    20 EmgHold "emg-hold-ms" "ms" [100, 1_000] = 200;
     /// EMG envelope above rest that asks for full speed
     21 EmgFull "emg-full-mv" "mV" [700, 3_000] = 1_000;
     /// Motor duty that an envelope at emg-on-mv asks for
-    22 EmgSlowest "emg-slowest-permille" "per mille" [100, 1_000] = 300;
+    22 EmgSlowest "emg-slowest-permille" "per mille" [200, 1_000] = 300;
     /// Motor duty of the pulse that answers slip
-    23 SlipDuty "slip-duty-permille" "per mille" [200, 1_000] = 1_000;
+    23 SlipDuty "slip-duty-permille" "per mille" [400, 1_000] = 1_000;
     /// Length of the pulse that answers slip
-    24 SlipPulse "slip-pulse-ms" "ms" [5, 100] = 30;
+    24 SlipPulse "slip-pulse-ms" "ms" [10, 60] = 30;
     /// Its length at most while a detector still reports slip
-    25 SlipPulseMax "slip-pulse-max-ms" "ms" [5, 500] = 50;
+    25 SlipPulseMax "slip-pulse-max-ms" "ms" [10, 200] = 50;
     /// Motor duty of the pulse that answers incipient slip
     26 IncipientDuty "incipient-duty-permille" "per mille" [100, 1_000] = 400;
     /// Length of the pulse that answers incipient slip
-    27 IncipientPulse "incipient-pulse-ms" "ms" [5, 100] = 15;
+    27 IncipientPulse "incipient-pulse-ms" "ms" [5, 50] = 15;
     /// How long the object is given to settle after a pulse, longer than the motor's dead time
-    28 Settle "settle-ms" "ms" [20, 500] = 80;
+    28 Settle "settle-ms" "ms" [40, 150] = 80;
     /// How long the reflex may close altogether while no force is known, until a muscle takes over once
-    29 Blind "blind-ms" "ms" [0, 1_000] = 200;
+    29 Blind "blind-ms" "ms" [0, 400] = 200;
+    /// 1: the serial line moves the hand without consent (a gripper on a robot). Set by muscle or button only
+    40 LineTrusted "line-trusted-flag" "flag" [0, 1] = 0;
 }
 
 impl SettingId {
@@ -155,7 +168,12 @@ mod tests {
             let row = id.row();
             assert!(names.insert(row.name) && row.was.is_none_or(|was| names.insert(was)), "{}", row.name);
             assert!(row.range().contains(&row.default) && row.min < row.max, "{}", row.name);
-            assert!(row.min >= 0 && row.max < 1 << 24, "{}: a record keeps 24 bits of it", row.name);
+            assert!(row.max <= row.max_if_trusted, "{}", row.name);
+            assert!(
+                row.min >= 0 && row.max_if_trusted < 1 << 24,
+                "{}: a record keeps 24 bits of it",
+                row.name
+            );
             assert_eq!(SettingId::from_number(id as u8), Some(id));
             assert_eq!(SettingId::by_name(row.name), Some(id));
             assert!(id as u8 != 0, "0 marks a record of the first format");

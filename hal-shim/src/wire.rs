@@ -17,6 +17,7 @@
 //! assert_eq!((received.sequence, received.message), (7, command));
 //! ```
 
+mod samples;
 mod tick;
 
 use crc::{CRC_32_ISO_HDLC, Crc};
@@ -28,8 +29,9 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use crate::channel::{COUNT, FRAMES_PER_SLOW_FRAME, PVDF_COUNT, STRAIN_COUNT};
 use crate::detector::{DetectorId, Evidence};
 use crate::motor::MotorDrive;
-use crate::words::{Cause, Codes, Fault, GripMode, Kept, NoLesson};
+use crate::words::{Cause, Codes, Consent, Fault, GripMode, Kept, Line, NoLesson};
 
+pub use self::samples::SamplesSum;
 pub use self::tick::TickRecord;
 
 /// The version of every message below. A receiver refuses frames of another.
@@ -51,6 +53,8 @@ pub const NETWORK_OUTPUTS: usize = 2;
 pub struct Forces {
     /// The paper's Fn, mN: see `tenax_logic::forces` for what it is not.
     pub fn_mn: i32,
+    /// The load, mN: the sum of the quadrants. What is decided by a force is decided by this.
+    pub load_mn: i32,
     /// Shear along x, mN.
     pub fx_mn: i32,
     /// Shear along y, mN.
@@ -89,6 +93,8 @@ pub struct Slow {
     pub evidence: Vec<(DetectorId, Evidence), DETECTORS_MAX>,
     /// Checksum of every valid sample that the slow frame's ticks were given: the two ends agree on the input too.
     pub samples_sum: u32,
+    /// What the serial line may do.
+    pub line: Line,
 }
 
 /// What the network knows and feels (Tada 2006, equations 3 to 6).
@@ -159,6 +165,13 @@ pub enum EventKind {
     },
     /// More events happened in one tick than are kept; this many were lost.
     EventsLost(u16),
+    /// Somebody at the hand consented: the line's commands are carried out for a while.
+    Armed(Consent),
+    /// The consent is over.
+    Disarmed,
+    /// From here on the line's commands are carried out without consent (true), or with it only (false). Told at the start
+    /// if it is so, and when the setting changes.
+    LineTrusted(bool),
 }
 
 /// Why a command was not carried out.
@@ -179,6 +192,14 @@ pub enum Refusal {
     WearerActive,
     /// There is no setting with this number: the board's image is another one.
     UnknownSetting,
+    /// It could move the hand or bears on its safety, and nobody at the hand has consented.
+    NotArmed,
+    /// Only reading is answered before a session is open: see [`Down::Hello`].
+    NoSession,
+    /// The number of this frame or of this opening was used before.
+    Replayed,
+    /// The line has held the hand for too long: a muscle, a consent or silence renews it.
+    HeldTooLong,
 }
 
 /// A setting's number (see [`SettingId`](crate::setting::SettingId)) and its value, in its unit.
@@ -210,6 +231,8 @@ pub enum Answer {
     Samples(#[serde(with = "samples")] [u16; COUNT]),
     /// To [`Down::Network`].
     Network(NetworkState),
+    /// To [`Down::Hello`]: what [`Down::Open`] gives back.
+    Nonce(u32),
 }
 
 /// From the board.
@@ -286,6 +309,30 @@ pub enum Down {
     Get(u8),
     /// Answer with the [`Answer::Settings`] from this number on, in the order of their numbers.
     Settings(u8),
+    /// Answer with an [`Answer::Nonce`].
+    Hello,
+    /// Open a session with the last [`Answer::Nonce`]. From here on the numbers of frames only rise.
+    Open {
+        /// That number.
+        nonce: u32,
+    },
+}
+
+impl Down {
+    /// Whether it only reads: answered without session and consent.
+    #[must_use]
+    pub const fn reads(&self) -> bool {
+        matches!(
+            self,
+            Self::Ping
+                | Self::Samples
+                | Self::Network
+                | Self::Get(_)
+                | Self::Settings(_)
+                | Self::Hello
+                | Self::Open { .. }
+        )
+    }
 }
 
 /// A frame's contents.
@@ -377,72 +424,5 @@ fn decode<T: DeserializeOwned>(bytes: &mut [u8]) -> Result<Received<T>, BadFrame
             },
             _ => Err(BadFrame::Garbled),
         },
-    }
-}
-
-/// Running checksum over a slow frame's samples, for [`Slow::samples_sum`]: Fletcher's two sums, modulo 2^32. It is taken
-/// in every tick, where a CRC was worth a tenth of all instructions; the line has its own.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct SamplesSum {
-    sum: u32,
-    sum_of_sums: u32,
-}
-
-impl SamplesSum {
-    /// Takes a frame's samples in.
-    pub fn update(&mut self, frame: &crate::frame::Frame) {
-        for sample in frame.pvdf {
-            self.add(sample);
-        }
-        self.add(frame.switch_a);
-        self.add(frame.switch_b);
-    }
-
-    fn add(&mut self, sample: u16) {
-        self.sum = self.sum.wrapping_add(u32::from(sample));
-        self.sum_of_sums = self.sum_of_sums.wrapping_add(self.sum);
-    }
-
-    /// The checksum so far; starts anew.
-    pub fn take(&mut self) -> u32 {
-        let Self { sum, sum_of_sums } = core::mem::take(self);
-        sum_of_sums ^ sum.rotate_left(16)
-    }
-}
-
-/// Arrays of more than 32 elements, which serde does not know.
-mod samples {
-    use super::COUNT;
-    use core::fmt;
-    use serde::de::{Error, SeqAccess, Visitor};
-    use serde::ser::SerializeTuple;
-    use serde::{Deserializer, Serializer};
-
-    pub fn serialize<S: Serializer>(samples: &[u16; COUNT], serializer: S) -> Result<S::Ok, S::Error> {
-        let mut tuple = serializer.serialize_tuple(COUNT)?;
-        for sample in samples {
-            tuple.serialize_element(sample)?;
-        }
-        tuple.end()
-    }
-
-    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[u16; COUNT], D::Error> {
-        struct Samples;
-        impl<'de> Visitor<'de> for Samples {
-            type Value = [u16; COUNT];
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                write!(f, "{COUNT} samples")
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Self::Value, A::Error> {
-                let mut samples = [0; COUNT];
-                for (index, sample) in samples.iter_mut().enumerate() {
-                    *sample = seq.next_element()?.ok_or_else(|| A::Error::invalid_length(index, &self))?;
-                }
-                Ok(samples)
-            }
-        }
-        deserializer.deserialize_tuple(COUNT, Samples)
     }
 }

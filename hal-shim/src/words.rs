@@ -63,6 +63,8 @@ pub enum Reason {
     Saturated,
     /// The same code for longer than the noise of any working sensor allows.
     Stuck,
+    /// Loud by itself, again and again, while its neighbours are quiet: hum, a bad contact, a crack.
+    Noisy,
 }
 
 /// What the fingertip can no longer do.
@@ -184,6 +186,32 @@ pub enum NoLesson {
     NoGrasp,
     /// The receptors feel something else: the reflex or the wearer moves the hand, or something knocks at it.
     Disturbed,
+}
+
+/// How somebody at the hand consents to what the serial line may do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Consent {
+    /// Switched on with a finger that is known to hold nothing.
+    PowerUp,
+    /// Both muscles, held for two seconds.
+    Muscles,
+    /// The blue button.
+    Button,
+}
+
+/// What the serial line may do at the moment.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Line {
+    /// Read.
+    #[default]
+    Reading,
+    /// Command too, by consent.
+    Armed {
+        /// For so long still, s.
+        left_s: u8,
+    },
+    /// Command without consent: the setting `line-trusted-flag`.
+    Trusted,
 }
 
 /// What outlives a power cut.

@@ -69,7 +69,14 @@ fn slow() -> Slow {
     };
     let mut ticks = [TickRecord::default(); 25];
     ticks[24] = record;
-    let forces = Forces { fn_mn: 4_000, fx_mn: -1_000, fy_mn: 20, ft_mn: 1_000, ratio_permille: Some(250) };
+    let forces = Forces {
+        fn_mn: 4_000,
+        load_mn: 3_900,
+        fx_mn: -1_000,
+        fy_mn: 20,
+        ft_mn: 1_000,
+        ratio_permille: Some(250),
+    };
     Slow {
         frame: 49,
         ticks,

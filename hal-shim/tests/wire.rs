@@ -122,6 +122,7 @@ fn the_longest_message_fits_a_frame() {
     };
     let forces = tenax_hal_shim::wire::Forces {
         fn_mn: i32::MIN,
+        load_mn: i32::MIN,
         fx_mn: i32::MIN,
         fy_mn: i32::MIN,
         ft_mn: i32::MIN,

@@ -39,6 +39,8 @@ pub struct Summary {
     pub virtual_s: f64,
     /// Time it took, s.
     pub wall_s: f64,
+    /// Whether the board trusted its line from the start.
+    pub trusts_line: bool,
     /// Commands that the logic took, each with the sequence number of the frame before whose tick it took it. After a
     /// restart the emulated board's count goes on.
     pub taken: Vec<(u32, Down)>,

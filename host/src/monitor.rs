@@ -10,6 +10,7 @@ use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{
     Answer, BadFrame, Event, EventKind, NetworkState, Refusal, Setting, Slow, TickRecord, Up, VERSION,
 };
+use tenax_hal_shim::words::Line;
 
 use crate::link::{Counts, Heard, Inbox};
 use crate::report::{in_words, kept_in_words};
@@ -125,6 +126,11 @@ fn answer_words(f: &mut fmt::Formatter<'_>, of: u16, frame: u32, answer: &Answer
         Answer::Refused(Refusal::OutOfRange { min, max }) => {
             write!(f, "refused: command {of}: outside {min}..={max}")
         }
+        Answer::Refused(Refusal::NotArmed) => write!(
+            f,
+            "refused: command {of}: nobody at the hand has consented: contract both muscles for 2 s or press the blue \
+             button, then send it again within a minute"
+        ),
         Answer::Refused(refusal) => write!(f, "refused: command {of}: {refusal:?}"),
         Answer::Setting(own) => setting(f, own),
         Answer::Settings(all) => {
@@ -142,6 +148,7 @@ fn answer_words(f: &mut fmt::Formatter<'_>, of: u16, frame: u32, answer: &Answer
             Ok(())
         }
         Answer::Network(network) => network_words(f, network),
+        Answer::Nonce(nonce) => write!(f, "a session opens with {nonce:#010x}"),
     }
 }
 
@@ -209,7 +216,12 @@ fn slow_words(f: &mut fmt::Formatter<'_>, slow: &Slow) -> fmt::Result {
         };
         write!(f, " {}{fate}", id.name())?;
     }
-    f.write_str(if slow.wearer_active { " wearer" } else { "" })
+    f.write_str(if slow.wearer_active { " wearer" } else { "" })?;
+    match slow.line {
+        Line::Reading => Ok(()),
+        Line::Armed { left_s } => write!(f, " armed {left_s} s"),
+        Line::Trusted => f.write_str(" line trusted"),
+    }
 }
 
 fn network_words(f: &mut fmt::Formatter<'_>, network: &NetworkState) -> fmt::Result {
@@ -245,6 +257,10 @@ fn event_words(f: &mut fmt::Formatter<'_>, event: &Event) -> fmt::Result {
             f64::from(mu_s_permille) / 1e3,
             f64::from(s2_permille) / 1e3
         ),
+        EventKind::Armed(by) => write!(f, "armed: {by:?} consented to what the line sends"),
+        EventKind::Disarmed => f.write_str("disarmed: the line is only read"),
+        EventKind::LineTrusted(true) => f.write_str("the line is trusted: it moves the hand without consent"),
+        EventKind::LineTrusted(false) => f.write_str("the line is trusted no more"),
         EventKind::EventsLost(count) => write!(f, "{count} events lost"),
     }
 }

@@ -2,6 +2,7 @@
 
 pub mod fate;
 pub mod oracle;
+pub mod reflex;
 pub mod replay;
 pub mod scores;
 pub mod text;
@@ -52,6 +53,10 @@ pub struct Report {
     pub grip: Grip,
     /// The wearer's part.
     pub wearer: wearer::Wearer,
+    /// What the reflex did.
+    pub reflex: reflex::Reflex,
+    /// What became of the object.
+    pub object: reflex::Object,
     /// Each detector's.
     pub detectors: scores::Detectors,
     /// Everything that went wrong, as it was reported.
@@ -169,6 +174,8 @@ pub struct Subject<'a> {
     pub timeline: &'a Timeline,
     /// Who judged whether the wearer came first.
     pub judge: &'a wearer::Judge,
+    /// Who measured what the reflex added.
+    pub added: &'a reflex::Added,
     /// What really happened, where it is known.
     pub truth: Option<&'a fate::Fate>,
     /// The oracle's run, where there is one.
@@ -192,6 +199,8 @@ impl Report {
             stack_bytes: run.stack_bytes,
             slip: scores::Slip::of(timeline, subject.truth),
             oracle: oracle::Oracle::of(subject.truth, subject.oracle),
+            reflex: reflex::Reflex::of(subject.added, timeline, &run.events, subject.truth),
+            object: reflex::Object::of(subject.truth),
             grip: subject.truth.map_or_else(Grip::default, |truth| Grip {
                 peak_force_n: truth.peak_grip_n,
                 needed_force_n: truth.needed_force_n,

@@ -32,6 +32,7 @@ use crate::plot::sketch::{Needs, Sketch};
 use crate::plot::{Figure, panels};
 use crate::replay::{Recording, ReplayPlant, library};
 use crate::report::fate::Fate;
+use crate::report::reflex::Added;
 use crate::report::replay::{ActivePart, Replay};
 use crate::report::wearer::Judge;
 use crate::report::{Report, Subject};
@@ -136,13 +137,14 @@ pub fn load_scene(asked: &str) -> anyhow::Result<SceneFile> {
 struct Witness {
     timeline: Timeline,
     judge: Judge,
+    added: Added,
     sketch: Sketch,
 }
 
 impl Witness {
     fn new(zero_s: f64, span_s: (f64, f64)) -> Self {
         let sketch = Sketch::new(zero_s, span_s);
-        Self { timeline: Timeline::new(zero_s), judge: Judge::default(), sketch }
+        Self { timeline: Timeline::new(zero_s), judge: Judge::default(), added: Added::default(), sketch }
     }
 }
 
@@ -154,6 +156,7 @@ impl Recorder for Witness {
     fn slow(&mut self, slow: &Slow) {
         self.timeline.slow(slow);
         self.judge.slow(slow);
+        self.added.slow(slow);
         self.sketch.slow(slow);
     }
 }
@@ -182,6 +185,14 @@ impl Plant for Drawn {
 
     fn commands(&mut self) -> Vec<Down> {
         self.world.commands()
+    }
+
+    fn trusts_line(&self) -> bool {
+        self.world.trusts_line()
+    }
+
+    fn button(&self) -> bool {
+        self.world.button()
     }
 
     fn slipping(&self) -> bool {
@@ -219,7 +230,7 @@ pub fn scene_with(
     // The oracle's is always the host's: it is a bound on the gripper, not on the image.
     let oracle = simulated::run_oracle(Drawn::new(World::new(file, seed), span_s), &mut |_| {});
     let (truth, oracle) = (Fate::of(plant.world.truth()), Fate::of(oracle.world.truth()));
-    let Witness { timeline, judge, mut sketch } = witness;
+    let Witness { timeline, judge, added, mut sketch } = witness;
     sketch.needs = Some(plant.needs);
     let subject = Subject {
         scene: &file.name,
@@ -228,6 +239,7 @@ pub fn scene_with(
         run: &run,
         timeline: &timeline,
         judge: &judge,
+        added: &added,
         truth: Some(&truth),
         oracle: Some(&oracle),
     };
@@ -273,7 +285,7 @@ pub fn replay_with(
     let mut active = ActivePart::new(&recording, zero_s);
     let (run, _) = board.record(plant, &mut (&mut (&mut witness, &mut active), recorder), progress)?;
     let scene = name_of(path);
-    let Witness { timeline, judge, sketch } = witness;
+    let Witness { timeline, judge, added, sketch } = witness;
     let subject = Subject {
         scene: &scene,
         board: board.name(),
@@ -281,6 +293,7 @@ pub fn replay_with(
         run: &run,
         timeline: &timeline,
         judge: &judge,
+        added: &added,
         truth: None,
         oracle: None,
     };

@@ -20,17 +20,18 @@ pub struct Wishes {
 #[must_use]
 pub const fn arbitrate(wishes: Wishes) -> (MotorDrive, DriveSource) {
     match wishes {
-        // An open command always wins, whoever gives it.
+        // The wearer's open command always wins.
         Wishes { wearer: open @ MotorDrive::Open(_), .. } => (open, DriveSource::Wearer),
-        Wishes { link: Some(open @ MotorDrive::Open(_)), .. } => (open, DriveSource::Link),
         // Then the wearer's muscles, even when all they ask for is rest.
         Wishes { wearer: MotorDrive::Coast, wearer_active: true, .. } => {
             (MotorDrive::Coast, DriveSource::Nobody)
         }
         Wishes { wearer: close @ MotorDrive::Close(_), .. } => (close, DriveSource::Wearer),
-        // Then a command, even one to stop.
-        Wishes { link: Some(MotorDrive::Coast), .. } => (MotorDrive::Coast, DriveSource::Nobody),
-        Wishes { link: Some(drive), .. } => (drive, DriveSource::Link),
+        // Then a command that moves the hand. It opens nothing that the wearer holds, and one to coast asks for nothing: it
+        // does not silence the reflex.
+        Wishes { link: Some(drive @ (MotorDrive::Open(_) | MotorDrive::Close(_))), .. } => {
+            (drive, DriveSource::Link)
+        }
         // Then the reflex, which only ever closes.
         Wishes { reflex: close @ MotorDrive::Close(_), .. } => (close, DriveSource::Reflex),
         Wishes { .. } => (MotorDrive::Coast, DriveSource::Nobody),
@@ -51,8 +52,18 @@ mod tests {
                 for reflex in drives {
                     for wearer_active in [false, true] {
                         let (drive, source) = arbitrate(Wishes { wearer_active, wearer, link, reflex });
-                        let open_asked = wearer.opens() || link.is_some_and(MotorDrive::opens);
-                        assert_eq!(drive.opens(), open_asked, "nothing else opens, and nothing stops it");
+                        let wearer_asks = wearer_active || wearer != MotorDrive::Coast;
+                        let link_opens = link.is_some_and(MotorDrive::opens) && !wearer_asks;
+                        let open_asked = wearer.opens() || link_opens;
+                        assert_eq!(
+                            drive.opens(),
+                            open_asked,
+                            "nothing else opens, and nothing stops the wearer"
+                        );
+                        assert!(!(wearer_asks && source == DriveSource::Link));
+                        assert!(link != Some(MotorDrive::Coast) || source != DriveSource::Link);
+                        let reflex_free = !wearer_asks && link.is_none_or(|link| link == MotorDrive::Coast);
+                        assert_eq!(source == DriveSource::Reflex, reflex_free && reflex.closes());
                         assert!(!(wearer_active && source == DriveSource::Reflex));
                         assert!(source != DriveSource::Reflex || drive.closes());
                         assert_eq!(source == DriveSource::Nobody, drive == MotorDrive::Coast);

@@ -107,6 +107,8 @@ pub struct Config {
     pub gate: GateConfig,
     /// The reflex.
     pub grip: GripConfig,
+    /// The serial line needs no consent.
+    pub line_trusted: bool,
 }
 
 impl Config {
@@ -135,6 +137,7 @@ impl Config {
             ceiling_mn: 0,
             blind_frames: 0,
         },
+        line_trusted: false,
     };
 }
 

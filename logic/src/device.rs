@@ -25,10 +25,11 @@ use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{Answer, Down, Received, Refusal, Setting, Up};
-use tenax_hal_shim::words::{Fault, Kept};
+use tenax_hal_shim::words::{Fault, Kept, Line};
 
 use crate::fingertip::Fingertip;
 use crate::samples::LastSamples;
+use crate::session::Session;
 use crate::store::keeper::Keeper;
 use crate::store::record::Record;
 
@@ -38,6 +39,7 @@ pub struct Device {
     fingertip: Fingertip,
     samples: LastSamples,
     keeper: Keeper,
+    session: Session,
 }
 
 impl Default for Device {
@@ -51,7 +53,13 @@ impl Device {
     #[must_use]
     pub fn new(fingertip: Fingertip) -> Self {
         let keeper = fingertip.keeper();
-        Self { fingertip, samples: LastSamples::default(), keeper }
+        Self { fingertip, samples: LastSamples::default(), keeper, session: Session::default() }
+    }
+
+    /// One whose line needs no consent: a gripper's, or a bench's.
+    #[must_use]
+    pub fn trusting() -> Self {
+        Self::new(Fingertip::trusting())
     }
 
     /// The fingertip.
@@ -76,6 +84,16 @@ impl Device {
         self.fingertip.report(fault);
     }
 
+    /// Whether the button at the hand is down, until this says otherwise.
+    pub const fn button(&mut self, is_down: bool) {
+        self.fingertip.button(is_down);
+    }
+
+    /// This start was a reset, not somebody who switched the hand on. To be said before the first tick.
+    pub const fn was_reset(&mut self) {
+        self.fingertip.was_reset();
+    }
+
     /// Takes one frame, and says how to drive the motor until the next.
     pub fn tick(&mut self, frame: &Frame) -> MotorDrive {
         let drive = self.fingertip.tick(frame);
@@ -90,12 +108,25 @@ impl Device {
 
     /// Carries out a command, and gives the answer to it.
     pub fn command(&mut self, received: &Received<Down>) -> Up {
-        let done = self.fingertip.command(&received.message);
+        let done = self.carry_out(received);
         self.answer(received, done)
     }
 
+    /// Carries out a command. Part of [`command`](Self::command).
+    ///
+    /// # Errors
+    /// Says why it was not carried out; then nothing has changed.
+    pub fn carry_out(&mut self, received: &Received<Down>) -> Result<(), Refusal> {
+        match received.message {
+            Down::Open { nonce } => self.session.open(nonce, received.sequence)?,
+            message if message.reads() => self.session.read(received.sequence),
+            _ => self.session.admit(received.sequence, self.fingertip.line() == Line::Trusted)?,
+        }
+        self.fingertip.command(&received.message)
+    }
+
     /// The answer to a command that was `done`. Part of [`command`](Self::command).
-    pub fn answer(&self, received: &Received<Down>, done: Result<(), Refusal>) -> Up {
+    pub fn answer(&mut self, received: &Received<Down>, done: Result<(), Refusal>) -> Up {
         let answer = match (done, received.message) {
             (Err(refusal), _) => Answer::Refused(refusal),
             (Ok(()), Down::Set(Setting { id, .. }) | Down::Get(id)) => SettingId::from_number(id)
@@ -111,6 +142,7 @@ impl Device {
                 Answer::Settings(settings)
             }
             (Ok(()), Down::Samples) => Answer::Samples(self.samples.in_order()),
+            (Ok(()), Down::Hello) => Answer::Nonce(self.session.offer()),
             (Ok(()), Down::Network) => Answer::Network(self.fingertip.network()),
             (Ok(()), _) => Answer::Done,
         };
@@ -123,7 +155,11 @@ impl Device {
 
     /// The oldest message that was not taken yet. Ask after every tick.
     pub fn next_message(&mut self) -> Option<Up> {
-        self.fingertip.take_slow().map(Up::Slow).or_else(|| self.fingertip.next_event().map(Up::Event))
+        let slow = self.fingertip.take_slow();
+        if let Some(slow) = &slow {
+            self.session.stir(slow.samples_sum ^ slow.frame);
+        }
+        slow.map(Up::Slow).or_else(|| self.fingertip.next_event().map(Up::Event))
     }
 
     /// What has to be kept and is not yet. Ask once a slow frame; who asks saves it: it is given once.

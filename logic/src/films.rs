@@ -58,7 +58,8 @@ impl Films {
         let films = self.health.iter_mut().zip(&mut self.last).zip(samples).zip(&mut trusts);
         for (n, (((health, last), &sample), trust)) in films.enumerate() {
             let last = core::mem::replace(last, sample);
-            if sample != last && sample >= LIMITS.low && sample <= LIMITS.high && !health.is_lost() {
+            let in_range = (LIMITS.low..=LIMITS.high).contains(&sample);
+            if in_range && sample != last && !health.is_lost() {
                 health.was_plain(sample);
                 continue;
             }

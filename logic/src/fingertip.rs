@@ -4,17 +4,21 @@
 //! the wearer, then S1, then S2), and the arbiter says who drives the motor.
 
 mod commands;
+mod consent;
 mod heard;
+mod link;
 
 use tenax_hal_shim::detector::DetectorSet;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{Event, EventKind, NetworkState, Slow, TickRecord};
-use tenax_hal_shim::words::{Cause, DriveSource, Fault, GripMode, Kept};
+use tenax_hal_shim::words::{Cause, DriveSource, Fault, GripMode, Kept, Line};
 
 use self::heard::{Acting, Heard};
+use self::link::Link;
 use crate::arbiter::{Wishes, arbitrate};
+use crate::arming::Arming;
 use crate::config::{Config, frames};
 use crate::detectors::{Detectors, Said, Sensed};
 use crate::grip::{Grip, Reflex};
@@ -28,13 +32,6 @@ use crate::store::record::Record;
 /// A stroke that nobody ends is over after this long, in frames: a lost link must not leave the reflex silent.
 const STROKE_FRAMES_MAX: u32 = frames(60_000);
 
-/// A drive command that holds for some frames more.
-#[derive(Clone, Copy, Debug)]
-struct LinkDrive {
-    drive: MotorDrive,
-    frames_left: u32,
-}
-
 /// The fingertip's memory between ticks.
 #[derive(Clone, Debug, Default)]
 pub struct Fingertip {
@@ -47,7 +44,11 @@ pub struct Fingertip {
     acting: Acting,
     mode: GripMode,
     reflex: Reflex,
-    link: Option<LinkDrive>,
+    link: Link,
+    arming: Arming,
+    button: bool,
+    /// What was last told about the line.
+    line: Line,
     journal: Journal,
     slow: Option<Slow>,
     save_asked: bool,
@@ -59,6 +60,12 @@ impl Fingertip {
     #[must_use]
     pub fn new(config: Config) -> Self {
         Self { config, ..Self::default() }
+    }
+
+    /// One whose line needs no consent: a gripper's, or a bench's.
+    #[must_use]
+    pub fn trusting() -> Self {
+        Self::new(Config { line_trusted: true, ..Config::default() })
     }
 
     /// Takes up what was kept through a power cut, before the first tick. What it cannot use it reports; the defaults
@@ -178,7 +185,7 @@ impl Fingertip {
         let listening = matches!(self.mode, GripMode::Standby | GripMode::Watch);
         listening
             && !self.senses.gate.is_active()
-            && self.link.is_none()
+            && self.link.drive().is_none()
             && self.detectors.hebbian.lesson().is_err()
     }
 
@@ -214,22 +221,24 @@ impl Fingertip {
     }
 
     fn act(&mut self, frame: &Frame) -> MotorDrive {
-        self.link = self.link.and_then(|link| {
-            let frames_left = link.frames_left.checked_sub(1)?;
-            Some(LinkDrive { frames_left, ..link })
-        });
+        self.link.tick();
+        self.consent();
         let heard = Heard::of(&self.detectors, self.acting);
         self.step_mode(heard);
         let wishes = Wishes {
             wearer_active: self.senses.gate.is_active(),
             wearer: self.senses.gate.wish(&self.config.gate),
-            link: self.link.map(|link| link.drive),
+            link: self.link_drive(),
             reflex: Reflex::drive(&self.config.grip, self.mode),
         };
         // A lost frame says nothing about anybody's wish, so nobody's is carried out.
         let (drive, source) = if frame.valid { arbitrate(wishes) } else { Default::default() };
         self.drive = drive;
+        self.senses.driven(drive);
         self.reflex.tick(self.mode, self.senses.grip(&self.config));
+        if source == DriveSource::Link && drive.closes() {
+            self.reflex.spend(self.senses.grip(&self.config));
+        }
         self.journal.tick(
             frame.slot(),
             TickRecord {
@@ -256,7 +265,7 @@ impl Fingertip {
     fn step_mode(&mut self, heard: Heard) {
         let grip = self.senses.grip(&self.config);
         let config = self.config.grip;
-        let taken_over = self.senses.gate.is_active() || self.link.is_some();
+        let taken_over = self.senses.gate.is_active() || self.link_drive().is_some();
         self.cause(if self.senses.ready(&self.config) { Cause::SensorsReady } else { Cause::SensorsLost });
         self.cause(if taken_over { Cause::TakenOver } else { Cause::Released });
         let may_close = self.reflex.may_close(&config, grip);
@@ -264,7 +273,10 @@ impl Fingertip {
         if may_close && let Some(id) = heard.slip.first() {
             self.cause(Cause::Slip(id));
         }
-        if may_close && let Some(id) = heard.incipient.first() {
+        if may_close
+            && self.reflex.may_tighten(&config)
+            && let Some(id) = heard.incipient.first()
+        {
             self.cause(Cause::Incipient(id));
         }
         if mode::closes(self.mode) && self.reflex.pulse_over(&config, self.mode, slips, grip) {
@@ -318,6 +330,7 @@ impl Fingertip {
             lesson: self.detectors.hebbian.lesson().ok(),
             evidence: self.detectors.evidence(&self.config),
             samples_sum,
+            line: self.line,
         }
     }
 }

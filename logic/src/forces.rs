@@ -5,6 +5,10 @@
 //! tilt it is more. Scaled by two, as here, it is exact for an even load and `sqrt(1 + (Ft/P)^2)` too large under a
 //! shear along an axis: 4 % at a ratio of 0.3, 12 % at 0.5. So the ratio read here is `r / sqrt(1 + r^2)` for a true
 //! ratio r. Both grow together; a stroke that measures S2 measures it on the same scale.
+//!
+//! What is decided by a force and not by a ratio (is the finger loaded, is the ceiling reached) is decided by the load, the
+//! sum of the quadrants. And a ratio means something only if most quadrants agree that there is a load: one that is
+//! pressed by itself, by its own offset or a speck under the element, would read as a large shear.
 
 use tenax_hal_shim::channel::FSR_COUNT;
 use tenax_hal_shim::wire::Forces;
@@ -14,10 +18,20 @@ use crate::fsr::{force_mn, uv_above_rest};
 /// How far a quadrant's zero may be moved, uV: more is a load, not an offset.
 pub const ZERO_LIMIT_UV: i32 = 60_000;
 
+/// A quadrant that carries this much carries a part of the load, mN: more than its noise, and a fortieth of the least load.
+const CARRIES_MN: i32 = 15;
+/// Quadrants that have to. A shear along a diagonal may unload one.
+const AGREEING: usize = 3;
+/// While the hand is open a zero goes after its readings over so many of them: 0.8 s.
+const FOLLOWED_IN: i32 = 64;
+
 /// The force sensor: its calibrated zeros.
 #[derive(Clone, Debug, Default)]
 pub struct ForceSensor {
+    /// Calibrated, and kept through a power cut.
     zero_uv: [i32; FSR_COUNT],
+    /// What they have drifted since, as far as it is known.
+    drift_uv: [i32; FSR_COUNT],
     last_uv: [i32; FSR_COUNT],
 }
 
@@ -26,7 +40,8 @@ impl ForceSensor {
     pub fn process(&mut self, samples: [u16; FSR_COUNT], loaded_mn: i32) -> Forces {
         self.last_uv = samples.map(uv_above_rest);
         let mut quadrant_mn = [0; FSR_COUNT];
-        for ((mn, uv), zero) in quadrant_mn.iter_mut().zip(self.last_uv).zip(self.zero_uv) {
+        let zeros = self.zero_uv.iter().zip(&self.drift_uv).map(|(zero, drift)| zero + drift);
+        for ((mn, uv), zero) in quadrant_mn.iter_mut().zip(self.last_uv).zip(zeros) {
             *mn = force_mn(uv - zero);
         }
         forces(quadrant_mn, loaded_mn)
@@ -39,8 +54,21 @@ impl ForceSensor {
         let unloaded = self.last_uv.iter().all(|uv| uv.abs() <= ZERO_LIMIT_UV);
         if unloaded {
             self.zero_uv = self.last_uv;
+            self.drift_uv = [0; FSR_COUNT];
         }
         unloaded
+    }
+
+    /// The hand is surely open: what the quadrants read is no load, so their zeros go after it, as far as a working sensor's
+    /// may be off. What is further off is something that presses.
+    pub fn follow(&mut self) {
+        for ((drift, zero), &uv) in self.drift_uv.iter_mut().zip(&self.zero_uv).zip(&self.last_uv) {
+            if uv.abs() <= ZERO_LIMIT_UV {
+                // Rounded away from 0, so that the last microvolts are followed too.
+                let off = uv - zero - *drift;
+                *drift += (off + off.signum() * (FOLLOWED_IN - 1)) / FOLLOWED_IN;
+            }
+        }
     }
 
     /// The zeros, uV above rest.
@@ -62,9 +90,11 @@ pub fn forces([a, b, c, d]: [i32; FSR_COUNT], loaded_mn: i32) -> Forces {
     let fx_mn = (a + b) - (c + d);
     let fy_mn = (a + d) - (c + b);
     let ft_mn = root([fx_mn, fy_mn]);
-    let ratio_permille = (fn_mn >= loaded_mn.max(1))
+    let load_mn = a + b + c + d;
+    let agreeing = [a, b, c, d].into_iter().filter(|&mn| mn >= CARRIES_MN).count();
+    let ratio_permille = (load_mn >= loaded_mn.max(1) && agreeing >= AGREEING && fn_mn > 0)
         .then(|| (i64::from(ft_mn) * 1_000 / i64::from(fn_mn)).min(i64::from(u16::MAX)) as u16);
-    Forces { fn_mn, fx_mn, fy_mn, ft_mn, ratio_permille }
+    Forces { fn_mn, fx_mn, fy_mn, ft_mn, load_mn, ratio_permille }
 }
 
 /// Root of the sum of squares, rounded down: core's integer root, exact, where micromath's is off by up to 3.7 %.
@@ -110,6 +140,32 @@ mod tests {
     fn an_unloaded_finger_has_no_ratio() {
         assert_eq!(forces([100, 0, 0, 0], 600).ratio_permille, None);
         assert_eq!(forces([0; 4], 0).ratio_permille, None);
+    }
+
+    #[test]
+    fn one_quadrant_by_itself_is_no_load_and_no_shear() {
+        let alone = forces([300, 0, 0, 0], 600);
+        assert_eq!((alone.load_mn, alone.ratio_permille), (300, None), "{alone:?}");
+        assert_eq!(forces([2_000, 0, 0, 0], 600).ratio_permille, None);
+        assert!(forces([500, 300, 300, 0], 600).ratio_permille.is_some(), "a shear along a diagonal");
+    }
+
+    #[test]
+    fn an_offset_is_followed_while_the_hand_is_open_and_a_press_is_not() {
+        for mv in [10, 45, -20] {
+            let mut sensor = ForceSensor::default();
+            let offset = sample_from_mv((FSR_REST_MV as i32 + mv) as u32);
+            for _ in 0..80 * 6 {
+                sensor.process([offset; 4], 600);
+                sensor.follow();
+            }
+            assert!(sensor.process([offset; 4], 600).load_mn <= 8, "{mv} mV");
+            assert_eq!(sensor.zero_uv(), &[0; 4], "what is kept stays as it was calibrated");
+            let pressed = sample_from_mv((FSR_REST_MV as i32 + mv + 200) as u32);
+            let before = sensor.process([pressed; 4], 600);
+            (0..800).for_each(|_| sensor.follow());
+            assert_eq!(sensor.process([pressed; 4], 600), before);
+        }
     }
 
     #[test]

@@ -22,10 +22,18 @@ pub enum Grip {
 }
 
 /// The reflex's memory.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct Reflex {
     elapsed: u32,
+    /// Frames since the last pulse that answered incipient slip, saturating.
+    since_incipient: u32,
     blind: u32,
+}
+
+impl Default for Reflex {
+    fn default() -> Self {
+        Self { elapsed: 0, since_incipient: u32::MAX, blind: 0 }
+    }
 }
 
 impl Reflex {
@@ -39,11 +47,29 @@ impl Reflex {
         }
     }
 
+    /// Whether a drive command may close: an empty hand, or one that the reflex might close.
+    #[must_use]
+    pub const fn link_may_close(&self, config: &GripConfig, grip: Grip) -> bool {
+        matches!(grip, Grip::Unloaded) || self.may_close(config, grip)
+    }
+
     /// The mode has changed: what is timed begins now.
     pub fn enter(&mut self, mode: GripMode) {
         self.elapsed = 0;
-        if mode == GripMode::Wearer {
-            self.blind = 0;
+        if mode == GripMode::Incipient {
+            self.since_incipient = 0;
+        }
+    }
+
+    /// A muscle is active: whoever sees the hand has taken over, and the budget of the blind begins anew.
+    pub const fn renew(&mut self) {
+        self.blind = 0;
+    }
+
+    /// A drive command closes in this frame: without a known force it spends the same budget.
+    pub fn spend(&mut self, grip: Grip) {
+        if grip == Grip::Unknown {
+            self.blind = self.blind.saturating_add(1);
         }
     }
 
@@ -56,8 +82,9 @@ impl Reflex {
     /// Goes on by one frame.
     pub fn tick(&mut self, mode: GripMode, grip: Grip) {
         self.elapsed = self.elapsed.saturating_add(1);
-        if crate::mode::closes(mode) && grip == Grip::Unknown {
-            self.blind = self.blind.saturating_add(1);
+        self.since_incipient = self.since_incipient.saturating_add(1);
+        if crate::mode::closes(mode) {
+            self.spend(grip);
         }
     }
 
@@ -71,6 +98,13 @@ impl Reflex {
             _ => 0,
         };
         self.elapsed >= length || !self.may_close(config, grip)
+    }
+
+    /// Whether incipient slip may be answered again: the last answer has had its time to show in Ft/Fn. Slip itself is
+    /// answered meanwhile.
+    #[must_use]
+    pub const fn may_tighten(&self, config: &GripConfig) -> bool {
+        self.since_incipient >= config.incipient_frames + config.settle_frames
     }
 
     /// Whether the object has had its time to settle.
@@ -98,7 +132,7 @@ mod tests {
     fn pulse_frames(mode: GripMode, slips: bool, grip: Grip) -> u32 {
         let config = Config::default().grip;
         let mut reflex = Reflex::default();
-        reflex.enter(mode);
+        reflex.enter();
         (0..10_000)
             .take_while(|_| {
                 let over = reflex.pulse_over(&config, mode, slips, grip);
@@ -127,9 +161,22 @@ mod tests {
             reflex.tick(GripMode::Slip, Grip::Unknown);
         }
         assert!(!reflex.may_close(&config, Grip::Unknown));
-        reflex.enter(GripMode::Watch);
-        assert!(!reflex.may_close(&config, Grip::Unknown));
-        reflex.enter(GripMode::Wearer);
+        reflex.enter();
+        assert!(!reflex.may_close(&config, Grip::Unknown) && !reflex.link_may_close(&config, Grip::Unknown));
+        reflex.renew();
         assert!(reflex.may_close(&config, Grip::Unknown));
+    }
+
+    #[test]
+    fn the_line_is_bound_by_the_ceiling_and_shares_the_budget() {
+        let config = Config::default().grip;
+        let mut reflex = Reflex::default();
+        assert!(reflex.link_may_close(&config, Grip::Unloaded), "an empty hand may take something");
+        assert!(!reflex.link_may_close(&config, Grip::Holds(config.ceiling_mn)));
+        for _ in 0..config.blind_frames {
+            assert!(reflex.link_may_close(&config, Grip::Unknown));
+            reflex.spend(Grip::Unknown);
+        }
+        assert!(!reflex.link_may_close(&config, Grip::Unknown) && !reflex.may_close(&config, Grip::Unknown));
     }
 }

@@ -21,12 +21,14 @@
 extern crate std;
 
 pub mod arbiter;
+pub mod arming;
 pub mod array;
 mod checksum;
 pub mod config;
 pub mod detectors;
 pub mod device;
 pub mod elements;
+pub mod emg;
 pub mod films;
 pub mod fingertip;
 pub mod forces;
@@ -42,7 +44,9 @@ pub mod mode;
 pub mod plausibility;
 mod samples;
 pub mod senses;
+pub mod session;
 pub mod settings;
+pub mod solo;
 pub mod store;
 pub mod strain;
 pub mod touch;

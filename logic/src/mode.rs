@@ -32,7 +32,7 @@ pub const TRANSITIONS: [(GripMode, Cause, GripMode); 22] = [
     (Incipient, SensorsLost, Standby),
     (Incipient, TakenOver, Wearer),
     (Incipient, Slips(ANY), Slip),
-    (Incipient, PulseOver, Settle),
+    (Incipient, PulseOver, Watch),
     (Settle, SensorsLost, Standby),
     (Settle, TakenOver, Wearer),
     (Settle, Settled, Watch),

@@ -5,9 +5,10 @@ use tenax_hal_shim::channel::{
 };
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::front_end::FSR_REST_MV;
+use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::SCHEDULE;
 use tenax_hal_shim::wire::Forces;
-use tenax_hal_shim::words::{Capability, Fault};
+use tenax_hal_shim::words::{Capability, Fault, Reason};
 
 use crate::array::Reading;
 use crate::config::{Config, frames};
@@ -35,6 +36,9 @@ const MUSCLE_MISSES: u8 = 3;
 const MYO_HZ: u32 = 3 * SLOW_HZ;
 /// Equal readings of an active muscle in a row that no muscle gives: 50 ms. At rest, the general limit holds.
 const MYO_FROZEN_AFTER: u32 = MYO_HZ / 20;
+/// The hand is surely open when it has been opened for this long since it was last closed, in frames: at its slowest it has
+/// gone 2 cm.
+const OPEN_FRAMES: u32 = frames(600);
 /// A quadrant this far above its zero when the hand is switched on is pressed, uV.
 const PRESSED_UV: i32 = 100_000;
 
@@ -57,6 +61,8 @@ pub struct Senses {
     gauges: Gauges,
     elements: Elements,
     frames_seen: u32,
+    /// Frames in which the hand was opened since it was last closed.
+    open_frames: u32,
     frames_lost: u32,
     films_usable: bool,
     lost: [bool; 3],
@@ -97,7 +103,7 @@ impl Senses {
     /// switches is soon too old to be believed.
     pub fn lose(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
         self.frames_lost = self.frames_lost.saturating_add(1);
-        self.vibration = Vibration::default();
+        self.vibration = Vibration { masked: self.vibration.masked, ..Vibration::default() };
         self.forces_are_new = false;
         let slot = &SCHEDULE[usize::from(frame.slot())];
         for channel in [slot.switch_a, slot.switch_b].into_iter().flatten() {
@@ -111,6 +117,15 @@ impl Senses {
         }
         self.gate.tick(&config.gate);
         self.capabilities(journal);
+    }
+
+    /// How the motor was driven in the last frame: what has been opened for a while, and not closed since, holds nothing.
+    pub const fn driven(&mut self, drive: MotorDrive) {
+        match drive {
+            MotorDrive::Open(_) => self.open_frames = self.open_frames.saturating_add(1),
+            MotorDrive::Close(_) => self.open_frames = 0,
+            MotorDrive::Coast => {}
+        }
     }
 
     /// Takes the last readings of the force sensor and of the gauges as their zeros; false if the finger is loaded.
@@ -171,21 +186,35 @@ impl Senses {
     pub fn grip(&self, config: &Config) -> Grip {
         match self.forces {
             None => Grip::Unknown,
-            Some(forces) if forces.fn_mn < config.friction.loaded_mn => Grip::Unloaded,
-            Some(forces) => Grip::Holds(forces.fn_mn),
+            Some(forces) if forces.load_mn < config.friction.loaded_mn => Grip::Unloaded,
+            Some(forces) => Grip::Holds(forces.load_mn),
         }
     }
 
     /// Known to touch nothing at all: far below where a finger counts as loaded.
     #[must_use]
     pub fn is_unloaded(&self, config: &Config) -> bool {
-        !self.pressed && self.forces.is_some_and(|forces| forces.fn_mn < config.friction.loaded_mn / 4)
+        !self.pressed && self.forces.is_some_and(|forces| forces.load_mn < config.friction.loaded_mn / 4)
     }
 
     fn listen(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
         let trusts = self.films.take(&frame.pvdf, |film, change| report(journal, PVDF + film, Some(change)));
         self.films_usable = trusts.is_none_or(|trusts| trusts.iter().any(|&trust| trust != Trust::None));
+        let masked = self.vibration.masked;
         self.vibration = self.detector.hear(&config.vibration, &frame.pvdf, trusts.as_ref());
+        if self.vibration.masked != masked {
+            self.mask(masked ^ self.vibration.masked, journal);
+        }
+    }
+
+    /// Reports the films that are masked now and were not, or the other way round.
+    #[inline(never)]
+    fn mask(&self, changed: u16, journal: &mut Journal) {
+        for film in (0..PVDF_COUNT).filter(|film| changed >> film & 1 != 0) {
+            let lost = self.vibration.masked >> film & 1 != 0;
+            let change = if lost { Change::Lost(Reason::Noisy) } else { Change::Back };
+            report(journal, PVDF + film, Some(change));
+        }
     }
 
     fn on_switch_a(&mut self, config: &Config, channel: usize, sample: u16, journal: &mut Journal) {
@@ -262,6 +291,9 @@ impl Senses {
             forces.ratio_permille = None;
         }
         self.forces = Some(forces);
+        if self.open_frames >= OPEN_FRAMES {
+            self.force_sensor.follow();
+        }
     }
 
     fn muscle(&mut self, config: &Config, muscle: usize, sample: u16, journal: &mut Journal) {

@@ -44,6 +44,7 @@ impl Config {
             Id::IncipientPulse => ms(self.grip.incipient_frames),
             Id::Settle => ms(self.grip.settle_frames),
             Id::Blind => ms(self.grip.blind_frames),
+            Id::LineTrusted => self.line_trusted.into(),
         }
     }
 
@@ -52,12 +53,30 @@ impl Config {
     /// # Errors
     /// If the value is not accepted: the values that are. Then nothing has changed.
     pub fn set(&mut self, id: SettingId, value: i32) -> Result<(), RangeInclusive<i32>> {
-        let range = id.row().range();
+        let range = self.range(id);
         if !range.contains(&value) {
             return Err(range);
         }
         self.put(id, value);
+        if id == SettingId::LineTrusted {
+            self.bound();
+        }
         Ok(())
+    }
+
+    /// The values of a setting that are accepted now.
+    const fn range(&self, id: SettingId) -> RangeInclusive<i32> {
+        if self.line_trusted { id.row().range_if_trusted() } else { id.row().range() }
+    }
+
+    /// Whoever relies on consent relies on the narrower ranges too.
+    fn bound(&mut self) {
+        for id in SettingId::ALL {
+            let (value, max) = (self.get(id), *self.range(id).end());
+            if value > max {
+                self.put(id, max);
+            }
+        }
     }
 
     /// Changes a setting to a value that is accepted: 0 to 2^24, which each field has room for.
@@ -95,6 +114,7 @@ impl Config {
             Id::IncipientPulse => self.grip.incipient_frames = frames(number),
             Id::Settle => self.grip.settle_frames = frames(number),
             Id::Blind => self.grip.blind_frames = frames(number),
+            Id::LineTrusted => self.line_trusted = number > 0,
         }
         if matches!(id, Id::HebbianAlpha | Id::HebbianBeta | Id::HebbianDelta) {
             self.touch.rule = Rule::of(&self.touch.learning);
@@ -130,6 +150,16 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_trusted_line_may_silence_a_detector_until_it_is_trusted_no_more() {
+        let mut config = Config { line_trusted: true, ..Config::default() };
+        assert_eq!(config.set(SettingId::S1, 1_500), Ok(()));
+        assert_eq!(config.set(SettingId::S2, 800), Ok(()));
+        assert_eq!(config.set(SettingId::LineTrusted, 0), Ok(()));
+        assert_eq!((config.get(SettingId::S1), config.get(SettingId::S2)), (600, 800));
+        assert_eq!(config.set(SettingId::S1, 1_500), Err(20..=600));
     }
 
     #[test]

@@ -18,6 +18,7 @@ use tenax_hal_shim::wire::TickRecord;
 
 use crate::config::VibrationConfig;
 use crate::low_pass::LowPass;
+use crate::solo::Solo;
 
 /// Lower edge of the slip band, Hz.
 pub const BAND_LOW_HZ: u32 = 20;
@@ -25,6 +26,11 @@ pub const BAND_LOW_HZ: u32 = 20;
 pub const BAND_HIGH_HZ: u32 = 150;
 /// Time constant of the envelope, us.
 pub const ENVELOPE_US: u32 = 8_000;
+
+/// A loud vibration that has rung for this long is a knock's, in frames: what slides rings for a tick now and then.
+const KNOCK_RINGS: u32 = 12;
+/// A peak of the envelope is forgotten over `2^PEAK_SHIFT` frames, 0.13 s.
+const PEAK_SHIFT: u32 = 8;
 
 /// Fraction bits of a conditioned sample.
 const Q: u32 = 16;
@@ -54,6 +60,11 @@ pub struct Heard {
 }
 
 impl Film {
+    /// Its envelope, or what it would be if the film were believed, Q16 samples.
+    const fn level(&self) -> i32 {
+        self.envelope
+    }
+
     /// Takes its first sample as the offset, so that being switched on is no vibration; later ones change nothing.
     pub fn prime(&mut self, sample: u16) {
         if !self.primed {
@@ -108,6 +119,8 @@ pub struct Vibration {
     pub s1: bool,
     /// Whether it rings above the slip band as a knock does, and has not lasted longer than one.
     pub knock: bool,
+    /// The films that are masked because each was loud alone, a bit each.
+    pub masked: u16,
 }
 
 /// The detector.
@@ -120,7 +133,13 @@ pub struct VibrationDetector {
     above: i32,
     loud_frames: u32,
     ringing_frames: u32,
+    /// The largest envelope since it became loud, slowly forgotten, and how many loud frames it took.
+    peak: i32,
+    peak_at: u32,
+    /// For how many frames it has rung since it became loud.
+    rang_frames: u32,
     s1: bool,
+    solo: Solo,
 }
 
 impl VibrationDetector {
@@ -131,12 +150,35 @@ impl VibrationDetector {
         samples: &[u16; PVDF_COUNT],
         trusts: Option<&[Trust; PVDF_COUNT]>,
     ) -> Vibration {
+        if self.solo.masked() != 0 {
+            let trusts = self.with_masks(config, trusts);
+            let loudest = self.hear_each(samples, &trusts);
+            return self.judge(config, loudest);
+        }
         let loudest = match trusts {
             None if self.all_primed => self.hear_all(samples),
             None => self.hear_each(samples, &[Trust::Full; PVDF_COUNT]),
             Some(trusts) => self.hear_each(samples, trusts),
         };
         self.judge(config, loudest)
+    }
+
+    /// What a masked film hears is as doubtful as what a freezing one does.
+    #[inline(never)]
+    fn with_masks(
+        &mut self,
+        config: &VibrationConfig,
+        trusts: Option<&[Trust; PVDF_COUNT]>,
+    ) -> [Trust; PVDF_COUNT] {
+        let mut masked = trusts.copied().unwrap_or([Trust::Full; PVDF_COUNT]);
+        let on = i32::from(config.s1) << Q;
+        for (n, (trust, film)) in masked.iter_mut().zip(&self.films).enumerate() {
+            if *trust == Trust::Full && self.solo.is_masked(n) {
+                self.solo.masked_channel(n, film.level(), on);
+                *trust = Trust::Doubtful;
+            }
+        }
+        masked
     }
 
     /// Every film at once, when all of them can be believed: the usual tick.
@@ -183,17 +225,32 @@ impl VibrationDetector {
         let on = i32::from(config.s1) << Q;
         // Once on, half the threshold keeps it on: the envelope of one slip has dips.
         let loud = envelope > if self.s1 { on / 2 } else { on };
+        if loud {
+            self.solo.loud(&self.envelopes, on);
+        } else {
+            self.solo.rest();
+        }
         self.loud_frames = if loud { self.loud_frames.saturating_add(1) } else { 0 };
         // A quiet film's noise is mostly above the band too, but no knock is as quiet.
         let rings = above > i32::from(config.knock_level) << Q
             && i64::from(above) * 1_000 > i64::from(envelope) * i64::from(config.knock_permille);
         self.ringing_frames = if rings { self.ringing_frames.saturating_add(1) } else { 0 };
-        let knock = rings && self.loud_frames < config.knock_frames;
-        self.s1 = loud && (self.s1 || !knock);
+        self.rang_frames = if loud { self.rang_frames.saturating_add(rings.into()) } else { 0 };
+        self.peak -= self.peak >> PEAK_SHIFT;
+        if !loud || envelope >= self.peak {
+            self.peak = envelope;
+            self.peak_at = self.loud_frames;
+        }
+        // What has rung is a knock until it has lasted longer than one and has not died away as one: a knock is loudest as
+        // it begins.
+        let lasts = self.loud_frames >= config.knock_frames && 4 * self.peak_at >= 3 * config.knock_frames;
+        let knock = rings || self.rang_frames >= KNOCK_RINGS;
+        self.s1 = loud && (self.s1 || !knock || lasts);
         Vibration {
             level: (envelope >> Q).clamp(0, i32::from(TickRecord::VIBRATION_MAX)) as u16,
             s1: self.s1,
             knock: rings && self.ringing_frames < config.knock_frames,
+            masked: self.solo.masked(),
         }
     }
 
@@ -300,7 +357,8 @@ mod tests {
         let seen = levels(&tone(300.0, 7_000.0, 1e9, 400));
         let first_loud = seen.iter().position(|v| v.level > 600).unwrap();
         let first_s1 = seen.iter().position(|v| v.s1).unwrap();
-        assert!((50..=70).contains(&(first_s1 - first_loud)), "{first_loud} {first_s1}");
+        let knock_frames = Config::default().vibration.knock_frames as usize;
+        assert!((first_s1 - first_loud).abs_diff(knock_frames) <= 10, "{first_loud} {first_s1}");
     }
 
     #[test]

@@ -9,22 +9,33 @@ use crate::file::sections::{Command, CommandKind};
 
 /// How often a tool repeats a drive while its key is held, s: well inside [`DRIVE_HOLD_MAX_MS`].
 const REPEAT_S: f64 = 0.1;
+/// How long somebody presses the button, s.
+const PRESS_S: f64 = 0.3;
 
 /// The commands of a scene, in the order in which they are sent.
 #[derive(Clone, Debug)]
-pub(crate) struct Script(VecDeque<(f64, Down)>);
+pub(crate) struct Script {
+    sent: VecDeque<(f64, Down)>,
+    pressed_at_s: Vec<f64>,
+}
 
 impl Script {
     pub(crate) fn new(commands: &[Command]) -> Self {
         let mut sent: Vec<(f64, Down)> = commands.iter().flat_map(expand).collect();
         sent.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-        Self(sent.into())
+        let presses = commands.iter().filter(|command| *command.kind.get_ref() == CommandKind::Consent);
+        Self { sent: sent.into(), pressed_at_s: presses.map(|press| press.at_s.get_ref().get()).collect() }
+    }
+
+    /// Whether somebody holds the button down at `t_s`.
+    pub(crate) fn button(&self, t_s: f64) -> bool {
+        self.pressed_at_s.iter().any(|at_s| (*at_s..at_s + PRESS_S).contains(&t_s))
     }
 
     /// Those that are due at `t_s` and were not taken yet.
     pub(crate) fn take(&mut self, t_s: f64) -> Vec<Down> {
-        let due = self.0.iter().take_while(|(at_s, _)| *at_s <= t_s).count();
-        self.0.drain(..due).map(|(_, down)| down).collect()
+        let due = self.sent.iter().take_while(|(at_s, _)| *at_s <= t_s).count();
+        self.sent.drain(..due).map(|(_, down)| down).collect()
     }
 }
 
@@ -37,6 +48,7 @@ fn expand(command: &Command) -> Vec<(f64, Down)> {
         CommandKind::StrokeBegin => once(Down::Stroke(true)),
         CommandKind::StrokeEnd => once(Down::Stroke(false)),
         CommandKind::Zero => once(Down::Zero),
+        CommandKind::Consent => Vec::new(),
         CommandKind::Close => held(at_s, command, MotorDrive::Close(duty)),
         CommandKind::Open => held(at_s, command, MotorDrive::Open(duty)),
         CommandKind::Set(id) => {

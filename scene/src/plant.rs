@@ -45,6 +45,16 @@ pub trait Plant: Send {
         Vec::new()
     }
 
+    /// Whether the board trusts whoever sends them (the setting `line-trusted-flag`, kept in its flash from before).
+    fn trusts_line(&self) -> bool {
+        false
+    }
+
+    /// Whether somebody holds the board's button down at this instant.
+    fn button(&self) -> bool {
+        false
+    }
+
     /// Whether the object moves relative to the finger at this instant: what the oracle is told.
     fn slipping(&self) -> bool {
         false

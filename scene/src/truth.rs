@@ -21,6 +21,9 @@ pub const MYO_OFF_MV: f64 = 110.0;
 /// Micro slips further apart than this are not of one run, s: the time that a late detection of a slip may take.
 pub const MICRO_PAUSE_S: f64 = 0.050;
 
+/// An object that is this far below the hand is not in it any more, mm: the pads are 18 mm long, and some slips are longer.
+const LEFT_MM: f64 = 40.0;
+
 /// The log.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Truth {
@@ -30,6 +33,8 @@ pub struct Truth {
     pub slip_distance_mm: f64,
     /// Whether the object left the pads after it was lifted.
     pub dropped: bool,
+    /// Whether the hand rose without the object, though its fingers were not opened.
+    pub left_behind: bool,
     /// Elements of the sensed contact that let go, each time counted.
     pub micro_slips: u64,
     /// When the fingers first crushed it, s.
@@ -52,6 +57,7 @@ pub struct Truth {
     pub trace: Vec<Row>,
     /// What the camera said, 30 times a second. It goes to nobody by itself.
     pub camera: Vec<Seen>,
+    let_go: bool,
     slide: Option<Slide>,
     micro: Option<Micro>,
 }
@@ -108,6 +114,9 @@ impl Truth {
         self.slip(step);
         let (touch, state) = (step.touch, &step.state);
         self.dropped |= state.dropped;
+        self.let_go = step.opens || (self.let_go && touch.normal_n <= TOUCH_N);
+        let apart_mm = state.hand_mm - state.position_mm;
+        self.left_behind |= apart_mm > LEFT_MM && state.hand_mm > LEFT_MM && !self.let_go && !state.dropped;
         self.dent_mm = state.dent_mm;
         if state.dent_mm > 0.0 {
             self.crushed_at_s.get_or_insert(step.t_s);

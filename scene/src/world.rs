@@ -53,6 +53,7 @@ pub struct World {
     faults: Faults,
     converter: Converter,
     script: Script,
+    trusts_line: bool,
     pins: Pins,
     truth: Truth,
 }
@@ -107,6 +108,7 @@ impl World {
             faults: Faults::new(&scene.fault),
             converter: Converter::new(seed),
             script: Script::new(&scene.command),
+            trusts_line: scene.trusts_line(),
             pins: Pins::default(),
             truth: Truth::default(),
         }
@@ -240,6 +242,14 @@ impl Plant for World {
         let mut commands = self.script.take(t_s);
         commands.extend(self.eye.teach(t_s));
         commands
+    }
+
+    fn trusts_line(&self) -> bool {
+        self.trusts_line
+    }
+
+    fn button(&self) -> bool {
+        self.script.button(self.now_s())
     }
 
     fn slipping(&self) -> bool {

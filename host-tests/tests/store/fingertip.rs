@@ -28,7 +28,7 @@ fn save_all(fingertip: &mut Fingertip, keeper: &mut Keeper, flash: &mut TestFlas
 /// A new fingertip with what `flash` holds.
 fn booted(flash: &mut TestFlash) -> Fingertip {
     let (_, found) = open(flash);
-    let mut fingertip = Fingertip::default();
+    let mut fingertip = Fingertip::trusting();
     let mut buffer = [0; PAYLOAD_BYTES];
     for kept in Kept::ALL {
         if let Some(payload) = found.read(flash, kept, &mut buffer) {
@@ -56,7 +56,7 @@ fn fn_mn(bench: &Bench) -> i32 {
 #[test]
 fn zero_and_settings_survive_and_a_fingertip_without_them_differs() {
     let mut flash = TestFlash::blank(4_096);
-    let mut bench = off_zero(Fingertip::default());
+    let mut bench = off_zero(Fingertip::trusting());
     let mut keeper = bench.fingertip.keeper();
     assert!(save_all(&mut bench.fingertip, &mut keeper, &mut flash).is_empty(), "nothing has changed yet");
     let untouched = fn_mn(&bench);
@@ -75,7 +75,7 @@ fn zero_and_settings_survive_and_a_fingertip_without_them_differs() {
 
 #[test]
 fn a_record_of_something_else_is_told_and_changes_nothing() {
-    let mut fingertip = Fingertip::default();
+    let mut fingertip = Fingertip::trusting();
     let mut keeper = fingertip.keeper();
     for kept in Kept::ALL {
         fingertip.restore(kept, &[0xFF; 12]);
@@ -92,7 +92,7 @@ fn a_record_of_something_else_is_told_and_changes_nothing() {
 #[test]
 fn what_is_forgotten_stays_forgotten() {
     let mut flash = TestFlash::blank(4_096);
-    let mut fingertip = Fingertip::default();
+    let mut fingertip = Fingertip::trusting();
     let mut keeper = fingertip.keeper();
     fingertip.command(&Down::Forget).unwrap();
     assert_eq!(save_all(&mut fingertip, &mut keeper, &mut flash), [Kept::Network]);

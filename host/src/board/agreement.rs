@@ -34,17 +34,17 @@ impl Said {
 
 /// Puts codes that were recorded on any board through the host's build of the logic.
 ///
-/// `commands` are those that the board took, in order, each with the sequence number of the frame before whose tick it took
+/// `trusts_line` is the board's setting. `commands` are those that the board took, in order, each with the sequence number of the frame before whose tick it took
 /// it. No frame may have been lost. Scans that do not fill a frame are left out.
 #[must_use]
-pub fn host_says(scans: &[Scan], commands: &[(u32, Down)]) -> Said {
-    let mut device = Device::default();
+pub fn host_says(scans: &[Scan], trusts_line: bool, commands: &[(u32, Down)]) -> Said {
+    let mut device = if trusts_line { Device::trusting() } else { Device::default() };
     let mut said = Said::default();
-    let mut commands = commands.iter().peekable();
+    let mut commands = (0..).zip(commands).peekable();
     let (frames, _) = scans.as_chunks::<SCANS_PER_FRAME>();
     for (sequence, scans) in (0..).zip(frames) {
-        while let Some((_, message)) = commands.next_if(|(at, _)| *at <= sequence) {
-            said.take(device.command(&Received { sequence: 0, message: *message }));
+        while let Some((of, (_, message))) = commands.next_if(|(_, (at, _))| *at <= sequence) {
+            said.take(device.command(&Received { sequence: of, message: *message }));
         }
         device.tick(&Frame::from_scans(sequence, scans));
         std::iter::from_fn(|| device.next_message()).for_each(|message| said.take(message));
@@ -71,7 +71,7 @@ impl Agreement {
             events: run.events.len(),
             commands: run.taken.len(),
             networks: run.networks().count(),
-            difference: difference(run, &host_says(&run.scans, &run.taken)),
+            difference: difference(run, &host_says(&run.scans, run.trusts_line, &run.taken)),
         }
     }
 

@@ -58,7 +58,8 @@ fn closed_loop<P: Plant>(
     let began = Instant::now();
     let frames = frames_in(plant.duration_s());
     let mut summary = Summary { starts: vec![None], ..Summary::default() };
-    let mut device = Device::default();
+    let mut device = if plant.trusts_line() { Device::trusting() } else { Device::default() };
+    summary.trusts_line = plant.trusts_line();
     if judge == Judge::Plant {
         device.fingertip_mut().act_on(DetectorSet::only(DetectorId::Injected));
     }
@@ -77,6 +78,7 @@ fn closed_loop<P: Plant>(
             summary.taken.push((sequence, *command));
             summary.take(device.command(&Received { sequence: of, message: *command }), recorder);
         }
+        device.button(plant.button());
         let frame = Frame::from_scans(sequence, &scans);
         if judge == Judge::Plant {
             device.fingertip_mut().inject(Said::slip(plant.slipping()));

@@ -49,7 +49,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     // What is to be run is looked at before the image is built, which can take minutes.
     let subject = match &args.replay {
         Some(path) => Subject::Recording(path, Recording::read(path)?),
-        None => Subject::Scene(session::load_scene(&args.scene)?),
+        None => Subject::Scene(Box::new(session::load_scene(&args.scene)?)),
     };
     let name = match &subject {
         Subject::Recording(path, _) => session::name_of(path),
@@ -83,7 +83,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
 /// What is run.
 enum Subject<'a> {
     Recording(&'a Path, Recording),
-    Scene(SceneFile),
+    Scene(Box<SceneFile>),
 }
 
 /// Writes figure and report, and says where.

@@ -71,6 +71,10 @@ impl Plant for Chain {
         commands
     }
 
+    fn trusts_line(&self) -> bool {
+        self.setups.iter().any(|setup| setup.world.trusts_line())
+    }
+
     fn slipping(&self) -> bool {
         self.setups[self.now].world.slipping()
     }

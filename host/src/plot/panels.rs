@@ -15,7 +15,7 @@ use crate::report::Subject;
 pub fn figure(subject: &Subject, sketch: Sketch) -> Figure {
     let span_s = sketch.span_s();
     let slips = subject.truth.map_or_else(Vec::new, |truth| {
-        truth.slips.iter().map(|slip| (slip.micro_onset_s, slip.end_s.min(span_s.1))).collect()
+        joined(truth.slips.iter().map(|slip| (slip.micro_onset_s, slip.end_s.min(span_s.1))), span_s)
     });
     let strip = modes(subject, sketch.end_s().unwrap_or(span_s.1), span_s);
     let Sketch { forces: drawn, needs, ratio, s2, vibration, muscles: envelopes, motor: drives, .. } = sketch;
@@ -46,6 +46,26 @@ pub fn figure(subject: &Subject, sketch: Sketch) -> Figure {
             motor(drives, strip),
         ],
     }
+}
+
+/// More slips, or modes, than this are more than the columns of pixels that they would stand in.
+const MANY: usize = 2_000;
+
+/// Stretches of time in order, those of them that are many made one where no pixel is between them.
+fn joined(stretches: impl Iterator<Item = (f64, f64)>, (from_s, to_s): (f64, f64)) -> Vec<(f64, f64)> {
+    let all: Vec<(f64, f64)> = stretches.collect();
+    if all.len() <= MANY {
+        return all;
+    }
+    let pixel_s = (to_s - from_s) / MANY as f64;
+    let mut joined: Vec<(f64, f64)> = Vec::new();
+    for (begin_s, end_s) in all {
+        match joined.last_mut() {
+            Some(last) if begin_s - last.1 < pixel_s => last.1 = last.1.max(end_s),
+            _ => joined.push((begin_s, end_s)),
+        }
+    }
+    joined
 }
 
 fn curve(name: &str, colour: RGBColor, thin: Thin) -> Curve {
@@ -110,6 +130,16 @@ fn modes(subject: &Subject, end_s: f64, (from_s, to_s): (f64, f64)) -> Vec<Stret
             stretches.push(Stretch { name: name.to_owned(), colour, from_s, to_s });
         }
     }
+    let pixel_s = (to_s - from_s) / MANY as f64;
+    if stretches.len() > MANY {
+        // Of many, those that can be seen, and of the others the first in each pixel.
+        let mut pixel = usize::MAX;
+        stretches.retain(|stretch| {
+            let at = ((stretch.from_s - from_s) / pixel_s) as usize;
+            let first = std::mem::replace(&mut pixel, at) != at;
+            first || stretch.to_s - stretch.from_s > pixel_s
+        });
+    }
     stretches
 }
 
@@ -122,5 +152,19 @@ fn look(mode: GripMode) -> (RGBColor, &'static str) {
         GripMode::Incipient => (colour::ORANGE, "incipient"),
         GripMode::Settle => (colour::YELLOW, "settle"),
         GripMode::Explore => (colour::PURPLE, "explore"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_few_slips_are_drawn_as_they_are_and_many_in_no_more_than_the_pixels() {
+        let slips = |count: u32| (0..count).map(move |n| (f64::from(n), f64::from(n) + 0.1));
+        assert_eq!(joined(slips(3), (0.0, 3.0)).len(), 3);
+        let many = joined(slips(1_000_000), (0.0, 1e6));
+        assert!(many.len() <= MANY && many.first().map(|slip| slip.0) == Some(0.0));
+        assert!(many.last().is_some_and(|slip| slip.1 > 999_999.0));
     }
 }

@@ -26,6 +26,8 @@ pub struct Fate {
     pub distance_mm: f64,
     /// Whether it was dropped.
     pub dropped: bool,
+    /// Whether the hand rose without it.
+    pub left_behind: bool,
     /// The greatest grip force, N. None where nothing was held.
     pub peak_grip_n: Option<f64>,
     /// When the fingers first crushed it, s.
@@ -54,6 +56,7 @@ impl Fate {
             slips: truth.slips.iter().map(slip).collect(),
             distance_mm: truth.slip_distance_mm,
             dropped: truth.dropped,
+            left_behind: truth.left_behind,
             crushed_at_s: truth.crushed_at_s,
             dent_mm: truth.dent_mm,
             broken_at_s: truth.broken_at_s,

@@ -96,13 +96,25 @@ fn slip(f: &mut fmt::Formatter<'_>, report: &Report) -> fmt::Result {
     let (Some(dropped), Some(distance_mm)) = (slip.dropped, slip.distance_mm) else {
         return Ok(());
     };
-    let fate = if dropped { "DROPPED" } else { "kept" };
+    let fate = match (dropped, report.object.left_behind) {
+        (true, _) => "DROPPED",
+        (false, Some(true)) => "LEFT BEHIND",
+        (false, _) => "kept",
+    };
     line!(
         f,
         "object",
         "{fate}; slid {distance_mm:.2} mm, the oracle {:.2} ({:.2})",
         Or(report.oracle.distance_mm, "mm"),
         Or(report.oracle.distance_ratio, "times")
+    )?;
+    line!(
+        f,
+        "reflex",
+        "{} pulses, {} of them without slip; they added {:.2} N",
+        report.reflex.pulses,
+        report.reflex.without_slip.unwrap_or(0),
+        report.reflex.added_force_n
     )?;
     line!(
         f,

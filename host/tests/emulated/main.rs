@@ -34,15 +34,37 @@ struct Swing {
     scans: u32,
     duration_s: f64,
     commands: Vec<(f64, Down)>,
+    /// What is sent is carried out, whoever sends it. The tests of arming say otherwise.
+    trusts_line: bool,
+    pressed_at_s: Option<f64>,
 }
 
 impl Swing {
     fn new(duration_s: f64) -> Self {
-        Self { pins: Pins::default(), scans: 0, duration_s, commands: Vec::new() }
+        Self {
+            pins: Pins::default(),
+            scans: 0,
+            duration_s,
+            commands: Vec::new(),
+            trusts_line: true,
+            pressed_at_s: None,
+        }
     }
 
     fn sending(mut self, at_s: f64, command: Down) -> Self {
         self.commands.push((at_s, command));
+        self
+    }
+
+    /// On a line that needs consent.
+    fn stranger(mut self) -> Self {
+        self.trusts_line = false;
+        self
+    }
+
+    /// Somebody at the hand presses the button.
+    fn pressing(mut self, at_s: f64) -> Self {
+        self.pressed_at_s = Some(at_s);
         self
     }
 
@@ -63,6 +85,14 @@ impl Plant for Swing {
     fn commands(&mut self) -> Vec<Down> {
         let now_s = self.t_s();
         self.commands.extract_if(.., |(at_s, _)| *at_s <= now_s).map(|(_, command)| command).collect()
+    }
+
+    fn trusts_line(&self) -> bool {
+        self.trusts_line
+    }
+
+    fn button(&self) -> bool {
+        self.pressed_at_s.is_some_and(|at_s| (at_s..at_s + 0.1).contains(&self.t_s()))
     }
 
     fn duration_s(&self) -> f64 {
@@ -87,6 +117,14 @@ impl Plant for Rest {
 
     fn commands(&mut self) -> Vec<Down> {
         self.0.commands()
+    }
+
+    fn trusts_line(&self) -> bool {
+        self.0.trusts_line()
+    }
+
+    fn button(&self) -> bool {
+        self.0.button()
     }
 
     fn duration_s(&self) -> f64 {

@@ -9,8 +9,9 @@ use super::network::{LookBack, Mlp};
 use super::preprocess::{Features, Preprocessor, PreprocessorConfig};
 use super::{COVARIANCE_WINDOW, FEATURES, Reading, SPECTRUM_WINDOW};
 
-/// Shares of a slow frame's work, one a tick: covariance and spectrum; structure functions and features; either half of
-/// the first layer; the rest of the network and the verdict. A tick that did all would last into the next frame.
+/// Shares of a slow frame's work, one a tick: covariance with its features, and spectrum; structure functions, and the
+/// other features; either half of the first layer; the rest of the network and the verdict. A tick that did all would
+/// last into the next frame.
 pub const SHARES: usize = ARRAY_SHARES as usize;
 const VERDICT_SHARE: usize = SHARES - 1;
 const _: () = assert!(VERDICT_SHARE == 4);

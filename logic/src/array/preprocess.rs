@@ -59,8 +59,8 @@ pub struct Preprocessor<const N: usize = COVARIANCE_WINDOW, const M: usize = SPE
     /// Slow frames from the reading that a difference is to.
     lag: usize,
     past: Past,
-    /// Elements without a reading.
-    dead: usize,
+    /// Whether the windows are full and enough elements have a reading.
+    ready: bool,
     /// Force of all elements above rest, samples.
     sum: i32,
     covariance: SlidingCovariance<N>,
@@ -89,7 +89,7 @@ impl<const N: usize, const M: usize> Preprocessor<N, M> {
             structure_knees: structure::knees(config.structure_knee),
             lag,
             past: Past::default(),
-            dead: 0,
+            ready: false,
             sum: 0,
             covariance: SlidingCovariance::default(),
             spectrum: SlidingSpectrum::default(),
@@ -105,7 +105,7 @@ impl<const N: usize, const M: usize> Preprocessor<N, M> {
         self.finish()
     }
 
-    /// The first half of [`push`](Self::push): equations 1 to 4, and the transform.
+    /// The first half of [`push`](Self::push): equations 1 to 4 with their features, and the transform.
     pub fn take(&mut self, reading: &Reading) {
         let arrival = self.past.push(reading);
         if arrival.gone.contains(&true) {
@@ -118,30 +118,27 @@ impl<const N: usize, const M: usize> Preprocessor<N, M> {
         self.sum += arrival.change;
         self.covariance.push(&self.past.changes(self.lag).of);
         self.spectrum.push(self.sum);
-        self.dead = arrival.dead;
+        self.missing = self.missing.saturating_sub(1);
+        self.ready = self.missing == 0 && arrival.dead <= usize::from(self.config.dead_max);
+        if self.ready {
+            for (feature, &entry) in self.features.iter_mut().zip(self.covariance.entries()) {
+                *feature = self.covariance_knee.signed(entry);
+            }
+        }
     }
 
-    /// The second half: the structure functions, and the features. Once for each [`take`](Self::take).
+    /// The second half: the structure functions, and the other features. Once for each [`take`](Self::take).
     pub fn finish(&mut self) -> Option<&Features> {
         self.structure.push(&self.past);
-        self.missing = self.missing.saturating_sub(1);
-        if self.missing > 0 || self.dead > usize::from(self.config.dead_max) {
+        if !self.ready {
             return None;
         }
-        self.compress();
-        Some(&self.features)
-    }
-
-    fn compress(&mut self) {
-        let (covariances, rest) = self.features.split_at_mut(COVARIANCES);
-        let (bins, structures) = rest.split_at_mut(BINS);
-        for (feature, &entry) in covariances.iter_mut().zip(self.covariance.entries()) {
-            *feature = self.covariance_knee.signed(entry);
-        }
+        let (bins, structures) = self.features[COVARIANCES..].split_at_mut(BINS);
         for (feature, power) in bins.iter_mut().zip(self.spectrum.powers()) {
             *feature = self.spectrum_knee.of(power);
         }
         self.structure.compress(&self.structure_knees, structures);
+        Some(&self.features)
     }
 
     /// What [`push`](Self::push) gave last.

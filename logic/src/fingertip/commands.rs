@@ -6,9 +6,9 @@ use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{DRIVE_HOLD_MAX_MS, Down, Refusal, Setting};
-use tenax_hal_shim::words::{Cause, GripMode};
+use tenax_hal_shim::words::{Cause, GripMode, Line};
 
-use super::{Fingertip, LinkDrive};
+use super::Fingertip;
 
 impl Fingertip {
     /// Carries out a command.
@@ -16,17 +16,32 @@ impl Fingertip {
     /// # Errors
     /// Says why it was not carried out; then nothing has changed.
     pub fn command(&mut self, command: &Down) -> Result<(), Refusal> {
+        if !command.reads() {
+            self.consents_to(command)?;
+        }
         match *command {
-            Down::Ping | Down::Samples | Down::Network | Down::Get(_) | Down::Settings(_) => Ok(()),
+            Down::Ping
+            | Down::Samples
+            | Down::Network
+            | Down::Get(_)
+            | Down::Settings(_)
+            | Down::Hello
+            | Down::Open { .. } => Ok(()),
             Down::Drive { hold_ms, .. } if hold_ms > DRIVE_HOLD_MAX_MS => {
                 Err(Refusal::OutOfRange { min: 0, max: DRIVE_HOLD_MAX_MS.into() })
             }
-            Down::Drive { drive: MotorDrive::Close(_), .. } if self.senses.gate.is_active() => {
+            Down::Drive { drive: MotorDrive::Close(_) | MotorDrive::Open(_), .. }
+                if self.senses.gate.is_active() =>
+            {
                 Err(Refusal::WearerActive)
             }
+            Down::Drive { drive: MotorDrive::Close(_) | MotorDrive::Open(_), .. }
+                if self.link.is_exhausted() =>
+            {
+                Err(Refusal::HeldTooLong)
+            }
             Down::Drive { drive, hold_ms } => {
-                let frames_left = u32::from(hold_ms) * FRAME_HZ / 1_000;
-                self.link = Some(LinkDrive { drive, frames_left });
+                self.link.ask(drive, u32::from(hold_ms) * FRAME_HZ / 1_000);
                 Ok(())
             }
             Down::Set(Setting { id, value }) => {
@@ -61,6 +76,19 @@ impl Fingertip {
                 }
             }
         }
+    }
+
+    /// Whether the line may carry this out.
+    fn consents_to(&self, command: &Down) -> Result<(), Refusal> {
+        // Who trusts the line for ever has to be at the hand: that nothing is held at power-up is not enough.
+        let for_ever =
+            matches!(*command, Down::Set(Setting { id, .. }) if id == SettingId::LineTrusted as u8);
+        let consents = match self.line() {
+            Line::Reading => false,
+            Line::Armed { .. } => !for_ever || self.arming.is_deliberate(),
+            Line::Trusted => true,
+        };
+        if consents { Ok(()) } else { Err(Refusal::NotArmed) }
     }
 
     pub(super) fn set(&mut self, id: SettingId, value: i32) -> Result<(), Refusal> {

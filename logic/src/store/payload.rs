@@ -37,6 +37,9 @@ pub fn of_settings(config: &Config) -> SettingsBytes {
 #[must_use]
 pub fn restore_settings(config: &mut Config, bytes: &[u8]) -> bool {
     let mut all = true;
+    // It decides which values of the others are accepted.
+    let trusted = u32::from(SettingId::LineTrusted as u8) << VALUE_BITS | 1;
+    config.line_trusted |= words(bytes).any(|word| word == trusted);
     for (place, word) in words(bytes).enumerate() {
         let value = (word & ((1 << VALUE_BITS) - 1)).cast_signed();
         let id = match (word >> VALUE_BITS) as u8 {
@@ -107,11 +110,19 @@ mod tests {
     #[test]
     fn a_value_that_is_not_accepted_and_a_setting_that_is_unknown_leave_the_others() {
         let mut config = Config::default();
-        let bytes = [word(1, 700), word(2, 99_999), word(250, 1), word(10, 900)].concat();
+        let bytes = [word(1, 500), word(2, 99_999), word(250, 1), word(10, 900)].concat();
         assert!(!restore_settings(&mut config, &bytes));
         let mut expected = Config::default();
-        assert!(expected.set(SettingId::S1, 700).is_ok() && expected.set(SettingId::Loaded, 900).is_ok());
+        assert!(expected.set(SettingId::S1, 500).is_ok() && expected.set(SettingId::Loaded, 900).is_ok());
         assert_eq!(config, expected);
+    }
+
+    #[test]
+    fn a_trusted_lines_values_come_back_with_it_and_not_without() {
+        let mut config = Config::default();
+        assert!(!restore_settings(&mut config, &word(1, 1_500)));
+        assert!(restore_settings(&mut config, &[word(1, 1_500), word(40, 1)].concat()));
+        assert_eq!((config.get(SettingId::S1), config.line_trusted), (1_500, true));
     }
 
     #[test]

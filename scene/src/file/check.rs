@@ -43,7 +43,7 @@ pub(super) fn check(scene: &SceneFile) -> Checked {
         })?;
     }
     scene.fault.iter().try_for_each(fault)?;
-    scene.command.iter().try_for_each(command)
+    scene.command.iter().try_for_each(|one| command(scene, one))
 }
 
 fn friction(scene: &SceneFile) -> Checked {
@@ -164,7 +164,7 @@ fn fault(fault: &SensorFault) -> Checked {
     }
 }
 
-fn command(command: &Command) -> Checked {
+fn command(scene: &SceneFile, command: &Command) -> Checked {
     let kind = *command.kind.get_ref();
     let wrong = |span, what: String| Err(Wrong { span, what });
     match kind {
@@ -177,19 +177,22 @@ fn command(command: &Command) -> Checked {
             })?;
             demand(command.for_s.is_some(), command.kind.span(), || "a drive needs for_s".to_owned())
         }
-        CommandKind::StrokeBegin | CommandKind::StrokeEnd | CommandKind::Zero => Ok(()),
+        CommandKind::StrokeBegin | CommandKind::StrokeEnd | CommandKind::Zero | CommandKind::Consent => {
+            Ok(())
+        }
         CommandKind::Set(id) => {
             let Some(value) = &command.value else {
                 return wrong(command.kind.span(), "a setting needs value".to_owned());
             };
             let row = id.row();
-            demand(row.range().contains(value.get_ref()), value.span(), || {
+            let range = if scene.trusts_line() { row.range_if_trusted() } else { row.range() };
+            demand(range.contains(value.get_ref()), value.span(), || {
                 format!(
                     "value = {} {} is outside {}..={} of {}",
                     value.get_ref(),
                     row.unit,
-                    row.min,
-                    row.max,
+                    range.start(),
+                    range.end(),
                     row.name
                 )
             })

@@ -76,6 +76,7 @@ pub struct SceneFile {
     pub(crate) fault: Vec<SensorFault>,
     #[serde(default)]
     pub(crate) command: Vec<Command>,
+    pub(crate) line_trusted: Option<bool>,
 }
 
 impl SceneFile {
@@ -88,6 +89,13 @@ impl SceneFile {
             toml::from_str(text).map_err(|error| SceneError::from_toml(&error, text, file_name))?;
         check::check(&scene).map_err(|wrong| SceneError::at(wrong.span, wrong.what, text, file_name))?;
         Ok(scene)
+    }
+
+    /// Whether the board trusts its serial line. Unless the file says so, it does where somebody sends something: a scene is a
+    /// laboratory, and its script stands for one who has set `line-trusted-flag` before.
+    #[must_use]
+    pub fn trusts_line(&self) -> bool {
+        self.line_trusted.unwrap_or(!self.command.is_empty() || self.camera.teaches)
     }
 
     /// How long it lasts, s.

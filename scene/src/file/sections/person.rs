@@ -48,6 +48,8 @@ pub enum CommandKind {
     Close,
     /// The hand is opened, likewise.
     Open,
+    /// Somebody at the hand presses the board's button: consent to what the line sends.
+    Consent,
     /// A setting is set to `value`, in its unit: `set-` and the setting's name.
     Set(SettingId),
 }

@@ -1,0 +1,101 @@
+//! What once closed a hand that should have rested, or left one deaf. Each pairs the silence with a control that fires.
+
+use tenax_hal_shim::channel::{FSR, PVDF};
+use tenax_hal_shim::detector::DetectorId;
+use tenax_hal_shim::front_end::{FSR_REST_MV, fsr_mv};
+use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::wire::EventKind;
+use tenax_hal_shim::words::{DriveSource, Fault, GripMode, Reason};
+use tenax_host_tests::Bench;
+
+fn reflex_ticks(bench: &Bench) -> usize {
+    let by_reflex = |source: DriveSource| source == DriveSource::Reflex;
+    bench.slows.iter().flat_map(|slow| &slow.ticks).filter(|tick| by_reflex(tick.source)).count()
+}
+
+/// Presses each quadrant by so many newtons.
+fn press(bench: &mut Bench, newtons: [f64; 4]) {
+    for (n, newtons) in newtons.into_iter().enumerate() {
+        bench.pins_mv[FSR + n] = fsr_mv(newtons, f64::powf);
+    }
+}
+
+#[test]
+fn one_pressed_quadrant_of_an_empty_hand_closes_nothing() {
+    for quadrant in 0..4 {
+        for newtons in [0.2, 0.3, 1.0, 4.0] {
+            let mut bench = Bench::new(31);
+            bench.run(800);
+            let mut pressed = [0.0; 4];
+            pressed[quadrant] = newtons;
+            press(&mut bench, pressed);
+            bench.run(8_000);
+            assert_eq!(reflex_ticks(&bench), 0, "{newtons} N on quadrant {quadrant}");
+        }
+    }
+    // The control: the same ratio on a load that all quadrants carry.
+    let mut bench = Bench::new(31);
+    bench.run(800);
+    bench.load(4.0, 2.2);
+    bench.run(8_000);
+    assert!(reflex_ticks(&bench) > 100);
+}
+
+#[test]
+fn slip_while_an_s2_pulse_settles_is_answered() {
+    let mut bench = Bench::holding(32);
+    bench.load(4.0, 1.6);
+    let mut waited = 0;
+    while bench.fingertip.mode() != GripMode::Incipient {
+        bench.run(1);
+        waited += 1;
+        assert!(waited < 200, "S2 warns");
+    }
+    // Its pulse takes 15 ms, and what it does shows 80 ms later.
+    bench.run(30);
+    bench.vibration_mv = 400.0;
+    bench.run(60);
+    let slip = bench.last_cause() == Some(tenax_hal_shim::words::Cause::Slip(DetectorId::S1));
+    assert!(slip && bench.fingertip.mode() == GripMode::Slip, "{:?}", bench.last_cause());
+}
+
+#[test]
+fn one_humming_film_closes_the_hand_once_and_is_masked() {
+    let mut bench = Bench::holding(33);
+    let rest_mv = bench.pins_mv[PVDF + 4];
+    for n in 0..40_000u32 {
+        let phase = f64::from(n) * 50.0 / 2_000.0 * std::f64::consts::TAU;
+        bench.pins_mv[PVDF + 4] = rest_mv + 200.0 * phase.sin();
+        bench.run(1);
+    }
+    let closed = reflex_ticks(&bench);
+    assert!((1..=600).contains(&closed), "{closed} ticks of 40 000");
+    let lost = EventKind::Fault(Fault::SensorLost { channel: (PVDF + 4) as u8, reason: Reason::Noisy });
+    assert_eq!(bench.events.iter().filter(|event| event.kind == lost).count(), 1);
+    // The others still feel slip.
+    bench.slows.clear();
+    bench.pins_mv[PVDF + 4] = rest_mv;
+    bench.vibration_mv = 400.0;
+    bench.run(400);
+    assert!(reflex_ticks(&bench) > 20);
+}
+
+#[test]
+fn an_offset_of_the_force_sensor_is_gone_once_the_hand_has_opened() {
+    for mv in [10.0, 45.0] {
+        let mut bench = Bench::new(34);
+        for pin in &mut bench.pins_mv[FSR..FSR + 4] {
+            *pin = f64::from(FSR_REST_MV) + mv;
+        }
+        bench.run(1_000);
+        let load_mn =
+            |bench: &Bench| bench.slows.last().and_then(|slow| slow.forces).expect("forces").load_mn;
+        assert!(load_mn(&bench) > 100, "{mv} mV read as a load");
+        bench.muscles(50.0, 900.0);
+        let opened = bench.run(8_000);
+        assert!(opened.iter().filter(|drive| matches!(drive, MotorDrive::Open(_))).count() > 2_000);
+        bench.muscles(50.0, 50.0);
+        bench.run(1_000);
+        assert!(load_mn(&bench) < 50, "{mv} mV: {} mN", load_mn(&bench));
+    }
+}

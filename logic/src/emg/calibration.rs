@@ -1,0 +1,285 @@
+//! The guided calibration: the wearer rests, closes, opens, five seconds each, and the firmware learns where the three
+//! lie. Time arrives as the frame's number.
+
+use tenax_hal_shim::channel::FRAME_HZ;
+
+use super::log2::level_of;
+use super::model::{EmgModel, Point, Refusal, octaves};
+use super::quality::TOP_UV;
+
+/// How long each prompt stands, in frames.
+pub const PROMPT_FRAMES: u32 = 5 * FRAME_HZ;
+/// What of it is left to the wearer to react, in frames.
+const REACTION_FRAMES: u32 = 7 * FRAME_HZ / 10;
+/// Readings without a number that a phase may have, per mille.
+const MISSING_PERMILLE: u32 = 50;
+/// Readings at the top of the range that a phase may have, per mille: a short overshoot.
+const TOP_PERMILLE: u32 = 100;
+/// The part of a phase in which the contraction must stand out, per mille.
+const HELD_PERMILLE: u32 = 600;
+/// How far a reading of a contraction stands out from rest at least, on one electrode.
+const STANDS_OUT: i32 = octaves(500);
+/// The standard deviation below which an envelope is no muscle's: 1 %. The quietest held contraction on record has 6 %.
+const STILL: i32 = octaves(15);
+
+/// What the wearer is asked to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Prompt {
+    /// Relax.
+    Rest,
+    /// Hold the contraction that shall close the hand.
+    Close,
+    /// Hold the contraction that shall open it.
+    Open,
+}
+
+/// How it stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Progress {
+    /// Waiting for the wearer, who shall do this for so many more frames.
+    Asks(Prompt, u32),
+    /// Over, and what came of it.
+    Done(Result<EmgModel, Refusal>),
+}
+
+/// Sums over one phase.
+#[derive(Clone, Copy, Debug, Default)]
+struct Phase {
+    /// Readings in all, those without a number, at the top, and those that were summed.
+    readings: u32,
+    missing: u32,
+    top: u32,
+    summed: u32,
+    sum: Point,
+    squares: [i64; 2],
+    /// Of opening electrode less closing one, whatever they are: extensor less flexor.
+    squares_of_difference: i64,
+}
+
+impl Phase {
+    fn take(&mut self, uv: [Option<i32>; 2], stands_out: impl Fn(Point) -> bool) {
+        self.readings += 1;
+        let [Some(flexor), Some(extensor)] = uv else {
+            self.missing += 1;
+            return;
+        };
+        self.top += u32::from(flexor >= TOP_UV || extensor >= TOP_UV);
+        let point = [level_of(flexor), level_of(extensor)];
+        if !stands_out(point) {
+            return;
+        }
+        self.summed += 1;
+        for (n, &level) in point.iter().enumerate() {
+            self.sum[n] += level;
+            self.squares[n] += i64::from(level) * i64::from(level);
+        }
+        let difference = i64::from(point[1] - point[0]);
+        self.squares_of_difference += difference * difference;
+    }
+
+    fn mean(&self) -> Point {
+        let count = self.summed.max(1) as i32;
+        [self.sum[0] / count, self.sum[1] / count]
+    }
+
+    /// Variance about the mean, Q20.
+    fn variance(&self, n: usize) -> i64 {
+        variance(self.squares[n], i64::from(self.sum[n]), self.summed)
+    }
+
+    /// The same of the difference of both levels.
+    fn variance_of_difference(&self) -> i64 {
+        variance(self.squares_of_difference, i64::from(self.sum[1] - self.sum[0]), self.summed)
+    }
+
+    /// Whether so many of its readings, per mille, are `part`.
+    fn has(&self, part: u32, permille: u32) -> bool {
+        part * 1_000 > self.readings * permille
+    }
+
+    fn check(&self) -> Result<(), Refusal> {
+        if self.readings == 0 || self.has(self.missing, MISSING_PERMILLE) {
+            Err(Refusal::SensorLost)
+        } else if self.has(self.top, TOP_PERMILLE) {
+            Err(Refusal::Saturated)
+        } else {
+            Ok(())
+        }
+    }
+}
+
+fn variance(squares: i64, sum: i64, count: u32) -> i64 {
+    let count = i64::from(count.max(1));
+    (squares / count - sum * sum / (count * count)).max(0)
+}
+
+fn root(square: i64) -> i32 {
+    square.max(0).unsigned_abs().isqrt() as i32
+}
+
+/// A distance over the common standard deviation of both ends, per mille.
+fn separation(distance: i32, variances: [i64; 2]) -> i32 {
+    let deviation = root((variances[0] + variances[1]) / 2).max(1);
+    ((i64::from(distance.abs()) * 1_000) / i64::from(deviation)).min(1_000_000) as i32
+}
+
+/// A calibration under way.
+#[derive(Clone, Debug)]
+pub struct Calibration {
+    began: u32,
+    phases: [Phase; 3],
+    over: Option<Result<EmgModel, Refusal>>,
+}
+
+impl Calibration {
+    /// Begins with the first prompt at this frame.
+    #[must_use]
+    pub fn begin(frame: u32) -> Self {
+        Self { began: frame, phases: [Phase::default(); 3], over: None }
+    }
+
+    /// Takes both envelopes above the live zero, uV, flexor first, none where a sensor gives no number. Once for each
+    /// pair of readings; a few hundred instructions, and some thousand once, at the end.
+    pub fn take(&mut self, frame: u32, uv: [Option<i32>; 2]) -> Progress {
+        if let Some(result) = self.over {
+            return Progress::Done(result);
+        }
+        let since = frame.wrapping_sub(self.began);
+        let (phase, within) = ((since / PROMPT_FRAMES) as usize, since % PROMPT_FRAMES);
+        let prompt = match phase {
+            0 => Prompt::Rest,
+            1 => Prompt::Close,
+            2 => Prompt::Open,
+            _ => {
+                let result = self.conclude();
+                self.over = Some(result);
+                return Progress::Done(result);
+            }
+        };
+        if within >= REACTION_FRAMES {
+            let rest = self.phases[0].mean();
+            let stands_out =
+                |point: Point| point[0] - rest[0] >= STANDS_OUT || point[1] - rest[1] >= STANDS_OUT;
+            self.phases[phase].take(uv, |point| phase == 0 || stands_out(point));
+        }
+        Progress::Asks(prompt, PROMPT_FRAMES - within)
+    }
+
+    fn conclude(&self) -> Result<EmgModel, Refusal> {
+        let [rest, close, open] = &self.phases;
+        for phase in &self.phases {
+            phase.check()?;
+        }
+        if !close.has(close.summed, HELD_PERMILLE) {
+            return Err(Refusal::NoClosing);
+        }
+        if !open.has(open.summed, HELD_PERMILLE) {
+            return Err(Refusal::NoOpening);
+        }
+        let spread = [root(rest.variance(0)), root(rest.variance(1))];
+        // First whether it could be a model at all, with a reason of its own, then how well it separates.
+        let least = super::model::LEAST_SEPARATION_PERMILLE;
+        let model = EmgModel::new(rest.mean(), close.mean(), open.mean(), spread, least)?;
+        let (closes, opens) = (model.closing_site(), model.opening_site());
+        if root(close.variance(closes)) < STILL || root(open.variance(opens)) < STILL {
+            return Err(Refusal::NotAMuscle);
+        }
+        let from_rest = |phase: &Phase, n: usize| {
+            separation(phase.mean()[n] - rest.mean()[n], [phase.variance(n), rest.variance(n)])
+        };
+        let difference = |phase: &Phase| phase.mean()[1] - phase.mean()[0];
+        let turn = separation(
+            difference(open) - difference(close),
+            [open.variance_of_difference(), close.variance_of_difference()],
+        );
+        let least = from_rest(close, closes).min(from_rest(open, opens)).min(turn);
+        EmgModel::new(rest.mean(), close.mean(), open.mean(), spread, least)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Runs 15 s; `envelopes(phase, n)` gives the pair in mV.
+    fn run(envelopes: impl Fn(u32, u32) -> [f64; 2]) -> Result<EmgModel, Refusal> {
+        let mut calibration = Calibration::begin(u32::MAX - 100);
+        for n in 0.. {
+            let frame = (u32::MAX - 100).wrapping_add(n * 25 / 3);
+            let phase = (n * 25 / 3 / PROMPT_FRAMES).min(2);
+            let uv = envelopes(phase, n).map(|mv| (mv >= 0.0).then_some((mv * 1e3) as i32));
+            match calibration.take(frame, uv) {
+                Progress::Done(result) => return result,
+                Progress::Asks(prompt, left) => {
+                    assert_eq!(prompt as u32, n * 25 / 3 / PROMPT_FRAMES);
+                    assert!((1..=PROMPT_FRAMES).contains(&left));
+                }
+            }
+        }
+        unreachable!("it ends by itself")
+    }
+
+    /// A fluctuation of about `part`, rms, different on both electrodes.
+    fn lively(n: u32, k: u32, part: f64) -> f64 {
+        1.0 + part * 1.41 * (f64::from(n) * (0.11 + 0.027 * f64::from(k))).sin()
+    }
+
+    fn states(phase: u32, n: u32, mv: [[f64; 2]; 3]) -> [f64; 2] {
+        [0, 1].map(|k| mv[phase as usize][k] * lively(n, k as u32, if phase == 0 { 0.05 } else { 0.15 }))
+    }
+
+    const GOOD: [[f64; 2]; 3] = [[60.0, 50.0], [450.0, 165.0], [150.0, 1_400.0]];
+
+    #[test]
+    fn it_learns_where_the_three_states_lie() {
+        let model = run(|phase, n| states(phase, n, GOOD)).unwrap();
+        for (point, mv) in [model.rest(), model.close(), model.open()].iter().zip(GOOD) {
+            for n in 0..2 {
+                assert!((point[n] - level_of((mv[n] * 1e3) as i32)).abs() < 40, "{point:?} {mv:?}");
+            }
+        }
+        assert!(model.separation_permille() > 8_000, "{}", model.separation_permille());
+    }
+
+    #[test]
+    fn a_wearer_who_reacts_late_is_still_learned() {
+        let late = |phase: u32, n: u32| {
+            let within = (n * 25 / 3) % PROMPT_FRAMES;
+            states(if within < FRAME_HZ * 3 / 2 && phase > 0 { 0 } else { phase }, n, GOOD)
+        };
+        let model = run(late).unwrap();
+        assert!((model.open()[1] - level_of(1_400_000)).abs() < 50);
+    }
+
+    #[test]
+    fn what_cannot_be_used_is_refused() {
+        let with = |phase: usize, mv: [f64; 2]| {
+            let mut all = GOOD;
+            all[phase] = mv;
+            all
+        };
+        for (mv, refusal) in [
+            (with(1, GOOD[0]), Refusal::NoClosing),
+            (with(2, GOOD[0]), Refusal::NoOpening),
+            (with(2, GOOD[1]), Refusal::SameDirection),
+            (with(2, [-1.0, 900.0]), Refusal::SensorLost),
+            (with(2, [150.0, 2_940.0]), Refusal::Saturated),
+        ] {
+            assert_eq!(run(|phase, n| states(phase, n, mv)), Err(refusal));
+        }
+        let restless = |phase, n| {
+            if phase == 0 { GOOD[0].map(|mv| mv * lively(n, 0, 0.5)) } else { states(phase, n, GOOD) }
+        };
+        assert_eq!(run(restless), Err(Refusal::RestNotQuiet));
+        let still = |phase, n| if phase == 2 { [60.0, 600.0] } else { states(phase, n, GOOD) };
+        assert_eq!(run(still), Err(Refusal::NotAMuscle));
+        let wild = |phase, n| {
+            if phase == 0 {
+                states(0, n, GOOD)
+            } else {
+                [0, 1].map(|k| GOOD[phase as usize][k] * lively(n, k as u32, 0.6))
+            }
+        };
+        assert_eq!(run(wild), Err(Refusal::Overlap));
+    }
+}

@@ -1,0 +1,279 @@
+//! What the firmware knows of a wearer: where rest and the two chosen contractions lie in the plane of the two
+//! logarithmic envelopes.
+//!
+//! Neither electrode is a muscle of its own: a fist drives both, and an electrode hears its neighbours. So the wearer
+//! chooses two contractions that differ, and the electrode that is relatively stronger in one of them is its site.
+
+use super::log2::{FLOOR_LEVEL, TOP_LEVEL, level_of};
+
+/// How many words a model is kept in.
+pub const MODEL_WORDS: usize = 10;
+/// Changes whenever a word's meaning does.
+const VERSION: i32 = 1;
+
+/// The part of an octave, per mille, as a difference of levels.
+pub(super) const fn octaves(permille: i32) -> i32 {
+    permille * 1_024 / 1_000
+}
+
+/// A contraction's site stands out at least this far from rest: a factor of 2.3. A rest that drifts by half between two
+/// sessions of an hour then stays below the threshold between.
+const LEAST_RISE: i32 = octaves(1_200);
+/// The ratio of the electrodes differs between the two contractions at least by this: a factor of 2.3.
+const LEAST_TURN: i32 = octaves(1_200);
+/// The least distance of two of the three states, in thousandths of their common standard deviation.
+pub const LEAST_SEPARATION_PERMILLE: i32 = 3_000;
+/// A rest that wanders more, in standard deviations, is no rest: 27 %.
+const NOISIEST_REST: i32 = octaves(350);
+
+/// Why a calibration was not taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refusal {
+    /// An envelope wandered while the wearer should rest: a contraction, a loose electrode, interference.
+    RestNotQuiet,
+    /// Closing did not stand out from rest.
+    NoClosing,
+    /// Opening did not stand out from rest.
+    NoOpening,
+    /// Both contractions drive the electrodes in the same proportion.
+    SameDirection,
+    /// The states differ, but by less than they fluctuate.
+    Overlap,
+    /// An envelope stood still during a contraction, as none of a muscle does.
+    NotAMuscle,
+    /// An envelope was at the top of its range.
+    Saturated,
+    /// A sensor gave no number.
+    SensorLost,
+    /// The words are not those of a model.
+    Damaged,
+}
+
+impl Refusal {
+    /// What the wearer is told.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::RestNotQuiet => "rest was not quiet",
+            Self::NoClosing => "closing did not stand out from rest",
+            Self::NoOpening => "opening did not stand out from rest",
+            Self::SameDirection => "both contractions drive the electrodes alike",
+            Self::Overlap => "the contractions fluctuate more than they differ",
+            Self::NotAMuscle => "an envelope stood still during a contraction",
+            Self::Saturated => "an envelope was at the top of its range",
+            Self::SensorLost => "a myosensor gave no number",
+            Self::Damaged => "what was kept is not a calibration",
+        }
+    }
+}
+
+impl core::fmt::Display for Refusal {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// Mean levels of both electrodes in one state, [`level_of`] of uV, flexor first.
+pub type Point = [i32; 2];
+
+/// A wearer. Valid by construction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EmgModel {
+    rest: Point,
+    close: Point,
+    open: Point,
+    /// Standard deviation of rest.
+    spread: Point,
+    separation_permille: i32,
+}
+
+impl EmgModel {
+    /// A model from its measured states. `separation_permille` as [`separation`](Self::separation_permille) tells it.
+    pub const fn new(
+        rest: Point,
+        close: Point,
+        open: Point,
+        spread: Point,
+        separation_permille: i32,
+    ) -> Result<Self, Refusal> {
+        let model = Self { rest, close, open, spread, separation_permille };
+        match model.check() {
+            Some(refusal) => Err(refusal),
+            None => Ok(model),
+        }
+    }
+
+    /// A wearer whose states have these envelopes, uV, flexor first: for scenes and tests.
+    pub const fn of_uv(rest: [i32; 2], close: [i32; 2], open: [i32; 2]) -> Result<Self, Refusal> {
+        const fn point(uv: [i32; 2]) -> Point {
+            [level_of(uv[0]), level_of(uv[1])]
+        }
+        const SPREAD: i32 = octaves(150);
+        Self::new(point(rest), point(close), point(open), [SPREAD; 2], LEAST_SEPARATION_PERMILLE)
+    }
+
+    const fn check(&self) -> Option<Refusal> {
+        let mut n = 0;
+        while n < 2 {
+            let levels = [self.rest[n], self.close[n], self.open[n]];
+            let mut k = 0;
+            while k < 3 {
+                if levels[k] < FLOOR_LEVEL || levels[k] > TOP_LEVEL {
+                    return Some(Refusal::Damaged);
+                }
+                k += 1;
+            }
+            if self.spread[n] < 0 || self.separation_permille < 0 || self.separation_permille > 1_000_000 {
+                return Some(Refusal::Damaged);
+            }
+            if self.spread[n] > NOISIEST_REST {
+                return Some(Refusal::RestNotQuiet);
+            }
+            n += 1;
+        }
+        let (closes, opens) = (self.closing_site(), self.opening_site());
+        if self.close[closes] - self.rest[closes] < LEAST_RISE {
+            return Some(Refusal::NoClosing);
+        }
+        if self.open[opens] - self.rest[opens] < LEAST_RISE {
+            return Some(Refusal::NoOpening);
+        }
+        if self.turn() < LEAST_TURN {
+            return Some(Refusal::SameDirection);
+        }
+        if self.separation_permille < LEAST_SEPARATION_PERMILLE {
+            return Some(Refusal::Overlap);
+        }
+        None
+    }
+
+    /// By how much the ratio of the electrodes differs between the two contractions.
+    const fn turn(&self) -> i32 {
+        ((self.open[1] - self.open[0]) - (self.close[1] - self.close[0])).abs()
+    }
+
+    /// The electrode that is relatively stronger when the wearer closes: 0 the flexor's, 1 the extensor's.
+    #[must_use]
+    pub const fn closing_site(&self) -> usize {
+        let [close, open] = [self.close[1] - self.close[0], self.open[1] - self.open[0]];
+        if open >= close { 0 } else { 1 }
+    }
+
+    /// The other one.
+    #[must_use]
+    pub const fn opening_site(&self) -> usize {
+        1 - self.closing_site()
+    }
+
+    /// Levels at rest.
+    #[must_use]
+    pub const fn rest(&self) -> Point {
+        self.rest
+    }
+
+    /// Levels of the contraction that closes.
+    #[must_use]
+    pub const fn close(&self) -> Point {
+        self.close
+    }
+
+    /// Levels of the contraction that opens.
+    #[must_use]
+    pub const fn open(&self) -> Point {
+        self.open
+    }
+
+    /// Standard deviation at rest.
+    #[must_use]
+    pub const fn spread(&self) -> Point {
+        self.spread
+    }
+
+    /// How well the three states separate: the smallest distance of two of them, in thousandths of their common
+    /// standard deviation. From 3000 a calibration is taken; the shared recordings have 8000 and more.
+    #[must_use]
+    pub const fn separation_permille(&self) -> i32 {
+        self.separation_permille
+    }
+
+    /// To be kept.
+    #[must_use]
+    pub const fn to_words(&self) -> [i32; MODEL_WORDS] {
+        let Self { rest, close, open, spread, separation_permille } = self;
+        [
+            VERSION,
+            rest[0],
+            rest[1],
+            close[0],
+            close[1],
+            open[0],
+            open[1],
+            spread[0],
+            spread[1],
+            *separation_permille,
+        ]
+    }
+
+    /// What was kept; refused if a calibration could not have given it.
+    pub const fn from_words(words: [i32; MODEL_WORDS]) -> Result<Self, Refusal> {
+        let [version, rf, re, cf, ce, of, oe, sf, se, separation] = words;
+        if version != VERSION {
+            return Err(Refusal::Damaged);
+        }
+        Self::new([rf, re], [cf, ce], [of, oe], [sf, se], separation)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MV: i32 = 1_000;
+
+    fn first_session() -> EmgModel {
+        EmgModel::of_uv([61 * MV, 48 * MV], [445 * MV, 165 * MV], [156 * MV, 1_490 * MV]).unwrap()
+    }
+
+    #[test]
+    fn a_model_survives_its_words_and_nonsense_does_not() {
+        let words = first_session().to_words();
+        assert_eq!(EmgModel::from_words(words), Ok(first_session()));
+        assert_eq!(EmgModel::from_words([0; MODEL_WORDS]), Err(Refusal::Damaged));
+        assert_eq!(EmgModel::from_words([-1; MODEL_WORDS]), Err(Refusal::Damaged));
+        for n in 0..MODEL_WORDS {
+            for nonsense in [i32::MIN, -1, i32::MAX] {
+                let mut words = words;
+                words[n] = nonsense;
+                assert!(EmgModel::from_words(words).is_err(), "word {n} = {nonsense}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_site_of_a_contraction_is_the_electrode_that_is_relatively_stronger() {
+        assert_eq!(first_session().closing_site(), 0);
+        let swapped =
+            EmgModel::of_uv([48 * MV, 61 * MV], [165 * MV, 445 * MV], [1_490 * MV, 156 * MV]).unwrap();
+        assert_eq!(swapped.closing_site(), 1);
+        // A fist drives both electrodes alike, extended fingers the extensor's more: its site is the flexor's.
+        let fist = EmgModel::of_uv([61 * MV, 48 * MV], [453 * MV, 415 * MV], [156 * MV, 1_490 * MV]).unwrap();
+        assert_eq!(fist.closing_site(), 0);
+    }
+
+    #[test]
+    fn what_does_not_separate_is_refused_with_its_reason() {
+        let rest = [60 * MV; 2];
+        for (close, open, refusal) in [
+            ([100 * MV, 60 * MV], [60 * MV, 900 * MV], Refusal::NoClosing),
+            ([600 * MV, 60 * MV], [60 * MV, 90 * MV], Refusal::NoOpening),
+            ([600 * MV, 600 * MV], [500 * MV, 900 * MV], Refusal::SameDirection),
+        ] {
+            assert_eq!(EmgModel::of_uv(rest, close, open), Err(refusal));
+        }
+        let good = first_session();
+        let noisy = EmgModel::new(good.rest, good.close, good.open, [0, 400], 9_000);
+        assert_eq!(noisy, Err(Refusal::RestNotQuiet));
+        let close_by = EmgModel::new(good.rest, good.close, good.open, [0; 2], 2_999);
+        assert_eq!(close_by, Err(Refusal::Overlap));
+    }
+}

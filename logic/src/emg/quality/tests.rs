@@ -1,0 +1,77 @@
+use super::*;
+use crate::emg::mains::mains_of;
+use std::f64::consts::TAU;
+
+const EXPECTED: Expected = Expected { active: level_of(150_000), inactive: level_of(120_000), rest: None };
+/// When the readings of a slow frame are, s.
+const AT_S: [f64; 3] = [0.005, 0.008, 0.011];
+
+/// Watches an envelope in mV for so long.
+fn watch(seconds: f64, of: impl Fn(f64) -> f64) -> Watch {
+    let mut watch = Watch::default();
+    go_on(&mut watch, 0.0, seconds, of);
+    watch
+}
+
+fn go_on(watch: &mut Watch, from_s: f64, seconds: f64, of: impl Fn(f64) -> f64) {
+    for slow in 0..(seconds * 80.0) as u32 {
+        for at in AT_S {
+            let mv = of(from_s + f64::from(slow) / 80.0 + at);
+            watch.take(&EXPECTED, (mv < 2_950.0).then_some((mv * 1e3) as i32));
+        }
+        if let Some(window) = watch.window().copied() {
+            watch.hear(mains_of(&window));
+        }
+    }
+}
+
+fn muscle(t: f64) -> f64 {
+    let wave = |hz: f64| (TAU * hz * t).sin();
+    400.0 * (1.0 + 0.15 * wave(2.3) + 0.12 * wave(4.1))
+}
+
+#[test]
+fn each_fault_has_its_name() {
+    for (seconds, of, quality) in [
+        (2.0, (|_| 400.0) as fn(f64) -> f64, Quality::Flat),
+        (3.0, |t| 400.0 + 5.0 * (TAU * 100.0 * t).sin(), Quality::Hum),
+        (3.0, |t| 400.0 + 5.0 * (TAU * 50.0 * t).sin(), Quality::Hum),
+        (3.0, |t| 100.0 + 700.0 * t, Quality::Creep),
+        (1.0, |_| 3_000.0, Quality::LeadOff),
+        (2.0, |t| 2_900.0 + 20.0 * (TAU * 3.0 * t).sin(), Quality::Saturated),
+        (31.0, muscle, Quality::Endless),
+        (6.5, |t| 90.0 + 50.0 * (TAU * 7.0 * t).sin(), Quality::LeadOff),
+        (29.0, muscle, Quality::Good),
+        (10.0, |t| 60.0 + 4.0 * (TAU * 3.0 * t).sin(), Quality::Good),
+        (10.0, |_| 60.0, Quality::Good),
+        (10.0, |_| 0.0, Quality::Good),
+    ] {
+        assert_eq!(watch(seconds, of).quality(), quality, "{} after {seconds} s", of(seconds));
+    }
+}
+
+#[test]
+fn a_contraction_proves_itself_and_a_step_of_the_front_end_does_not() {
+    let settling = |t: f64| 500.0 * (1.0 - (-t / 0.027).exp());
+    assert!(!watch(0.24, settling).is_proven());
+    assert!(watch(0.40, muscle).is_proven());
+}
+
+#[test]
+fn a_lost_sensor_comes_back_once_it_has_been_good_for_a_second() {
+    let mut watch = watch(1.0, |_| 400.0);
+    go_on(&mut watch, 1.0, 0.95, |_| 50.0);
+    assert_eq!(watch.quality(), Quality::Flat);
+    go_on(&mut watch, 2.0, 0.2, |_| 50.0);
+    assert_eq!(watch.quality(), Quality::Good);
+}
+
+#[test]
+fn a_contact_far_below_the_learned_rest_is_lost() {
+    let expected = Expected { rest: Some(level_of(60_000)), ..EXPECTED };
+    let mut watch = Watch::default();
+    for _ in 0..3 * SILENT_FRAMES {
+        watch.take(&expected, Some(9_000));
+    }
+    assert_eq!(watch.quality(), Quality::LeadOff);
+}

@@ -1,0 +1,63 @@
+//! What the serial line may do in a tick: consent, and the limits of its drive.
+
+use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::wire::EventKind;
+use tenax_hal_shim::words::Line;
+
+use super::Fingertip;
+use crate::arming::Signs;
+
+impl Fingertip {
+    /// Whether the button at the hand is down, until this says otherwise.
+    pub const fn button(&mut self, is_down: bool) {
+        self.button = is_down;
+    }
+
+    /// This start was a reset, not somebody who switched the hand on. To be said before the first tick.
+    pub const fn was_reset(&mut self) {
+        self.arming.was_reset();
+    }
+
+    /// What the serial line may do.
+    #[must_use]
+    pub fn line(&self) -> Line {
+        self.arming.line(self.config.line_trusted)
+    }
+
+    /// Looks for consent, and renews what somebody at the hand renews.
+    pub(super) fn consent(&mut self) {
+        let gate = &self.senses.gate;
+        let consent = self.arming.tick(Signs {
+            co_contraction: gate.flexor.is_active() && gate.extensor.is_active(),
+            button: self.button,
+            unloaded: self.senses.forces.map(|_| self.senses.is_unloaded(&self.config)),
+        });
+        if gate.is_active() {
+            self.reflex.renew();
+        }
+        if gate.is_active() || consent.is_some() {
+            self.link.renew();
+        }
+        let was = core::mem::replace(&mut self.line, self.arming.line(self.config.line_trusted));
+        if let Some(by) = consent {
+            self.journal.event(EventKind::Armed(by));
+        }
+        match (was, self.line) {
+            (Line::Trusted, Line::Reading | Line::Armed { .. }) => {
+                self.journal.event(EventKind::LineTrusted(false));
+            }
+            (Line::Reading | Line::Armed { .. }, Line::Trusted) => {
+                self.journal.event(EventKind::LineTrusted(true));
+            }
+            (Line::Armed { .. }, Line::Reading) => self.journal.event(EventKind::Disarmed),
+            _ => {}
+        }
+    }
+
+    /// What the line asks for and may have: it closes no harder than the reflex might.
+    pub(super) fn link_drive(&self) -> Option<MotorDrive> {
+        let drive = self.link.drive()?;
+        let grip = self.senses.grip(&self.config);
+        (drive.opens() || self.reflex.link_may_close(&self.config.grip, grip)).then_some(drive)
+    }
+}

@@ -1,0 +1,173 @@
+//! Sessions on the serial line: a command that was recorded and is sent again is refused.
+//!
+//! The board offers a number ([`Down::Hello`](tenax_hal_shim::wire::Down::Hello)), the peer gives it back
+//! ([`Down::Open`](tenax_hal_shim::wire::Down::Open)), and from then on the numbers of its frames may only rise, by at most
+//! [`WINDOW`] at a time. A number is offered once and accepted once, so a recorded opening opens nothing. Before the 16 bits
+//! of a frame's number come round, the session is over.
+//!
+//! This is no authentication: who can write to the line can open a session of their own. That is what
+//! [`arming`](crate::arming) is for. A trusted line needs no session, but what it sends has its window all the same.
+
+use tenax_hal_shim::wire::Refusal;
+
+/// How far ahead of the last frame's number the next one may lie: frames that the line lost.
+pub const WINDOW: u16 = 1_024;
+/// Numbers that a session may use before it is over: what was recorded in it never lies in its window again.
+const NUMBERS_MAX: u16 = u16::MAX - 2 * WINDOW;
+
+/// What the board remembers of its peer's numbers.
+#[derive(Clone, Debug, Default)]
+pub struct Session {
+    /// What the converter's noise has been stirred into.
+    pool: u32,
+    offered: Option<u32>,
+    is_open: bool,
+    last: Option<u16>,
+    used: u16,
+}
+
+impl Session {
+    /// Takes something in that nobody can foretell: the checksum of a slow frame's samples.
+    pub fn stir(&mut self, noise: u32) {
+        self.pool = mixed(self.pool.rotate_left(5) ^ noise);
+    }
+
+    /// A number for an opening. The one before is void.
+    pub fn offer(&mut self) -> u32 {
+        self.pool = mixed(self.pool.wrapping_add(0x9E37_79B9));
+        let nonce = mixed(self.pool ^ 0x5EED_0FF1);
+        self.offered = Some(nonce);
+        nonce
+    }
+
+    /// Opens a session, whose next frame has a number after this one's.
+    ///
+    /// # Errors
+    /// If the number was never offered, or was already used.
+    pub fn open(&mut self, nonce: u32, sequence: u16) -> Result<(), Refusal> {
+        if self.offered.take() != Some(nonce) {
+            return Err(Refusal::Replayed);
+        }
+        *self = Self { pool: self.pool, offered: None, is_open: true, last: Some(sequence), used: 0 };
+        Ok(())
+    }
+
+    /// Admits a frame that changes something.
+    ///
+    /// # Errors
+    /// Without a session, or if the number of this frame has been seen or is too far ahead.
+    pub fn admit(&mut self, sequence: u16, trusted: bool) -> Result<(), Refusal> {
+        if !trusted && !self.is_open {
+            return Err(Refusal::NoSession);
+        }
+        if self.advance(sequence) { Ok(()) } else { Err(Refusal::Replayed) }
+    }
+
+    /// A frame that only reads is answered in any case; it uses its number up.
+    pub fn read(&mut self, sequence: u16) {
+        if self.is_open {
+            self.advance(sequence);
+        }
+    }
+
+    /// Whether the number is new; then it and all before it are used up.
+    fn advance(&mut self, sequence: u16) -> bool {
+        let Some(last) = self.last else {
+            self.last = Some(sequence);
+            return true;
+        };
+        let ahead = sequence.wrapping_sub(last);
+        if ahead == 0 || ahead > WINDOW {
+            return false;
+        }
+        self.last = Some(sequence);
+        self.used = self.used.saturating_add(ahead);
+        self.is_open &= self.used < NUMBERS_MAX;
+        true
+    }
+}
+
+/// A number whose every bit depends on every bit of another (the finalizer of MurmurHash3).
+const fn mixed(mut number: u32) -> u32 {
+    number ^= number >> 16;
+    number = number.wrapping_mul(0x85EB_CA6B);
+    number ^= number >> 13;
+    number = number.wrapping_mul(0xC2B2_AE35);
+    number ^ number >> 16
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn open(session: &mut Session, sequence: u16) -> u32 {
+        session.stir(7);
+        let nonce = session.offer();
+        assert_eq!(session.open(nonce, sequence), Ok(()));
+        nonce
+    }
+
+    #[test]
+    fn without_a_session_nothing_is_admitted() {
+        let mut session = Session::default();
+        assert_eq!(session.admit(0, false), Err(Refusal::NoSession));
+        assert_eq!(session.open(0, 0), Err(Refusal::Replayed), "nothing was offered");
+        assert_eq!(session.admit(1, false), Err(Refusal::NoSession));
+    }
+
+    #[test]
+    fn a_recorded_session_is_refused_whole() {
+        let mut session = Session::default();
+        let nonce = open(&mut session, 10);
+        assert_eq!(session.admit(11, false), Ok(()));
+        assert_eq!(session.admit(11, false), Err(Refusal::Replayed));
+        assert_eq!(session.open(nonce, 10), Err(Refusal::Replayed));
+        let other = session.offer();
+        assert_ne!(other, nonce);
+        assert_eq!(session.open(nonce, 10), Err(Refusal::Replayed));
+        assert_eq!(session.open(other, 10), Err(Refusal::Replayed), "a wrong guess voids the offer");
+        assert_eq!(session.admit(11, false), Err(Refusal::Replayed), "the session before goes on");
+        assert_eq!(session.admit(12, false), Ok(()));
+    }
+
+    #[test]
+    fn the_window_is_ahead_only_and_survives_the_wrap() {
+        let mut session = Session::default();
+        open(&mut session, u16::MAX - 1);
+        for (sequence, admitted) in
+            [(u16::MAX, true), (1, true), (0, false), (1 + WINDOW, true), (2 + 2 * WINDOW, false)]
+        {
+            assert_eq!(session.admit(sequence, false).is_ok(), admitted, "{sequence}");
+        }
+    }
+
+    #[test]
+    fn reading_uses_numbers_up_and_a_session_ends_before_they_come_round() {
+        let mut session = Session::default();
+        open(&mut session, 0);
+        session.read(500);
+        assert_eq!(session.admit(400, false), Err(Refusal::Replayed));
+        let mut sequence = 500u16;
+        let mut last = Ok(());
+        for _ in 0..u16::MAX {
+            sequence = sequence.wrapping_add(1);
+            last = session.admit(sequence, false);
+            if last.is_err() {
+                break;
+            }
+        }
+        assert_eq!(last, Err(Refusal::NoSession));
+        assert!(sequence < u16::MAX - WINDOW, "what was recorded at its beginning is not ahead: {sequence}");
+    }
+
+    #[test]
+    fn a_trusted_line_needs_no_session_and_has_its_window() {
+        let mut session = Session::default();
+        assert_eq!(session.admit(700, true), Ok(()));
+        assert_eq!(session.admit(700, true), Err(Refusal::Replayed));
+        assert_eq!(session.admit(701, true), Ok(()));
+        let nonce = session.offer();
+        assert_eq!(session.open(nonce, 0), Ok(()), "a peer that began anew says so");
+        assert_eq!(session.admit(1, true), Ok(()));
+    }
+}
