@@ -3,7 +3,7 @@
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::words::DriveSource;
 
-/// What everybody wants in one tick.
+/// What each source asks for in one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Wishes {
     /// A myosensor is active, its hold time included.
@@ -16,7 +16,7 @@ pub struct Wishes {
     pub reflex: MotorDrive,
 }
 
-/// Who gets it.
+/// The drive of this tick, and its source.
 #[must_use]
 pub const fn arbitrate(wishes: Wishes) -> (MotorDrive, DriveSource) {
     match wishes {

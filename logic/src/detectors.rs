@@ -78,7 +78,7 @@ impl Said {
     }
 }
 
-/// What else there is to tell of a verdict. Asked once a cycle, so it may cost something.
+/// The rest of a detector's evidence. Computed once a cycle, so it may cost something.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Description {
     /// How sure it is, per mille.
@@ -115,7 +115,7 @@ pub struct Description {
 /// }
 /// ```
 pub trait Detector {
-    /// Who it is.
+    /// Its row in the list of detectors.
     const ID: DetectorId;
     /// Cycles in a row for which it may report slip of an empty hand before it is ignored.
     const IMPLAUSIBLE_AFTER: u16 = 0;
@@ -125,7 +125,7 @@ pub trait Detector {
     /// Takes one frame. None if it decides nothing in it: what it said before stands.
     fn step(&mut self, config: &Self::Config, sensed: &Sensed<'_>) -> Option<Said>;
 
-    /// What there is to tell of its last verdict.
+    /// The rest of its evidence: confidence, direction, health, raw number.
     fn describe(&self, config: &Self::Config) -> Description;
 }
 
@@ -169,7 +169,7 @@ pub struct Detectors {
     record: Record,
 }
 
-/// Who said what, when, and is it believed.
+/// What each detector said, when it decided so, and whether the guard ignores it.
 #[derive(Clone, Debug, Default)]
 struct Record {
     slip: DetectorSet,
@@ -212,7 +212,7 @@ impl Detectors {
                 self.record.take(id_of(detector), said, sensed.frame);
             }
         });
-        // When the detector that decides once a cycle has just decided: what is implausible is not believed for a tick.
+        // In the slot in which the MLP has just decided: an implausible verdict is not believed for a single tick.
         if sensed.slot == MLP_DECIDES {
             self.guard(config, sensed);
         }

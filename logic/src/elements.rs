@@ -1,4 +1,4 @@
-//! The elements of the normal-force array: which of their readings can be believed.
+//! The taxels of the normal-force array: which of their readings are valid.
 
 use tenax_hal_shim::channel::{ARRAY, ARRAY_COUNT, CHANNELS, SLOW_HZ};
 

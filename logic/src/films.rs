@@ -1,4 +1,4 @@
-//! The PVDF films: which of their samples can be believed.
+//! The PVDF films: which of their samples are valid, suspect or none.
 //!
 //! Nearly every sample of nearly every film is plain: in range, different from the last, of a film that is not lost. So
 //! all twelve are asked at once, two in a word, and only if one is not plain is each looked at by itself.
@@ -9,7 +9,7 @@ use crate::health::{Change, Limits, SensorHealth};
 use crate::vibration::Trust;
 
 /// Equal samples in a row that a live film, with 30 of them rms of noise, hardly ever gives: before the jump of a film
-/// that freezes has come through its filters, it is doubted.
+/// that freezes has come through its filters, the film is suspect.
 const DOUBTED_AFTER: u32 = 2;
 
 const LIMITS: Limits = Limits::of(&CHANNELS[PVDF], FRAME_HZ);

@@ -85,14 +85,13 @@ impl Fingertip {
         }
     }
 
-    /// One who sees to it that changes are saved, from what there is now.
+    /// Decides when changes are saved; what there is now counts as saved.
     #[must_use]
     pub fn keeper(&self) -> Keeper {
         Keeper::new(&self.now())
     }
 
-    /// What has to be kept and is not yet, one thing at a time; ask now and then. Who asks sees to it that it is saved: it
-    /// is given once.
+    /// The next record to save, None if there is none. Call it regularly, and save what it gives: each record is given once.
     #[inline(never)]
     pub fn next_record(&mut self, keeper: &mut Keeper) -> Option<Record> {
         let now = self.now();

@@ -1,4 +1,4 @@
-//! Whether a sensor's readings can be believed: a reading is a value, or a reason why there is none.
+//! Sensor quality: a reading is a value, or a reason why there is none.
 
 use tenax_hal_shim::channel::{Channel, sample_from_mv};
 use tenax_hal_shim::words::Reason;

@@ -1,4 +1,4 @@
-//! What is told about every tick: the record of a slow frame, and the events in between.
+//! Telemetry of every tick: the record of a cycle (slow frame), and the events in between.
 
 use heapless::Deque;
 use tenax_hal_shim::frame::Frame;

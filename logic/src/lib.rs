@@ -4,13 +4,14 @@
 //!
 //! | step | modules |
 //! |---|---|
-//! | which readings can be used | [`health`], [`films`] for PVDF channels |
-//! | what they mean | [`vibration`], [`fsr`], [`forces`], [`friction`], [`strain`], [`elements`] and [`mod@array`], [`gate`] (EMG) |
+//! | which readings can be used | [`health`]; [`films`] and [`solo`] for PVDF channels |
+//! | what they mean | [`vibration`], [`fsr`], [`forces`], [`friction`], [`strain`], [`elements`] and [`mod@array`], [`emg`] and [`gate`] |
 //! | a frame through all of them | [`senses`] |
 //! | whether the object slips | [`detectors`], the list of them; [`hebbian`] and [`touch`] learn; [`plausibility`] guards |
 //! | what to do | [`mode`], [`grip`], [`arbiter`] |
 //! | the whole | [`fingertip`]; [`journal`] is what it reports |
 //! | a fingertip on a line | [`device`]: frames and commands in, drives and messages out. Begin there |
+//! | whose commands it carries out | [`session`], [`arming`] |
 //!
 //! [`config`] and [`settings`] hold every number that can be chosen, and [`store`] keeps what must outlive a power cut.
 #![no_std]

@@ -1,4 +1,4 @@
-//! From frames to what the fingertip knows: which sensors can be believed, and what they say.
+//! Conditions a frame: which sensors are valid, and what they measure.
 
 use tenax_hal_shim::channel::{
     ARRAY, CHANNELS, FSR, FSR_COUNT, MYO_EXTENSOR, MYO_FLEXOR, PVDF, PVDF_COUNT, SLOW_HZ, STRAIN,

@@ -1,4 +1,4 @@
-//! A PVDF channel that is loud by itself, again and again, is broken and not touched.
+//! Masks a PVDF channel that alone reports vibration again and again: it is broken, and nothing slips.
 //!
 //! Slip begins in one place, but the next pulse of the reflex ends it, or all channels come to show it. One that goes on
 //! alone has hum, a bad contact or a cracked film: it may close the hand once, and is masked from then on until it has been

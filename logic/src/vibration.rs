@@ -1,4 +1,4 @@
-//! S1: slip heard by the PVDF films (Prosthesis, sections 4 and 5).
+//! S1: slip from the vibration of the PVDF films (Prosthesis, sections 4 and 5).
 //!
 //! Each film's sample goes through a high-pass (offset, drift and slow contact go), a low-pass, a rectifier (the sign of
 //! a film means nothing: Tada 2006, section 2) and a second low-pass: the envelope of the slip band, 20 to 150 Hz. What
@@ -200,7 +200,7 @@ impl VibrationDetector {
         for (((film, own), &sample), &trust) in
             self.films.iter_mut().zip(&mut self.envelopes).zip(samples).zip(trusts)
         {
-            // While a film is doubted nothing is heard of it, not even what it said before.
+            // Suspect PVDF channels are masked, their held envelope included.
             *own = 0;
             if trust == Trust::None {
                 // Primed anew when it comes back: its jump back is no vibration.

@@ -1,4 +1,4 @@
-//! The wearer's two muscles: calibrated to a wearer, classified, and doubted.
+//! EMG of the wearer's two muscles: calibrated to a wearer, classified, and its quality judged.
 //!
 //! The myosensors give smoothed envelopes, each read three times a slow frame. [`log2`] turns them into levels;
 //! [`calibration`] learns where rest, closing and opening lie and [`model`] keeps it; [`quality`] says whether an

@@ -1,4 +1,4 @@
-//! When something is saved. By itself, so that a wearer never has to think of it, and seldom enough for the flash.
+//! Decides when something is saved: without a command, and seldom enough for the flash.
 
 use tenax_hal_shim::words::Kept;
 

@@ -1,4 +1,4 @@
-//! What the records hold of settings and zero: words, so that a later version may append more.
+//! The payload of the settings' and the zero's records: words, so that a later version may append more.
 
 use heapless::Vec;
 use tenax_hal_shim::channel::FSR_COUNT;
