@@ -1,16 +1,19 @@
-//! What one tick decided, and its nine bytes on the line.
+//! What one tick decided, and its four to nine bytes on the line.
 //!
-//! Twenty-five of these go up 80 times a second, more than everything else together; numbers of any length would cost the
-//! core more to write than the films to condition. So the fields are fixed:
+//! Twenty-five of these go up 80 times a second, more than everything else together, and each byte costs the core twenty
+//! instructions (checksum and framing). So the fields have their places, and those that are usually 0 are left out:
 //!
-//! | bytes | what |
-//! |---|---|
-//! | 0, 1 | vibration, 14 bits, little-endian |
-//! | 2, 3 | o1, o2 |
-//! | 4, 5 | duty per mille (bits 9..0), drive (11..10: coast, close, open), source (13..12), little-endian |
-//! | 6, 7, 8 | the detectors that say slip or warn of it, that are believed, that the reflex acts on; a bit each |
+//! | bytes | what | |
+//! |---|---|---|
+//! | 2 | vibration, 14 bits; bit 14: the drive follows; bit 15: the sets follow; little-endian | always |
+//! | 2 | o1, o2 | always |
+//! | 2 | duty per mille (bits 9..0), drive (11..10: coast, close, open), source (13..12), little-endian | while driven |
+//! | 3 | the detectors that say slip or warn of it, that are believed, that the reflex acts on; a bit each | while any does |
 
-use serde::de::Error;
+use core::fmt;
+
+use serde::de::{Error, SeqAccess, Visitor};
+use serde::ser::SerializeTuple;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::NETWORK_OUTPUTS;
@@ -37,32 +40,32 @@ pub struct TickRecord {
     pub source: DriveSource,
 }
 
-/// Bytes of a tick on the line.
-type Bytes = [u8; 9];
-
+/// The most bytes of a tick on the line.
+const BYTES_MAX: usize = 9;
+const DRIVE_FOLLOWS: u16 = 1 << 14;
+const SETS_FOLLOW: u16 = 1 << 15;
 const DRIVE_SHIFT: u32 = 10;
 const SOURCE_SHIFT: u32 = 12;
 
 impl TickRecord {
     /// The largest vibration that its field holds; more would go up as this.
-    pub const VIBRATION_MAX: u16 = (1 << 14) - 1;
+    pub const VIBRATION_MAX: u16 = DRIVE_FOLLOWS - 1;
 
-    fn bytes(self) -> Bytes {
-        let heard = self.vibration.min(Self::VIBRATION_MAX);
+    fn driven(self) -> u16 {
         let (kind, duty) = match self.drive {
             MotorDrive::Coast => (0, 0),
             MotorDrive::Close(duty) => (1, duty.as_per_mille()),
             MotorDrive::Open(duty) => (2, duty.as_per_mille()),
         };
-        let driven = duty | kind << DRIVE_SHIFT | (self.source as u16) << SOURCE_SHIFT;
-        let ([h0, h1], [o1, o2], [d0, d1]) =
-            (heard.to_le_bytes(), self.outputs.map(|output| output as u8), driven.to_le_bytes());
-        [h0, h1, o1, o2, d0, d1, self.said.bits(), self.believed.bits(), self.acted.bits()]
+        duty | kind << DRIVE_SHIFT | (self.source as u16) << SOURCE_SHIFT
     }
 
-    /// None of bytes that no tick has.
-    fn from_bytes([h0, h1, o1, o2, d0, d1, said, believed, acted]: Bytes) -> Option<Self> {
-        let (heard, driven) = (u16::from_le_bytes([h0, h1]), u16::from_le_bytes([d0, d1]));
+    fn sets(self) -> [u8; 3] {
+        [self.said.bits(), self.believed.bits(), self.acted.bits()]
+    }
+
+    /// None of numbers that no tick has.
+    fn of(vibration: u16, outputs: [i8; NETWORK_OUTPUTS], driven: u16, sets: [u8; 3]) -> Option<Self> {
         let permille = driven & ((1 << DRIVE_SHIFT) - 1);
         let duty = Duty::per_mille(permille);
         let drive = match driven >> DRIVE_SHIFT & 3 {
@@ -78,9 +81,10 @@ impl TickRecord {
             3 => DriveSource::Reflex,
             _ => return None,
         };
+        let [said, believed, acted] = sets;
         Some(Self {
-            vibration: Some(heard).filter(|&heard| heard <= Self::VIBRATION_MAX)?,
-            outputs: [o1 as i8, o2 as i8],
+            vibration,
+            outputs,
             said: DetectorSet::from_bits(said)?,
             believed: DetectorSet::from_bits(believed)?,
             acted: DetectorSet::from_bits(acted)?,
@@ -92,14 +96,50 @@ impl TickRecord {
 
 impl Serialize for TickRecord {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.bytes().serialize(serializer)
+        let (driven, sets) = (self.driven(), self.sets());
+        let mut heard = self.vibration.min(Self::VIBRATION_MAX);
+        heard |= if driven == 0 { 0 } else { DRIVE_FOLLOWS };
+        heard |= if sets == [0; 3] { 0 } else { SETS_FOLLOW };
+        // postcard writes the elements one after the other, and nothing of how many there are.
+        let mut bytes = serializer.serialize_tuple(BYTES_MAX)?;
+        let mut write = |some: &[u8]| some.iter().try_for_each(|byte| bytes.serialize_element(byte));
+        write(&heard.to_le_bytes())?;
+        write(&self.outputs.map(|output| output as u8))?;
+        if driven != 0 {
+            write(&driven.to_le_bytes())?;
+        }
+        if sets != [0; 3] {
+            write(&sets)?;
+        }
+        bytes.end()
     }
 }
 
 impl<'de> Deserialize<'de> for TickRecord {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        Self::from_bytes(Bytes::deserialize(deserializer)?)
-            .ok_or_else(|| D::Error::custom("no tick has these bytes"))
+        struct Bytes;
+        impl<'de> Visitor<'de> for Bytes {
+            type Value = TickRecord;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(f, "4 to {BYTES_MAX} bytes of a tick")
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<TickRecord, A::Error> {
+                let mut next = || seq.next_element::<u8>()?.ok_or_else(|| A::Error::invalid_length(0, &self));
+                let heard = u16::from_le_bytes([next()?, next()?]);
+                let outputs = [next()? as i8, next()? as i8];
+                let driven =
+                    if heard & DRIVE_FOLLOWS != 0 { u16::from_le_bytes([next()?, next()?]) } else { 0 };
+                let sets = if heard & SETS_FOLLOW != 0 { [next()?, next()?, next()?] } else { [0; 3] };
+                let record = TickRecord::of(heard & TickRecord::VIBRATION_MAX, outputs, driven, sets);
+                // What is left out is 0, so what is there is not: each tick has one way to be written.
+                let plain = (heard & DRIVE_FOLLOWS == 0 || driven != 0)
+                    && (heard & SETS_FOLLOW == 0 || sets != [0; 3]);
+                record.filter(|_| plain).ok_or_else(|| A::Error::custom("no tick has these bytes"))
+            }
+        }
+        deserializer.deserialize_tuple(BYTES_MAX, Bytes)
     }
 }
 
@@ -127,24 +167,35 @@ mod tests {
             {
                 for outputs in [[0, 0], [-128, 127], [127, -128], [-1, 1]] {
                     let record = TickRecord { vibration, outputs, said, believed, acted, drive, source };
-                    assert_eq!(TickRecord::from_bytes(record.bytes()), Some(record));
+                    let mut buffer = [0; BYTES_MAX];
+                    let bytes = postcard::to_slice(&record, &mut buffer).expect("it fits");
+                    assert_eq!(postcard::take_from_bytes(bytes), Ok((record, &[][..])));
                 }
             }
         }
     }
 
+    fn read(bytes: &[u8]) -> Option<TickRecord> {
+        postcard::from_bytes(bytes).ok()
+    }
+
+    #[test]
+    fn a_tick_at_rest_takes_four_bytes() {
+        assert_eq!(postcard::to_slice(&TickRecord::default(), &mut [0; BYTES_MAX]), Ok(&mut [0; 4][..]));
+    }
+
     #[test]
     fn bytes_that_no_tick_has_are_refused() {
-        let with =
-            |driven: u16| TickRecord::from_bytes([0, 0, 0, 0, driven as u8, (driven >> 8) as u8, 0, 0, 0]);
-        assert!(with(0).is_some());
-        for driven in [1, 1 << 10 | 1_001, 2 << 10 | 1_023, 3 << 10, 1 << 14, 1 << 15] {
-            assert_eq!(with(driven), None, "{driven:#x}");
+        let driven = |driven: u16| read(&[0, 0x40, 0, 0, driven as u8, (driven >> 8) as u8]);
+        assert!(driven(1 << 12).is_some());
+        for wrong in [0, 1, 1 << 10 | 1_001, 2 << 10 | 1_023, 3 << 10, 1 << 14, 1 << 15] {
+            assert_eq!(driven(wrong), None, "{wrong:#x}");
         }
-        for place in [1, 6, 7, 8] {
-            let mut bytes = [0; 9];
-            bytes[place] = 0x80;
-            assert_eq!(TickRecord::from_bytes(bytes), None, "byte {place}");
+        assert!(read(&[0, 0x80, 0, 0, 1, 1, 0]).is_some());
+        for wrong in [[0, 0, 0], [0x80, 0, 0], [1, 0x80, 0], [1, 1, 0x80]] {
+            let [a, b, c] = wrong;
+            assert_eq!(read(&[0, 0x80, 0, 0, a, b, c]), None, "{wrong:?}");
         }
+        assert_eq!(read(&[0, 0xC0, 0, 0, 0, 0x10]), None, "cut short");
     }
 }
