@@ -2,12 +2,12 @@
 
 use rigless::mcu::Operate;
 use rigless::soc::Width;
-use rigless::soc::stm32f427::Stm32f427;
-use rigless::soc::stm32f427::peripherals::adc::Channel;
 use rigless::time::VirtualNanos;
 use tenax_hal_shim::channel::SCAN;
 use tenax_hal_shim::frame::Scan;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
+
+use super::part::Part;
 
 /// TIM3, in the order of the chip's general timers.
 const TIM3: usize = 1;
@@ -29,18 +29,17 @@ const CR2_ADON: u32 = 1;
 const CR2_EXTSEL: u32 = 0xF << 24;
 const CR2_EXTSEL_TIM3_TRGO: u32 = 0x8 << 24;
 const CR2_EXTEN: u32 = 0x3 << 28;
-const CR2_SWSTART: u32 = 1 << 30;
 const MODER_ALTERNATE: u32 = 0b10;
 
 /// The chip at one instant.
 pub struct Wires<'a> {
-    mcu: &'a mut Stm32f427,
+    mcu: &'a mut Part,
     now: VirtualNanos,
 }
 
 impl<'a> Wires<'a> {
     /// The wires as they are at `now`, to which the chip has advanced.
-    pub fn new(mcu: &'a mut Stm32f427, now: VirtualNanos) -> Self {
+    pub fn new(mcu: &'a mut Part, now: VirtualNanos) -> Self {
         Self { mcu, now }
     }
 
@@ -53,7 +52,7 @@ impl<'a> Wires<'a> {
     pub fn trigger_pulses(&mut self) -> u64 {
         // The timer's model catches up on what is due when it is read.
         let _ = self.mcu.read(self.now, TIM3_CNT, Width::W32);
-        self.mcu.tim[TIM3].trigger_output().1
+        self.mcu.chip.tim[TIM3].trigger_output().1
     }
 
     /// What the select lines S0 to S3 show.
@@ -84,8 +83,7 @@ impl<'a> Wires<'a> {
     /// Puts codes on the converter's pins.
     pub fn put(&mut self, scan: &Scan) {
         for (rank, &code) in SCAN.iter().zip(scan) {
-            let channel = Channel::new(rank.adc).expect("the channel map has pin channels");
-            self.mcu.adc[0].set_input(channel, u32::from(code));
+            self.mcu.put(rank.adc, code);
         }
     }
 
@@ -94,7 +92,10 @@ impl<'a> Wires<'a> {
     pub fn trigger(&mut self) -> bool {
         let cr2 = self.peek(ADC1_CR2);
         let listens = cr2 & CR2_ADON != 0 && cr2 & CR2_EXTEN != 0 && cr2 & CR2_EXTSEL == CR2_EXTSEL_TIM3_TRGO;
-        listens && self.mcu.write(self.now, ADC1_CR2, Width::W32, u64::from(cr2 | CR2_SWSTART)).is_ok()
+        if listens {
+            self.mcu.trigger(self.now);
+        }
+        listens
     }
 }
 

@@ -123,7 +123,7 @@ impl<P: Plant> World<P> {
             wires.trigger();
         }
         let scan = self.run.scans.len();
-        if let Some(line) = session.board_mut().mcu.usart[USART2].chip_mut::<Line>() {
+        if let Some(line) = session.board_mut().mcu.chip.usart[USART2].chip_mut::<Line>() {
             for command in self.plant.commands() {
                 let mut buffer = [0; FRAME_MAX];
                 line.down.extend(
@@ -148,7 +148,7 @@ impl<P: Plant> World<P> {
         let lasted_s = seconds(stop.at) - seconds(began);
         self.run.tick_cost = self.cost.cost((stop.instruction_count - executed) as f64 / lasted_s);
         self.run.stack_bytes = Some(stack_used(&self.stack, host));
-        if let Some(line) = session.board_mut().mcu.usart[USART2].chip_mut::<Line>() {
+        if let Some(line) = session.board_mut().mcu.chip.usart[USART2].chip_mut::<Line>() {
             self.run.line = std::mem::take(&mut line.up);
         }
     }
