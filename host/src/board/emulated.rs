@@ -9,6 +9,7 @@ mod mishaps;
 mod nucleo;
 mod part;
 mod scan_path;
+mod unwatched;
 mod wires;
 mod world;
 
@@ -79,7 +80,7 @@ pub struct Tick {
 /// Which models the chip is made of. The image cannot tell; one takes several times as long.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Models {
-    /// One event a scan for the converter and its DMA, and no edges of the bridge's PWM.
+    /// One event a frame for the converter and its DMA, none for the scan's timer and the bridge's edges.
     Quick,
     /// `rigless`'s own: an event for each conversion and each edge.
     Rigless,

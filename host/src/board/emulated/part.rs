@@ -10,9 +10,13 @@ use rigless::time::VirtualNanos;
 use super::Models;
 use super::nucleo::USART2;
 use super::scan_path::{Asked, ScanPath};
+use super::unwatched::UnwatchedTimer;
 
 const ADC1_CR2: u64 = 0x4001_2008;
 const CR2_SWSTART: u64 = 1 << 30;
+const TIM3_CNT: u64 = 0x4000_0424;
+/// TIM3, in the order of the chip's general timers.
+const TIM3: usize = 1;
 
 /// The motor bridge's timer. Its registers are read and nobody needs its 20 800 edges a second.
 pub const BRIDGE: &str = "TIM1";
@@ -31,6 +35,7 @@ pub struct Part {
 #[derive(Debug)]
 struct Own {
     scan: ScanPath,
+    timer: UnwatchedTimer,
     controller: usize,
     answers: Box<[Answers]>,
 }
@@ -40,6 +45,7 @@ struct Own {
 enum Answers {
     Chip,
     Scan(Asked),
+    ScanTimer,
     /// The registers hold what is written to them, and nothing happens.
     RegistersAlone,
 }
@@ -50,10 +56,11 @@ impl Own {
         let controller = bus.slot("DMA2")?;
         answers[controller] = Answers::Scan(Asked::Controller);
         answers[bus.slot("ADC1")?] = Answers::Scan(Asked::Converter);
+        answers[bus.slot("TIM3")?] = Answers::ScanTimer;
         for name in LEFT_OUT.into_iter().chain([BRIDGE]) {
             answers[bus.slot(name)?] = Answers::RegistersAlone;
         }
-        Ok(Self { scan: ScanPath::new(), controller, answers })
+        Ok(Self { scan: ScanPath::new(), timer: UnwatchedTimer::new(TIM3)?, controller, answers })
     }
 }
 
@@ -68,13 +75,31 @@ impl Part {
         Ok(Self { chip, own })
     }
 
-    /// Puts a code on a pin of the converter.
-    pub fn put(&mut self, channel: u8, code: u16) {
-        match &mut self.own {
-            Some(own) => own.scan.put(channel, code),
+    /// Puts codes on pins of the converter, from now on.
+    pub fn put(&mut self, now: VirtualNanos, codes: impl IntoIterator<Item = (u8, u16)>) {
+        let Self { chip, own } = self;
+        match own {
+            Some(own) => {
+                let (_, mut context) = chip.bus_mut().drive(now, own.controller);
+                own.scan.put(codes, &mut context);
+            }
             None => {
-                let channel = Channel::new(channel).expect("the channel map has pin channels");
-                self.chip.adc[0].set_input(channel, u32::from(code));
+                for (channel, code) in codes {
+                    let channel = Channel::new(channel).expect("the channel map has pin channels");
+                    chip.adc[0].set_input(channel, u32::from(code));
+                }
+            }
+        }
+    }
+
+    /// How many pulses the scan's timer, TIM3, has sent on its TRGO.
+    pub fn trigger_pulses(&mut self, now: VirtualNanos) -> u64 {
+        match &mut self.own {
+            Some(own) => own.timer.trigger_pulses(now),
+            None => {
+                // The timer's model catches up on what is due when it is read.
+                let _ = self.chip.read(now, TIM3_CNT, Width::W32);
+                self.chip.tim[TIM3].trigger_output().1
             }
         }
     }
@@ -110,6 +135,7 @@ impl Mcu for Part {
         self.chip.reset(at, cause);
         if let Some(own) = &mut self.own {
             own.scan.restarted();
+            own.timer.restarted();
         }
     }
 
@@ -129,6 +155,7 @@ impl Mcu for Part {
         match own.answers.get(slot).copied().unwrap_or(Answers::Chip) {
             Answers::Chip => chip.split(slot),
             Answers::Scan(asked) => (chip.bus_mut(), Some(own.scan.of(asked))),
+            Answers::ScanTimer => (chip.bus_mut(), Some(&mut own.timer)),
             Answers::RegistersAlone => (chip.bus_mut(), None),
         }
     }

@@ -1,11 +1,11 @@
-//! The way of a scan through the chip, converter and DMA, as one model: one event a scan instead of one a conversion.
+//! The way of a scan through the chip, converter and DMA, as one model: one event a frame instead of one a conversion.
 //!
 //! `rigless` stops the core at each conversion's end, moves a code, and tells every peripheral of every request. Nothing
-//! of that is seen from outside before the scan's last code: the ring is read after DMA's interrupt. So this model is
+//! of that is seen from outside before a frame's last code: the ring is read after DMA's interrupt. So this model is
 //! worked out when it is looked at: at every access to a register of the two, and at the instants at which something is
 //! to be seen without one, which are DMA's interrupts, it takes the conversions that have ended by then, one after another
 //! with the times that the clock and the sampling give them. What is read at any instant is what `rigless`'s own models
-//! show at that instant; `host/tests/emulated/converter.rs` holds the two beside each other.
+//! show at that instant: [`beside`] and `host/tests/emulated/converter.rs` hold them beside each other.
 //!
 //! It knows what the image uses: a regular group of a trigger, fetched into a ring by stream 0 of DMA2. It panics at what
 //! it does not know. The common status register (ADC_CSR) does not image the flags.
@@ -63,9 +63,10 @@ impl ScanPath {
         self.wakes = None;
     }
 
-    /// Puts a code on a pin.
-    pub fn put(&mut self, channel: u8, code: u16) {
-        self.converter.put(channel, code);
+    /// Puts codes on pins. What was converted before was converted from what was there before.
+    pub fn put(&mut self, codes: impl IntoIterator<Item = (u8, u16)>, context: &mut DeviceContext<'_>) {
+        self.catch_up(context);
+        codes.into_iter().for_each(|(channel, code)| self.converter.put(channel, code));
     }
 
     /// A trigger arrives that the converter listens to. What is handed over is the controller's.
@@ -87,7 +88,7 @@ impl ScanPath {
     /// What follows from an access to the controller or its event.
     fn settle(&mut self, registers: &mut RegisterFile, context: &mut DeviceContext<'_>) {
         self.stream.settle(registers, context);
-        // With the stream off, nothing is seen before somebody asks.
+        // Nothing is seen before somebody asks, except when the stream raises a flag.
         let next = self.stream.patience().and_then(|codes| self.converter.ends(codes as usize - 1));
         self.wakes = next.map(|at| context.schedule(at));
     }

@@ -9,9 +9,6 @@ use tenax_hal_shim::motor::{Duty, MotorDrive};
 
 use super::part::Part;
 
-/// TIM3, in the order of the chip's general timers.
-const TIM3: usize = 1;
-
 const GPIOA_MODER: u64 = 0x4002_0000;
 const GPIOB_ODR: u64 = 0x4002_0414;
 const TIM1_CCER: u64 = 0x4001_0020;
@@ -19,7 +16,6 @@ const TIM1_ARR: u64 = 0x4001_002C;
 const TIM1_CCR1: u64 = 0x4001_0034;
 const TIM1_CCR2: u64 = 0x4001_0038;
 const TIM1_BDTR: u64 = 0x4001_0044;
-const TIM3_CNT: u64 = 0x4000_0424;
 const ADC1_CR2: u64 = 0x4001_2008;
 
 const BDTR_MOE: u32 = 1 << 15;
@@ -48,13 +44,6 @@ impl<'a> Wires<'a> {
         self.mcu.peek(self.now, address, Width::W32).unwrap_or(0) as u32
     }
 
-    /// How many pulses TIM3 has sent on its TRGO.
-    pub fn trigger_pulses(&mut self) -> u64 {
-        // The timer's model catches up on what is due when it is read.
-        let _ = self.mcu.read(self.now, TIM3_CNT, Width::W32);
-        self.mcu.chip.tim[TIM3].trigger_output().1
-    }
-
     /// What the select lines S0 to S3 show.
     pub fn select(&mut self) -> u8 {
         (self.peek(GPIOB_ODR) >> 12 & 0xF) as u8
@@ -73,18 +62,17 @@ impl<'a> Wires<'a> {
 
     /// How one side is driven: its pin belongs to the timer, the timer's outputs are on, and its pulse is not empty.
     fn side(&mut self, pin: u32, compare: u64, enable: u32) -> Option<Duty> {
+        // Most of the time the pulse is empty, and one look is enough.
+        let compare = Some(self.peek(compare)).filter(|&compare| compare > 0)?;
         let alternate = self.peek(GPIOA_MODER) >> (2 * pin) & 0b11 == MODER_ALTERNATE;
         let on = self.peek(TIM1_BDTR) & BDTR_MOE != 0 && self.peek(TIM1_CCER) & enable != 0;
-        let (compare, period) = (self.peek(compare), self.peek(TIM1_ARR) + 1);
-        let per_mille = (compare * 1_000).div_ceil(period);
-        (alternate && on && compare > 0).then_some(Duty::per_mille(per_mille as u16))
+        let per_mille = (compare * 1_000).div_ceil(self.peek(TIM1_ARR) + 1);
+        (alternate && on).then_some(Duty::per_mille(per_mille as u16))
     }
 
     /// Puts codes on the converter's pins.
     pub fn put(&mut self, scan: &Scan) {
-        for (rank, &code) in SCAN.iter().zip(scan) {
-            self.mcu.put(rank.adc, code);
-        }
+        self.mcu.put(self.now, SCAN.iter().zip(scan).map(|(rank, &code)| (rank.adc, code)));
     }
 
     /// Draws the one wire that the emulator leaves out: a pulse of TIM3's TRGO starts the converter's sequence if the

@@ -180,7 +180,7 @@ impl<P: Plant> Driver<Nucleo> for World<P> {
             // A reset ends a hang.
             host.hold(false);
         }
-        let pulses = Wires::new(&mut session.board_mut().mcu, stop.at).trigger_pulses();
+        let pulses = session.board_mut().mcu.trigger_pulses(stop.at);
         let pulse = pulses > self.pulses;
         self.pulses = pulses;
         let due = self.stepped_at.is_some_and(|at| stop.at.0 >= at.0 + SCAN_NS);

@@ -41,15 +41,30 @@ pub struct Converter {
     data: u16,
     unread: bool,
     sequence: Option<Sequence>,
+    /// The next sequence, as the registers and the clock have it.
+    plan: Option<Plan>,
+}
+
+/// What a sequence converts, and when each conversion ends, ns after the trigger.
+#[derive(Clone, Copy, Debug)]
+struct Plan {
+    channels: [u8; RANKS],
+    ends_after_ns: [u64; RANKS],
+    length: usize,
 }
 
 /// A sequence under way.
 #[derive(Clone, Copy, Debug)]
 struct Sequence {
-    channels: [u8; RANKS],
-    ends: [VirtualNanos; RANKS],
-    length: usize,
+    plan: Plan,
+    began: VirtualNanos,
     next: usize,
+}
+
+impl Sequence {
+    fn ends(&self, conversion: usize) -> VirtualNanos {
+        VirtualNanos(self.began.0 + self.plan.ends_after_ns[conversion])
+    }
 }
 
 impl Converter {
@@ -63,6 +78,7 @@ impl Converter {
             data: 0,
             unread: false,
             sequence: None,
+            plan: None,
         }
     }
 
@@ -79,6 +95,7 @@ impl Converter {
     /// ADCCLK changes; a sequence under way goes on as it began.
     pub fn clock(&mut self, hz: u64) {
         self.clock_hz = hz;
+        self.plan = None;
     }
 
     /// Puts a code on a pin.
@@ -113,6 +130,7 @@ impl Converter {
             self.unread &= self.status & sr::EOC.mask() != 0;
         } else if row < KEPT {
             self.registers[row] = landed;
+            self.plan = None;
             assert!(
                 row != Register::Cr1 as usize || landed & FOREIGN_CR1 == 0,
                 "the scan's converter knows no such CR1: {landed:#x}"
@@ -135,36 +153,23 @@ impl Converter {
         if self.clock_hz == 0 {
             return;
         }
-        let scans = self.registers[Register::Cr1 as usize] & cr1::SCAN.mask() != 0;
-        let last = if scans { sqr1::L.get(self.registers[Register::Sqr1 as usize]) } else { 0 };
-        let mut sequence = Sequence {
-            channels: std::array::from_fn(|rank| self.rank(rank)),
-            ends: [now; RANKS],
-            length: last as usize + 1,
-            next: 0,
-        };
-        // From where it began, so that what is left of a nanosecond does not add up.
-        let mut run = Run::at(now);
-        for (&channel, end) in sequence.channels.iter().zip(&mut sequence.ends).take(sequence.length) {
-            run.extend(self.sampling_cycles(channel) + CONVERSION_CYCLES, self.clock_hz);
-            *end = run.ends;
-        }
-        self.sequence = Some(sequence);
+        let plan = *self.plan.get_or_insert_with(|| Plan::new(&self.registers, self.clock_hz));
+        self.sequence = Some(Sequence { plan, began: now, next: 0 });
     }
 
     /// Ends the next conversion if it ends by `now`. None if there is no such.
     pub fn convert(&mut self, now: VirtualNanos) -> Option<()> {
-        let sequence = self.sequence.as_mut().filter(|sequence| sequence.ends[sequence.next] <= now)?;
+        let sequence = self.sequence.as_mut().filter(|sequence| sequence.ends(sequence.next) <= now)?;
         if self.unread && self.registers[Register::Cr2 as usize] & cr2::DMA.mask() != 0 {
             self.status |= sr::OVR.mask();
             self.sequence = None;
             return Some(());
         }
-        let channel = usize::from(sequence.channels[sequence.next]);
+        let channel = usize::from(sequence.plan.channels[sequence.next]);
         self.data = self.inputs.get(channel).copied().unwrap_or(0);
         self.unread = true;
         sequence.next += 1;
-        if sequence.next == sequence.length {
+        if sequence.next == sequence.plan.length {
             self.status |= sr::EOC.mask();
             self.sequence = None;
         } else {
@@ -180,23 +185,33 @@ impl Converter {
         by_dma && self.unread && self.status & sr::OVR.mask() == 0
     }
 
-    /// When the `nth` conversion from now ends, or the last one if there are fewer.
+    /// When the `nth` conversion from now ends, if it is one of the sequence under way.
     pub fn ends(&self, nth: usize) -> Option<VirtualNanos> {
         let sequence = self.sequence.as_ref()?;
-        Some(sequence.ends[(sequence.next + nth).min(sequence.length - 1)])
+        let conversion = sequence.next + nth;
+        (conversion < sequence.plan.length).then(|| sequence.ends(conversion))
     }
+}
 
-    /// The channel of a rank: five bits each, six ranks a register, the first ones in SQR3.
-    fn rank(&self, rank: usize) -> u8 {
-        let register = self.registers[Register::Sqr3 as usize - rank / 6];
-        (register >> (5 * (rank % 6)) & 0x1F) as u8
-    }
-
-    fn sampling_cycles(&self, channel: u8) -> u128 {
-        let (register, index) = match channel {
-            0..=9 => (Register::Smpr2, channel),
-            _ => (Register::Smpr1, channel - 10),
-        };
-        SAMPLING_CYCLES[(self.registers[register as usize] >> (3 * index) & 0b111) as usize]
+impl Plan {
+    fn new(registers: &[u64; KEPT], clock_hz: u64) -> Self {
+        let scans = registers[Register::Cr1 as usize] & cr1::SCAN.mask() != 0;
+        let last = if scans { sqr1::L.get(registers[Register::Sqr1 as usize]) } else { 0 };
+        // Five bits a rank, six ranks a register, the first ones in SQR3.
+        let channels: [u8; RANKS] = std::array::from_fn(|rank| {
+            (registers[Register::Sqr3 as usize - rank / 6] >> (5 * (rank % 6)) & 0x1F) as u8
+        });
+        // From where it began, so that what is left of a nanosecond does not add up.
+        let mut run = Run::at(VirtualNanos(0));
+        let ends_after_ns = channels.map(|channel| {
+            let (register, index) = match channel {
+                0..=9 => (Register::Smpr2, channel),
+                _ => (Register::Smpr1, channel - 10),
+            };
+            let sampling = registers[register as usize] >> (3 * index) & 0b111;
+            run.extend(SAMPLING_CYCLES[sampling as usize] + CONVERSION_CYCLES, clock_hz);
+            run.ends.0
+        });
+        Self { channels, ends_after_ns, length: last as usize + 1 }
     }
 }
