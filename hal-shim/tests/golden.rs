@@ -16,7 +16,9 @@ use tenax_hal_shim::wire::{
     Answer, Counters, Down, Event, EventKind, FRAME_MAX, Forces, NetworkState, Receiver, Refusal, Setting,
     Slow, TickRecord, Up, VERSION, encode,
 };
-use tenax_hal_shim::words::{Capability, Cause, Code, DriveSource, Fault, GripMode, Kept, Line, NoLesson, Reason};
+use tenax_hal_shim::words::{
+    Capability, Cause, Code, DriveSource, Fault, GripMode, Kept, Line, NoLesson, Reason,
+};
 
 /// Writes a message's line, and reads its bytes back.
 fn line<T: Serialize + DeserializeOwned + PartialEq + Debug>(text: &mut String, message: &T) {

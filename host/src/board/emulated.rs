@@ -7,6 +7,9 @@ pub mod kernels;
 mod line;
 mod mishaps;
 mod nucleo;
+mod part;
+mod scan_path;
+mod unwatched;
 mod wires;
 mod world;
 
@@ -15,7 +18,7 @@ use std::path::Path;
 use std::sync::mpsc;
 use std::time::Instant;
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result, anyhow, bail};
 use rigless::emulator::{self, Finished, Start, Watch};
 use rigless::image::Image;
 use rigless::session::Session;
@@ -47,6 +50,10 @@ pub struct Options {
     /// How long the flash takes to program a word, us; the core stands still for as long. 16 typically, 100 at most
     /// (DS10314, flash memory programming).
     pub word_us: u64,
+    /// Which models the chip is made of.
+    pub models: Models,
+    /// Who is told when each tick of the logic begins.
+    pub ticks: Option<mpsc::Sender<Tick>>,
 }
 
 impl Default for Options {
@@ -56,8 +63,28 @@ impl Default for Options {
             mishaps: Vec::new(),
             flash: None,
             word_us: 16,
+            models: Models::Quick,
+            ticks: None,
         }
     }
+}
+
+/// A tick of the logic begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tick {
+    /// When, virtual ns.
+    pub at_ns: u64,
+    /// Instructions that the core has executed by then.
+    pub instruction_count: u64,
+}
+
+/// Which models the chip is made of. The image cannot tell; one takes several times as long.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Models {
+    /// One event a frame for the converter and its DMA, none for the scan's timer and the bridge's edges.
+    Quick,
+    /// `rigless`'s own: an event for each conversion and each edge.
+    Rigless,
 }
 
 /// Something that a board must survive.
@@ -127,7 +154,7 @@ pub fn record<P: Plant + 'static>(
     let symbols = Symbols::read(image)?;
     let frames = frames_in(plant.duration_s());
     let (sender, reports) = mpsc::channel();
-    let cost = CostMeter::new(&symbols);
+    let cost = CostMeter::new(&symbols, options.ticks.clone());
     let [tick, after_tick] = cost.watched();
     let mishaps = Mishaps::new(&options.mishaps);
     let flash = FlashArray::new(1_000 * options.word_us);
@@ -138,12 +165,12 @@ pub fn record<P: Plant + 'static>(
     if let Some((address, bytes)) = &options.flash {
         images.push(Image::new(Path::new("flash"), bytes.clone(), Some(*address))?);
     }
-    let rate = options.instructions_per_second;
+    let (models, rate) = (options.models, options.instructions_per_second);
 
     // The emulator keeps its driver for itself, so it runs on a thread of its own and reports to this one.
     let (mut heard, mut log, mut scanned) = (Summary::default(), LineLog::new(frames), 0);
     let finished = std::thread::scope(|scope| {
-        let emulator = scope.spawn(move || execute(&images, rate, watched, world));
+        let emulator = scope.spawn(move || execute(&images, models, rate, watched, world));
         for Stretch { scans, line } in reports {
             scanned += scans.len();
             for (codes, drive, slipping) in scans {
@@ -176,16 +203,23 @@ pub fn record<P: Plant + 'static>(
 
 fn execute<P: Plant + 'static>(
     images: &[Image],
+    models: Models,
     rate: NonZeroU64,
     watched: [u64; 3],
     world: World<P>,
 ) -> Result<Finished<Nucleo, World<P>>> {
-    let board = Nucleo::new(rate, Line::default())?;
+    let board = Nucleo::new(models, rate, Line::default())?;
     let mut session = Session::new(Box::new(board), 0, VirtualNanos(1))?;
     for address in watched {
         session.watch(Watch::Instruction(address));
     }
     let mut finished = emulator::run(session, &Start::new(images), world).context("the emulator")?;
     finished.driver.reports = None;
+    let touched = finished.session.unimplemented();
+    if models == Models::Quick
+        && let Some(touched) = touched.values().find(|touched| part::LEFT_OUT.contains(&touched.instance))
+    {
+        bail!("the image uses {}, which the board's model leaves out", touched.instance);
+    }
     Ok(finished)
 }

@@ -2,6 +2,7 @@
 #![cfg(feature = "emulator")]
 
 mod agreement;
+mod converter;
 mod faults;
 mod link;
 #[path = "../../../host-tests/src/onsets.rs"]

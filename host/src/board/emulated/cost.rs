@@ -2,11 +2,13 @@
 
 use std::ops::Range;
 use std::path::Path;
+use std::sync::mpsc::Sender;
 
 use rigless::emulator::{Hit, Host};
 use rigless::image::Image;
 use rigless::soc::Width;
 
+use super::Tick;
 use crate::board::TickCost;
 use crate::image::symbols::Symbols;
 
@@ -19,12 +21,22 @@ pub struct CostMeter {
     count: u64,
     sum: u64,
     max: u64,
+    /// Who is told of each.
+    told: Option<Sender<Tick>>,
 }
 
 impl CostMeter {
     /// One that has counted nothing.
-    pub fn new(symbols: &Symbols) -> Self {
-        Self { tick: symbols.tick, after_tick: symbols.after_tick, entered: None, count: 0, sum: 0, max: 0 }
+    pub fn new(symbols: &Symbols, told: Option<Sender<Tick>>) -> Self {
+        Self {
+            tick: symbols.tick,
+            after_tick: symbols.after_tick,
+            entered: None,
+            count: 0,
+            sum: 0,
+            max: 0,
+            told,
+        }
     }
 
     /// The instructions to be told about.
@@ -36,6 +48,10 @@ impl CostMeter {
     pub fn hit(&mut self, hit: Hit) {
         if hit.address == self.tick {
             self.entered = Some(hit.instruction_count);
+            if let Some(told) = &self.told {
+                // Nobody listening is no reason to stop.
+                let _ = told.send(Tick { at_ns: hit.at.0, instruction_count: hit.instruction_count });
+            }
         } else if let Some(entered) = self.entered.take() {
             let instructions = hit.instruction_count - entered;
             self.count += 1;

@@ -10,12 +10,13 @@ use rigless::device::{ErasedDevice, ResetCause};
 use rigless::emulator::{Access, AccessKind, Host, Stop};
 use rigless::mcu::{Mcu, Operate};
 use rigless::session::Session;
+use rigless::soc::stm32f427::CPU;
 use rigless::soc::stm32f427::generated::flash::Register;
-use rigless::soc::stm32f427::{CPU, Stm32f427};
 use rigless::soc::{Bus, EraseBlocks, Error, Region, Width};
 use rigless::time::VirtualNanos;
 
 use super::nucleo::Nucleo;
+use super::part::Part;
 use crate::board::FlashUse;
 
 /// The instance that the array's words are programmed through.
@@ -60,7 +61,7 @@ pub struct MemoryMap(Bus);
 
 impl MemoryMap {
     /// The F411's, beside the peripherals of `mcu`.
-    pub fn new(mcu: &Stm32f427) -> Result<Self, Error> {
+    pub fn new(mcu: &Part) -> Result<Self, Error> {
         let peripherals: Vec<_> = mcu.bus().peripherals().copied().collect();
         Ok(Self(Bus::builder(CPU, &MEMORY, peripherals).build()?))
     }
@@ -201,12 +202,12 @@ impl FlashArray {
     }
 }
 
-fn peek(mcu: &mut Stm32f427, now: VirtualNanos, address: u64) -> u64 {
+fn peek(mcu: &mut Part, now: VirtualNanos, address: u64) -> u64 {
     mcu.peek(now, address, Width::W32).unwrap_or(0)
 }
 
 /// Programming in any other way than a word at a time with PG set is a sequence error.
-fn fail(mcu: &mut Stm32f427) {
+fn fail(mcu: &mut Part) {
     let bus = mcu.bus_mut();
     if let Some(slot) = bus.slot_of(INTERFACE) {
         let registers = bus.slot_mut(slot).registers_mut();

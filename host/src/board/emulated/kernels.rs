@@ -22,6 +22,7 @@ use tenax_logic::array::{ArrayDetector, ArrayVerdict, Features, Reading};
 
 use self::bench::Bench;
 use self::meter::Meters;
+use super::Models;
 use super::line::Line;
 use super::nucleo::Nucleo;
 use crate::image::kernels::KernelSymbols;
@@ -125,7 +126,7 @@ pub fn costs(image: &Path) -> Result<Vec<Cost>> {
 }
 
 fn execute(images: &[Image], symbols: &KernelSymbols, bench: Bench) -> Result<Finished<Nucleo, Bench>> {
-    let board = Nucleo::new(INSTRUCTIONS_PER_SECOND, Line::default())?;
+    let board = Nucleo::new(Models::Quick, INSTRUCTIONS_PER_SECOND, Line::default())?;
     let mut session = Session::new(Box::new(board), 0, VirtualNanos(1))?;
     for address in Meters::watched(symbols).chain([symbols.next]) {
         session.watch(Watch::Instruction(address));

@@ -4,7 +4,6 @@ use rigless::emulator::Host;
 use rigless::mcu::Operate;
 use rigless::session::Session;
 use rigless::soc::Width;
-use rigless::soc::stm32f427::Stm32f427;
 use rigless::time::VirtualNanos;
 use tenax_hal_shim::channel::SCAN_HZ;
 
@@ -12,6 +11,7 @@ use super::Mishap;
 use super::flash::FlashArray;
 use super::line::Line;
 use super::nucleo::{Nucleo, USART2};
+use super::part::Part;
 
 /// DMA2 stream 0's configuration: bit 0 switches it on.
 const DMA2_S0CR: u64 = 0x4002_6410;
@@ -52,7 +52,7 @@ impl Mishaps {
                     set(mcu, now, DMA2_S0CR, control);
                 }
                 Mishap::Garbage(bytes) => {
-                    if let Some(line) = mcu.usart[USART2].chip_mut::<Line>() {
+                    if let Some(line) = mcu.chip.usart[USART2].chip_mut::<Line>() {
                         line.down.extend(bytes);
                     }
                 }
@@ -64,13 +64,13 @@ impl Mishaps {
 }
 
 /// Switches the converter's stream off; gives its configuration before.
-fn stop_stream(mcu: &mut Stm32f427, now: VirtualNanos) -> u64 {
+fn stop_stream(mcu: &mut Part, now: VirtualNanos) -> u64 {
     let control = mcu.peek(now, DMA2_S0CR, Width::W32).unwrap_or(0);
     set(mcu, now, DMA2_S0CR, control & !1);
     control
 }
 
-fn set(mcu: &mut Stm32f427, now: VirtualNanos, address: u64, value: u64) {
+fn set(mcu: &mut Part, now: VirtualNanos, address: u64, value: u64) {
     let written = mcu.write(now, address, Width::W32, value);
     debug_assert!(written.is_ok(), "{address:#x} is a register of the chip");
 }

@@ -12,10 +12,11 @@ use rigless::machine::{Board, Target};
 use rigless::mcu::{Mcu, Operate};
 use rigless::snapshot::Store;
 use rigless::soc::Error;
-use rigless::soc::stm32f427::Stm32f427;
 use tenax_hal_shim::channel::CODE_MAX;
 
+use super::Models;
 use super::flash::MemoryMap;
+use super::part::Part;
 
 /// The ST-LINK's clock on OSC_IN, Hz.
 const HSE_HZ: u64 = 8_000_000;
@@ -34,21 +35,21 @@ pub const USART2: usize = 1;
 #[derive(Debug)]
 pub struct Nucleo {
     /// The chip.
-    pub mcu: Stm32f427,
+    pub mcu: Part,
     memory: MemoryMap,
     instructions_per_second: NonZeroU64,
 }
 
 impl Nucleo {
     /// The board out of its box, its serial line in the hands of `line`.
-    pub fn new(instructions_per_second: NonZeroU64, line: impl Peer) -> Result<Self, Error> {
-        let mut mcu = Stm32f427::new()?;
+    pub fn new(models: Models, instructions_per_second: NonZeroU64, line: impl Peer) -> Result<Self, Error> {
+        let mut mcu = Part::new(models)?;
         let memory = MemoryMap::new(&mcu)?;
-        mcu.rcc.attach_crystals(HSE_HZ, 0);
-        mcu.set_supply(SUPPLY_MV);
+        mcu.chip.rcc.attach_crystals(HSE_HZ, 0);
+        mcu.chip.set_supply(SUPPLY_MV);
         // The model's word is `input * 4095 / reference`: with this reference, an input is a code and nothing is rounded.
-        mcu.adc[0].set_reference(u32::from(CODE_MAX));
-        mcu.usart[USART2].attach(line);
+        mcu.chip.adc[0].set_reference(u32::from(CODE_MAX));
+        mcu.chip.usart[USART2].attach(line);
         Ok(Self { mcu, memory, instructions_per_second })
     }
 }

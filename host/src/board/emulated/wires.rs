@@ -2,15 +2,12 @@
 
 use rigless::mcu::Operate;
 use rigless::soc::Width;
-use rigless::soc::stm32f427::Stm32f427;
-use rigless::soc::stm32f427::peripherals::adc::Channel;
 use rigless::time::VirtualNanos;
 use tenax_hal_shim::channel::SCAN;
 use tenax_hal_shim::frame::Scan;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 
-/// TIM3, in the order of the chip's general timers.
-const TIM3: usize = 1;
+use super::part::Part;
 
 const GPIOA_MODER: u64 = 0x4002_0000;
 const GPIOB_ODR: u64 = 0x4002_0414;
@@ -19,7 +16,6 @@ const TIM1_ARR: u64 = 0x4001_002C;
 const TIM1_CCR1: u64 = 0x4001_0034;
 const TIM1_CCR2: u64 = 0x4001_0038;
 const TIM1_BDTR: u64 = 0x4001_0044;
-const TIM3_CNT: u64 = 0x4000_0424;
 const ADC1_CR2: u64 = 0x4001_2008;
 
 const BDTR_MOE: u32 = 1 << 15;
@@ -29,31 +25,23 @@ const CR2_ADON: u32 = 1;
 const CR2_EXTSEL: u32 = 0xF << 24;
 const CR2_EXTSEL_TIM3_TRGO: u32 = 0x8 << 24;
 const CR2_EXTEN: u32 = 0x3 << 28;
-const CR2_SWSTART: u32 = 1 << 30;
 const MODER_ALTERNATE: u32 = 0b10;
 
 /// The chip at one instant.
 pub struct Wires<'a> {
-    mcu: &'a mut Stm32f427,
+    mcu: &'a mut Part,
     now: VirtualNanos,
 }
 
 impl<'a> Wires<'a> {
     /// The wires as they are at `now`, to which the chip has advanced.
-    pub fn new(mcu: &'a mut Stm32f427, now: VirtualNanos) -> Self {
+    pub fn new(mcu: &'a mut Part, now: VirtualNanos) -> Self {
         Self { mcu, now }
     }
 
     /// Reads a register as a debugger does. An unmapped address is a mistake in this file; it reads as reset.
     fn peek(&mut self, address: u64) -> u32 {
         self.mcu.peek(self.now, address, Width::W32).unwrap_or(0) as u32
-    }
-
-    /// How many pulses TIM3 has sent on its TRGO.
-    pub fn trigger_pulses(&mut self) -> u64 {
-        // The timer's model catches up on what is due when it is read.
-        let _ = self.mcu.read(self.now, TIM3_CNT, Width::W32);
-        self.mcu.tim[TIM3].trigger_output().1
     }
 
     /// What the select lines S0 to S3 show.
@@ -74,19 +62,17 @@ impl<'a> Wires<'a> {
 
     /// How one side is driven: its pin belongs to the timer, the timer's outputs are on, and its pulse is not empty.
     fn side(&mut self, pin: u32, compare: u64, enable: u32) -> Option<Duty> {
+        // Most of the time the pulse is empty, and one look is enough.
+        let compare = Some(self.peek(compare)).filter(|&compare| compare > 0)?;
         let alternate = self.peek(GPIOA_MODER) >> (2 * pin) & 0b11 == MODER_ALTERNATE;
         let on = self.peek(TIM1_BDTR) & BDTR_MOE != 0 && self.peek(TIM1_CCER) & enable != 0;
-        let (compare, period) = (self.peek(compare), self.peek(TIM1_ARR) + 1);
-        let per_mille = (compare * 1_000).div_ceil(period);
-        (alternate && on && compare > 0).then_some(Duty::per_mille(per_mille as u16))
+        let per_mille = (compare * 1_000).div_ceil(self.peek(TIM1_ARR) + 1);
+        (alternate && on).then_some(Duty::per_mille(per_mille as u16))
     }
 
     /// Puts codes on the converter's pins.
     pub fn put(&mut self, scan: &Scan) {
-        for (rank, &code) in SCAN.iter().zip(scan) {
-            let channel = Channel::new(rank.adc).expect("the channel map has pin channels");
-            self.mcu.adc[0].set_input(channel, u32::from(code));
-        }
+        self.mcu.put(self.now, SCAN.iter().zip(scan).map(|(rank, &code)| (rank.adc, code)));
     }
 
     /// Draws the one wire that the emulator leaves out: a pulse of TIM3's TRGO starts the converter's sequence if the
@@ -94,7 +80,10 @@ impl<'a> Wires<'a> {
     pub fn trigger(&mut self) -> bool {
         let cr2 = self.peek(ADC1_CR2);
         let listens = cr2 & CR2_ADON != 0 && cr2 & CR2_EXTEN != 0 && cr2 & CR2_EXTSEL == CR2_EXTSEL_TIM3_TRGO;
-        listens && self.mcu.write(self.now, ADC1_CR2, Width::W32, u64::from(cr2 | CR2_SWSTART)).is_ok()
+        if listens {
+            self.mcu.trigger(self.now);
+        }
+        listens
     }
 }
 

@@ -139,7 +139,7 @@ impl<P: Plant> World<P> {
             wires.trigger();
         }
         let scan = self.scanned;
-        if let Some(line) = session.board_mut().mcu.usart[USART2].chip_mut::<Line>() {
+        if let Some(line) = session.board_mut().mcu.chip.usart[USART2].chip_mut::<Line>() {
             for command in self.plant.commands() {
                 let mut buffer = [0; FRAME_MAX];
                 line.down.extend(
@@ -160,7 +160,7 @@ impl<P: Plant> World<P> {
 
     /// Hands on what happened since the last report.
     fn report(&mut self, session: &mut Session<Nucleo>) {
-        if let Some(line) = session.board_mut().mcu.usart[USART2].chip_mut::<Line>() {
+        if let Some(line) = session.board_mut().mcu.chip.usart[USART2].chip_mut::<Line>() {
             self.stretch.line = std::mem::take(&mut line.up);
         }
         if let Some(reports) = &self.reports {
@@ -204,7 +204,7 @@ impl<P: Plant> Driver<Nucleo> for World<P> {
             // A reset ends a hang.
             host.hold(false);
         }
-        let pulses = Wires::new(&mut session.board_mut().mcu, stop.at).trigger_pulses();
+        let pulses = session.board_mut().mcu.trigger_pulses(stop.at);
         let pulse = pulses > self.pulses;
         self.pulses = pulses;
         let due = self.stepped_at.is_some_and(|at| stop.at.0 >= at.0 + SCAN_NS);

@@ -1,0 +1,162 @@
+//! The chip: `rigless`'s peripherals, less what costs and is never seen.
+
+use rigless::device::{ErasedDevice, ResetCause};
+use rigless::mcu::{Mcu, Operate};
+use rigless::soc::stm32f427::Stm32f427;
+use rigless::soc::stm32f427::peripherals::adc::Channel;
+use rigless::soc::{Bus, Error, Width};
+use rigless::time::VirtualNanos;
+
+use super::Models;
+use super::nucleo::USART2;
+use super::scan_path::{Asked, ScanPath};
+use super::unwatched::UnwatchedTimer;
+
+const ADC1_CR2: u64 = 0x4001_2008;
+const CR2_SWSTART: u64 = 1 << 30;
+const TIM3_CNT: u64 = 0x4000_0424;
+/// TIM3, in the order of the chip's general timers.
+const TIM3: usize = 1;
+
+/// The motor bridge's timer. Its registers are read and nobody needs its 20 800 edges a second.
+pub const BRIDGE: &str = "TIM1";
+/// Nothing is wired to them, the image does not use them, and each would be told of every request of DMA.
+pub const LEFT_OUT: [&str; 7] = ["SPI1", "SPI2", "SPI3", "SPI4", "SPI5", "SPI6", "TIM8"];
+
+/// An STM32F427, whose peripherals contain the F411's.
+#[derive(Debug)]
+pub struct Part {
+    /// `rigless`'s own models.
+    pub chip: Stm32f427,
+    own: Option<Own>,
+}
+
+/// What takes the place of some of them.
+#[derive(Debug)]
+struct Own {
+    scan: ScanPath,
+    timer: UnwatchedTimer,
+    controller: usize,
+    answers: Box<[Answers]>,
+}
+
+/// Who answers for a slot of the bus.
+#[derive(Clone, Copy, Debug)]
+enum Answers {
+    Chip,
+    Scan(Asked),
+    ScanTimer,
+    /// The registers hold what is written to them, and nothing happens.
+    RegistersAlone,
+}
+
+impl Own {
+    fn new(bus: &Bus) -> Result<Self, Error> {
+        let mut answers = vec![Answers::Chip; bus.slots().len()].into_boxed_slice();
+        let controller = bus.slot("DMA2")?;
+        answers[controller] = Answers::Scan(Asked::Controller);
+        answers[bus.slot("ADC1")?] = Answers::Scan(Asked::Converter);
+        answers[bus.slot("TIM3")?] = Answers::ScanTimer;
+        for name in LEFT_OUT.into_iter().chain([BRIDGE]) {
+            answers[bus.slot(name)?] = Answers::RegistersAlone;
+        }
+        Ok(Self { scan: ScanPath::new(), timer: UnwatchedTimer::new(TIM3)?, controller, answers })
+    }
+}
+
+impl Part {
+    /// A chip out of reset.
+    pub fn new(models: Models) -> Result<Self, Error> {
+        let chip = Stm32f427::new()?;
+        let own = match models {
+            Models::Quick => Some(Own::new(chip.bus())?),
+            Models::Rigless => None,
+        };
+        Ok(Self { chip, own })
+    }
+
+    /// Puts codes on pins of the converter, from now on.
+    pub fn put(&mut self, now: VirtualNanos, codes: impl IntoIterator<Item = (u8, u16)>) {
+        let Self { chip, own } = self;
+        match own {
+            Some(own) => {
+                let (_, mut context) = chip.bus_mut().drive(now, own.controller);
+                own.scan.put(codes, &mut context);
+            }
+            None => {
+                for (channel, code) in codes {
+                    let channel = Channel::new(channel).expect("the channel map has pin channels");
+                    chip.adc[0].set_input(channel, u32::from(code));
+                }
+            }
+        }
+    }
+
+    /// How many pulses the scan's timer, TIM3, has sent on its TRGO.
+    pub fn trigger_pulses(&mut self, now: VirtualNanos) -> u64 {
+        match &mut self.own {
+            Some(own) => own.timer.trigger_pulses(now),
+            None => {
+                // The timer's model catches up on what is due when it is read.
+                let _ = self.chip.read(now, TIM3_CNT, Width::W32);
+                self.chip.tim[TIM3].trigger_output().1
+            }
+        }
+    }
+
+    /// A trigger that the converter listens to arrives.
+    pub fn trigger(&mut self, now: VirtualNanos) {
+        let Self { chip, own } = self;
+        match own {
+            Some(own) => {
+                let (registers, mut context) = chip.bus_mut().drive(now, own.controller);
+                own.scan.trigger(registers, &mut context);
+            }
+            None => {
+                let started = chip
+                    .peek(now, ADC1_CR2, Width::W32)
+                    .and_then(|cr2| chip.write(now, ADC1_CR2, Width::W32, cr2 | CR2_SWSTART));
+                debug_assert!(started.is_ok(), "{ADC1_CR2:#x} is a register of the chip");
+            }
+        }
+    }
+}
+
+impl Mcu for Part {
+    fn bus(&self) -> &Bus {
+        self.chip.bus()
+    }
+
+    fn bus_mut(&mut self) -> &mut Bus {
+        self.chip.bus_mut()
+    }
+
+    fn reset(&mut self, at: VirtualNanos, cause: ResetCause) {
+        self.chip.reset(at, cause);
+        if let Some(own) = &mut self.own {
+            own.scan.restarted();
+            own.timer.restarted();
+        }
+    }
+
+    /// Only the serial line has a far end.
+    fn poll(&mut self, now: VirtualNanos) {
+        self.chip.drive_serial_port(now, USART2, |usart, registers, context| {
+            ErasedDevice::poll(usart, registers, context);
+        });
+    }
+
+    fn split(&mut self, slot: usize) -> (&mut Bus, Option<&mut dyn ErasedDevice>) {
+        let Self { chip, own } = self;
+        let Some(own) = own else {
+            return chip.split(slot);
+        };
+        // A window that is added has a slot past the chip's own.
+        match own.answers.get(slot).copied().unwrap_or(Answers::Chip) {
+            Answers::Chip => chip.split(slot),
+            Answers::Scan(asked) => (chip.bus_mut(), Some(own.scan.of(asked))),
+            Answers::ScanTimer => (chip.bus_mut(), Some(&mut own.timer)),
+            Answers::RegistersAlone => (chip.bus_mut(), None),
+        }
+    }
+}

@@ -1,0 +1,251 @@
+//! The DMA stream that carries the converter's codes into a ring: stream 0 of DMA2 (RM0383, chapter 9).
+
+use rigless::device::{DeviceContext, Level, RegisterFile};
+use rigless::soc::Width;
+use rigless::soc::stm32f427::generated::dma2::{Register, lisr, s0cr, s0fcr, s0ndtr};
+
+/// Where the converter's code is fetched: ADC1's DR.
+const ADC1_DR: u64 = 0x4001_204C;
+/// The chip's RAM: what is carried to anywhere else may be refused.
+const RAM: std::ops::Range<u64> = 0x2000_0000..0x2002_0000;
+/// Bytes of a code.
+const CODE_BYTES: u64 = 2;
+/// The registers of stream 0, in the order of their addresses, and the first one of stream 1.
+const FIRST_ROW: usize = Register::S0cr as usize;
+const PAST_ROW: usize = Register::S1cr as usize;
+/// Registers of one stream.
+const ROWS: usize = PAST_ROW - FIRST_ROW;
+/// What may be written while the stream is on (RM0383, sections 9.5.5 and 9.5.10).
+const OPEN_CR: u64 =
+    s0cr::EN.mask() | s0cr::DMEIE.mask() | s0cr::TEIE.mask() | s0cr::HTIE.mask() | s0cr::TCIE.mask();
+const OPEN_FCR: u64 = s0fcr::FEIE.mask();
+/// Its interrupt line, of the controller's eight.
+const LINE: usize = 0;
+
+/// The stream, and the ring that it fills.
+#[derive(Debug)]
+pub struct Stream {
+    ring: Option<Ring>,
+    programmed: u64,
+    /// What the registers held after the last access.
+    kept: [u64; ROWS],
+    flags: u64,
+    interrupt: Level,
+    /// Rings begun so far: what comes back of an earlier one is not this one's.
+    begun: u64,
+    /// Codes taken and not yet put into memory, which follow one another there.
+    taken: Vec<u16>,
+    taken_at: u64,
+}
+
+/// A ring being filled.
+#[derive(Clone, Copy, Debug)]
+struct Ring {
+    begins: u64,
+    length: u64,
+    left: u64,
+}
+
+impl Ring {
+    /// Codes up to the next flag.
+    fn to_flag(self) -> u64 {
+        let filled = self.length - self.left;
+        let half = self.length.div_ceil(2);
+        if filled < half { half - filled } else { self.left }
+    }
+
+    /// Whether nothing can go wrong with it.
+    fn is_in_memory(self) -> bool {
+        RAM.contains(&self.begins) && self.begins + CODE_BYTES * self.length <= RAM.end
+    }
+}
+
+impl Stream {
+    /// One out of reset.
+    pub fn new() -> Self {
+        Self {
+            ring: None,
+            programmed: 0,
+            kept: [0; ROWS],
+            flags: 0,
+            interrupt: Level::Low,
+            begun: 0,
+            taken: Vec::new(),
+            taken_at: 0,
+        }
+    }
+
+    /// As a reset leaves it.
+    pub fn reset(&mut self) {
+        *self = Self { begun: self.begun, ..Self::new() };
+    }
+
+    /// What a read of a register gives that the register file may not hold yet.
+    pub fn shows(&self, row: usize) -> Option<u64> {
+        match row {
+            _ if row == Register::Lisr as usize => Some(self.flags),
+            _ if row == Register::S0ndtr as usize => self.ring.map(|ring| ring.left),
+            _ => None,
+        }
+    }
+
+    /// How many codes it takes before something is to be seen of it from outside, at least one. None while it is off.
+    pub fn patience(&self) -> Option<u64> {
+        self.ring.map(|ring| if ring.is_in_memory() { ring.to_flag().max(1) } else { 1 })
+    }
+
+    /// Takes a code if it is on.
+    pub fn take(&mut self, code: impl FnOnce() -> u16, context: &mut DeviceContext<'_>) {
+        let Some(ring) = self.ring.as_mut().filter(|ring| ring.left > 0) else {
+            return;
+        };
+        if self.taken.is_empty() {
+            self.taken_at = ring.begins + CODE_BYTES * (ring.length - ring.left);
+        }
+        self.taken.push(code());
+        if ring.to_flag() == 1 {
+            let whole = ring.left == 1;
+            self.flags |= if whole { lisr::TCIF0.mask() } else { lisr::HTIF0.mask() };
+            // A ring of one code has its half and its whole at once.
+            if ring.length == 1 {
+                self.flags |= lisr::HTIF0.mask();
+            }
+        }
+        ring.left -= 1;
+        if ring.left == 0 {
+            ring.left = ring.length;
+            self.put(context);
+        }
+    }
+
+    /// Puts what was taken into memory, in as few accesses as it can.
+    pub fn put(&mut self, context: &mut DeviceContext<'_>) {
+        let mut codes = self.taken.as_slice();
+        while !codes.is_empty() {
+            let (width, count) = match codes.len() {
+                4.. => (Width::W64, 4),
+                2.. => (Width::W32, 2),
+                _ => (Width::W16, 1),
+            };
+            let (now, later) = codes.split_at(count);
+            let value = now.iter().rev().fold(0, |value, &code| value << 16 | u64::from(code));
+            context.write_to(self.taken_at, width, value, self.begun);
+            self.taken_at += u64::from(width.bytes());
+            codes = later;
+        }
+        self.taken.clear();
+    }
+
+    /// Memory refused what was put there: a transfer error, which switches the stream off.
+    pub fn refused(&mut self, token: u64, registers: &mut RegisterFile, context: &mut DeviceContext<'_>) {
+        if token == self.begun && self.ring.is_some() {
+            self.flags |= lisr::TEIF0.mask();
+            self.switch_off(registers);
+            self.settle(registers, context);
+        }
+    }
+
+    /// The core has written a register of the controller. The flags up to now must be known.
+    ///
+    /// # Panics
+    /// If it asks for what this model does not know.
+    pub fn written(
+        &mut self,
+        row: usize,
+        written: u64,
+        registers: &mut RegisterFile,
+        context: &mut DeviceContext<'_>,
+    ) {
+        let on = self.ring.is_some();
+        match row {
+            _ if row == Register::Lifcr as usize => {
+                self.flags &= !written;
+                registers.set(Register::Lifcr, 0);
+            }
+            _ if row == Register::Hifcr as usize => registers.set(Register::Hifcr, 0),
+            _ if row == Register::S0cr as usize => {
+                if on {
+                    registers.restore(Register::S0cr, !OPEN_CR, self.kept[0]);
+                }
+                match (on, s0cr::EN.is_set(registers.get(Register::S0cr))) {
+                    (false, true) => self.switch_on(registers),
+                    (true, false) => {
+                        // What is switched off has ended (RM0383, section 9.3.14).
+                        self.flags |= lisr::TCIF0.mask();
+                        self.switch_off(registers);
+                    }
+                    _ => {}
+                }
+            }
+            _ if row == Register::S0fcr as usize && on => {
+                registers.restore(Register::S0fcr, !OPEN_FCR, self.kept[row - FIRST_ROW]);
+            }
+            _ if (FIRST_ROW..PAST_ROW).contains(&row) && on => {
+                let register = Register::ALL[row];
+                registers.set(register, self.kept[row - FIRST_ROW]);
+            }
+            _ if row == Register::S0ndtr as usize => {
+                self.programmed = s0ndtr::NDT.get(registers.get(Register::S0ndtr));
+            }
+            _ if row >= PAST_ROW => {
+                let control = (row - FIRST_ROW).is_multiple_of(ROWS);
+                assert!(!control || written & s0cr::EN.mask() == 0, "DMA2 carries the scan and nothing else");
+            }
+            _ => {}
+        }
+        self.settle(registers, context);
+    }
+
+    /// Drives the interrupt line by the flags, and keeps what the registers hold.
+    pub fn settle(&mut self, registers: &mut RegisterFile, context: &mut DeviceContext<'_>) {
+        if let Some(ring) = self.ring {
+            registers.set(Register::S0ndtr, ring.left);
+        }
+        registers.set(Register::Lisr, self.flags);
+        for (kept, &register) in self.kept.iter_mut().zip(&Register::ALL[FIRST_ROW..PAST_ROW]) {
+            *kept = registers.get(register);
+        }
+        let enabled = |enable: u64, flag: u64| self.kept[0] & enable != 0 && self.flags & flag != 0;
+        let level = Level::from(
+            enabled(s0cr::TEIE.mask(), lisr::TEIF0.mask())
+                || enabled(s0cr::HTIE.mask(), lisr::HTIF0.mask())
+                || enabled(s0cr::TCIE.mask(), lisr::TCIF0.mask()),
+        );
+        if level != self.interrupt {
+            self.interrupt = level;
+            context.interrupt(LINE, level);
+        }
+    }
+
+    fn switch_on(&mut self, registers: &mut RegisterFile) {
+        // Direct mode forces the memory's side to the peripheral's (RM0383, section 9.5.5).
+        let control = registers.get(Register::S0cr);
+        let control = s0cr::MSIZE.set(control, s0cr::PSIZE.get(control));
+        let control = s0cr::PINCOS.set(s0cr::PBURST.set(s0cr::MBURST.set(control, 0), 0), 0);
+        registers.set(Register::S0cr, control);
+        let [from_peripheral, half_words, adc1] =
+            [s0cr::DIR.get(control), s0cr::PSIZE.get(control), s0cr::CHSEL.get(control)];
+        assert!(
+            (from_peripheral, half_words, adc1) == (0, 1, 0)
+                && s0cr::CIRC.is_set(control)
+                && s0cr::MINC.is_set(control)
+                && control & (s0cr::PINC.mask() | s0cr::DBM.mask() | s0cr::PFCTRL.mask()) == 0
+                && !s0fcr::DMDIS.is_set(registers.get(Register::S0fcr))
+                && registers.get(Register::S0par) == ADC1_DR,
+            "the scan's DMA carries ADC1's codes into a ring and nothing else: {control:#x}"
+        );
+        self.begun += 1;
+        self.ring = Some(Ring {
+            begins: registers.get(Register::S0m0ar),
+            length: self.programmed,
+            left: self.programmed,
+        });
+    }
+
+    fn switch_off(&mut self, registers: &mut RegisterFile) {
+        if let Some(ring) = self.ring.take() {
+            registers.set(Register::S0ndtr, ring.left);
+        }
+        registers.set(Register::S0cr, registers.get(Register::S0cr) & !s0cr::EN.mask());
+    }
+}

@@ -1,0 +1,57 @@
+//! The quick models of the chip, which take a scan at once, do what an event for each conversion and edge does.
+
+use std::sync::mpsc;
+
+use tenax::board::Run;
+use tenax::board::emulated::{Mishap, Models, Options, Tick};
+use tenax_hal_shim::motor::{Duty, MotorDrive};
+use tenax_hal_shim::wire::Down;
+use tenax_hal_shim::words::{Code, Fault};
+
+use crate::{Swing, run};
+
+/// All that can happen to a scan: overruns, a ring that DMA cannot reach, a core that stands still while flash programs,
+/// resets in the middle of one, commands that shift the ticks.
+fn eventful(models: Models) -> (Run, Vec<Tick>) {
+    let mut plant = Swing::new(1.9);
+    for n in 0..40 {
+        let at_s = 0.1 + f64::from(n) * 0.04;
+        let drive = MotorDrive::Open(Duty::per_mille(100 + n));
+        plant = plant.sending(at_s, Down::Drive { drive, hold_ms: 10 });
+        plant = plant.sending(at_s + 0.013, Down::Teach { codes: [Code::Minus, Code::Plus], age_ms: 40 });
+    }
+    plant = plant.sending(0.25, Down::Save).sending(1.6, Down::Network);
+    let mishaps = vec![
+        (0.45, Mishap::DmaStalls),
+        (0.601_375, Mishap::DmaStalls),
+        (0.7, Mishap::Garbage((0..200u8).collect())),
+        (0.85, Mishap::DmaFails),
+        (1.3, Mishap::CoreHangs),
+    ];
+    let (ticks, heard) = mpsc::channel();
+    let options = Options { mishaps, models, ticks: Some(ticks), ..Options::default() };
+    let run = run(plant, &options);
+    drop(options);
+    (run, heard.iter().collect())
+}
+
+#[test]
+fn a_scan_at_once_is_a_scan_code_by_code() {
+    let (quick, quick_ticks) = eventful(Models::Quick);
+    let (each, each_ticks) = eventful(Models::Rigless);
+    // It was eventful.
+    assert_eq!(quick.starts, [None, Some(Fault::PanicReset), Some(Fault::WatchdogReset)]);
+    assert!(quick.slows.len() > 100 && quick.flash.words > 70 && quick_ticks.len() > 3_000);
+
+    // Every tick began at the same instant, after the same number of instructions.
+    let apart = quick_ticks.iter().zip(&each_ticks).position(|(quick, each)| quick != each);
+    let apart = apart.map(|tick| (tick, quick_ticks[tick], each_ticks[tick]));
+    assert_eq!((apart, quick_ticks.len()), (None, each_ticks.len()));
+    assert_eq!(quick.tick_cost, each.tick_cost);
+    // The world saw the same, and byte for byte the same came up the line.
+    assert!(quick.scans == each.scans && quick.drives == each.drives && quick.line == each.line);
+    assert_eq!((&quick.slows, &quick.events), (&each.slows, &each.events));
+    assert_eq!((&quick.taken, &quick.acks, &quick.saved), (&each.taken, &each.acks, &each.saved));
+    assert_eq!((&quick.networks, &quick.starts, quick.flash), (&each.networks, &each.starts, each.flash));
+    assert_eq!((quick.counters, quick.stack_bytes), (each.counters, each.stack_bytes));
+}
