@@ -8,7 +8,7 @@ use tenax_hal_shim::wire::{
     Answer, BadFrame, Counters, DETECTORS_MAX, Down, FRAME_MAX, NetworkState, Receiver, SETTINGS_PER_ANSWER,
     Setting, Slow, TickRecord, Up, encode,
 };
-use tenax_hal_shim::words::{Code, DriveSource, GripMode, NoLesson};
+use tenax_hal_shim::words::{Code, DriveSource, GripMode, Line, NoLesson};
 
 fn down() -> impl Strategy<Value = Down> {
     prop_oneof![
@@ -139,6 +139,7 @@ fn the_longest_message_fits_a_frame() {
         lesson: Some([Code::Minus; 2]),
         evidence: [(DetectorId::Injected, longest_evidence); DETECTORS_MAX].into_iter().collect(),
         samples_sum: u32::MAX,
+        line: Line::Armed { left_s: u8::MAX },
     };
     let mut buffer = [0; FRAME_MAX];
     let length = encode(u16::MAX, &Up::Slow(slow), &mut buffer).unwrap().len();

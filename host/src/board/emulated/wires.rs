@@ -13,6 +13,7 @@ use tenax_hal_shim::motor::{Duty, MotorDrive};
 const TIM3: usize = 1;
 
 const GPIOA_MODER: u64 = 0x4002_0000;
+const GPIOC_PUPDR: u64 = 0x4002_080C;
 const GPIOB_ODR: u64 = 0x4002_0414;
 const TIM1_CCER: u64 = 0x4001_0020;
 const TIM1_ARR: u64 = 0x4001_002C;
@@ -30,6 +31,8 @@ const CR2_EXTSEL: u32 = 0xF << 24;
 const CR2_EXTSEL_TIM3_TRGO: u32 = 0x8 << 24;
 const CR2_EXTEN: u32 = 0x3 << 28;
 const CR2_SWSTART: u32 = 1 << 30;
+const PULL_UP: u32 = 0b01;
+const PULL_DOWN: u32 = 0b10;
 const MODER_ALTERNATE: u32 = 0b10;
 
 /// The chip at one instant.
@@ -86,6 +89,16 @@ impl<'a> Wires<'a> {
         for (rank, &code) in SCAN.iter().zip(scan) {
             let channel = Channel::new(rank.adc).expect("the channel map has pin channels");
             self.mcu.adc[0].set_input(channel, u32::from(code));
+        }
+    }
+
+    /// Presses or releases the button on PC13. The model lets a peripheral's owner drive a pin and nobody else, but a pin
+    /// that nothing drives reads its pull: the button is one.
+    pub fn button(&mut self, is_down: bool) {
+        let pulls = self.peek(GPIOC_PUPDR) & !(0b11 << 26) | if is_down { PULL_DOWN } else { PULL_UP } << 26;
+        if pulls != self.peek(GPIOC_PUPDR) {
+            // Before the image has clocked the port nothing reads it either.
+            let _ = self.mcu.write(self.now, GPIOC_PUPDR, Width::W32, u64::from(pulls));
         }
     }
 
