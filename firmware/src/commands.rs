@@ -1,7 +1,9 @@
-//! The commands task: bytes come down the serial line, commands go to control. Anything else is counted and skipped.
+//! The commands task: bytes come down the serial line, commands go to control. Anything else is counted and skipped, and so
+//! is what comes faster than an [`Allowance`], before its CRC is looked at.
 
 use embassy_stm32::usart::RingBufferedUartRx;
-use tenax_hal_shim::wire::{Down, Receiver};
+use tenax_hal_shim::wire::{BadFrame, Down, Receiver};
+use tenax_logic::allowance::Allowance;
 
 use crate::{counts, mail};
 
@@ -12,6 +14,7 @@ pub const RING_LEN: usize = 1024;
 #[embassy_executor::task]
 pub async fn commands(mut line: RingBufferedUartRx<'static>) -> ! {
     let mut receiver = Receiver::new();
+    let mut allowance = Allowance::default();
     let mut bytes = [0; 64];
     loop {
         // After an error of the line the next read starts it anew; the frame it fell into fails its CRC.
@@ -20,9 +23,11 @@ pub async fn commands(mut line: RingBufferedUartRx<'static>) -> ! {
             continue;
         };
         for &byte in &bytes[..count] {
-            match receiver.push::<Down>(byte) {
+            match receiver.push_if::<Down>(byte, || allowance.admits(counts::last_frame())) {
                 None => {}
-                Some(Ok(command)) => mail::hand_over(command).await,
+                // Never waits: while it did, bytes that came would be lost in the middle of a frame.
+                Some(Ok(command)) if allowance.affords(&command.message) && mail::hand_over(command) => {}
+                Some(Ok(_) | Err(BadFrame::Skipped)) => counts::COMMANDS_SKIPPED.add_one(),
                 Some(Err(_)) => counts::BAD_FRAMES.add_one(),
             }
         }

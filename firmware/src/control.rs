@@ -6,11 +6,12 @@ use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::{MotorBridge, MotorDrive};
 use tenax_hal_shim::schedule::{Job, select_of_slot, slot_of};
-use tenax_hal_shim::wire::{Down, Refusal};
+use tenax_hal_shim::wire::{Down, Received, Refusal};
 use tenax_logic::device::Device;
 use tenax_logic::fingertip::Fingertip;
 
 use crate::bridge::Bridge;
+use crate::button::Button;
 use crate::counts;
 use crate::mail;
 use crate::scan::Scan;
@@ -18,21 +19,25 @@ use crate::switches::Switches;
 
 /// The watchdog's period, us. Control feeds it 200 times in one; nobody else does.
 pub const WATCHDOG_US: u32 = 100_000;
-/// Commands taken in one tick, so that a flood of them cannot make it late.
-const COMMANDS_PER_TICK: usize = 2;
 
 /// What a tick works with.
 pub struct Control {
     device: Device,
     bridge: Bridge,
     switches: Switches,
+    button: Button,
     watchdog: IndependentWatchdog<'static, IWDG>,
 }
 
 impl Control {
     /// A hand at rest.
-    pub fn new(bridge: Bridge, switches: Switches, watchdog: IndependentWatchdog<'static, IWDG>) -> Self {
-        Self { device: Device::default(), bridge, switches, watchdog }
+    pub fn new(
+        bridge: Bridge,
+        switches: Switches,
+        button: Button,
+        watchdog: IndependentWatchdog<'static, IWDG>,
+    ) -> Self {
+        Self { device: Device::default(), bridge, switches, button, watchdog }
     }
 
     /// Lets the device take up what was kept, before the first tick.
@@ -45,7 +50,8 @@ impl Control {
         let next = frame.sequence.wrapping_add(1);
         self.switches.show(select_of_slot((next % u32::from(FRAMES_PER_SLOW_FRAME)) as u8));
 
-        self.take_commands();
+        self.device.button(self.button.is_down());
+        self.take_command();
         let drive = tenax_control_tick(self.device.fingertip_mut(), frame);
         self.bridge.drive(drive);
         self.watchdog.pet();
@@ -72,9 +78,10 @@ impl Control {
         }
     }
 
-    fn take_commands(&mut self) {
-        for command in core::iter::from_fn(mail::next_command).take(COMMANDS_PER_TICK) {
-            let done = tenax_control_command(self.device.fingertip_mut(), &command.message);
+    fn take_command(&mut self) {
+        // One in a tick: how long it takes is bounded, and its answer leaves the line to telemetry.
+        if let Some(command) = mail::next_command() {
+            let done = tenax_control_command(&mut self.device, &command);
             mail::post(self.device.answer(&command, done));
         }
     }
@@ -91,8 +98,8 @@ fn tenax_control_tick(fingertip: &mut Fingertip, frame: &Frame) -> MotorDrive {
 /// name before which tick that was: a replay gives it to the host's logic there.
 #[inline(never)]
 #[unsafe(no_mangle)]
-fn tenax_control_command(fingertip: &mut Fingertip, command: &Down) -> Result<(), Refusal> {
-    fingertip.command(command)
+fn tenax_control_command(device: &mut Device, command: &Received<Down>) -> Result<(), Refusal> {
+    device.carry_out(command)
 }
 
 /// Runs control from frame to frame, for ever.

@@ -42,6 +42,9 @@ pub static TELEMETRY_DROPPED: Count = Count::new();
 /// Frames received that were no message, and errors of the line itself.
 pub static BAD_FRAMES: Count = Count::new();
 
+/// Frames received that there was no time for.
+pub static COMMANDS_SKIPPED: Count = Count::new();
+
 /// Sequence number of the last frame that had its tick.
 pub fn last_frame() -> u32 {
     TICKS.get().wrapping_sub(1)
@@ -57,5 +60,6 @@ pub fn counters() -> Counters {
         ticks_late: TICKS_LATE.get(),
         telemetry_dropped: TELEMETRY_DROPPED.get(),
         bad_frames: BAD_FRAMES.get(),
+        commands_skipped: COMMANDS_SKIPPED.get(),
     }
 }

@@ -21,20 +21,30 @@ const PANICKED: u32 = 0x7E4A_C0DE;
 #[unsafe(link_section = ".uninit.mark")]
 static mut MARK: MaybeUninit<u32> = MaybeUninit::uninit();
 
-/// Why the last run ended, if not by switching off. Asked once, before anything else is set up: it forgets the answer.
-pub fn of_last_run() -> Option<Fault> {
+/// How this run began.
+pub struct Start {
+    /// Why the last run ended, if not by switching off.
+    pub after: Option<Fault>,
+    /// Somebody switched the power on.
+    pub switched_on: bool,
+}
+
+/// How this run began. Asked once, before anything else is set up: it forgets the answer.
+pub fn start() -> Start {
     let csr = pac::RCC.csr().read();
     pac::RCC.csr().modify(|w| w.set_rmvf(true));
     // SAFETY: nothing runs yet that could write the mark at the same time, and any bits are a u32.
     let mark = unsafe { addr_of!(MARK).cast::<u32>().read_volatile() };
     set_mark(0);
-    if csr.porrstf() {
+    let switched_on = csr.porrstf();
+    let after = if switched_on {
         None
     } else if csr.wdgrstf() {
         Some(Fault::WatchdogReset)
     } else {
         (csr.sftrstf() && mark == PANICKED).then_some(Fault::PanicReset)
-    }
+    };
+    Start { after, switched_on }
 }
 
 fn set_mark(mark: u32) {

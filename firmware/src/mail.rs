@@ -6,6 +6,7 @@ use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::channel::Channel;
 use embassy_sync::signal::Signal;
 use tenax_hal_shim::wire::{Down, Received, Up};
+use tenax_logic::allowance::BURST;
 use tenax_logic::store::record::Record;
 
 use crate::counts;
@@ -16,7 +17,7 @@ static UP: Channel<CriticalSectionRawMutex, Received<Up>, 16> = Channel::new();
 /// Number of the next message.
 static NUMBER: AtomicU16 = AtomicU16::new(0);
 /// Commands on their way to control.
-static DOWN: Channel<CriticalSectionRawMutex, Received<Down>, 8> = Channel::new();
+static DOWN: Channel<CriticalSectionRawMutex, Received<Down>, { BURST as usize }> = Channel::new();
 /// A record on its way to flash.
 static RECORD: Channel<CriticalSectionRawMutex, Record, 1> = Channel::new();
 /// Control has just ended a tick; signalled only while the store waits for one.
@@ -37,9 +38,10 @@ pub async fn next_message() -> Received<Up> {
     UP.receive().await
 }
 
-/// Hands a command to control; waits while control has not taken the ones before.
-pub async fn hand_over(command: Received<Down>) {
-    DOWN.send(command).await;
+/// Hands a command to control. Never waits: false if control has not taken the ones before, and no more than are earned
+/// at once fit anyway.
+pub fn hand_over(command: Received<Down>) -> bool {
+    DOWN.try_send(command).is_ok()
 }
 
 /// The oldest command that control has not taken. Never waits.

@@ -18,6 +18,7 @@
 #![no_main]
 
 mod bridge;
+mod button;
 mod clock;
 mod commands;
 mod control;
@@ -43,6 +44,7 @@ use embassy_stm32::{bind_interrupts, dma, peripherals};
 use static_cell::{ConstStaticCell, StaticCell};
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::wire::{BAUD, Up};
+use tenax_logic::device::Device;
 
 bind_interrupts!(struct Irqs {
     DMA2_STREAM0 => halves::OnHalf;
@@ -71,7 +73,7 @@ static CONTROL: StaticCell<control::Control> = StaticCell::new();
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
-    let after = last_words::of_last_run();
+    let last_words::Start { after, switched_on } = last_words::start();
     let mut config = clock::config();
     config.dma_interrupt_priority = Priority::P6;
     let p = embassy_stm32::init(config);
@@ -106,6 +108,7 @@ async fn main(spawner: Spawner) {
     let deadline = deadline::Deadline::new(p.TIM2);
     let scan = scan::Scan::new(p.ADC1, p.TIM3, p.DMA2_CH0, SCAN_RING.take(), deadline, pins);
     let switches = switches::Switches::new(p.PB12, p.PB13, p.PB14, p.PB15);
+    let button = button::Button::new(p.PC13);
     let watchdog = IndependentWatchdog::new(p.IWDG, control::WATCHDOG_US);
 
     let mut line = usart::Config::default();
@@ -119,8 +122,11 @@ async fn main(spawner: Spawner) {
     spawner.spawn(telemetry::telemetry(up).expect("one telemetry task"));
     spawner
         .spawn(commands::commands(down.into_ring_buffered(COMMAND_RING.take())).expect("one commands task"));
-    let control = CONTROL.init_with(|| control::Control::new(bridge, switches, watchdog));
+    let control = CONTROL.init_with(|| control::Control::new(bridge, switches, button, watchdog));
     control.restore(|device| store::restore(device, &flash, &found));
+    if !switched_on {
+        control.restore(Device::was_reset);
+    }
     spawner.spawn(store::store(flash, log).expect("one store task"));
     let urgent = URGENT.start(interrupt::SPI5);
     urgent.spawn(control::control(scan, control).expect("one control task"));

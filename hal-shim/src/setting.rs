@@ -81,7 +81,7 @@ macro_rules! settings {
 
 settings! {
     /// S1: vibration envelope of a PVDF channel that means slip
-    1 S1 "s1-mv" "mV" [20, 600, trusted 1_500] = 100;
+    1 S1 "s1-mv" "mV" [20, 250, trusted 1_500] = 100;
     /// S2: Ft/Fn that means incipient slip, until a stroke measures it
     2 S2 "s2-permille" "per mille" [150, 900, trusted 1_500] = 300;
     /// EMG envelope above rest from which a muscle is active

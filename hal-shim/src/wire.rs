@@ -131,6 +131,8 @@ pub struct Counters {
     pub telemetry_dropped: u32,
     /// Frames received that were no valid message.
     pub bad_frames: u32,
+    /// Frames received faster than commands are taken: not looked at, not answered.
+    pub commands_skipped: u32,
 }
 
 /// Something that happened once.
@@ -353,6 +355,8 @@ pub enum BadFrame {
     Version(u8),
     /// Longer than [`FRAME_MAX`].
     TooLong,
+    /// There was no time for it: see [`Receiver::push_if`].
+    Skipped,
 }
 
 /// Writes `message` as one frame into `buffer`; returns the frame, its zero byte included.
@@ -388,6 +392,15 @@ impl Receiver {
 
     /// Takes one byte. Some when it ends a frame.
     pub fn push<T: DeserializeOwned>(&mut self, byte: u8) -> Option<Result<Received<T>, BadFrame>> {
+        self.push_if(byte, || true)
+    }
+
+    /// Takes one byte. Some when it ends a frame, which is decoded if there is `time` for it.
+    pub fn push_if<T: DeserializeOwned>(
+        &mut self,
+        byte: u8,
+        time: impl FnOnce() -> bool,
+    ) -> Option<Result<Received<T>, BadFrame>> {
         if byte != 0 {
             match self.buffer.get_mut(self.length) {
                 Some(slot) => {
@@ -405,7 +418,7 @@ impl Receiver {
             return Some(Err(BadFrame::TooLong));
         }
         // A zero byte on its own is a sender clearing its throat.
-        (length > 0).then(|| decode(&mut self.buffer[..length]))
+        (length > 0).then(|| if time() { decode(&mut self.buffer[..length]) } else { Err(BadFrame::Skipped) })
     }
 }
 

@@ -17,7 +17,7 @@ use tenax_hal_shim::wire::{
     Slow, TickRecord, Up, VERSION, encode,
 };
 use tenax_hal_shim::words::{
-    Capability, Cause, Code, DriveSource, Fault, GripMode, Kept, Line, NoLesson, Reason,
+    Capability, Cause, Code, Consent, DriveSource, Fault, GripMode, Kept, Line, NoLesson, Reason,
 };
 
 /// Writes a message's line, and reads its bytes back.
@@ -46,6 +46,8 @@ fn down() -> Vec<Down> {
         Down::Save,
         Down::Get(2),
         Down::Settings(17),
+        Down::Hello,
+        Down::Open { nonce: 0xDEAD_BEEF },
     ]
 }
 
@@ -102,7 +104,7 @@ fn slow() -> Slow {
         .into_iter()
         .collect(),
         samples_sum: 0xDEAD_BEEF,
-        line: Line::Armed { left_s: 59 },
+        line: Line::Armed { left_s: 60 },
     }
 }
 
@@ -124,12 +126,17 @@ fn answers() -> Vec<Answer> {
         Answer::Refused(Refusal::SensorLost),
         Answer::Refused(Refusal::WearerActive),
         Answer::Refused(Refusal::UnknownSetting),
+        Answer::Refused(Refusal::NotArmed),
+        Answer::Refused(Refusal::NoSession),
+        Answer::Refused(Refusal::Replayed),
+        Answer::Refused(Refusal::HeldTooLong),
         Answer::Setting(Setting { id: 2, value: 300 }),
         Answer::Settings(
             [Setting { id: 28, value: 80 }, Setting { id: 29, value: 200 }].into_iter().collect(),
         ),
         Answer::Samples(samples),
         Answer::Network(network),
+        Answer::Nonce(0xDEAD_BEEF),
     ]
 }
 
@@ -154,6 +161,9 @@ fn up() -> Vec<Up> {
         EventKind::Fault(Fault::StoreFailed(Kept::Settings)),
         EventKind::Stroke { mu_s_permille: 490, s2_permille: 392 },
         EventKind::EventsLost(3),
+        EventKind::Armed(Consent::Muscles),
+        EventKind::Disarmed,
+        EventKind::LineTrusted(true),
     ];
     all.extend(events.map(|kind| Up::Event(Event { frame: 50, kind })));
     all.extend(answers().into_iter().map(|answer| Up::Answer { of: 7, frame: 50, answer }));

@@ -481,6 +481,6 @@ fn a_stroke_that_nobody_ends_gives_the_reflex_back() {
 #[test]
 fn no_setting_makes_the_hand_deaf_to_a_contraction() {
     let mut bench = Bench::holding(10);
-    let refused = bench.fingertip.command(&set(SettingId::EmgOn, 601));
-    assert_eq!(refused, Err(tenax_hal_shim::wire::Refusal::OutOfRange { min: 20, max: 600 }));
+    let refused = bench.fingertip.command(&set(SettingId::EmgOn, 401));
+    assert_eq!(refused, Err(tenax_hal_shim::wire::Refusal::OutOfRange { min: 80, max: 400 }));
 }

@@ -80,6 +80,7 @@ fn why(bad: BadFrame) -> String {
             )
         }
         BadFrame::TooLong => "longer than any message".to_owned(),
+        BadFrame::Skipped => "no time for it".to_owned(),
     }
 }
 
@@ -99,14 +100,15 @@ impl Display for Words<'_> {
             Up::Event(event) => event_words(f, event),
             Up::Counters(counters) => write!(
                 f,
-                "counters: {} frames, {} lost, {} overruns; {} ticks, {} late; {} messages dropped, {} bad frames heard",
+                "counters: {} frames, {} lost, {} overruns; {} ticks, {} late; {} messages dropped, {} bad frames heard, {} commands skipped",
                 counters.frames,
                 counters.frames_lost,
                 counters.overruns,
                 counters.ticks,
                 counters.ticks_late,
                 counters.telemetry_dropped,
-                counters.bad_frames
+                counters.bad_frames,
+                counters.commands_skipped
             ),
             Up::Answer { of, frame, answer } => answer_words(f, *of, *frame, answer),
             Up::Saved { frame, kept } => {

@@ -12,8 +12,9 @@ const HEAD: &str = "\
 Printed from `hal-shim/src/setting.rs` by `cargo tenax settings`; do not edit.
 
 `cargo tenax monitor --port P --set NAME=VALUE` changes one, `--get NAME` and `--settings` show what is in force; a scene
-file uses `kind = \"set-NAME\"` with `value`. A value out of range is refused with the range. Changed settings outlive a power
-cut. The number is what the wire and the flash call the setting.
+file uses `kind = \"set-NAME\"` with `value`. A value out of range is refused with the range, and so is a
+change that nobody at the hand consents to (`docs/safety.md`). No combination of values in the ranges crushes, opens or
+deafens (`host-tests/tests/ranges.rs`); the wider ones are a laboratory's. Changed settings outlive a power cut. The number is what the wire and the flash call the setting.
 
 | number | name | unit | range | default | meaning |
 |---|---|---|---|---|---|
@@ -29,11 +30,16 @@ pub fn markdown() -> String {
         // Writing into a String cannot fail.
         let _ = writeln!(
             page,
-            "| {number} | `{}` | {} | {} to {} | {} | {} |",
+            "| {number} | `{}` | {} | {} to {}{} | {} | {} |",
             row.name,
             row.unit,
             range.start(),
             range.end(),
+            if row.max_if_trusted > row.max {
+                format!(" ({} where the line is trusted)", row.max_if_trusted)
+            } else {
+                String::new()
+            },
             row.default,
             row.meaning
         );
@@ -61,8 +67,9 @@ pub fn parse(text: &str) -> anyhow::Result<Setting> {
     let id = named(name.trim())?;
     let row = id.row();
     let value: i32 = value.trim().parse().with_context(|| format!("{value} is no whole number"))?;
-    if !row.range().contains(&value) {
-        bail!("{} = {value} {} is outside {} to {}", row.name, row.unit, row.min, row.max);
+    // The board knows whether it trusts the line, and says so.
+    if !row.range_if_trusted().contains(&value) {
+        bail!("{} = {value} {} is outside {} to {}", row.name, row.unit, row.min, row.max_if_trusted);
     }
     Ok(Setting { id: id as u8, value })
 }
@@ -79,7 +86,7 @@ mod tests {
         for (text, word) in [
             ("emg-on-mv", "NAME=VALUE"),
             ("emg=1", "emg-on-mv"),
-            ("emg-on-mv=1", "20 to 600"),
+            ("emg-on-mv=1", "80 to 400"),
             ("emg-on-mv=x", "whole"),
         ] {
             let wrong = format!("{:#}", parse(text).unwrap_err());

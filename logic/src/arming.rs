@@ -21,7 +21,7 @@ const CONSENT_FRAMES: u32 = frames(60_000);
 /// How long both muscles are active for consent, in frames.
 const CO_CONTRACTION_FRAMES: u32 = frames(2_000);
 /// How long the button is down, and was up before, to count as pressed: longer than its contacts bounce, in frames.
-const DEBOUNCE_FRAMES: u32 = frames(20);
+pub const DEBOUNCE_FRAMES: u32 = frames(20);
 /// How long a hand that was switched on empty consents, in frames.
 const POWER_UP_FRAMES: u32 = frames(10_000);
 

@@ -11,6 +11,7 @@ mod s2;
 use heapless::Vec;
 use tenax_hal_shim::channel::PVDF_COUNT;
 use tenax_hal_shim::detector::{DetectorHealth, DetectorId, DetectorSet, Direction, Evidence};
+use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::wire::{DETECTORS_MAX, Forces};
 
 use crate::array::{MLP_DECIDES, Reading};
@@ -129,6 +130,9 @@ pub trait Detector {
     fn describe(&self, config: &Self::Config) -> Description;
 }
 
+/// The slot in which the detectors are guarded that decide more often than once a cycle.
+const OTHERS_GUARDED: u8 = slot_of(Job::Save) + 1;
+
 /// Runs a piece of code with each detector and its configuration: the static list of them.
 macro_rules! for_each_detector {
     ($self:ident, $config:expr, |$detector:ident, $own:ident| $body:expr) => {{
@@ -212,17 +216,22 @@ impl Detectors {
                 self.record.take(id_of(detector), said, sensed.frame);
             }
         });
-        // In the slot in which the MLP has just decided: an implausible verdict is not believed for a single tick.
-        if sensed.slot == MLP_DECIDES {
-            self.guard(config, sensed);
+        // The MLP decides once a cycle, and an implausible verdict is not believed for a single tick. The others are guarded in a
+        // slot with room.
+        match sensed.slot {
+            MLP_DECIDES => self.record.guard(DetectorId::Mlp, MlpDetector::IMPLAUSIBLE_AFTER, sensed),
+            OTHERS_GUARDED => self.guard_others(config, sensed),
+            _ => {}
         }
     }
 
     #[inline(never)]
-    fn guard(&mut self, config: &Config, sensed: &Sensed<'_>) {
+    fn guard_others(&mut self, config: &Config, sensed: &Sensed<'_>) {
         for_each_detector!(self, config, |detector, _own| {
             let (id, tolerated) = (id_of(detector), tolerance_of(detector));
-            self.record.guard(id, tolerated, sensed);
+            if id != DetectorId::Mlp {
+                self.record.guard(id, tolerated, sensed);
+            }
         });
     }
 

@@ -21,6 +21,7 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod allowance;
 pub mod arbiter;
 pub mod arming;
 pub mod array;

@@ -158,8 +158,8 @@ mod tests {
         assert_eq!(config.set(SettingId::S1, 1_500), Ok(()));
         assert_eq!(config.set(SettingId::S2, 800), Ok(()));
         assert_eq!(config.set(SettingId::LineTrusted, 0), Ok(()));
-        assert_eq!((config.get(SettingId::S1), config.get(SettingId::S2)), (600, 800));
-        assert_eq!(config.set(SettingId::S1, 1_500), Err(20..=600));
+        assert_eq!((config.get(SettingId::S1), config.get(SettingId::S2)), (250, 800));
+        assert_eq!(config.set(SettingId::S1, 1_500), Err(20..=250));
     }
 
     #[test]

@@ -11,6 +11,8 @@ use crate::file::sections::{Command, CommandKind};
 const REPEAT_S: f64 = 0.1;
 /// How long somebody presses the button, s.
 const PRESS_S: f64 = 0.3;
+/// When a session is asked for, s: the board has heard some noise by then.
+const HELLO_S: f64 = 0.05;
 
 /// The commands of a scene, in the order in which they are sent.
 #[derive(Clone, Debug)]
@@ -20,8 +22,13 @@ pub(crate) struct Script {
 }
 
 impl Script {
-    pub(crate) fn new(commands: &[Command]) -> Self {
+    /// `trusted`: the board needs no session. Otherwise the script begins with the question for one; whoever connects the
+    /// board answers the number that it offers.
+    pub(crate) fn new(commands: &[Command], trusted: bool) -> Self {
         let mut sent: Vec<(f64, Down)> = commands.iter().flat_map(expand).collect();
+        if !trusted && !commands.is_empty() {
+            sent.push((HELLO_S, Down::Hello));
+        }
         sent.sort_by(|(a, _), (b, _)| a.total_cmp(b));
         let presses = commands.iter().filter(|command| *command.kind.get_ref() == CommandKind::Consent);
         Self { sent: sent.into(), pressed_at_s: presses.map(|press| press.at_s.get_ref().get()).collect() }
@@ -102,7 +109,7 @@ mod tests {
             value = 400
         "#;
         let scene = SceneFile::parse(text, "t.toml").unwrap();
-        let mut script = Script::new(&scene.command);
+        let mut script = Script::new(&scene.command, true);
         assert_eq!(script.take(0.499), []);
         assert_eq!(script.take(0.5), [Down::Set(Setting { id: SettingId::S2 as u8, value: 400 })]);
         let drive = MotorDrive::Close(Duty::per_mille(300));

@@ -107,7 +107,7 @@ impl World {
             slow_v: Pins::default().0,
             faults: Faults::new(&scene.fault),
             converter: Converter::new(seed),
-            script: Script::new(&scene.command),
+            script: Script::new(&scene.command, scene.trusts_line()),
             trusts_line: scene.trusts_line(),
             pins: Pins::default(),
             truth: Truth::default(),

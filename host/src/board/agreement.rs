@@ -5,7 +5,9 @@ use std::fmt;
 
 use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, SCANS_PER_FRAME};
 use tenax_hal_shim::frame::{Frame, Scan};
-use tenax_hal_shim::wire::{Answer, Down, Event, Received, Slow, Up};
+use tenax_hal_shim::wire::{Answer, Down, Event, EventKind, Received, Slow, Up};
+use tenax_hal_shim::words::Consent;
+use tenax_logic::arming::DEBOUNCE_FRAMES;
 use tenax_logic::device::Device;
 
 use super::Run;
@@ -34,10 +36,10 @@ impl Said {
 
 /// Puts codes that were recorded on any board through the host's build of the logic.
 ///
-/// `trusts_line` is the board's setting. `commands` are those that the board took, in order, each with the sequence number of the frame before whose tick it took
+/// `trusts_line` is the board's setting, `pressed` the frames in which it took a press of the button. `commands` are those that the board took, in order, each with the sequence number of the frame before whose tick it took
 /// it. No frame may have been lost. Scans that do not fill a frame are left out.
 #[must_use]
-pub fn host_says(scans: &[Scan], trusts_line: bool, commands: &[(u32, Down)]) -> Said {
+pub fn host_says(scans: &[Scan], trusts_line: bool, pressed: &[u32], commands: &[(u32, Down)]) -> Said {
     let mut device = if trusts_line { Device::trusting() } else { Device::default() };
     let mut said = Said::default();
     let mut commands = (0..).zip(commands).peekable();
@@ -46,10 +48,19 @@ pub fn host_says(scans: &[Scan], trusts_line: bool, commands: &[(u32, Down)]) ->
         while let Some((of, (_, message))) = commands.next_if(|(_, (at, _))| *at <= sequence) {
             said.take(device.command(&Received { sequence: of, message: *message }));
         }
+        device
+            .button(pressed.iter().any(|at| (at - at.min(&(DEBOUNCE_FRAMES - 1))..=*at).contains(&sequence)));
         device.tick(&Frame::from_scans(sequence, scans));
         std::iter::from_fn(|| device.next_message()).for_each(|message| said.take(message));
     }
     said
+}
+
+/// The frames in which a board took a press of its button, as it says.
+#[must_use]
+pub fn presses(events: &[Event]) -> Vec<u32> {
+    let of_button = |event: &&Event| event.kind == EventKind::Armed(Consent::Button);
+    events.iter().filter(of_button).map(|event| event.frame).collect()
 }
 
 /// How much was compared, and where it first differs.
@@ -71,7 +82,10 @@ impl Agreement {
             events: run.events.len(),
             commands: run.taken.len(),
             networks: run.networks().count(),
-            difference: difference(run, &host_says(&run.scans, run.trusts_line, &run.taken)),
+            difference: difference(
+                run,
+                &host_says(&run.scans, run.trusts_line, &presses(&run.events), &run.taken),
+            ),
         }
     }
 

@@ -8,6 +8,7 @@ mod line;
 mod mishaps;
 mod nucleo;
 mod part;
+pub mod provision;
 mod scan_path;
 mod unwatched;
 mod wires;
@@ -45,7 +46,8 @@ pub struct Options {
     pub instructions_per_second: NonZeroU64,
     /// What goes wrong on the way, and when, s.
     pub mishaps: Vec<(f64, Mishap)>,
-    /// What the flash holds beside the image before the start: an address and the bytes from there on.
+    /// What the flash holds beside the image before the start: an address and the bytes from there on. None is a new chip, on
+    /// which a plant that trusts its line has set so before.
     pub flash: Option<(u64, Vec<u8>)>,
     /// How long the flash takes to program a word, us; the core stands still for as long. 16 typically, 100 at most
     /// (DS10314, flash memory programming).
@@ -153,6 +155,7 @@ pub fn record<P: Plant + 'static>(
     let began = Instant::now();
     let symbols = Symbols::read(image)?;
     let frames = frames_in(plant.duration_s());
+    let trusts_line = plant.trusts_line();
     let (sender, reports) = mpsc::channel();
     let cost = CostMeter::new(&symbols, options.ticks.clone());
     let [tick, after_tick] = cost.watched();
@@ -162,8 +165,10 @@ pub fn record<P: Plant + 'static>(
     let world = World::new(plant, frames, mishaps, cost, flash, &symbols, sender);
     let mut images =
         vec![Image::read(image, None).context("reading the image")?, cost::paint(&symbols.stack)?];
-    if let Some((address, bytes)) = &options.flash {
-        images.push(Image::new(Path::new("flash"), bytes.clone(), Some(*address))?);
+    let provisioned =
+        (trusts_line && options.flash.is_none()).then(|| provision::Sectors::trusting().image());
+    if let Some((address, bytes)) = options.flash.clone().or(provisioned) {
+        images.push(Image::new(Path::new("flash"), bytes, Some(address))?);
     }
     let (models, rate) = (options.models, options.instructions_per_second);
 
@@ -192,6 +197,7 @@ pub fn record<P: Plant + 'static>(
     let summary = Summary {
         virtual_s: scanned as f64 / f64::from(SCAN_HZ),
         wall_s: began.elapsed().as_secs_f64(),
+        trusts_line,
         taken,
         tick_cost: world.tick_cost,
         stack_bytes: world.stack_bytes,

@@ -8,7 +8,7 @@ use tenax_hal_shim::channel::{SCAN_HZ, SCANS_PER_FRAME};
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::frame::{Frame, Scan, scan_of_pins};
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{Counters, Received};
+use tenax_hal_shim::wire::{Answer, Counters, Down, Received, Up};
 use tenax_logic::detectors::Said;
 use tenax_logic::device::Device;
 use tenax_scene::plant::Plant;
@@ -64,10 +64,12 @@ fn closed_loop<P: Plant>(
         device.fingertip_mut().act_on(DetectorSet::only(DetectorId::Injected));
     }
     let mut drive = MotorDrive::Coast;
+    let mut offered = None;
     for sequence in 0..frames {
         let select = Frame::lost(sequence).select();
         let mut scans = [Scan::default(); SCANS_PER_FRAME];
-        let mut commands = Vec::new();
+        // The peer gives back what it was offered.
+        let mut commands: Vec<Down> = offered.take().map(|nonce| Down::Open { nonce }).into_iter().collect();
         for scan in &mut scans {
             *scan = scan_of_pins(&plant.scan(drive).codes(), select);
             commands.extend(plant.commands());
@@ -76,7 +78,11 @@ fn closed_loop<P: Plant>(
         for command in &commands {
             let of = summary.taken.len() as u16;
             summary.taken.push((sequence, *command));
-            summary.take(device.command(&Received { sequence: of, message: *command }), recorder);
+            let answer = device.command(&Received { sequence: of, message: *command });
+            if let Up::Answer { answer: Answer::Nonce(nonce), .. } = answer {
+                offered = Some(nonce);
+            }
+            summary.take(answer, recorder);
         }
         device.button(plant.button());
         let frame = Frame::from_scans(sequence, &scans);

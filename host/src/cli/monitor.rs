@@ -81,7 +81,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         }
         (None, Some(port)) => {
             let mut line = open(port)?;
-            tell(args, line.as_ref())?;
+            tell(args, line.as_mut(), &mut |bytes| monitor.take(bytes, &mut out))?;
             monitor.watch(line.as_mut(), &mut out)
         }
         (None, None) => bail!("give --port PORT or --file FILE"),
@@ -102,8 +102,24 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
 }
 
 /// Sends what is to be sent at once, and lets the teacher talk beside the watching.
-fn tell(args: &Args, line: &dyn serialport::SerialPort) -> anyhow::Result<()> {
+fn tell(
+    args: &Args,
+    line: &mut dyn serialport::SerialPort,
+    seen: &mut dyn FnMut(&[u8]) -> io::Result<()>,
+) -> anyhow::Result<()> {
     let mut outbox = Outbox::new(line.try_clone().context("cannot write to the port")?);
+    let changes =
+        !args.set.is_empty() || args.teach || args.send.iter().any(|&send| !Down::from(send).reads());
+    if changes {
+        let mut printed = Ok(());
+        let mut show =
+            |bytes: &[u8]| printed = std::mem::replace(&mut printed, Ok(())).and_then(|()| seen(bytes));
+        let opened = outbox.open_session(line, &mut show).context("cannot open a session")?;
+        printed.context("cannot print")?;
+        if !opened {
+            out::note!("tenax: the board offered no session; what changes something will be refused");
+        }
+    }
     let set = args.set.iter().map(|&setting| Down::Set(setting));
     let get = args.get.iter().map(|&id| Down::Get(id as u8));
     // The first of each part of the table that one answer has room for.

@@ -1,11 +1,13 @@
 //! Commands come down the line and answers go up.
 
+use tenax::board::agreement::Agreement;
 use tenax::board::emulated::Options;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{Answer, Down, Refusal, Setting};
+use tenax_hal_shim::words::Code;
 
-use crate::{Rest, Swing, drives, run};
+use crate::{Loaded, Rest, Run, Swing, drives, run};
 
 const fn s2(permille: i32) -> Setting {
     Setting { id: SettingId::S2 as u8, value: permille }
@@ -23,7 +25,7 @@ fn every_command_is_answered_in_order() {
         panic!("{:?}", run.answers);
     };
     assert_eq!(*first, Answer::Setting(s2(400)));
-    assert_eq!(*second, Answer::Refused(Refusal::OutOfRange { min: 50, max: 1_500 }));
+    assert_eq!(*second, Answer::Refused(Refusal::OutOfRange { min: 150, max: 1_500 }));
     assert_eq!(run.slows.last().map(|slow| slow.s2_permille), Some(400));
 }
 
@@ -35,4 +37,67 @@ fn a_drive_command_holds_as_long_as_it_says() {
     assert!(drives(&run, 0.0, 0.4).iter().all(|now| *now == MotorDrive::Coast));
     assert!(drives(&run, 0.405, 0.495).iter().all(|now| *now == drive));
     assert!(drives(&run, 0.505, 0.8).iter().all(|now| *now == MotorDrive::Coast));
+}
+
+/// What a stranger sends is refused, the session and the button notwithstanding each other, and both together move it.
+#[test]
+fn a_stranger_needs_a_session_and_somebody_at_the_hand() {
+    let drive = MotorDrive::Open(Duty::per_mille(250));
+    let command = Down::Drive { drive, hold_ms: 100 };
+    let opened = |hello: bool, pressed: bool| {
+        let mut plant = Swing::new(1.5).stranger().sending(0.3, command).sending(1.2, command);
+        if hello {
+            plant = plant.sending(0.4, Down::Hello);
+        }
+        if pressed {
+            plant = plant.pressing(0.8);
+        }
+        run(Loaded(Rest::new(plant)), &Options::default())
+    };
+    let refused = |refusal| Answer::Refused(refusal);
+    let answers = |run: &Run| run.answers.iter().map(|(_, answer)| answer.clone()).collect::<Vec<_>>();
+    let run = opened(false, true);
+    assert_eq!(answers(&run), [refused(Refusal::NoSession), refused(Refusal::NoSession)]);
+    assert!(run.drives.iter().all(|now| *now == MotorDrive::Coast));
+    let run = opened(true, false);
+    assert_eq!(answers(&run)[2..], [Answer::Done, refused(Refusal::NotArmed)], "the session is open");
+    assert!(run.drives.iter().all(|now| *now == MotorDrive::Coast));
+    let run = opened(true, true);
+    assert_eq!(run.answers.last(), Some(&(3, Answer::Done)));
+    assert!(drives(&run, 1.21, 1.29).iter().all(|now| *now == drive));
+    let agreement = Agreement::of(&run);
+    assert!(agreement.holds(), "{agreement}");
+}
+
+/// Every kind of command, 5,000 a second: more than the line is ever asked for, and as much as it carries.
+#[test]
+fn a_flood_of_commands_makes_no_tick_late() {
+    let duty = Duty::per_mille(300);
+    let kinds = [
+        Down::Ping,
+        Down::Set(s2(400)),
+        Down::Drive { drive: MotorDrive::Close(duty), hold_ms: 250 },
+        Down::Network,
+        Down::Teach { codes: [Code::Minus, Code::Plus], age_ms: 40 },
+        Down::Samples,
+        Down::Settings(0),
+        Down::Drive { drive: MotorDrive::Open(duty), hold_ms: 250 },
+    ];
+    for stranger in [false, true] {
+        let mut plant = Swing::new(1.5);
+        if stranger {
+            plant = plant.stranger();
+        }
+        for n in 0..5_000u32 {
+            plant = plant.sending(0.3 + f64::from(n) / 5_000.0, kinds[n as usize % kinds.len()]);
+        }
+        let run = run(plant, &Options::default());
+        let counters = run.counters;
+        println!("{counters:?}, {} answered, {} missed", run.answers.len(), run.messages_missed);
+        assert_eq!((counters.ticks_late, counters.frames_lost, counters.overruns), (0, 0, 0), "{counters:?}");
+        assert_eq!((counters.bad_frames, counters.telemetry_dropped, run.messages_missed), (0, 0, 0));
+        assert_eq!(run.slows.len(), 120, "telemetry goes on");
+        let agreement = Agreement::of(&run);
+        assert!(agreement.holds(), "{agreement}");
+    }
 }

@@ -14,7 +14,7 @@ use std::sync::OnceLock;
 
 use tenax::board::Run;
 use tenax::board::emulated::{self, Options};
-use tenax_hal_shim::channel::SCAN_HZ;
+use tenax_hal_shim::channel::{FSR, FSR_COUNT, SCAN_HZ};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::Down;
 use tenax_scene::plant::{Pins, Plant};
@@ -130,6 +130,32 @@ impl Plant for Rest {
 
     fn duration_s(&self) -> f64 {
         self.0.duration_s
+    }
+}
+
+/// A finger that holds something from the start: that it was switched on is no consent.
+struct Loaded(Rest);
+
+impl Plant for Loaded {
+    fn scan(&mut self, drive: MotorDrive) -> &Pins {
+        self.0.1.0[FSR..FSR + FSR_COUNT].fill(1.2);
+        self.0.scan(drive)
+    }
+
+    fn commands(&mut self) -> Vec<Down> {
+        self.0.commands()
+    }
+
+    fn trusts_line(&self) -> bool {
+        self.0.trusts_line()
+    }
+
+    fn button(&self) -> bool {
+        self.0.button()
+    }
+
+    fn duration_s(&self) -> f64 {
+        self.0.duration_s()
     }
 }
 

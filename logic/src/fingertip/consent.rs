@@ -35,7 +35,8 @@ impl Fingertip {
         if gate.is_active() {
             self.reflex.renew();
         }
-        if gate.is_active() || consent.is_some() {
+        // Who trusts the line has consented for good.
+        if gate.is_active() || consent.is_some() || self.config.line_trusted {
             self.link.renew();
         }
         let was = core::mem::replace(&mut self.line, self.arming.line(self.config.line_trusted));

@@ -110,10 +110,10 @@ mod tests {
     #[test]
     fn a_value_that_is_not_accepted_and_a_setting_that_is_unknown_leave_the_others() {
         let mut config = Config::default();
-        let bytes = [word(1, 500), word(2, 99_999), word(250, 1), word(10, 900)].concat();
+        let bytes = [word(1, 200), word(2, 99_999), word(250, 1), word(10, 900)].concat();
         assert!(!restore_settings(&mut config, &bytes));
         let mut expected = Config::default();
-        assert!(expected.set(SettingId::S1, 500).is_ok() && expected.set(SettingId::Loaded, 900).is_ok());
+        assert!(expected.set(SettingId::S1, 200).is_ok() && expected.set(SettingId::Loaded, 900).is_ok());
         assert_eq!(config, expected);
     }
 

@@ -6,6 +6,9 @@ use rigless::chip::Timeline;
 use rigless::chip::uart::Peer;
 use rigless::snapshot::Store;
 use rigless::time::VirtualNanos;
+use tenax_hal_shim::wire::{Answer, Up};
+
+use crate::link::Inbox;
 
 /// What a PC would have read, and what it has yet to send.
 #[derive(Debug, Default)]
@@ -14,6 +17,10 @@ pub struct Line {
     pub up: Vec<u8>,
     /// Bytes on their way down; the model takes each when the one before has arrived.
     pub down: VecDeque<u8>,
+    /// Listens for the number that a session opens with, once it was asked for.
+    pub listener: Option<Inbox>,
+    /// That number.
+    pub offered: Option<u32>,
 }
 
 impl Store for Line {}
@@ -21,6 +28,13 @@ impl Store for Line {}
 impl Peer for Line {
     fn receive(&mut self, word: u16, _context: &mut Timeline<'_, '_>) {
         self.up.push(word as u8);
+        let heard = self.listener.as_mut().and_then(|listener| listener.push(word as u8));
+        if let Some(Ok(heard)) = heard
+            && let Up::Answer { answer: Answer::Nonce(nonce), .. } = heard.received.message
+        {
+            self.offered = Some(nonce);
+            self.listener = None;
+        }
     }
 
     fn transmit(&mut self, _now: VirtualNanos) -> Option<u16> {

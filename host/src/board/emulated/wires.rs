@@ -10,6 +10,7 @@ use tenax_hal_shim::motor::{Duty, MotorDrive};
 use super::part::Part;
 
 const GPIOA_MODER: u64 = 0x4002_0000;
+const GPIOC_PUPDR: u64 = 0x4002_080C;
 const GPIOB_ODR: u64 = 0x4002_0414;
 const TIM1_CCER: u64 = 0x4001_0020;
 const TIM1_ARR: u64 = 0x4001_002C;
@@ -25,6 +26,8 @@ const CR2_ADON: u32 = 1;
 const CR2_EXTSEL: u32 = 0xF << 24;
 const CR2_EXTSEL_TIM3_TRGO: u32 = 0x8 << 24;
 const CR2_EXTEN: u32 = 0x3 << 28;
+const PULL_UP: u32 = 0b01;
+const PULL_DOWN: u32 = 0b10;
 const MODER_ALTERNATE: u32 = 0b10;
 
 /// The chip at one instant.
@@ -73,6 +76,16 @@ impl<'a> Wires<'a> {
     /// Puts codes on the converter's pins.
     pub fn put(&mut self, scan: &Scan) {
         self.mcu.put(self.now, SCAN.iter().zip(scan).map(|(rank, &code)| (rank.adc, code)));
+    }
+
+    /// Presses or releases the button on PC13. The model lets a peripheral's owner drive a pin and nobody else, but a pin
+    /// that nothing drives reads its pull: the button is one.
+    pub fn button(&mut self, is_down: bool) {
+        let pulls = self.peek(GPIOC_PUPDR) & !(0b11 << 26) | if is_down { PULL_DOWN } else { PULL_UP } << 26;
+        if pulls != self.peek(GPIOC_PUPDR) {
+            // Before the image has clocked the port nothing reads it either.
+            let _ = self.mcu.write(self.now, GPIOC_PUPDR, Width::W32, u64::from(pulls));
+        }
     }
 
     /// Draws the one wire that the emulator leaves out: a pulse of TIM3's TRGO starts the converter's sequence if the

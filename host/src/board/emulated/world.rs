@@ -10,7 +10,7 @@ use rigless::time::VirtualNanos;
 use tenax_hal_shim::channel::{SCAN_HZ, SCANS_PER_FRAME};
 use tenax_hal_shim::frame::{Scan, scan_of_pins};
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{FRAME_MAX, encode};
+use tenax_hal_shim::wire::{Down, FRAME_MAX, encode};
 use tenax_scene::plant::Plant;
 
 use super::Broken;
@@ -135,12 +135,17 @@ impl<P: Plant> World<P> {
             self.drained += 1;
         }
         wires.put(&self.codes);
+        wires.button(self.plant.button());
         if pulse {
             wires.trigger();
         }
         let scan = self.scanned;
         if let Some(line) = session.board_mut().mcu.chip.usart[USART2].chip_mut::<Line>() {
-            for command in self.plant.commands() {
+            let opening = line.offered.take().map(|nonce| Down::Open { nonce });
+            for command in opening.into_iter().chain(self.plant.commands()) {
+                if command == Down::Hello {
+                    line.listener = Some(Inbox::default());
+                }
                 let mut buffer = [0; FRAME_MAX];
                 line.down.extend(
                     encode(self.command_sequence, &command, &mut buffer)
