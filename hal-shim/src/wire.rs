@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use crate::channel::{COUNT, FRAMES_PER_SLOW_FRAME, PVDF_COUNT, STRAIN_COUNT};
 use crate::detector::{DetectorId, Evidence};
 use crate::motor::MotorDrive;
-use crate::words::{Cause, Codes, Fault, GripMode, Kept, NoLesson};
+use crate::words::{Calibration, Cause, Codes, Fault, GripMode, Kept, NoLesson};
 
 pub use self::samples::SamplesSum;
 pub use self::tick::TickRecord;
@@ -149,6 +149,8 @@ pub enum EventKind {
     },
     /// More events happened in one tick than are kept; this many were lost.
     EventsLost(u16),
+    /// The calibration of the myosensors goes on, or is over.
+    Calibration(Calibration),
 }
 
 /// Why a command was not carried out.
@@ -276,6 +278,9 @@ pub enum Down {
     Get(u8),
     /// Answer with the [`Answer::Settings`] from this number on, in the order of their numbers.
     Settings(u8),
+    /// Calibrate the myosensors to the wearer: three prompts of 5 s come up as [`EventKind::Calibration`], then the result.
+    /// Meanwhile the muscles move nothing. Refused while something is held.
+    CalibrateEmg,
 }
 
 /// A frame's contents.

@@ -16,7 +16,10 @@ use tenax_hal_shim::wire::{
     Answer, Counters, Down, Event, EventKind, FRAME_MAX, Forces, NetworkState, Receiver, Refusal, Setting,
     Slow, TickRecord, Up, VERSION, encode,
 };
-use tenax_hal_shim::words::{Capability, Cause, Code, DriveSource, Fault, GripMode, Kept, NoLesson, Reason};
+use tenax_hal_shim::words::{
+    Calibration, CalibrationRefusal, Capability, Cause, Code, DriveSource, Fault, GripMode, Kept, NoLesson,
+    Prompt, Reason,
+};
 
 /// Writes a message's line, and reads its bytes back.
 fn line<T: Serialize + DeserializeOwned + PartialEq + Debug>(text: &mut String, message: &T) {
@@ -44,6 +47,7 @@ fn down() -> Vec<Down> {
         Down::Save,
         Down::Get(2),
         Down::Settings(17),
+        Down::CalibrateEmg,
     ]
 }
 
@@ -144,6 +148,11 @@ fn up() -> Vec<Up> {
         EventKind::Fault(Fault::StoreFailed(Kept::Settings)),
         EventKind::Stroke { mu_s_permille: 490, s2_permille: 392 },
         EventKind::EventsLost(3),
+        EventKind::Calibration(Calibration::Asks(Prompt::Open)),
+        EventKind::Calibration(Calibration::Done { separation_permille: 5_900 }),
+        EventKind::Calibration(Calibration::Refused(CalibrationRefusal::Damaged)),
+        EventKind::Fault(Fault::SensorLost { channel: 39, reason: Reason::Endless }),
+        EventKind::Fault(Fault::RecordDamaged(Kept::Emg)),
     ];
     all.extend(events.map(|kind| Up::Event(Event { frame: 50, kind })));
     all.extend(answers().into_iter().map(|answer| Up::Answer { of: 7, frame: 50, answer }));

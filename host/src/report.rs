@@ -255,5 +255,6 @@ pub const fn kept_in_words(kept: Kept) -> &'static str {
         Kept::Network => "the network's weights",
         Kept::Zero => "the force sensor's zeros",
         Kept::Settings => "the settings",
+        Kept::Emg => "the wearer's calibration",
     }
 }
