@@ -82,10 +82,12 @@ impl Gate {
     }
 }
 
-/// Proportional: the slowest duty at the weakest contraction that is a wish, all of it at the strongest.
+/// The slowest duty at the weakest contraction that is a wish, all of it at the strongest. The strength is a difference of
+/// logarithms: its square is about proportional to the envelope over the decade between, and a light contraction is slow.
 fn duty(config: &GateConfig, strength_permille: u16) -> Duty {
     let slowest = u32::from(config.slowest_permille.min(1_000));
-    let permille = slowest + u32::from(strength_permille.min(1_000)) * (1_000 - slowest) / 1_000;
+    let strength = u32::from(strength_permille.min(1_000));
+    let permille = slowest + strength * strength / 1_000 * (1_000 - slowest) / 1_000;
     Duty::per_mille(permille as u16)
 }
 
@@ -113,7 +115,7 @@ mod tests {
         assert_eq!(says(Wish::Rest, 0).wish(&CONFIG), MotorDrive::Coast);
         assert_eq!(says(Wish::Close, 1_000).wish(&CONFIG), MotorDrive::Close(Duty::FULL));
         assert_eq!(says(Wish::Open, 0).wish(&CONFIG), MotorDrive::Open(Duty::per_mille(300)));
-        assert_eq!(says(Wish::Close, 500).wish(&CONFIG), MotorDrive::Close(Duty::per_mille(650)));
+        assert_eq!(says(Wish::Close, 500).wish(&CONFIG), MotorDrive::Close(Duty::per_mille(475)));
     }
 
     #[test]

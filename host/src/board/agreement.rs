@@ -6,7 +6,10 @@ use std::fmt;
 use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, SCANS_PER_FRAME};
 use tenax_hal_shim::frame::{Frame, Scan};
 use tenax_hal_shim::wire::{Answer, Down, Event, Received, Slow, Up};
+use tenax_hal_shim::words::Kept;
 use tenax_logic::device::Device;
+use tenax_logic::emg::model::EmgModel;
+use tenax_logic::store::payload;
 
 use super::Run;
 
@@ -35,10 +38,13 @@ impl Said {
 /// Puts codes that were recorded on any board through the host's build of the logic.
 ///
 /// `commands` are those that the board took, in order, each with the sequence number of the frame before whose tick it took
-/// it. No frame may have been lost. Scans that do not fill a frame are left out.
+/// it; `calibrated` is the wearer to whom it was calibrated before the start. No frame may have been lost. Scans that do not fill a frame are left out.
 #[must_use]
-pub fn host_says(scans: &[Scan], commands: &[(u32, Down)]) -> Said {
+pub fn host_says(scans: &[Scan], commands: &[(u32, Down)], calibrated: Option<&EmgModel>) -> Said {
     let mut device = Device::default();
+    if let Some(model) = calibrated {
+        device.restore(Kept::Emg, &payload::of_emg(model));
+    }
     let mut said = Said::default();
     let mut commands = commands.iter().peekable();
     let (frames, _) = scans.as_chunks::<SCANS_PER_FRAME>();
@@ -71,7 +77,7 @@ impl Agreement {
             events: run.events.len(),
             commands: run.taken.len(),
             networks: run.networks().count(),
-            difference: difference(run, &host_says(&run.scans, &run.taken)),
+            difference: difference(run, &host_says(&run.scans, &run.taken, run.calibrated.as_ref())),
         }
     }
 

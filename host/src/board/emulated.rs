@@ -29,6 +29,7 @@ use self::line::Line;
 use self::mishaps::Mishaps;
 use self::nucleo::Nucleo;
 use self::world::{Stretch, World};
+use super::kept::{Sectors, model_of};
 use super::line_log::LineLog;
 use super::simulated::frames_in;
 use super::{Recorder, Run, Summary};
@@ -132,11 +133,17 @@ pub fn record<P: Plant + 'static>(
     let mishaps = Mishaps::new(&options.mishaps);
     let flash = FlashArray::new(1_000 * options.word_us);
     let watched = [tick, after_tick, symbols.command];
+    // What somebody else wants in the flash is not mixed with a calibration.
+    let calibrated = match &options.flash {
+        None => plant.calibrated().as_ref().map(model_of).transpose()?,
+        Some(_) => None,
+    };
     let world = World::new(plant, frames, mishaps, cost, flash, &symbols, sender);
     let mut images =
         vec![Image::read(image, None).context("reading the image")?, cost::paint(&symbols.stack)?];
-    if let Some((address, bytes)) = &options.flash {
-        images.push(Image::new(Path::new("flash"), bytes.clone(), Some(*address))?);
+    let kept = calibrated.as_ref().map(|model| Sectors::of_wearer(model).image());
+    if let Some((address, bytes)) = options.flash.clone().or(kept) {
+        images.push(Image::new(Path::new("flash"), bytes, Some(address))?);
     }
     let rate = options.instructions_per_second;
 
@@ -169,6 +176,7 @@ pub fn record<P: Plant + 'static>(
         tick_cost: world.tick_cost,
         stack_bytes: world.stack_bytes,
         flash: world.flash.done,
+        calibrated,
         ..heard
     };
     Ok((summary, world.plant))

@@ -9,10 +9,13 @@ use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::frame::{Frame, Scan, scan_of_pins};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Counters, Received};
+use tenax_hal_shim::words::Kept;
 use tenax_logic::detectors::Said;
 use tenax_logic::device::Device;
+use tenax_logic::store::payload;
 use tenax_scene::plant::Plant;
 
+use super::kept::model_of;
 use super::{Recorder, Run, Summary};
 
 /// Who says that the object slips.
@@ -59,6 +62,11 @@ fn closed_loop<P: Plant>(
     let frames = frames_in(plant.duration_s());
     let mut summary = Summary { starts: vec![None], ..Summary::default() };
     let mut device = Device::default();
+    if let Some(calibrated) = plant.calibrated() {
+        let model = model_of(&calibrated).expect("a plant's wearer is one");
+        device.restore(Kept::Emg, &payload::of_emg(&model));
+        summary.calibrated = Some(model);
+    }
     if judge == Judge::Plant {
         device.fingertip_mut().act_on(DetectorSet::only(DetectorId::Injected));
     }

@@ -5,7 +5,7 @@ use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, SCAN_HZ, SCANS_PER_FRAME};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::Down;
 use tenax_scene::World;
-use tenax_scene::plant::{Pins, Plant};
+use tenax_scene::plant::{Calibrated, Pins, Plant};
 
 use super::trial::{Setup, Trial};
 use crate::board::Run;
@@ -69,6 +69,10 @@ impl Plant for Chain {
             commands.push(Down::Network);
         }
         commands
+    }
+
+    fn calibrated(&self) -> Option<Calibrated> {
+        self.setups.first()?.world.calibrated()
     }
 
     fn slipping(&self) -> bool {

@@ -2,7 +2,7 @@
 
 use tenax::board::agreement::Agreement;
 use tenax::board::emulated::{Mishap, Options};
-use tenax_hal_shim::flash::{BLANK, FlashArea, FlashFailed, Sector};
+use tenax::board::kept::Sectors;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{Down, Event, EventKind, Setting};
@@ -13,49 +13,8 @@ use tenax_logic::store::{open, payload};
 
 use crate::{Rest, Run, Swing, run};
 
-/// Where `memory.x` puts the log.
-const STORE: u64 = 0x0804_0000;
-const SECTOR_WORDS: usize = 128 * 1024 / 4;
-
-/// The two sectors as a file would hold them, written by the host's own build of the log.
-struct Sectors(Vec<u32>);
-
-impl Sectors {
-    fn blank() -> Self {
-        Self(vec![BLANK; 2 * SECTOR_WORDS])
-    }
-
-    fn saving(mut self, kept: Kept, payload: &[u8]) -> Self {
-        let (mut log, _) = open(&mut self);
-        let mut saving = log.begin(kept, payload).expect("room");
-        while !saving.step(&mut self).expect("a flash that works") {}
-        self
-    }
-
-    fn at_start(self) -> Options {
-        let bytes = self.0.iter().flat_map(|word| word.to_le_bytes()).collect();
-        Options { flash: Some((STORE, bytes)), ..Options::default() }
-    }
-}
-
-impl FlashArea for Sectors {
-    fn sector_words(&self) -> usize {
-        SECTOR_WORDS
-    }
-
-    fn read(&self, sector: Sector, word: usize) -> u32 {
-        self.0[sector as usize * SECTOR_WORDS + word]
-    }
-
-    fn program(&mut self, sector: Sector, word: usize, value: u32) -> Result<(), FlashFailed> {
-        self.0[sector as usize * SECTOR_WORDS + word] &= value;
-        Ok(())
-    }
-
-    fn erase(&mut self, sector: Sector) -> Result<(), FlashFailed> {
-        self.0[sector as usize * SECTOR_WORDS..][..SECTOR_WORDS].fill(BLANK);
-        Ok(())
-    }
+fn at_start(sectors: &Sectors) -> Options {
+    Options { flash: Some(sectors.image()), ..Options::default() }
 }
 
 fn s2(permille: u16) -> Down {
@@ -102,7 +61,7 @@ fn a_setting_is_saved_by_itself_and_survives_a_reset() {
 #[test]
 fn power_lost_in_the_middle_of_a_save_leaves_the_setting_before() {
     let plant = |duration_s| Rest::new(Swing::new(duration_s).sending(0.2, s2(500)));
-    let start = || Sectors::blank().saving(Kept::Settings, &settings(400)).at_start();
+    let start = || at_start(&Sectors::blank().saving(Kept::Settings, &settings(400)));
     for words in 0..9 {
         let options = Options { mishaps: vec![(0.1, Mishap::PowerFails { words })], ..start() };
         let run = run(plant(0.5), &options);
@@ -150,7 +109,7 @@ fn what_the_network_learned_is_used_and_saved_again() {
     let learned = network.weights().map(|row| row.map(|weight| weight.into_bits()));
     assert!(learned[0][23] < -1_000_000, "{learned:?}");
 
-    let mut options = Sectors::blank().saving(Kept::Network, known.expect("it fits")).at_start();
+    let mut options = at_start(&Sectors::blank().saving(Kept::Network, known.expect("it fits")));
     options.mishaps = vec![(0.9, Mishap::CoreHangs), (2.3, Mishap::CoreHangs)];
     let plant = Swing::new(3.0)
         .sending(0.3, Down::Network)
@@ -171,7 +130,7 @@ fn a_damaged_record_is_told_and_the_one_before_is_used() {
         Sectors::blank().saving(Kept::Settings, &settings(350)).saving(Kept::Settings, &settings(450));
     let damaged = sectors.0.iter().rposition(|&word| word == 450).expect("S2 is a word of its own");
     sectors.0[damaged] ^= 1 << 9;
-    let run = run(Rest::new(Swing::new(0.3)), &sectors.at_start());
+    let run = run(Rest::new(Swing::new(0.3)), &at_start(&sectors));
     assert_eq!(faults(&run), [Fault::RecordDamaged(Kept::Settings)]);
     assert_eq!(s2_at_end(&run), Some(350));
 }
@@ -183,7 +142,7 @@ fn a_boot_with_a_half_full_sector_erases_the_other_and_goes_on() {
         sectors = sectors.saving(Kept::Network, &[n; 296]);
     }
     let plant = Rest::new(Swing::new(1.0).sending(0.3, s2(470)));
-    let options = Options { mishaps: vec![(0.6, Mishap::CoreHangs)], ..sectors.at_start() };
+    let options = Options { mishaps: vec![(0.6, Mishap::CoreHangs)], ..at_start(&sectors) };
     let run = run(plant, &options);
     assert_eq!(run.flash.erases, 1);
     assert_eq!(run.starts, [None, Some(Fault::WatchdogReset)]);
