@@ -18,6 +18,14 @@ use tenax_logic::emg::model::EmgModel;
 use tenax_logic::fingertip::Fingertip;
 use tenax_logic::store::payload;
 
+/// Every channel at rest, the muscles at the wearer's.
+fn relaxed() -> [f64; COUNT] {
+    let mut pins_mv = CHANNELS.map(|channel| f64::from(channel.rest_mv));
+    pins_mv[MYO_FLEXOR] += 50.0;
+    pins_mv[MYO_EXTENSOR] += 50.0;
+    pins_mv
+}
+
 /// A fingertip that is calibrated to the scenes' wearer.
 #[must_use]
 pub fn calibrated() -> Fingertip {
@@ -32,7 +40,7 @@ pub fn calibrated() -> Fingertip {
 /// Never: this wearer's contractions separate.
 #[must_use]
 pub fn wearer() -> EmgModel {
-    EmgModel::of_uv([50_000; 2], [900_000, 95_000], [80_000, 600_000]).expect("they separate")
+    EmgModel::of_uv([50_000; 2], [900_000, 95_000], [80_000, 560_000]).expect("they separate")
 }
 
 /// A fingertip whose pins are set by hand. The converter's noise is +-2 of a 14-bit sample, from a seed.
@@ -53,6 +61,8 @@ pub struct Bench {
     pub sliding_mv: f64,
     /// How a contraction fluctuates, as a part of it, rms: an envelope that stands still is no muscle's.
     pub lively: f64,
+    /// A myosensor's pin whose electrode is off the skin: it does not fluctuate.
+    pub lifted: Option<usize>,
     /// Frames given so far.
     pub frames: u32,
     muscle_noise: ChaCha8Rng,
@@ -67,12 +77,13 @@ impl Bench {
     pub fn new(seed: u64) -> Self {
         Self {
             fingertip: calibrated(),
-            pins_mv: CHANNELS.map(|channel| f64::from(channel.rest_mv)),
+            pins_mv: relaxed(),
             events: Vec::new(),
             slows: Vec::new(),
             vibration_mv: 0.0,
             sliding_mv: 0.0,
             lively: 0.06,
+            lifted: None,
             frames: 0,
             muscle_noise: ChaCha8Rng::seed_from_u64(seed ^ 0x0E46),
             wander: [[0.0; 2]; 2],
@@ -146,7 +157,8 @@ impl Bench {
             wander[1] += PART * (wander[0] - wander[1]);
             let above_mv = self.pins_mv[pin] - f64::from(MYO_REST_MV);
             // Two low-passes leave 0.071 of white noise. A broken pin does not fluctuate.
-            let lively = if above_mv > 0.0 && self.pins_mv[pin] < 3_200.0 { self.lively } else { 0.0 };
+            let moves = above_mv > 0.0 && self.pins_mv[pin] < 3_200.0 && self.lifted != Some(pin);
+            let lively = if moves { self.lively } else { 0.0 };
             self.pins_mv[pin] + above_mv * lively * (wander[1] / 0.071).clamp(-3.0, 3.0)
         })
     }

@@ -5,6 +5,7 @@ use tenax_hal_shim::wire::EventKind;
 use tenax_hal_shim::words::{self, Fault, Prompt, Reason};
 
 use crate::emg::calibration::{Calibration, Progress};
+use crate::emg::intent::Wish;
 use crate::emg::mains::mains_of;
 use crate::emg::model::EmgModel;
 use crate::emg::quality::Quality;
@@ -35,6 +36,8 @@ pub struct Muscles {
     emg: Emg,
     health: [SensorHealth; 2],
     missed: [u8; 2],
+    /// Whether each has given two active readings in a row that differ: a glitch or a frozen sensor is not a wish.
+    confirmed: [bool; 2],
     /// Why each is lost, as it was told.
     lost: [Option<Reason>; 2],
     /// The last readings that were in range, uV above the live zero.
@@ -55,7 +58,10 @@ impl Muscles {
             self.health[n].take(&LIMITS, sample)
         };
         let uv = reading.ok().map(uv_of_sample);
+        let was_active = self.emg.is_active(n);
         self.read(n, uv, journal);
+        let differs = self.health[n].same() == 0;
+        self.confirmed[n] = self.emg.is_active(n) && (self.confirmed[n] || (was_active && differs));
         uv
     }
 
@@ -65,6 +71,7 @@ impl Muscles {
         self.missed[n] = self.missed[n].saturating_add(1);
         let gone = self.missed[n] >= MISSES;
         if gone {
+            self.confirmed[n] = false;
             self.read(n, None, journal);
         }
         gone
@@ -99,10 +106,16 @@ impl Muscles {
     /// What the wearer wants. While they calibrate, nothing, and nobody else moves the hand.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
-        let verdict = self.emg.verdict();
-        match self.lesson {
-            None => verdict,
-            Some(_) => Verdict { active: true, known: verdict.known, ..Verdict::default() },
+        let mut verdict = self.emg.verdict();
+        // A wish is decided with the extensor's reading; the flexor's activity silences from its own on.
+        verdict.active |= self.emg.is_active(0) || self.emg.is_active(1);
+        let at_rest = Verdict { active: true, known: verdict.known, ..Verdict::default() };
+        let opens = self.model.as_ref().map_or(1, EmgModel::opening_site);
+        match verdict.wish {
+            _ if self.lesson.is_some() => at_rest,
+            Wish::Open if !self.confirmed[opens] => at_rest,
+            Wish::Close if !self.confirmed[1 - opens] => at_rest,
+            _ => verdict,
         }
     }
 
