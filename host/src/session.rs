@@ -240,13 +240,14 @@ pub fn replay(
     board: &Board,
     progress: &mut dyn FnMut(f64),
 ) -> anyhow::Result<Outcome> {
-    replay_with(path, recipe, seed, board, &mut (), progress)
+    replay_with(path, recipe, None, seed, board, &mut (), progress)
 }
 
-/// Plays a recording; `recorder` is told of the run as it goes.
+/// Plays a recording to a board that is calibrated to this wearer; `recorder` is told of the run as it goes.
 pub fn replay_with(
     path: &Path,
     recipe: Option<&str>,
+    calibrated: Option<EmgModel>,
     seed: u64,
     board: &Board,
     recorder: &mut dyn Recorder,
@@ -254,11 +255,12 @@ pub fn replay_with(
 ) -> anyhow::Result<Outcome> {
     let recording = Recording::read(path)?;
     let named = library::choose(&recording, path, recipe)?;
-    let plant = match &named {
+    let mut plant = match &named {
         Some(named) => ReplayPlant::new(&recording, &named.recipe, seed)
             .with_context(|| format!("recipe {}", named.name))?,
         None => ReplayPlant::plain(&recording, seed)?,
     };
+    plant.calibrated = calibrated;
     let (zero_s, end_s) = (plant.time_zero_s(), plant.time_zero_s() + plant.duration_s());
     // Of the rows held before and after, as much as shows where the recording begins and ends.
     let margin_s = (0.05 * recording.duration_s()).max(0.02);

@@ -36,6 +36,16 @@ pub struct Wearer {
     pub active_permille: u64,
     /// Ticks in which the reflex drove the motor at all: a silence means something only beside this.
     pub reflex_ticks: u64,
+    /// For how long the muscles closed the hand, s.
+    pub closing_s: f64,
+    /// For how long they opened it, s.
+    pub opening_s: f64,
+    /// The longest time for which they opened it without a pause, ms.
+    pub longest_open_ms: f64,
+    /// The longest for which they closed it, ms.
+    pub longest_close_ms: f64,
+    /// How often a myosensor was lost, for whatever reason.
+    pub faults: usize,
 }
 
 /// What the two muscles' pins last read, mV above rest.
@@ -119,6 +129,24 @@ pub struct Judge {
     reflex_while_active: u64,
     slow_frames: u64,
     active_slow_frames: u64,
+    closed: Stretch,
+    opened_by_muscle: Stretch,
+}
+
+/// Ticks in which something was so.
+#[derive(Clone, Copy, Debug, Default)]
+struct Stretch {
+    now: u64,
+    longest: u64,
+    all: u64,
+}
+
+impl Stretch {
+    fn push(&mut self, is: bool) {
+        self.now = if is { self.now + 1 } else { 0 };
+        self.longest = self.longest.max(self.now);
+        self.all += u64::from(is);
+    }
 }
 
 impl Default for Judge {
@@ -152,6 +180,8 @@ impl Judge {
             reflex_while_active: 0,
             slow_frames: 0,
             active_slow_frames: 0,
+            closed: Stretch::default(),
+            opened_by_muscle: Stretch::default(),
         }
     }
 }
@@ -169,6 +199,11 @@ impl Recorder for Judge {
     fn slow(&mut self, slow: &Slow) {
         self.slow_frames += 1;
         self.active_slow_frames += u64::from(slow.wearer_active);
+        for (_, tick) in ticks(slow) {
+            let wearers = tick.source == DriveSource::Wearer;
+            self.closed.push(wearers && tick.drive.closes());
+            self.opened_by_muscle.push(wearers && tick.drive.opens());
+        }
         let by_reflex =
             |tick: &TickRecord| tick.source == DriveSource::Reflex && tick.drive != MotorDrive::Coast;
         for (frame, _) in ticks(slow).filter(|(_, tick)| by_reflex(tick)) {
@@ -200,15 +235,21 @@ impl Judge {
         }
     }
 
-    /// The verdict over the run; `active_first_s` is when a myosensor first became active.
+    /// The verdict over the run; `active_first_s` is when a myosensor first became active, `faults` how often one was lost.
     #[must_use]
-    pub fn verdict(&self, active_first_s: Option<f64>) -> Wearer {
+    pub fn verdict(&self, active_first_s: Option<f64>, faults: usize) -> Wearer {
+        let seconds = |ticks: u64| ticks as f64 / f64::from(FRAME_HZ);
         Wearer {
             reflex_while_active: self.reflex_while_active,
             open_latency_ms: self.slowest.map(|frames| frames as f64 * 1e3 / f64::from(FRAME_HZ)),
             active_first_s,
             active_permille: (1_000 * self.active_slow_frames).checked_div(self.slow_frames).unwrap_or(0),
             reflex_ticks: self.reflex_ticks,
+            closing_s: seconds(self.closed.all),
+            opening_s: seconds(self.opened_by_muscle.all),
+            longest_open_ms: 1e3 * seconds(self.opened_by_muscle.longest),
+            longest_close_ms: 1e3 * seconds(self.closed.longest),
+            faults,
         }
     }
 }
