@@ -29,7 +29,7 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use crate::channel::{COUNT, FRAMES_PER_SLOW_FRAME, PVDF_COUNT, STRAIN_COUNT};
 use crate::detector::{DetectorId, Evidence};
 use crate::motor::MotorDrive;
-use crate::words::{Cause, Codes, Consent, Fault, GripMode, Kept, Line, NoLesson};
+use crate::words::{Calibration, Cause, Codes, Consent, Fault, GripMode, Kept, Line, NoLesson};
 
 pub use self::samples::SamplesSum;
 pub use self::tick::TickRecord;
@@ -174,6 +174,8 @@ pub enum EventKind {
     /// From here on the line's commands are carried out without consent (true), or with it only (false). Told at the start
     /// if it is so, and when the setting changes.
     LineTrusted(bool),
+    /// The calibration of the myosensors goes on, or is over.
+    Calibration(Calibration),
 }
 
 /// Why a command was not carried out.
@@ -318,6 +320,9 @@ pub enum Down {
         /// That number.
         nonce: u32,
     },
+    /// Calibrate the myosensors to the wearer: three prompts of 5 s come up as [`EventKind::Calibration`], then the result.
+    /// Meanwhile the muscles move nothing. Refused while something is held.
+    CalibrateEmg,
 }
 
 impl Down {

@@ -65,6 +65,16 @@ pub enum Reason {
     Stuck,
     /// Loud by itself, again and again, while its neighbours are quiet: hum, a bad contact, a crack.
     Noisy,
+    /// A myosensor without contact: no number, far below the wearer's rest, or as restless as a loose electrode.
+    NoContact,
+    /// A myosensor's envelope stands still and mains is in it.
+    Hum,
+    /// A myosensor's envelope climbs and climbs.
+    Creep,
+    /// A myosensor's envelope stands still, as none of a muscle does.
+    Flat,
+    /// A myosensor has been active for longer than anybody keeps up.
+    Endless,
 }
 
 /// What the fingertip can no longer do.
@@ -223,9 +233,95 @@ pub enum Kept {
     Zero,
     /// What was set from outside, or measured by a stroke.
     Settings,
+    /// The wearer's calibration of the myosensors.
+    Emg,
 }
 
 impl Kept {
     /// All of it.
-    pub const ALL: [Self; 3] = [Self::Network, Self::Zero, Self::Settings];
+    pub const ALL: [Self; 4] = [Self::Network, Self::Zero, Self::Settings, Self::Emg];
+}
+
+/// What the wearer is asked to do during the calibration of the myosensors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Prompt {
+    /// Relax.
+    Rest,
+    /// Hold the contraction that shall close the hand.
+    Close,
+    /// Hold the contraction that shall open it.
+    Open,
+}
+
+impl Prompt {
+    /// What the wearer is told.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Rest => "let the arm lie and relax",
+            Self::Close => "hold the contraction that shall close the hand",
+            Self::Open => "hold the contraction that shall open the hand",
+        }
+    }
+}
+
+/// Why a calibration of the myosensors was not taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum CalibrationRefusal {
+    /// An envelope wandered while the wearer should rest: a contraction, a loose electrode, interference.
+    RestNotQuiet,
+    /// Closing did not stand out from rest.
+    NoClosing,
+    /// Opening did not stand out from rest.
+    NoOpening,
+    /// Both contractions drive the electrodes in the same proportion.
+    SameDirection,
+    /// The states differ, but by less than they fluctuate.
+    Overlap,
+    /// An envelope stood still during a contraction, as none of a muscle does.
+    NotAMuscle,
+    /// An envelope was at the top of its range.
+    Saturated,
+    /// A sensor gave no number.
+    SensorLost,
+    /// The words are not those of a model.
+    Damaged,
+}
+
+impl CalibrationRefusal {
+    /// What the wearer is told.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::RestNotQuiet => "rest was not quiet",
+            Self::NoClosing => "closing did not stand out from rest",
+            Self::NoOpening => "opening did not stand out from rest",
+            Self::SameDirection => "both contractions drive the electrodes alike",
+            Self::Overlap => "the contractions fluctuate more than they differ",
+            Self::NotAMuscle => "an envelope stood still during a contraction",
+            Self::Saturated => "an envelope was at the top of its range",
+            Self::SensorLost => "a myosensor gave no number",
+            Self::Damaged => "what was kept is not a calibration",
+        }
+    }
+}
+
+impl core::fmt::Display for CalibrationRefusal {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// How the calibration of the myosensors goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Calibration {
+    /// The wearer shall do this for the next 5 s.
+    Asks(Prompt),
+    /// It is in force.
+    Done {
+        /// The smallest distance of two of the three states, in thousandths of their common standard deviation.
+        separation_permille: i32,
+    },
+    /// It is not, and what was in force before still is.
+    Refused(CalibrationRefusal),
 }

@@ -17,7 +17,8 @@ use tenax_hal_shim::wire::{
     Slow, TickRecord, Up, VERSION, encode,
 };
 use tenax_hal_shim::words::{
-    Capability, Cause, Code, Consent, DriveSource, Fault, GripMode, Kept, Line, NoLesson, Reason,
+    Calibration, CalibrationRefusal, Capability, Cause, Code, Consent, DriveSource, Fault, GripMode, Kept,
+    Line, NoLesson, Prompt, Reason,
 };
 
 /// Writes a message's line, and reads its bytes back.
@@ -48,6 +49,7 @@ fn down() -> Vec<Down> {
         Down::Settings(17),
         Down::Hello,
         Down::Open { nonce: 0xDEAD_BEEF },
+        Down::CalibrateEmg,
     ]
 }
 
@@ -164,6 +166,11 @@ fn up() -> Vec<Up> {
         EventKind::Armed(Consent::Muscles),
         EventKind::Disarmed,
         EventKind::LineTrusted(true),
+        EventKind::Calibration(Calibration::Asks(Prompt::Open)),
+        EventKind::Calibration(Calibration::Done { separation_permille: 5_900 }),
+        EventKind::Calibration(Calibration::Refused(CalibrationRefusal::Damaged)),
+        EventKind::Fault(Fault::SensorLost { channel: 39, reason: Reason::Endless }),
+        EventKind::Fault(Fault::RecordDamaged(Kept::Emg)),
     ];
     all.extend(events.map(|kind| Up::Event(Event { frame: 50, kind })));
     all.extend(answers().into_iter().map(|answer| Up::Answer { of: 7, frame: 50, answer }));

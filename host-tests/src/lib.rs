@@ -14,8 +14,35 @@ use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::front_end::{MYO_REST_MV, fsr_mv, fsr_quadrants_n};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Event, EventKind, Slow};
-use tenax_hal_shim::words::{Cause, GripMode};
+use tenax_hal_shim::words::{Cause, GripMode, Kept};
+use tenax_logic::emg::model::EmgModel;
 use tenax_logic::fingertip::Fingertip;
+use tenax_logic::store::payload;
+
+/// Every channel at rest, the muscles at the wearer's.
+fn relaxed() -> [f64; COUNT] {
+    let mut pins_mv = CHANNELS.map(|channel| f64::from(channel.rest_mv));
+    pins_mv[MYO_FLEXOR] += 50.0;
+    pins_mv[MYO_EXTENSOR] += 50.0;
+    pins_mv
+}
+
+/// A fingertip that is calibrated to the scenes' wearer and trusts its line.
+#[must_use]
+pub fn calibrated() -> Fingertip {
+    let mut fingertip = Fingertip::trusting();
+    fingertip.restore(Kept::Emg, &payload::of_emg(&wearer()));
+    fingertip
+}
+
+/// The scenes' wearer.
+///
+/// # Panics
+/// Never: this wearer's contractions separate.
+#[must_use]
+pub fn wearer() -> EmgModel {
+    EmgModel::of_uv([50_000; 2], [900_000, 95_000], [80_000, 560_000]).expect("they separate")
+}
 
 /// A fingertip whose pins are set by hand. The converter's noise is +-2 of a 14-bit sample, from a seed.
 #[derive(Debug)]
@@ -33,8 +60,15 @@ pub struct Bench {
     /// Load that goes from element to element of the array in a slow frame while the whole stays the same, mV at most:
     /// an object that slides.
     pub sliding_mv: f64,
+    /// How a contraction fluctuates, as a part of it, rms: an envelope that stands still is no muscle's.
+    pub lively: f64,
+    /// A myosensor's pin whose electrode is off the skin: it does not fluctuate.
+    pub lifted: Option<usize>,
     /// Frames given so far.
     pub frames: u32,
+    muscle_noise: ChaCha8Rng,
+    /// Two low-passes each.
+    wander: [[f64; 2]; 2],
     noise: ChaCha8Rng,
 }
 
@@ -43,13 +77,17 @@ impl Bench {
     #[must_use]
     pub fn new(seed: u64) -> Self {
         Self {
-            fingertip: Fingertip::trusting(),
-            pins_mv: CHANNELS.map(|channel| f64::from(channel.rest_mv)),
+            fingertip: calibrated(),
+            pins_mv: relaxed(),
             events: Vec::new(),
             slows: Vec::new(),
             vibration_mv: 0.0,
             sliding_mv: 0.0,
+            lively: 0.06,
+            lifted: None,
             frames: 0,
+            muscle_noise: ChaCha8Rng::seed_from_u64(seed ^ 0x0E46),
+            wander: [[0.0; 2]; 2],
             noise: ChaCha8Rng::seed_from_u64(seed),
         }
     }
@@ -92,11 +130,14 @@ impl Bench {
         if self.sliding_mv > 0.0 && sequence.is_multiple_of(u32::from(FRAMES_PER_SLOW_FRAME)) {
             self.slide();
         }
+        let [flexor, extensor] = self.contract();
+        let mut pins_mv = self.pins_mv;
+        pins_mv[MYO_FLEXOR] = flexor;
+        pins_mv[MYO_EXTENSOR] = extensor;
         let mut samples = [0; COUNT];
         for (n, sample) in samples.iter_mut().enumerate() {
             let shake_mv = if (PVDF..PVDF + PVDF_COUNT).contains(&n) { shake_mv } else { 0.0 };
-            let exact =
-                i32::from(sample_from_mv((self.pins_mv[n] + shake_mv).clamp(0.0, 3_300.0).round() as u32));
+            let exact = i32::from(sample_from_mv((pins_mv[n] + shake_mv).clamp(0.0, 3_300.0).round() as u32));
             *sample = (exact + self.noise.random_range(-2..=2)).clamp(0, i32::from(SAMPLE_MAX)) as u16;
         }
         let mut frame = Frame { valid: true, ..Frame::lost(sequence) };
@@ -105,6 +146,22 @@ impl Bench {
         frame.switch_a = wired[tenax_hal_shim::channel::RANK_SWITCH_A];
         frame.switch_b = wired[tenax_hal_shim::channel::RANK_SWITCH_B];
         frame
+    }
+
+    /// Both myosensors' pins: what is above rest fluctuates, slower than 6 Hz.
+    fn contract(&mut self) -> [f64; 2] {
+        const PART: f64 = 0.02;
+        [MYO_FLEXOR, MYO_EXTENSOR].map(|pin| {
+            let wander = &mut self.wander[pin - MYO_FLEXOR];
+            let normal: f64 = (0..12).map(|_| self.muscle_noise.random_range(-0.5..0.5)).sum();
+            wander[0] += PART * (normal - wander[0]);
+            wander[1] += PART * (wander[0] - wander[1]);
+            let above_mv = self.pins_mv[pin] - f64::from(MYO_REST_MV);
+            // Two low-passes leave 0.071 of white noise. A broken pin does not fluctuate.
+            let moves = above_mv > 0.0 && self.pins_mv[pin] < 3_200.0 && self.lifted != Some(pin);
+            let lively = if moves { self.lively } else { 0.0 };
+            self.pins_mv[pin] + above_mv * lively * (wander[1] / 0.071).clamp(-3.0, 3.0)
+        })
     }
 
     /// Each element gives some load to another one.

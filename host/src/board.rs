@@ -6,6 +6,7 @@
 pub mod agreement;
 #[cfg(feature = "emulator")]
 pub mod emulated;
+pub mod kept;
 pub mod line_log;
 pub mod recorder;
 pub mod simulated;
@@ -16,6 +17,7 @@ use tenax_hal_shim::frame::Scan;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Answer, Counters, Down, Event, NetworkState, Slow, Up};
 use tenax_hal_shim::words::{Fault, Kept};
+use tenax_logic::emg::model::EmgModel;
 
 pub use recorder::Recorder;
 
@@ -66,6 +68,8 @@ pub struct Summary {
     pub stack_bytes: Option<u64>,
     /// What was done to the flash.
     pub flash: FlashUse,
+    /// The wearer to whom the board was calibrated before the start.
+    pub calibrated: Option<EmgModel>,
 }
 
 /// Everything of a run: its summary, and what a [`Recorder`] hears, kept. An hour takes a gigabyte, so this is for short

@@ -10,7 +10,7 @@ use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{
     Answer, BadFrame, Event, EventKind, NetworkState, Refusal, Setting, Slow, TickRecord, Up, VERSION,
 };
-use tenax_hal_shim::words::Line;
+use tenax_hal_shim::words::{Calibration, Line};
 
 use crate::link::{Counts, Heard, Inbox};
 use crate::report::{in_words, kept_in_words};
@@ -264,6 +264,19 @@ fn event_words(f: &mut fmt::Formatter<'_>, event: &Event) -> fmt::Result {
         EventKind::LineTrusted(true) => f.write_str("the line is trusted: it moves the hand without consent"),
         EventKind::LineTrusted(false) => f.write_str("the line is trusted no more"),
         EventKind::EventsLost(count) => write!(f, "{count} events lost"),
+        EventKind::Calibration(Calibration::Asks(prompt)) => {
+            write!(f, "calibration: {}, for 5 s from now", prompt.name())
+        }
+        EventKind::Calibration(Calibration::Done { separation_permille }) => {
+            write!(
+                f,
+                "calibration: done, the states are {:.1} deviations apart",
+                f64::from(separation_permille) / 1e3
+            )
+        }
+        EventKind::Calibration(Calibration::Refused(refusal)) => {
+            write!(f, "calibration: refused, {refusal}; what was in force before still is")
+        }
     }
 }
 

@@ -18,6 +18,7 @@
 //! # Ok::<(), anyhow::Error>(())
 //! ```
 
+pub mod calibrate;
 pub mod facts;
 pub mod filter;
 pub mod library;

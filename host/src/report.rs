@@ -9,8 +9,8 @@ pub mod text;
 pub mod wearer;
 
 use serde::Serialize;
-use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ};
-use tenax_hal_shim::wire::EventKind;
+use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ, MYO_EXTENSOR, MYO_FLEXOR};
+use tenax_hal_shim::wire::{Event, EventKind};
 use tenax_hal_shim::words::{Fault, Kept};
 
 use crate::board::Summary;
@@ -208,7 +208,9 @@ impl Report {
                 dent_mm: truth.crushed_at_s.map(|_| truth.dent_mm),
                 broken_at_s: truth.broken_at_s,
             }),
-            wearer: subject.judge.verdict(timeline.wearer(&run.events).first().copied()),
+            wearer: subject
+                .judge
+                .verdict(timeline.wearer(&run.events).first().copied(), myosensors_lost(run)),
             detectors: scores::Detectors::of(timeline, &run.events, subject.truth),
             faults: faults(run, timeline),
             line: Line {
@@ -220,6 +222,13 @@ impl Report {
             replay: None,
         }
     }
+}
+
+/// How often a myosensor was lost.
+fn myosensors_lost(run: &Summary) -> usize {
+    let is_one = |channel: u8| (MYO_FLEXOR..=MYO_EXTENSOR).contains(&usize::from(channel));
+    let lost = |event: &&Event| matches!(event.kind, EventKind::Fault(Fault::SensorLost { channel, .. }) if is_one(channel));
+    run.events.iter().filter(lost).count()
 }
 
 fn faults(run: &Summary, timeline: &Timeline) -> Vec<FaultLine> {
@@ -264,5 +273,6 @@ pub const fn kept_in_words(kept: Kept) -> &'static str {
         Kept::Network => "the network's weights",
         Kept::Zero => "the force sensor's zeros",
         Kept::Settings => "the settings",
+        Kept::Emg => "the wearer's calibration",
     }
 }

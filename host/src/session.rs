@@ -20,11 +20,13 @@ use anyhow::{Context, bail};
 use tenax_hal_shim::frame::Scan;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Down, Slow};
-use tenax_scene::plant::{Pins, Plant};
+use tenax_logic::emg::model::EmgModel;
+use tenax_scene::plant::{Calibrated, Pins, Plant};
 use tenax_scene::{SceneFile, World, builtin};
 
 #[cfg(feature = "emulator")]
 use crate::board::emulated;
+use crate::board::kept::model_of;
 use crate::board::simulated::{frames_in, seconds_of};
 use crate::board::{Recorder, Run, Summary, simulated};
 use crate::input;
@@ -142,9 +144,14 @@ struct Witness {
 }
 
 impl Witness {
-    fn new(zero_s: f64, span_s: (f64, f64)) -> Self {
+    fn new(zero_s: f64, span_s: (f64, f64), calibrated: Option<&EmgModel>) -> Self {
         let sketch = Sketch::new(zero_s, span_s);
-        Self { timeline: Timeline::new(zero_s), judge: Judge::default(), added: Added::default(), sketch }
+        Self {
+            timeline: Timeline::new(zero_s),
+            judge: Judge::new(calibrated),
+            added: Added::default(),
+            sketch,
+        }
     }
 }
 
@@ -199,6 +206,10 @@ impl Plant for Drawn {
         self.world.slipping()
     }
 
+    fn calibrated(&self) -> Option<Calibrated> {
+        self.world.calibrated()
+    }
+
     fn duration_s(&self) -> f64 {
         self.world.duration_s()
     }
@@ -223,8 +234,9 @@ pub fn scene_with(
     progress: &mut dyn FnMut(f64),
 ) -> anyhow::Result<Outcome> {
     let span_s = (0.0, seconds_of(frames_in(file.duration_s())));
-    let mut witness = Witness::new(0.0, span_s);
     let plant = Drawn::new(World::new(file, seed), span_s);
+    let calibrated = plant.calibrated().as_ref().map(model_of).transpose()?;
+    let mut witness = Witness::new(0.0, span_s, calibrated.as_ref());
     let (run, mut plant) = board.record(plant, &mut (&mut witness, recorder), progress)?;
     plant.draw();
     // The oracle's is always the host's: it is a bound on the gripper, not on the image.
@@ -257,13 +269,14 @@ pub fn replay(
     board: &Board,
     progress: &mut dyn FnMut(f64),
 ) -> anyhow::Result<Outcome> {
-    replay_with(path, recipe, seed, board, &mut (), progress)
+    replay_with(path, recipe, None, seed, board, &mut (), progress)
 }
 
-/// Plays a recording; `recorder` is told of the run as it goes.
+/// Plays a recording to a board that is calibrated to this wearer; `recorder` is told of the run as it goes.
 pub fn replay_with(
     path: &Path,
     recipe: Option<&str>,
+    calibrated: Option<EmgModel>,
     seed: u64,
     board: &Board,
     recorder: &mut dyn Recorder,
@@ -271,17 +284,19 @@ pub fn replay_with(
 ) -> anyhow::Result<Outcome> {
     let recording = Recording::read(path)?;
     let named = library::choose(&recording, path, recipe)?;
-    let plant = match &named {
+    let mut plant = match &named {
         Some(named) => ReplayPlant::new(&recording, &named.recipe, seed)
             .with_context(|| format!("recipe {}", named.name))?,
         None => ReplayPlant::plain(&recording, seed)?,
     };
+    plant.calibrated = calibrated;
     let (zero_s, end_s) = (plant.time_zero_s(), plant.time_zero_s() + plant.duration_s());
     // Of the rows held before and after, as much as shows where the recording begins and ends.
     let margin_s = (0.05 * recording.duration_s()).max(0.02);
     let last_s = recording.first_s() + recording.duration_s();
     let span_s = (zero_s.max(recording.first_s() - margin_s), end_s.min(last_s + margin_s));
-    let mut witness = Witness::new(zero_s, span_s);
+    let calibrated = plant.calibrated().as_ref().map(model_of).transpose()?;
+    let mut witness = Witness::new(zero_s, span_s, calibrated.as_ref());
     let mut active = ActivePart::new(&recording, zero_s);
     let (run, _) = board.record(plant, &mut (&mut (&mut witness, &mut active), recorder), progress)?;
     let scene = name_of(path);

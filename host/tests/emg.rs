@@ -9,10 +9,9 @@ use std::fs;
 use std::path::PathBuf;
 
 use tenax::replay::{Recording, ReplayPlant, library};
-use tenax_hal_shim::channel::{
-    CHANNELS, FRAME_HZ, MYO_EXTENSOR, MYO_FLEXOR, MYO_SELECT, SCANS_PER_FRAME, select_of_place,
-};
+use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ, MYO_EXTENSOR, MYO_FLEXOR, MYO_SELECT, SCANS_PER_FRAME};
 use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::schedule::select_of_slot;
 use tenax_logic::emg::calibration::{Calibration, PROMPT_FRAMES, Progress};
 use tenax_logic::emg::intent::Wish;
 use tenax_logic::emg::mains::mains_of;
@@ -71,7 +70,7 @@ fn read(path: &std::path::Path, name: &str) -> Read {
             samples[0] += codes[MYO_FLEXOR];
             samples[1] += codes[MYO_EXTENSOR];
         }
-        let Some(muscle @ 0..=1) = select_of_place((frame % 25) as u8).checked_sub(MYO_SELECT) else {
+        let Some(muscle @ 0..=1) = select_of_slot((frame % 25) as u8).checked_sub(MYO_SELECT) else {
             continue;
         };
         let muscle = usize::from(muscle);

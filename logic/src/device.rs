@@ -23,6 +23,7 @@ use heapless::Vec;
 use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{Answer, Down, Received, Refusal, Setting, Up};
 use tenax_hal_shim::words::{Fault, Kept, Line};
@@ -101,9 +102,13 @@ impl Device {
         drive
     }
 
-    /// What a frame read, for whoever asks. Part of [`tick`](Self::tick).
+    /// What a frame read, for whoever asks, and what is thought about once a slow frame. Part of [`tick`](Self::tick).
     pub fn sampled(&mut self, frame: &Frame) {
         self.samples.take(frame);
+        // After the motor has been driven, so that nothing waits for it.
+        if frame.slot() == slot_of(Job::Save) {
+            self.fingertip.think();
+        }
     }
 
     /// Carries out a command, and gives the answer to it.

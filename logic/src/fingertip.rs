@@ -38,6 +38,8 @@ pub struct Fingertip {
     config: Config,
     /// Changes of the settings, so that nobody has to compare them all.
     settings_changed: u32,
+    /// Calibrations of the myosensors since the start.
+    calibrated: u32,
     senses: Senses,
     detectors: Detectors,
     /// Those that the reflex may act on.
@@ -79,6 +81,10 @@ impl Fingertip {
                 zero_uv.map(|zero_uv| self.senses.force_sensor_mut().restore_zero(zero_uv)).is_some()
             }
             Kept::Settings => payload::restore_settings(&mut self.config, payload),
+            Kept::Emg => {
+                let model = payload::emg(payload);
+                model.map(|model| self.senses.muscles_mut().calibrate(model)).is_some()
+            }
         };
         if !restored {
             self.report(Fault::RecordDamaged(kept));
@@ -102,6 +108,7 @@ impl Fingertip {
             }
             Kept::Zero => Record::Zero(now.zero),
             Kept::Settings => Record::Settings(payload::of_settings(&self.config)),
+            Kept::Emg => Record::Emg(self.senses.muscles().model().map(payload::of_emg)?),
         })
     }
 
@@ -109,6 +116,7 @@ impl Fingertip {
     fn now(&self) -> Now {
         Now {
             settings_changed: self.settings_changed,
+            calibrated: self.calibrated,
             zero: payload::of_zero(self.senses.force_sensor().zero_uv()),
             updates: self.detectors.hebbian.updates(),
             at_rest: self.is_at_rest(),
@@ -127,6 +135,13 @@ impl Fingertip {
     pub fn tick(&mut self, frame: &Frame) -> MotorDrive {
         self.sense(frame);
         self.act(frame)
+    }
+
+    /// What about the muscles takes too long for a tick. Call it once a slow frame, always after the same tick.
+    pub fn think(&mut self) {
+        if self.senses.muscles_mut().think(&mut self.journal) {
+            self.calibrated = self.calibrated.wrapping_add(1);
+        }
     }
 
     /// Evidence from outside, from the next frame on.
@@ -335,8 +350,8 @@ impl Fingertip {
             mode: self.mode,
             forces: self.senses.forces,
             s2_permille: self.config.friction.s2_permille,
-            flexor_mv: self.senses.gate.flexor.mv(),
-            extensor_mv: self.senses.gate.extensor.mv(),
+            flexor_mv: self.senses.gate.flexor_mv(),
+            extensor_mv: self.senses.gate.extensor_mv(),
             wearer_active: self.senses.gate.is_active(),
             lesson: self.detectors.hebbian.lesson().ok(),
             evidence: self.detectors.evidence(&self.config),

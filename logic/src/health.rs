@@ -124,6 +124,12 @@ impl SensorHealth {
         self.same
     }
 
+    /// Why it gives no number any more, if it does not.
+    #[must_use]
+    pub const fn lost(&self) -> Option<Reason> {
+        self.lost
+    }
+
     /// Whether it gives no number any more.
     #[must_use]
     pub const fn is_lost(&self) -> bool {

@@ -43,6 +43,7 @@ pub mod hebbian;
 pub mod journal;
 pub mod low_pass;
 pub mod mode;
+pub mod muscles;
 pub mod plausibility;
 mod samples;
 pub mod senses;

@@ -20,6 +20,7 @@ use crate::gate::Gate;
 use crate::grip::Grip;
 use crate::health::{Change, Limits, SensorHealth};
 use crate::journal::Journal;
+use crate::muscles::Muscles;
 use crate::strain::Gauges;
 use crate::vibration::{Trust, Vibration, VibrationDetector};
 
@@ -30,12 +31,6 @@ const STALE_FRAMES: u32 = tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME as u32;
 /// Readings in a row that a quadrant may miss, its frames lost, before its last one is no reading of now. A tick that is
 /// always late loses the same places of every slow frame, and never enough in a row to be [`STALE_FRAMES`].
 const QUADRANT_MISSES: u8 = 2;
-/// The same for a muscle: all of one slow frame.
-const MUSCLE_MISSES: u8 = 3;
-/// Readings of each myosensor a second: three places in every slow frame.
-const MYO_HZ: u32 = 3 * SLOW_HZ;
-/// Equal readings of an active muscle in a row that no muscle gives: 50 ms. At rest, the general limit holds.
-const MYO_FROZEN_AFTER: u32 = MYO_HZ / 20;
 /// The hand is surely open when it has been opened for this long since it was last closed, in frames: at its slowest it has
 /// gone 2 cm.
 const OPEN_FRAMES: u32 = frames(600);
@@ -43,17 +38,15 @@ const OPEN_FRAMES: u32 = frames(600);
 const PRESSED_UV: i32 = 100_000;
 
 static FSR_LIMITS: Limits = Limits::of(&CHANNELS[FSR], SLOW_HZ);
-static MYO_LIMITS: Limits = Limits::of(&CHANNELS[MYO_FLEXOR], MYO_HZ);
 
 /// What the fingertip knows.
 #[derive(Clone, Debug, Default)]
 pub struct Senses {
     films: Films,
     fsr: [SensorHealth; FSR_COUNT],
-    myo: [SensorHealth; 2],
+    muscles: Muscles,
     fsr_readings: [Option<u16>; FSR_COUNT],
     fsr_missed: [u8; FSR_COUNT],
-    myo_missed: [u8; 2],
     fsr_seen: bool,
     pressed: bool,
     force_sensor: ForceSensor,
@@ -91,7 +84,7 @@ impl Senses {
             self.on_switch_a(config, usize::from(channel), frame.switch_a, journal);
         }
         if let Some(channel) = slot.switch_b {
-            self.on_switch_b(config, usize::from(channel), frame.switch_b, journal);
+            self.on_switch_b(usize::from(channel), frame.switch_b, journal);
         }
         self.gate.tick(&config.gate);
         if frame.ends_slow_frame() {
@@ -107,7 +100,7 @@ impl Senses {
         self.forces_are_new = false;
         let slot = &SCHEDULE[usize::from(frame.slot())];
         for channel in [slot.switch_a, slot.switch_b].into_iter().flatten() {
-            self.miss(config, usize::from(channel));
+            self.miss(usize::from(channel), journal);
         }
         if self.frames_lost == STALE_FRAMES {
             journal.fault(Fault::FramesLost { count: self.frames_lost });
@@ -153,6 +146,17 @@ impl Senses {
     #[must_use]
     pub const fn envelopes(&self) -> &[i32; PVDF_COUNT] {
         self.detector.envelopes()
+    }
+
+    /// Both myosensors.
+    #[must_use]
+    pub const fn muscles(&self) -> &Muscles {
+        &self.muscles
+    }
+
+    /// Both myosensors, to calibrate them.
+    pub const fn muscles_mut(&mut self) -> &mut Muscles {
+        &mut self.muscles
     }
 
     /// The gauges.
@@ -227,19 +231,19 @@ impl Senses {
         }
     }
 
-    fn on_switch_b(&mut self, config: &Config, channel: usize, sample: u16, journal: &mut Journal) {
+    fn on_switch_b(&mut self, channel: usize, sample: u16, journal: &mut Journal) {
         match channel {
             ARRAY..MYO_FLEXOR => {
                 let change = self.elements.take(channel - ARRAY, sample);
                 report(journal, channel, change);
             }
-            MYO_FLEXOR..=MYO_EXTENSOR => self.muscle(config, channel - MYO_FLEXOR, sample, journal),
+            MYO_FLEXOR..=MYO_EXTENSOR => self.muscle(channel - MYO_FLEXOR, sample, journal),
             _ => {}
         }
     }
 
     /// The frame that shows this channel was lost.
-    fn miss(&mut self, config: &Config, channel: usize) {
+    fn miss(&mut self, channel: usize, journal: &mut Journal) {
         match channel {
             FSR..ARRAY => {
                 let quadrant = channel - FSR;
@@ -252,9 +256,9 @@ impl Senses {
             ARRAY..MYO_FLEXOR => self.elements.lose(channel - ARRAY),
             MYO_FLEXOR..=MYO_EXTENSOR => {
                 let muscle = channel - MYO_FLEXOR;
-                self.myo_missed[muscle] = self.myo_missed[muscle].saturating_add(1);
-                if self.myo_missed[muscle] >= MUSCLE_MISSES {
-                    self.gate.muscle_mut(muscle).take(&config.gate, None);
+                if self.muscles.miss(muscle, journal) {
+                    self.gate.show(muscle, None);
+                    self.gate.take(self.muscles.verdict());
                 }
             }
             _ => {}
@@ -296,18 +300,10 @@ impl Senses {
         }
     }
 
-    fn muscle(&mut self, config: &Config, muscle: usize, sample: u16, journal: &mut Journal) {
-        self.myo_missed[muscle] = 0;
-        let sensor = self.gate.muscle_mut(muscle);
-        let channel = if muscle == 0 { MYO_FLEXOR } else { MYO_EXTENSOR };
-        let limits = if sensor.is_active() {
-            Limits { stuck_after: MYO_FROZEN_AFTER, ..MYO_LIMITS }
-        } else {
-            MYO_LIMITS
-        };
-        let (reading, change) = self.myo[muscle].take(&limits, sample);
-        report(journal, channel, change);
-        sensor.take(&config.gate, reading.ok());
+    fn muscle(&mut self, muscle: usize, sample: u16, journal: &mut Journal) {
+        let uv = self.muscles.take(muscle, sample, journal);
+        self.gate.show(muscle, uv.map(|uv| (uv / 1_000) as i16));
+        self.gate.take(self.muscles.verdict());
     }
 
     fn capabilities(&mut self, journal: &mut Journal) {

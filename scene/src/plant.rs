@@ -35,6 +35,22 @@ impl Pins {
     }
 }
 
+/// The wearer to whom the board was calibrated before the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Calibrated {
+    /// Whose envelopes are these, mV above the live zero, flexor first.
+    Levels {
+        /// At rest.
+        rest_mv: [u16; 2],
+        /// While closing.
+        close_mv: [u16; 2],
+        /// While opening.
+        open_mv: [u16; 2],
+    },
+    /// Whose calibration was kept in these words.
+    Words([i32; 10]),
+}
+
 /// A world (a scene) or a recording, seen from the board, one scan at a time.
 pub trait Plant: Send {
     /// Goes on by one scan period (125 us) under `drive` and gives the voltages at the pins at its end.
@@ -58,6 +74,11 @@ pub trait Plant: Send {
     /// Whether the object moves relative to the finger at this instant: what the oracle is told.
     fn slipping(&self) -> bool {
         false
+    }
+
+    /// The wearer to whom the board was calibrated before the start, if to any.
+    fn calibrated(&self) -> Option<Calibrated> {
+        None
     }
 
     /// How long it lasts, s.

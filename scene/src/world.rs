@@ -15,7 +15,7 @@ use crate::physics::gripper::Gripper;
 use crate::physics::hand::Hand;
 use crate::physics::stroke::Stroke;
 use crate::physics::wearer::{Effort, Wearer};
-use crate::plant::{Pins, Plant};
+use crate::plant::{Calibrated, Pins, Plant};
 use crate::random::Seeds;
 use crate::schedule::STEP_S;
 use crate::sensor::array::{Elements, Shakes};
@@ -235,6 +235,10 @@ impl Plant for World {
         self.converter.step(pins_v);
         self.faults.apply(t_s, pins_v);
         &self.pins
+    }
+
+    fn calibrated(&self) -> Option<Calibrated> {
+        self.wearer.calibrated()
     }
 
     fn commands(&mut self) -> Vec<Down> {

@@ -17,6 +17,7 @@ fn payload(kept: Kept, n: u32) -> Vec<u8> {
         Kept::Network => 5,
         Kept::Zero => 2,
         Kept::Settings => 3,
+        Kept::Emg => 4,
     };
     (0..words).flat_map(|word: u32| (n << 8 | word << 4 | kept as u32).to_le_bytes()).collect()
 }
@@ -41,7 +42,7 @@ fn number(flash: &TestFlash, found: &Found, kept: Kept) -> Option<u32> {
     Some(n)
 }
 
-fn numbers(flash: &TestFlash, found: &Found) -> [Option<u32>; 3] {
+fn numbers(flash: &TestFlash, found: &Found) -> [Option<u32>; Kept::ALL.len()] {
     Kept::ALL.map(|kept| number(flash, found, kept))
 }
 
@@ -49,12 +50,12 @@ fn numbers(flash: &TestFlash, found: &Found) -> [Option<u32>; 3] {
 fn the_newest_of_each_kept_comes_back_from_a_sector_of_the_chip() {
     let mut flash = TestFlash::blank(128 * 1024 / 4);
     let (mut log, found) = open(&mut flash);
-    assert_eq!(numbers(&flash, &found), [None; 3]);
+    assert_eq!(numbers(&flash, &found), [None; Kept::ALL.len()]);
     for n in 0..50 {
-        save(&mut flash, &mut log, Kept::ALL[n as usize % 3], n).unwrap();
+        save(&mut flash, &mut log, Kept::ALL[n as usize % 4], n).unwrap();
     }
     let (_, found) = open(&mut flash);
-    assert_eq!(numbers(&flash, &found), [Some(48), Some(49), Some(47)]);
+    assert_eq!(numbers(&flash, &found), [Some(48), Some(49), Some(46), Some(47)]);
     assert_eq!(flash.erases, [0, 0], "a new chip is blank, and there was room");
 }
 

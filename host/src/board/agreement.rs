@@ -11,6 +11,7 @@ use tenax_logic::arming::DEBOUNCE_FRAMES;
 use tenax_logic::device::Device;
 
 use super::Run;
+use super::kept::device;
 
 /// What the host's build says to a run's codes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -36,11 +37,11 @@ impl Said {
 
 /// Puts codes that were recorded on any board through the host's build of the logic.
 ///
-/// `trusts_line` is the board's setting, `pressed` the frames in which it took a press of the button. `commands` are those that the board took, in order, each with the sequence number of the frame before whose tick it took
-/// it. No frame may have been lost. Scans that do not fill a frame are left out.
+/// `device` is the board as it was before the start ([`kept::device`](super::kept::device)), `pressed` the frames in which it
+/// took a press of the button. `commands` are those that the board took, in order, each with the sequence number of the
+/// frame before whose tick it took it. No frame may have been lost. Scans that do not fill a frame are left out.
 #[must_use]
-pub fn host_says(scans: &[Scan], trusts_line: bool, pressed: &[u32], commands: &[(u32, Down)]) -> Said {
-    let mut device = if trusts_line { Device::trusting() } else { Device::default() };
+pub fn host_says(scans: &[Scan], mut device: Device, pressed: &[u32], commands: &[(u32, Down)]) -> Said {
     let mut said = Said::default();
     let mut commands = (0..).zip(commands).peekable();
     let (frames, _) = scans.as_chunks::<SCANS_PER_FRAME>();
@@ -84,7 +85,12 @@ impl Agreement {
             networks: run.networks().count(),
             difference: difference(
                 run,
-                &host_says(&run.scans, run.trusts_line, &presses(&run.events), &run.taken),
+                &host_says(
+                    &run.scans,
+                    device(run.trusts_line, run.calibrated.as_ref()),
+                    &presses(&run.events),
+                    &run.taken,
+                ),
             ),
         }
     }

@@ -8,7 +8,6 @@ mod line;
 mod mishaps;
 mod nucleo;
 mod part;
-pub mod provision;
 mod scan_path;
 mod unwatched;
 mod wires;
@@ -33,6 +32,7 @@ use self::line::Line;
 use self::mishaps::Mishaps;
 use self::nucleo::Nucleo;
 use self::world::{Stretch, World};
+use super::kept::{Sectors, model_of};
 use super::line_log::LineLog;
 use super::simulated::frames_in;
 use super::{Recorder, Run, Summary};
@@ -162,12 +162,16 @@ pub fn record<P: Plant + 'static>(
     let mishaps = Mishaps::new(&options.mishaps);
     let flash = FlashArray::new(1_000 * options.word_us);
     let watched = [tick, after_tick, symbols.command];
+    // What somebody else wants in the flash is not mixed with a calibration.
+    let calibrated = match &options.flash {
+        None => plant.calibrated().as_ref().map(model_of).transpose()?,
+        Some(_) => None,
+    };
     let world = World::new(plant, frames, mishaps, cost, flash, &symbols, sender);
     let mut images =
         vec![Image::read(image, None).context("reading the image")?, cost::paint(&symbols.stack)?];
-    let provisioned =
-        (trusts_line && options.flash.is_none()).then(|| provision::Sectors::trusting().image());
-    if let Some((address, bytes)) = options.flash.clone().or(provisioned) {
+    let kept = Sectors::provisioned(trusts_line, calibrated.as_ref()).image();
+    if let Some((address, bytes)) = options.flash.clone().or(Some(kept)) {
         images.push(Image::new(Path::new("flash"), bytes, Some(address))?);
     }
     let (models, rate) = (options.models, options.instructions_per_second);
@@ -202,6 +206,7 @@ pub fn record<P: Plant + 'static>(
         tick_cost: world.tick_cost,
         stack_bytes: world.stack_bytes,
         flash: world.flash.done,
+        calibrated,
         ..heard
     };
     Ok((summary, world.plant))

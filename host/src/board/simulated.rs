@@ -10,9 +10,9 @@ use tenax_hal_shim::frame::{Frame, Scan, scan_of_pins};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Answer, Counters, Down, Received, Up};
 use tenax_logic::detectors::Said;
-use tenax_logic::device::Device;
 use tenax_scene::plant::Plant;
 
+use super::kept::{device, model_of};
 use super::{Recorder, Run, Summary};
 
 /// Who says that the object slips.
@@ -58,8 +58,11 @@ fn closed_loop<P: Plant>(
     let began = Instant::now();
     let frames = frames_in(plant.duration_s());
     let mut summary = Summary { starts: vec![None], ..Summary::default() };
-    let mut device = if plant.trusts_line() { Device::trusting() } else { Device::default() };
+    let calibrated =
+        plant.calibrated().map(|calibrated| model_of(&calibrated).expect("a plant's wearer is one"));
+    let mut device = device(plant.trusts_line(), calibrated.as_ref());
     summary.trusts_line = plant.trusts_line();
+    summary.calibrated = calibrated;
     if judge == Judge::Plant {
         device.fingertip_mut().act_on(DetectorSet::only(DetectorId::Injected));
     }

@@ -31,23 +31,23 @@ const RULES: [Rule; 7] = [
     },
     Rule {
         pattern: "emg_*rest*.csv",
-        promise: "relaxed muscles give no activity, and the reflex fires",
+        promise: "relaxed muscles give no activity and move nothing, and the reflex fires",
         judge: relaxed,
     },
     Rule {
         pattern: "emg_*fist*.csv",
-        promise: "a fist is noticed, the reflex is silent throughout",
-        judge: contracted,
+        promise: "a fist is noticed and never opens, the reflex is silent throughout",
+        judge: |report| contracted(report, report.wearer.longest_open_ms),
     },
     Rule {
         pattern: "emg_*extension*.csv",
-        promise: "extended fingers are noticed, the reflex is silent throughout",
-        judge: contracted,
+        promise: "an extension is noticed and never closes, the reflex is silent throughout",
+        judge: |report| contracted(report, report.wearer.longest_close_ms),
     },
     Rule {
         pattern: "emg_bursts*.csv",
         promise: "contractions are noticed, the reflex is silent throughout",
-        judge: contracted,
+        judge: |report| contracted(report, 0.0),
     },
     Rule {
         pattern: "pvdf_*onset*.csv",
@@ -115,10 +115,14 @@ fn rig(report: &Report) -> (String, bool) {
 fn relaxed(report: &Report) -> (String, bool) {
     // The control of the contracted recordings: the same grasp, and nobody but the reflex to hold it.
     let (detections, reflex_ticks) = (report.detectors.wearer.detections, report.wearer.reflex_ticks);
-    (format!("{detections} activities, {reflex_ticks} ticks of reflex"), detections == 0 && reflex_ticks > 0)
+    let moved_ms = report.wearer.longest_open_ms.max(report.wearer.longest_close_ms);
+    let figure =
+        format!("{detections} activities, {reflex_ticks} ticks of reflex, moved for {moved_ms:.0} ms");
+    (figure, detections == 0 && reflex_ticks > 0 && moved_ms == 0.0)
 }
 
-fn contracted(report: &Report) -> (String, bool) {
+/// `wrong_ms` is the longest motion that this contraction does not mean.
+fn contracted(report: &Report, wrong_ms: f64) -> (String, bool) {
     let Some(muscle) = report.replay.as_ref().and_then(|replay| replay.muscle.as_ref()) else {
         return ("no muscle in it".to_owned(), false);
     };
@@ -126,11 +130,11 @@ fn contracted(report: &Report) -> (String, bool) {
         return ("never noticed".to_owned(), false);
     };
     let figure = format!(
-        "noticed at {noticed_s:.4} s, {delay_ms:.1} ms after its onset; active for {:.0} %, {} reflex commands meanwhile",
+        "noticed at {noticed_s:.4} s, {delay_ms:.1} ms after its onset; active for {:.0} %, {} reflex commands meanwhile, wrong motion {wrong_ms:.0} ms",
         100.0 * muscle.active_part,
         muscle.reflex_while_active
     );
-    (figure, muscle.reflex_while_active == 0)
+    (figure, muscle.reflex_while_active == 0 && wrong_ms == 0.0)
 }
 
 fn s1(report: &Report, speaks: bool) -> (String, bool) {

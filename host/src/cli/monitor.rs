@@ -56,6 +56,8 @@ enum Send {
     Save,
     /// Forget all that the network has learned
     Forget,
+    /// Calibrate the myosensors to the wearer: three prompts of 5 s
+    CalibrateEmg,
 }
 
 impl From<Send> for Down {
@@ -67,6 +69,7 @@ impl From<Send> for Down {
             Send::Zero => Self::Zero,
             Send::Save => Self::Save,
             Send::Forget => Self::Forget,
+            Send::CalibrateEmg => Self::CalibrateEmg,
         }
     }
 }

@@ -14,7 +14,7 @@ use super::out;
 use super::progress::Progress;
 use super::workspace;
 use crate::plot::{draw, png};
-use crate::replay::Recording;
+use crate::replay::{Recording, calibrate};
 use crate::report::text::Text;
 use crate::session::{self, Board, Outcome};
 
@@ -33,6 +33,15 @@ pub struct Args {
     /// How the recording's columns reach the pins: a recipe file, or the name of one in recipes/ [default: by its name]
     #[arg(long, value_name = "FILE.toml|NAME", requires = "replay")]
     recipe: Option<String>,
+    /// First calibrate the board to the wearer of these recordings: rest, closing, opening [default: not calibrated]
+    #[arg(
+        long,
+        value_name = "REST.csv,CLOSE.csv,OPEN.csv",
+        value_delimiter = ',',
+        num_args = 3,
+        requires = "replay"
+    )]
+    calibrate_emg: Option<Vec<PathBuf>>,
     /// Seed of every noise
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -51,6 +60,10 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         Some(path) => Subject::Recording(path, Recording::read(path)?),
         None => Subject::Scene(Box::new(session::load_scene(&args.scene)?)),
     };
+    let recordings = args.calibrate_emg.as_deref();
+    let calibrated = recordings
+        .map(|recordings| calibrate::calibrate(recordings, args.recipe.as_deref(), args.seed))
+        .transpose()?;
     let name = match &subject {
         Subject::Recording(path, _) => session::name_of(path),
         Subject::Scene(file) => file.name.clone(),
@@ -63,7 +76,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         Subject::Recording(file, recording) => {
             let progress = Progress::new("replay", recording.duration_s());
             let (recipe, told) = (args.recipe.as_deref(), &mut |s| progress.at(s));
-            session::replay_with(file, recipe, args.seed, &board, &mut line, told)?
+            session::replay_with(file, recipe, calibrated, args.seed, &board, &mut line, told)?
         }
         Subject::Scene(file) => {
             let progress = Progress::new(&format!("scene {}", file.name), file.duration_s());

@@ -5,7 +5,7 @@ use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, SCAN_HZ, SCANS_PER_FRAME};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::Down;
 use tenax_scene::World;
-use tenax_scene::plant::{Pins, Plant};
+use tenax_scene::plant::{Calibrated, Pins, Plant};
 
 use super::trial::{Setup, Trial};
 use crate::board::Run;
@@ -73,6 +73,10 @@ impl Plant for Chain {
 
     fn trusts_line(&self) -> bool {
         self.setups.iter().any(|setup| setup.world.trusts_line())
+    }
+
+    fn calibrated(&self) -> Option<Calibrated> {
+        self.setups.first()?.world.calibrated()
     }
 
     fn slipping(&self) -> bool {

@@ -13,18 +13,22 @@ use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::SCHEDULE;
 use tenax_hal_shim::wire::{Slow, TickRecord};
 use tenax_hal_shim::words::DriveSource;
-use tenax_logic::config::Config;
-use tenax_logic::gate::DOMINANCE_PERMILLE;
+use tenax_logic::emg::intent::Intent;
+use tenax_logic::emg::model::EmgModel;
 
 use crate::board::Recorder;
 use crate::timeline::ticks;
+
+/// Above rest, mV: what is activity of any muscle.
+const ON_MV: i64 = 160;
 
 /// The wearer's part of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Wearer {
     /// Ticks in which the reflex drove the motor while a myosensor's last reading at the pin was above its threshold.
     pub reflex_while_active: u64,
-    /// The longest time from an opening wish at the pins to the motor opening, ms. Null where nobody wished to open.
+    /// The longest time from an opening wish at the pins to the motor opening, ms: from the first reading that is a fifth
+    /// above the calibrated opening, in its direction. Null where nobody wished to open, or nobody is calibrated.
     pub open_latency_ms: Option<f64>,
     /// When a myosensor first became active, s.
     pub active_first_s: Option<f64>,
@@ -32,6 +36,16 @@ pub struct Wearer {
     pub active_permille: u64,
     /// Ticks in which the reflex drove the motor at all: a silence means something only beside this.
     pub reflex_ticks: u64,
+    /// For how long the muscles closed the hand, s.
+    pub closing_s: f64,
+    /// For how long they opened it, s.
+    pub opening_s: f64,
+    /// The longest time for which they opened it without a pause, ms.
+    pub longest_open_ms: f64,
+    /// The longest for which they closed it, ms.
+    pub longest_close_ms: f64,
+    /// How often a myosensor was lost, for whatever reason.
+    pub faults: usize,
 }
 
 /// What the two muscles' pins last read, mV above rest.
@@ -50,26 +64,57 @@ impl Muscles {
         self.0[usize::from(muscle)] = i64::from(mv_from_sample(sample)) - i64::from(MYO_REST_MV);
     }
 
-    fn active(self, on_mv: i64) -> bool {
-        self.0.iter().any(|&mv| mv >= on_mv)
+    fn active(self, on_mv: [i64; 2]) -> bool {
+        self.0.iter().zip(on_mv).any(|(&mv, on_mv)| mv >= on_mv)
     }
 
-    /// Whether the extensor is active and clearly the stronger one; a shorted pin wishes nothing.
-    fn wish_to_open(self, on_mv: i64) -> bool {
-        let [flexor, extensor] = self.0;
-        let shorted = |mv: i64| mv + i64::from(MYO_REST_MV) > i64::from(CHANNELS[MYO_EXTENSOR].high_mv);
-        if shorted(flexor) || shorted(extensor) {
-            return false;
+    /// Whether a pin is out of range: what it says is no wish.
+    fn is_shorted(self) -> bool {
+        let high_mv = i64::from(CHANNELS[MYO_EXTENSOR].high_mv) - i64::from(MYO_REST_MV);
+        self.0.iter().any(|&mv| mv > high_mv)
+    }
+
+    /// Whether either pin gives no number of a muscle.
+    fn is_broken(self) -> bool {
+        let low_mv = i64::from(CHANNELS[MYO_EXTENSOR].low_mv) - i64::from(MYO_REST_MV);
+        self.is_shorted() || self.0.iter().any(|&mv| mv < low_mv)
+    }
+}
+
+/// What opens the hand at once: the contraction that the wearer has shown and a fifth more, in its own direction.
+#[derive(Clone, Copy, Debug)]
+struct Opening {
+    site: usize,
+    from_mv: f64,
+    /// Least ratio of this electrode to the other one.
+    ratio: f64,
+}
+
+impl Opening {
+    fn of(model: &EmgModel) -> Self {
+        let (opens, closes) = (model.opening_site(), model.closing_site());
+        let octaves = |level: i32| f64::from(level) / 1_024.0;
+        let ratio = |point: [i32; 2]| octaves(point[opens] - point[closes]);
+        let (open, close) = (ratio(model.open()), ratio(model.close()));
+        Self {
+            site: opens,
+            from_mv: 1.2 * octaves(model.open()[opens]).exp2() / 1e3,
+            ratio: (close + 0.62 * (open - close)).exp2(),
         }
-        let flexor = if flexor >= on_mv { flexor } else { 0 };
-        extensor >= on_mv && extensor * 1_000 > flexor * i64::from(DOMINANCE_PERMILLE)
+    }
+
+    fn is_wished(&self, muscles: Muscles) -> bool {
+        let Muscles(mv) = muscles;
+        let (own, other) = (mv[self.site] as f64, mv[1 - self.site].max(1) as f64);
+        !muscles.is_shorted() && own >= self.from_mv && own >= self.ratio * other
     }
 }
 
 /// Judges a run while it goes.
 #[derive(Clone, Debug)]
 pub struct Judge {
-    on_mv: i64,
+    on_mv: [i64; 2],
+    opening: Option<Opening>,
     muscles: Muscles,
     /// The scans of the frame that is not yet whole.
     scans: Vec<Scan>,
@@ -77,17 +122,54 @@ pub struct Judge {
     frames: usize,
     active: Frames,
     wish_since: Option<usize>,
+    /// Whether the wish of now has been answered.
+    opened: bool,
     slowest: Option<usize>,
     reflex_ticks: u64,
     reflex_while_active: u64,
     slow_frames: u64,
     active_slow_frames: u64,
+    closed: Stretch,
+    opened_by_muscle: Stretch,
+}
+
+/// Ticks in which something was so.
+#[derive(Clone, Copy, Debug, Default)]
+struct Stretch {
+    now: u64,
+    longest: u64,
+    all: u64,
+}
+
+impl Stretch {
+    fn push(&mut self, is: bool) {
+        self.now = if is { self.now + 1 } else { 0 };
+        self.longest = self.longest.max(self.now);
+        self.all += u64::from(is);
+    }
 }
 
 impl Default for Judge {
     fn default() -> Self {
+        Self::new(None)
+    }
+}
+
+impl Judge {
+    /// Of a hand that was calibrated to this wearer.
+    #[must_use]
+    pub fn new(calibrated: Option<&EmgModel>) -> Self {
+        // Whoever contracts with less than any muscle does is active all the same; a wearer whose rest is strong, later.
+        let on_mv = calibrated.map_or([ON_MV; 2], |model| {
+            let active = Intent::new(Some(model)).expected().map(|expected| expected.active);
+            active
+                .map(|level| (f64::from(level) / 1_024.0).exp2() / 1e3)
+                .map(|mv| ON_MV.max(mv.ceil() as i64))
+        });
         Self {
-            on_mv: i64::from(Config::default().gate.on_mv),
+            on_mv,
+            opening: calibrated.map(Opening::of),
+            opened: false,
             muscles: Muscles::default(),
             scans: Vec::with_capacity(SCANS_PER_FRAME),
             frames: 0,
@@ -98,6 +180,8 @@ impl Default for Judge {
             reflex_while_active: 0,
             slow_frames: 0,
             active_slow_frames: 0,
+            closed: Stretch::default(),
+            opened_by_muscle: Stretch::default(),
         }
     }
 }
@@ -115,6 +199,11 @@ impl Recorder for Judge {
     fn slow(&mut self, slow: &Slow) {
         self.slow_frames += 1;
         self.active_slow_frames += u64::from(slow.wearer_active);
+        for (_, tick) in ticks(slow) {
+            let wearers = tick.source == DriveSource::Wearer;
+            self.closed.push(wearers && tick.drive.closes());
+            self.opened_by_muscle.push(wearers && tick.drive.opens());
+        }
         let by_reflex =
             |tick: &TickRecord| tick.source == DriveSource::Reflex && tick.drive != MotorDrive::Coast;
         for (frame, _) in ticks(slow).filter(|(_, tick)| by_reflex(tick)) {
@@ -132,25 +221,35 @@ impl Judge {
         if self.muscles.active(self.on_mv) {
             self.active.push(frame);
         }
-        match (self.muscles.wish_to_open(self.on_mv), opens) {
+        let wishes = self.opening.is_some_and(|opening| opening.is_wished(self.muscles));
+        match (wishes, opens) {
+            // Interrupted: between a wish and a sensor that is lost, the hand may rest.
+            (true, false) if self.opened && self.muscles.is_broken() => {}
             (true, false) => self.wish_since = self.wish_since.or(Some(frame)),
             // Answered; or given up before it was: then it waited for as long as it lasted.
             (true, true) | (false, _) => {
-                let since = self.wish_since.take().or(opens.then_some(frame));
+                let since = self.wish_since.take().or((wishes && opens).then_some(frame));
                 self.slowest = self.slowest.max(since.map(|since| frame - since));
+                self.opened = wishes;
             }
         }
     }
 
-    /// The verdict over the run; `active_first_s` is when a myosensor first became active.
+    /// The verdict over the run; `active_first_s` is when a myosensor first became active, `faults` how often one was lost.
     #[must_use]
-    pub fn verdict(&self, active_first_s: Option<f64>) -> Wearer {
+    pub fn verdict(&self, active_first_s: Option<f64>, faults: usize) -> Wearer {
+        let seconds = |ticks: u64| ticks as f64 / f64::from(FRAME_HZ);
         Wearer {
             reflex_while_active: self.reflex_while_active,
             open_latency_ms: self.slowest.map(|frames| frames as f64 * 1e3 / f64::from(FRAME_HZ)),
             active_first_s,
             active_permille: (1_000 * self.active_slow_frames).checked_div(self.slow_frames).unwrap_or(0),
             reflex_ticks: self.reflex_ticks,
+            closing_s: seconds(self.closed.all),
+            opening_s: seconds(self.opened_by_muscle.all),
+            longest_open_ms: 1e3 * seconds(self.opened_by_muscle.longest),
+            longest_close_ms: 1e3 * seconds(self.closed.longest),
+            faults,
         }
     }
 }

@@ -26,7 +26,7 @@ fn an_overrun_costs_a_few_frames_and_is_told() {
 
     // Sequence numbers kept time and the switches kept step: from the next slow frame on, the samples are those that
     // the world had at those instants.
-    let host = host_says(&run.scans, run.trusts_line, &[], &[]).slows;
+    let host = host_says(&run.scans, device(run.trusts_line, run.calibrated.as_ref()), &[], &[]).slows;
     let same: Vec<bool> =
         host.iter().zip(&run.slows).map(|(host, image)| host.samples_sum == image.samples_sum).collect();
     assert_eq!((same.len(), same.iter().filter(|same| !**same).count()), (160, 1));

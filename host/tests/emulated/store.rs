@@ -3,6 +3,7 @@
 use tenax::board::agreement::Agreement;
 use tenax::board::emulated::provision::Sectors;
 use tenax::board::emulated::{Mishap, Options};
+use tenax::board::kept::Sectors;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{Down, Event, EventKind, Setting};

@@ -3,6 +3,9 @@
 
 use tenax_hal_shim::channel::FRAME_HZ;
 
+/// What the wearer is asked to do.
+pub use tenax_hal_shim::words::Prompt;
+
 use super::log2::level_of;
 use super::model::{EmgModel, Point, Refusal, octaves};
 use super::quality::TOP_UV;
@@ -21,17 +24,6 @@ const HELD_PERMILLE: u32 = 600;
 const STANDS_OUT: i32 = octaves(500);
 /// The standard deviation below which an envelope is no muscle's: 1 %. The quietest held contraction on record has 6 %.
 const STILL: i32 = octaves(15);
-
-/// What the wearer is asked to do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Prompt {
-    /// Relax.
-    Rest,
-    /// Hold the contraction that shall close the hand.
-    Close,
-    /// Hold the contraction that shall open it.
-    Open,
-}
 
 /// How it stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -163,6 +155,12 @@ impl Calibration {
             self.phases[phase].take(uv, |point| phase == 0 || stands_out(point));
         }
         Progress::Asks(prompt, PROMPT_FRAMES - within)
+    }
+
+    /// Whether the last prompt is over: what is taken next concludes, which is better done outside the tick.
+    #[must_use]
+    pub const fn is_over(&self, frame: u32) -> bool {
+        frame.wrapping_sub(self.began) >= 3 * PROMPT_FRAMES
     }
 
     fn conclude(&self) -> Result<EmgModel, Refusal> {

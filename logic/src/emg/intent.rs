@@ -49,6 +49,9 @@ const RATIO_STILL_CLOSES: i32 = 620;
 /// On the straight way from the closing contraction to the opening one, closing ends here, per mille.
 const NEARER_TO_CLOSING: i32 = 500;
 const STILL_NEARER_TO_CLOSING: i32 = 570;
+/// The part of the way from rest to the opening contraction, per mille, from which its electrode forbids closing: both
+/// muscles at once ask for nothing.
+const BOTH_PERMILLE: i32 = 600;
 /// Without the other electrode nothing tells a fist from an extension: closing then needs nearly all of its level.
 const CLOSE_ALONE: i32 = octaves(300);
 
@@ -105,6 +108,8 @@ struct Sites {
     close_ends: i32,
     opening_active: i32,
     opening_inactive: i32,
+    /// From here the opening electrode forbids closing.
+    both: i32,
     rest: [i32; 2],
     ratio_opens: i32,
     ratio_still_opens: i32,
@@ -141,6 +146,7 @@ impl Sites {
             close_ends: above_rest(0, close[0], END_PERMILLE, END_LEAST).min(close_begins - octaves(100)),
             opening_active,
             opening_inactive: opening_active - octaves(300),
+            both: rest[1] + part(open[1] - rest[1], BOTH_PERMILLE),
             rest,
             ratio_opens: at_ratio(RATIO_OPENS),
             ratio_still_opens: at_ratio(RATIO_STILL_OPENS),
@@ -261,8 +267,9 @@ impl Intent {
         let slowly = self.slow >= SLOW_READINGS;
         let stays = above >= self.open_ends() && ratio_allows(sites.ratio_still_opens);
         let opens = match self.wish {
-            Wish::Open => stays || slowly,
-            _ => self.opens >= OPEN_READINGS || slowly,
+            // What began slowly ends where it would have anyway, not when its count has run down.
+            Wish::Open => stays || (slowly && above >= -OPEN_ENDS),
+            _ => self.opens >= OPEN_READINGS || (slowly && above >= -OPEN_ENDS),
         };
         if opens {
             self.open_for = if slowly { u16::MAX } else { self.open_for.saturating_add(1) };
@@ -283,7 +290,7 @@ impl Intent {
     fn close(&mut self, sites: &Sites, closing: Option<i32>, levels: [Option<i32>; 2], ratio: Option<i32>) {
         let directed = |most: i32, nearer: i32| match (ratio, levels) {
             (Some(ratio), [Some(a), Some(b)]) => {
-                ratio <= most && sites.way[0] * a + sites.way[1] * b <= nearer
+                ratio <= most && b < sites.both && sites.way[0] * a + sites.way[1] * b <= nearer
             }
             _ => closing.is_some_and(|level| level >= sites.close - CLOSE_ALONE),
         };

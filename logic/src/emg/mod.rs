@@ -126,6 +126,12 @@ impl Emg {
         self.verdict
     }
 
+    /// Whether a channel is active: 0 the flexor's, others the extensor's.
+    #[must_use]
+    pub fn is_active(&self, channel: usize) -> bool {
+        self.active[channel.min(1)]
+    }
+
     /// What a channel's envelope is: 0 the flexor's, others the extensor's.
     #[must_use]
     pub fn quality(&self, channel: usize) -> Quality {

@@ -4,6 +4,9 @@
 //! Neither electrode is a muscle of its own: a fist drives both, and an electrode hears its neighbours. So the wearer
 //! chooses two contractions that differ, and the electrode that is relatively stronger in one of them is its site.
 
+/// Why a calibration was not taken.
+pub use tenax_hal_shim::words::CalibrationRefusal as Refusal;
+
 use super::log2::{FLOOR_LEVEL, TOP_LEVEL, level_of};
 
 /// How many words a model is kept in.
@@ -25,53 +28,6 @@ const LEAST_TURN: i32 = octaves(1_200);
 pub const LEAST_SEPARATION_PERMILLE: i32 = 3_000;
 /// A rest that wanders more, in standard deviations, is no rest: 27 %.
 const NOISIEST_REST: i32 = octaves(350);
-
-/// Why a calibration was not taken.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Refusal {
-    /// An envelope wandered while the wearer should rest: a contraction, a loose electrode, interference.
-    RestNotQuiet,
-    /// Closing did not stand out from rest.
-    NoClosing,
-    /// Opening did not stand out from rest.
-    NoOpening,
-    /// Both contractions drive the electrodes in the same proportion.
-    SameDirection,
-    /// The states differ, but by less than they fluctuate.
-    Overlap,
-    /// An envelope stood still during a contraction, as none of a muscle does.
-    NotAMuscle,
-    /// An envelope was at the top of its range.
-    Saturated,
-    /// A sensor gave no number.
-    SensorLost,
-    /// The words are not those of a model.
-    Damaged,
-}
-
-impl Refusal {
-    /// What the wearer is told.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::RestNotQuiet => "rest was not quiet",
-            Self::NoClosing => "closing did not stand out from rest",
-            Self::NoOpening => "opening did not stand out from rest",
-            Self::SameDirection => "both contractions drive the electrodes alike",
-            Self::Overlap => "the contractions fluctuate more than they differ",
-            Self::NotAMuscle => "an envelope stood still during a contraction",
-            Self::Saturated => "an envelope was at the top of its range",
-            Self::SensorLost => "a myosensor gave no number",
-            Self::Damaged => "what was kept is not a calibration",
-        }
-    }
-}
-
-impl core::fmt::Display for Refusal {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(self.name())
-    }
-}
 
 /// Mean levels of both electrodes in one state, [`level_of`] of uV, flexor first.
 pub type Point = [i32; 2];

@@ -9,6 +9,7 @@ use tenax_hal_shim::wire::{DRIVE_HOLD_MAX_MS, Down, Refusal, Setting};
 use tenax_hal_shim::words::{Cause, GripMode, Line};
 
 use super::Fingertip;
+use crate::grip::Grip;
 
 impl Fingertip {
     /// Carries out a command.
@@ -65,6 +66,14 @@ impl Fingertip {
             }
             Down::Save => {
                 self.save_asked = true;
+                Ok(())
+            }
+            // The wearer's contractions move nothing meanwhile: they could not open a hand that holds something.
+            Down::CalibrateEmg if matches!(self.senses.grip(&self.config), Grip::Holds(_)) => {
+                Err(Refusal::Loaded)
+            }
+            Down::CalibrateEmg => {
+                self.senses.muscles_mut().begin_calibration(self.journal.frame());
                 Ok(())
             }
             Down::Zero if self.senses.forces.is_none() => Err(Refusal::SensorLost),

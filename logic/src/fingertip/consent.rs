@@ -28,7 +28,7 @@ impl Fingertip {
     pub(super) fn consent(&mut self) {
         let gate = &self.senses.gate;
         let consent = self.arming.tick(Signs {
-            co_contraction: gate.flexor.is_active() && gate.extensor.is_active(),
+            co_contraction: gate.is_co_contracted(&self.config.gate),
             button: self.button,
             unloaded: self.senses.forces.map(|_| self.senses.is_unloaded(&self.config)),
         });

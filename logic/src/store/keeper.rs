@@ -15,6 +15,8 @@ const LEARNED_FRAMES: u32 = frames(60_000);
 pub struct Now {
     /// How often a setting was changed.
     pub settings_changed: u32,
+    /// How often the myosensors were calibrated.
+    pub calibrated: u32,
     /// The force sensor's zero.
     pub zero: ZeroBytes,
     /// How often the network's weights have been updated.
@@ -29,6 +31,7 @@ pub struct Now {
 #[derive(Clone, Debug)]
 pub struct Keeper {
     settings_changed: u32,
+    calibrated: u32,
     zero: ZeroBytes,
     /// Updates of the weights that the saved network had had.
     updates: u32,
@@ -42,6 +45,7 @@ impl Keeper {
     pub const fn new(now: &Now) -> Self {
         Self {
             settings_changed: now.settings_changed,
+            calibrated: now.calibrated,
             zero: now.zero,
             updates: now.updates,
             since: [u32::MAX; Kept::ALL.len()],
@@ -63,6 +67,10 @@ impl Keeper {
         {
             self.settings_changed = now.settings_changed;
             Kept::Settings
+        } else if now.calibrated != self.calibrated {
+            // It takes a wearer 15 s: a pause of its own.
+            self.calibrated = now.calibrated;
+            Kept::Emg
         } else if now.zero != self.zero && since(Kept::Zero) >= CHANGED_FRAMES {
             self.zero = now.zero;
             Kept::Zero
@@ -82,7 +90,7 @@ mod tests {
     use super::*;
 
     fn now(settings_changed: u32, zero: u8, updates: u32, at_rest: bool) -> Now {
-        Now { settings_changed, zero: [zero; _], updates, at_rest, asked: false }
+        Now { settings_changed, calibrated: 0, zero: [zero; _], updates, at_rest, asked: false }
     }
 
     #[test]

@@ -5,6 +5,7 @@ use tenax_hal_shim::channel::FSR_COUNT;
 use tenax_hal_shim::setting::SettingId;
 
 use crate::config::Config;
+use crate::emg::model::{EmgModel, MODEL_WORDS};
 use crate::forces::ZERO_LIMIT_UV;
 
 /// Bits of a settings word that hold the value; the setting's number is above them.
@@ -17,6 +18,31 @@ const FIRST_FORMAT: [SettingId; 5] =
 pub type SettingsBytes = Vec<u8, { 4 * SettingId::ALL.len() }>;
 /// The zero's record: a word for each quadrant, uV above rest.
 pub type ZeroBytes = [u8; 4 * FSR_COUNT];
+
+/// The record of the wearer's calibration: the words of the model.
+pub type EmgBytes = [u8; 4 * MODEL_WORDS];
+
+/// The record of a wearer's calibration.
+#[must_use]
+pub fn of_emg(model: &EmgModel) -> EmgBytes {
+    let mut bytes = [0; 4 * MODEL_WORDS];
+    let (slots, _) = bytes.as_chunks_mut::<4>();
+    for (slot, word) in slots.iter_mut().zip(model.to_words()) {
+        *slot = word.to_le_bytes();
+    }
+    bytes
+}
+
+/// A record's wearer. None if it is no calibration that could have been taken.
+#[must_use]
+pub fn emg(bytes: &[u8]) -> Option<EmgModel> {
+    let mut model = [0; MODEL_WORDS];
+    let mut given = words(bytes);
+    for word in &mut model {
+        *word = given.next()?.cast_signed();
+    }
+    EmgModel::from_words(model).ok()
+}
 
 /// The record of the settings in `config`.
 #[must_use]
@@ -135,6 +161,16 @@ mod tests {
         assert!(restore_settings(&mut config, &98u32.to_le_bytes()), "an even older one has fewer");
         assert_eq!(config.get(SettingId::S1), 98);
         assert!(restore_settings(&mut config, &[]));
+    }
+
+    #[test]
+    fn a_calibration_comes_back_or_is_refused() {
+        let model = EmgModel::of_uv([50_000; 2], [400_000, 70_000], [80_000, 600_000]).unwrap();
+        let bytes = of_emg(&model);
+        assert_eq!(emg(&bytes), Some(model));
+        assert_eq!(emg(&bytes[4..]), None);
+        assert_eq!(emg(&[0; 40]), None);
+        assert_eq!(emg(&[0xff; 40]), None);
     }
 
     #[test]

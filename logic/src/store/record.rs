@@ -13,7 +13,7 @@ use tenax_hal_shim::flash::{FlashArea, FlashFailed, Sector};
 use tenax_hal_shim::words::Kept;
 
 use crate::checksum::CRC;
-use crate::store::payload::{SettingsBytes, ZeroBytes};
+use crate::store::payload::{EmgBytes, SettingsBytes, ZeroBytes};
 use crate::touch::{Learned, SNAPSHOT_LENGTH};
 
 /// Words of a record beside its payload.
@@ -34,6 +34,8 @@ pub enum Record {
     Zero(ZeroBytes),
     /// The settings.
     Settings(SettingsBytes),
+    /// The wearer's calibration of the myosensors.
+    Emg(EmgBytes),
 }
 
 impl Record {
@@ -44,6 +46,7 @@ impl Record {
             Self::Network(_) => Kept::Network,
             Self::Zero(_) => Kept::Zero,
             Self::Settings(_) => Kept::Settings,
+            Self::Emg(_) => Kept::Emg,
         }
     }
 
@@ -54,6 +57,7 @@ impl Record {
             Self::Network(learned) => learned.write(buffer).unwrap_or_default(),
             Self::Zero(bytes) => bytes,
             Self::Settings(bytes) => bytes,
+            Self::Emg(bytes) => bytes,
         }
     }
 }

@@ -1,7 +1,14 @@
 //! The wearer: what their two forearm muscles want, over the line of the scene.
 
 use crate::file::sections::{Intent, Muscle};
+use crate::plant::Calibrated;
 use crate::schedule::Span;
+
+/// The wearer of every scene, as a calibration would have found them: at rest the myosensors' default tone, two firm
+/// contractions, of which the other electrode hears 5 %. Closing begins at 160 mV, and is as fast as the scenes' contractions
+/// say. Opening at once takes a fifth more than is calibrated, so clear contractions of 900 mV do it, and 600 mV of mains do
+/// not.
+const WEARER: Calibrated = Calibrated::Levels { rest_mv: [50, 50], close_mv: [900, 95], open_mv: [80, 560] };
 
 /// A person who contracts as the scene says, and lets go early once the hand grips as they wanted: they watch it.
 #[derive(Clone, Debug)]
@@ -37,6 +44,12 @@ impl Wearer {
             until_grip_n: muscle.until_grip_n.map_or(f64::INFINITY, |newtons| newtons.get()),
         });
         Self { contractions: contractions.collect() }
+    }
+
+    /// To whom the hand was calibrated; None in scenes without contractions.
+    #[must_use]
+    pub fn calibrated(&self) -> Option<Calibrated> {
+        (!self.contractions.is_empty()).then_some(WEARER)
     }
 
     /// Goes on to `t_s`, while each finger presses with `grip_n`.

@@ -1,0 +1,207 @@
+//! Both myosensors: which of them can be believed, what they mean, and their calibration to a wearer.
+
+use tenax_hal_shim::channel::{CHANNELS, MYO_EXTENSOR, MYO_FLEXOR, SLOW_HZ};
+use tenax_hal_shim::wire::EventKind;
+use tenax_hal_shim::words::{self, Fault, Prompt, Reason};
+
+use crate::emg::calibration::{Calibration, Progress};
+use crate::emg::intent::Wish;
+use crate::emg::mains::mains_of;
+use crate::emg::model::EmgModel;
+use crate::emg::quality::Quality;
+use crate::emg::{Emg, Verdict, uv_of_sample};
+use crate::health::{Limits, SensorHealth};
+use crate::journal::Journal;
+
+/// Readings that a muscle may miss in a row, its frames lost, before its last one is no reading of now: all of one slow
+/// frame.
+const MISSES: u8 = 3;
+/// Readings of each myosensor a second: three places in every slow frame.
+const HZ: u32 = 3 * SLOW_HZ;
+/// Equal readings of an active muscle in a row that no muscle gives: 50 ms. At rest, the general limit holds.
+const FROZEN_AFTER: u32 = HZ / 20;
+
+static LIMITS: Limits = Limits::of(&CHANNELS[MYO_FLEXOR], HZ);
+
+/// A calibration under way, and what was last asked.
+#[derive(Clone, Debug)]
+struct Lesson {
+    calibration: Calibration,
+    asked: Option<Prompt>,
+}
+
+/// Both myosensors.
+#[derive(Clone, Debug, Default)]
+pub struct Muscles {
+    emg: Emg,
+    health: [SensorHealth; 2],
+    missed: [u8; 2],
+    /// Whether each has given two active readings in a row that differ: a glitch or a frozen sensor is not a wish.
+    confirmed: [bool; 2],
+    /// Why each is lost, as it was told.
+    lost: [Option<Reason>; 2],
+    /// The last readings that were in range, uV above the live zero.
+    uv: [Option<i32>; 2],
+    model: Option<EmgModel>,
+    lesson: Option<Lesson>,
+}
+
+impl Muscles {
+    /// Takes a sample: 0 the flexor's, others the extensor's. The envelope above the live zero, uV, none where the sensor
+    /// gives no number.
+    pub fn take(&mut self, muscle: usize, sample: u16, journal: &mut Journal) -> Option<i32> {
+        let n = muscle.min(1);
+        self.missed[n] = 0;
+        let (reading, _) = if self.emg.is_active(n) {
+            self.health[n].take(&Limits { stuck_after: FROZEN_AFTER, ..LIMITS }, sample)
+        } else {
+            self.health[n].take(&LIMITS, sample)
+        };
+        let uv = reading.ok().map(uv_of_sample);
+        let was_active = self.emg.is_active(n);
+        self.read(n, uv, journal);
+        let differs = self.health[n].same() == 0;
+        self.confirmed[n] = self.emg.is_active(n) && (self.confirmed[n] || (was_active && differs));
+        uv
+    }
+
+    /// The frame that shows this muscle was lost. True if it has no reading of now any more.
+    pub fn miss(&mut self, muscle: usize, journal: &mut Journal) -> bool {
+        let n = muscle.min(1);
+        self.missed[n] = self.missed[n].saturating_add(1);
+        let gone = self.missed[n] >= MISSES;
+        if gone {
+            self.confirmed[n] = false;
+            self.read(n, None, journal);
+        }
+        gone
+    }
+
+    fn read(&mut self, n: usize, uv: Option<i32>, journal: &mut Journal) {
+        self.emg.read(n, uv);
+        self.uv[n] = uv;
+        if n == 1 && self.lesson.is_some() {
+            self.learn(journal);
+        }
+        let lost = self.health[n].lost().or_else(|| reason_of(self.emg.quality(n)));
+        if lost != self.lost[n] {
+            self.tell(n, lost, journal);
+        }
+    }
+
+    /// The first reason is told; one that stood still may later turn out to be mains.
+    #[inline(never)]
+    fn tell(&mut self, n: usize, lost: Option<Reason>, journal: &mut Journal) {
+        let channel = (if n == 0 { MYO_FLEXOR } else { MYO_EXTENSOR }) as u8;
+        match (self.lost[n], lost) {
+            (None, Some(reason)) | (Some(Reason::Flat | Reason::Stuck), Some(reason @ Reason::Hum)) => {
+                journal.fault(Fault::SensorLost { channel, reason });
+            }
+            (Some(_), None) => journal.fault(Fault::SensorBack { channel }),
+            _ => return,
+        }
+        self.lost[n] = lost;
+    }
+
+    /// What the wearer wants. While they calibrate, nothing, and nobody else moves the hand.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        let mut verdict = self.emg.verdict();
+        // A wish is decided with the extensor's reading; the flexor's activity silences from its own on.
+        verdict.active |= self.emg.is_active(0) || self.emg.is_active(1);
+        let at_rest = Verdict { active: true, known: verdict.known, ..Verdict::default() };
+        let opens = self.model.as_ref().map_or(1, EmgModel::opening_site);
+        match verdict.wish {
+            _ if self.lesson.is_some() => at_rest,
+            Wish::Open if !self.confirmed[opens] => at_rest,
+            Wish::Close if !self.confirmed[1 - opens] => at_rest,
+            _ => verdict,
+        }
+    }
+
+    /// The wearer that they are calibrated to.
+    #[must_use]
+    pub const fn model(&self) -> Option<&EmgModel> {
+        self.model.as_ref()
+    }
+
+    /// From now on for this wearer.
+    pub fn calibrate(&mut self, model: EmgModel) {
+        self.emg.calibrate(Some(&model));
+        self.model = Some(model);
+    }
+
+    /// Asks the wearer to show what they do, from this frame on.
+    pub fn begin_calibration(&mut self, frame: u32) {
+        self.lesson = Some(Lesson { calibration: Calibration::begin(frame), asked: None });
+    }
+
+    /// A pair of readings is complete.
+    #[inline(never)]
+    fn learn(&mut self, journal: &mut Journal) {
+        let frame = journal.frame();
+        let Some(lesson) = &mut self.lesson else { return };
+        if lesson.calibration.is_over(frame) {
+            return;
+        }
+        if let Progress::Asks(prompt, _) = lesson.calibration.take(frame, self.uv)
+            && lesson.asked != Some(prompt)
+        {
+            lesson.asked = Some(prompt);
+            journal.event(EventKind::Calibration(words::Calibration::Asks(prompt)));
+        }
+    }
+
+    /// What takes too long for a tick: the spectrum of one electrode, or the conclusion of a calibration. Call it once a
+    /// slow frame, always after the same tick. True if there is a new calibration.
+    #[inline(never)]
+    pub fn think(&mut self, journal: &mut Journal) -> bool {
+        if let Some(lesson) = &mut self.lesson {
+            let frame = journal.frame();
+            if lesson.calibration.is_over(frame)
+                && let Progress::Done(result) = lesson.calibration.take(frame, [None; 2])
+            {
+                self.lesson = None;
+                return self.conclude(result, journal);
+            }
+            return false;
+        }
+        for n in 0..2 {
+            if let Some(window) = self.emg.window(n) {
+                let mains = mains_of(window);
+                self.emg.hear(n, mains);
+                break;
+            }
+        }
+        false
+    }
+
+    fn conclude(
+        &mut self,
+        result: Result<EmgModel, words::CalibrationRefusal>,
+        journal: &mut Journal,
+    ) -> bool {
+        let told = match result {
+            Ok(model) => words::Calibration::Done { separation_permille: model.separation_permille() },
+            Err(refusal) => words::Calibration::Refused(refusal),
+        };
+        journal.event(EventKind::Calibration(told));
+        if let Ok(model) = result {
+            self.calibrate(model);
+        }
+        result.is_ok()
+    }
+}
+
+/// What a lost sensor is reported with. None while it is good.
+const fn reason_of(quality: Quality) -> Option<Reason> {
+    match quality {
+        Quality::Good => None,
+        Quality::LeadOff => Some(Reason::NoContact),
+        Quality::Hum => Some(Reason::Hum),
+        Quality::Creep => Some(Reason::Creep),
+        Quality::Flat => Some(Reason::Flat),
+        Quality::Endless => Some(Reason::Endless),
+        Quality::Saturated => Some(Reason::Saturated),
+    }
+}
