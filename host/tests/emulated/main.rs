@@ -163,6 +163,12 @@ fn run(plant: impl Plant + 'static, options: &Options) -> Run {
     emulated::run(image(), plant, options, &mut |_| {}).expect("the run").0
 }
 
+/// Ten seconds in which nothing happens but codes. Several tests look at them: a boot is dear.
+fn plain() -> &'static Run {
+    static PLAIN: OnceLock<Run> = OnceLock::new();
+    PLAIN.get_or_init(|| run(Swing::new(10.0), &Options::default()))
+}
+
 /// The motor's drives between two instants.
 fn drives(run: &Run, from_s: f64, to_s: f64) -> &[MotorDrive] {
     let scan = |t_s: f64| (t_s * f64::from(SCAN_HZ)) as usize;
