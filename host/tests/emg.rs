@@ -8,7 +8,9 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::PathBuf;
 
+use tenax::replay::calibrate::calibrate;
 use tenax::replay::{Recording, ReplayPlant, library};
+use tenax::session::{self, Board};
 use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ, MYO_EXTENSOR, MYO_FLEXOR, MYO_SELECT, SCANS_PER_FRAME};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::select_of_slot;
@@ -329,6 +331,52 @@ fn an_electrode_that_moved_still_moves_nothing_at_rest() {
                 assert!(!read.name.starts_with("rest") || wrong_ms == 0, "{}", read.name);
             }
             println!("  `{prefix}` gains {gains:?}: {right} of {all} windows right, wrong, ms: {worst:?}");
+        }
+    }
+}
+
+/// The whole way: a calibration from other recordings, the front end, the board's logic, the motor.
+#[test]
+fn a_replayed_fist_never_opens_the_hand_and_rest_never_moves_it() {
+    let Some(readme) = common::shared("README.md") else { return };
+    let folder = readme.parent().expect("a folder").to_owned();
+    for prefix in ["", "b_"] {
+        let path = |name: &str| folder.join(format!("emg_two_channel_{prefix}{name}.csv"));
+        let phases = ["rest0", "handflexion0", "handextension0"].map(path);
+        if phases.iter().any(|path| !path.exists()) {
+            println!("skipped, recording not present: emg_two_channel_{prefix}*");
+            continue;
+        }
+        let model = calibrate(&phases, None, 1).expect("it separates");
+        for name in ["rest1", "fist0", "fist1", "fist3", "fist_dynamic", "handflexion1", "handextension1"] {
+            if !path(name).exists() {
+                continue;
+            }
+            for calibrated in [Some(model), None] {
+                let outcome = session::replay_with(
+                    &path(name),
+                    None,
+                    calibrated,
+                    1,
+                    &Board::Host,
+                    &mut (),
+                    &mut |_| {},
+                );
+                let wearer = outcome.expect("a shared recording is good").report.wearer;
+                println!(
+                    "  {prefix}{name:16} {}: closing {:5.2} s, opening {:5.2} s, longest open {:4.0} ms, close {:4.0} ms",
+                    if calibrated.is_some() { "calibrated" } else { "not       " },
+                    wearer.closing_s,
+                    wearer.opening_s,
+                    wearer.longest_open_ms,
+                    wearer.longest_close_ms
+                );
+                assert_eq!(wearer.faults, 0, "{name}: each is a muscle");
+                assert!(name == "handextension1" || wearer.longest_open_ms <= 50.0, "{name}");
+                if name == "rest1" || name == "handextension1" {
+                    assert_eq!(wearer.longest_close_ms, 0.0, "{name}");
+                }
+            }
         }
     }
 }

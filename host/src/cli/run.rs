@@ -34,13 +34,7 @@ pub struct Args {
     #[arg(long, value_name = "FILE.toml|NAME", requires = "replay")]
     recipe: Option<String>,
     /// First calibrate the board to the wearer of these recordings: rest, closing, opening [default: not calibrated]
-    #[arg(
-        long,
-        value_name = "REST.csv,CLOSE.csv,OPEN.csv",
-        value_delimiter = ',',
-        num_args = 3,
-        requires = "replay"
-    )]
+    #[arg(long, value_name = "REST.csv,CLOSE.csv,OPEN.csv", value_delimiter = ',', requires = "replay")]
     calibrate_emg: Option<Vec<PathBuf>>,
     /// Seed of every noise
     #[arg(long, default_value_t = 1)]

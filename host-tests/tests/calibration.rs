@@ -1,0 +1,70 @@
+//! The guided calibration over the line, from the command to the record that is kept.
+
+use tenax_hal_shim::wire::{Down, EventKind, Refusal};
+use tenax_hal_shim::words::{Calibration, CalibrationRefusal, Kept, Prompt};
+use tenax_host_tests::Bench;
+use tenax_logic::fingertip::Fingertip;
+use tenax_logic::store::payload;
+
+/// Answers the three prompts with these envelopes; what it said.
+fn calibrate(bench: &mut Bench, phases: [[f64; 2]; 3]) -> Vec<Calibration> {
+    bench.fingertip.command(&Down::CalibrateEmg).expect("nothing is held");
+    for [flexor_mv, extensor_mv] in phases {
+        bench.muscles(flexor_mv, extensor_mv);
+        for _ in 0..400 {
+            assert!(
+                bench.run(25).iter().all(|drive| !drive.opens() && !drive.closes()),
+                "the muscles move nothing"
+            );
+            bench.fingertip.think();
+        }
+    }
+    bench.muscles(50.0, 50.0);
+    bench.run(25);
+    bench.fingertip.think();
+    bench.run(25);
+    let told = bench.events.iter().filter_map(|event| match event.kind {
+        EventKind::Calibration(step) => Some(step),
+        _ => None,
+    });
+    told.collect()
+}
+
+fn uncalibrated(seed: u64) -> Bench {
+    let mut bench = Bench::new(seed);
+    bench.fingertip = Fingertip::default();
+    bench.lively = 0.12;
+    bench.run(400);
+    bench
+}
+
+#[test]
+fn a_wearer_is_learned_kept_and_answered() {
+    let mut bench = uncalibrated(31);
+    let mut keeper = bench.fingertip.keeper();
+    let told = calibrate(&mut bench, [[50.0, 50.0], [600.0, 80.0], [80.0, 500.0]]);
+    let [Calibration::Asks(a), Calibration::Asks(b), Calibration::Asks(c), Calibration::Done { .. }] =
+        told[..]
+    else {
+        panic!("{told:?}");
+    };
+    assert_eq!([a, b, c], [Prompt::Rest, Prompt::Close, Prompt::Open]);
+    let record = bench.fingertip.next_record(&mut keeper).expect("it is kept");
+    assert_eq!(record.kept(), Kept::Emg);
+    let mut buffer = [0; _];
+    assert!(payload::emg(record.payload(&mut buffer)).is_some());
+    bench.run(1_000);
+    bench.muscles(80.0, 900.0);
+    assert!(bench.run(50).last().expect("frames").opens());
+}
+
+#[test]
+fn what_does_not_separate_is_refused_and_a_hand_that_holds_is_not_calibrated() {
+    let mut bench = uncalibrated(32);
+    let mut keeper = bench.fingertip.keeper();
+    let told = calibrate(&mut bench, [[50.0, 50.0], [600.0, 80.0], [50.0, 50.0]]);
+    assert_eq!(told.last(), Some(&Calibration::Refused(CalibrationRefusal::NoOpening)));
+    assert!(bench.fingertip.next_record(&mut keeper).is_none());
+    let mut bench = Bench::holding(33);
+    assert_eq!(bench.fingertip.command(&Down::CalibrateEmg), Err(Refusal::Loaded));
+}
