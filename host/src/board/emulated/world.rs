@@ -23,6 +23,7 @@ use super::nucleo::{Nucleo, USART2};
 use super::wires::Wires;
 use crate::board::TickCost;
 use crate::image::symbols::Symbols;
+use crate::link::Inbox;
 
 const SCAN_NS: u64 = 1_000_000_000 / SCAN_HZ as u64;
 /// While the timer's phase is not known, every this often it is looked for.
