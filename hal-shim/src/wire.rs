@@ -241,6 +241,7 @@ pub enum Answer {
 
 /// From the board.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[allow(clippy::large_enum_variant, reason = "there is no heap to put the large one on")]
 pub enum Up {
     /// The board has started.
     Hello {

@@ -12,9 +12,10 @@ const HEAD: &str = "\
 Printed from `hal-shim/src/setting.rs` by `cargo tenax settings`; do not edit.
 
 `cargo tenax monitor --port P --set NAME=VALUE` changes one, `--get NAME` and `--settings` show what is in force; a scene
-file uses `kind = \"set-NAME\"` with `value`. A value out of range is refused with the range, and so is a
-change that nobody at the hand consents to (`docs/safety.md`). No combination of values in the ranges crushes, opens or
-deafens (`host-tests/tests/ranges.rs`); the wider ones are a laboratory's. Changed settings outlive a power cut. The number is what the wire and the flash call the setting.
+file uses `kind = \"set-NAME\"` with `value`. Refused are a value out of range, with the range, and a change that nobody at
+the hand consents to (`docs/safety.md`). No pair of values in the ranges crushes, opens or deafens
+(`host-tests/tests/ranges.rs`); the wider ones are a laboratory's. Changed settings outlive a power cut. The number is what
+the wire and the flash call the setting.
 
 | number | name | unit | range | default | meaning |
 |---|---|---|---|---|---|

@@ -16,16 +16,19 @@ use tenax_hal_shim::words::{Consent, Line};
 
 use crate::config::frames;
 
-/// How long a co-contraction or a press of the button counts, in frames.
-const CONSENT_FRAMES: u32 = frames(60_000);
-/// How long both muscles are active for consent, in frames.
-const CO_CONTRACTION_FRAMES: u32 = frames(2_000);
+/// Frames from one look to the next, a fifth of a cycle: whoever consents takes longer than that.
+pub const STEP_FRAMES: u32 = 5;
+/// How long a co-contraction or a press of the button counts, in steps.
+const CONSENT_STEPS: u32 = frames(60_000) / STEP_FRAMES;
+/// How long both muscles are active for consent, in steps.
+const CO_CONTRACTION_STEPS: u32 = frames(2_000) / STEP_FRAMES;
 /// How long the button is down, and was up before, to count as pressed: longer than its contacts bounce, in frames.
 pub const DEBOUNCE_FRAMES: u32 = frames(20);
-/// How long a hand that was switched on empty consents, in frames.
-const POWER_UP_FRAMES: u32 = frames(10_000);
+const DEBOUNCE_STEPS: u32 = DEBOUNCE_FRAMES / STEP_FRAMES;
+/// How long a hand that was switched on empty consents, in steps.
+const POWER_UP_STEPS: u32 = frames(10_000) / STEP_FRAMES;
 
-/// What arming looks at in a tick.
+/// What arming looks at in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Signs {
     /// Both muscles are active.
@@ -45,16 +48,16 @@ struct Act {
 }
 
 impl Act {
-    /// Goes on by one frame; true in the one in which the act is complete.
+    /// Goes on by one step; true in the one in which the act is complete.
     fn tick(&mut self, on: bool, long: u32) -> bool {
         if !on {
             self.on = 0;
             self.released = self.released.saturating_add(1);
-            self.done &= self.released < DEBOUNCE_FRAMES;
+            self.done &= self.released < DEBOUNCE_STEPS;
             return false;
         }
         // What is on from the start was never seen to be off: it is stuck.
-        self.done |= self.on == 0 && self.released < DEBOUNCE_FRAMES;
+        self.done |= self.on == 0 && self.released < DEBOUNCE_STEPS;
         self.released = 0;
         self.on = self.on.saturating_add(1);
         let complete = !self.done && self.on >= long;
@@ -78,7 +81,7 @@ impl Default for Arming {
     fn default() -> Self {
         Self {
             left: 0,
-            power_up_left: POWER_UP_FRAMES,
+            power_up_left: POWER_UP_STEPS,
             power_up: false,
             muscles: Act::default(),
             button: Act::default(),
@@ -92,7 +95,7 @@ impl Arming {
         self.power_up_left = 0;
     }
 
-    /// Goes on by one frame. Some if a consent was given in it.
+    /// Goes on by one step of [`STEP_FRAMES`]. Some if a consent was given in it.
     pub fn tick(&mut self, signs: Signs) -> Option<Consent> {
         self.left = self.left.saturating_sub(1);
         self.power_up_left = match signs.unloaded {
@@ -101,10 +104,10 @@ impl Arming {
         };
         let began =
             core::mem::replace(&mut self.power_up, self.power_up_left > 0 && signs.unloaded == Some(true));
-        let muscles = self.muscles.tick(signs.co_contraction, CO_CONTRACTION_FRAMES);
-        let button = self.button.tick(signs.button, DEBOUNCE_FRAMES);
+        let muscles = self.muscles.tick(signs.co_contraction, CO_CONTRACTION_STEPS);
+        let button = self.button.tick(signs.button, DEBOUNCE_STEPS);
         if muscles || button {
-            self.left = CONSENT_FRAMES;
+            self.left = CONSENT_STEPS;
             return Some(if button { Consent::Button } else { Consent::Muscles });
         }
         (self.power_up && !began).then_some(Consent::PowerUp)
@@ -120,7 +123,7 @@ impl Arming {
     #[must_use]
     pub fn line(&self, trusted: bool) -> Line {
         let left = if self.power_up { self.left.max(self.power_up_left) } else { self.left };
-        match left.div_ceil(FRAME_HZ) {
+        match left.div_ceil(FRAME_HZ / STEP_FRAMES) {
             _ if trusted => Line::Trusted,
             0 => Line::Reading,
             left_s => Line::Armed { left_s: left_s as u8 },
@@ -138,7 +141,7 @@ mod tests {
     const PRESSED: Signs = Signs { button: true, ..HOLDING };
 
     fn run(arming: &mut Arming, signs: Signs, ms: u32) -> std::vec::Vec<Consent> {
-        (0..frames(ms)).filter_map(|_| arming.tick(signs)).collect()
+        (0..frames(ms) / STEP_FRAMES).filter_map(|_| arming.tick(signs)).collect()
     }
 
     fn is_armed(arming: &Arming) -> bool {

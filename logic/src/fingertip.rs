@@ -18,7 +18,7 @@ use tenax_hal_shim::words::{Cause, DriveSource, Fault, GripMode, Kept, Line};
 use self::heard::{Acting, Heard};
 use self::link::Link;
 use crate::arbiter::{Wishes, arbitrate};
-use crate::arming::Arming;
+use crate::arming::{Arming, STEP_FRAMES};
 use crate::config::{Config, frames};
 use crate::detectors::{Detectors, Said, Sensed};
 use crate::grip::{Grip, Reflex};
@@ -248,7 +248,9 @@ impl Fingertip {
 
     fn act(&mut self, frame: &Frame) -> MotorDrive {
         self.link.tick();
-        self.consent();
+        if u32::from(frame.slot()).is_multiple_of(STEP_FRAMES) {
+            self.consent();
+        }
         let heard = Heard::of(&self.detectors, self.acting);
         self.step_mode(heard);
         let wishes = Wishes {

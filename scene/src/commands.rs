@@ -109,6 +109,7 @@ mod tests {
             value = 400
         "#;
         let scene = SceneFile::parse(text, "t.toml").unwrap();
+        assert!(scene.trusts_line(), "a script is a laboratory's");
         let mut script = Script::new(&scene.command, true);
         assert_eq!(script.take(0.499), []);
         assert_eq!(script.take(0.5), [Down::Set(Setting { id: SettingId::S2 as u8, value: 400 })]);
@@ -116,5 +117,38 @@ mod tests {
         assert_eq!(script.take(1.0), [Down::Drive { drive, hold_ms: 250 }]);
         assert_eq!(script.take(1.25).len(), 2);
         assert_eq!(script.take(9.0), [Down::Drive { drive, hold_ms: 20 }]);
+        assert!(!script.button(0.5));
+    }
+
+    #[test]
+    fn a_board_that_trusts_nobody_is_asked_for_a_session_and_somebody_presses_its_button() {
+        let text = r#"
+            name = "n"
+            title = "t"
+            from = "assumed"
+            duration_s = 2
+            slip_floor_mm_s = 1
+            line_trusted = false
+            [contact]
+            mu_s = 0.5
+            mu_d = 0.4
+            pad_length_mm = 18
+            pitch_mm = 1
+            [robot]
+            [[command]]
+            at_s = 1
+            kind = "consent"
+            [[command]]
+            at_s = 1.5
+            kind = "zero"
+        "#;
+        let scene = SceneFile::parse(text, "t.toml").unwrap();
+        let mut script = Script::new(&scene.command, scene.trusts_line());
+        assert_eq!(script.take(0.2), [Down::Hello]);
+        assert_eq!(script.take(1.4), []);
+        assert_eq!(script.take(1.5), [Down::Zero]);
+        assert_eq!([0.9, 1.1, 1.4].map(|t_s| script.button(t_s)), [false, true, false]);
+        let wide = text.replace(r#""zero""#, "\"set-s1-mv\"\nvalue = 1500");
+        assert!(SceneFile::parse(&wide, "t.toml").is_err(), "the wider range is a trusted line's");
     }
 }

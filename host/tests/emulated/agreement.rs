@@ -16,7 +16,7 @@ use tenax_hal_shim::wire::{Answer, Down, Setting};
 use tenax_hal_shim::words::Code;
 
 use crate::onsets::held_against_evidence;
-use crate::{Swing, plain, run};
+use crate::{Rest, Swing, plain, run};
 
 #[test]
 fn ten_seconds_without_a_lost_code() {
@@ -86,7 +86,8 @@ fn the_host_says_the_same_when_it_takes_each_command_in_the_images_tick() {
                 .sending(at_s, Down::Network);
         }
     }
-    let mut run = run(plant, &Options::default());
+    // Muscles at rest: active ones refuse every drive.
+    let mut run = run(Rest::new(plant), &Options::default());
     assert_eq!((run.taken.len(), run.networks().count()), (88, 4));
     let agreement = Agreement::of(&run);
     assert!(agreement.holds(), "{agreement}");

@@ -68,10 +68,12 @@ impl TryFrom<String> for CommandKind {
             "zero" => Self::Zero,
             "close" => Self::Close,
             "open" => Self::Open,
+            "consent" => Self::Consent,
             _ => setting().ok_or_else(|| {
                 let settings = SettingId::ALL.map(|id| format!("set-{}", id.row().name)).join(", ");
                 format!(
-                    "kind = \"{kind}\" is no command; allowed: stroke-begin, stroke-end, zero, close, open, {settings}"
+                    "kind = \"{kind}\" is no command; allowed: stroke-begin, stroke-end, zero, close, open, consent, \
+                     {settings}"
                 )
             })?,
         })
