@@ -3,9 +3,11 @@
 
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::setting::SettingId;
-use tenax_host_tests::Bench;
+use tenax_hal_shim::words::Kept;
+use tenax_host_tests::{Bench, wearer};
 use tenax_logic::config::Config;
 use tenax_logic::fingertip::Fingertip;
+use tenax_logic::store::payload;
 
 /// Fn that a frame of full closing adds on a stiff object, N: 25 mm/s of a finger against 1 N/mm.
 const N_PER_FRAME: f64 = 0.0125;
@@ -37,6 +39,7 @@ fn holding(settings: &[(SettingId, i32)]) -> Bench {
     }
     let mut bench = Bench::new(1);
     bench.fingertip = Fingertip::new(config);
+    bench.fingertip.restore(Kept::Emg, &payload::of_emg(&wearer()));
     bench.run(200);
     bench.load(2.5, 0.25);
     // The muscles have their tone.

@@ -160,15 +160,15 @@ mod tests {
     fn a_co_contraction_of_two_seconds_consents_once_for_a_minute() {
         let mut arming = Arming::default();
         assert_eq!(run(&mut arming, HOLDING, 100), []);
-        assert_eq!(run(&mut arming, BOTH, 1_999), []);
+        assert_eq!(run(&mut arming, BOTH, 1_995), []);
         assert_eq!(run(&mut arming, BOTH, 100_000), [Consent::Muscles], "once, however long");
         assert!(!is_armed(&arming), "a muscle that hums for ever does not consent for ever");
         assert_eq!(run(&mut arming, HOLDING, 100), []);
         assert_eq!(run(&mut arming, BOTH, 2_000), [Consent::Muscles]);
         assert_eq!(arming.line(false), Line::Armed { left_s: 60 });
-        assert_eq!(run(&mut arming, HOLDING, 59_999), []);
+        assert_eq!(run(&mut arming, HOLDING, 59_995), []);
         assert_eq!(arming.line(false), Line::Armed { left_s: 1 });
-        run(&mut arming, HOLDING, 1);
+        run(&mut arming, HOLDING, 5);
         assert_eq!(arming.line(false), Line::Reading);
     }
 
@@ -193,14 +193,14 @@ mod tests {
     #[test]
     fn an_empty_hand_consents_for_ten_seconds_after_it_was_switched_on_and_not_after_a_reset() {
         let mut arming = Arming::default();
-        assert_eq!(run(&mut arming, EMPTY, 9_999), [Consent::PowerUp]);
+        assert_eq!(run(&mut arming, EMPTY, 9_995), [Consent::PowerUp]);
         assert!(is_armed(&arming) && !arming.is_deliberate());
-        run(&mut arming, EMPTY, 1);
+        run(&mut arming, EMPTY, 5);
         assert!(!is_armed(&arming));
 
         let mut arming = Arming::default();
         run(&mut arming, EMPTY, 1_000);
-        run(&mut arming, HOLDING, 1);
+        run(&mut arming, HOLDING, 5);
         assert!(!is_armed(&arming));
         assert_eq!(run(&mut arming, EMPTY, 5_000), [], "it has held something");
 

@@ -32,6 +32,9 @@ use crate::store::record::Record;
 /// A stroke that nobody ends is over after this long, in frames: a lost link must not leave the reflex silent.
 const STROKE_FRAMES_MAX: u32 = frames(60_000);
 
+/// Consent is looked for in this slot of each step: the array's heaviest share is in another.
+const CONSENT_SLOT: u32 = 3;
+
 /// The fingertip's memory between ticks.
 #[derive(Clone, Debug, Default)]
 pub struct Fingertip {
@@ -248,7 +251,7 @@ impl Fingertip {
 
     fn act(&mut self, frame: &Frame) -> MotorDrive {
         self.link.tick();
-        if u32::from(frame.slot()).is_multiple_of(STEP_FRAMES) {
+        if u32::from(frame.slot()) % STEP_FRAMES == CONSENT_SLOT {
             self.consent();
         }
         let heard = Heard::of(&self.detectors, self.acting);

@@ -61,7 +61,7 @@ impl Muscles {
             return;
         };
         let sample: u16 = scans.iter().map(|scan| scan[RANK_SWITCH_B]).sum();
-        self.0[usize::from(muscle)] = i64::from(mv_from_sample(sample)) - i64::from(MYO_REST_MV);
+        self.0[muscle] = i64::from(mv_from_sample(sample)) - i64::from(MYO_REST_MV);
     }
 
     fn active(self, on_mv: [i64; 2]) -> bool {
