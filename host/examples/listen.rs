@@ -28,7 +28,7 @@ fn main() -> anyhow::Result<()> {
     let asked = std::env::args().nth(1).unwrap_or_else(|| session::DEFAULT_SCENE.to_owned());
     let mut listener = Listener { timeline: Timeline::new(0.0), vibration: 0 };
     let outcome = if asked.ends_with(".csv") {
-        session::replay_with(Path::new(&asked), None, 1, &Board::Host, &mut listener, &mut |_| {})?
+        session::replay_with(Path::new(&asked), None, None, 1, &Board::Host, &mut listener, &mut |_| {})?
     } else {
         let scene = session::load_scene(&asked)?;
         session::scene_with(&scene, 1, &Board::Host, &mut listener, &mut |_| {})?

@@ -51,7 +51,7 @@ fn a_scan_at_once_is_a_scan_code_by_code() {
     // The world saw the same, and byte for byte the same came up the line.
     assert!(quick.scans == each.scans && quick.drives == each.drives && quick.line == each.line);
     assert_eq!((&quick.slows, &quick.events), (&each.slows, &each.events));
-    assert_eq!((&quick.taken, &quick.acks, &quick.saved), (&each.taken, &each.acks, &each.saved));
-    assert_eq!((&quick.networks, &quick.starts, quick.flash), (&each.networks, &each.starts, each.flash));
+    assert_eq!((&quick.taken, &quick.answers, &quick.saved), (&each.taken, &each.answers, &each.saved));
+    assert_eq!((&quick.starts, quick.flash), (&each.starts, each.flash));
     assert_eq!((quick.counters, quick.stack_bytes), (each.counters, each.stack_bytes));
 }

@@ -2,6 +2,7 @@
 
 use tenax::board::agreement::host_says;
 use tenax::board::emulated::{Mishap, Options};
+use tenax::board::kept::device;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{Answer, Down, EventKind};
 use tenax_hal_shim::words::Fault;

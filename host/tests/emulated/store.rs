@@ -1,7 +1,6 @@
 //! What the image keeps through resets and power cuts, and that keeping it costs no frame.
 
 use tenax::board::agreement::Agreement;
-use tenax::board::emulated::provision::Sectors;
 use tenax::board::emulated::{Mishap, Options};
 use tenax::board::kept::Sectors;
 use tenax_hal_shim::motor::MotorDrive;
