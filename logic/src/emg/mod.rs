@@ -105,6 +105,8 @@ impl Emg {
             proven: self.watches[n].is_proven(),
             unmodulated: self.watches[n].is_unmodulated(),
         };
+        // Silence does not wait for the other half of the pair.
+        self.verdict.active |= self.active[n];
         if n == 1 {
             self.decide();
         }
