@@ -164,7 +164,7 @@ impl Judge {
             let active = Intent::new(Some(model)).expected().map(|expected| expected.active);
             active
                 .map(|level| (f64::from(level) / 1_024.0).exp2() / 1e3)
-                .map(|mv| ON_MV.max(mv.ceil() as i64))
+                .map(|mv| ON_MV.max(mv.ceil() as i64 + 1))
         });
         Self {
             on_mv,

@@ -22,10 +22,10 @@ fn eventful(models: Models) -> (Run, Vec<Tick>) {
     }
     plant = plant.sending(0.25, Down::Save).sending(1.6, Down::Network);
     let mishaps = vec![
-        (0.45, Mishap::DmaStalls),
-        (0.601_375, Mishap::DmaStalls),
-        (0.7, Mishap::Garbage((0..200u8).collect())),
-        (0.85, Mishap::DmaFails),
+        (0.5, Mishap::DmaFails),
+        (0.75, Mishap::DmaStalls),
+        (0.901_375, Mishap::DmaStalls),
+        (1.0, Mishap::Garbage((0..200u8).collect())),
         (1.3, Mishap::CoreHangs),
     ];
     let (ticks, heard) = mpsc::channel();

@@ -60,8 +60,9 @@ pub const UNPROVEN_READINGS: u16 = 22;
 /// How far the other electrode stands out from rest when it hears the same contraction: by 23 %. A fault has one electrode.
 const HEARS_TOO: i32 = octaves(300);
 
-/// Without calibration: an electrode below this is inactive, uV; what silences the reflex.
-const DEFAULT_ACTIVE_UV: i32 = 160_000;
+/// Without calibration: an electrode below this is inactive, uV; what silences the reflex. A millivolt below the 160 that
+/// count as activity, since readings and levels are rounded.
+const DEFAULT_ACTIVE_UV: i32 = 159_000;
 const DEFAULT_INACTIVE_UV: i32 = 112_000;
 /// Without calibration: where closing and opening begin, uV, and how far the other electrode must be below: by a factor of
 /// 2.5 and of 8. Recorded fists have 1.18 V on the extensor, relaxed arms with hum 0.26 V.

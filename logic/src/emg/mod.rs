@@ -107,6 +107,7 @@ impl Emg {
         };
         // Silence does not wait for the other half of the pair.
         self.verdict.active |= self.active[n];
+        self.verdict.known &= level.is_some();
         if n == 1 {
             self.decide();
         }
