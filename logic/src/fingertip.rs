@@ -33,7 +33,7 @@ use crate::store::record::Record;
 const STROKE_FRAMES_MAX: u32 = frames(60_000);
 
 /// Consent is looked for in this slot of each step: the array's heaviest share is in another.
-const CONSENT_SLOT: u32 = 3;
+const CONSENT_SLOT: u32 = 0;
 
 /// The fingertip's memory between ticks.
 #[derive(Clone, Debug, Default)]
