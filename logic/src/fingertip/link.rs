@@ -36,7 +36,11 @@ impl Link {
     /// Goes on by one frame.
     pub fn tick(&mut self) {
         // Nobody asks for anything, and what was held is forgotten: nearly always.
-        if self.frames_left == 0 && self.held == 0 && self.drive == MotorDrive::Coast && self.quiet >= PAUSE_FRAMES {
+        if self.frames_left == 0
+            && self.held == 0
+            && self.drive == MotorDrive::Coast
+            && self.quiet >= PAUSE_FRAMES
+        {
             return;
         }
         if self.frames_left == 0 || self.exhausted {

@@ -21,6 +21,8 @@ pub struct Line {
     pub listener: Option<Inbox>,
     /// That number.
     pub offered: Option<u32>,
+    /// When the last byte set out on its way down.
+    pub last_down: Option<VirtualNanos>,
 }
 
 impl Store for Line {}
@@ -37,7 +39,9 @@ impl Peer for Line {
         }
     }
 
-    fn transmit(&mut self, _now: VirtualNanos) -> Option<u16> {
-        self.down.pop_front().map(u16::from)
+    fn transmit(&mut self, now: VirtualNanos) -> Option<u16> {
+        let byte = self.down.pop_front()?;
+        self.last_down = Some(now);
+        Some(u16::from(byte))
     }
 }

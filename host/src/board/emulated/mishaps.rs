@@ -9,8 +9,7 @@ use tenax_hal_shim::channel::SCAN_HZ;
 
 use super::Mishap;
 use super::flash::FlashArray;
-use super::line::Line;
-use super::nucleo::{Nucleo, USART2};
+use super::nucleo::Nucleo;
 use super::part::Part;
 
 /// DMA2 stream 0's configuration: bit 0 switches it on.
@@ -52,7 +51,7 @@ impl Mishaps {
                     set(mcu, now, DMA2_S0CR, control);
                 }
                 Mishap::Garbage(bytes) => {
-                    if let Some(line) = mcu.chip.usart[USART2].chip_mut::<Line>() {
+                    if let Some(line) = mcu.line(now) {
                         line.down.extend(bytes);
                     }
                 }

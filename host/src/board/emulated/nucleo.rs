@@ -5,7 +5,6 @@
 
 use std::num::{NonZeroU32, NonZeroU64};
 
-use rigless::chip::uart::Peer;
 use rigless::cpu::armv7m::windows;
 use rigless::machine::armv7m::{Core, Fpu, MpuRegions, Variant};
 use rigless::machine::{Board, Target};
@@ -16,6 +15,7 @@ use tenax_hal_shim::channel::CODE_MAX;
 
 use super::Models;
 use super::flash::MemoryMap;
+use super::line::Line;
 use super::part::Part;
 
 /// The ST-LINK's clock on OSC_IN, Hz.
@@ -28,9 +28,6 @@ const CLOCK_HZ: NonZeroU64 = NonZeroU64::new(100_000_000).expect("not zero");
 const REFCLK_DIVIDER: NonZeroU32 = NonZeroU32::new(8).expect("not zero");
 /// Interrupt priority bits (RM0383, section 10.1).
 const PRIORITY_BITS: u8 = 4;
-/// The serial port of the ST-LINK, USART2, in the order of the chip's ports.
-pub const USART2: usize = 1;
-
 /// The board.
 #[derive(Debug)]
 pub struct Nucleo {
@@ -42,14 +39,13 @@ pub struct Nucleo {
 
 impl Nucleo {
     /// The board out of its box, its serial line in the hands of `line`.
-    pub fn new(models: Models, instructions_per_second: NonZeroU64, line: impl Peer) -> Result<Self, Error> {
-        let mut mcu = Part::new(models)?;
+    pub fn new(models: Models, instructions_per_second: NonZeroU64, line: Line) -> Result<Self, Error> {
+        let mut mcu = Part::new(models, line)?;
         let memory = MemoryMap::new(&mcu)?;
         mcu.chip.rcc.attach_crystals(HSE_HZ, 0);
         mcu.chip.set_supply(SUPPLY_MV);
         // The model's word is `input * 4095 / reference`: with this reference, an input is a code and nothing is rounded.
         mcu.chip.adc[0].set_reference(u32::from(CODE_MAX));
-        mcu.chip.usart[USART2].attach(line);
         Ok(Self { mcu, memory, instructions_per_second })
     }
 }

@@ -1,4 +1,4 @@
-//! The chip: `rigless`'s peripherals, less what costs and is never seen.
+//! The chip: `rigless`'s peripherals, less the events that nobody sees.
 
 use rigless::device::{ErasedDevice, ResetCause};
 use rigless::mcu::{Mcu, Operate};
@@ -8,20 +8,21 @@ use rigless::soc::{Bus, Error, Width};
 use rigless::time::VirtualNanos;
 
 use super::Models;
-use super::nucleo::USART2;
-use super::scan_path::{Asked, ScanPath};
+use super::line::Line;
+use super::scan_path::{self, ScanPath};
+use super::serial_path::{self, SerialPath};
 use super::unwatched::UnwatchedTimer;
 
 const ADC1_CR2: u64 = 0x4001_2008;
 const CR2_SWSTART: u64 = 1 << 30;
 const TIM3_CNT: u64 = 0x4000_0424;
+/// The serial port of the ST-LINK, USART2, in the order of the chip's ports.
+const USART2: usize = 1;
 /// TIM3, in the order of the chip's general timers.
 const TIM3: usize = 1;
 
 /// The motor bridge's timer. Its registers are read and nobody needs its 20 800 edges a second.
-pub const BRIDGE: &str = "TIM1";
-/// Nothing is wired to them, the image does not use them, and each would be told of every request of DMA.
-pub const LEFT_OUT: [&str; 7] = ["SPI1", "SPI2", "SPI3", "SPI4", "SPI5", "SPI6", "TIM8"];
+const BRIDGE: &str = "TIM1";
 
 /// An STM32F427, whose peripherals contain the F411's.
 #[derive(Debug)]
@@ -36,7 +37,9 @@ pub struct Part {
 struct Own {
     scan: ScanPath,
     timer: UnwatchedTimer,
-    controller: usize,
+    serial: SerialPath,
+    scan_controller: usize,
+    port: usize,
     answers: Box<[Answers]>,
 }
 
@@ -44,33 +47,44 @@ struct Own {
 #[derive(Clone, Copy, Debug)]
 enum Answers {
     Chip,
-    Scan(Asked),
+    Scan(scan_path::Asked),
     ScanTimer,
+    Serial(serial_path::Asked),
     /// The registers hold what is written to them, and nothing happens.
     RegistersAlone,
 }
 
 impl Own {
-    fn new(bus: &Bus) -> Result<Self, Error> {
+    fn new(bus: &Bus, line: Line) -> Result<Self, Error> {
         let mut answers = vec![Answers::Chip; bus.slots().len()].into_boxed_slice();
-        let controller = bus.slot("DMA2")?;
-        answers[controller] = Answers::Scan(Asked::Controller);
-        answers[bus.slot("ADC1")?] = Answers::Scan(Asked::Converter);
+        let [scan_controller, port] = [bus.slot("DMA2")?, bus.slot("USART2")?];
+        answers[scan_controller] = Answers::Scan(scan_path::Asked::Controller);
+        answers[bus.slot("ADC1")?] = Answers::Scan(scan_path::Asked::Converter);
         answers[bus.slot("TIM3")?] = Answers::ScanTimer;
-        for name in LEFT_OUT.into_iter().chain([BRIDGE]) {
-            answers[bus.slot(name)?] = Answers::RegistersAlone;
-        }
-        Ok(Self { scan: ScanPath::new(), timer: UnwatchedTimer::new(TIM3)?, controller, answers })
+        answers[port] = Answers::Serial(serial_path::Asked::Port);
+        answers[bus.slot("DMA1")?] = Answers::Serial(serial_path::Asked::Controller);
+        answers[bus.slot(BRIDGE)?] = Answers::RegistersAlone;
+        Ok(Self {
+            scan: ScanPath::new(),
+            timer: UnwatchedTimer::new(TIM3)?,
+            serial: SerialPath::new(Some(line))?,
+            scan_controller,
+            port,
+            answers,
+        })
     }
 }
 
 impl Part {
-    /// A chip out of reset.
-    pub fn new(models: Models) -> Result<Self, Error> {
-        let chip = Stm32f427::new()?;
+    /// A chip out of reset, `line` at the far end of its serial port.
+    pub fn new(models: Models, line: Line) -> Result<Self, Error> {
+        let mut chip = Stm32f427::new()?;
         let own = match models {
-            Models::Quick => Some(Own::new(chip.bus())?),
-            Models::Rigless => None,
+            Models::Quick => Some(Own::new(chip.bus(), line)?),
+            Models::Rigless => {
+                chip.usart[USART2].attach(line);
+                None
+            }
         };
         Ok(Self { chip, own })
     }
@@ -80,7 +94,7 @@ impl Part {
         let Self { chip, own } = self;
         match own {
             Some(own) => {
-                let (_, mut context) = chip.bus_mut().drive(now, own.controller);
+                let (_, mut context) = chip.bus_mut().drive(now, own.scan_controller);
                 own.scan.put(codes, &mut context);
             }
             None => {
@@ -89,6 +103,18 @@ impl Part {
                     chip.adc[0].set_input(channel, u32::from(code));
                 }
             }
+        }
+    }
+
+    /// The far end of the serial line, as it is now.
+    pub fn line(&mut self, now: VirtualNanos) -> Option<&mut Line> {
+        let Self { chip, own } = self;
+        match own {
+            Some(own) => {
+                let (_, mut context) = chip.bus_mut().drive(now, own.port);
+                own.serial.line(&mut context)
+            }
+            None => chip.usart[USART2].chip_mut::<Line>(),
         }
     }
 
@@ -109,7 +135,7 @@ impl Part {
         let Self { chip, own } = self;
         match own {
             Some(own) => {
-                let (registers, mut context) = chip.bus_mut().drive(now, own.controller);
+                let (registers, mut context) = chip.bus_mut().drive(now, own.scan_controller);
                 own.scan.trigger(registers, &mut context);
             }
             None => {
@@ -136,14 +162,20 @@ impl Mcu for Part {
         if let Some(own) = &mut self.own {
             own.scan.restarted();
             own.timer.restarted();
+            own.serial.restarted(at);
         }
     }
 
     /// Only the serial line has a far end.
     fn poll(&mut self, now: VirtualNanos) {
-        self.chip.drive_serial_port(now, USART2, |usart, registers, context| {
-            ErasedDevice::poll(usart, registers, context);
-        });
+        let Self { chip, own } = self;
+        match own {
+            Some(own) => {
+                let (_, mut context) = chip.bus_mut().drive(now, own.port);
+                own.serial.look(&mut context);
+            }
+            None => chip.poll(now),
+        }
     }
 
     fn split(&mut self, slot: usize) -> (&mut Bus, Option<&mut dyn ErasedDevice>) {
@@ -155,6 +187,7 @@ impl Mcu for Part {
         match own.answers.get(slot).copied().unwrap_or(Answers::Chip) {
             Answers::Chip => chip.split(slot),
             Answers::Scan(asked) => (chip.bus_mut(), Some(own.scan.of(asked))),
+            Answers::Serial(asked) => (chip.bus_mut(), Some(own.serial.of(asked))),
             Answers::ScanTimer => (chip.bus_mut(), Some(&mut own.timer)),
             Answers::RegistersAlone => (chip.bus_mut(), None),
         }

@@ -5,7 +5,7 @@
 //! worked out when it is looked at: at every access to a register of the two, and at the instants at which something is
 //! to be seen without one, which are DMA's interrupts, it takes the conversions that have ended by then, one after another
 //! with the times that the clock and the sampling give them. What is read at any instant is what `rigless`'s own models
-//! show at that instant: [`beside`] and `host/tests/emulated/converter.rs` hold them beside each other.
+//! show at that instant: `beside.rs` and `host/tests/emulated/converter.rs` hold them beside each other.
 //!
 //! It knows what the image uses: a regular group of a trigger, fetched into a ring by stream 0 of DMA2. It panics at what
 //! it does not know. The common status register (ADC_CSR) does not image the flags.

@@ -177,6 +177,7 @@ mod tests {
     use rigless::time::VirtualNanos;
 
     use crate::board::emulated::Models;
+    use crate::board::emulated::line::Line;
     use crate::board::emulated::part::Part;
 
     const RCC_APB1RSTR: u64 = 0x4002_3820;
@@ -217,7 +218,8 @@ mod tests {
             (9_000_000, &[(RCC_APB1RSTR, 2), (RCC_APB1RSTR, 0)]),
             (9_100_000, &[(TIM3_ARR, 999), (TIM3_CR2, 0x20), (TIM3_CR1, 1)]),
         ];
-        let mut parts = [Models::Quick, Models::Rigless].map(|models| Part::new(models).expect("the chip"));
+        let mut parts = [Models::Quick, Models::Rigless]
+            .map(|models| Part::new(models, Line::default()).expect("the chip"));
         let (mut steps, mut most) = (steps.iter().peekable(), 0);
         for now in (0..12_000_000).step_by(700) {
             let step = steps.next_if(|(at, _)| *at <= now);

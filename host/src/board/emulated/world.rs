@@ -17,9 +17,8 @@ use super::Broken;
 use super::commands::Commands;
 use super::cost::{CostMeter, stack_used};
 use super::flash::FlashArray;
-use super::line::Line;
 use super::mishaps::Mishaps;
-use super::nucleo::{Nucleo, USART2};
+use super::nucleo::Nucleo;
 use super::wires::Wires;
 use crate::board::TickCost;
 use crate::image::symbols::Symbols;
@@ -141,7 +140,7 @@ impl<P: Plant> World<P> {
             wires.trigger();
         }
         let scan = self.scanned;
-        if let Some(line) = session.board_mut().mcu.chip.usart[USART2].chip_mut::<Line>() {
+        if let Some(line) = session.board_mut().mcu.line(stop.at) {
             let opening = line.offered.take().map(|nonce| Down::Open { nonce });
             for command in opening.into_iter().chain(self.plant.commands()) {
                 if command == Down::Hello {
@@ -159,14 +158,14 @@ impl<P: Plant> World<P> {
         }
         self.mishaps.happen(scan, session, stop.at, &mut self.flash, host);
         if scan.is_multiple_of(REPORT_SCANS) {
-            self.report(session);
+            self.report(session, stop.at);
         }
         (self.drained < DRAIN_SCANS).then_some(())
     }
 
     /// Hands on what happened since the last report.
-    fn report(&mut self, session: &mut Session<Nucleo>) {
-        if let Some(line) = session.board_mut().mcu.chip.usart[USART2].chip_mut::<Line>() {
+    fn report(&mut self, session: &mut Session<Nucleo>, at: VirtualNanos) {
+        if let Some(line) = session.board_mut().mcu.line(at) {
             self.stretch.line = std::mem::take(&mut line.up);
         }
         if let Some(reports) = &self.reports {
@@ -180,7 +179,7 @@ impl<P: Plant> World<P> {
         let lasted_s = seconds(stop.at) - seconds(began);
         self.tick_cost = self.cost.cost((stop.instruction_count - executed) as f64 / lasted_s);
         self.stack_bytes = Some(stack_used(&self.stack, host));
-        self.report(session);
+        self.report(session, stop.at);
     }
 }
 

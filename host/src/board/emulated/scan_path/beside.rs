@@ -10,6 +10,7 @@ use rigless::soc::Width;
 use rigless::time::VirtualNanos;
 
 use crate::board::emulated::Models;
+use crate::board::emulated::line::Line;
 use crate::board::emulated::part::Part;
 
 const RCC_AHB1RSTR: u64 = 0x4002_3810;
@@ -67,7 +68,7 @@ struct Bench {
 
 impl Bench {
     fn new(models: Models) -> Self {
-        let mut part = Part::new(models).expect("the chip");
+        let mut part = Part::new(models, Line::default()).expect("the chip");
         part.chip.adc[0].set_reference(4095);
         Self { part, ram: Ram::default(), heard: Vec::new() }
     }
