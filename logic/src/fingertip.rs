@@ -253,6 +253,8 @@ impl Fingertip {
         self.link.tick();
         if u32::from(frame.slot()) % STEP_FRAMES == CONSENT_SLOT {
             self.consent();
+            // Before this frame drives: what the last ones did.
+            self.senses.driven(self.drive, STEP_FRAMES);
         }
         let heard = Heard::of(&self.detectors, self.acting);
         self.step_mode(heard);
@@ -265,7 +267,6 @@ impl Fingertip {
         // A lost frame says nothing about anybody's wish, so nobody's is carried out.
         let (drive, source) = if frame.valid { arbitrate(wishes) } else { Default::default() };
         self.drive = drive;
-        self.senses.driven(drive);
         self.reflex.tick(self.mode, self.senses.grip(&self.config));
         if source == DriveSource::Link && drive.closes() {
             self.reflex.spend(self.senses.grip(&self.config));

@@ -112,10 +112,11 @@ impl Senses {
         self.capabilities(journal);
     }
 
-    /// How the motor was driven in the last frame: what has been opened for a while, and not closed since, holds nothing.
-    pub const fn driven(&mut self, drive: MotorDrive) {
+    /// How the motor was driven in the last so many frames: what has been opened for a while, and not closed since, holds
+    /// nothing.
+    pub const fn driven(&mut self, drive: MotorDrive, frames: u32) {
         match drive {
-            MotorDrive::Open(_) => self.open_frames = self.open_frames.saturating_add(1),
+            MotorDrive::Open(_) => self.open_frames = self.open_frames.saturating_add(frames),
             MotorDrive::Close(_) => self.open_frames = 0,
             MotorDrive::Coast => {}
         }
