@@ -286,6 +286,8 @@ pub enum CalibrationRefusal {
     SensorLost,
     /// The words are not those of a model.
     Damaged,
+    /// The hand came to hold something, and whoever holds something must be able to let it go.
+    Loaded,
 }
 
 impl CalibrationRefusal {
@@ -293,6 +295,7 @@ impl CalibrationRefusal {
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
+            Self::Loaded => "something was held",
             Self::RestNotQuiet => "rest was not quiet",
             Self::NoClosing => "closing did not stand out from rest",
             Self::NoOpening => "opening did not stand out from rest",

@@ -68,3 +68,24 @@ fn what_does_not_separate_is_refused_and_a_hand_that_holds_is_not_calibrated() {
     let mut bench = Bench::holding(33);
     assert_eq!(bench.fingertip.command(&Down::CalibrateEmg), Err(Refusal::Loaded));
 }
+
+#[test]
+fn whoever_comes_to_hold_something_can_let_it_go() {
+    // Calibrated before, and empty when it begins anew.
+    let mut bench = Bench::new(34);
+    bench.run(400);
+    bench.fingertip.command(&Down::CalibrateEmg).expect("nothing is held");
+    bench.run(1_000);
+    bench.muscles(50.0, 900.0);
+    assert!(
+        bench.run(200).iter().all(|drive| !drive.opens()),
+        "the control: while it is empty, they move nothing"
+    );
+    bench.muscles(50.0, 50.0);
+    bench.load(4.0, 0.4);
+    bench.run(1_000);
+    bench.muscles(50.0, 900.0);
+    assert!(bench.run(100).iter().any(|drive| drive.opens()));
+    let given_up = EventKind::Calibration(Calibration::Refused(CalibrationRefusal::Loaded));
+    assert_eq!(bench.events.iter().filter(|event| event.kind == given_up).count(), 1);
+}

@@ -253,6 +253,11 @@ impl Fingertip {
         self.link.tick();
         if u32::from(frame.slot()) % STEP_FRAMES == CONSENT_SLOT {
             self.consent();
+            if self.senses.muscles().is_calibrating()
+                && matches!(self.senses.grip(&self.config), Grip::Holds(_))
+            {
+                self.senses.muscles_mut().give_up(&mut self.journal);
+            }
             // Before this frame drives: what the last ones did.
             self.senses.driven(self.drive, STEP_FRAMES);
         }

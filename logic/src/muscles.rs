@@ -136,6 +136,20 @@ impl Muscles {
         self.lesson = Some(Lesson { calibration: Calibration::begin(frame), asked: None });
     }
 
+    /// Whether a calibration is under way.
+    #[must_use]
+    pub const fn is_calibrating(&self) -> bool {
+        self.lesson.is_some()
+    }
+
+    /// Ends a calibration without a result: the hand has come to hold something, and its muscles must be able to open it.
+    #[inline(never)]
+    pub fn give_up(&mut self, journal: &mut Journal) {
+        if self.lesson.take().is_some() {
+            let _nothing_new = self.conclude(Err(words::CalibrationRefusal::Loaded), journal);
+        }
+    }
+
     /// A pair of readings is complete.
     #[inline(never)]
     fn learn(&mut self, journal: &mut Journal) {
