@@ -26,6 +26,7 @@ use postcard::de_flavors::crc::from_bytes_u32;
 use postcard::ser_flavors::{Cobs, Flavor, Slice, crc::CrcModifier};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
+use crate::behaviour::{Behaviour, CameraView, Ending};
 use crate::channel::{COUNT, FRAMES_PER_SLOW_FRAME, PVDF_COUNT, STRAIN_COUNT};
 use crate::detector::{DetectorId, Evidence};
 use crate::motor::MotorDrive;
@@ -95,6 +96,8 @@ pub struct Slow {
     pub samples_sum: u32,
     /// What the serial line may do.
     pub line: Line,
+    /// The behaviour that goes on.
+    pub behaviour: Option<Behaviour>,
 }
 
 /// What the network knows and feels (Tada 2006, equations 3 to 6).
@@ -176,6 +179,8 @@ pub enum EventKind {
     LineTrusted(bool),
     /// The calibration of the myosensors goes on, or is over.
     Calibration(Calibration),
+    /// A behaviour began (None), or ended.
+    Behaviour(Behaviour, Option<Ending>),
 }
 
 /// Why a command was not carried out.
@@ -291,8 +296,8 @@ pub enum Down {
     },
     /// Change a setting.
     Set(Setting),
-    /// Begin (true) or end (false) a stroke that measures the friction of a surface. It ends by itself after a minute.
-    Stroke(bool),
+    /// Begin a behaviour. Another one that goes on ends.
+    Begin(Behaviour),
     /// Take the force sensor's readings as zero. Refused while the finger is loaded.
     Zero,
     /// Answer with [`Answer::Samples`].
@@ -324,6 +329,10 @@ pub enum Down {
     /// Calibrate the myosensors to the wearer: three prompts of 5 s come up as [`EventKind::Calibration`], then the result.
     /// Meanwhile the muscles move nothing. Refused while something is held.
     CalibrateEmg,
+    /// End the behaviour that goes on.
+    End,
+    /// What the camera behind the skin saw. 30 to 63 times a second.
+    View(CameraView),
 }
 
 impl Down {

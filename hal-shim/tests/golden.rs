@@ -9,6 +9,7 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use tenax_hal_shim::behaviour::{Behaviour, CameraView, Ending, MARKERS, UNTRACKED};
 use tenax_hal_shim::channel::COUNT;
 use tenax_hal_shim::detector::{DetectorHealth, DetectorId, DetectorSet, Direction, Evidence};
 use tenax_hal_shim::motor::{Duty, MotorDrive};
@@ -38,7 +39,7 @@ fn down() -> Vec<Down> {
         Down::Ping,
         Down::Drive { drive: MotorDrive::Open(Duty::FULL), hold_ms: 200 },
         Down::Set(Setting { id: 4, value: 40_000 }),
-        Down::Stroke(true),
+        Down::Begin(Behaviour::Turn { by_ddeg: -200 }),
         Down::Zero,
         Down::Samples,
         Down::Teach { codes: [Code::Minus, Code::Plus], age_ms: 40 },
@@ -50,6 +51,14 @@ fn down() -> Vec<Down> {
         Down::Hello,
         Down::Open { nonce: 0xDEAD_BEEF },
         Down::CalibrateEmg,
+        Down::End,
+        Down::View(CameraView {
+            age_ms: 33,
+            moving_e4: 20,
+            angle_ddeg: Some(-15),
+            normal: [UNTRACKED; MARKERS],
+            shear: [-1; MARKERS],
+        }),
     ]
 }
 
@@ -107,6 +116,7 @@ fn slow() -> Slow {
         .collect(),
         samples_sum: 0xDEAD_BEEF,
         line: Line::Armed { left_s: 60 },
+        behaviour: Some(Behaviour::GentleGrasp),
     }
 }
 
@@ -171,6 +181,8 @@ fn up() -> Vec<Up> {
         EventKind::Calibration(Calibration::Refused(CalibrationRefusal::Damaged)),
         EventKind::Fault(Fault::SensorLost { channel: 39, reason: Reason::Endless }),
         EventKind::Fault(Fault::RecordDamaged(Kept::Emg)),
+        EventKind::Behaviour(Behaviour::HandOver, None),
+        EventKind::Behaviour(Behaviour::HandOver, Some(Ending::Done)),
     ];
     all.extend(events.map(|kind| Up::Event(Event { frame: 50, kind })));
     all.extend(answers().into_iter().map(|answer| Up::Answer { of: 7, frame: 50, answer }));

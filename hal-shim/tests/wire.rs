@@ -2,6 +2,7 @@
 
 use proptest::collection::vec;
 use proptest::prelude::*;
+use tenax_hal_shim::behaviour::Behaviour;
 use tenax_hal_shim::detector::{DetectorHealth, DetectorId, DetectorSet, Direction, Evidence};
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{
@@ -18,7 +19,7 @@ fn down() -> impl Strategy<Value = Down> {
         Just(Down::Network),
         Just(Down::Save),
         any::<u16>().prop_map(|age_ms| Down::Teach { codes: [Code::Minus, Code::Plus], age_ms }),
-        any::<bool>().prop_map(Down::Stroke),
+        prop_oneof![Just(Behaviour::Stroke), Just(Behaviour::Hold)].prop_map(Down::Begin),
         any::<(u8, i32)>().prop_map(|(id, value)| Down::Set(Setting { id, value })),
         any::<u8>().prop_map(Down::Get),
         any::<u8>().prop_map(Down::Settings),
@@ -131,7 +132,7 @@ fn the_longest_message_fits_a_frame() {
     let slow = Slow {
         frame: u32::MAX,
         ticks: [longest; 25],
-        mode: GripMode::Explore,
+        mode: GripMode::Settle,
         forces: Some(forces),
         s2_permille: u16::MAX,
         flexor_mv: Some(i16::MIN),
@@ -141,6 +142,7 @@ fn the_longest_message_fits_a_frame() {
         evidence: [(DetectorId::Injected, longest_evidence); DETECTORS_MAX].into_iter().collect(),
         samples_sum: u32::MAX,
         line: Line::Armed { left_s: u8::MAX },
+        behaviour: Some(Behaviour::Turn { by_ddeg: i16::MIN }),
     };
     let mut buffer = [0; FRAME_MAX];
     let length = encode(u16::MAX, &Up::Slow(slow), &mut buffer).unwrap().len();

@@ -251,7 +251,7 @@ fn network_words(f: &mut fmt::Formatter<'_>, network: &NetworkState) -> fmt::Res
 fn event_words(f: &mut fmt::Formatter<'_>, event: &Event) -> fmt::Result {
     write!(f, "{:10.4} s ", seconds(event.frame))?;
     match event.kind {
-        EventKind::Mode { from, to, cause } => write!(f, "mode: {from:?} -> {to:?} because of {cause:?}"),
+        EventKind::Mode { from, to, cause } => write!(f, "mode: {from} -> {to}: {cause}"),
         EventKind::Fault(fault) => write!(f, "fault: {}", in_words(&fault)),
         EventKind::Stroke { mu_s_permille, s2_permille } => write!(
             f,
@@ -264,6 +264,10 @@ fn event_words(f: &mut fmt::Formatter<'_>, event: &Event) -> fmt::Result {
         EventKind::LineTrusted(true) => f.write_str("the line is trusted: it moves the hand without consent"),
         EventKind::LineTrusted(false) => f.write_str("the line is trusted no more"),
         EventKind::EventsLost(count) => write!(f, "{count} events lost"),
+        EventKind::Behaviour(what, None) => write!(f, "behaviour: {} begins", what.name()),
+        EventKind::Behaviour(what, Some(ending)) => {
+            write!(f, "behaviour: {} ended, {}", what.name(), ending.name())
+        }
         EventKind::Calibration(Calibration::Asks(prompt)) => {
             write!(f, "calibration: {}, for 5 s from now", prompt.name())
         }

@@ -1,5 +1,6 @@
 //! Every number that can be chosen. Plain values, apart from all state, so that a whole set can be swapped at once.
 
+use crate::behaviours::BehaviourConfig;
 use crate::hebbian::{LearningConfig, Rule, TeacherConfig};
 use tenax_hal_shim::setting::SettingId;
 
@@ -107,6 +108,8 @@ pub struct Config {
     pub gate: GateConfig,
     /// The reflex.
     pub grip: GripConfig,
+    /// What is above it.
+    pub behaviour: BehaviourConfig,
     /// The serial line needs no consent.
     pub line_trusted: bool,
 }
@@ -136,6 +139,15 @@ impl Config {
             settle_frames: 0,
             ceiling_mn: 0,
             blind_frames: 0,
+        },
+        behaviour: BehaviourConfig {
+            duty_permille: 0,
+            movement_frames: 0,
+            wait_frames: 0,
+            gentle_score: 0,
+            changed_cells: 0,
+            moving_e4: 0,
+            turn_lead_frames: 0,
         },
         line_trusted: false,
     };

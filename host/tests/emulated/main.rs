@@ -2,6 +2,7 @@
 #![cfg(feature = "emulator")]
 
 mod agreement;
+mod behaviours;
 mod converter;
 mod faults;
 mod link;
