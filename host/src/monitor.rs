@@ -1,7 +1,7 @@
 //! A board's serial line for people: one line a message, what is missing counted, whatever comes.
 
 use std::fmt::{self, Display};
-use std::io::{self, ErrorKind, Read, Write};
+use std::io::{self, Read, Write};
 
 use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ, mv_from_sample};
 use tenax_hal_shim::detector::{DetectorHealth, DetectorId, DetectorSet};
@@ -12,7 +12,7 @@ use tenax_hal_shim::wire::{
 };
 use tenax_hal_shim::words::{Calibration, Line};
 
-use crate::link::{Counts, Heard, Inbox};
+use crate::link::{Counts, Heard, Inbox, is_silence};
 use crate::report::{in_words, kept_in_words};
 
 /// What has been heard so far.
@@ -55,7 +55,7 @@ impl Monitor {
                     self.take(&buffer[..length], out)?;
                     out.flush()?;
                 }
-                Err(error) if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => {}
+                Err(error) if is_silence(&error) => {}
                 Err(error) => return Ok(End::Unplugged(error)),
             }
         }

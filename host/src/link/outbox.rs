@@ -1,55 +1,53 @@
 //! What a person or their camera sends down a board's serial line.
 
-use std::io::{self, BufRead, ErrorKind, Read, Write};
+use std::io::{self, BufRead, Read, Write};
+use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
-use tenax_hal_shim::wire::{Answer, Down, FRAME_MAX, Up, encode};
+use tenax_hal_shim::wire::{Answer, Down, Up};
 use tenax_hal_shim::words::Code;
 
-use super::Inbox;
+use super::client::is_silence;
+use super::{Encoder, Inbox};
 
-/// Reads after which no answer comes any more.
-const READS_MAX: usize = 400;
+/// How long a board may take to offer a session's number.
+const OFFER_WITHIN: Duration = Duration::from_secs(2);
 
 /// Numbers commands and writes them as frames.
 #[derive(Debug)]
 pub struct Outbox<W> {
     line: W,
-    sequence: u16,
+    encoder: Encoder,
 }
 
 impl<W: Write> Outbox<W> {
     /// One that has sent nothing.
     pub fn new(line: W) -> Self {
-        Self { line, sequence: 0 }
+        Self { line, encoder: Encoder::default() }
     }
 
-    /// Sends one command.
-    pub fn send(&mut self, command: &Down) -> io::Result<()> {
-        let mut buffer = [0; FRAME_MAX];
-        if let Some(frame) = encode(self.sequence, command, &mut buffer) {
-            self.line.write_all(frame)?;
-        }
-        self.sequence = self.sequence.wrapping_add(1);
-        self.line.flush()
+    /// Sends one command; returns its number, which its answer names.
+    pub fn send(&mut self, command: &Down) -> io::Result<u16> {
+        let (number, frame) = self.encoder.frame(command);
+        self.line.write_all(frame)?;
+        self.line.flush()?;
+        Ok(number)
     }
 
-    /// Opens a session, without which the board only lets read: asks for a number on `line`, waits for it until the
-    /// source gives none for so long (its time-out), and gives it back. `seen` is told of every byte that came meanwhile.
+    /// Opens a session, without which the board only lets read: asks for a number, waits for it on
+    /// `source` for two seconds at most, and gives it back. `seen` is told of every byte that came meanwhile.
     ///
     /// False if none came: an older image, or nobody there. What is sent then is refused by whoever needs a session.
     pub fn open_session(&mut self, source: &mut dyn Read, seen: &mut dyn FnMut(&[u8])) -> io::Result<bool> {
         let mut inbox = Inbox::default();
         let mut buffer = [0; 256];
         self.send(&Down::Hello)?;
-        // A second of telemetry at most.
-        for _ in 0..READS_MAX {
+        let began = Instant::now();
+        while began.elapsed() < OFFER_WITHIN {
             let bytes = match source.read(&mut buffer) {
                 Ok(0) => return Ok(false),
                 Ok(length) => &buffer[..length],
-                Err(error) if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => {
-                    continue;
-                }
+                Err(error) if is_silence(&error) => continue,
                 Err(error) => return Err(error),
             };
             seen(bytes);
