@@ -96,11 +96,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
 }
 
 /// Sends what is to be sent at once, and lets the teacher talk beside the watching.
-fn tell(
-    args: &Args,
-    line: &mut Line,
-    seen: &mut dyn FnMut(&[u8]) -> io::Result<()>,
-) -> anyhow::Result<()> {
+fn tell(args: &Args, line: &mut Line, seen: &mut dyn FnMut(&[u8]) -> io::Result<()>) -> anyhow::Result<()> {
     let set = args.set.iter().map(|&setting| Down::Set(setting));
     let get = args.get.iter().map(|&id| Down::Get(id as u8));
     // The first of each part of the table that one answer has room for.

@@ -108,7 +108,7 @@ fn teaching(text: &str) -> anyhow::Result<Down> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tenax_hal_shim::wire::Receiver;
+    use tenax_hal_shim::wire::{FRAME_MAX, Receiver, encode};
 
     #[test]
     fn a_cameras_words_arrive_in_order() {
