@@ -25,15 +25,8 @@ impl Monitor {
     /// Takes bytes as they come and prints what they say.
     pub fn take(&mut self, bytes: &[u8], out: &mut dyn Write) -> io::Result<()> {
         for &byte in bytes {
-            match self.inbox.push(byte) {
-                None => {}
-                Some(Ok(Heard { received, missed })) => {
-                    if missed > 0 {
-                        writeln!(out, "# {missed} messages missed")?;
-                    }
-                    writeln!(out, "{:>5} {}", received.sequence, Words(&received.message))?;
-                }
-                Some(Err(bad)) => writeln!(out, "# frame skipped: {}", why(bad))?,
+            if let Some(frame) = self.inbox.push(byte) {
+                print(&frame, out)?;
             }
         }
         Ok(())
@@ -59,6 +52,19 @@ impl Monitor {
                 Err(error) => return Ok(End::Unplugged(error)),
             }
         }
+    }
+}
+
+/// Prints a message and what is missing before it, or why a frame is none.
+pub fn print(frame: &Result<Heard, BadFrame>, out: &mut dyn Write) -> io::Result<()> {
+    match frame {
+        Ok(Heard { received, missed }) => {
+            if *missed > 0 {
+                writeln!(out, "# {missed} messages missed")?;
+            }
+            writeln!(out, "{:>5} {}", received.sequence, Words(&received.message))
+        }
+        Err(bad) => writeln!(out, "# frame skipped: {}", why(*bad)),
     }
 }
 

@@ -3,15 +3,18 @@
 use std::io;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::Duration;
 
 use anyhow::{Context, bail};
 use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{Down, SETTINGS_PER_ANSWER, Setting};
 
 use super::out;
-use crate::link::{Line, Outbox, Target};
-use crate::monitor::{End, Monitor};
-use crate::settings;
+use crate::link::{Client, Target};
+use crate::{monitor, settings};
+
+/// How long a board may take to answer.
+const ANSWER_WITHIN: Duration = Duration::from_secs(2);
 
 /// Watch a board's serial line.
 #[derive(Debug, clap::Args)]
@@ -73,58 +76,53 @@ impl From<Send> for Down {
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    let mut monitor = Monitor::default();
-    let mut out = io::stdout().lock();
     let target = match (&args.port, &args.file) {
         (Some(port), _) => port.clone(),
         (None, Some(file)) => Target::File(file.clone()),
         (None, None) => bail!("give --port PORT or --file FILE"),
     };
-    let mut line = target.open()?;
-    tell(args, &mut line, &mut |bytes| monitor.take(bytes, &mut out))?;
-    let end = match monitor.watch(&mut line.up, &mut out) {
+    let mut client = Client::open(&target)?;
+    tell(args, &mut client)?;
+    let end = match print(&mut client, &mut io::stdout().lock()) {
         // Whoever read our output has read enough.
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(ExitCode::SUCCESS),
         other => other.context("cannot print")?,
     };
-    out::note!("{}", monitor.counts());
-    match (end, &target) {
-        (End::Over, Target::File(_)) => Ok(ExitCode::SUCCESS),
-        (End::Over, _) => bail!(target.after_end(None)),
-        (End::Unplugged(error), _) => bail!(target.after_end(Some(&error))),
+    out::note!("{}", client.counts());
+    match (end.kind(), &target) {
+        (io::ErrorKind::UnexpectedEof, Target::File(_)) => Ok(ExitCode::SUCCESS),
+        (io::ErrorKind::UnexpectedEof, _) => bail!(target.after_end(None)),
+        _ => bail!(target.after_end(Some(&end))),
+    }
+}
+
+/// Prints what comes until the line ends, and says how it ended.
+fn print(client: &mut Client, out: &mut dyn io::Write) -> io::Result<io::Error> {
+    loop {
+        match client.next_frame() {
+            Ok(Some(frame)) => monitor::print(&frame, out)?,
+            // Nothing more has come so far.
+            Ok(None) => out.flush()?,
+            Err(end) => return out.flush().map(|()| end),
+        }
     }
 }
 
 /// Sends what is to be sent at once, and lets the teacher talk beside the watching.
-fn tell(args: &Args, line: &mut Line, seen: &mut dyn FnMut(&[u8]) -> io::Result<()>) -> anyhow::Result<()> {
+fn tell(args: &Args, client: &mut Client) -> anyhow::Result<()> {
     let set = args.set.iter().map(|&setting| Down::Set(setting));
     let get = args.get.iter().map(|&id| Down::Get(id as u8));
     // The first of each part of the table that one answer has room for.
     let all = SettingId::ALL.into_iter().step_by(SETTINGS_PER_ANSWER).map(|id| Down::Settings(id as u8));
     let all = all.filter(|_| args.settings);
-    let commands: Vec<Down> =
-        args.send.iter().map(|&send| send.into()).chain(set).chain(get).chain(all).collect();
-    let Some(down) = line.down.take() else {
-        if args.teach || !commands.is_empty() {
-            bail!("a captured line cannot be told anything: give a port, or tcp:HOST:PORT");
-        }
-        return Ok(());
-    };
-    let mut outbox = Outbox::new(down);
-    if args.teach || commands.iter().any(|command| !command.reads()) {
-        let mut printed = Ok(());
-        let mut show =
-            |bytes: &[u8]| printed = std::mem::replace(&mut printed, Ok(())).and_then(|()| seen(bytes));
-        let opened = outbox.open_session(&mut line.up, &mut show).context("cannot open a session")?;
-        printed.context("cannot print")?;
-        if !opened {
-            out::note!("tenax: the board offered no session; what changes something will be refused");
-        }
-    }
-    for command in commands {
-        outbox.send(&command).context("cannot write to the port")?;
+    for command in args.send.iter().map(|&send| send.into()).chain(set).chain(get).chain(all) {
+        client.ask(&command, ANSWER_WITHIN)?;
     }
     if args.teach {
+        if !client.open_session(ANSWER_WITHIN)? {
+            out::note!("tenax: the board opened no session; what changes something will be refused");
+        }
+        let Some(mut outbox) = client.take_outbox() else { return Ok(()) };
         // It ends with its input, or with the process.
         std::thread::spawn(move || {
             if let Err(error) = outbox.teach(io::stdin().lock()) {

@@ -160,6 +160,10 @@ impl Plant for Typed {
         if self.0.t_s() < 0.2 { Vec::new() } else { std::mem::take(&mut self.1) }
     }
 
+    fn trusts_line(&self) -> bool {
+        self.0.trusts_line()
+    }
+
     fn duration_s(&self) -> f64 {
         self.0.duration_s()
     }
