@@ -17,18 +17,24 @@
 //! assert_eq!((received.sequence, received.message), (7, command));
 //! ```
 
+mod about;
 mod answer;
 mod down;
 mod framing;
+mod raw;
 mod samples;
+mod senses;
 mod slow;
 mod tick;
 mod up;
 
+pub use self::about::{About, Identity, KEPT_MAX, ResetCause, Restored, SETTINGS_MAX};
 pub use self::answer::{Answer, Refusal, SETTINGS_PER_ANSWER, Setting};
 pub use self::down::{DRIVE_HOLD_MAX_MS, Down};
 pub use self::framing::{BadFrame, Received, Receiver, encode};
+pub use self::raw::{FRAMES_PER_RAW, Raw};
 pub use self::samples::SamplesSum;
+pub use self::senses::Senses;
 pub use self::slow::{DETECTORS_MAX, Forces, NETWORK_OUTPUTS, NetworkState, RECEPTORS, Slow};
 pub use self::tick::TickRecord;
 pub use self::up::{Counters, Event, EventKind, Up};

@@ -122,6 +122,7 @@ impl Summary {
             Up::Counters(counters) => self.counters = counters,
             Up::Answer { of, answer, .. } => self.answers.push((of, answer)),
             Up::Saved { frame, kept } => self.saved.push((frame, kept)),
+            Up::About(_) | Up::Restored(_) | Up::Raw(_) | Up::Senses(_) | Up::Taken { .. } => {}
         }
     }
 }

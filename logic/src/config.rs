@@ -109,6 +109,8 @@ pub struct Config {
     pub grip: GripConfig,
     /// The serial line needs no consent.
     pub line_trusted: bool,
+    /// Frames are streamed from the start on.
+    pub stream_at_start: bool,
 }
 
 impl Config {
@@ -138,6 +140,7 @@ impl Config {
             blind_frames: 0,
         },
         line_trusted: false,
+        stream_at_start: false,
     };
 }
 

@@ -71,6 +71,11 @@ pub trait Plant: Send {
         false
     }
 
+    /// Whether the board streams its frames from the start (the setting `stream-at-start-flag`, kept in its flash from before).
+    fn streams_at_start(&self) -> bool {
+        false
+    }
+
     /// Whether somebody holds the board's button down at this instant.
     fn button(&self) -> bool {
         false

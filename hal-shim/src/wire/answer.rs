@@ -3,7 +3,7 @@
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-use super::{NetworkState, samples};
+use super::{About, NetworkState, samples};
 use crate::channel::COUNT;
 
 /// Why a command was not carried out.
@@ -65,4 +65,6 @@ pub enum Answer {
     Network(NetworkState),
     /// To [`Down::Hello`](super::Down::Hello): what [`Down::Open`](super::Down::Open) gives back.
     Nonce(u32),
+    /// To [`Down::About`](super::Down::About).
+    About(About),
 }

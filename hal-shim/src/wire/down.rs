@@ -56,6 +56,17 @@ pub enum Down {
     /// Calibrate the myosensors to the wearer: three prompts of 5 s come up as [`EventKind::Calibration`](super::EventKind::Calibration), then the result.
     /// Meanwhile the muscles move nothing. Refused while something is held.
     CalibrateEmg,
+    /// Answer with [`Answer::About`](super::Answer::About).
+    About,
+    /// Send more than usual, from now on for `hold_s` seconds; sent again while it is wanted. Each one replaces the one before.
+    Stream {
+        /// [`Up::Raw`](super::Up::Raw): every frame as it was sampled, and [`Up::Taken`](super::Up::Taken): every command.
+        raw: bool,
+        /// [`Up::Senses`](super::Up::Senses).
+        senses: bool,
+        /// For how long, s. 0 ends it.
+        hold_s: u16,
+    },
 }
 
 impl Down {
@@ -71,6 +82,8 @@ impl Down {
                 | Self::Settings(_)
                 | Self::Hello
                 | Self::Open { .. }
+                | Self::About
+                | Self::Stream { .. }
         )
     }
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Answer, Slow};
+use super::{About, Answer, Down, Raw, Restored, Senses, Slow};
 use crate::words::{Calibration, Cause, Consent, Fault, GripMode, Kept};
 
 /// What the board counted since it was switched on.
@@ -24,6 +24,11 @@ pub struct Counters {
     pub bad_frames: u32,
     /// Frames received faster than commands are taken: not looked at, not answered.
     pub commands_skipped: u32,
+    /// The longest time that a frame took control, from its last code to the end of everything it caused, us.
+    pub control_us_max: u32,
+    /// The part of the core's time that control took since the counters before, per mille. What the serial line's tasks take
+    /// is not in it.
+    pub control_permille: u16,
 }
 
 /// Something that happened once.
@@ -101,5 +106,23 @@ pub enum Up {
         frame: u32,
         /// What.
         kept: Kept,
+    },
+    /// Who the board is; once at the start, after the hello.
+    About(About),
+    /// At the start, if the setting `stream-at-start-flag` is 1: what was taken up from flash. With it and every
+    /// [`Raw`] and [`Taken`](Self::Taken) from then on, the decisions can be repeated.
+    Restored(Restored),
+    /// Frames as they were sampled: see [`Down::Stream`](super::Down::Stream).
+    Raw(Raw),
+    /// What every sensor reads: see [`Down::Stream`](super::Down::Stream).
+    Senses(Senses),
+    /// A command, before its answer, while frames are streamed.
+    Taken {
+        /// Sequence number of the frame before whose tick it was taken.
+        before: u32,
+        /// Sequence number of the command's frame.
+        of: u16,
+        /// The command.
+        command: Down,
     },
 }

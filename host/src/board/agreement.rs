@@ -30,7 +30,14 @@ impl Said {
             Up::Slow(slow) => self.slows.push(slow),
             Up::Event(event) => self.events.push(event),
             Up::Answer { answer, .. } => self.answers.push(answer),
-            Up::Hello { .. } | Up::Counters(_) | Up::Saved { .. } => {}
+            Up::Hello { .. }
+            | Up::Counters(_)
+            | Up::Saved { .. }
+            | Up::About(_)
+            | Up::Restored(_)
+            | Up::Raw(_)
+            | Up::Senses(_)
+            | Up::Taken { .. } => {}
         }
     }
 }

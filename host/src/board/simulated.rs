@@ -14,14 +14,14 @@ use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::frame::{Frame, Scan, scan_of_pins};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::{Job, slot_of};
-use tenax_hal_shim::wire::{Answer, Up};
+use tenax_hal_shim::wire::{Answer, Identity, Restored, Up};
 use tenax_logic::detectors::Said;
 use tenax_scene::plant::Plant;
 
 use self::downlink::Downlink;
 use self::store::Store;
 use self::uplink::Uplink;
-use super::kept::{Sectors, device, model_of};
+use super::kept::{Provision, Sectors};
 use super::{Recorder, Run, Summary};
 
 /// Who says that the object slips.
@@ -66,12 +66,21 @@ fn closed_loop<P: Plant>(
 ) -> (Summary, P) {
     let began = Instant::now();
     let frames = frames_in(plant.duration_s());
-    let calibrated =
-        plant.calibrated().map(|calibrated| model_of(&calibrated).expect("a plant's wearer is one"));
-    let mut device = device(plant.trusts_line(), calibrated.as_ref());
-    let mut store = Store::new(Sectors::provisioned(plant.trusts_line(), calibrated.as_ref()));
-    let mut summary = Summary { trusts_line: plant.trusts_line(), calibrated, ..Summary::default() };
+    let provision = Provision::of(&plant).expect("a plant's wearer is one");
+    let mut device = provision.device();
+    let mut store = Store::new(Sectors::provisioned(&provision));
+    let mut summary = Summary {
+        trusts_line: provision.trusts_line,
+        calibrated: provision.calibrated,
+        ..Summary::default()
+    };
     let mut up = Uplink::new(&mut summary, recorder);
+    up.post(device.start(Identity::default()));
+    if provision.streams_at_start {
+        for (kept, payload) in provision.records() {
+            up.post(Up::Restored(Restored::of(kept, &payload).expect("it has room for every record")));
+        }
+    }
     let mut down = Downlink::default();
     if judge == Judge::Plant {
         device.fingertip_mut().act_on(DetectorSet::only(DetectorId::Injected));
@@ -91,6 +100,9 @@ fn closed_loop<P: Plant>(
         commands.extend(down.command(sequence));
         for command in &commands {
             up.summary().taken.push((sequence, *command));
+            if let Some(message) = device.taken(command) {
+                up.post(message);
+            }
             let answer = device.command(command);
             if let Up::Answer { of, answer: Answer::Nonce(nonce), .. } = answer {
                 down.offered(of, nonce);

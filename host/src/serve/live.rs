@@ -125,6 +125,10 @@ impl<P: Plant> Plant for Served<P> {
         bytes
     }
 
+    fn streams_at_start(&self) -> bool {
+        self.plant.streams_at_start()
+    }
+
     fn trusts_line(&self) -> bool {
         self.plant.trusts_line()
     }
