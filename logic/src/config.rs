@@ -112,6 +112,8 @@ pub struct Config {
     pub behaviour: BehaviourConfig,
     /// The serial line needs no consent.
     pub line_trusted: bool,
+    /// Frames are streamed from the start on.
+    pub stream_at_start: bool,
 }
 
 impl Config {
@@ -150,6 +152,7 @@ impl Config {
             turn_lead_frames: 0,
         },
         line_trusted: false,
+        stream_at_start: false,
     };
 }
 

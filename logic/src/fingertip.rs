@@ -9,6 +9,7 @@ mod consent;
 mod heard;
 mod link;
 
+use tenax_hal_shim::channel::PVDF_COUNT;
 use tenax_hal_shim::detector::DetectorSet;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
@@ -193,6 +194,12 @@ impl Fingertip {
         self.journal.frame()
     }
 
+    /// The vibration envelope of each film, in samples.
+    #[must_use]
+    pub const fn films(&self) -> &[i32; PVDF_COUNT] {
+        self.senses.envelopes()
+    }
+
     /// What the reflex is doing.
     #[must_use]
     pub const fn mode(&self) -> GripMode {
@@ -341,6 +348,7 @@ impl Fingertip {
     }
 
     /// A stroke is over, by command or because somebody took over: what it measured becomes S2, if that is allowed.
+    #[inline(never)]
     fn measured(&mut self) {
         let Some(measured) = self.detectors.s2.end_stroke(&self.config.friction) else {
             return;

@@ -53,5 +53,6 @@ pub mod settings;
 pub mod solo;
 pub mod store;
 pub mod strain;
+mod stream;
 pub mod touch;
 pub mod vibration;

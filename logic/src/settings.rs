@@ -52,6 +52,7 @@ impl Config {
             Id::MovingPoints => self.behaviour.moving_e4.into(),
             Id::TurnLead => ms(self.behaviour.turn_lead_frames),
             Id::LineTrusted => self.line_trusted.into(),
+            Id::StreamAtStart => self.stream_at_start.into(),
         }
     }
 
@@ -129,6 +130,7 @@ impl Config {
             Id::MovingPoints => self.behaviour.moving_e4 = small,
             Id::TurnLead => self.behaviour.turn_lead_frames = frames(number),
             Id::LineTrusted => self.line_trusted = number > 0,
+            Id::StreamAtStart => self.stream_at_start = number > 0,
         }
         if matches!(id, Id::HebbianAlpha | Id::HebbianBeta | Id::HebbianDelta) {
             self.touch.rule = Rule::of(&self.touch.learning);

@@ -9,6 +9,7 @@ mod link;
 #[path = "../../../host-tests/src/onsets.rs"]
 mod onsets;
 mod store;
+mod streams;
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;

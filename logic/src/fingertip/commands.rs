@@ -28,7 +28,9 @@ impl Fingertip {
             | Down::Get(_)
             | Down::Settings(_)
             | Down::Hello
-            | Down::Open { .. } => Ok(()),
+            | Down::Open { .. }
+            | Down::About
+            | Down::Stream { .. } => Ok(()),
             Down::Drive { hold_ms, .. } if hold_ms > DRIVE_HOLD_MAX_MS => {
                 Err(Refusal::OutOfRange { min: 0, max: DRIVE_HOLD_MAX_MS.into() })
             }
