@@ -140,6 +140,8 @@ settings! {
     29 Blind "blind-ms" "ms" [0, 400] = 200;
     /// 1: the serial line moves the hand without consent (a gripper on a robot). Set by muscle or button only
     40 LineTrusted "line-trusted-flag" "flag" [0, 1] = 0;
+    /// 1: no wearer, the reflex works without myosensors (a gripper on a robot). Set by muscle or button only
+    41 NoWearer "no-wearer-flag" "flag" [0, 1] = 0;
 }
 
 impl SettingId {

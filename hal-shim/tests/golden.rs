@@ -171,6 +171,7 @@ fn up() -> Vec<Up> {
         EventKind::Calibration(Calibration::Refused(CalibrationRefusal::Damaged)),
         EventKind::Fault(Fault::SensorLost { channel: 39, reason: Reason::Endless }),
         EventKind::Fault(Fault::RecordDamaged(Kept::Emg)),
+        EventKind::NoWearer(true),
     ];
     all.extend(events.map(|kind| Up::Event(Event { frame: 50, kind })));
     all.extend(answers().into_iter().map(|answer| Up::Answer { of: 7, frame: 50, answer }));

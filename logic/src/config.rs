@@ -109,6 +109,8 @@ pub struct Config {
     pub grip: GripConfig,
     /// The serial line needs no consent.
     pub line_trusted: bool,
+    /// There is no wearer: a myosensor that gives no number is not missed.
+    pub no_wearer: bool,
 }
 
 impl Config {
@@ -138,6 +140,7 @@ impl Config {
             blind_frames: 0,
         },
         line_trusted: false,
+        no_wearer: false,
     };
 }
 

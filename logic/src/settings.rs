@@ -45,6 +45,7 @@ impl Config {
             Id::Settle => ms(self.grip.settle_frames),
             Id::Blind => ms(self.grip.blind_frames),
             Id::LineTrusted => self.line_trusted.into(),
+            Id::NoWearer => self.no_wearer.into(),
         }
     }
 
@@ -115,6 +116,7 @@ impl Config {
             Id::Settle => self.grip.settle_frames = frames(number),
             Id::Blind => self.grip.blind_frames = frames(number),
             Id::LineTrusted => self.line_trusted = number > 0,
+            Id::NoWearer => self.no_wearer = number > 0,
         }
         if matches!(id, Id::HebbianAlpha | Id::HebbianBeta | Id::HebbianDelta) {
             self.touch.rule = Rule::of(&self.touch.learning);
