@@ -212,9 +212,10 @@ impl Report {
                 dent_mm: truth.crushed_at_s.map(|_| truth.dent_mm),
                 broken_at_s: truth.broken_at_s,
             }),
-            wearer: subject
-                .judge
-                .verdict(timeline.wearer(&run.events).first().copied(), myosensors_lost(run)),
+            wearer: wearer::Wearer {
+                none: nobody_wears_it(run),
+                ..subject.judge.verdict(timeline.wearer(&run.events).first().copied(), myosensors_lost(run))
+            },
             detectors: scores::Detectors::of(timeline, &run.events, subject.truth),
             faults: faults(run, timeline),
             line: Line {
@@ -226,6 +227,15 @@ impl Report {
             replay: None,
         }
     }
+}
+
+/// Whether the board last said that nobody wears the hand.
+fn nobody_wears_it(run: &Summary) -> bool {
+    let told = run.events.iter().rev().find_map(|event| match event.kind {
+        EventKind::NoWearer(none) => Some(none),
+        _ => None,
+    });
+    told.unwrap_or(false)
 }
 
 /// How often a myosensor was lost.

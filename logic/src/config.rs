@@ -114,6 +114,8 @@ pub struct Config {
     pub line_trusted: bool,
     /// Frames are streamed from the start on.
     pub stream_at_start: bool,
+    /// There is no wearer: a myosensor that gives no number is not missed.
+    pub no_wearer: bool,
 }
 
 impl Config {
@@ -153,6 +155,7 @@ impl Config {
         },
         line_trusted: false,
         stream_at_start: false,
+        no_wearer: false,
     };
 }
 

@@ -55,8 +55,9 @@ pub struct Fingertip {
     link: Link,
     arming: Arming,
     button: bool,
-    /// What was last told about the line.
+    /// What was last told about the line, and about the wearer.
     line: Line,
+    told_no_wearer: bool,
     journal: Journal,
     slow: Option<Slow>,
     save_asked: bool,

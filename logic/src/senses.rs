@@ -178,11 +178,12 @@ impl Senses {
         self.films_usable
     }
 
-    /// Whether the reflex has all that it cannot do without: both muscles known, and a way to feel slip.
+    /// Whether the reflex has all that it cannot do without: both muscles known, if there is a wearer, and a way to feel
+    /// slip.
     #[must_use]
     pub fn ready(&self, config: &Config) -> bool {
         self.frames_seen >= WARM_UP_FRAMES
-            && self.gate.is_certain(&config.gate)
+            && (config.no_wearer || self.gate.is_certain(&config.gate))
             && (self.films_usable || self.forces.is_some())
     }
 

@@ -53,6 +53,7 @@ impl Config {
             Id::TurnLead => ms(self.behaviour.turn_lead_frames),
             Id::LineTrusted => self.line_trusted.into(),
             Id::StreamAtStart => self.stream_at_start.into(),
+            Id::NoWearer => self.no_wearer.into(),
         }
     }
 
@@ -131,6 +132,7 @@ impl Config {
             Id::TurnLead => self.behaviour.turn_lead_frames = frames(number),
             Id::LineTrusted => self.line_trusted = number > 0,
             Id::StreamAtStart => self.stream_at_start = number > 0,
+            Id::NoWearer => self.no_wearer = number > 0,
         }
         if matches!(id, Id::HebbianAlpha | Id::HebbianBeta | Id::HebbianDelta) {
             self.touch.rule = Rule::of(&self.touch.learning);

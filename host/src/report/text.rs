@@ -155,6 +155,9 @@ fn slip(f: &mut fmt::Formatter<'_>, report: &Report) -> fmt::Result {
 
 fn wearer(f: &mut fmt::Formatter<'_>, report: &Report) -> fmt::Result {
     let wearer = &report.wearer;
+    if wearer.none {
+        line!(f, "wearer", "none: the reflex works without myosensors")?;
+    }
     line!(
         f,
         "wearer",
