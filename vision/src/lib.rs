@@ -10,5 +10,7 @@ extern crate alloc;
 
 pub mod frame;
 pub mod markers;
+pub mod mask;
+pub mod object;
 
 pub use frame::{Frame, Plane, Point};
