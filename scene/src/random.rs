@@ -43,6 +43,10 @@ pub(crate) enum Source {
     Camera,
     /// The unevenness of the surface under the normal-force array.
     ArraySurface,
+    /// What a camera behind the skin sees: textures, lights, lens, and what happens.
+    Picture,
+    /// The noise of its pixels.
+    PictureNoise,
 }
 
 /// A source's stream of numbers.

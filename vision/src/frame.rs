@@ -12,6 +12,15 @@ pub const FRAME_BYTES: usize = 3 * PIXELS;
 /// One colour of a picture, row by row.
 pub type Plane = [u8; PIXELS];
 
+/// A black plane on the heap, which was never on the stack.
+#[must_use]
+pub fn plane() -> alloc::boxed::Box<Plane> {
+    match alloc::vec![0; PIXELS].into_boxed_slice().try_into() {
+        Ok(plane) => plane,
+        Err(_) => unreachable!("its length is that of a plane"),
+    }
+}
+
 /// A picture: three planes that somebody else owns.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<'a> {

@@ -8,9 +8,15 @@
 
 extern crate alloc;
 
+pub mod camera;
+pub mod force;
 pub mod frame;
 pub mod markers;
 pub mod mask;
+pub mod motion;
 pub mod object;
+pub mod quality;
+pub mod rectify;
 
+pub use camera::{Camera, Summary};
 pub use frame::{Frame, Plane, Point};

@@ -113,7 +113,7 @@ impl Marker {
     pub fn follow(&mut self, grey: &Plane) {
         let lost = self.failures > FAILURES_MAX;
         let from = if lost && self.probation == 0 { (self.rest.at, 0.0) } else { (self.at, self.growth) };
-        match find(grey, &self.rest, from.0, from.1) {
+        match find(grey, &self.rest, from.0, from.1, STEP_MAX_PX) {
             Ok((at, growth)) => {
                 (self.at, self.growth) = (at, growth);
                 if lost {
@@ -133,6 +133,15 @@ impl Marker {
         }
         let failed = if self.found.is_ok() { 0 } else { u16::MAX >> FAILED_SHARE_FRAMES };
         self.failed_share = self.failed_share - (self.failed_share >> FAILED_SHARE_FRAMES) + failed;
+    }
+
+    /// Looks for it in a picture by itself, `moved` from where it was calibrated.
+    fn place(&mut self, grey: &Plane, moved: (f32, f32)) {
+        let near = Point { x: self.rest.at.x + moved.0, y: self.rest.at.y + moved.1 };
+        self.found = find(grey, &self.rest, near, 0.0, MOVE_MAX_PX).map(|(at, growth)| {
+            (self.at, self.growth) = (at, growth);
+        });
+        self.failures = if self.found.is_ok() { 0 } else { FAILURES_MAX + 1 };
     }
 
     /// What was found is not the marker: it is looked for at rest again.
@@ -186,8 +195,38 @@ impl Markers {
         }
     }
 
+    /// Looks for each in a picture that has nothing to do with the one before: a marker may be anywhere within half a window
+    /// of where it was calibrated, and what its neighbours say helps to find it.
+    pub fn locate(&mut self, grey: &Plane) {
+        let count = self.count;
+        for marker in &mut self.markers[..count] {
+            *marker = Marker::new(marker.rest);
+            marker.place(grey, (0.0, 0.0));
+        }
+        // Those that are apart from their neighbours, or were not found, are looked for where those say.
+        for _ in 0..2 {
+            for at in 0..count {
+                let Some((x, y)) = self.neighbours_moved(at) else { continue };
+                let (own_x, own_y) = self.markers[at].moved();
+                if self.markers[at].found.is_err() || libm::hypotf(own_x - x, own_y - y) > APART_MAX_PX {
+                    self.markers[at].place(grey, (x, y));
+                    let (own_x, own_y) = self.markers[at].moved();
+                    if self.markers[at].found.is_ok() && libm::hypotf(own_x - x, own_y - y) > APART_MAX_PX {
+                        self.markers[at].disown(Failure::Apart);
+                    }
+                }
+            }
+        }
+    }
+
     /// How far a marker's move is from the median of its neighbours', px; 0 if too few of them are known.
     fn apart(&self, at: usize) -> f32 {
+        let (x, y) = self.markers[at].moved();
+        self.neighbours_moved(at).map_or(0.0, |near| libm::hypotf(x - near.0, y - near.1))
+    }
+
+    /// The median move of a marker's neighbours, px; None if too few of them are known.
+    fn neighbours_moved(&self, at: usize) -> Option<(f32, f32)> {
         let (mut xs, mut ys) = ([0.0; NEIGHBOURS], [0.0; NEIGHBOURS]);
         let mut known = 0;
         for &near in &self.neighbours[at] {
@@ -198,14 +237,13 @@ impl Markers {
             }
         }
         if known < 3 {
-            return 0.0;
+            return None;
         }
         let median = |values: &mut [f32]| {
             values.sort_unstable_by(f32::total_cmp);
             (values[known / 2] + values[(known - 1) / 2]) / 2.0
         };
-        let (x, y) = self.markers[at].moved();
-        libm::hypotf(x - median(&mut xs[..known]), y - median(&mut ys[..known]))
+        Some((median(&mut xs[..known]), median(&mut ys[..known])))
     }
 }
 
@@ -218,7 +256,13 @@ impl core::ops::Deref for Markers {
 }
 
 /// Where a marker of this shape is now, and how much its radius has grown, if it was at `last` before.
-fn find(grey: &Plane, shape: &Shape, last: Point, grown: f32) -> Result<(Point, f32), Failure> {
+fn find(
+    grey: &Plane,
+    shape: &Shape,
+    last: Point,
+    grown: f32,
+    step_max_px: f32,
+) -> Result<(Point, f32), Failure> {
     // Where the blob is not alone, the outline may still stand out: it is looked for where it was last.
     let (near, excuse) = match blob(grey, shape, last) {
         Ok(at) => (at, Failure::Outline),
@@ -230,7 +274,7 @@ fn find(grey: &Plane, shape: &Shape, last: Point, grown: f32) -> Result<(Point, 
         let radii = &grown_radii;
         fit = Outline::look(grey, at, radii).fit(radii).ok_or(excuse)?;
         at = Point { x: at.x + fit.x, y: at.y + fit.y };
-        if at.distance(last) > STEP_MAX_PX || at.distance(shape.at) > MOVE_MAX_PX {
+        if at.distance(last) > step_max_px || at.distance(shape.at) > MOVE_MAX_PX {
             return Err(Failure::Moved);
         }
         if fit.x.abs() + fit.y.abs() < 0.3 {

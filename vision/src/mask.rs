@@ -108,6 +108,12 @@ impl Mask {
         self.invert();
     }
 
+    /// Keeps one row of `keep`.
+    pub fn thin(&mut self, keep: usize) {
+        let gone = self.rows.iter_mut().enumerate().filter(|(y, _)| y % keep != 0);
+        gone.for_each(|(_, row)| *row = [0; WORDS]);
+    }
+
     /// Takes out what is in it and puts in what is not.
     pub fn invert(&mut self) {
         for word in self.words_mut() {

@@ -13,8 +13,9 @@ mod scene;
 
 use alloc::boxed::Box;
 
-use crate::frame::{Frame, PIXELS, Plane};
+use crate::frame::{Frame, PIXELS, Plane, plane};
 use crate::mask::{Mask, Moments};
+use crate::rectify::Rectifier;
 
 use self::colour::{BINS, Bins};
 pub use self::model::{Histogram, ObjectModel};
@@ -81,6 +82,7 @@ pub struct Tracker<M> {
     slip: Mask,
     bytes: Box<Plane>,
     held: Box<Plane>,
+    lens: Option<Rectifier>,
     frames: u32,
     seen: bool,
 }
@@ -101,15 +103,27 @@ impl<M: Movement> Tracker<M> {
             slip: Mask::EMPTY,
             bytes: plane(),
             held: plane(),
+            lens: None,
             frames: 0,
             seen: false,
         }
+    }
+
+    /// From here on the object's middle and angle are those behind this lens.
+    pub fn rectify(&mut self, lens: Rectifier) {
+        self.lens = Some(lens);
     }
 
     /// The object's pixels in the last frame.
     #[must_use]
     pub const fn object(&self) -> &Mask {
         &self.object
+    }
+
+    /// The object's pixels and those of the hand that brings it.
+    #[must_use]
+    pub const fn near(&self) -> &Mask {
+        &self.near
     }
 
     /// The moving pixels of the last frame, the object's and others.
@@ -162,8 +176,9 @@ impl<M: Movement> Tracker<M> {
         self.remember(frame, &apart);
         self.slip.clone_from(&self.object);
         self.slip.intersect(&self.moving);
+        let flat = self.lens.as_ref().filter(|_| self.seen).and_then(|lens| lens.moments(&self.object));
         moments.map(|moments| Sighting {
-            moments,
+            moments: flat.unwrap_or(moments),
             area: part(moments.area),
             slip_px: self.slip.count(),
             cut: touches_border(&self.object),
@@ -226,13 +241,6 @@ impl<M: Movement> Tracker<M> {
         hidden.dilate(3);
         hidden.unpack(&mut self.held);
         self.scene.follow(frame, &self.held, self.config.scene_rate);
-    }
-}
-
-fn plane() -> Box<Plane> {
-    match alloc::vec![0; PIXELS].into_boxed_slice().try_into() {
-        Ok(plane) => plane,
-        Err(_) => unreachable!("its length is that of a plane"),
     }
 }
 
