@@ -21,4 +21,5 @@ pub mod report;
 pub mod session;
 pub mod settings;
 pub mod timeline;
+pub mod vision;
 pub mod wiring;

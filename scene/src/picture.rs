@@ -146,6 +146,12 @@ impl Session {
         self.lens
     }
 
+    /// How many markers are in view.
+    #[must_use]
+    pub const fn markers(&self) -> usize {
+        self.markers.len()
+    }
+
     /// Draws the next picture, planes in the order green, blue, red. None after the story's end.
     pub fn picture(&mut self, gbrp: &mut [u8]) -> Option<Truth> {
         let t_s = f64::from(self.frame) / self.options.rate_hz;

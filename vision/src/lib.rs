@@ -11,6 +11,7 @@ extern crate alloc;
 pub mod camera;
 pub mod force;
 pub mod frame;
+pub mod loads;
 pub mod markers;
 pub mod mask;
 pub mod motion;

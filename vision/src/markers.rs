@@ -6,7 +6,7 @@ mod window;
 
 use crate::frame::{Plane, Point};
 
-pub use self::calibration::Calibration;
+pub use self::calibration::{Calibration, FRAMES as CALIBRATION_FRAMES};
 pub use self::outline::{Edge, Fit, Outline, RAYS, irregularity};
 pub use self::window::{Blob, Levels, SIDE, Window};
 
