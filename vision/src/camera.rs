@@ -31,6 +31,8 @@ pub struct Summary {
     pub object: Option<Sighting>,
     /// How it moves, if that can be seen.
     pub flow: Option<Flow>,
+    /// How the skin in contact moves: what sticks to it moves as it does.
+    pub skin_flow: Option<Flow>,
     /// How what lies behind the skin moves: the hand moves the other way.
     pub background_flow: Option<Flow>,
 }
@@ -44,6 +46,7 @@ pub struct Camera {
     markers: Option<Markers>,
     object: Tracker<Running>,
     watch: Watch,
+    forces_before: Option<Forces>,
     frames: u32,
 }
 
@@ -58,6 +61,7 @@ impl Camera {
             markers: None,
             object: Tracker::new(config, Running::default()),
             watch: Watch::default(),
+            forces_before: None,
             frames: 0,
         }
     }
@@ -96,17 +100,39 @@ impl Camera {
         let found = markers.iter().filter(|marker| marker.found.is_ok()).count();
         let blind = self.watch.picture(&self.grey, (found, markers.len()), taken_ms, now_ms);
         let forces = Forces::of(markers, MARKERS_MIN);
-        let object = self.object.step(frame, &self.grey, learn);
-        let flow = object
-            .filter(|_| self.frames > 0)
-            .and_then(|_| motion::flow(&self.before, &self.grey, self.object.object()));
-        let background_flow = Some(()).filter(|()| self.frames > 0).and_then(|()| {
-            let background = background(self.object.near(), markers);
-            motion::flow(&self.before, &self.grey, &background)
-        });
+        let skin_flow = forces
+            .zip(self.forces_before)
+            .map(|(now, before)| Flow { x: now.x - before.x, y: now.y - before.y });
+        self.forces_before = forces;
+        let skin = skin_of(markers);
+        let object = self.object.step(frame, &self.grey, &skin, learn);
+        let (mut flow, mut background_flow) = (None, None);
+        if self.frames > 0 {
+            if object.is_some() {
+                let mut seen = self.object.object().clone();
+                seen.subtract(&skin);
+                seen.thin(OBJECT_ROWS);
+                flow = motion::flow(&self.before, &self.grey, &seen);
+            }
+            let mut background = self.object.near().clone();
+            background.unite(&skin);
+            background.invert();
+            background.thin(BACKGROUND_ROWS);
+            background_flow = motion::flow(&self.before, &self.grey, &background);
+        }
         let number = self.frames;
         self.frames = self.frames.wrapping_add(1);
-        Summary { frame: number, blind, markers: markers.len(), found, forces, object, flow, background_flow }
+        Summary {
+            frame: number,
+            blind,
+            markers: markers.len(),
+            found,
+            forces,
+            object,
+            flow,
+            skin_flow,
+            background_flow,
+        }
     }
 
     /// What is to be thought of the camera while no picture comes.
@@ -116,39 +142,52 @@ impl Camera {
     }
 }
 
+/// Rows of the object that are looked at for its move.
+const OBJECT_ROWS: usize = 2;
 /// Rows of the background that are looked at: one of so many is enough for one move.
 const BACKGROUND_ROWS: usize = 4;
 /// How far around a marker its rim reaches, px.
 const RIM_PX: f32 = 3.0;
 
-/// What is neither the object nor the hand nor a marker, thinned out.
-fn background(near: &Mask, markers: &[Marker]) -> Mask {
-    let mut hidden = near.clone();
+/// Where the markers are, their rims included.
+fn skin_of(markers: &[Marker]) -> Mask {
+    let mut skin = Mask::EMPTY;
     for marker in markers {
         let reach = marker.rest.radius() + RIM_PX;
         let range = |middle: f32, end: usize| {
             ((middle - reach).max(0.0) as usize)..((middle + reach) as usize + 1).min(end)
         };
         for y in range(marker.at.y, HEIGHT) {
-            range(marker.at.x, WIDTH).for_each(|x| hidden.insert(x, y));
+            range(marker.at.x, WIDTH).for_each(|x| skin.insert(x, y));
         }
     }
-    hidden.invert();
-    hidden.thin(BACKGROUND_ROWS);
-    hidden
+    skin
 }
 
 /// Moving pixels, of the picture, from which an object slips.
 pub const SLIP_MIN: f32 = 0.002;
+/// How fast the skin must move to carry an object along, px a frame.
+pub const SKIN_FLOW_MIN_PX: f32 = 0.05;
+/// The most that the object's move may differ from the skin's for it to stick, of the larger: the mean over all markers is
+/// less than the move under the object.
+pub const STICKS_MAX: f32 = 0.7;
 /// How fast the background must move for the hand to move, px a frame.
 pub const HAND_FLOW_MIN_PX: f32 = 0.1;
 
 impl Summary {
-    /// Whether the object slips: enough of it moves.
+    /// Whether the object slips: enough of it moves, and not as the skin does that it sticks to.
     #[must_use]
     pub fn slips(&self) -> bool {
         let enough = |object: Sighting| object.slip_px as f32 >= SLIP_MIN * PIXELS as f32;
-        self.blind.is_none() && self.object.is_some_and(enough)
+        self.blind.is_none() && self.object.is_some_and(enough) && !self.sticks()
+    }
+
+    /// Whether the object's move is the skin's.
+    fn sticks(&self) -> bool {
+        let (Some(object), Some(skin)) = (self.flow, self.skin_flow) else { return false };
+        let size = |flow: Flow| libm::hypotf(flow.x, flow.y);
+        let apart = size(Flow { x: object.x - skin.x, y: object.y - skin.y });
+        size(skin) >= SKIN_FLOW_MIN_PX && apart < STICKS_MAX * size(object).max(size(skin))
     }
 
     /// The teacher's words (Tada 2006, equations 1 and 2). v1: -1 if the object moves against the hand, 1 if both move as

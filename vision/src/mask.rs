@@ -5,6 +5,9 @@ use crate::frame::{HEIGHT, PIXELS, Point, WIDTH};
 /// Words of a row.
 pub const WORDS: usize = WIDTH / 64;
 
+/// Pieces that [`Mask::keep_large`] tells apart.
+pub const PIECES_MAX: usize = 48;
+
 /// A set of pixels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mask {
@@ -74,6 +77,13 @@ impl Mask {
     pub fn intersect(&mut self, other: &Self) {
         for (word, other) in self.words_mut().zip(other.rows.iter().flatten()) {
             *word &= other;
+        }
+    }
+
+    /// Takes out what is in `other`.
+    pub fn subtract(&mut self, other: &Self) {
+        for (word, other) in self.words_mut().zip(other.rows.iter().flatten()) {
+            *word &= !other;
         }
     }
 
@@ -156,6 +166,78 @@ impl Mask {
         }
         outside.invert();
         *self = outside;
+    }
+
+    /// Keeps its connected pieces that are at least `percent` of the largest; of more than [`PIECES_MAX`] the first ones.
+    pub fn keep_large(&mut self, percent: u32) {
+        let mut rest = self.clone();
+        let mut largest = 0;
+        let mut starts = [(0, 0, 0); PIECES_MAX];
+        let mut count = 0;
+        while count < PIECES_MAX {
+            let Some((start, piece)) = rest.take_piece() else { break };
+            let area = piece.count();
+            largest = largest.max(area);
+            starts[count] = (start.0, start.1, area);
+            count += 1;
+        }
+        if count < 2 {
+            return;
+        }
+        let mut rest = core::mem::take(self);
+        for &(_, _, area) in &starts[..count] {
+            // Pieces come in the same order again.
+            let Some((_, piece)) = rest.take_piece() else { break };
+            if 100 * area >= percent * largest {
+                self.unite(&piece);
+            }
+        }
+    }
+
+    /// Takes the piece out that holds the first pixel: the row and word where it begins, and the piece.
+    fn take_piece(&mut self) -> Option<((usize, usize), Self)> {
+        let (y, word) = (0..HEIGHT)
+            .find_map(|y| self.rows[y].iter().position(|&word| word != 0).map(|word| (y, word)))?;
+        let mut piece = Self::EMPTY;
+        let mut seed = [0; WORDS];
+        seed[word] = self.rows[y][word] & self.rows[y][word].wrapping_neg();
+        piece.rows[y] = flood(&seed, &self.rows[y]);
+        // Rows between which it may still grow.
+        let (mut top, mut bottom) = (y, y);
+        let mut grown = true;
+        while grown {
+            grown = false;
+            while bottom + 1 < HEIGHT && piece.grow(bottom, bottom + 1, self) {
+                (bottom, grown) = (bottom + 1, true);
+            }
+            for from in top..bottom {
+                grown |= piece.grow(from, from + 1, self);
+            }
+            for from in (top + 1..=bottom).rev() {
+                grown |= piece.grow(from, from - 1, self);
+            }
+            while top > 0 && piece.grow(top, top - 1, self) {
+                (top, grown) = (top - 1, true);
+            }
+        }
+        for (row, taken) in self.rows.iter_mut().zip(&piece.rows) {
+            row.iter_mut().zip(taken).for_each(|(word, taken)| *word &= !taken);
+        }
+        Some(((y, word), piece))
+    }
+
+    /// Grows from a row into the next as far as `within` goes. Returns whether it did.
+    fn grow(&mut self, from: usize, to: usize, within: &Self) -> bool {
+        let (mut seed, mut new) = (self.rows[to], 0);
+        for (word, seed) in seed.iter_mut().enumerate() {
+            let reached = self.rows[from][word] & within.rows[to][word];
+            new |= reached & !*seed;
+            *seed |= reached;
+        }
+        if new != 0 {
+            self.rows[to] = flood(&seed, &within.rows[to]);
+        }
+        new != 0
     }
 
     /// Calls `each` with every pixel's place in a plane.
@@ -335,6 +417,29 @@ mod tests {
         assert_eq!(open, ring);
         let mut empty = Mask::EMPTY;
         empty.fill_holes();
+        assert_eq!(empty, Mask::EMPTY);
+    }
+
+    #[test]
+    fn small_pieces_go_and_large_ones_stay() {
+        let mut mask = rectangle(10, 10, 50, 50);
+        mask.unite(&rectangle(100, 20, 130, 60));
+        let large = mask.clone();
+        mask.unite(&rectangle(200, 5, 205, 10));
+        mask.unite(&rectangle(70, 200, 75, 203));
+        mask.keep_large(25);
+        assert_eq!(mask, large);
+        // A winding piece is one.
+        let mut spiral = rectangle(0, 0, 200, 2);
+        spiral.unite(&rectangle(198, 0, 200, 200));
+        spiral.unite(&rectangle(20, 198, 200, 200));
+        spiral.unite(&rectangle(20, 100, 22, 200));
+        spiral.unite(&rectangle(20, 100, 150, 102));
+        let whole = spiral.clone();
+        spiral.keep_large(100);
+        assert_eq!(spiral, whole);
+        let mut empty = Mask::EMPTY;
+        empty.keep_large(25);
         assert_eq!(empty, Mask::EMPTY);
     }
 

@@ -6,6 +6,7 @@
 //! differs from the scene, and a wall has the colours of a card.
 
 pub mod colour;
+mod ghost;
 mod hand;
 mod model;
 mod movement;
@@ -28,6 +29,12 @@ const DOUBT_FRAMES: u32 = 32;
 const DOUBT_FRAMES_EMPTY: u32 = 4;
 /// Every so many pixels of the scene stand for all of it: a prime, so that no column is taken again and again.
 const SAMPLE: usize = 13;
+/// Pieces of an object that are smaller than this part of the largest are noise, per cent.
+const PIECES_PERCENT: u32 = 25;
+/// Moving pixels below which an object is still.
+const STILL_PX: u32 = 150;
+/// Frames after which what looks like a ghost is one.
+const GHOST_FRAMES: u32 = 5;
 /// How far from moving pixels others belong to what moves, px.
 const INSIDE_PX: usize = 10;
 
@@ -85,6 +92,8 @@ pub struct Tracker<M> {
     lens: Option<Rectifier>,
     frames: u32,
     seen: bool,
+    /// Frames in a row in which the object looked like a ghost.
+    ghosts: u32,
 }
 
 impl<M: Movement> Tracker<M> {
@@ -106,6 +115,7 @@ impl<M: Movement> Tracker<M> {
             lens: None,
             frames: 0,
             seen: false,
+            ghosts: 0,
         }
     }
 
@@ -139,14 +149,15 @@ impl<M: Movement> Tracker<M> {
     }
 
     /// Takes a frame and its grey plane. With `learn`, the object's colours are learned from what moves: until the hand
-    /// closes. None while there is no object.
-    pub fn step(&mut self, frame: &Frame, grey: &Plane, learn: bool) -> Option<Sighting> {
+    /// closes. What moves in `skin`, where the markers are, is no slip. None while there is no object.
+    pub fn step(&mut self, frame: &Frame, grey: &Plane, skin: &Mask, learn: bool) -> Option<Sighting> {
         self.frames = self.frames.saturating_add(1);
         self.movement.step(frame, grey, &mut self.bytes);
         self.moving.pack(&self.bytes);
         if self.frames == 1 {
             self.scene.follow(frame, &self.held, 0);
         }
+        self.scene.follow_light(grey, &self.near);
         self.scene.differs(frame, &mut self.bytes);
         let mut differs = core::mem::take(&mut self.object);
         differs.pack(&self.bytes);
@@ -160,6 +171,7 @@ impl<M: Movement> Tracker<M> {
         differs.dilate(7);
         differs.fill_holes();
         differs.erode(5);
+        differs.keep_large(PIECES_PERCENT);
         self.object = differs;
         self.near.clone_from(&self.object);
         if self.config.skip_hand {
@@ -176,13 +188,31 @@ impl<M: Movement> Tracker<M> {
         self.remember(frame, &apart);
         self.slip.clone_from(&self.object);
         self.slip.intersect(&self.moving);
+        self.slip.subtract(skin);
+        let slip_px = self.slip.count();
+        let ghost = learn && self.seen && slip_px < STILL_PX && ghost::is_one(&self.object, skin, grey);
+        self.ghosts = if ghost { self.ghosts + 1 } else { 0 };
+        if self.ghosts >= GHOST_FRAMES {
+            self.lay_ghost(frame);
+            return None;
+        }
         let flat = self.lens.as_ref().filter(|_| self.seen).and_then(|lens| lens.moments(&self.object));
         moments.map(|moments| Sighting {
             moments: flat.unwrap_or(moments),
             area: part(moments.area),
-            slip_px: self.slip.count(),
+            slip_px,
             cut: touches_border(&self.object),
         })
+    }
+
+    /// Takes what is seen now for the scene, and forgets the object.
+    fn lay_ghost(&mut self, frame: &Frame) {
+        self.near.invert();
+        self.near.unpack(&mut self.held);
+        self.scene.follow(frame, &self.held, 0);
+        self.model.forget();
+        (self.object, self.near, self.slip) = (Mask::EMPTY, Mask::EMPTY, Mask::EMPTY);
+        (self.ghosts, self.seen) = (0, false);
     }
 
     /// Learns the colours of what moves and is not the scene.

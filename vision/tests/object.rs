@@ -4,6 +4,7 @@ mod common;
 
 use common::{Noise, plane};
 use tenax_vision::frame::{Frame, PIXELS, Plane, WIDTH};
+use tenax_vision::mask::Mask;
 use tenax_vision::object::{Config, Running, Sighting, Tracker};
 
 /// A slanted rod, 150 x 40 px, about `middle`.
@@ -63,7 +64,7 @@ impl Camera {
     fn look(&mut self, rod: Option<Rod>, wall: f32, learn: bool) -> Option<Sighting> {
         let frame = self.world.draw(rod, wall);
         frame.grey(&mut self.grey);
-        self.tracker.step(&frame, &self.grey, learn)
+        self.tracker.step(&frame, &self.grey, &Mask::EMPTY, learn)
     }
 
     /// Brings the rod in from the right and holds it still.

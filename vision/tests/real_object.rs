@@ -57,7 +57,7 @@ fn follow(name: &str, movement: impl Movement) -> Option<(f32, f32, f32)> {
     let mut overlaps = Vec::new();
     let seen = for_each_frame(&video, |number, frame| {
         frame.grey(&mut grey);
-        let sighting = tracker.step(&frame, &grey, true);
+        let sighting = tracker.step(&frame, &grey, &Mask::EMPTY, true);
         if EMPTY.iter().any(|range| range.contains(&number)) {
             empty += 1;
             wrong += usize::from(sighting.is_some());
@@ -89,10 +89,7 @@ fn both_cards_are_outlined_and_the_empty_scene_is_empty() {
     let Some((mean, worst, wrong)) = follow("running mean", Running::default()) else { return };
     assert!(wrong <= 0.01, "{wrong}");
     assert!(mean >= 0.75 && worst >= 0.6, "{mean} {worst}");
-}
-
-#[test]
-fn a_mixture_is_no_better_though_it_is_slower() {
-    let Some((mean, ..)) = follow("mixture", Mixture::default()) else { return };
-    assert!((0.6..0.76).contains(&mean), "{mean}: choose again which is the default");
+    // A mixture costs ten times as much, and is no better here.
+    let Some((of_mixture, ..)) = follow("mixture", Mixture::default()) else { return };
+    assert!(of_mixture <= mean + 0.02, "{of_mixture} {mean}: choose again which is the default");
 }

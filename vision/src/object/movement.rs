@@ -30,9 +30,9 @@ impl Running {
 }
 
 impl Default for Running {
-    /// Twice the noise of a cheap camera, and a sixth of a second at 54 frames a second.
+    /// Twice the noise of a cheap camera, and a mean that has forgotten a move after some six frames.
     fn default() -> Self {
-        Self::new(14, 3)
+        Self::new(14, 2)
     }
 }
 

@@ -6,12 +6,22 @@
 use alloc::boxed::Box;
 use alloc::vec;
 
-use crate::frame::{Frame, PIXELS, Plane};
+use crate::frame::{Frame, PIXELS, Plane, WIDTH};
+use crate::mask::Mask;
 
 /// Fraction bits of a remembered level.
 const FRACTION: u32 = 7;
 /// A pixel differs from the scene if a colour is this far off, grey levels, and four times its usual variation.
 const APART_MIN: i16 = 12;
+
+/// Every so many pixels tell how the light is.
+const SAMPLE: usize = 61;
+/// Pixels that must tell so.
+const SAMPLES_MIN: u16 = 100;
+/// Levels that tell.
+const LIGHT: (i32, i32) = (30, 235);
+/// A change of the light below this is none, 1/256.
+const LIGHT_MIN: i32 = 2;
 
 /// A plane of levels with a fraction.
 type Levels = Box<[i16; PIXELS]>;
@@ -58,6 +68,43 @@ impl Scene {
                 .max(apart(blue[at], old_blue[at]));
             // A colour is never farther off than 255, so four times the variation is below 2^15.
             into[at] = u8::from(off >> 2 > (varies[at]).max((APART_MIN << FRACTION) >> 2));
+        }
+    }
+
+    /// Takes a change of the light, or of the camera's exposure, for what it is: the whole scene becomes brighter or darker by
+    /// what most of the pixels did that are not `hidden`.
+    pub fn follow_light(&mut self, grey_is: &Plane, hidden: &Mask) {
+        // Ratios in steps of 1/256, from 0.5 to 1.5.
+        let (mut counts, mut count) = ([0u16; 256], 0);
+        for at in (0..PIXELS).step_by(SAMPLE) {
+            let was =
+                (i32::from(self.red[at]) + 2 * i32::from(self.green[at]) + i32::from(self.blue[at])) >> 2;
+            let is = i32::from(grey_is[at]) << FRACTION;
+            // The dark says little, and the bright is cut off.
+            if (LIGHT.0..LIGHT.1).contains(&(was >> FRACTION)) && !hidden.contains(at % WIDTH, at / WIDTH) {
+                let step = 256 * is / was - 128;
+                if let Some(slot) = usize::try_from(step).ok().and_then(|step| counts.get_mut(step)) {
+                    (*slot, count) = (*slot + 1, count + 1);
+                }
+            }
+        }
+        if count < SAMPLES_MIN {
+            return;
+        }
+        let mut sum = 0;
+        let median = counts.iter().position(|&of| {
+            sum += of;
+            2 * sum > count
+        });
+        let change = median.map_or(0, |step| step as i32 - 128);
+        if change.abs() < LIGHT_MIN {
+            return;
+        }
+        for levels in [&mut self.red, &mut self.green, &mut self.blue] {
+            for level in levels.iter_mut() {
+                let changed = i32::from(*level) + ((i32::from(*level) * change) >> 8);
+                *level = changed.min(255 << FRACTION) as i16;
+            }
         }
     }
 
