@@ -165,7 +165,7 @@ fn skin_of(markers: &[Marker]) -> Mask {
 }
 
 /// Moving pixels, of the picture, from which an object slips.
-pub const SLIP_MIN: f32 = 0.002;
+pub const SLIP_MIN: f32 = 0.001;
 /// How fast the skin must move to carry an object along, px a frame.
 pub const SKIN_FLOW_MIN_PX: f32 = 0.05;
 /// The most that the object's move may differ from the skin's for it to stick, of the larger: the mean over all markers is

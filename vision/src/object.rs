@@ -56,7 +56,7 @@ pub struct Config {
 
 impl Default for Config {
     fn default() -> Self {
-        Self { colour_min: 30, area_min: 0.04, learn_min: 0.01, scene_rate: 5, skip_hand: true }
+        Self { colour_min: 45, area_min: 0.04, learn_min: 0.01, scene_rate: 5, skip_hand: true }
     }
 }
 
