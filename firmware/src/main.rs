@@ -26,6 +26,7 @@ mod counts;
 mod deadline;
 mod flash;
 mod halves;
+mod identity;
 mod last_words;
 mod mail;
 mod scan;
@@ -43,7 +44,7 @@ use embassy_stm32::wdg::IndependentWatchdog;
 use embassy_stm32::{bind_interrupts, dma, peripherals};
 use static_cell::{ConstStaticCell, StaticCell};
 use tenax_hal_shim::channel::FRAME_HZ;
-use tenax_hal_shim::wire::{BAUD, Up};
+use tenax_hal_shim::wire::{BAUD, ResetCause, Up};
 use tenax_logic::device::Device;
 
 bind_interrupts!(struct Irqs {
@@ -73,7 +74,7 @@ static CONTROL: StaticCell<control::Control> = StaticCell::new();
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
-    let last_words::Start { after, switched_on } = last_words::start();
+    let last_words::Start { after, cause } = last_words::start();
     let mut config = clock::config();
     config.dma_interrupt_priority = Priority::P6;
     let p = embassy_stm32::init(config);
@@ -124,9 +125,15 @@ async fn main(spawner: Spawner) {
         .spawn(commands::commands(down.into_ring_buffered(COMMAND_RING.take())).expect("one commands task"));
     let control = CONTROL.init_with(|| control::Control::new(bridge, switches, button, watchdog));
     control.restore(|device| store::restore(device, &flash, &found));
-    if !switched_on {
+    if cause != ResetCause::PowerOn {
         control.restore(Device::was_reset);
     }
+    control.restore(|device| {
+        mail::post(device.start(identity::of(cause)));
+        if device.fingertip().config().stream_at_start {
+            store::restored(&flash, &found, mail::post);
+        }
+    });
     spawner.spawn(store::store(flash, log).expect("one store task"));
     let urgent = URGENT.start(interrupt::SPI5);
     urgent.spawn(control::control(scan, control).expect("one control task"));

@@ -136,10 +136,14 @@ impl Scan {
             }
             let Ok(frame) = halves.read(due.sequence) else { return Trouble::Behind };
             // Then the switches do not show yet what the following frame is reading.
-            let behind = deadline.now().is_after(following_begins);
+            let began = deadline.now();
+            let behind = began.is_after(following_begins);
             on_frame(&frame);
             counts::FRAMES.add_one();
-            if deadline.now().is_after(following_begins) {
+            let ended = deadline.now();
+            counts::CONTROL_US.add(ended.since(began));
+            counts::CONTROL_US_MAX.max(ended.since(began));
+            if ended.is_after(following_begins) {
                 counts::TICKS_LATE.add_one();
             }
             due.step();

@@ -140,6 +140,22 @@ settings! {
     29 Blind "blind-ms" "ms" [0, 400] = 200;
     /// 1: the serial line moves the hand without consent (a gripper on a robot). Set by muscle or button only
     40 LineTrusted "line-trusted-flag" "flag" [0, 1] = 0;
+    /// 1: frames are streamed from the start on, so that a recording can be replayed bit for bit
+    41 StreamAtStart "stream-at-start-flag" "flag" [0, 1] = 0;
+    /// Behaviours: motor duty of their movements
+    50 BehaviourDuty "behaviour-duty-permille" "per mille" [50, 300] = 100;
+    /// Behaviours: length of a small movement
+    51 BehaviourMovement "behaviour-movement-ms" "ms" [2, 50] = 10;
+    /// Behaviours: how long one waits after a small movement (FingerVision 2017, section II-D)
+    52 BehaviourWait "behaviour-wait-ms" "ms" [20, 500] = 100;
+    /// Gentle grasp: the sum of the skin's scores beyond which the object is held (FingerVision 2017, section II-A)
+    53 GentleScore "gentle-score-points" "points" [1, 100] = 7;
+    /// Hand-over: cells of the skin that must feel another force (FingerVision 2017, section II-C)
+    54 ChangedCells "hand-over-cells" "cells" [2, 20] = 5;
+    /// Moving points in the camera's picture that are slip, in e4: ten-thousandths of it
+    55 MovingPoints "moving-points-e4" "e4" [2, 1_000] = 30;
+    /// Turn: how far ahead of the camera a turn is foreseen; 0: not at all, as in FingerVision 2017
+    56 TurnLead "turn-lead-ms" "ms" [0, 300] = 90;
 }
 
 impl SettingId {

@@ -44,7 +44,15 @@ impl Config {
             Id::IncipientPulse => ms(self.grip.incipient_frames),
             Id::Settle => ms(self.grip.settle_frames),
             Id::Blind => ms(self.grip.blind_frames),
+            Id::BehaviourDuty => self.behaviour.duty_permille.into(),
+            Id::BehaviourMovement => ms(self.behaviour.movement_frames),
+            Id::BehaviourWait => ms(self.behaviour.wait_frames),
+            Id::GentleScore => self.behaviour.gentle_score.into(),
+            Id::ChangedCells => self.behaviour.changed_cells.into(),
+            Id::MovingPoints => self.behaviour.moving_e4.into(),
+            Id::TurnLead => ms(self.behaviour.turn_lead_frames),
             Id::LineTrusted => self.line_trusted.into(),
+            Id::StreamAtStart => self.stream_at_start.into(),
         }
     }
 
@@ -114,7 +122,15 @@ impl Config {
             Id::IncipientPulse => self.grip.incipient_frames = frames(number),
             Id::Settle => self.grip.settle_frames = frames(number),
             Id::Blind => self.grip.blind_frames = frames(number),
+            Id::BehaviourDuty => self.behaviour.duty_permille = small,
+            Id::BehaviourMovement => self.behaviour.movement_frames = frames(number),
+            Id::BehaviourWait => self.behaviour.wait_frames = frames(number),
+            Id::GentleScore => self.behaviour.gentle_score = small,
+            Id::ChangedCells => self.behaviour.changed_cells = small,
+            Id::MovingPoints => self.behaviour.moving_e4 = small,
+            Id::TurnLead => self.behaviour.turn_lead_frames = frames(number),
             Id::LineTrusted => self.line_trusted = number > 0,
+            Id::StreamAtStart => self.stream_at_start = number > 0,
         }
         if matches!(id, Id::HebbianAlpha | Id::HebbianBeta | Id::HebbianDelta) {
             self.touch.rule = Rule::of(&self.touch.learning);
