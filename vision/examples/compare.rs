@@ -33,7 +33,9 @@ struct BackProjection {
 
 impl BackProjection {
     fn step(&mut self, frame: &Frame, moving: &[u8; PIXELS], into: &mut [u8; PIXELS]) {
-        let bin_at = |at: usize| usize::from(bin(frame.red[at], frame.green[at], frame.blue[at])) % (HUES * SATURATIONS);
+        let bin_at = |at: usize| {
+            usize::from(bin(frame.red[at], frame.green[at], frame.blue[at])) % (HUES * SATURATIONS)
+        };
         let mut new = vec![0u32; HUES * SATURATIONS];
         (0..PIXELS).filter(|&at| moving[at] == 1).for_each(|at| new[bin_at(at)] += 1);
         for (sum, new) in self.histogram.iter_mut().zip(new) {

@@ -1,17 +1,21 @@
 //! `tenax vision`: cameras behind the skin.
 
-use std::io;
+use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::time::Duration;
 
-use anyhow::bail;
+use anyhow::{Context, bail};
+use tenax_hal_shim::wire::Down;
 
 use super::folder;
 use super::format::Format;
 use super::out;
+use crate::link::{Client, Outbox, Target};
 use crate::vision::calibrate::{self, Skin};
 use crate::vision::film::{self, Plan};
 use crate::vision::source::Source;
+use crate::vision::told::Gains;
 use crate::vision::{scored, told};
 
 const EXAMPLES: &str = "\
@@ -20,8 +24,8 @@ Examples:
   tenax vision --report json                           for programs
   tenax vision --video skin.m4v --out seen --overlay-every 50
                                                        markers.csv, object.csv and overlays of a video
-  tenax vision --device /dev/video0 --teach | tenax monitor --port /dev/ttyACM0 --teach
-                                                       a camera teaches a board
+  tenax vision --device /dev/video0 --port /dev/ttyACM0
+                                                       a board's behaviours feel with a camera; --teach: it learns slip from it
   tenax vision calibrate --loads loads.csv --leave-out 584
                                                        force from marker moves, tried on a mass that was left out
   tenax vision calibrate --loads loads.csv --try-loads others.csv";
@@ -50,9 +54,19 @@ pub struct Args {
     /// Draw every so many pictures, with what was made of them
     #[arg(long, value_name = "N", default_value_t = 0, requires = "out")]
     overlay_every: usize,
-    /// Print the teacher's words for `tenax monitor --teach`, one line a picture, and nothing else
+    /// Send a board what the camera sees, for its behaviours: a port, or tcp:HOST:PORT
+    #[arg(long, value_name = "PORT", requires = "source")]
+    port: Option<Target>,
+    /// Send the teacher's words, too; without --port print them for `tenax monitor --teach`, one line a picture, and nothing
+    /// else
     #[arg(long, requires = "source", conflicts_with = "report")]
     teach: bool,
+    /// Normal force that a marker's move stands for, for the board, mN a px
+    #[arg(long, value_name = "MN", default_value_t = 100.0, requires = "port")]
+    normal_mn_per_px: f32,
+    /// Shear that a marker's move along the finger stands for, for the board, mN a px
+    #[arg(long, value_name = "MN", default_value_t = 40.0, requires = "port")]
+    shear_mn_per_px: f32,
     /// Seed of the drawn scenes
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -102,17 +116,26 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let folder = args.out.as_deref().map(folder::made).transpose()?;
     let plan = Plan { source, rate_hz: args.rate_hz, folder, overlay_every: args.overlay_every };
-    let mut words = io::stdout();
-    let report = film::follow(&plan, |summary| {
-        if args.teach {
-            told::teach(summary, 0, &mut words).map_err(|error| match error.kind() {
-                io::ErrorKind::BrokenPipe => out::Closed.into(),
-                _ => anyhow::Error::from(error),
-            })?;
+    let mut line = args.port.as_ref().map(connect).transpose()?;
+    let gains = Gains { normal_mn: args.normal_mn_per_px, shear_mn: args.shear_mn_per_px };
+    let report = film::follow(&plan, |camera, summary| {
+        match &mut line {
+            Some(line) => {
+                let view = told::view(camera, summary, gains, 0).map(Down::View);
+                let words = told::teach(summary, 0).filter(|_| args.teach);
+                for command in view.into_iter().chain(words) {
+                    line.send(&command).context("cannot write to the line")?;
+                }
+            }
+            None => {
+                if let Some(words) = told::teaching(summary, 0).filter(|_| args.teach) {
+                    out::say!("{words}")?;
+                }
+            }
         }
         Ok(())
     })?;
-    if args.teach {
+    if args.teach && args.port.is_none() {
         return Ok(ExitCode::SUCCESS);
     }
     match args.report {
@@ -136,6 +159,17 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         }
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// A board that listens. What it says is read and thrown away, so that its line does not fill.
+fn connect(target: &Target) -> anyhow::Result<Outbox<Box<dyn Write + Send>>> {
+    let mut client = Client::open(target)?;
+    if !client.open_session(Duration::from_secs(1))? {
+        out::note!("tenax: the board offered no session; it will not listen to the camera");
+    }
+    let outbox = client.take_outbox().context("a captured line cannot be told anything")?;
+    std::thread::spawn(move || while client.next_frame().is_ok() {});
+    Ok(outbox)
 }
 
 fn drawn(args: &Args) -> anyhow::Result<ExitCode> {

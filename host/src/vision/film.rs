@@ -64,7 +64,7 @@ pub struct Blindness {
 ///
 /// # Errors
 /// If pictures cannot be read, or results not written.
-pub fn follow(plan: &Plan, mut told: impl FnMut(&Summary) -> Result<()>) -> Result<Report> {
+pub fn follow(plan: &Plan, mut told: impl FnMut(&Camera, &Summary) -> Result<()>) -> Result<Report> {
     let mut pictures = plan.source.open()?;
     let rate_hz = plan.rate_hz.or_else(|| plan.source.rate_hz()).unwrap_or(30.0);
     let mut tables = plan.folder.as_ref().map(Tables::create).transpose()?;
@@ -107,7 +107,7 @@ pub fn follow(plan: &Plan, mut told: impl FnMut(&Summary) -> Result<()>) -> Resu
                 tables.overlay(&overlay::png(&frame, &camera, &summary)?, report.frames)?;
             }
         }
-        told(&summary)?;
+        told(&camera, &summary)?;
         report.frames += 1;
     }
     let share = |part: usize, all: usize| part as f64 / all.max(1) as f64;
