@@ -22,4 +22,5 @@ pub mod serve;
 pub mod session;
 pub mod settings;
 pub mod timeline;
+pub mod vision;
 pub mod wiring;
