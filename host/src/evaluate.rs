@@ -7,6 +7,7 @@ pub mod events;
 pub mod failures;
 pub mod online;
 pub mod ran;
+pub mod real;
 pub mod report;
 pub mod text;
 

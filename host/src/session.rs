@@ -119,6 +119,8 @@ pub struct Outcome {
     pub report: Report,
     /// The figure.
     pub figure: Figure,
+    /// What really happened. Nothing is known of a recording.
+    pub truth: Fate,
 }
 
 /// A scene by its name in the repository, or by its file.
@@ -241,7 +243,7 @@ pub fn scene_with(
     plant.draw();
     // The oracle's is always the host's: it is a bound on the gripper, not on the image.
     let oracle = simulated::run_oracle(Drawn::new(World::new(file, seed), span_s), &mut |_| {});
-    let (truth, oracle) = (Fate::of(plant.world.truth()), Fate::of(oracle.world.truth()));
+    let (truth, oracle) = (Fate::of(plant.world.truth(), file), Fate::of(oracle.world.truth(), file));
     let Witness { timeline, judge, added, mut sketch } = witness;
     sketch.needs = Some(plant.needs);
     let subject = Subject {
@@ -258,7 +260,7 @@ pub fn scene_with(
     let report = Report::new(&subject);
     let mut figure = panels::figure(&subject, sketch);
     figure.subtitle = format!("{}; {}", file.title, figure.subtitle);
-    Ok(Outcome { run, report, figure })
+    Ok(Outcome { run, report, figure, truth })
 }
 
 /// Plays a recording. Without a recipe, the one that its name calls for.
@@ -320,7 +322,7 @@ pub fn replay_with(
     if let Some(named) = &named {
         figure.subtitle = format!("{} ({}), {}", named.recipe.title, named.name, figure.subtitle);
     }
-    Ok(Outcome { run, report, figure })
+    Ok(Outcome { run, report, figure, truth: Fate::default() })
 }
 
 /// What a recording is called: its file's name.

@@ -19,7 +19,10 @@ const KEYS: &str = "
 ";
 
 /// Of each detector, below its name.
-const DETECTOR_KEYS: [&str; 5] = ["first_s", "detections", "false_alarms", "said", "acted"];
+const DETECTOR_KEYS: [&str; 6] = ["first_s", "detections", "false_alarms", "said", "acted", "events"];
+
+/// Of its event scores, which a recording has not; behind them, false alarms by what the scene was doing.
+const EVENT_KEYS: [&str; 6] = ["count", "caught", "early", "late", "said_before", "missed"];
 
 /// Those behind them.
 const LAST_KEYS: &str = "
@@ -39,7 +42,7 @@ const REPLAY_KEYS: &str = "
 
 fn leaves(value: &Value, path: &str, into: &mut Vec<String>) {
     match value {
-        Value::Object(map) => {
+        Value::Object(map) if !path.ends_with(".events") => {
             for (key, value) in map {
                 leaves(value, format!("{path}.{key}").trim_start_matches('.'), into);
             }
@@ -78,7 +81,17 @@ fn played(csv: &str, recipe: Option<&str>) -> Value {
 fn a_scenes_keys_are_stable() {
     let file = session::load_scene(session::DEFAULT_SCENE).unwrap();
     let outcome = session::scene(&file, 1, &Board::Host, &mut |_| {}).unwrap();
-    assert_eq!(found(&serde_json::to_value(&outcome.report).unwrap()), expected("replay"));
+    let report = serde_json::to_value(&outcome.report).unwrap();
+    assert_eq!(found(&report), expected("replay"));
+    let events = &report["detectors"]["s1"]["events"];
+    for key in EVENT_KEYS {
+        assert!(events[key].is_u64(), "events.{key}");
+    }
+    let by = events["false_by"].as_object().unwrap();
+    assert!(by.keys().map(String::as_str).eq(["hold", "pour", "move", "disturb"]), "{by:?}");
+    for alarms in by.values().chain([&events["false_alarms"]]) {
+        assert!(alarms["per_hour"].is_f64() && alarms["hours"].as_f64() > Some(0.0));
+    }
 }
 
 #[test]

@@ -9,7 +9,7 @@ use crate::physics::{TOUCH_N, Touch};
 use crate::schedule::STEP_S;
 use crate::sensor::camera::Seen;
 
-pub use record::{Activity, Phase, Row, Slip};
+pub use record::{Activity, MicroRun, Phase, Row, Slip};
 
 /// Rows of the trace a second.
 pub const TRACE_HZ: u32 = 200;
@@ -29,6 +29,8 @@ const LEFT_MM: f64 = 40.0;
 pub struct Truth {
     /// Every slip, in order.
     pub slips: Vec<Slip>,
+    /// Runs of micro slips that came to nothing: everything stuck again before all of it slid faster than the floor.
+    pub micro_runs: Vec<MicroRun>,
     /// Way of all slips that were not meant, mm.
     pub slip_distance_mm: f64,
     /// Whether the object left the pads after it was lifted.
@@ -188,6 +190,9 @@ impl Truth {
         }
         self.slide = slides.then_some(slide);
         if !slides {
+            if !slide.counts && step.touch.normal_n > TOUCH_N {
+                self.micro_runs.push(MicroRun { begin_s: slide.micro_s, end_s: step.t_s });
+            }
             // Everything sticks again: what lets go from now on leads to another slip.
             self.micro = None;
         }
@@ -195,7 +200,11 @@ impl Truth {
 
     fn micro(&mut self, step: &Step<'_>) {
         let t_s = step.t_s;
-        self.micro = self.micro.filter(|run| t_s - run.last_s <= MICRO_PAUSE_S);
+        if let Some(run) = self.micro.take_if(|run| t_s - run.last_s > MICRO_PAUSE_S)
+            && self.slide.is_none()
+        {
+            self.micro_runs.push(MicroRun { begin_s: run.begin_s, end_s: run.last_s });
+        }
         if step.touch.let_go > 0 && step.touch.normal_n > TOUCH_N {
             self.micro_slips += step.touch.let_go as u64;
             self.micro.get_or_insert(Micro { begin_s: t_s, last_s: t_s }).last_s = t_s;
