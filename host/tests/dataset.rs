@@ -19,7 +19,7 @@ fn a_small_one_is_what_its_manifest_says() {
     let csv = dataset.csv().unwrap();
     let manifest = dataset.manifest("small.csv", &csv);
     let text = toml::to_string(&manifest).unwrap();
-    assert!(text.contains(&manifest.sha256) && text.contains("held_out = \"cardboard\""));
+    assert!(text.contains(&manifest.sha256) && text.contains("held_out = \"rubber\""));
 
     let header = String::from_utf8(csv.clone()).unwrap().lines().next().unwrap().to_owned();
     assert_eq!(
