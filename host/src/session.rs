@@ -204,6 +204,10 @@ impl Plant for Drawn {
         self.world.button()
     }
 
+    fn planned(&self) -> Option<MotorDrive> {
+        self.world.planned()
+    }
+
     fn slipping(&self) -> bool {
         self.world.slipping()
     }

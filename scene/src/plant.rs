@@ -71,7 +71,13 @@ pub trait Plant: Send {
         false
     }
 
-    /// Whether the object moves relative to the finger at this instant: what the oracle is told.
+    /// How an oracle drives the motor for the next frame: it knows friction, load, force, what slides, and what the motor was
+    /// told before, and closes to the least force that holds. None where nothing has to be closed.
+    fn planned(&self) -> Option<MotorDrive> {
+        None
+    }
+
+    /// Whether the object moves relative to the finger at this instant.
     fn slipping(&self) -> bool {
         false
     }

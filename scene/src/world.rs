@@ -256,6 +256,12 @@ impl Plant for World {
         self.script.button(self.now_s())
     }
 
+    fn planned(&self) -> Option<MotorDrive> {
+        let Task::Grasp { grasp, .. } = &self.task else { return None };
+        let spring = grasp.between_the_fingers()?;
+        self.gripper.closing_to(grasp.plan_n(), self.touch.normal_n, spring)
+    }
+
     fn slipping(&self) -> bool {
         self.truth.slipping(&self.touch, self.floor_mm_s)
     }

@@ -9,7 +9,6 @@ use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::frame::{Frame, Scan, scan_of_pins};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Answer, Counters, Down, Received, Up};
-use tenax_logic::detectors::Said;
 use tenax_scene::plant::Plant;
 
 use super::kept::{device, model_of};
@@ -20,7 +19,7 @@ use super::{Recorder, Run, Summary};
 enum Judge {
     /// The fingertip's own detectors.
     Detectors,
-    /// The plant, which knows: the oracle's.
+    /// The plant, which knows, and S2: the oracle's.
     Plant,
 }
 
@@ -43,8 +42,8 @@ pub fn record<P: Plant>(
     closed_loop(plant, Judge::Detectors, recorder, progress)
 }
 
-/// Runs the plant to its end under the same fingertip, which is told in each tick whether the object slips, with no
-/// delay: the physical limit of that gripper.
+/// Runs the plant to its end under an oracle: the same fingertip with S2 alone, and the plant's own plan wherever neither the
+/// wearer nor a command opens the hand. It knows what is, not what will be, and only the gripper limits it.
 pub fn run_oracle<P: Plant>(plant: P, progress: &mut dyn FnMut(f64)) -> P {
     closed_loop(plant, Judge::Plant, &mut (), progress).1
 }
@@ -64,7 +63,7 @@ fn closed_loop<P: Plant>(
     summary.trusts_line = plant.trusts_line();
     summary.calibrated = calibrated;
     if judge == Judge::Plant {
-        device.fingertip_mut().act_on(DetectorSet::only(DetectorId::Injected));
+        device.fingertip_mut().act_on(DetectorSet::only(DetectorId::S2));
     }
     let mut drive = MotorDrive::Coast;
     let mut offered = None;
@@ -89,10 +88,10 @@ fn closed_loop<P: Plant>(
         }
         device.button(plant.button());
         let frame = Frame::from_scans(sequence, &scans);
-        if judge == Judge::Plant {
-            device.fingertip_mut().inject(Said::slip(plant.slipping()));
-        }
         drive = device.tick(&frame);
+        if judge == Judge::Plant {
+            drive = with_plan(drive, device.fingertip().wearer_active(), plant.planned());
+        }
         while let Some(message) = device.next_message() {
             summary.take(message, recorder);
         }
@@ -104,6 +103,17 @@ fn closed_loop<P: Plant>(
     summary.virtual_s = seconds_of(frames);
     summary.wall_s = began.elapsed().as_secs_f64();
     (summary, plant)
+}
+
+/// The plan closes further than what the hand does by itself, never against the wearer nor what opens.
+pub(crate) fn with_plan(drive: MotorDrive, wearer_active: bool, planned: Option<MotorDrive>) -> MotorDrive {
+    match (drive, planned) {
+        (MotorDrive::Coast, Some(plan)) if !wearer_active => plan,
+        (MotorDrive::Close(own), Some(MotorDrive::Close(plan))) if !wearer_active => {
+            MotorDrive::Close(if plan.as_per_mille() > own.as_per_mille() { plan } else { own })
+        }
+        _ => drive,
+    }
 }
 
 /// Frames between two calls of `progress`: a tenth of a virtual second.

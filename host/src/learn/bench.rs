@@ -12,6 +12,7 @@ use tenax_scene::plant::Plant;
 
 use super::chain::slow_frames;
 use super::trial::{Setup, Trial};
+use crate::board::simulated::with_plan;
 
 /// Who says that the object slips, for the reflex to answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,7 +21,7 @@ pub enum Judge {
     Touch,
     /// The camera's v1, as it comes over the line, and nothing else.
     Vision,
-    /// The world, at once: the same gripper cannot do better after the fact.
+    /// The world, which plans the least force that holds: the same gripper cannot do better.
     Oracle,
 }
 
@@ -43,7 +44,8 @@ impl Bench {
     pub fn run(&mut self, mut world: World, judge: Judge, see: &mut dyn FnMut(usize, &Slow, &Self)) -> World {
         self.fingertip.act_on(match judge {
             Judge::Touch => DetectorSet::ALL,
-            Judge::Vision | Judge::Oracle => DetectorSet::only(DetectorId::Injected),
+            Judge::Vision => DetectorSet::only(DetectorId::Injected),
+            Judge::Oracle => DetectorSet::only(DetectorId::S2),
         });
         let mut seen = 0;
         let mut drive = MotorDrive::Coast;
@@ -62,14 +64,16 @@ impl Bench {
             let frame_in = Frame::from_scans(self.frame, &scans);
             self.frame = self.frame.wrapping_add(1);
             let told = match judge {
-                Judge::Touch => None,
+                Judge::Touch | Judge::Oracle => None,
                 Judge::Vision => Some(world.said().is_some_and(|seen| seen.v1 < 0)),
-                Judge::Oracle => Some(world.slipping()),
             };
             if let Some(slips) = told {
                 self.fingertip.inject(Said::slip(slips));
             }
             drive = self.fingertip.tick(&frame_in);
+            if judge == Judge::Oracle {
+                drive = with_plan(drive, self.fingertip.wearer_active(), world.planned());
+            }
             if let Some(slow) = self.fingertip.take_slow() {
                 see(seen, &slow, self);
                 seen += 1;
