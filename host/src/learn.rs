@@ -74,14 +74,16 @@ pub struct Outcome {
     pub trials: Vec<Trial>,
     /// Their score.
     pub score: Score,
+    /// The score of the same trials with equal weights in place of learned ones, on the host.
+    pub equal: Score,
     /// The time of holding.
     pub holding: Holding,
     /// Lifts with the reflex.
     pub lifts: Vec<Three>,
     /// Pours.
     pub pours: Vec<Three>,
-    /// The scores of the other fingers.
-    pub others: Vec<Score>,
+    /// The other fingers.
+    pub others: Vec<Other>,
     /// What the receptors felt in the last three lessons.
     pub felt: Vec<figures::Felt>,
 }
@@ -100,6 +102,8 @@ pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Resu
     let loudest = silent.outputs.iter().flatten().map(|output| output.unsigned_abs()).max();
 
     let (learned, lessons, felt) = lessons_on_host(&finger, options, progress)?;
+    let equal = learned.with_equal_weights()?;
+    let equal = Score::of(&trials_on_host(&finger, equal, options, progress)?);
     let (trials, agreement) = match board {
         Board::Host => (trials_on_host(&finger, learned.clone(), options, progress)?, None),
         #[cfg(feature = "emulator")]
@@ -124,13 +128,14 @@ pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Resu
         progress("other fingers", over as f64 / options.fingertips as f64);
         score
     });
-    let others = others.collect::<anyhow::Result<Vec<Score>>>()?;
+    let others = others.collect::<anyhow::Result<Vec<Other>>>()?;
     Ok(Outcome {
         options: *options,
         board: board.name(),
         agreement,
         untaught: loudest.unwrap_or(0),
         score: Score::of(&trials),
+        equal,
         lessons,
         trials,
         holding,
@@ -197,19 +202,34 @@ fn on_board(
     Ok((chain.trials(&run).split_off(LESSONS as usize), agreement))
 }
 
-/// A finger made by chance: the same lessons, and some held-out trials.
-fn other(all: u64, n: u64) -> anyhow::Result<Score> {
+/// A finger made by chance.
+#[derive(Clone, Debug, Default)]
+pub struct Other {
+    /// What sliding keeps of its static friction.
+    pub ratio: f64,
+    /// Its held-out trials.
+    pub score: Score,
+    /// The same with equal weights.
+    pub equal: Score,
+}
+
+/// The same lessons, and some held-out trials.
+fn other(all: u64, n: u64) -> anyhow::Result<Other> {
     let own = seed(all, 6, n);
     let finger = Finger::random(own);
     let mut bench = Bench::default();
     for n in 0..LESSONS {
         bench.trial(Setup::new(&finger, lesson(own, n), true)?);
     }
-    let mut trials = Vec::new();
+    let mut equal = bench.with_equal_weights()?;
+    let mut trials = [Vec::new(), Vec::new()];
     for n in 0..TRIALS_OF_OTHERS {
-        trials.push(bench.trial(Setup::new(&finger, held_out(own, n), false)?));
+        for (trials, bench) in trials.iter_mut().zip([&mut bench, &mut equal]) {
+            trials.push(bench.trial(Setup::new(&finger, held_out(own, n), false)?));
+        }
     }
-    Ok(Score::of(&trials))
+    let [score, equal] = trials.map(|trials| Score::of(&trials));
+    Ok(Other { ratio: finger.ratio(), score, equal })
 }
 
 fn lesson(all: u64, n: u64) -> u64 {

@@ -47,6 +47,9 @@ fn before_learning_it_says_nothing_and_afterwards_it_sees_micro_slip() {
             "network_first_s_mean",
             "vision_first_s_mean",
             "lead_s",
+            "lead_s_no_delay",
+            "lead_s_equal_weights",
+            "worst_finger_lead_s",
             "missed",
             "false_per_hour",
             "direction_wrong",
@@ -54,7 +57,10 @@ fn before_learning_it_says_nothing_and_afterwards_it_sees_micro_slip() {
         ]
     );
     assert_eq!(keys(&json["lead_s"]), ["mean", "sd", "min"]);
-    assert_eq!(keys(&json["fingertips"]), ["count", "worst_lead_s"]);
+    assert_eq!(keys(&json["fingertips"]), ["count", "worst_lead_s", "missed", "slippery", "even"]);
+    // The camera's delay is all that is between the two.
+    let means = ["lead_s", "lead_s_no_delay"].map(|key| json[key]["mean"].as_f64().unwrap());
+    assert!((means[0] - means[1] - 0.053).abs() < 1e-3, "{means:?}");
 }
 
 #[test]

@@ -88,8 +88,10 @@ fn minute(finger: &Finger, seed: u64) -> anyhow::Result<SceneFile> {
         knocks.push(table(&[
             ("at_s", at_s(n, between(0.0, 0.5))),
             ("peak_mv", 2.0 * (between(0.0, 40.0_f64.ln())).exp()),
-            ("ring_hz", between(200.0, 450.0)),
-            ("decay_ms", between(2.0, 8.0)),
+            // Frames and tools ring from 50 Hz to 2 kHz for 1 to 30 ms; where it comes from decides which films hear it.
+            ("ring_hz", between(50.0_f64.ln(), 2_000.0_f64.ln()).exp()),
+            ("decay_ms", between(0.0, 30.0_f64.ln()).exp()),
+            ("uneven", between(0.0, 1.0)),
         ]));
     }
     let mut swings = Vec::new();

@@ -7,6 +7,7 @@ use rand::{RngExt, SeedableRng};
 use tenax_hal_shim::channel::{FRAME_HZ, FRAMES_PER_SLOW_FRAME};
 use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::wire::Slow;
+use tenax_scene::sensor::camera::Seen;
 use tenax_scene::truth::Slip;
 use tenax_scene::{Seeds, Truth, World};
 
@@ -132,8 +133,17 @@ impl Trial {
     /// When the camera's first v1 = -1 after that came over the line, s.
     #[must_use]
     pub fn vision_s(&self) -> Option<f64> {
-        let seen = self.truth.camera.iter().find(|seen| seen.v1 < 0 && seen.t_s > self.lift_s)?;
-        Some(seen.arrives_s)
+        Some(self.first_seen()?.arrives_s)
+    }
+
+    /// When the second of its images was taken, s: a camera without delay had said it then.
+    #[must_use]
+    pub fn vision_without_delay_s(&self) -> Option<f64> {
+        Some(self.first_seen()?.t_s)
+    }
+
+    fn first_seen(&self) -> Option<&Seen> {
+        self.truth.camera.iter().find(|seen| seen.v1 < 0 && seen.t_s > self.lift_s)
     }
 
     /// Ticks between two instants.
