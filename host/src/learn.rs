@@ -48,11 +48,20 @@ pub struct Options {
     pub lifts: u64,
     /// Fingers made by chance.
     pub fingertips: u64,
+    /// Whether the films hear no mains hum: the most that a canceller of it could bring.
+    pub without_hum: bool,
+}
+
+impl Options {
+    /// A finger as these options have it.
+    fn finger(&self, finger: Finger) -> Finger {
+        if self.without_hum { finger.with(("pvdf.mains_mv", 0.0)) } else { finger }
+    }
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { seed: 1, trials: 50, minutes: 60, lifts: 20, fingertips: 20 }
+        Self { seed: 1, trials: 50, minutes: 60, lifts: 20, fingertips: 20, without_hum: false }
     }
 }
 
@@ -96,7 +105,7 @@ pub type Progress<'a> = &'a (dyn Fn(&str, f64) + Sync);
 /// # Errors
 /// If a scene cannot be made or the board cannot be run.
 pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Result<Outcome> {
-    let finger = Finger::plain(options.seed);
+    let finger = options.finger(Finger::plain(options.seed));
     let mut untaught = Bench::default();
     let silent = untaught.trial(Setup::new(&finger, held_out(options.seed, 0), false)?);
     let loudest = silent.outputs.iter().flatten().map(|output| output.unsigned_abs()).max();
@@ -123,7 +132,7 @@ pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Resu
     let pours = reflex::pours(&finger, &learned, options.lifts, seed(options.seed, 5, 0))?;
     let over = AtomicU64::new(0);
     let others = (1..=options.fingertips).into_par_iter().map(|n| {
-        let score = other(options.seed, n);
+        let score = other(options, n);
         let over = over.fetch_add(1, Ordering::Relaxed);
         progress("other fingers", over as f64 / options.fingertips as f64);
         score
@@ -214,9 +223,9 @@ pub struct Other {
 }
 
 /// The same lessons, and some held-out trials.
-fn other(all: u64, n: u64) -> anyhow::Result<Other> {
-    let own = seed(all, 6, n);
-    let finger = Finger::random(own);
+fn other(options: &Options, n: u64) -> anyhow::Result<Other> {
+    let own = seed(options.seed, 6, n);
+    let finger = options.finger(Finger::random(own));
     let mut bench = Bench::default();
     for n in 0..LESSONS {
         bench.trial(Setup::new(&finger, lesson(own, n), true)?);

@@ -54,7 +54,8 @@ fn the_keys_are_those_of_the_issue_and_the_worst_comes_first() {
             "false_by",
             "by_material",
             "by_session",
-            "without_lookback"
+            "without_lookback",
+            "by_draw"
         ]
     );
     assert_eq!((&value["steps"], &value["missed"], &value["false"]), (&160.into(), &22.into(), &0.into()));

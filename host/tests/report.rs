@@ -11,7 +11,7 @@ const KEYS: &str = "
     ticks.core_load_percent load.tick_instructions_mean load.period_instructions_mean stack_bytes
     slip.micro_onset_s slip.macro_onset_s slip.caught slip.latency_ms slip.distance_mm slip.dropped
     slip.macro_slips slip.macro_slips_caught
-    oracle.distance_mm oracle.peak_force_n oracle.distance_ratio oracle.peak_force_ratio
+    oracle.distance_mm oracle.peak_force_n oracle.distance_ratio oracle.peak_force_ratio oracle.why controls
     grip.peak_force_n grip.needed_force_n grip.crushed_at_s grip.dent_mm grip.broken_at_s
     wearer.reflex_while_active wearer.open_latency_ms wearer.active_first_s wearer.active_permille wearer.reflex_ticks
     wearer.closing_s wearer.opening_s wearer.longest_open_ms wearer.longest_close_ms wearer.faults
@@ -92,6 +92,40 @@ fn a_scenes_keys_are_stable() {
     for alarms in by.values().chain([&events["false_alarms"]]) {
         assert!(alarms["per_hour"].is_f64() && alarms["hours"].as_f64() > Some(0.0));
     }
+}
+
+#[test]
+fn the_oracle_is_a_bound_or_the_run_says_why() {
+    // A patch, a rotation, a wearer, an array that dies, a pour with the hand alone; controls beside the default scene.
+    for scene in ["glass", "steel-balls", "pour", "hold", "array-lost", "array-pick"] {
+        let file = session::load_scene(scene).unwrap();
+        let outcome = session::scene(&file, 1, &Board::Host, &mut |_| {}).unwrap();
+        let oracle = &outcome.report.oracle;
+        let below = |ratio: Option<f64>| ratio.is_some_and(|ratio| ratio < 0.98);
+        println!("{scene}: {:?} {:?} {:?}", oracle.distance_ratio, oracle.peak_force_ratio, oracle.why);
+        if below(oracle.peak_force_ratio) {
+            assert!(oracle.why.is_some(), "{scene}");
+        }
+        assert!(
+            !oracle.why.as_ref().is_some_and(|why| why.contains("NO REASON")),
+            "{scene}: {:?}",
+            oracle.why
+        );
+    }
+}
+
+#[test]
+fn the_controls_of_a_scene_are_worse_than_the_reflex() {
+    let file = session::load_scene("array-pour").unwrap();
+    let outcome = session::scene(&file, 1, &Board::Host, &mut |_| {}).unwrap();
+    let controls = session::controls(&file, 1, &outcome.truth);
+    let names: Vec<&str> = controls.iter().map(|control| control.name.as_str()).collect();
+    let expected = ["no reflex", "constant grip", "s1 alone", "s2 alone", "hebbian alone", "mlp alone"];
+    assert_eq!(names, expected);
+    assert!(outcome.report.object.kept == Some(true) && !controls[0].kept, "{:?}", controls[0]);
+    // The constant grip has the run's mean force, within the edge of closing.
+    let (own, mean) = (outcome.truth.mean_grip_n.unwrap(), controls[1].mean_force_n.unwrap());
+    assert!((mean / own - 1.0).abs() < 0.05, "{mean} N for {own} N");
 }
 
 #[test]

@@ -77,6 +77,12 @@ pub trait Plant: Send {
         None
     }
 
+    /// How the motor has to be driven for the next frame so that each finger comes to press what it touches with `target_n`, and
+    /// no more. None if it will anyway.
+    fn closing_to(&self, _target_n: f64) -> Option<MotorDrive> {
+        None
+    }
+
     /// Whether the object moves relative to the finger at this instant.
     fn slipping(&self) -> bool {
         false

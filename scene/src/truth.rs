@@ -49,6 +49,10 @@ pub struct Truth {
     pub pitch_rad: f64,
     /// The greatest grip force of a finger, N.
     pub peak_grip_n: f64,
+    /// The grip force of a finger while the hand carried the object: its integral, N s, and for how long, s.
+    pub carried_ns: f64,
+    /// See above.
+    pub carried_s: f64,
     /// The greatest grip force that was ever needed while the hand carried the object, N.
     pub needed_grip_n: f64,
     /// The wearer's wishes, one after the other.
@@ -129,6 +133,10 @@ impl Truth {
         self.pitch_rad = self.pitch_rad.max(state.pitch_rad.abs());
         self.peak_grip_n = self.peak_grip_n.max(touch.normal_n);
         self.needed_grip_n = self.needed_grip_n.max(state.needed_n);
+        if state.needed_n > 0.0 {
+            self.carried_ns += touch.normal_n * STEP_S;
+            self.carried_s += STEP_S;
+        }
         if step.trace {
             self.trace.push(Row {
                 t_s: step.t_s,

@@ -14,13 +14,16 @@ use tenax_scene::plant::Plant;
 use super::kept::{device, model_of};
 use super::{Recorder, Run, Summary};
 
-/// Who says that the object slips.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Judge {
-    /// The fingertip's own detectors.
-    Detectors,
-    /// The plant, which knows, and S2: the oracle's.
-    Plant,
+/// Who closes the hand besides wearer and line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Grips {
+    /// The fingertip's reflex, which acts on these detectors; on none of them it never acts.
+    Reflex(DetectorSet),
+    /// An oracle: the reflex on S2, and the plant's own plan wherever neither the wearer nor a command opens the hand. It knows
+    /// what is, not what will be, and only the gripper limits it.
+    Oracle,
+    /// Nobody who feels: whatever is touched is pressed with so much, N.
+    Constant(f64),
 }
 
 /// Runs the plant to its end under the fingertip and keeps everything.
@@ -39,18 +42,17 @@ pub fn record<P: Plant>(
     recorder: &mut dyn Recorder,
     progress: &mut dyn FnMut(f64),
 ) -> (Summary, P) {
-    closed_loop(plant, Judge::Detectors, recorder, progress)
+    closed_loop(plant, Grips::Reflex(DetectorSet::ALL), recorder, progress)
 }
 
-/// Runs the plant to its end under an oracle: the same fingertip with S2 alone, and the plant's own plan wherever neither the
-/// wearer nor a command opens the hand. It knows what is, not what will be, and only the gripper limits it.
-pub fn run_oracle<P: Plant>(plant: P, progress: &mut dyn FnMut(f64)) -> P {
-    closed_loop(plant, Judge::Plant, &mut (), progress).1
+/// Runs the plant to its end with somebody else's grip.
+pub fn run_with<P: Plant>(plant: P, grips: Grips, progress: &mut dyn FnMut(f64)) -> P {
+    closed_loop(plant, grips, &mut (), progress).1
 }
 
 fn closed_loop<P: Plant>(
     mut plant: P,
-    judge: Judge,
+    grips: Grips,
     recorder: &mut dyn Recorder,
     progress: &mut dyn FnMut(f64),
 ) -> (Summary, P) {
@@ -62,9 +64,11 @@ fn closed_loop<P: Plant>(
     let mut device = device(plant.trusts_line(), calibrated.as_ref());
     summary.trusts_line = plant.trusts_line();
     summary.calibrated = calibrated;
-    if judge == Judge::Plant {
-        device.fingertip_mut().act_on(DetectorSet::only(DetectorId::S2));
-    }
+    device.fingertip_mut().act_on(match grips {
+        Grips::Reflex(detectors) => detectors,
+        Grips::Oracle => DetectorSet::only(DetectorId::S2),
+        Grips::Constant(_) => DetectorSet::NONE,
+    });
     let mut drive = MotorDrive::Coast;
     let mut offered = None;
     for sequence in 0..frames {
@@ -89,9 +93,12 @@ fn closed_loop<P: Plant>(
         device.button(plant.button());
         let frame = Frame::from_scans(sequence, &scans);
         drive = device.tick(&frame);
-        if judge == Judge::Plant {
-            drive = with_plan(drive, device.fingertip().wearer_active(), plant.planned());
-        }
+        let planned = match grips {
+            Grips::Reflex(_) => None,
+            Grips::Oracle => plant.planned(),
+            Grips::Constant(target_n) => plant.closing_to(target_n),
+        };
+        drive = with_plan(drive, device.fingertip().wearer_active(), planned);
         while let Some(message) = device.next_message() {
             summary.take(message, recorder);
         }

@@ -11,13 +11,13 @@ use super::format::Format;
 use super::out;
 use super::progress::with_bar;
 use super::workspace;
-use crate::dataset::session::{Sizes, Split};
+use crate::dataset::session::{Sizes, Split, sessions};
 use crate::dataset::{Dataset, Label, Plan};
 use crate::evaluate::network::Network;
 use crate::evaluate::real::Real;
 use crate::evaluate::report::Report;
 use crate::evaluate::text::Text;
-use crate::evaluate::{Verdicts, adapt, failures, online, readings, test_split};
+use crate::evaluate::{Verdicts, adapt, draws, failures, online, readings, test_split};
 use crate::labelled::{self, Recording, library};
 use crate::session::Board;
 
@@ -55,6 +55,9 @@ pub struct Args {
     /// Sessions to learn from, of each material, of the built-in data set: those to test are in proportion
     #[arg(long, value_name = "N", default_value_t = Sizes::DEFAULT_TRAIN, conflicts_with = "dataset")]
     sessions: usize,
+    /// Of the built-in data set: which part. The test part is for figures that nothing is chosen by
+    #[arg(long, value_name = "PART", value_enum, default_value_t = Split::Test, conflicts_with = "dataset")]
+    part: Split,
     /// The paper's two tasks with the whole hand, instead of recordings
     #[arg(long, conflicts_with_all = ["dataset", "sessions"])]
     online: bool,
@@ -85,7 +88,8 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if args.host {
         bail!("--host is for --online and --failures: recordings are always judged on this machine");
     }
-    let recordings = test_split(recordings(args)?);
+    let recordings = recordings(args)?;
+    let recordings = if args.dataset.is_some() { test_split(recordings) } else { recordings };
     if recordings.is_empty() {
         bail!("the data has no recording that is called test");
     }
@@ -108,6 +112,8 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             let mut report = Report::new(&recordings, &said, &said);
             if args.dataset.is_none() {
                 report.real = real(&network)?;
+                let drawn = sessions(args.seed, Sizes::of_train(args.sessions));
+                report.by_draw = draws::draws(&drawn, &recordings, &said);
             }
             report
         }
@@ -178,7 +184,7 @@ fn recordings(args: &Args) -> anyhow::Result<Vec<Recording>> {
         bail!("--sessions must be at least 1");
     }
     let plan = Plan { seed: args.seed, sessions: args.sessions, label: Label::Truth };
-    let csv = with_bar("sessions", |progress| Dataset::make_split(plan, Split::Test, progress))?.csv()?;
+    let csv = with_bar("sessions", |progress| Dataset::make_split(plan, args.part, progress))?.csv()?;
     // The same bytes that `tenax dataset` writes, read as a user's file is.
     let name = "array_dataset.csv";
     let recipe = library::choose(name.as_ref(), None)?;

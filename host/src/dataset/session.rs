@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::material::{Ends, HELD_OUT, Material, SEEN};
 
 /// What a session's data is for. Whole sessions are: no step of one is in two splits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Split {
     /// A classifier learns from it.

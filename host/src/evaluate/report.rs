@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Serialize, Serializer};
 
+use super::draws::Draw;
 use super::real::Real;
 use super::{Verdicts, events};
 use crate::labelled::{Recording, Step};
@@ -38,7 +39,8 @@ impl Steps {
         counted
     }
 
-    fn take(&mut self, steps: &[Step], verdicts: &[bool]) {
+    /// Adds those of another.
+    pub fn take(&mut self, steps: &[Step], verdicts: &[bool]) {
         for (step, &said) in steps.iter().zip(verdicts) {
             self.steps += 1;
             self.slipped += usize::from(step.slip);
@@ -186,6 +188,8 @@ pub struct Report {
     pub by_session: By,
     /// The network without look-back, on the same steps.
     pub without_lookback: Without,
+    /// Pours against each quantity that the built-in data set draws, the one that matters most first.
+    pub by_draw: Vec<Draw>,
 }
 
 impl Report {
@@ -219,6 +223,7 @@ impl Report {
                 judged().map(|(recording, said)| (recording.session.as_str(), recording, said)),
             ),
             without_lookback: Without { missed: without.missed, false_steps: without.false_steps },
+            by_draw: Vec::new(),
         }
     }
 }

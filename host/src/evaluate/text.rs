@@ -39,6 +39,18 @@ impl Display for Text<'_> {
             }
             rows(f, "  by material, the worst first", &pour.by_material)?;
         }
+        if !report.by_draw.is_empty() {
+            writeln!(f, "pours by what was drawn, a quarter of the sessions each: balanced (caught)")?;
+        }
+        for draw in &report.by_draw {
+            write!(f, "  {:<20}", draw.quantity)?;
+            for part in &draw.parts {
+                let caught = part.caught.map_or("-".to_owned(), |part| format!("{:.0} %", 100.0 * part));
+                let span = format!("{} to {}", short(part.from), short(part.to));
+                write!(f, "{span:>17}: {:.3} ({caught:>5})", part.balanced)?;
+            }
+            writeln!(f)?;
+        }
         if let Some(real) = &report.real {
             writeln!(
                 f,
@@ -86,6 +98,12 @@ impl Display for Text<'_> {
         rows(f, "by material, the worst first", &report.by_material)?;
         rows(f, "by session, the worst first", &report.by_session)
     }
+}
+
+/// Three digits.
+fn short(value: f64) -> String {
+    let places = (2.0 - value.abs().max(1e-3).log10().floor()).clamp(0.0, 5.0) as usize;
+    format!("{value:.places$}")
 }
 
 fn rows(f: &mut fmt::Formatter<'_>, title: &str, by: &By) -> fmt::Result {

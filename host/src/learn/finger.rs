@@ -136,6 +136,14 @@ impl Finger {
         Ok(SceneFile::parse(&toml::to_string(&scene)?, name)?)
     }
 
+    /// The same finger with one more number of its scenes changed.
+    #[must_use]
+    pub fn with(mut self, change: Change) -> Self {
+        self.changes.retain(|(place, _)| *place != change.0);
+        self.changes.push(change);
+        self
+    }
+
     /// The object's mass, kg.
     #[must_use]
     pub const fn mass_kg(&self) -> f64 {

@@ -19,6 +19,8 @@ pub struct Fate {
     pub left_behind: bool,
     /// The greatest grip force, N. None where nothing was held.
     pub peak_grip_n: Option<f64>,
+    /// The mean grip force while the hand carried it, N. None if it never did.
+    pub mean_grip_n: Option<f64>,
     /// When the fingers first crushed it, s.
     pub crushed_at_s: Option<f64>,
     /// How deep, for good, mm.
@@ -43,6 +45,7 @@ impl Fate {
             crushed_at_s: truth.crushed_at_s,
             dent_mm: truth.dent_mm,
             broken_at_s: truth.broken_at_s,
+            mean_grip_n: (truth.carried_s > 0.0).then(|| truth.carried_ns / truth.carried_s),
             peak_grip_n: (truth.peak_grip_n > 0.0).then_some(truth.peak_grip_n),
             needed_force_n: held.then_some(truth.needed_grip_n),
         }
