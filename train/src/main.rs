@@ -90,7 +90,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
     bar.set_message("training");
     let parts = sequences.iter().any(|sequence| sequence.part.is_some());
     let (aim, candidates) = if parts {
-        (Aim::Pours, compare::perceptrons(1).to_vec())
+        (Aim::Pours, compare::shipped().to_vec())
     } else {
         (Aim::Balanced, compare::FEW_OBJECTS.to_vec())
     };
