@@ -21,6 +21,7 @@ use crate::grip::Grip;
 use crate::health::{Change, Limits, SensorHealth};
 use crate::journal::Journal;
 use crate::muscles::Muscles;
+use crate::sliding::Hand;
 use crate::strain::Gauges;
 use crate::vibration::{Trust, Vibration, VibrationDetector};
 
@@ -56,6 +57,8 @@ pub struct Senses {
     frames_seen: u32,
     /// Frames in which the hand was opened since it was last closed.
     open_frames: u32,
+    /// The reflex answers slip, or lets the object settle after it.
+    striking: bool,
     frames_lost: u32,
     films_usable: bool,
     lost: [bool; 3],
@@ -113,8 +116,9 @@ impl Senses {
     }
 
     /// How the motor was driven in the last so many frames: what has been opened for a while, and not closed since, holds
-    /// nothing.
-    pub const fn driven(&mut self, drive: MotorDrive, frames: u32) {
+    /// nothing. `striking`: the reflex answers slip, or lets the object settle after it, and the hand itself is loud.
+    pub const fn driven(&mut self, drive: MotorDrive, striking: bool, frames: u32) {
+        self.striking = striking;
         match drive {
             MotorDrive::Open(_) => self.open_frames = self.open_frames.saturating_add(frames),
             MotorDrive::Close(_) => self.open_frames = 0,
@@ -211,6 +215,16 @@ impl Senses {
         if self.vibration.masked != masked {
             self.mask(masked ^ self.vibration.masked, journal);
         }
+    }
+
+    /// Listens for steady sliding. Call it once a slow frame, always after the same tick.
+    #[inline(never)]
+    pub fn think(&mut self, config: &Config) {
+        let load_mn = match self.grip(config) {
+            Grip::Holds(mn) => Some(mn),
+            Grip::Unloaded | Grip::Unknown => None,
+        };
+        self.detector.slow(&Hand { load_mn, wearer: self.gate.is_active(), striking: self.striking });
     }
 
     /// Reports the films that are masked now and were not, or the other way round.
