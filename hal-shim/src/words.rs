@@ -142,6 +142,13 @@ pub enum Fault {
     StoreFull(Kept),
     /// The flash did not take this: it is worn, or protected.
     StoreFailed(Kept),
+    /// The supply fell below what the chip needs, and it was reset.
+    SupplySagged,
+    /// The crystal stopped, or does not start: the board runs on the chip's own oscillator, a per cent too fast or too slow. The
+    /// serial line may not be understood.
+    CrystalLost,
+    /// It has restarted too often in a row: nothing moves before it is switched off and on.
+    TooManyRestarts,
 }
 
 /// What a teacher says about one output of the network (Tada 2006, equations 1 and 2).

@@ -172,6 +172,9 @@ fn up() -> Vec<Up> {
         EventKind::Fault(Fault::SensorLost { channel: 39, reason: Reason::Endless }),
         EventKind::Fault(Fault::RecordDamaged(Kept::Emg)),
         EventKind::NoWearer(true),
+        EventKind::Fault(Fault::SupplySagged),
+        EventKind::Fault(Fault::CrystalLost),
+        EventKind::Fault(Fault::TooManyRestarts),
     ];
     all.extend(events.map(|kind| Up::Event(Event { frame: 50, kind })));
     all.extend(answers().into_iter().map(|answer| Up::Answer { of: 7, frame: 50, answer }));
