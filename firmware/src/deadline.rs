@@ -33,6 +33,11 @@ impl Micros {
         Self(self.0.wrapping_sub(us))
     }
 
+    /// Time since an earlier instant, us.
+    pub const fn since(self, earlier: Self) -> u32 {
+        self.0.wrapping_sub(earlier.0)
+    }
+
     /// Whether this instant is later than the other.
     pub const fn is_after(self, other: Self) -> bool {
         self.0.wrapping_sub(other.0) as i32 > 0

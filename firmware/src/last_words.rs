@@ -10,6 +10,7 @@ use core::ptr::{addr_of, addr_of_mut};
 use cortex_m::peripheral::SCB;
 use cortex_m_rt::{ExceptionFrame, exception};
 use embassy_stm32::pac;
+use tenax_hal_shim::wire::ResetCause;
 use tenax_hal_shim::words::Fault;
 
 use crate::bridge;
@@ -41,8 +42,8 @@ const RESTARTS: usize = 1;
 pub struct Start {
     /// Why the last run ended, if not by switching off.
     pub after: Option<Fault>,
-    /// Somebody switched the power on.
-    pub switched_on: bool,
+    /// Why the chip started.
+    pub cause: ResetCause,
     /// It has restarted too often: nothing is to move any more.
     pub stay_off: bool,
 }
@@ -53,26 +54,28 @@ pub fn start() -> Start {
     pac::RCC.csr().modify(|w| w.set_rmvf(true));
     let mark = kept(MARK);
     keep(MARK, 0);
-    let switched_on = csr.porrstf();
-    let after = if switched_on {
-        None
+    let left = |own: Mark| csr.sftrstf() && mark == own as u32;
+    let (cause, after) = if csr.porrstf() {
+        (ResetCause::PowerOn, None)
     } else if csr.wdgrstf() {
-        Some(Fault::WatchdogReset)
-    } else if !csr.sftrstf() {
-        None
-    } else if mark == Mark::Panicked as u32 {
-        Some(Fault::PanicReset)
-    } else if mark == Mark::SupplySagged as u32 {
-        Some(Fault::SupplySagged)
-    } else if mark == Mark::CrystalLost as u32 {
-        Some(Fault::CrystalLost)
+        (ResetCause::Watchdog, Some(Fault::WatchdogReset))
+    } else if left(Mark::Panicked) {
+        (ResetCause::Panic, Some(Fault::PanicReset))
+    } else if left(Mark::SupplySagged) {
+        (ResetCause::Software, Some(Fault::SupplySagged))
+    } else if left(Mark::CrystalLost) {
+        (ResetCause::Software, Some(Fault::CrystalLost))
+    } else if csr.sftrstf() {
+        (ResetCause::Software, None)
+    } else if csr.padrstf() {
+        (ResetCause::Pin, None)
     } else {
-        None
+        (ResetCause::Other, None)
     };
     let restarts = if after.is_some() { kept(RESTARTS).saturating_add(1) } else { 0 };
     keep(RESTARTS, restarts);
     let stay_off = restarts > RESTARTS_MAX;
-    Start { after: if stay_off { Some(Fault::TooManyRestarts) } else { after }, switched_on, stay_off }
+    Start { after: if stay_off { Some(Fault::TooManyRestarts) } else { after }, cause, stay_off }
 }
 
 /// The image has run for a while: what comes now is another story.

@@ -26,6 +26,7 @@ mod counts;
 mod deadline;
 mod flash;
 mod halves;
+mod identity;
 mod last_words;
 mod mail;
 mod scan;
@@ -44,7 +45,7 @@ use embassy_stm32::wdg::IndependentWatchdog;
 use embassy_stm32::{bind_interrupts, dma, peripherals};
 use static_cell::{ConstStaticCell, StaticCell};
 use tenax_hal_shim::channel::FRAME_HZ;
-use tenax_hal_shim::wire::{BAUD, Up};
+use tenax_hal_shim::wire::{BAUD, ResetCause, Up};
 use tenax_hal_shim::words::Fault;
 use tenax_logic::device::Device;
 use tenax_logic::store::Erase;
@@ -76,7 +77,8 @@ static CONTROL: StaticCell<control::Control> = StaticCell::new();
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
-    let last_words::Start { after, switched_on, stay_off } = last_words::start();
+    let last_words::Start { after, cause, stay_off } = last_words::start();
+    let switched_on = cause == ResetCause::PowerOn;
     let crystal = clock::has_crystal();
     let mut config = clock::config(crystal);
     config.dma_interrupt_priority = Priority::P6;
@@ -147,6 +149,12 @@ async fn main(spawner: Spawner) {
     if !crystal {
         control.restore(|device| device.report(Fault::CrystalLost));
     }
+    control.restore(|device| {
+        mail::post(device.start(identity::of(cause)));
+        if device.fingertip().config().stream_at_start {
+            store::restored(&flash, &found, mail::post);
+        }
+    });
     spawner.spawn(store::store(flash, log).expect("one store task"));
     let urgent = URGENT.start(interrupt::SPI5);
     urgent.spawn(control::control(scan, control).expect("one control task"));

@@ -109,10 +109,14 @@ impl Scan {
                 // Read only after the following one had begun, or DMA was in it: it is not whole.
                 let Ok(frame) = halves.read(self.due.sequence) else { break };
                 // Then the switches do not show yet what the following frame is reading.
-                let behind = self.deadline.now().is_after(following_begins);
+                let began = self.deadline.now();
+                let behind = began.is_after(following_begins);
                 on_frame(&frame);
                 counts::FRAMES.add_one();
-                if self.deadline.now().is_after(following_begins) {
+                let ended = self.deadline.now();
+                counts::CONTROL_US.add(ended.since(began));
+                counts::CONTROL_US_MAX.max(ended.since(began));
+                if ended.is_after(following_begins) {
                     counts::TICKS_LATE.add_one();
                 }
                 self.due.step();

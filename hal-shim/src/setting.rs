@@ -84,7 +84,7 @@ settings! {
     1 S1 "s1-mv" "mV" [20, 250, trusted 1_500] = 100;
     /// S2: Ft/Fn that means incipient slip, until a stroke measures it
     2 S2 "s2-permille" "per mille" [150, 900, trusted 1_500] = 300;
-    /// EMG envelope above rest from which a muscle is active
+    /// EMG envelope above rest that both muscles have to reach to consent. When a muscle is active, its calibration says
     3 EmgOn "emg-on-mv" ("myo-on-mv") "mV" [80, 400] = 160;
     /// Normal force above which the reflex closes no further
     4 ForceCeiling "force-ceiling-mn" "mN" [3_000, 60_000] = 40_000;
@@ -116,13 +116,9 @@ settings! {
     17 HebbianBeta "hebbian-beta-ppb" "ppb" [0, 16_000_000] = 10_000;
     /// Hebbian: weight delta that every connection has for the variable rate (Tada 2006, equation 6)
     18 HebbianDelta "hebbian-delta-ppm" "ppm" [1_000, 8_000_000] = 300_000;
-    /// Part of emg-on-mv below which an active muscle becomes inactive
-    19 EmgOff "emg-off-permille" "per mille" [650, 950] = 700;
     /// How long a muscle counts as active after its last activity
     20 EmgHold "emg-hold-ms" "ms" [100, 1_000] = 200;
-    /// EMG envelope above rest that asks for full speed
-    21 EmgFull "emg-full-mv" "mV" [700, 3_000] = 1_000;
-    /// Motor duty that an envelope at emg-on-mv asks for
+    /// Motor duty that the weakest contraction asks for that moves the hand
     22 EmgSlowest "emg-slowest-permille" "per mille" [200, 1_000] = 300;
     /// Motor duty of the pulse that answers slip
     23 SlipDuty "slip-duty-permille" "per mille" [400, 1_000] = 1_000;
@@ -140,8 +136,24 @@ settings! {
     29 Blind "blind-ms" "ms" [0, 400] = 200;
     /// 1: the serial line moves the hand without consent (a gripper on a robot). Set by muscle or button only
     40 LineTrusted "line-trusted-flag" "flag" [0, 1] = 0;
+    /// 1: frames are streamed from the start on, so that a recording can be replayed bit for bit
+    41 StreamAtStart "stream-at-start-flag" "flag" [0, 1] = 0;
+    /// Behaviours: motor duty of their movements
+    50 BehaviourDuty "behaviour-duty-permille" "per mille" [50, 300] = 100;
+    /// Behaviours: length of a small movement
+    51 BehaviourMovement "behaviour-movement-ms" "ms" [2, 50] = 10;
+    /// Behaviours: how long one waits after a small movement (FingerVision 2017, section II-D)
+    52 BehaviourWait "behaviour-wait-ms" "ms" [20, 500] = 100;
+    /// Gentle grasp: the sum of the skin's scores beyond which the object is held (FingerVision 2017, section II-A)
+    53 GentleScore "gentle-score-points" "points" [1, 100] = 7;
+    /// Hand-over: cells of the skin that must feel another force (FingerVision 2017, section II-C)
+    54 ChangedCells "hand-over-cells" "cells" [2, 20] = 5;
+    /// Moving points in the camera's picture that are slip, in e4: ten-thousandths of it
+    55 MovingPoints "moving-points-e4" "e4" [2, 1_000] = 30;
+    /// Turn: how far ahead of the camera a turn is foreseen; 0: not at all, as in FingerVision 2017
+    56 TurnLead "turn-lead-ms" "ms" [0, 300] = 90;
     /// 1: no wearer, the reflex works without myosensors (a gripper on a robot). Set by muscle or button only
-    41 NoWearer "no-wearer-flag" "flag" [0, 1] = 0;
+    42 NoWearer "no-wearer-flag" "flag" [0, 1] = 0;
 }
 
 impl SettingId {

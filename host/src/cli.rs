@@ -33,11 +33,17 @@ Examples:
   tenax run --replay touch.csv              a recording, with the recipe that its name calls for
   tenax run --replay my.csv --recipe my.toml
   tenax run --report json > report.json     for programs
+  tenax run --serve                         the same at real time, with its serial line on a pseudo-terminal
+  tenax run --host --serve-tcp 7777         on TCP port 7777 of this machine only
   tenax learn                               a fingertip teaches itself slip from a camera
   tenax scenes                              what there is to run
   tenax check                               every promise, measured
   tenax chart scenes                        how friction is stepped, where that fails, and what it costs
-  tenax monitor --port /dev/ttyACM0         watch a real board";
+  tenax monitor --port /dev/ttyACM0         watch a real board
+  tenax monitor --port /dev/pts/5 --set s1-mv=120 --settings
+                                            set up a running scene: the path is what `tenax run --serve` printed
+  tenax monitor --port tcp:127.0.0.1:7777   the same over TCP
+  tenax monitor --port out/glass.line.bin   what a run sent";
 
 /// Runs, replays, watches and charts the Tenax fingertip.
 #[derive(Debug, Parser)]

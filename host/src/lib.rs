@@ -18,6 +18,7 @@ pub mod monitor;
 pub mod plot;
 pub mod replay;
 pub mod report;
+pub mod serve;
 pub mod session;
 pub mod settings;
 pub mod timeline;

@@ -1,5 +1,6 @@
 //! What a run tells: for programs as JSON with stable keys, for people as text.
 
+pub mod behaviours;
 pub mod fate;
 pub mod oracle;
 pub mod reflex;
@@ -57,6 +58,8 @@ pub struct Report {
     pub reflex: reflex::Reflex,
     /// What became of the object.
     pub object: reflex::Object,
+    /// What the hand did by itself because it was asked to.
+    pub behaviours: Vec<behaviours::Ran>,
     /// Each detector's.
     pub detectors: scores::Detectors,
     /// Everything that went wrong, as it was reported.
@@ -201,6 +204,7 @@ impl Report {
             oracle: oracle::Oracle::of(subject.truth, subject.oracle),
             reflex: reflex::Reflex::of(subject.added, timeline, &run.events, subject.truth),
             object: reflex::Object::of(subject.truth),
+            behaviours: behaviours::of(&run.events, timeline),
             grip: subject.truth.map_or_else(Grip::default, |truth| Grip {
                 peak_force_n: truth.peak_grip_n,
                 needed_force_n: truth.needed_force_n,
@@ -271,6 +275,7 @@ pub fn in_words(fault: &Fault) -> String {
         Fault::TooManyRestarts => {
             "restarted too often: nothing moves before it is switched off and on".to_owned()
         }
+        Fault::NeverUnloaded => "the force sensor reads a load, and the hand is surely open".to_owned(),
         Fault::RecordDamaged(kept) => {
             format!("the last {} to be saved are lost; older ones are used", kept_in_words(kept))
         }

@@ -16,6 +16,7 @@ const KEYS: &str = "
     wearer.none wearer.reflex_while_active wearer.open_latency_ms wearer.active_first_s wearer.active_permille wearer.reflex_ticks
     wearer.closing_s wearer.opening_s wearer.longest_open_ms wearer.longest_close_ms wearer.faults
     reflex.pulses reflex.without_slip reflex.added_force_n object.kept object.left_behind
+    object.handed_over object.turned_deg behaviours
 ";
 
 /// Of each detector, below its name.

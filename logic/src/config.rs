@@ -1,5 +1,6 @@
 //! Every number that can be chosen. Plain values, apart from all state, so that a whole set can be swapped at once.
 
+use crate::behaviours::BehaviourConfig;
 use crate::hebbian::{LearningConfig, Rule, TeacherConfig};
 use tenax_hal_shim::setting::SettingId;
 
@@ -59,16 +60,12 @@ pub struct TouchConfig {
 /// Thresholds of the myoelectric gate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GateConfig {
-    /// Envelope above rest at which a myosensor becomes active, mV.
+    /// Envelope above rest that both muscles have to reach to consent, mV.
     pub on_mv: u16,
-    /// Part of `on_mv` below which it becomes inactive, per mille.
-    pub off_permille: u16,
     /// How long a muscle counts as active after its last activity, in frames: the pause between two contractions is
     /// not an invitation to the reflex.
     pub hold_frames: u32,
-    /// Envelope above rest that asks for the full speed, mV.
-    pub full_mv: u16,
-    /// Duty asked for by an envelope at `on_mv`, per mille.
+    /// Duty asked for by the weakest contraction that moves the hand, per mille.
     pub slowest_permille: u16,
 }
 
@@ -107,8 +104,12 @@ pub struct Config {
     pub gate: GateConfig,
     /// The reflex.
     pub grip: GripConfig,
+    /// What is above it.
+    pub behaviour: BehaviourConfig,
     /// The serial line needs no consent.
     pub line_trusted: bool,
+    /// Frames are streamed from the start on.
+    pub stream_at_start: bool,
     /// There is no wearer: a myosensor that gives no number is not missed.
     pub no_wearer: bool,
 }
@@ -128,7 +129,7 @@ impl Config {
             learning: LearningConfig::DEFAULT,
             rule: Rule::DEFAULT,
         },
-        gate: GateConfig { on_mv: 0, off_permille: 0, hold_frames: 0, full_mv: 0, slowest_permille: 0 },
+        gate: GateConfig { on_mv: 0, hold_frames: 0, slowest_permille: 0 },
         grip: GripConfig {
             slip_duty_permille: 0,
             slip_frames: 0,
@@ -139,7 +140,17 @@ impl Config {
             ceiling_mn: 0,
             blind_frames: 0,
         },
+        behaviour: BehaviourConfig {
+            duty_permille: 0,
+            movement_frames: 0,
+            wait_frames: 0,
+            gentle_score: 0,
+            changed_cells: 0,
+            moving_e4: 0,
+            turn_lead_frames: 0,
+        },
         line_trusted: false,
+        stream_at_start: false,
         no_wearer: false,
     };
 }

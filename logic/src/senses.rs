@@ -35,6 +35,8 @@ const QUADRANT_MISSES: u8 = 2;
 /// The hand is surely open when it has been opened for this long since it was last closed, in frames: at its slowest it has
 /// gone 2 cm.
 const OPEN_FRAMES: u32 = frames(600);
+/// Cycles in which a hand that is surely open reads a load before that is told: 4 s, several times what a zero takes to follow.
+const DOUBTED_AFTER: u16 = 4 * SLOW_HZ as u16;
 /// A quadrant this far above its zero when the hand is switched on is pressed, uV.
 const PRESSED_UV: i32 = 100_000;
 
@@ -59,6 +61,8 @@ pub struct Senses {
     open_frames: u32,
     /// The reflex answers slip, or lets the object settle after it.
     striking: bool,
+    /// Cycles in which it was surely open and read a load.
+    open_and_loaded: u16,
     frames_lost: u32,
     films_usable: bool,
     lost: [bool; 3],
@@ -313,6 +317,19 @@ impl Senses {
         self.forces = Some(forces);
         if self.open_frames >= OPEN_FRAMES {
             self.force_sensor.follow();
+            self.doubt_load(config, journal);
+        }
+    }
+
+    /// The hand is surely open: what it still reads after its zeros had time to follow is no load.
+    fn doubt_load(&mut self, config: &Config, journal: &mut Journal) {
+        if self.is_unloaded(config) {
+            self.open_and_loaded = 0;
+            return;
+        }
+        self.open_and_loaded = self.open_and_loaded.saturating_add(1);
+        if self.open_and_loaded == DOUBTED_AFTER {
+            journal.fault(Fault::NeverUnloaded);
         }
     }
 

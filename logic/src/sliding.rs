@@ -110,10 +110,12 @@ impl Sliding {
         if hand.striking {
             return self.said;
         }
-        let up = match self.learned_for {
-            ..LEAP_FRAMES => DOWN_SHIFT,
-            ..LEARN_FRAMES => LEARN_SHIFT,
-            _ => UP_SHIFT,
+        let up = if self.learned_for < LEAP_FRAMES {
+            DOWN_SHIFT
+        } else if self.learned_for < LEARN_FRAMES {
+            LEARN_SHIFT
+        } else {
+            UP_SHIFT
         };
         let (mut loud, mut together, mut loudest) = (0, 0, 0);
         for (film, &now) in self.films.iter_mut().zip(envelopes) {

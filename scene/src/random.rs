@@ -43,6 +43,8 @@ pub(crate) enum Source {
     Camera,
     /// The unevenness of the surface under the normal-force array.
     ArraySurface,
+    /// The camera behind the skin.
+    Skin,
 }
 
 /// A source's stream of numbers.

@@ -26,6 +26,7 @@ use crate::sensor::fsr::Quadrants;
 use crate::sensor::hand;
 use crate::sensor::myo::Envelopes;
 use crate::sensor::pvdf::Films;
+use crate::sensor::skin::SkinCamera;
 use crate::sensor::strain::Gauges;
 use crate::truth::{self, Row, State, TRACE_HZ, Truth};
 
@@ -48,6 +49,7 @@ pub struct World {
     gauges: Gauges,
     elements: Elements,
     eye: Eye,
+    skin: Option<SkinCamera>,
     released_n: f64,
     slow_v: [f64; COUNT],
     faults: Faults,
@@ -103,6 +105,10 @@ impl World {
             gauges: Gauges::new(&scene.strain, seeds),
             elements: Elements::new(scene, seed),
             eye: Eye::new(&scene.camera, seed),
+            skin: scene
+                .skin
+                .as_ref()
+                .map(|skin| SkinCamera::new(skin, scene.contact.patch_radius_mm.get(), seed)),
             released_n: 0.0,
             slow_v: Pins::default().0,
             faults: Faults::new(&scene.fault),
@@ -182,6 +188,8 @@ impl World {
                     pitch_rad: grasp.pitch_rad(),
                     dent_mm: grasp.body().dent_mm(),
                     broken: grasp.body().is_broken(),
+                    shared: grasp.is_shared(),
+                    taken: grasp.is_taken(),
                 }
             }
             Task::Stroke(stroke) => {
@@ -197,6 +205,8 @@ impl World {
                     pitch_rad: 0.0,
                     dent_mm: 0.0,
                     broken: false,
+                    shared: false,
+                    taken: false,
                 }
             }
         }
@@ -212,6 +222,9 @@ impl Plant for World {
         let hand_mm = state.hand_mm;
         let object_mm = if self.strokes() { 0.0 } else { state.position_mm };
         self.truth.camera.extend(self.eye.step(t_s, hand_mm, object_mm));
+        if let Some(skin) = &mut self.skin {
+            skin.step(t_s, &self.touch, state.pitch_rad);
+        }
         self.truth.step(&truth::Step {
             t_s,
             touch: &self.touch,
@@ -245,6 +258,7 @@ impl Plant for World {
         let t_s = self.now_s();
         let mut commands = self.script.take(t_s);
         commands.extend(self.eye.teach(t_s));
+        commands.extend(self.skin.as_mut().and_then(|skin| skin.take(t_s)).map(Down::View));
         commands
     }
 

@@ -179,6 +179,8 @@ pub struct Intent {
     since_open: u16,
     /// Readings for which an unproven contraction has moved the hand.
     unproven: u16,
+    /// By site: its level when the other one was last inactive.
+    before: [i32; 2],
     strength_permille: u16,
 }
 
@@ -213,7 +215,16 @@ impl Intent {
                 let [closing, opening] = if sites.closing == 0 { [0, 1] } else { [1, 0] };
                 let levels = [electrodes[closing].level, electrodes[opening].level];
                 self.calibrated(&sites, levels, electrodes[closing].unmodulated);
-                let hears = |n: usize| levels[n].is_some_and(|level| level >= sites.rest[n] + HEARS_TOO);
+                let active = [sites.close_begins, sites.opening_active];
+                for n in 0..2 {
+                    if let (Some(own), Some(other)) = (levels[n], levels[1 - n])
+                        && other < active[1 - n]
+                    {
+                        self.before[n] = own.max(sites.rest[n]);
+                    }
+                }
+                // What it heard before the contraction began is none of it.
+                let hears = |n: usize| levels[n].is_some_and(|level| level >= self.before[n] + HEARS_TOO);
                 match self.wish {
                     Wish::Open => (Wish::Open, opening, hears(0)),
                     wish => (wish, closing, hears(1)),

@@ -3,10 +3,10 @@
 use toml::Spanned;
 
 use super::quantity::{
-    Damping, DeadTime, Duration, Gain, Hertz, Kilograms, Lever, Millimetres, Milliseconds, Millivolts,
-    NewtonsMax, Part, Play, Speed, Stiffness,
+    Damping, DeadTime, Degrees, Duration, Gain, Hertz, Kilograms, Lever, Millimetres, Millinewtons,
+    Milliseconds, Millivolts, NewtonsMax, Part, Play, Speed, Stiffness,
 };
-use super::sections::{Array, Camera, Fsr, Gripper, Myo, Pvdf, Robot, Strain, Table};
+use super::sections::{Array, Camera, Fsr, Gripper, Myo, Pvdf, Robot, Skin, Strain, Table};
 
 impl Default for Gripper {
     fn default() -> Self {
@@ -134,6 +134,22 @@ impl Default for Array {
             place_mm: Lever::of(0.0),
             specimen: None,
             noise_mv: Millivolts::of(0.5),
+        }
+    }
+}
+
+impl Default for Skin {
+    fn default() -> Self {
+        Self {
+            // FingerVision 2017, section VI-A: the pictures are sent at 63 a second at least; read out, judged and sent within
+            // two of them (assumed).
+            rate_hz: Hertz::of(60.0),
+            delay_ms: DeadTime::of(33.0),
+            // Assumed, as the rest: a marker is found to a tenth of a pixel, and 1 N on it moves it by 10.
+            force_noise_mn: Millinewtons::of(10.0),
+            angle_noise_deg: Degrees::of(0.5),
+            speckle_e4: Gain::of(4.0),
+            dark_from_s: None,
         }
     }
 }

@@ -9,6 +9,7 @@ pub(crate) mod hand;
 pub(crate) mod myo;
 mod place;
 pub(crate) mod pvdf;
+pub(crate) mod skin;
 pub(crate) mod strain;
 
 /// Supply of the analogue front ends less what their outputs cannot reach, V.

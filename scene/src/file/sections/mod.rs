@@ -9,6 +9,7 @@ mod gripper;
 mod mishap;
 mod object;
 mod person;
+mod pull;
 mod sensor;
 
 pub use arm::{Arm, Move, Press, Robot, Sweep, Swing};
@@ -17,4 +18,5 @@ pub use gripper::Gripper;
 pub use mishap::{ElectrodeLift, FaultKind, Knock, SensorFault};
 pub use object::{Fill, Object, Pitch, Table};
 pub use person::{Command, CommandKind, Intent, Muscle};
-pub use sensor::{Array, Camera, Fsr, Myo, Pvdf, Strain};
+pub use pull::Pull;
+pub use sensor::{Array, Camera, Fsr, Myo, Pvdf, Skin, Strain};
