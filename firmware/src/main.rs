@@ -95,6 +95,7 @@ async fn main(spawner: Spawner) {
     // While nothing moves yet: switched on, this may erase a sector, and then the core stands still for a second or two. After
     // a reset something may be held, and the wearer must be able to let go of it.
     let mut flash = flash::Flash::new(p.FLASH);
+    let switched_on = cause == ResetCause::PowerOn;
     let erase = if switched_on { Erase::Allowed } else { Erase::Postponed };
     let (log, found) = tenax_logic::store::open(&mut flash, erase);
     clock::accelerate_flash();

@@ -138,6 +138,8 @@ settings! {
     40 LineTrusted "line-trusted-flag" "flag" [0, 1] = 0;
     /// 1: frames are streamed from the start on, so that a recording can be replayed bit for bit
     41 StreamAtStart "stream-at-start-flag" "flag" [0, 1] = 0;
+    /// 1: no wearer, the reflex works without myosensors (a gripper on a robot). Set by muscle or button only
+    42 NoWearer "no-wearer-flag" "flag" [0, 1] = 0;
     /// Behaviours: motor duty of their movements
     50 BehaviourDuty "behaviour-duty-permille" "per mille" [50, 300] = 100;
     /// Behaviours: length of a small movement
@@ -152,8 +154,6 @@ settings! {
     55 MovingPoints "moving-points-e4" "e4" [2, 1_000] = 30;
     /// Turn: how far ahead of the camera a turn is foreseen; 0: not at all, as in FingerVision 2017
     56 TurnLead "turn-lead-ms" "ms" [0, 300] = 90;
-    /// 1: no wearer, the reflex works without myosensors (a gripper on a robot). Set by muscle or button only
-    42 NoWearer "no-wearer-flag" "flag" [0, 1] = 0;
 }
 
 impl SettingId {

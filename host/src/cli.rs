@@ -19,6 +19,7 @@ mod settings;
 mod size;
 mod test;
 mod train;
+mod vision;
 mod wiring;
 mod workspace;
 
@@ -73,6 +74,8 @@ enum Command {
     Train(train::Args),
     /// Draw the charts behind a page of docs/
     Chart(chart::Args),
+    /// Follow skin and object with a camera behind a clear skin, or calibrate its force
+    Vision(vision::Args),
     /// Flash a NUCLEO-F411RE through probe-rs
     Flash(flash::Args),
     /// Watch a board's serial line, one line a message
@@ -100,6 +103,7 @@ pub fn main() -> ExitCode {
         Command::Chart(args) => chart::main(&args),
         Command::Dataset(args) => dataset::main(&args),
         Command::Evaluate(args) => evaluate::main(&args),
+        Command::Vision(args) => vision::main(&args),
         Command::Flash(args) => flash::main(&args),
         Command::Monitor(args) => monitor::main(&args),
         Command::Size(args) => size::main(&args),

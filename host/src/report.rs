@@ -50,6 +50,8 @@ pub struct Report {
     pub slip: scores::Slip,
     /// The same controller told the true onset without delay: the gripper's physical limit in this scene.
     pub oracle: oracle::Oracle,
+    /// The same scene with other grips (`run --controls`): no reflex, a constant grip of the same mean force, each detector alone.
+    pub controls: Vec<oracle::Control>,
     /// Grip force.
     pub grip: Grip,
     /// The wearer's part.
@@ -202,6 +204,7 @@ impl Report {
             stack_bytes: run.stack_bytes,
             slip: scores::Slip::of(timeline, subject.truth),
             oracle: oracle::Oracle::of(subject.truth, subject.oracle),
+            controls: Vec::new(),
             reflex: reflex::Reflex::of(subject.added, timeline, &run.events, subject.truth),
             object: reflex::Object::of(subject.truth),
             behaviours: behaviours::of(&run.events, timeline),

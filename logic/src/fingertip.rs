@@ -214,6 +214,12 @@ impl Fingertip {
         self.senses.gate.is_active()
     }
 
+    /// What the Hebbian network has learned, with the maxima that its weights belong to.
+    #[must_use]
+    pub fn learned(&self) -> crate::touch::Learned {
+        self.detectors.hebbian.learned()
+    }
+
     /// What the network knows and feels.
     #[must_use]
     pub fn network(&self) -> NetworkState {

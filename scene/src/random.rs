@@ -45,6 +45,10 @@ pub(crate) enum Source {
     ArraySurface,
     /// The camera behind the skin.
     Skin,
+    /// What a camera behind the skin sees: textures, lights, lens, and what happens.
+    Picture,
+    /// The noise of its pixels.
+    PictureNoise,
 }
 
 /// A source's stream of numbers.

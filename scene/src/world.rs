@@ -9,12 +9,12 @@ use tenax_hal_shim::wire::Down;
 use crate::commands::Script;
 use crate::file::SceneFile;
 use crate::file::sections::Arm;
-use crate::physics::Touch;
 use crate::physics::grasp::Grasp;
 use crate::physics::gripper::Gripper;
 use crate::physics::hand::Hand;
 use crate::physics::stroke::Stroke;
 use crate::physics::wearer::{Effort, Wearer};
+use crate::physics::{TOUCH_N, Touch};
 use crate::plant::{Calibrated, Pins, Plant};
 use crate::random::Seeds;
 use crate::schedule::STEP_S;
@@ -268,6 +268,18 @@ impl Plant for World {
 
     fn button(&self) -> bool {
         self.script.button(self.now_s())
+    }
+
+    fn planned(&self) -> Option<MotorDrive> {
+        let Task::Grasp { grasp, .. } = &self.task else { return None };
+        self.closing_to(grasp.plan_n())
+    }
+
+    fn closing_to(&self, target_n: f64) -> Option<MotorDrive> {
+        let Task::Grasp { grasp, .. } = &self.task else { return None };
+        let touched = self.touch.normal_n > TOUCH_N;
+        let spring = grasp.between_the_fingers().filter(|_| touched)?;
+        self.gripper.closing_to(target_n, self.touch.normal_n, spring)
     }
 
     fn slipping(&self) -> bool {

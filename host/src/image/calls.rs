@@ -52,15 +52,17 @@ impl Calls {
                 Some("$t") => _ = data.insert(symbol.address(), false),
                 _ if symbol.kind() == SymbolKind::Text => {
                     // Bit 0 says that it is Thumb code. Of several names any will do.
-                    starts.insert(symbol.address() & !1, name.to_owned());
+                    starts.insert(symbol.address() & !1, (name.to_owned(), symbol.size()));
                 }
                 _ => {}
             }
         }
         let mut calls = Self::default();
         let places: Vec<u64> = starts.keys().copied().collect();
-        for (place, (&start, name)) in starts.iter().enumerate() {
-            let until = places.get(place + 1).copied().unwrap_or(end);
+        for (place, (&start, (name, size))) in starts.iter().enumerate() {
+            let next = places.get(place + 1).copied().unwrap_or(end);
+            // The linker fills up to the next one with bytes that would read as branches. Assembler's symbols may have no size.
+            let until = if *size == 0 { next } else { next.min(start + size) };
             let mut function = Function { name: name.clone(), ..Function::default() };
             let is_data = |at: u64| data.range(..=at).next_back().is_some_and(|(_, &is_data)| is_data);
             function.read(code, base, start..until, &places, is_data);

@@ -3,8 +3,8 @@
 use toml::Spanned;
 
 use super::quantity::{
-    Damping, DeadTime, Degrees, Duration, Gain, Hertz, Kilograms, Lever, Millimetres, Millinewtons,
-    Milliseconds, Millivolts, NewtonsMax, Part, Play, Speed, Stiffness,
+    Damping, DeadTime, Degrees, Duration, Gain, Hertz, Kilograms, Lever, Micrometres, Millimetres,
+    Millinewtons, Milliseconds, Millivolts, NewtonsMax, Part, Play, Speed, Stiffness,
 };
 use super::sections::{Array, Camera, Fsr, Gripper, Myo, Pvdf, Robot, Skin, Strain, Table};
 
@@ -128,6 +128,9 @@ impl Default for Array {
             offset_mv: Millivolts::of(30.0),
             tilt: Part::of(0.5),
             slip_part: Part::of(0.5),
+            rim_part: Part::of(0.5),
+            // Some tens of micrometres on polymers (Dieterich and Kilgore 1994); assumed for the cover.
+            renews_um: Micrometres::of(50.0),
             uneven: Part::of(0.02),
             knock_mn_per_mv: Gain::of(1.0),
             motor_part: Part::of(0.003),

@@ -4,6 +4,7 @@ pub mod channel;
 mod check;
 mod defaults;
 mod error;
+mod happening;
 pub mod quantity;
 pub mod sections;
 mod step;
@@ -12,6 +13,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 pub use error::SceneError;
+pub use happening::Happening;
 use quantity::{Duration, Speed};
 use sections::{
     Arm, Array, Camera, Command, Contact, ElectrodeLift, Fill, Fsr, Gripper, Knock, Move, Muscle, Myo,
