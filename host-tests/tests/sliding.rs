@@ -3,6 +3,8 @@
 use tenax_hal_shim::channel::PVDF;
 use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::setting::SettingId;
+use tenax_hal_shim::wire::{Down, EventKind, Setting};
 use tenax_hal_shim::words::{Cause, DriveSource, GripMode};
 use tenax_host_tests::Bench;
 
@@ -26,11 +28,7 @@ fn an_object_that_rubs_quietly_is_held_more_firmly_with_small_pulses() {
     let warned = bench.events.iter().any(|event| {
         matches!(
             event.kind,
-            tenax_hal_shim::wire::EventKind::Mode {
-                to: GripMode::Incipient,
-                cause: Cause::Incipient(DetectorId::S1),
-                ..
-            }
+            EventKind::Mode { to: GripMode::Incipient, cause: Cause::Incipient(DetectorId::S1), .. }
         )
     });
     assert!(warned);
@@ -72,4 +70,22 @@ fn closing_that_does_not_help_ends_at_half_as_much_again() {
         }
     }
     assert!((LOAD_N + 1.0..1.5 * LOAD_N + 4.0).contains(&load_n), "{load_n} N");
+}
+
+/// docs/safety.md, what a range still allows.
+#[test]
+fn with_s1_at_its_highest_a_loud_slip_is_a_warning_still() {
+    let mut bench = Bench::holding(65);
+    let highest = SettingId::S1.row().max;
+    bench.fingertip.command(&Down::Set(Setting { id: SettingId::S1 as u8, value: highest })).unwrap();
+    bench.run(2_000);
+    bench.vibration_mv = 300.0;
+    bench.run(1_000);
+    let by = |id: fn(DetectorId) -> Cause| {
+        let mode =
+            |kind: EventKind| matches!(kind, EventKind::Mode { cause, .. } if cause == id(DetectorId::S1));
+        bench.events.iter().filter(|event| mode(event.kind)).count()
+    };
+    assert_eq!(by(Cause::Slip), 0, "deaf by its threshold");
+    assert!(by(Cause::Incipient) > 0);
 }

@@ -57,6 +57,8 @@ const CLOSE_ALONE: i32 = octaves(300);
 
 /// Readings for which an unproven contraction may move the hand: 92 ms.
 pub const UNPROVEN_READINGS: u16 = 22;
+/// The same if the other electrode hears it too: 0.3 s. A muscle has curved by then; a fault beside the other muscle's tone has not.
+const UNPROVEN_TOGETHER_READINGS: u16 = 72;
 /// How far the other electrode stands out from rest when it hears the same contraction: by 23 %. A fault has one electrode.
 const HEARS_TOO: i32 = octaves(300);
 
@@ -179,8 +181,6 @@ pub struct Intent {
     since_open: u16,
     /// Readings for which an unproven contraction has moved the hand.
     unproven: u16,
-    /// By site: its level when the other one was last inactive.
-    before: [i32; 2],
     strength_permille: u16,
 }
 
@@ -215,16 +215,7 @@ impl Intent {
                 let [closing, opening] = if sites.closing == 0 { [0, 1] } else { [1, 0] };
                 let levels = [electrodes[closing].level, electrodes[opening].level];
                 self.calibrated(&sites, levels, electrodes[closing].unmodulated);
-                let active = [sites.close_begins, sites.opening_active];
-                for n in 0..2 {
-                    if let (Some(own), Some(other)) = (levels[n], levels[1 - n])
-                        && other < active[1 - n]
-                    {
-                        self.before[n] = own.max(sites.rest[n]);
-                    }
-                }
-                // What it heard before the contraction began is none of it.
-                let hears = |n: usize| levels[n].is_some_and(|level| level >= self.before[n] + HEARS_TOO);
+                let hears = |n: usize| levels[n].is_some_and(|level| level >= sites.rest[n] + HEARS_TOO);
                 match self.wish {
                     Wish::Open => (Wish::Open, opening, hears(0)),
                     wish => (wish, closing, hears(1)),
@@ -235,11 +226,12 @@ impl Intent {
                 (self.wish, usize::from(self.wish == Wish::Open), false)
             }
         };
-        self.bound(wish, electrodes[mover].proven || other_hears)
+        self.bound(wish, electrodes[mover].proven, other_hears)
     }
 
     /// Lets an unproven contraction move the hand for a while only. A pause does not begin a new while.
-    fn bound(&mut self, wish: Wish, proven: bool) -> Wish {
+    fn bound(&mut self, wish: Wish, proven: bool, other_hears: bool) -> Wish {
+        let most = if other_hears { UNPROVEN_TOGETHER_READINGS } else { UNPROVEN_READINGS };
         if proven {
             self.unproven = 0;
             return wish;
@@ -248,12 +240,12 @@ impl Intent {
             self.unproven = self.unproven.saturating_sub(1);
             return wish;
         }
-        if self.unproven >= UNPROVEN_READINGS {
+        if self.unproven >= most {
             return Wish::Rest;
         }
         self.unproven += 1;
         // The last one: what follows a pause has to wait as long as it has been.
-        if self.unproven == UNPROVEN_READINGS {
+        if self.unproven == most {
             self.unproven = 4 * UNPROVEN_READINGS;
         }
         wish
