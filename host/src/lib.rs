@@ -15,6 +15,7 @@ pub mod labelled;
 pub mod learn;
 pub mod link;
 pub mod monitor;
+pub mod photoelastic;
 pub mod plot;
 pub mod replay;
 pub mod report;

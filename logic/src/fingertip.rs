@@ -259,6 +259,7 @@ impl Fingertip {
             forces: self.senses.forces.as_ref(),
             forces_are_new: self.senses.forces_are_new,
             taxels: self.senses.taxels(),
+            head: self.senses.head(),
             unloaded: self.senses.is_unloaded(&self.config),
             grasp: matches!(self.senses.grip(&self.config), Grip::Holds(_)),
             noisy: vibration.knock || duty >= self.config.touch.loud_duty_permille,

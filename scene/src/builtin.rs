@@ -54,5 +54,7 @@ pub const fn builtin() -> &'static [(&'static str, &'static str)] {
         "array-opening",
         "can",
         "rig",
+        "head-blocks",
+        "head-alone",
     ]
 }

@@ -17,7 +17,8 @@ pub use happening::Happening;
 use quantity::{Duration, Speed};
 use sections::{
     Arm, Array, Camera, Command, Contact, ElectrodeLift, Fill, Fsr, Gripper, Knock, Move, Muscle, Myo,
-    Object, Pitch, Press, Pull, Pvdf, Robot, SensorFault, Skin, Strain, Sweep, Swing, Table, Wet,
+    Object, Photoelastic, Pitch, Press, Pull, Pvdf, Robot, SensorFault, Skin, Strain, Sweep, Swing, Table,
+    Wet,
 };
 
 /// A whole scene, every number in it checked.
@@ -56,6 +57,7 @@ pub struct SceneFile {
     pub(crate) array: Array,
     #[serde(default)]
     pub(crate) camera: Camera,
+    pub(crate) photoelastic: Option<Photoelastic>,
     pub(crate) skin: Option<Skin>,
     #[serde(default)]
     pub(crate) wet: Vec<Wet>,
