@@ -15,17 +15,36 @@ pub fn accelerate_flash() {
     });
 }
 
+/// Crystal start: the ST-LINK's clock is there within milliseconds of its own start. Loops of some cycles at 16 MHz: about 0.3 s.
+const CRYSTAL_LOOPS: u32 = 1_000_000;
+
+/// Whether the crystal's clock comes. Asked before anything waits for it without an end.
+pub fn has_crystal() -> bool {
+    pac::RCC.cr().modify(|w| {
+        w.set_hsebyp(true);
+        w.set_hseon(true);
+    });
+    (0..CRYSTAL_LOOPS).any(|_| pac::RCC.cr().read().hserdy())
+}
+
+/// Lets the chip say when the crystal stops: to the handler of the non-maskable interrupt.
+pub fn watch_crystal() {
+    pac::RCC.cr().modify(|w| w.set_csson(true));
+}
+
 /// The chip's configuration: HSE bypassed at 8 MHz, PLL to 100 MHz, AHB and APB2 at 100 MHz, APB1 at 50 MHz.
 ///
-/// Never HSI: its tolerance overruns the serial line at 921 600 baud. Timers on APB1 count at 100 MHz as well (RM0383,
-/// figure 12), so a scan period is a whole number of their ticks and of the time driver's microseconds.
-pub fn config() -> Config {
+/// HSI only where there is no crystal: its tolerance overruns the serial line at 921 600 baud, but a hand that nobody hears is
+/// better than one that nobody can open. Timers on APB1 count at 100 MHz as well (RM0383, figure 12), so a scan period is a
+/// whole number of their ticks and of the time driver's microseconds.
+pub fn config(crystal: bool) -> Config {
     let mut config = Config::default();
-    config.rcc.hsi = false;
-    config.rcc.hse = Some(Hse { freq: Hertz(8_000_000), mode: HseMode::Bypass });
-    config.rcc.pll_src = PllSource::HSE;
+    config.rcc.hsi = !crystal;
+    config.rcc.hse = crystal.then_some(Hse { freq: Hertz(8_000_000), mode: HseMode::Bypass });
+    config.rcc.pll_src = if crystal { PllSource::HSE } else { PllSource::HSI };
     config.rcc.pll = Some(Pll {
-        prediv: PllPreDiv::DIV4,
+        // 2 MHz from either.
+        prediv: if crystal { PllPreDiv::DIV4 } else { PllPreDiv::DIV8 },
         mul: PllMul::MUL100,
         divp: Some(PllPDiv::DIV2),
         divq: None,

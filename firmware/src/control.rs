@@ -2,7 +2,7 @@
 
 use embassy_stm32::peripherals::IWDG;
 use embassy_stm32::wdg::IndependentWatchdog;
-use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
+use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, SLOW_HZ};
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::{MotorBridge, MotorDrive};
 use tenax_hal_shim::schedule::{Job, select_of_slot, slot_of};
@@ -13,6 +13,7 @@ use tenax_logic::fingertip::Fingertip;
 use crate::bridge::Bridge;
 use crate::button::Button;
 use crate::counts;
+use crate::last_words;
 use crate::mail;
 use crate::scan::Scan;
 use crate::switches::Switches;
@@ -27,7 +28,12 @@ pub struct Control {
     switches: Switches,
     button: Button,
     watchdog: IndependentWatchdog<'static, IWDG>,
+    /// Slow frames so far, as far as they count.
+    slow_frames: u16,
 }
+
+/// Slow frames after which a restart is not one of a row any more: ten seconds.
+const LIVED_WELL: u16 = 10 * SLOW_HZ as u16;
 
 impl Control {
     /// A hand at rest.
@@ -37,7 +43,7 @@ impl Control {
         button: Button,
         watchdog: IndependentWatchdog<'static, IWDG>,
     ) -> Self {
-        Self { device: Device::default(), bridge, switches, button, watchdog }
+        Self { device: Device::default(), bridge, switches, button, watchdog, slow_frames: 0 }
     }
 
     /// Lets the device take up what was kept, before the first tick.
@@ -82,6 +88,10 @@ impl Control {
     #[inline(never)]
     fn save(&mut self) {
         self.device.slow_frame_passed();
+        self.slow_frames = self.slow_frames.saturating_add(1);
+        if self.slow_frames == LIVED_WELL {
+            last_words::lived_well();
+        }
         if mail::store_is_free()
             && let Some(record) = self.device.next_record()
         {

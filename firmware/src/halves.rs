@@ -15,6 +15,7 @@ use tenax_hal_shim::channel::{SCAN_LEN, SCANS_PER_FRAME};
 use tenax_hal_shim::frame::{Frame, PAIRS};
 
 use crate::deadline::WAITING;
+use crate::last_words::{Mark, give_up};
 
 /// Words of one half.
 const HALF: usize = PAIRS * SCANS_PER_FRAME;
@@ -123,7 +124,7 @@ impl Handler<typelevel::DMA2_STREAM0> for OnHalf {
         let seen = pac::DMA2.isr(0).read();
         if seen.teif(STREAM) {
             // DMA could not reach the ring.
-            crate::last_words::give_up();
+            give_up(Mark::Panicked);
         }
         clear(seen);
         // Both at once if the interrupt was kept waiting for a frame.

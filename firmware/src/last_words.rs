@@ -15,12 +15,28 @@ use tenax_hal_shim::words::Fault;
 
 use crate::bridge;
 
-/// What the mark is when it was left by a panic or a fault. Any other value is what RAM held at power-on.
-const PANICKED: u32 = 0x7E4A_C0DE;
+/// Restarts in a row, each sooner than [`lived_well`] after the one before, after which the hand stays off: a hand that
+/// hangs as it begins to close would close a little further each time.
+const RESTARTS_MAX: u32 = 5;
 
-/// Not initialised by the runtime, so it outlives a reset.
+/// Why the image ended. Any other value is what RAM held at power-on.
+#[derive(Clone, Copy)]
+#[repr(u32)]
+pub enum Mark {
+    /// A panic or a fault of the core.
+    Panicked = 0x7E4A_C0DE,
+    /// The supply fell below what the chip needs.
+    SupplySagged = 0x7E4A_BA77,
+    /// The crystal stopped.
+    CrystalLost = 0x7E4A_C10C,
+}
+
+/// What a reset does not clear: not initialised by the runtime.
 #[unsafe(link_section = ".uninit.mark")]
-static mut MARK: MaybeUninit<u32> = MaybeUninit::uninit();
+static mut KEPT: MaybeUninit<[u32; 2]> = MaybeUninit::uninit();
+/// Where the mark is in it, and the restarts in a row.
+const MARK: usize = 0;
+const RESTARTS: usize = 1;
 
 /// How this run began.
 pub struct Start {
@@ -28,44 +44,60 @@ pub struct Start {
     pub after: Option<Fault>,
     /// Why the chip started.
     pub cause: ResetCause,
+    /// It has restarted too often: nothing is to move any more.
+    pub stay_off: bool,
 }
 
 /// How this run began. Asked once, before anything else is set up: it forgets the answer.
 pub fn start() -> Start {
     let csr = pac::RCC.csr().read();
     pac::RCC.csr().modify(|w| w.set_rmvf(true));
-    // SAFETY: nothing runs yet that could write the mark at the same time, and any bits are a u32.
-    let mark = unsafe { addr_of!(MARK).cast::<u32>().read_volatile() };
-    set_mark(0);
-    let cause = if csr.porrstf() {
-        ResetCause::PowerOn
+    let mark = kept(MARK);
+    keep(MARK, 0);
+    let left = |own: Mark| csr.sftrstf() && mark == own as u32;
+    let (cause, after) = if csr.porrstf() {
+        (ResetCause::PowerOn, None)
     } else if csr.wdgrstf() {
-        ResetCause::Watchdog
+        (ResetCause::Watchdog, Some(Fault::WatchdogReset))
+    } else if left(Mark::Panicked) {
+        (ResetCause::Panic, Some(Fault::PanicReset))
+    } else if left(Mark::SupplySagged) {
+        (ResetCause::Software, Some(Fault::SupplySagged))
+    } else if left(Mark::CrystalLost) {
+        (ResetCause::Software, Some(Fault::CrystalLost))
     } else if csr.sftrstf() {
-        if mark == PANICKED { ResetCause::Panic } else { ResetCause::Software }
+        (ResetCause::Software, None)
     } else if csr.padrstf() {
-        ResetCause::Pin
+        (ResetCause::Pin, None)
     } else {
-        ResetCause::Other
+        (ResetCause::Other, None)
     };
-    let after = match cause {
-        ResetCause::Watchdog => Some(Fault::WatchdogReset),
-        ResetCause::Panic => Some(Fault::PanicReset),
-        _ => None,
-    };
-    Start { after, cause }
+    let restarts = if after.is_some() { kept(RESTARTS).saturating_add(1) } else { 0 };
+    keep(RESTARTS, restarts);
+    let stay_off = restarts > RESTARTS_MAX;
+    Start { after: if stay_off { Some(Fault::TooManyRestarts) } else { after }, cause, stay_off }
 }
 
-fn set_mark(mark: u32) {
-    // SAFETY: called at start-up and with interrupts off, so never twice at a time.
-    unsafe { addr_of_mut!(MARK).cast::<u32>().write_volatile(mark) }
+/// The image has run for a while: what comes now is another story.
+pub fn lived_well() {
+    keep(RESTARTS, 0);
 }
 
-/// The image can go on no longer: as a panic, without a word about it.
-pub fn give_up() -> ! {
+fn kept(place: usize) -> u32 {
+    // SAFETY: an aligned word in it; whoever writes it is never interrupted by one who reads it, and any bits are a u32.
+    unsafe { addr_of!(KEPT).cast::<u32>().add(place).read_volatile() }
+}
+
+fn keep(place: usize, word: u32) {
+    // SAFETY: an aligned word in it, written whole.
+    unsafe { addr_of_mut!(KEPT).cast::<u32>().add(place).write_volatile(word) }
+}
+
+/// The image can go on no longer: the bridge off, the mark left, a reset.
+pub fn give_up(mark: Mark) -> ! {
     cortex_m::interrupt::disable();
     bridge::off();
-    set_mark(PANICKED);
+    keep(MARK, mark as u32);
     SCB::sys_reset()
 }
 
@@ -74,7 +106,7 @@ fn on_panic(info: &PanicInfo) -> ! {
     cortex_m::interrupt::disable();
     bridge::off();
     defmt::error!("{}", defmt::Display2Format(info));
-    give_up()
+    give_up(Mark::Panicked)
 }
 
 /// A fault of the core: as a panic.
@@ -83,7 +115,17 @@ fn on_panic(info: &PanicInfo) -> ! {
 /// Called by the core only.
 #[exception]
 unsafe fn HardFault(_frame: &ExceptionFrame) -> ! {
-    give_up()
+    give_up(Mark::Panicked)
+}
+
+/// The clock security system says that the crystal has stopped (RM0383, section 6.2.7): the chip runs on at 16 MHz, far too slow for
+/// a tick, and nobody knows how long that lasts.
+///
+/// # Safety
+/// Called by the core only.
+#[exception]
+unsafe fn NonMaskableInt() -> ! {
+    give_up(Mark::CrystalLost)
 }
 
 /// An interrupt that nobody bound: as a panic.
@@ -92,5 +134,5 @@ unsafe fn HardFault(_frame: &ExceptionFrame) -> ! {
 /// Called by the core only.
 #[exception]
 unsafe fn DefaultHandler(_irq: i16) -> ! {
-    give_up()
+    give_up(Mark::Panicked)
 }

@@ -31,6 +31,7 @@ mod last_words;
 mod mail;
 mod scan;
 mod store;
+mod supply;
 mod switches;
 mod telemetry;
 
@@ -45,6 +46,7 @@ use embassy_stm32::{bind_interrupts, dma, peripherals};
 use static_cell::{ConstStaticCell, StaticCell};
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::wire::{BAUD, ResetCause, Up};
+use tenax_hal_shim::words::Fault;
 use tenax_logic::device::Device;
 use tenax_logic::store::Erase;
 
@@ -75,12 +77,21 @@ static CONTROL: StaticCell<control::Control> = StaticCell::new();
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
-    let last_words::Start { after, cause } = last_words::start();
-    let mut config = clock::config();
+    let last_words::Start { after, cause, stay_off } = last_words::start();
+    let switched_on = cause == ResetCause::PowerOn;
+    let crystal = clock::has_crystal();
+    let mut config = clock::config(crystal);
     config.dma_interrupt_priority = Priority::P6;
     let p = embassy_stm32::init(config);
     // Before anything that could take time: from here on both sides are held low.
     let bridge = bridge::Bridge::new(p.TIM1, p.PA8, p.PA9);
+    supply::watch();
+    if crystal {
+        clock::watch_crystal();
+    }
+    if switched_on {
+        supply::hold_in_reset_when_too_low();
+    }
     // While nothing moves yet: switched on, this may erase a sector, and then the core stands still for a second or two. After
     // a reset something may be held, and the wearer must be able to let go of it.
     let mut flash = flash::Flash::new(p.FLASH);
@@ -125,12 +136,19 @@ async fn main(spawner: Spawner) {
     // The first of all messages: a hello that comes after others would look like a second start.
     mail::post(Up::Hello { frame_hz: FRAME_HZ as u16, after });
     spawner.spawn(telemetry::telemetry(up).expect("one telemetry task"));
+    if stay_off {
+        // Neither control nor what feeds the watchdog: the bridge stays as it is, off.
+        core::future::pending::<()>().await;
+    }
     spawner
         .spawn(commands::commands(down.into_ring_buffered(COMMAND_RING.take())).expect("one commands task"));
     let control = CONTROL.init_with(|| control::Control::new(bridge, switches, button, watchdog));
     control.restore(|device| store::restore(device, &flash, &found));
     if !switched_on {
         control.restore(Device::was_reset);
+    }
+    if !crystal {
+        control.restore(|device| device.report(Fault::CrystalLost));
     }
     control.restore(|device| {
         mail::post(device.start(identity::of(cause)));

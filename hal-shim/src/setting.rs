@@ -84,7 +84,7 @@ settings! {
     1 S1 "s1-mv" "mV" [20, 250, trusted 1_500] = 100;
     /// S2: Ft/Fn that means incipient slip, until a stroke measures it
     2 S2 "s2-permille" "per mille" [150, 900, trusted 1_500] = 300;
-    /// EMG envelope above rest from which a muscle is active
+    /// EMG envelope above rest that both muscles have to reach to consent. When a muscle is active, its calibration says
     3 EmgOn "emg-on-mv" ("myo-on-mv") "mV" [80, 400] = 160;
     /// Normal force above which the reflex closes no further
     4 ForceCeiling "force-ceiling-mn" "mN" [3_000, 60_000] = 40_000;
@@ -116,13 +116,9 @@ settings! {
     17 HebbianBeta "hebbian-beta-ppb" "ppb" [0, 16_000_000] = 10_000;
     /// Hebbian: weight delta that every connection has for the variable rate (Tada 2006, equation 6)
     18 HebbianDelta "hebbian-delta-ppm" "ppm" [1_000, 8_000_000] = 300_000;
-    /// Part of emg-on-mv below which an active muscle becomes inactive
-    19 EmgOff "emg-off-permille" "per mille" [650, 950] = 700;
     /// How long a muscle counts as active after its last activity
     20 EmgHold "emg-hold-ms" "ms" [100, 1_000] = 200;
-    /// EMG envelope above rest that asks for full speed
-    21 EmgFull "emg-full-mv" "mV" [700, 3_000] = 1_000;
-    /// Motor duty that an envelope at emg-on-mv asks for
+    /// Motor duty that the weakest contraction asks for that moves the hand
     22 EmgSlowest "emg-slowest-permille" "per mille" [200, 1_000] = 300;
     /// Motor duty of the pulse that answers slip
     23 SlipDuty "slip-duty-permille" "per mille" [400, 1_000] = 1_000;

@@ -141,6 +141,16 @@ pub enum Fault {
     StoreFull(Kept),
     /// The flash did not take this: it is worn, or protected.
     StoreFailed(Kept),
+    /// The supply fell below what the chip needs, and it was reset.
+    SupplySagged,
+    /// The crystal stopped, or does not start: the board runs on the chip's own oscillator, a per cent too fast or too slow. The
+    /// serial line may not be understood.
+    CrystalLost,
+    /// It has restarted too often in a row: nothing moves before it is switched off and on.
+    TooManyRestarts,
+    /// The hand is surely open, and the force sensor still reads a load that is no offset: nothing is ever known to be unloaded.
+    /// What is learned from an empty hand stays unknown, and nobody consents by switching on.
+    NeverUnloaded,
 }
 
 /// What a teacher says about one output of the network (Tada 2006, equations 1 and 2).

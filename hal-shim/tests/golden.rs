@@ -222,6 +222,10 @@ fn up() -> Vec<Up> {
         EventKind::Behaviour(Behaviour::HandOver, None),
         EventKind::Behaviour(Behaviour::HandOver, Some(Ending::Done)),
         EventKind::NoWearer(true),
+        EventKind::Fault(Fault::SupplySagged),
+        EventKind::Fault(Fault::CrystalLost),
+        EventKind::Fault(Fault::TooManyRestarts),
+        EventKind::Fault(Fault::NeverUnloaded),
     ];
     all.extend(events.map(|kind| Up::Event(Event { frame: 50, kind })));
     all.extend(answers().into_iter().map(|answer| Up::Answer { of: 7, frame: 50, answer }));

@@ -13,6 +13,7 @@ use tenax_hal_shim::channel::{
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::front_end::{MYO_REST_MV, fsr_mv, fsr_quadrants_n};
 use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::wire::{Event, EventKind, Slow};
 use tenax_hal_shim::words::{Cause, GripMode, Kept};
 use tenax_logic::emg::model::EmgModel;
@@ -185,6 +186,10 @@ impl Bench {
     /// Gives this frame to the fingertip, and collects what it tells.
     pub fn give(&mut self, frame: &Frame) -> MotorDrive {
         let drive = self.fingertip.tick(frame);
+        // As the device does.
+        if frame.slot() == slot_of(Job::Save) {
+            self.fingertip.think();
+        }
         self.slows.extend(self.fingertip.take_slow());
         while let Some(event) = self.fingertip.next_event() {
             self.events.push(event);

@@ -99,3 +99,22 @@ fn an_offset_of_the_force_sensor_is_gone_once_the_hand_has_opened() {
         assert!(load_mn(&bench) < 50, "{mv} mV: {} mN", load_mn(&bench));
     }
 }
+
+#[test]
+fn an_open_hand_that_still_reads_a_load_says_so_once() {
+    // The control: an offset that the zeros follow.
+    for (mv, told) in [(45.0, 0), (100.0, 1)] {
+        let mut bench = Bench::new(35);
+        bench.run(400);
+        for pin in &mut bench.pins_mv[FSR..FSR + 4] {
+            *pin = f64::from(FSR_REST_MV) + mv;
+        }
+        bench.muscles(50.0, 900.0);
+        bench.run(8_000);
+        bench.muscles(50.0, 50.0);
+        bench.run(20_000);
+        let faults =
+            bench.events.iter().filter(|event| event.kind == EventKind::Fault(Fault::NeverUnloaded)).count();
+        assert_eq!(faults, told, "{mv} mV");
+    }
+}

@@ -273,6 +273,12 @@ pub fn in_words(fault: &Fault) -> String {
         Fault::PressedAtBoot { channel } => format!("{} was loaded when the board started", name(channel)),
         Fault::WatchdogReset => "restarted by the watchdog".to_owned(),
         Fault::PanicReset => "restarted after a panic".to_owned(),
+        Fault::SupplySagged => "restarted because the supply sagged".to_owned(),
+        Fault::CrystalLost => "the crystal is lost: timing is a per cent off".to_owned(),
+        Fault::TooManyRestarts => {
+            "restarted too often: nothing moves before it is switched off and on".to_owned()
+        }
+        Fault::NeverUnloaded => "the force sensor reads a load, and the hand is surely open".to_owned(),
         Fault::RecordDamaged(kept) => {
             format!("the last {} to be saved are lost; older ones are used", kept_in_words(kept))
         }

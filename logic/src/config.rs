@@ -61,16 +61,12 @@ pub struct TouchConfig {
 /// Thresholds of the myoelectric gate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GateConfig {
-    /// Envelope above rest at which a myosensor becomes active, mV.
+    /// Envelope above rest that both muscles have to reach to consent, mV.
     pub on_mv: u16,
-    /// Part of `on_mv` below which it becomes inactive, per mille.
-    pub off_permille: u16,
     /// How long a muscle counts as active after its last activity, in frames: the pause between two contractions is
     /// not an invitation to the reflex.
     pub hold_frames: u32,
-    /// Envelope above rest that asks for the full speed, mV.
-    pub full_mv: u16,
-    /// Duty asked for by an envelope at `on_mv`, per mille.
+    /// Duty asked for by the weakest contraction that moves the hand, per mille.
     pub slowest_permille: u16,
 }
 
@@ -136,7 +132,7 @@ impl Config {
             learning: LearningConfig::DEFAULT,
             rule: Rule::DEFAULT,
         },
-        gate: GateConfig { on_mv: 0, off_permille: 0, hold_frames: 0, full_mv: 0, slowest_permille: 0 },
+        gate: GateConfig { on_mv: 0, hold_frames: 0, slowest_permille: 0 },
         grip: GripConfig {
             slip_duty_permille: 0,
             slip_frames: 0,

@@ -144,8 +144,9 @@ impl Fingertip {
         self.act(frame)
     }
 
-    /// What about the muscles takes too long for a tick. Call it once a slow frame, always after the same tick.
+    /// What about muscles and films takes too long for a tick. Call it once a slow frame, always after the same tick.
     pub fn think(&mut self) {
+        self.senses.think(&self.config);
         if self.senses.muscles_mut().think(&mut self.journal) {
             self.calibrated = self.calibrated.wrapping_add(1);
         }
@@ -277,11 +278,13 @@ impl Fingertip {
                 self.senses.muscles_mut().give_up(&mut self.journal);
             }
             // Before this frame drives: what the last ones did.
-            self.senses.driven(self.drive, STEP_FRAMES);
+            let striking = matches!(self.mode, GripMode::Slip | GripMode::Settle);
+            self.senses.driven(self.drive, striking, STEP_FRAMES);
         }
         let heard = Heard::of(&self.detectors, self.acting);
         let behaviour = self.behave(heard);
-        self.step_mode(heard);
+        let grip = self.senses.grip(&self.config);
+        self.step_mode(heard, grip);
         let wishes = Wishes {
             wearer_active: self.senses.gate.is_active(),
             wearer: self.senses.gate.wish(&self.config.gate),
@@ -292,9 +295,9 @@ impl Fingertip {
         // A lost frame says nothing about anybody's wish, so nobody's is carried out.
         let (drive, source) = if frame.valid { arbitrate(wishes) } else { Default::default() };
         self.drive = drive;
-        self.reflex.tick(self.mode, self.senses.grip(&self.config));
+        self.reflex.tick(self.mode, grip);
         if matches!(source, DriveSource::Link | DriveSource::Behaviour) && drive.closes() {
-            self.reflex.spend(self.senses.grip(&self.config));
+            self.reflex.spend(grip);
         }
         self.journal.tick(
             frame.slot(),
@@ -319,8 +322,7 @@ impl Fingertip {
     }
 
     /// The flow chart, asked from the top in every tick.
-    fn step_mode(&mut self, heard: Heard) {
-        let grip = self.senses.grip(&self.config);
+    fn step_mode(&mut self, heard: Heard, grip: Grip) {
         let config = self.config.grip;
         let answered = self.behaviour.as_ref().is_some_and(Running::answers_slip);
         let taken_over = self.senses.gate.is_active() || self.link_drive().is_some() || answered;
@@ -345,11 +347,16 @@ impl Fingertip {
         }
     }
 
-    /// Lets a cause do what the table says, if it says anything.
+    /// Lets a cause do what the table says, if it says anything: nearly always it does not.
+    #[inline]
     fn cause(&mut self, cause: Cause) {
-        let Some(to) = mode::next(self.mode, cause) else {
-            return;
-        };
+        if let Some(to) = mode::next(self.mode, cause) {
+            self.change(to, cause);
+        }
+    }
+
+    #[inline(never)]
+    fn change(&mut self, to: GripMode, cause: Cause) {
         let from = core::mem::replace(&mut self.mode, to);
         self.reflex.enter(to);
         self.journal.mode(from, to, cause);

@@ -102,8 +102,7 @@ fn duty(config: &GateConfig, strength_permille: u16) -> Duty {
 mod tests {
     use super::*;
 
-    const CONFIG: GateConfig =
-        GateConfig { on_mv: 160, off_permille: 700, hold_frames: 400, full_mv: 1_000, slowest_permille: 300 };
+    const CONFIG: GateConfig = GateConfig { on_mv: 160, hold_frames: 400, slowest_permille: 300 };
 
     fn says(wish: Wish, strength_permille: u16) -> Gate {
         let mut gate = Gate::default();

@@ -51,6 +51,7 @@ mod samples;
 pub mod senses;
 pub mod session;
 pub mod settings;
+pub mod sliding;
 pub mod solo;
 pub mod store;
 pub mod strain;

@@ -65,15 +65,16 @@ impl Muscles {
         uv
     }
 
-    /// The frame that shows this muscle was lost. True if it has no reading of now any more.
+    /// The frame that shows this muscle was lost: time goes on with its last reading, for whatever is counted in readings is
+    /// meant as a time. True if it has no reading of now any more.
     pub fn miss(&mut self, muscle: usize, journal: &mut Journal) -> bool {
         let n = muscle.min(1);
         self.missed[n] = self.missed[n].saturating_add(1);
         let gone = self.missed[n] >= MISSES;
         if gone {
             self.confirmed[n] = false;
-            self.read(n, None, journal);
         }
+        self.read(n, self.uv[n].filter(|_| !gone), journal);
         gone
     }
 

@@ -24,6 +24,7 @@ use crate::journal::Journal;
 use crate::muscles::Muscles;
 use crate::photoelastic::Head;
 use crate::photoelastic::track::Hints;
+use crate::sliding::Hand;
 use crate::strain::Gauges;
 use crate::vibration::{Trust, Vibration, VibrationDetector};
 
@@ -37,6 +38,8 @@ const QUADRANT_MISSES: u8 = 2;
 /// The hand is surely open when it has been opened for this long since it was last closed, in frames: at its slowest it has
 /// gone 2 cm.
 const OPEN_FRAMES: u32 = frames(600);
+/// Cycles in which a hand that is surely open reads a load before that is told: 4 s, several times what a zero takes to follow.
+const DOUBTED_AFTER: u16 = 4 * SLOW_HZ as u16;
 /// A quadrant this far above its zero when the hand is switched on is pressed, uV.
 const PRESSED_UV: i32 = 100_000;
 
@@ -64,6 +67,10 @@ pub struct Senses {
     frames_seen: u32,
     /// Frames in which the hand was opened since it was last closed.
     open_frames: u32,
+    /// The reflex answers slip, or lets the object settle after it.
+    striking: bool,
+    /// Cycles in which it was surely open and read a load.
+    open_and_loaded: u16,
     frames_lost: u32,
     films_usable: bool,
     lost: [bool; 3],
@@ -122,8 +129,9 @@ impl Senses {
     }
 
     /// How the motor was driven in the last so many frames: what has been opened for a while, and not closed since, holds
-    /// nothing.
-    pub const fn driven(&mut self, drive: MotorDrive, frames: u32) {
+    /// nothing. `striking`: the reflex answers slip, or lets the object settle after it, and the hand itself is loud.
+    pub const fn driven(&mut self, drive: MotorDrive, striking: bool, frames: u32) {
+        self.striking = striking;
         self.drive = match drive {
             MotorDrive::Open(_) => -1,
             MotorDrive::Close(_) => 1,
@@ -243,6 +251,16 @@ impl Senses {
         if self.vibration.masked != masked {
             self.mask(masked ^ self.vibration.masked, journal);
         }
+    }
+
+    /// Listens for steady sliding. Call it once a slow frame, always after the same tick.
+    #[inline(never)]
+    pub fn think(&mut self, config: &Config) {
+        let load_mn = match self.grip(config) {
+            Grip::Holds(mn) => Some(mn),
+            Grip::Unloaded | Grip::Unknown => None,
+        };
+        self.detector.slow(&Hand { load_mn, wearer: self.gate.is_active(), striking: self.striking });
     }
 
     /// The head takes its sample. What the films are given in its place is a film that is whole and hears nothing: the middle of
@@ -375,6 +393,19 @@ impl Senses {
         self.forces = Some(forces);
         if self.open_frames >= OPEN_FRAMES {
             self.force_sensor.follow();
+            self.doubt_load(config, journal);
+        }
+    }
+
+    /// The hand is surely open: what it still reads after its zeros had time to follow is no load.
+    fn doubt_load(&mut self, config: &Config, journal: &mut Journal) {
+        if self.is_unloaded(config) {
+            self.open_and_loaded = 0;
+            return;
+        }
+        self.open_and_loaded = self.open_and_loaded.saturating_add(1);
+        if self.open_and_loaded == DOUBTED_AFTER {
+            journal.fault(Fault::NeverUnloaded);
         }
     }
 

@@ -134,7 +134,7 @@ impl Log {
         let (words, rest) = payload.as_chunks::<4>();
         let tag =
             Tag::new(record::number(kept), words.len()).filter(|_| rest.is_empty()).ok_or(Refused::Length)?;
-        let at = self.end + usize::from(!self.marked);
+        let at = self.end + self.mark_words();
         let after = at + tag.record_words();
         if after > self.limit {
             return Err(Refused::Full);
@@ -147,10 +147,16 @@ impl Log {
         Ok(saving)
     }
 
+    /// Words that the next record takes beside its own: the first of a session has a mark before it.
+    #[must_use]
+    pub const fn mark_words(&self) -> usize {
+        !self.marked as usize
+    }
+
     /// Words that can still be filled before the next boot.
     #[must_use]
     pub const fn free_words(&self) -> usize {
-        if self.failed { 0 } else { self.limit.saturating_sub(self.end + !self.marked as usize) }
+        if self.failed { 0 } else { self.limit.saturating_sub(self.end + self.mark_words()) }
     }
 
     /// Sees to it that the active sector is opened, holds everything that counts, and has room for a day.

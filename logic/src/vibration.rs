@@ -18,6 +18,7 @@ use tenax_hal_shim::wire::TickRecord;
 
 use crate::config::VibrationConfig;
 use crate::low_pass::LowPass;
+use crate::sliding::{Hand, Sliding};
 use crate::solo::Solo;
 
 /// Lower edge of the slip band, Hz.
@@ -119,6 +120,8 @@ pub struct Vibration {
     pub s1: bool,
     /// Whether it rings above the slip band as a knock does, and has not lasted longer than one.
     pub knock: bool,
+    /// Whether something slides steadily, far below S1 (see [`sliding`](crate::sliding)).
+    pub slides: bool,
     /// The films that are masked because each was loud alone, a bit each.
     pub masked: u16,
 }
@@ -140,6 +143,8 @@ pub struct VibrationDetector {
     rang_frames: u32,
     s1: bool,
     solo: Solo,
+    sliding: Sliding,
+    slides: bool,
 }
 
 impl VibrationDetector {
@@ -259,8 +264,14 @@ impl VibrationDetector {
             level: (envelope >> Q).clamp(0, i32::from(TickRecord::VIBRATION_MAX)) as u16,
             s1: self.s1,
             knock: rings && self.ringing_frames < config.knock_frames,
+            slides: self.slides,
             masked: self.solo.masked(),
         }
+    }
+
+    /// Listens for steady sliding: call it once in a slow frame.
+    pub fn slow(&mut self, hand: &Hand) {
+        self.slides = self.sliding.take(&self.envelopes, self.above, hand);
     }
 
     /// Each film's envelope in the slip band, Q16 samples; 0 of one that gives no number.

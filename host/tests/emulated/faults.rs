@@ -74,3 +74,24 @@ fn a_panic_stops_a_driven_motor_at_once_and_the_next_start_says_so() {
     // DMA stumbles over the next code.
     assert!(drives(&run, 0.601, 1.0).iter().all(|now| *now == MotorDrive::Coast));
 }
+
+#[test]
+fn a_board_that_restarts_again_and_again_stays_off_in_the_end() {
+    let drive = MotorDrive::Close(Duty::per_mille(400));
+    let mut plant = Swing::new(3.0);
+    // Each time it drives, it hangs: so it would close a little further after each restart.
+    let mut mishaps = Vec::new();
+    for n in 0..7 {
+        let at_s = 0.3 + 0.35 * f64::from(n);
+        plant = plant.sending(at_s - 0.05, Down::Drive { drive, hold_ms: 250 });
+        mishaps.push((at_s, Mishap::CoreHangs));
+    }
+    let run = run(Rest::new(plant), &Options { mishaps, ..Options::default() });
+    let mut starts = vec![None];
+    starts.extend([Some(Fault::WatchdogReset); 5]);
+    starts.push(Some(Fault::TooManyRestarts));
+    assert_eq!(run.starts, starts);
+    let last = 0.3 + 0.35 * 5.0;
+    assert!(drives(&run, 0.0, last).iter().any(|now| *now == drive), "before, it does what it is told");
+    assert!(drives(&run, last + 0.15, 3.0).iter().all(|now| *now == MotorDrive::Coast));
+}

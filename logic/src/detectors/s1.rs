@@ -22,7 +22,8 @@ impl Detector for S1 {
     fn step(&mut self, _config: &VibrationConfig, sensed: &Sensed<'_>) -> Option<Said> {
         self.level = sensed.vibration.level;
         self.health = if sensed.vibration_known { DetectorHealth::Working } else { DetectorHealth::Blind };
-        Some(Said::slip(sensed.vibration.s1))
+        // What is heard far below the threshold is answered as a warning is.
+        Some(Said { slip: sensed.vibration.s1, incipient: sensed.vibration.slides })
     }
 
     fn describe(&self, config: &VibrationConfig) -> Description {

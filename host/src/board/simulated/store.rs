@@ -33,7 +33,8 @@ impl Store {
 
     /// Begins to save a record.
     pub fn save(&mut self, record: Record) {
-        let words = record.payload(&mut [0; PAYLOAD_BYTES]).len() / 4 + OVERHEAD_WORDS;
+        let words =
+            record.payload(&mut [0; PAYLOAD_BYTES]).len() / 4 + OVERHEAD_WORDS + self.log.mark_words();
         self.saving = Some((record, TICKS_PER_WORD * words as u32));
     }
 

@@ -1,0 +1,91 @@
+//! Steady sliding, far below S1: heard above each film's own floor, answered gently, and no longer than it helps.
+
+use tenax_hal_shim::channel::PVDF;
+use tenax_hal_shim::detector::DetectorId;
+use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::setting::SettingId;
+use tenax_hal_shim::wire::{Down, EventKind, Setting};
+use tenax_hal_shim::words::{Cause, DriveSource, GripMode};
+use tenax_host_tests::Bench;
+
+/// What rubs, mV: a quarter of S1.
+const RUBS_MV: f64 = 35.0;
+const LOAD_N: f64 = 4.0;
+
+fn reflex_ticks(bench: &Bench) -> usize {
+    let ticks = bench.slows.iter().flat_map(|slow| &slow.ticks);
+    ticks.filter(|tick| tick.source == DriveSource::Reflex).count()
+}
+
+#[test]
+fn an_object_that_rubs_quietly_is_held_more_firmly_with_small_pulses() {
+    let mut bench = Bench::holding(61);
+    bench.run(2_000);
+    assert_eq!(reflex_ticks(&bench), 0);
+    bench.vibration_mv = RUBS_MV;
+    let drives = bench.run(2_000);
+    assert_eq!(bench.last_cause(), Some(Cause::PulseOver));
+    let warned = bench.events.iter().any(|event| {
+        matches!(
+            event.kind,
+            EventKind::Mode { to: GripMode::Incipient, cause: Cause::Incipient(DetectorId::S1), .. }
+        )
+    });
+    assert!(warned);
+    let full =
+        drives.iter().filter(|drive| matches!(drive, MotorDrive::Close(duty) if duty.as_per_mille() > 500));
+    assert_eq!(full.count(), 0, "no pulse at full speed");
+}
+
+#[test]
+fn films_that_hummed_when_the_grasp_began_slide_no_more_than_quiet_ones() {
+    let mut bench = Bench::new(62);
+    bench.vibration_mv = RUBS_MV;
+    bench.run(800);
+    bench.load(LOAD_N, 0.4);
+    bench.run(20_000);
+    assert_eq!(reflex_ticks(&bench), 0);
+    // Two that begin to hum in a grasp are their own fault.
+    let mut bench = Bench::holding(63);
+    bench.run(2_000);
+    for n in 0..10_000u32 {
+        let phase = f64::from(n) * 50.0 / 2_000.0 * std::f64::consts::TAU;
+        bench.pins_mv[PVDF..PVDF + 2].fill(1_650.0 + RUBS_MV * phase.sin());
+        bench.run(1);
+    }
+    assert_eq!(reflex_ticks(&bench), 0);
+}
+
+#[test]
+fn closing_that_does_not_help_ends_at_half_as_much_again() {
+    let mut bench = Bench::holding(64);
+    bench.run(2_000);
+    bench.vibration_mv = RUBS_MV;
+    let mut load_n = LOAD_N;
+    for _ in 0..40_000 {
+        bench.load(load_n, 0.1 * load_n);
+        // Against 3 N/mm, at 120 mm/s.
+        if let MotorDrive::Close(duty) = bench.step() {
+            load_n += 0.18 * f64::from(duty.as_per_mille()) / 1e3;
+        }
+    }
+    assert!((LOAD_N + 1.0..1.5 * LOAD_N + 4.0).contains(&load_n), "{load_n} N");
+}
+
+/// docs/safety.md, what a range still allows.
+#[test]
+fn with_s1_at_its_highest_a_loud_slip_is_a_warning_still() {
+    let mut bench = Bench::holding(65);
+    let highest = SettingId::S1.row().max;
+    bench.fingertip.command(&Down::Set(Setting { id: SettingId::S1 as u8, value: highest })).unwrap();
+    bench.run(2_000);
+    bench.vibration_mv = 300.0;
+    bench.run(1_000);
+    let by = |id: fn(DetectorId) -> Cause| {
+        let mode =
+            |kind: EventKind| matches!(kind, EventKind::Mode { cause, .. } if cause == id(DetectorId::S1));
+        bench.events.iter().filter(|event| mode(event.kind)).count()
+    };
+    assert_eq!(by(Cause::Slip), 0, "deaf by its threshold");
+    assert!(by(Cause::Incipient) > 0);
+}
