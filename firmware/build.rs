@@ -9,7 +9,7 @@ fn main() {
     println!("cargo::rustc-link-search={}", root.display());
     println!("cargo::rerun-if-changed={}", root.join("memory.x").display());
     println!("cargo::rerun-if-changed=build.rs");
-    for argument in ["--nmagic", "-Tlink.x", "-Tdefmt.x"] {
+    for argument in ["--nmagic", "--build-id=sha1", "-Tlink.x", "-Tdefmt.x"] {
         println!("cargo::rustc-link-arg-bins={argument}");
     }
 }

@@ -6,7 +6,7 @@ use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::{MotorBridge, MotorDrive};
 use tenax_hal_shim::schedule::{Job, select_of_slot, slot_of};
-use tenax_hal_shim::wire::{Down, Received, Refusal};
+use tenax_hal_shim::wire::{Down, FRAMES_PER_RAW, Received, Refusal};
 use tenax_logic::device::Device;
 use tenax_logic::fingertip::Fingertip;
 
@@ -51,20 +51,31 @@ impl Control {
         self.switches.show(select_of_slot((next % u32::from(FRAMES_PER_SLOW_FRAME)) as u8));
 
         self.device.button(self.button.is_down());
-        self.take_command();
+        // The tick in which frames may be sent has no room for a command and its answer as well, streamed or not.
+        if !usize::from(frame.slot()).is_multiple_of(FRAMES_PER_RAW) {
+            self.take_command();
+        }
         let drive = tenax_control_tick(self.device.fingertip_mut(), frame);
         self.bridge.drive(drive);
         self.watchdog.pet();
         counts::TICKS.add_one();
 
         self.device.sampled(frame);
-        while let Some(message) = self.device.next_message() {
-            mail::post(message);
+        if self.device.has_message() {
+            self.tell();
         }
         if frame.slot() == slot_of(Job::Save) {
             self.save();
         }
         mail::end_tick();
+    }
+
+    /// Not inlined: few ticks have something to tell, and each message is a copy on the stack.
+    #[inline(never)]
+    fn tell(&mut self) {
+        while let Some(message) = self.device.next_message() {
+            mail::post(message);
+        }
     }
 
     /// Not inlined: it is asked once in 25 ticks, and all of them would carry it.
@@ -81,9 +92,17 @@ impl Control {
     fn take_command(&mut self) {
         // One in a tick: how long it takes is bounded, and its answer leaves the line to telemetry.
         if let Some(command) = mail::next_command() {
-            let done = tenax_control_command(&mut self.device, &command);
-            mail::post(self.device.answer(&command, done));
+            self.take(&command);
         }
+    }
+
+    #[inline(never)]
+    fn take(&mut self, command: &Received<Down>) {
+        if let Some(message) = self.device.taken(command) {
+            mail::post(message);
+        }
+        let done = tenax_control_command(&mut self.device, command);
+        mail::post(self.device.answer(command, done));
     }
 }
 

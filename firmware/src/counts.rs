@@ -22,6 +22,11 @@ impl Count {
         self.0.fetch_add(n, Relaxed);
     }
 
+    /// Takes in one of which the largest counts.
+    pub fn max(&self, n: u32) {
+        self.0.fetch_max(n, Relaxed);
+    }
+
     fn get(&self) -> u32 {
         self.0.load(Relaxed)
     }
@@ -45,13 +50,23 @@ pub static BAD_FRAMES: Count = Count::new();
 /// Frames received that there was no time for.
 pub static COMMANDS_SKIPPED: Count = Count::new();
 
+/// Time that frames took control, us.
+pub static CONTROL_US: Count = Count::new();
+/// The longest that one did.
+pub static CONTROL_US_MAX: Count = Count::new();
+
 /// Sequence number of the last frame that had its tick.
 pub fn last_frame() -> u32 {
     TICKS.get().wrapping_sub(1)
 }
 
-/// All of them, as they go up the line.
-pub fn counters() -> Counters {
+/// Time that frames have taken control so far, us. It wraps.
+pub fn control_us() -> u32 {
+    CONTROL_US.get()
+}
+
+/// All of them, as they go up the line. `control_permille` is control's part of the time since the last ones.
+pub fn counters(control_permille: u16) -> Counters {
     Counters {
         frames: FRAMES.get(),
         frames_lost: FRAMES_LOST.get(),
@@ -61,5 +76,7 @@ pub fn counters() -> Counters {
         telemetry_dropped: TELEMETRY_DROPPED.get(),
         bad_frames: BAD_FRAMES.get(),
         commands_skipped: COMMANDS_SKIPPED.get(),
+        control_us_max: CONTROL_US_MAX.get(),
+        control_permille,
     }
 }

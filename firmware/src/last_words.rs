@@ -10,6 +10,7 @@ use core::ptr::{addr_of, addr_of_mut};
 use cortex_m::peripheral::SCB;
 use cortex_m_rt::{ExceptionFrame, exception};
 use embassy_stm32::pac;
+use tenax_hal_shim::wire::ResetCause;
 use tenax_hal_shim::words::Fault;
 
 use crate::bridge;
@@ -25,8 +26,8 @@ static mut MARK: MaybeUninit<u32> = MaybeUninit::uninit();
 pub struct Start {
     /// Why the last run ended, if not by switching off.
     pub after: Option<Fault>,
-    /// Somebody switched the power on.
-    pub switched_on: bool,
+    /// Why the chip started.
+    pub cause: ResetCause,
 }
 
 /// How this run began. Asked once, before anything else is set up: it forgets the answer.
@@ -36,15 +37,23 @@ pub fn start() -> Start {
     // SAFETY: nothing runs yet that could write the mark at the same time, and any bits are a u32.
     let mark = unsafe { addr_of!(MARK).cast::<u32>().read_volatile() };
     set_mark(0);
-    let switched_on = csr.porrstf();
-    let after = if switched_on {
-        None
+    let cause = if csr.porrstf() {
+        ResetCause::PowerOn
     } else if csr.wdgrstf() {
-        Some(Fault::WatchdogReset)
+        ResetCause::Watchdog
+    } else if csr.sftrstf() {
+        if mark == PANICKED { ResetCause::Panic } else { ResetCause::Software }
+    } else if csr.padrstf() {
+        ResetCause::Pin
     } else {
-        (csr.sftrstf() && mark == PANICKED).then_some(Fault::PanicReset)
+        ResetCause::Other
     };
-    Start { after, switched_on }
+    let after = match cause {
+        ResetCause::Watchdog => Some(Fault::WatchdogReset),
+        ResetCause::Panic => Some(Fault::PanicReset),
+        _ => None,
+    };
+    Start { after, cause }
 }
 
 fn set_mark(mark: u32) {
@@ -52,8 +61,8 @@ fn set_mark(mark: u32) {
     unsafe { addr_of_mut!(MARK).cast::<u32>().write_volatile(mark) }
 }
 
-/// Turns the bridge off, leaves the mark, resets.
-fn end() -> ! {
+/// The image can go on no longer: as a panic, without a word about it.
+pub fn give_up() -> ! {
     cortex_m::interrupt::disable();
     bridge::off();
     set_mark(PANICKED);
@@ -65,7 +74,7 @@ fn on_panic(info: &PanicInfo) -> ! {
     cortex_m::interrupt::disable();
     bridge::off();
     defmt::error!("{}", defmt::Display2Format(info));
-    end()
+    give_up()
 }
 
 /// A fault of the core: as a panic.
@@ -74,7 +83,7 @@ fn on_panic(info: &PanicInfo) -> ! {
 /// Called by the core only.
 #[exception]
 unsafe fn HardFault(_frame: &ExceptionFrame) -> ! {
-    end()
+    give_up()
 }
 
 /// An interrupt that nobody bound: as a panic.
@@ -83,5 +92,5 @@ unsafe fn HardFault(_frame: &ExceptionFrame) -> ! {
 /// Called by the core only.
 #[exception]
 unsafe fn DefaultHandler(_irq: i16) -> ! {
-    end()
+    give_up()
 }

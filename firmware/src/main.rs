@@ -26,6 +26,7 @@ mod counts;
 mod deadline;
 mod flash;
 mod halves;
+mod identity;
 mod last_words;
 mod mail;
 mod scan;
@@ -43,8 +44,9 @@ use embassy_stm32::wdg::IndependentWatchdog;
 use embassy_stm32::{bind_interrupts, dma, peripherals};
 use static_cell::{ConstStaticCell, StaticCell};
 use tenax_hal_shim::channel::FRAME_HZ;
-use tenax_hal_shim::wire::{BAUD, Up};
+use tenax_hal_shim::wire::{BAUD, ResetCause, Up};
 use tenax_logic::device::Device;
+use tenax_logic::store::Erase;
 
 bind_interrupts!(struct Irqs {
     DMA2_STREAM0 => halves::OnHalf;
@@ -73,15 +75,18 @@ static CONTROL: StaticCell<control::Control> = StaticCell::new();
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
-    let last_words::Start { after, switched_on } = last_words::start();
+    let last_words::Start { after, cause } = last_words::start();
     let mut config = clock::config();
     config.dma_interrupt_priority = Priority::P6;
     let p = embassy_stm32::init(config);
     // Before anything that could take time: from here on both sides are held low.
     let bridge = bridge::Bridge::new(p.TIM1, p.PA8, p.PA9);
-    // While nothing moves yet: this may erase a sector, and then the core stands still for a second or two.
+    // While nothing moves yet: switched on, this may erase a sector, and then the core stands still for a second or two. After
+    // a reset something may be held, and the wearer must be able to let go of it.
     let mut flash = flash::Flash::new(p.FLASH);
-    let (log, found) = tenax_logic::store::open(&mut flash);
+    let switched_on = cause == ResetCause::PowerOn;
+    let erase = if switched_on { Erase::Allowed } else { Erase::Postponed };
+    let (log, found) = tenax_logic::store::open(&mut flash, erase);
     clock::accelerate_flash();
     interrupt::DMA2_STREAM0.set_priority(Priority::P1);
     interrupt::TIM5.set_priority(Priority::P1);
@@ -127,6 +132,12 @@ async fn main(spawner: Spawner) {
     if !switched_on {
         control.restore(Device::was_reset);
     }
+    control.restore(|device| {
+        mail::post(device.start(identity::of(cause)));
+        if device.fingertip().config().stream_at_start {
+            store::restored(&flash, &found, mail::post);
+        }
+    });
     spawner.spawn(store::store(flash, log).expect("one store task"));
     let urgent = URGENT.start(interrupt::SPI5);
     urgent.spawn(control::control(scan, control).expect("one control task"));

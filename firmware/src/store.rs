@@ -4,7 +4,7 @@
 //! at its longest, 0.1 ms, it is over before control is needed again. Nothing is erased while the hand works.
 
 use tenax_hal_shim::flash::FlashFailed;
-use tenax_hal_shim::wire::{Event, EventKind, Up};
+use tenax_hal_shim::wire::{Event, EventKind, KEPT_MAX, Restored, Up};
 use tenax_hal_shim::words::{Fault, Kept};
 use tenax_logic::device::Device;
 use tenax_logic::store::record::{PAYLOAD_BYTES, Record};
@@ -15,6 +15,7 @@ use crate::{counts, mail};
 
 /// Ticks from one word to the next: the network's 78 words take 0.16 s, and the serial line keeps its share of the core.
 const TICKS_PER_WORD: u32 = 4;
+const _: () = assert!(PAYLOAD_BYTES <= KEPT_MAX);
 
 /// Hands over to the device what was kept.
 pub fn restore(device: &mut Device, flash: &Flash, found: &Found) {
@@ -25,6 +26,19 @@ pub fn restore(device: &mut Device, flash: &Flash, found: &Found) {
         }
         if let Some(payload) = found.read(flash, kept, &mut buffer) {
             device.restore(kept, payload);
+        }
+    }
+}
+
+/// What was taken up, for whoever replays this run.
+#[inline(never)]
+pub fn restored(flash: &Flash, found: &Found, tell: impl Fn(Up)) {
+    let mut buffer = [0; PAYLOAD_BYTES];
+    for kept in Kept::ALL {
+        if let Some(payload) = found.read(flash, kept, &mut buffer)
+            && let Some(restored) = Restored::of(kept, payload)
+        {
+            tell(Up::Restored(restored));
         }
     }
 }

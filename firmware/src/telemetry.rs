@@ -3,7 +3,7 @@
 use embassy_futures::select::{Either, select};
 use embassy_stm32::mode::Async;
 use embassy_stm32::usart::UartTx;
-use embassy_time::{Duration, Ticker};
+use embassy_time::{Duration, Instant, Ticker};
 use tenax_hal_shim::wire::{FRAME_MAX, Up, encode};
 
 use crate::{counts, mail};
@@ -16,11 +16,12 @@ pub async fn telemetry(mut line: UartTx<'static, Async>) -> ! {
     // Ends the frame that a reset may have cut short, so that the hello is not taken for the rest of it.
     let _gone = line.write(&[0]).await;
     let mut counters_due = Ticker::every(COUNTERS_PERIOD);
+    let mut share = Share::new();
     let mut buffer = [0; FRAME_MAX];
     loop {
         let posted = match select(counters_due.next(), mail::next_message()).await {
             Either::First(()) => {
-                mail::post(Up::Counters(counts::counters()));
+                mail::post(Up::Counters(counts::counters(share.permille())));
                 continue;
             }
             Either::Second(posted) => posted,
@@ -34,5 +35,26 @@ pub async fn telemetry(mut line: UartTx<'static, Async>) -> ! {
             }
             None => counts::TELEMETRY_DROPPED.add_one(),
         }
+    }
+}
+
+/// Control's part of the core's time.
+struct Share {
+    at: Instant,
+    control_us: u32,
+}
+
+impl Share {
+    fn new() -> Self {
+        Self { at: Instant::now(), control_us: counts::control_us() }
+    }
+
+    /// Since it was last asked, per mille.
+    fn permille(&mut self) -> u16 {
+        let last = core::mem::replace(self, Self::new());
+        let lasted_us = (self.at - last.at).as_micros() as u32;
+        let control_us = self.control_us.wrapping_sub(last.control_us);
+        // Far below 2^32: the counters are due ten times a second.
+        (control_us.saturating_mul(1_000) / lasted_us.max(1)).min(1_000) as u16
     }
 }

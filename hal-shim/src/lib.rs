@@ -11,6 +11,7 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod behaviour;
 pub mod channel;
 pub mod detector;
 pub mod flash;

@@ -2,6 +2,8 @@
 //!
 //! New ones are added at the end: their place is their number on the wire.
 
+mod spoken;
+
 use core::cmp::Ordering;
 
 use serde::{Deserialize, Serialize};
@@ -15,7 +17,8 @@ pub enum GripMode {
     /// still drives the hand.
     #[default]
     Standby,
-    /// A myosensor is active or a drive command holds: the hand is theirs, the reflex commands nothing.
+    /// A myosensor is active, a drive command holds, or a behaviour expects slip and answers it itself: the hand is theirs,
+    /// the reflex commands nothing.
     Wearer,
     /// Nobody else drives the hand: vibration and Ft/Fn are watched.
     Watch,
@@ -25,8 +28,6 @@ pub enum GripMode {
     Incipient,
     /// After closing: the object settles in the grasp, and what the films hear of that is not slip.
     Settle,
-    /// A stroke over a surface, to measure its friction: slip is expected and answered by nothing.
-    Explore,
 }
 
 /// Why the mode changed.
@@ -36,9 +37,9 @@ pub enum Cause {
     SensorsReady,
     /// One that it needs does not.
     SensorsLost,
-    /// A myosensor became active, or a drive command came.
+    /// A myosensor became active, a drive command came, or a behaviour answers slip itself.
     TakenOver,
-    /// Both myosensors are inactive and no drive command holds.
+    /// None of that any more.
     Released,
     /// This detector says that the object slips.
     Slip(DetectorId),
@@ -48,10 +49,6 @@ pub enum Cause {
     PulseOver,
     /// The object has settled.
     Settled,
-    /// A stroke was asked for.
-    StrokeBegun,
-    /// The stroke is over.
-    StrokeOver,
 }
 
 /// Why a sensor gives no number.
@@ -100,6 +97,8 @@ pub enum DriveSource {
     Link,
     /// The slip reflex.
     Reflex,
+    /// A behaviour: [`behaviour`](crate::behaviour).
+    Behaviour,
 }
 
 /// What went wrong.

@@ -9,12 +9,14 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use tenax_hal_shim::channel::COUNT;
+use tenax_hal_shim::behaviour::{Behaviour, CameraView, Ending, MARKERS, UNTRACKED};
+use tenax_hal_shim::channel::{COUNT, PVDF_COUNT, SAMPLE_MAX};
 use tenax_hal_shim::detector::{DetectorHealth, DetectorId, DetectorSet, Direction, Evidence};
+use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{
-    Answer, Counters, Down, Event, EventKind, FRAME_MAX, Forces, NetworkState, Receiver, Refusal, Setting,
-    Slow, TickRecord, Up, VERSION, encode,
+    About, Answer, Counters, Down, Event, EventKind, FRAME_MAX, Forces, Identity, NetworkState, Raw,
+    Receiver, Refusal, ResetCause, Restored, Senses, Setting, Slow, TickRecord, Up, VERSION, encode,
 };
 use tenax_hal_shim::words::{
     Calibration, CalibrationRefusal, Capability, Cause, Code, Consent, DriveSource, Fault, GripMode, Kept,
@@ -38,7 +40,7 @@ fn down() -> Vec<Down> {
         Down::Ping,
         Down::Drive { drive: MotorDrive::Open(Duty::FULL), hold_ms: 200 },
         Down::Set(Setting { id: 4, value: 40_000 }),
-        Down::Stroke(true),
+        Down::Begin(Behaviour::Turn { by_ddeg: -200 }),
         Down::Zero,
         Down::Samples,
         Down::Teach { codes: [Code::Minus, Code::Plus], age_ms: 40 },
@@ -50,6 +52,16 @@ fn down() -> Vec<Down> {
         Down::Hello,
         Down::Open { nonce: 0xDEAD_BEEF },
         Down::CalibrateEmg,
+        Down::End,
+        Down::View(CameraView {
+            age_ms: 33,
+            moving_e4: 20,
+            angle_ddeg: Some(-15),
+            normal: [UNTRACKED; MARKERS],
+            shear: [-1; MARKERS],
+        }),
+        Down::About,
+        Down::Stream { raw: true, senses: true, hold_s: 300 },
     ]
 }
 
@@ -107,6 +119,7 @@ fn slow() -> Slow {
         .collect(),
         samples_sum: 0xDEAD_BEEF,
         line: Line::Armed { left_s: 60 },
+        behaviour: Some(Behaviour::GentleGrasp),
     }
 }
 
@@ -139,15 +152,50 @@ fn answers() -> Vec<Answer> {
         Answer::Samples(samples),
         Answer::Network(network),
         Answer::Nonce(0xDEAD_BEEF),
+        Answer::About(about()),
     ]
+}
+
+fn about() -> About {
+    let identity =
+        Identity { build: 0x0123_4567_89AB_CDEF, chip: [1, 2 << 16, u32::MAX], reset: ResetCause::Watchdog };
+    let settings = [Setting { id: 1, value: 100 }, Setting { id: 41, value: 1 }];
+    About { identity, frames: 200, settings: settings.into_iter().collect() }
+}
+
+/// The sequence number and the samples of each frame in turn.
+fn raw() -> Raw {
+    let mut raw = Raw::default();
+    for n in 0..5 {
+        let sample = |channel: u16| 1_000 * n as u16 + 100 * channel;
+        raw.put(&Frame {
+            sequence: 45 + n,
+            valid: n != 3,
+            pvdf: core::array::from_fn(|channel| sample(channel as u16)),
+            switch_a: sample(12),
+            switch_b: SAMPLE_MAX,
+        });
+    }
+    raw
 }
 
 fn up() -> Vec<Up> {
     let mut all = vec![
         Up::Hello { frame_hz: 2_000, after: Some(Fault::WatchdogReset) },
         Up::Slow(slow()),
-        Up::Counters(Counters { frames: 100, ticks: 100, ..Counters::default() }),
+        Up::Counters(Counters {
+            frames: 100,
+            ticks: 100,
+            control_us_max: 61,
+            control_permille: 74,
+            ..Counters::default()
+        }),
         Up::Saved { frame: 74, kept: Kept::Settings },
+        Up::About(about()),
+        Up::Restored(Restored::of(Kept::Zero, &[1, 2, 3, 4]).expect("it fits")),
+        Up::Raw(raw()),
+        Up::Senses(Senses { frame: 49, samples: [8_190; COUNT], films: [40; PVDF_COUNT] }),
+        Up::Taken { before: 50, of: 7, command: Down::Zero },
     ];
     let events = [
         EventKind::Mode {
@@ -171,6 +219,9 @@ fn up() -> Vec<Up> {
         EventKind::Calibration(Calibration::Refused(CalibrationRefusal::Damaged)),
         EventKind::Fault(Fault::SensorLost { channel: 39, reason: Reason::Endless }),
         EventKind::Fault(Fault::RecordDamaged(Kept::Emg)),
+        EventKind::Behaviour(Behaviour::HandOver, None),
+        EventKind::Behaviour(Behaviour::HandOver, Some(Ending::Done)),
+        EventKind::NoWearer(true),
     ];
     all.extend(events.map(|kind| Up::Event(Event { frame: 50, kind })));
     all.extend(answers().into_iter().map(|answer| Up::Answer { of: 7, frame: 50, answer }));

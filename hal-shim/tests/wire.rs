@@ -2,13 +2,17 @@
 
 use proptest::collection::vec;
 use proptest::prelude::*;
+use tenax_hal_shim::behaviour::Behaviour;
+use tenax_hal_shim::channel::{COUNT, PVDF_COUNT};
 use tenax_hal_shim::detector::{DetectorHealth, DetectorId, DetectorSet, Direction, Evidence};
+use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{
-    Answer, BadFrame, Counters, DETECTORS_MAX, Down, FRAME_MAX, NetworkState, Receiver, SETTINGS_PER_ANSWER,
-    Setting, Slow, TickRecord, Up, encode,
+    About, Answer, BAUD, BadFrame, Counters, DETECTORS_MAX, Down, FRAME_MAX, Identity, KEPT_MAX,
+    NetworkState, Raw, Receiver, ResetCause, Restored, SETTINGS_MAX, SETTINGS_PER_ANSWER, Senses, Setting,
+    Slow, TickRecord, Up, encode,
 };
-use tenax_hal_shim::words::{Code, DriveSource, GripMode, Line, NoLesson};
+use tenax_hal_shim::words::{Code, DriveSource, GripMode, Kept, Line, NoLesson};
 
 fn down() -> impl Strategy<Value = Down> {
     prop_oneof![
@@ -18,7 +22,7 @@ fn down() -> impl Strategy<Value = Down> {
         Just(Down::Network),
         Just(Down::Save),
         any::<u16>().prop_map(|age_ms| Down::Teach { codes: [Code::Minus, Code::Plus], age_ms }),
-        any::<bool>().prop_map(Down::Stroke),
+        prop_oneof![Just(Behaviour::Stroke), Just(Behaviour::Hold)].prop_map(Down::Begin),
         any::<(u8, i32)>().prop_map(|(id, value)| Down::Set(Setting { id, value })),
         any::<u8>().prop_map(Down::Get),
         any::<u8>().prop_map(Down::Settings),
@@ -131,7 +135,7 @@ fn the_longest_message_fits_a_frame() {
     let slow = Slow {
         frame: u32::MAX,
         ticks: [longest; 25],
-        mode: GripMode::Explore,
+        mode: GripMode::Settle,
         forces: Some(forces),
         s2_permille: u16::MAX,
         flexor_mv: Some(i16::MIN),
@@ -141,6 +145,7 @@ fn the_longest_message_fits_a_frame() {
         evidence: [(DetectorId::Injected, longest_evidence); DETECTORS_MAX].into_iter().collect(),
         samples_sum: u32::MAX,
         line: Line::Armed { left_s: u8::MAX },
+        behaviour: Some(Behaviour::Turn { by_ddeg: i16::MIN }),
     };
     let mut buffer = [0; FRAME_MAX];
     let length = encode(u16::MAX, &Up::Slow(slow), &mut buffer).unwrap().len();
@@ -158,6 +163,20 @@ fn the_longest_message_fits_a_frame() {
     assert!(encode(u16::MAX, &answer(Answer::Network(network)), &mut buffer).is_some());
     let settings = [Setting { id: u8::MAX, value: i32::MIN }; SETTINGS_PER_ANSWER].into_iter().collect();
     assert!(encode(u16::MAX, &answer(Answer::Settings(settings)), &mut buffer).is_some());
+    let settings = [Setting { id: u8::MAX, value: i32::MIN }; SETTINGS_MAX].into_iter().collect();
+    let identity = Identity { build: u64::MAX, chip: [u32::MAX; 3], reset: ResetCause::Other };
+    let about = About { identity, frames: u32::MAX, settings };
+    assert!(encode(u16::MAX, &answer(Answer::About(about)), &mut buffer).is_some());
+    let restored = Restored::of(Kept::Network, &[0; KEPT_MAX]).unwrap();
+    assert!(encode(u16::MAX, &Up::Restored(restored), &mut buffer).is_some());
+    let senses = Senses { frame: u32::MAX, samples: [u16::MAX; COUNT], films: [u16::MAX; PVDF_COUNT] };
+    let senses = encode(u16::MAX, &Up::Senses(senses), &mut buffer).unwrap().len();
+    let mut raw = Raw::default();
+    raw.put(&Frame { sequence: u32::MAX, ..Frame::lost(0) });
+    let raw = encode(u16::MAX, &Up::Raw(raw), &mut buffer).unwrap().len();
+    // In a slow frame: five messages of frames and one of readings leave a quarter of the line to everything else.
+    let part = (5 * raw + senses) as f64 / f64::from(BAUD / 10 / 80);
+    assert!(part < 0.78, "{raw} {senses}: {part}");
     let counters = Counters { frames: u32::MAX, ..Counters::default() };
     assert!(encode(0, &Up::Counters(counters), &mut [0; 40]).is_some());
     assert!(encode(0, &Up::Counters(counters), &mut [0; 8]).is_none(), "too small a buffer is no panic");

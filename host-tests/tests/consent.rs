@@ -1,5 +1,6 @@
 //! What somebody with the cable can do to a hand that does not trust its line: read.
 
+use tenax_hal_shim::behaviour::Behaviour;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{Answer, Down, EventKind, Received, Refusal, Setting, Up};
@@ -21,8 +22,9 @@ fn all_that_change() -> Vec<Down> {
         OPEN,
         CLOSE,
         COAST,
-        Down::Stroke(true),
-        Down::Stroke(false),
+        Down::Begin(Behaviour::Stroke),
+        Down::Begin(Behaviour::HandOver),
+        Down::End,
         Down::Zero,
         Down::Teach { codes: [Code::Minus, Code::Plus], age_ms: 40 },
         Down::Forget,

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use proptest::prelude::*;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
+use tenax_hal_shim::behaviour::{Behaviour, CameraView};
 use tenax_hal_shim::channel::{
     ARRAY, ARRAY_COUNT, CHANNELS, COUNT, FSR, MYO_EXTENSOR, MYO_FLEXOR, MYO_SELECT, SAMPLE_MAX,
     mv_from_sample,
@@ -76,13 +77,27 @@ fn said(bench: &Bench, id: DetectorId) -> bool {
 fn random_command(rng: &mut ChaCha8Rng) -> Down {
     let duty = Duty::per_mille(rng.random_range(0..=1_000));
     let drive = [MotorDrive::Coast, MotorDrive::Close(duty), MotorDrive::Open(duty)][rng.random_range(0..3)];
-    match rng.random_range(0..8) {
+    match rng.random_range(0..9) {
+        8 => Down::View(CameraView {
+            age_ms: rng.random_range(0..250),
+            moving_e4: rng.random_range(0..40),
+            angle_ddeg: rng.random::<bool>().then_some(rng.random_range(-900..900)),
+            normal: std::array::from_fn(|_| rng.random()),
+            shear: std::array::from_fn(|_| rng.random()),
+        }),
         6 => Down::Save,
         7 => Down::Network,
         0 => Down::Drive { drive, hold_ms: rng.random_range(0..=400) },
         1 => set(SettingId::S1, rng.random::<u16>().into()),
         2 => set(SettingId::S2, rng.random::<u16>().into()),
-        3 => Down::Stroke(rng.random()),
+        3 => match rng.random_range(0..6) {
+            0 => Down::Begin(Behaviour::Stroke),
+            1 => Down::Begin(Behaviour::GentleGrasp),
+            2 => Down::Begin(Behaviour::Hold),
+            3 => Down::Begin(Behaviour::HandOver),
+            4 => Down::Begin(Behaviour::Turn { by_ddeg: rng.random_range(-300..300) }),
+            _ => Down::End,
+        },
         4 => set(SettingId::HebbianSlip, rng.random_range(0..1_000)),
         _ => Down::Zero,
     }
@@ -99,7 +114,7 @@ fn a_million_random_steps() {
     // A teacher who talks nonsense, a few seconds of each: the network learns whatever there is.
     let mut says = [Code::Minus, Code::Plus];
     let (mut by_network, mut by_array) = (0u32, 0u32);
-    let (mut reflexes, mut opens, mut acted_on) = (0u32, 0u32, 0u32);
+    let (mut reflexes, mut behaved, mut opens, mut acted_on) = (0u32, 0u32, 0u32, 0u32);
     let mut active = [false; 25];
     for step in 0..STEPS {
         if rng.random_ratio(1, 300) {
@@ -130,12 +145,15 @@ fn a_million_random_steps() {
         if frame.valid && frame.select() == MYO_SELECT + 1 {
             extensor.see(step, frame.switch_b);
         }
+        let lets_go =
+            matches!(bench.fingertip.behaviour(), Some(Behaviour::HandOver | Behaviour::Turn { .. }));
         let drive = bench.give(&frame);
         active[usize::from(frame.slot())] = flexor.is_active(step) || extensor.is_active(step);
         if drive.opens() {
             opens += 1;
             let muscle = extensor.last_mv >= Some(100);
-            assert!(muscle || step < link_open_until, "step {step}: opened, and nobody asked");
+            let asked = step < link_open_until || lets_go;
+            assert!(muscle || asked, "step {step}: opened, and nobody asked");
         }
         let Some(slow) = bench.slows.pop() else { continue };
         for event in bench.events.drain(..) {
@@ -147,6 +165,9 @@ fn a_million_random_steps() {
         }
         for (place, tick) in slow.ticks.iter().enumerate() {
             let reflex = tick.source == DriveSource::Reflex;
+            let behaves = tick.source == DriveSource::Behaviour;
+            behaved += u32::from(behaves);
+            assert!(!(behaves && active[place]), "step {step}, place {place}: a behaviour while a muscle is");
             reflexes += u32::from(reflex);
             acted_on += u32::from(active[place] && !tick.acted.is_empty());
             assert!(
@@ -157,11 +178,11 @@ fn a_million_random_steps() {
         }
     }
     println!(
-        "{reflexes} reflex ticks, {opens} opening ticks, {by_network} pulses of the network's, {by_array} of the array's"
+        "{reflexes} reflex ticks, {behaved} of behaviours, {opens} opening ticks, {by_network} pulses of the network's, {by_array} of the array's"
     );
     assert!(by_network > 5 && by_array > 5, "a detector that never speaks proves nothing");
     assert!(
-        reflexes > 5_000 && opens > 5_000,
+        reflexes > 5_000 && behaved > 300 && opens > 5_000,
         "the silence is worth nothing unless both happen at other times"
     );
     assert_eq!(acted_on, 0, "while the wearer is active no detector is acted on");
@@ -470,7 +491,7 @@ fn a_quadrant_pressed_at_boot_closes_nothing_until_it_was_seen_unloaded() {
 #[test]
 fn a_stroke_that_nobody_ends_gives_the_reflex_back() {
     let mut bench = Bench::holding(9);
-    bench.fingertip.command(&Down::Stroke(true)).unwrap();
+    bench.fingertip.command(&Down::Begin(Behaviour::Stroke)).unwrap();
     bench.load(4.0, 2.0);
     assert!(
         bench.run(119_000).iter().all(|drive| *drive == MotorDrive::Coast),

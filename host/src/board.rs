@@ -15,7 +15,7 @@ use std::ops::{Deref, DerefMut};
 
 use tenax_hal_shim::frame::Scan;
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{Answer, Counters, Down, Event, NetworkState, Slow, Up};
+use tenax_hal_shim::wire::{Answer, Counters, Down, Event, NetworkState, Received, Slow, Up};
 use tenax_hal_shim::words::{Fault, Kept};
 use tenax_logic::emg::model::EmgModel;
 
@@ -45,7 +45,7 @@ pub struct Summary {
     pub trusts_line: bool,
     /// Commands that the logic took, each with the sequence number of the frame before whose tick it took it. After a
     /// restart the emulated board's count goes on.
-    pub taken: Vec<(u32, Down)>,
+    pub taken: Vec<(u32, Received<Down>)>,
     /// Events, as they came up the line.
     pub events: Vec<Event>,
     /// Commands that were answered: the sequence number of each, and its answer.
@@ -122,6 +122,7 @@ impl Summary {
             Up::Counters(counters) => self.counters = counters,
             Up::Answer { of, answer, .. } => self.answers.push((of, answer)),
             Up::Saved { frame, kept } => self.saved.push((frame, kept)),
+            Up::About(_) | Up::Restored(_) | Up::Raw(_) | Up::Senses(_) | Up::Taken { .. } => {}
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The command line: one file a subcommand.
 
+mod calibrate;
 mod chart;
 mod check;
 mod dataset;
@@ -19,6 +20,7 @@ mod settings;
 mod size;
 mod test;
 mod train;
+mod vision;
 mod wiring;
 mod workspace;
 
@@ -33,11 +35,17 @@ Examples:
   tenax run --replay touch.csv              a recording, with the recipe that its name calls for
   tenax run --replay my.csv --recipe my.toml
   tenax run --report json > report.json     for programs
+  tenax run --serve                         the same at real time, with its serial line on a pseudo-terminal
+  tenax run --host --serve-tcp 7777         on TCP port 7777 of this machine only
   tenax learn                               a fingertip teaches itself slip from a camera
   tenax scenes                              what there is to run
   tenax check                               every promise, measured
   tenax chart scenes                        how friction is stepped, where that fails, and what it costs
-  tenax monitor --port /dev/ttyACM0         watch a real board";
+  tenax monitor --port /dev/ttyACM0         watch a real board
+  tenax monitor --port /dev/pts/5 --set s1-mv=120 --settings
+                                            set up a running scene: the path is what `tenax run --serve` printed
+  tenax monitor --port tcp:127.0.0.1:7777   the same over TCP
+  tenax monitor --port out/glass.line.bin   what a run sent";
 
 /// Runs, replays, watches and charts the Tenax fingertip.
 #[derive(Debug, Parser)]
@@ -65,8 +73,12 @@ enum Command {
     Evaluate(evaluate::Args),
     /// Train the force array's slip detector from labelled recordings
     Train(train::Args),
+    /// Calibrate a sensor from known weights
+    Calibrate(calibrate::Args),
     /// Draw the charts behind a page of docs/
     Chart(chart::Args),
+    /// Follow skin and object with a camera behind a clear skin, or calibrate its force
+    Vision(vision::Args),
     /// Flash a NUCLEO-F411RE through probe-rs
     Flash(flash::Args),
     /// Watch a board's serial line, one line a message
@@ -91,9 +103,11 @@ pub fn main() -> ExitCode {
         Command::Test(args) => test::main(&args),
         Command::Check(args) => check::main(&args),
         Command::Train(args) => train::main(&args),
+        Command::Calibrate(args) => calibrate::main(&args),
         Command::Chart(args) => chart::main(&args),
         Command::Dataset(args) => dataset::main(&args),
         Command::Evaluate(args) => evaluate::main(&args),
+        Command::Vision(args) => vision::main(&args),
         Command::Flash(args) => flash::main(&args),
         Command::Monitor(args) => monitor::main(&args),
         Command::Size(args) => size::main(&args),

@@ -1,7 +1,15 @@
 //! A board's line, seen from the PC: what comes up it, and what is sent down.
+//!
+//! [`Target`] opens it, whatever it is; [`Inbox`] takes what comes up, [`Outbox`] sends commands, and [`Client`] does both.
 
+mod client;
+mod encoder;
 mod inbox;
 mod outbox;
+mod target;
 
+pub use client::{Client, is_silence};
+pub use encoder::Encoder;
 pub use inbox::{Counts, Heard, Inbox};
 pub use outbox::Outbox;
+pub use target::{Line, Target};

@@ -1,19 +1,14 @@
 //! A board's serial line for people: one line a message, what is missing counted, whatever comes.
 
-use std::fmt::{self, Display};
-use std::io::{self, ErrorKind, Read, Write};
+mod words;
 
-use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ, mv_from_sample};
-use tenax_hal_shim::detector::{DetectorHealth, DetectorId, DetectorSet};
-use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::setting::SettingId;
-use tenax_hal_shim::wire::{
-    Answer, BadFrame, Event, EventKind, NetworkState, Refusal, Setting, Slow, TickRecord, Up, VERSION,
-};
-use tenax_hal_shim::words::{Calibration, Line};
+use std::io::{self, Read, Write};
 
-use crate::link::{Counts, Heard, Inbox};
-use crate::report::{in_words, kept_in_words};
+use tenax_hal_shim::wire::BadFrame;
+
+use crate::link::{Counts, Heard, Inbox, is_silence};
+
+pub use self::words::{Words, why};
 
 /// What has been heard so far.
 #[derive(Debug, Default)]
@@ -25,15 +20,8 @@ impl Monitor {
     /// Takes bytes as they come and prints what they say.
     pub fn take(&mut self, bytes: &[u8], out: &mut dyn Write) -> io::Result<()> {
         for &byte in bytes {
-            match self.inbox.push(byte) {
-                None => {}
-                Some(Ok(Heard { received, missed })) => {
-                    if missed > 0 {
-                        writeln!(out, "# {missed} messages missed")?;
-                    }
-                    writeln!(out, "{:>5} {}", received.sequence, Words(&received.message))?;
-                }
-                Some(Err(bad)) => writeln!(out, "# frame skipped: {}", why(bad))?,
+            if let Some(frame) = self.inbox.push(byte) {
+                print(&frame, out)?;
             }
         }
         Ok(())
@@ -55,10 +43,23 @@ impl Monitor {
                     self.take(&buffer[..length], out)?;
                     out.flush()?;
                 }
-                Err(error) if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => {}
+                Err(error) if is_silence(&error) => {}
                 Err(error) => return Ok(End::Unplugged(error)),
             }
         }
+    }
+}
+
+/// Prints a message and what is missing before it, or why a frame is none.
+pub fn print(frame: &Result<Heard, BadFrame>, out: &mut dyn Write) -> io::Result<()> {
+    match frame {
+        Ok(Heard { received, missed }) => {
+            if *missed > 0 {
+                writeln!(out, "# {missed} messages missed")?;
+            }
+            writeln!(out, "{:>5} {}", received.sequence, Words(&received.message))
+        }
+        Err(bad) => writeln!(out, "# frame skipped: {}", why(*bad)),
     }
 }
 
@@ -71,219 +72,10 @@ pub enum End {
     Unplugged(io::Error),
 }
 
-fn why(bad: BadFrame) -> String {
-    match bad {
-        BadFrame::Garbled => "garbled".to_owned(),
-        BadFrame::Version(version) => {
-            format!(
-                "of version {version}, and this tool speaks {VERSION}: flash the board anew, or use its own tool"
-            )
-        }
-        BadFrame::TooLong => "longer than any message".to_owned(),
-        BadFrame::Skipped => "no time for it".to_owned(),
-    }
-}
-
-/// A message for a person.
-struct Words<'a>(&'a Up);
-
-impl Display for Words<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.0 {
-            Up::Hello { frame_hz, after: None } => {
-                write!(f, "hello: switched on, {frame_hz} frames a second")
-            }
-            Up::Hello { frame_hz, after: Some(fault) } => {
-                write!(f, "hello: {}, {frame_hz} frames a second", in_words(fault))
-            }
-            Up::Slow(slow) => slow_words(f, slow),
-            Up::Event(event) => event_words(f, event),
-            Up::Counters(counters) => write!(
-                f,
-                "counters: {} frames, {} lost, {} overruns; {} ticks, {} late; {} messages dropped, {} bad frames heard, {} commands skipped",
-                counters.frames,
-                counters.frames_lost,
-                counters.overruns,
-                counters.ticks,
-                counters.ticks_late,
-                counters.telemetry_dropped,
-                counters.bad_frames,
-                counters.commands_skipped
-            ),
-            Up::Answer { of, frame, answer } => answer_words(f, *of, *frame, answer),
-            Up::Saved { frame, kept } => {
-                write!(f, "{:10.4} s saved: {}", seconds(*frame), kept_in_words(*kept))
-            }
-        }
-    }
-}
-
-fn answer_words(f: &mut fmt::Formatter<'_>, of: u16, frame: u32, answer: &Answer) -> fmt::Result {
-    let setting = |f: &mut fmt::Formatter<'_>, setting: &Setting| match SettingId::from_number(setting.id) {
-        Some(id) => write!(f, "{} = {} {}", id.row().name, setting.value, id.row().unit),
-        None => write!(f, "setting {} = {}, which this tool does not know", setting.id, setting.value),
-    };
-    match answer {
-        Answer::Done => write!(f, "done: command {of}"),
-        Answer::Refused(Refusal::OutOfRange { min, max }) => {
-            write!(f, "refused: command {of}: outside {min}..={max}")
-        }
-        Answer::Refused(Refusal::NotArmed) => write!(
-            f,
-            "refused: command {of}: nobody at the hand has consented: contract both muscles for 2 s or press the blue \
-             button, then send it again within a minute"
-        ),
-        Answer::Refused(refusal) => write!(f, "refused: command {of}: {refusal:?}"),
-        Answer::Setting(own) => setting(f, own),
-        Answer::Settings(all) => {
-            write!(f, "settings:")?;
-            all.iter().try_for_each(|own| {
-                write!(f, "\n      ")?;
-                setting(f, own)
-            })
-        }
-        Answer::Samples(samples) => {
-            write!(f, "{:10.4} s samples, mV:", seconds(frame))?;
-            for (channel, &sample) in CHANNELS.iter().zip(samples) {
-                write!(f, " {}={}", channel.name, mv_from_sample(sample))?;
-            }
-            Ok(())
-        }
-        Answer::Network(network) => network_words(f, network),
-        Answer::Nonce(nonce) => write!(f, "a session opens with {nonce:#010x}"),
-    }
-}
-
-fn seconds(frame: u32) -> f64 {
-    (f64::from(frame) + 1.0) / f64::from(FRAME_HZ)
-}
-
-fn slow_words(f: &mut fmt::Formatter<'_>, slow: &Slow) -> fmt::Result {
-    write!(f, "{:10.4} s {:<9}", seconds(slow.frame), format!("{:?}", slow.mode))?;
-    match slow.forces {
-        Some(forces) => {
-            write!(
-                f,
-                " Fn {:6.2} N Ft {:6.2} N",
-                f64::from(forces.fn_mn) / 1e3,
-                f64::from(forces.ft_mn) / 1e3
-            )?;
-            match forces.ratio_permille {
-                Some(ratio) => write!(f, " Ft/Fn {:5.3}", f64::from(ratio) / 1e3)?,
-                None => write!(f, " Ft/Fn     -")?,
-            }
-        }
-        None => write!(f, " no force")?,
-    }
-    let vibration = slow.ticks.iter().map(|tick| tick.vibration).max().unwrap_or(0);
-    write!(f, " vibration {:4} mV", mv_from_sample(vibration))?;
-    for (name, mv) in [("flexor", slow.flexor_mv), ("extensor", slow.extensor_mv)] {
-        match mv {
-            Some(mv) => write!(f, " {name} {mv:5} mV")?,
-            None => write!(f, " {name} lost")?,
-        }
-    }
-    let last = slow.ticks.last();
-    if let Some([o1, o2]) =
-        last.map(|tick| tick.outputs.map(|o| f64::from(o) / 128.0)).filter(|o| *o != [0.0; 2])
-    {
-        write!(f, " o {o1:5.2} {o2:5.2}")?;
-    }
-    if slow.lesson.is_some() {
-        f.write_str(" learning")?;
-    }
-    let mlp = slow
-        .evidence
-        .iter()
-        .find(|(id, own)| *id == DetectorId::Mlp && own.health == DetectorHealth::Working);
-    if let Some((_, mlp)) = mlp {
-        write!(f, " p(slip) {:5.3}", f64::from(mlp.confidence_permille) / 1e3)?;
-    }
-    match last.map(|tick| tick.drive) {
-        Some(MotorDrive::Close(duty)) => write!(f, " closing {}", duty.as_per_mille())?,
-        Some(MotorDrive::Open(duty)) => write!(f, " opening {}", duty.as_per_mille())?,
-        Some(MotorDrive::Coast) | None => {}
-    }
-    // Said, and what became of it.
-    let ever = |set: fn(&TickRecord) -> DetectorSet| {
-        slow.ticks.iter().fold(DetectorSet::NONE, |ever, tick| ever.or(set(tick)))
-    };
-    let (said, believed, acted) =
-        (ever(|tick| tick.said), ever(|tick| tick.believed), ever(|tick| tick.acted));
-    for id in DetectorId::ALL.into_iter().filter(|id| said.contains(*id)) {
-        let fate = match (acted.contains(id), believed.contains(id)) {
-            (true, _) => "!",
-            (false, true) => "",
-            (false, false) => " ignored",
-        };
-        write!(f, " {}{fate}", id.name())?;
-    }
-    f.write_str(if slow.wearer_active { " wearer" } else { "" })?;
-    match slow.line {
-        Line::Reading => Ok(()),
-        Line::Armed { left_s } => write!(f, " armed {left_s} s"),
-        Line::Trusted => f.write_str(" line trusted"),
-    }
-}
-
-fn network_words(f: &mut fmt::Formatter<'_>, network: &NetworkState) -> fmt::Result {
-    write!(f, "{:10.4} s network: {} updates", seconds(network.frame), network.updates)?;
-    match (network.no_lesson, network.teacher_age_ms) {
-        (None, _) => f.write_str(", learning")?,
-        (Some(why), Some(age_ms)) => {
-            write!(f, ", no lesson: {why:?}, the teacher's picture is {age_ms} ms old")?
-        }
-        (Some(why), None) => write!(f, ", no lesson: {why:?}")?,
-    }
-    for (output, weights) in network.weights.iter().enumerate() {
-        write!(f, "\n      w{}:", output + 1)?;
-        for &weight in weights {
-            write!(f, " {:6.3}", f64::from(weight) / f64::from(1 << 27))?;
-        }
-    }
-    write!(f, "\n       t:")?;
-    for &activation in &network.activations {
-        write!(f, " {:6.3}", f64::from(activation) / f64::from(1 << 14))?;
-    }
-    Ok(())
-}
-
-fn event_words(f: &mut fmt::Formatter<'_>, event: &Event) -> fmt::Result {
-    write!(f, "{:10.4} s ", seconds(event.frame))?;
-    match event.kind {
-        EventKind::Mode { from, to, cause } => write!(f, "mode: {from:?} -> {to:?} because of {cause:?}"),
-        EventKind::Fault(fault) => write!(f, "fault: {}", in_words(&fault)),
-        EventKind::Stroke { mu_s_permille, s2_permille } => write!(
-            f,
-            "stroke: mu_s {:.3}, S2 is now {:.3}",
-            f64::from(mu_s_permille) / 1e3,
-            f64::from(s2_permille) / 1e3
-        ),
-        EventKind::Armed(by) => write!(f, "armed: {by:?} consented to what the line sends"),
-        EventKind::Disarmed => f.write_str("disarmed: the line is only read"),
-        EventKind::LineTrusted(true) => f.write_str("the line is trusted: it moves the hand without consent"),
-        EventKind::LineTrusted(false) => f.write_str("the line is trusted no more"),
-        EventKind::EventsLost(count) => write!(f, "{count} events lost"),
-        EventKind::Calibration(Calibration::Asks(prompt)) => {
-            write!(f, "calibration: {}, for 5 s from now", prompt.name())
-        }
-        EventKind::Calibration(Calibration::Done { separation_permille }) => {
-            write!(
-                f,
-                "calibration: done, the states are {:.1} deviations apart",
-                f64::from(separation_permille) / 1e3
-            )
-        }
-        EventKind::Calibration(Calibration::Refused(refusal)) => {
-            write!(f, "calibration: refused, {refusal}; what was in force before still is")
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tenax_hal_shim::wire::{FRAME_MAX, encode};
+    use tenax_hal_shim::wire::{Answer, FRAME_MAX, Up, encode};
 
     fn frame(sequence: u16) -> Vec<u8> {
         let mut buffer = [0; FRAME_MAX];

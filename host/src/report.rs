@@ -1,5 +1,6 @@
 //! What a run tells: for programs as JSON with stable keys, for people as text.
 
+pub mod behaviours;
 pub mod fate;
 pub mod oracle;
 pub mod reflex;
@@ -59,6 +60,8 @@ pub struct Report {
     pub reflex: reflex::Reflex,
     /// What became of the object.
     pub object: reflex::Object,
+    /// What the hand did by itself because it was asked to.
+    pub behaviours: Vec<behaviours::Ran>,
     /// Each detector's.
     pub detectors: scores::Detectors,
     /// Everything that went wrong, as it was reported.
@@ -204,6 +207,7 @@ impl Report {
             controls: Vec::new(),
             reflex: reflex::Reflex::of(subject.added, timeline, &run.events, subject.truth),
             object: reflex::Object::of(subject.truth),
+            behaviours: behaviours::of(&run.events, timeline),
             grip: subject.truth.map_or_else(Grip::default, |truth| Grip {
                 peak_force_n: truth.peak_grip_n,
                 needed_force_n: truth.needed_force_n,
@@ -211,9 +215,10 @@ impl Report {
                 dent_mm: truth.crushed_at_s.map(|_| truth.dent_mm),
                 broken_at_s: truth.broken_at_s,
             }),
-            wearer: subject
-                .judge
-                .verdict(timeline.wearer(&run.events).first().copied(), myosensors_lost(run)),
+            wearer: wearer::Wearer {
+                none: nobody_wears_it(run),
+                ..subject.judge.verdict(timeline.wearer(&run.events).first().copied(), myosensors_lost(run))
+            },
             detectors: scores::Detectors::of(timeline, &run.events, subject.truth),
             faults: faults(run, timeline),
             line: Line {
@@ -225,6 +230,15 @@ impl Report {
             replay: None,
         }
     }
+}
+
+/// Whether the board last said that nobody wears the hand.
+fn nobody_wears_it(run: &Summary) -> bool {
+    let told = run.events.iter().rev().find_map(|event| match event.kind {
+        EventKind::NoWearer(none) => Some(none),
+        _ => None,
+    });
+    told.unwrap_or(false)
 }
 
 /// How often a myosensor was lost.

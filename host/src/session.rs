@@ -41,6 +41,7 @@ use crate::report::reflex::Added;
 use crate::report::replay::{ActivePart, Replay};
 use crate::report::wearer::Judge;
 use crate::report::{Report, Subject};
+use crate::serve::{Live, Served};
 use crate::timeline::Timeline;
 
 /// The scene that is run when none is asked for.
@@ -246,11 +247,24 @@ pub fn scene_with(
     recorder: &mut dyn Recorder,
     progress: &mut dyn FnMut(f64),
 ) -> anyhow::Result<Outcome> {
+    scene_served(file, seed, board, None, recorder, progress)
+}
+
+/// As [`scene_with`]; with `live`, the board's line is served.
+pub fn scene_served(
+    file: &SceneFile,
+    seed: u64,
+    board: &Board,
+    live: Option<Live>,
+    recorder: &mut dyn Recorder,
+    progress: &mut dyn FnMut(f64),
+) -> anyhow::Result<Outcome> {
     let span_s = (0.0, seconds_of(frames_in(file.duration_s())));
-    let plant = Drawn::new(World::new(file, seed), span_s);
-    let calibrated = plant.calibrated().as_ref().map(model_of).transpose()?;
+    let world = World::new(file, seed);
+    let calibrated = world.calibrated().as_ref().map(model_of).transpose()?;
+    let plant = Served { plant: Drawn::new(world, span_s), live };
     let mut witness = Witness::new(0.0, span_s, calibrated.as_ref());
-    let (run, mut plant) = board.record(plant, &mut (&mut witness, recorder), progress)?;
+    let (run, Served { mut plant, .. }) = board.record(plant, &mut (&mut witness, recorder), progress)?;
     plant.draw();
     // The oracle's is always the host's: it is a bound on the gripper, not on the image.
     let oracle = simulated::run_with(Drawn::new(World::new(file, seed), span_s), Grips::Oracle, &mut |_| {});
@@ -311,6 +325,31 @@ pub fn replay_with(
     recorder: &mut dyn Recorder,
     progress: &mut dyn FnMut(f64),
 ) -> anyhow::Result<Outcome> {
+    let options = ReplayOptions { recipe, calibrated, live: None };
+    replay_served(path, options, seed, board, recorder, progress)
+}
+
+/// How to play a recording.
+#[derive(Default)]
+pub struct ReplayOptions<'a> {
+    /// The recipe's name or file. None: the one that the recording's name calls for.
+    pub recipe: Option<&'a str>,
+    /// The wearer to whom the board is calibrated.
+    pub calibrated: Option<EmgModel>,
+    /// With it, the board's line is served.
+    pub live: Option<Live>,
+}
+
+/// Plays a recording; `recorder` is told of the run as it goes.
+pub fn replay_served(
+    path: &Path,
+    options: ReplayOptions<'_>,
+    seed: u64,
+    board: &Board,
+    recorder: &mut dyn Recorder,
+    progress: &mut dyn FnMut(f64),
+) -> anyhow::Result<Outcome> {
+    let ReplayOptions { recipe, calibrated, live } = options;
     let recording = Recording::read(path)?;
     let named = library::choose(&recording, path, recipe)?;
     let mut plant = match &named {
@@ -327,6 +366,7 @@ pub fn replay_with(
     let calibrated = plant.calibrated().as_ref().map(model_of).transpose()?;
     let mut witness = Witness::new(zero_s, span_s, calibrated.as_ref());
     let mut active = ActivePart::new(&recording, zero_s);
+    let plant = Served { plant, live };
     let (run, _) = board.record(plant, &mut (&mut (&mut witness, &mut active), recorder), progress)?;
     let scene = name_of(path);
     let Witness { timeline, judge, added, sketch } = witness;

@@ -13,9 +13,10 @@ const KEYS: &str = "
     slip.macro_slips slip.macro_slips_caught
     oracle.distance_mm oracle.peak_force_n oracle.distance_ratio oracle.peak_force_ratio oracle.why controls
     grip.peak_force_n grip.needed_force_n grip.crushed_at_s grip.dent_mm grip.broken_at_s
-    wearer.reflex_while_active wearer.open_latency_ms wearer.active_first_s wearer.active_permille wearer.reflex_ticks
+    wearer.none wearer.reflex_while_active wearer.open_latency_ms wearer.active_first_s wearer.active_permille wearer.reflex_ticks
     wearer.closing_s wearer.opening_s wearer.longest_open_ms wearer.longest_close_ms wearer.faults
     reflex.pulses reflex.without_slip reflex.added_force_n object.kept object.left_behind
+    object.handed_over object.turned_deg behaviours
 ";
 
 /// Of each detector, below its name.

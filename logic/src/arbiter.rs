@@ -14,6 +14,8 @@ pub struct Wishes {
     pub link: Option<MotorDrive>,
     /// What the reflex asks for.
     pub reflex: MotorDrive,
+    /// What a behaviour asks for: the only one besides the wearer and the line that may open.
+    pub behaviour: MotorDrive,
 }
 
 /// The drive of this tick, and its source.
@@ -34,6 +36,10 @@ pub const fn arbitrate(wishes: Wishes) -> (MotorDrive, DriveSource) {
         }
         // Then the reflex, which only ever closes.
         Wishes { reflex: close @ MotorDrive::Close(_), .. } => (close, DriveSource::Reflex),
+        // Then a behaviour: what it loosens, the reflex may tighten at any time.
+        Wishes { behaviour: drive @ (MotorDrive::Open(_) | MotorDrive::Close(_)), .. } => {
+            (drive, DriveSource::Behaviour)
+        }
         Wishes { .. } => (MotorDrive::Coast, DriveSource::Nobody),
     }
 }
@@ -49,27 +55,32 @@ mod tests {
         let links = [None, Some(drives[0]), Some(drives[1]), Some(drives[2])];
         for wearer in drives {
             for link in links {
-                for reflex in drives {
+                for (reflex, behaviour) in
+                    drives.into_iter().flat_map(|reflex| drives.map(|behaviour| (reflex, behaviour)))
+                {
                     for wearer_active in [false, true] {
-                        let (drive, source) = arbitrate(Wishes { wearer_active, wearer, link, reflex });
-                        let wearer_asks = wearer_active || wearer != MotorDrive::Coast;
-                        let link_opens = link.is_some_and(MotorDrive::opens) && !wearer_asks;
-                        let open_asked = wearer.opens() || link_opens;
-                        assert_eq!(
-                            drive.opens(),
-                            open_asked,
-                            "nothing else opens, and nothing stops the wearer"
-                        );
-                        assert!(!(wearer_asks && source == DriveSource::Link));
-                        assert!(link != Some(MotorDrive::Coast) || source != DriveSource::Link);
-                        let reflex_free = !wearer_asks && link.is_none_or(|link| link == MotorDrive::Coast);
-                        assert_eq!(source == DriveSource::Reflex, reflex_free && reflex.closes());
-                        assert!(!(wearer_active && source == DriveSource::Reflex));
-                        assert!(source != DriveSource::Reflex || drive.closes());
-                        assert_eq!(source == DriveSource::Nobody, drive == MotorDrive::Coast);
+                        check(Wishes { wearer_active, wearer, link, reflex, behaviour });
                     }
                 }
             }
         }
+    }
+
+    fn check(wishes: Wishes) {
+        let Wishes { wearer_active, wearer, link, reflex, behaviour } = wishes;
+        let (drive, source) = arbitrate(wishes);
+        let wearer_asks = wearer_active || wearer != MotorDrive::Coast;
+        let link_opens = link.is_some_and(MotorDrive::opens) && !wearer_asks;
+        let free = !wearer_asks && link.is_none_or(|link| link == MotorDrive::Coast);
+        let behaves = free && !reflex.closes() && behaviour != MotorDrive::Coast;
+        let open_asked = wearer.opens() || link_opens || (behaves && behaviour.opens());
+        assert_eq!(drive.opens(), open_asked, "nothing else opens, and nothing stops the wearer");
+        assert!(!(wearer_asks && source == DriveSource::Link));
+        assert!(link != Some(MotorDrive::Coast) || source != DriveSource::Link);
+        assert_eq!(source == DriveSource::Reflex, free && reflex.closes());
+        assert_eq!(source == DriveSource::Behaviour, behaves, "the reflex tightens what a behaviour loosens");
+        assert!(!(wearer_active && matches!(source, DriveSource::Reflex | DriveSource::Behaviour)));
+        assert!(source != DriveSource::Reflex || drive.closes());
+        assert_eq!(source == DriveSource::Nobody, drive == MotorDrive::Coast);
     }
 }

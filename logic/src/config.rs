@@ -1,6 +1,8 @@
 //! Every number that can be chosen. Plain values, apart from all state, so that a whole set can be swapped at once.
 
+use crate::behaviours::BehaviourConfig;
 use crate::hebbian::{LearningConfig, Rule, TeacherConfig};
+use crate::photoelastic::HeadConfig;
 use tenax_hal_shim::setting::SettingId;
 
 /// Frames in this many milliseconds.
@@ -107,8 +109,16 @@ pub struct Config {
     pub gate: GateConfig,
     /// The reflex.
     pub grip: GripConfig,
+    /// What is above it.
+    pub behaviour: BehaviourConfig,
+    /// The photoelastic head.
+    pub head: HeadConfig,
     /// The serial line needs no consent.
     pub line_trusted: bool,
+    /// Frames are streamed from the start on.
+    pub stream_at_start: bool,
+    /// There is no wearer: a myosensor that gives no number is not missed.
+    pub no_wearer: bool,
 }
 
 impl Config {
@@ -137,7 +147,19 @@ impl Config {
             ceiling_mn: 0,
             blind_frames: 0,
         },
+        behaviour: BehaviourConfig {
+            duty_permille: 0,
+            movement_frames: 0,
+            wait_frames: 0,
+            gentle_score: 0,
+            changed_cells: 0,
+            moving_e4: 0,
+            turn_lead_frames: 0,
+        },
+        head: HeadConfig::BLANK,
         line_trusted: false,
+        stream_at_start: false,
+        no_wearer: false,
     };
 }
 

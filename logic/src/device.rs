@@ -25,7 +25,7 @@ use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::setting::SettingId;
-use tenax_hal_shim::wire::{Answer, Down, Received, Refusal, Setting, Up};
+use tenax_hal_shim::wire::{About, Answer, Down, Identity, Received, Refusal, Senses, Setting, Up};
 use tenax_hal_shim::words::{Fault, Kept, Line};
 
 use crate::fingertip::Fingertip;
@@ -33,6 +33,7 @@ use crate::samples::LastSamples;
 use crate::session::Session;
 use crate::store::keeper::Keeper;
 use crate::store::record::Record;
+use crate::stream::Stream;
 
 /// A fingertip, and what it takes to answer for it.
 #[derive(Clone, Debug)]
@@ -41,6 +42,8 @@ pub struct Device {
     samples: LastSamples,
     keeper: Keeper,
     session: Session,
+    stream: Stream,
+    identity: Identity,
 }
 
 impl Default for Device {
@@ -54,7 +57,14 @@ impl Device {
     #[must_use]
     pub fn new(fingertip: Fingertip) -> Self {
         let keeper = fingertip.keeper();
-        Self { fingertip, samples: LastSamples::default(), keeper, session: Session::default() }
+        Self {
+            fingertip,
+            samples: LastSamples::default(),
+            keeper,
+            session: Session::default(),
+            stream: Stream::default(),
+            identity: Identity::default(),
+        }
     }
 
     /// One whose line needs no consent: a gripper's, or a bench's.
@@ -78,6 +88,22 @@ impl Device {
     pub fn restore(&mut self, kept: Kept, payload: &[u8]) {
         self.fingertip.restore(kept, payload);
         self.keeper = self.fingertip.keeper();
+    }
+
+    /// Says who it is, once everything that was kept is taken up: the message that comes after the hello.
+    #[inline(never)]
+    pub fn start(&mut self, identity: Identity) -> Up {
+        self.identity = identity;
+        if self.fingertip.config().stream_at_start {
+            self.stream.start();
+        }
+        Up::About(self.about())
+    }
+
+    #[inline(never)]
+    fn about(&self) -> About {
+        let settings = SettingId::ALL.into_iter().map(|id| self.setting(id)).collect();
+        About { identity: self.identity, frames: self.stream.next(), settings }
     }
 
     /// Reports something that went wrong outside.
@@ -105,6 +131,7 @@ impl Device {
     /// What a frame read, for whoever asks, and what is thought about once a slow frame. Part of [`tick`](Self::tick).
     pub fn sampled(&mut self, frame: &Frame) {
         self.samples.take(frame);
+        self.stream.take(frame);
         // After the motor has been driven, so that nothing waits for it.
         if frame.slot() == slot_of(Job::Save) {
             self.fingertip.think();
@@ -117,6 +144,13 @@ impl Device {
         self.answer(received, done)
     }
 
+    /// What is to be told of a command, before its answer, if frames are streamed.
+    #[must_use]
+    pub fn taken(&self, received: &Received<Down>) -> Option<Up> {
+        let Received { sequence: of, message: command } = *received;
+        self.stream.is_raw().then_some(Up::Taken { before: self.stream.next(), of, command })
+    }
+
     /// Carries out a command. Part of [`command`](Self::command).
     ///
     /// # Errors
@@ -126,6 +160,9 @@ impl Device {
             Down::Open { nonce } => self.session.open(nonce, received.sequence)?,
             message if message.reads() => self.session.read(received.sequence),
             _ => self.session.admit(received.sequence, self.fingertip.line() == Line::Trusted)?,
+        }
+        if let Down::Stream { raw, senses, hold_s } = received.message {
+            self.stream.ask(raw, senses, hold_s);
         }
         self.fingertip.command(&received.message)
     }
@@ -148,14 +185,30 @@ impl Device {
             }
             (Ok(()), Down::Samples) => Answer::Samples(self.samples.in_order()),
             (Ok(()), Down::Hello) => Answer::Nonce(self.session.offer()),
+            (Ok(()), Down::About) => Answer::About(self.about()),
             (Ok(()), Down::Network) => Answer::Network(self.fingertip.network()),
             (Ok(()), _) => Answer::Done,
         };
         Up::Answer { of: received.sequence, frame: self.fingertip.frame(), answer }
     }
 
+    #[inline(never)]
+    fn senses(&self) -> Senses {
+        let films = self.fingertip.films().map(|film| u16::try_from(film).unwrap_or(u16::MAX));
+        Senses { frame: self.fingertip.frame(), samples: self.samples.in_order(), films }
+    }
+
     fn setting(&self, id: SettingId) -> Setting {
         Setting { id: id as u8, value: self.fingertip.config().get(id) }
+    }
+
+    /// Whether there is a message that was not taken yet.
+    #[must_use]
+    pub fn has_message(&self) -> bool {
+        self.fingertip.has_slow()
+            || self.stream.has_raw()
+            || self.stream.wants_senses()
+            || self.fingertip.has_event()
     }
 
     /// The oldest message that was not taken yet. Ask after every tick.
@@ -165,6 +218,13 @@ impl Device {
             let slow = self.fingertip.take_slow()?;
             self.session.stir(slow.samples_sum ^ slow.frame);
             return Some(Up::Slow(slow));
+        }
+        if self.stream.has_raw() {
+            return self.stream.take_raw().map(Up::Raw);
+        }
+        if self.stream.wants_senses() {
+            self.stream.gave_senses();
+            return Some(Up::Senses(self.senses()));
         }
         if self.fingertip.has_event() {
             return self.fingertip.next_event().map(Up::Event);

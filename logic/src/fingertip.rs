@@ -3,11 +3,13 @@
 //! In each tick the senses take the frame, the machine of figure 9 asks them its questions in the paper's order (first
 //! the wearer, then S1, then S2), and the arbiter says who drives the motor.
 
+mod behave;
 mod commands;
 mod consent;
 mod heard;
 mod link;
 
+use tenax_hal_shim::channel::PVDF_COUNT;
 use tenax_hal_shim::detector::DetectorSet;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
@@ -15,11 +17,13 @@ use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{Event, EventKind, NetworkState, Slow, TickRecord};
 use tenax_hal_shim::words::{Cause, DriveSource, Fault, GripMode, Kept, Line};
 
+use self::behave::Eye;
 use self::heard::{Acting, Heard};
 use self::link::Link;
 use crate::arbiter::{Wishes, arbitrate};
 use crate::arming::{Arming, STEP_FRAMES};
-use crate::config::{Config, frames};
+use crate::behaviours::Running;
+use crate::config::Config;
 use crate::detectors::{Detectors, Said, Sensed};
 use crate::grip::{Grip, Reflex};
 use crate::journal::Journal;
@@ -28,9 +32,6 @@ use crate::senses::Senses;
 use crate::store::keeper::{Keeper, Now};
 use crate::store::payload;
 use crate::store::record::Record;
-
-/// A stroke that nobody ends is over after this long, in frames: a lost link must not leave the reflex silent.
-const STROKE_FRAMES_MAX: u32 = frames(60_000);
 
 /// Consent is looked for in this slot of each step: the array's heaviest share is in another.
 const CONSENT_SLOT: u32 = 0;
@@ -49,11 +50,14 @@ pub struct Fingertip {
     acting: Acting,
     mode: GripMode,
     reflex: Reflex,
+    behaviour: Option<Running>,
+    eye: Eye,
     link: Link,
     arming: Arming,
     button: bool,
-    /// What was last told about the line.
+    /// What was last told about the line, and about the wearer.
     line: Line,
+    told_no_wearer: bool,
     journal: Journal,
     slow: Option<Slow>,
     save_asked: bool,
@@ -191,6 +195,12 @@ impl Fingertip {
         self.journal.frame()
     }
 
+    /// The vibration envelope of each film, in samples.
+    #[must_use]
+    pub const fn films(&self) -> &[i32; PVDF_COUNT] {
+        self.senses.envelopes()
+    }
+
     /// What the reflex is doing.
     #[must_use]
     pub const fn mode(&self) -> GripMode {
@@ -221,6 +231,7 @@ impl Fingertip {
         listening
             && !self.senses.gate.is_active()
             && self.link.drive().is_none()
+            && self.behaviour.is_none()
             && self.detectors.hebbian.lesson().is_err()
     }
 
@@ -247,6 +258,7 @@ impl Fingertip {
             forces: self.senses.forces.as_ref(),
             forces_are_new: self.senses.forces_are_new,
             taxels: self.senses.taxels(),
+            head: self.senses.head(),
             unloaded: self.senses.is_unloaded(&self.config),
             grasp: matches!(self.senses.grip(&self.config), Grip::Holds(_)),
             noisy: vibration.knock || duty >= self.config.touch.loud_duty_permille,
@@ -268,18 +280,20 @@ impl Fingertip {
             self.senses.driven(self.drive, STEP_FRAMES);
         }
         let heard = Heard::of(&self.detectors, self.acting);
+        let behaviour = self.behave(heard);
         self.step_mode(heard);
         let wishes = Wishes {
             wearer_active: self.senses.gate.is_active(),
             wearer: self.senses.gate.wish(&self.config.gate),
             link: self.link_drive(),
             reflex: Reflex::drive(&self.config.grip, self.mode),
+            behaviour,
         };
         // A lost frame says nothing about anybody's wish, so nobody's is carried out.
         let (drive, source) = if frame.valid { arbitrate(wishes) } else { Default::default() };
         self.drive = drive;
         self.reflex.tick(self.mode, self.senses.grip(&self.config));
-        if source == DriveSource::Link && drive.closes() {
+        if matches!(source, DriveSource::Link | DriveSource::Behaviour) && drive.closes() {
             self.reflex.spend(self.senses.grip(&self.config));
         }
         self.journal.tick(
@@ -308,7 +322,8 @@ impl Fingertip {
     fn step_mode(&mut self, heard: Heard) {
         let grip = self.senses.grip(&self.config);
         let config = self.config.grip;
-        let taken_over = self.senses.gate.is_active() || self.link_drive().is_some();
+        let answered = self.behaviour.as_ref().is_some_and(Running::answers_slip);
+        let taken_over = self.senses.gate.is_active() || self.link_drive().is_some() || answered;
         self.cause(if self.senses.ready(&self.config) { Cause::SensorsReady } else { Cause::SensorsLost });
         self.cause(if taken_over { Cause::TakenOver } else { Cause::Released });
         let may_close = self.reflex.may_close(&config, grip);
@@ -328,9 +343,6 @@ impl Fingertip {
         if self.mode == GripMode::Settle && self.reflex.settled(&config) {
             self.cause(Cause::Settled);
         }
-        if self.mode == GripMode::Explore && self.reflex.elapsed() >= STROKE_FRAMES_MAX {
-            self.cause(Cause::StrokeOver);
-        }
     }
 
     /// Lets a cause do what the table says, if it says anything.
@@ -341,12 +353,10 @@ impl Fingertip {
         let from = core::mem::replace(&mut self.mode, to);
         self.reflex.enter(to);
         self.journal.mode(from, to, cause);
-        if from == GripMode::Explore {
-            self.measured();
-        }
     }
 
     /// A stroke is over, by command or because somebody took over: what it measured becomes S2, if that is allowed.
+    #[inline(never)]
     fn measured(&mut self) {
         let Some(measured) = self.detectors.s2.end_stroke(&self.config.friction) else {
             return;
@@ -374,6 +384,7 @@ impl Fingertip {
             evidence: self.detectors.evidence(&self.config),
             samples_sum,
             line: self.line,
+            behaviour: self.behaviour(),
         }
     }
 }

@@ -8,7 +8,7 @@
 //! | what they mean | [`vibration`], [`fsr`], [`forces`], [`friction`], [`strain`], [`elements`] and [`mod@array`], [`emg`] and [`gate`] |
 //! | a frame through all of them | [`senses`] |
 //! | whether the object slips | [`detectors`], the list of them; [`hebbian`] and [`touch`] learn; [`plausibility`] guards |
-//! | what to do | [`mode`], [`grip`], [`arbiter`] |
+//! | what to do | [`mode`] and [`grip`], the reflex; [`behaviours`] above it; [`arbiter`] |
 //! | the whole | [`fingertip`]; [`journal`] is what it reports |
 //! | a fingertip on a line | [`device`]: frames and commands in, drives and messages out. Begin there |
 //! | whose commands it carries out | [`session`], [`arming`] |
@@ -25,6 +25,7 @@ pub mod allowance;
 pub mod arbiter;
 pub mod arming;
 pub mod array;
+pub mod behaviours;
 mod checksum;
 pub mod config;
 pub mod detectors;
@@ -44,6 +45,7 @@ pub mod journal;
 pub mod low_pass;
 pub mod mode;
 pub mod muscles;
+pub mod photoelastic;
 pub mod plausibility;
 mod samples;
 pub mod senses;
@@ -52,5 +54,6 @@ pub mod settings;
 pub mod solo;
 pub mod store;
 pub mod strain;
+mod stream;
 pub mod touch;
 pub mod vibration;

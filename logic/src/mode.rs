@@ -4,10 +4,9 @@ use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::words::{Cause, GripMode};
 
 use Cause::{
-    Incipient as Warned, PulseOver, Released, SensorsLost, SensorsReady, Settled, Slip as Slips, StrokeBegun,
-    StrokeOver, TakenOver,
+    Incipient as Warned, PulseOver, Released, SensorsLost, SensorsReady, Settled, Slip as Slips, TakenOver,
 };
-use GripMode::{Explore, Incipient, Settle, Slip, Standby, Watch, Wearer};
+use GripMode::{Incipient, Settle, Slip, Standby, Watch, Wearer};
 
 /// Stands for every detector in the table: whichever says it, the step is the same.
 const ANY: DetectorId = DetectorId::S1;
@@ -17,7 +16,7 @@ const ANY: DetectorId = DetectorId::S1;
 ///
 /// Who may enter: [`Slip`] and [`Incipient`], the only two that close the hand, are entered from [`Watch`] alone (and
 /// [`Slip`] from [`Incipient`]), and [`Watch`] is left for [`Wearer`] or [`Standby`] before a detector is asked.
-pub const TRANSITIONS: [(GripMode, Cause, GripMode); 22] = [
+pub const TRANSITIONS: [(GripMode, Cause, GripMode); 17] = [
     (Standby, SensorsReady, Watch),
     (Wearer, SensorsLost, Standby),
     (Wearer, Released, Settle),
@@ -25,7 +24,6 @@ pub const TRANSITIONS: [(GripMode, Cause, GripMode); 22] = [
     (Watch, TakenOver, Wearer),
     (Watch, Slips(ANY), Slip),
     (Watch, Warned(ANY), Incipient),
-    (Watch, StrokeBegun, Explore),
     (Slip, SensorsLost, Standby),
     (Slip, TakenOver, Wearer),
     (Slip, PulseOver, Settle),
@@ -36,14 +34,10 @@ pub const TRANSITIONS: [(GripMode, Cause, GripMode); 22] = [
     (Settle, SensorsLost, Standby),
     (Settle, TakenOver, Wearer),
     (Settle, Settled, Watch),
-    (Settle, StrokeBegun, Explore),
-    (Explore, SensorsLost, Standby),
-    (Explore, TakenOver, Wearer),
-    (Explore, StrokeOver, Settle),
 ];
 
-const MODES: usize = Explore as usize + 1;
-const CAUSES: usize = 10;
+const MODES: usize = Settle as usize + 1;
+const CAUSES: usize = 8;
 
 /// A cause's place in the table.
 const fn index(cause: Cause) -> usize {
@@ -56,8 +50,6 @@ const fn index(cause: Cause) -> usize {
         Warned(_) => 5,
         PulseOver => 6,
         Settled => 7,
-        StrokeBegun => 8,
-        StrokeOver => 9,
     }
 }
 
@@ -85,17 +77,11 @@ pub const fn closes(mode: GripMode) -> bool {
     matches!(mode, Slip | Incipient)
 }
 
-/// Whether the detectors are listened to in this mode.
-#[must_use]
-pub const fn listens(mode: GripMode) -> bool {
-    matches!(mode, Watch | Slip | Incipient | Explore)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const ALL: [GripMode; MODES] = [Standby, Wearer, Watch, Slip, Incipient, Settle, Explore];
+    const ALL: [GripMode; MODES] = [Standby, Wearer, Watch, Slip, Incipient, Settle];
 
     #[test]
     fn the_table_is_a_function_and_reaches_every_mode() {

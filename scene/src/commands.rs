@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use tenax_hal_shim::behaviour::Behaviour;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{DRIVE_HOLD_MAX_MS, Down, Setting};
 
@@ -52,8 +53,14 @@ fn expand(command: &Command) -> Vec<(f64, Down)> {
     let duty = Duty::per_mille(command.duty_permille.as_ref().map_or(0, |duty| *duty.get_ref()));
     let once = |down| vec![(at_s, down)];
     match kind {
-        CommandKind::StrokeBegin => once(Down::Stroke(true)),
-        CommandKind::StrokeEnd => once(Down::Stroke(false)),
+        CommandKind::Begin(what) => {
+            let degrees = command.value.as_ref().map_or(0, |value| *value.get_ref());
+            once(Down::Begin(match what {
+                Behaviour::Turn { .. } => Behaviour::Turn { by_ddeg: (10 * degrees) as i16 },
+                what => what,
+            }))
+        }
+        CommandKind::End => once(Down::End),
         CommandKind::Zero => once(Down::Zero),
         CommandKind::Consent => Vec::new(),
         CommandKind::Close => held(at_s, command, MotorDrive::Close(duty)),

@@ -24,7 +24,8 @@
 //! | module | one type with one step function for each of |
 //! |---|---|
 //! | [`physics`] | contact at three levels, gripper, grasped object, stroked surface, hand, wearer |
-//! | [`sensor`] | PVDF, strain, FSR, force array, myoelectric, camera, opening, motor current, and the faults of all of them |
+//! | [`sensor`] | PVDF, strain, FSR, force array, myoelectric, camera, photoelastic head, opening, motor current, and the faults of all of them |
+//! | [`picture`] | what a camera behind a clear skin sees, drawn pixel by pixel |
 //! | [`truth`] | nothing of the world: it writes down what really happened |
 #![forbid(unsafe_code)]
 
@@ -32,6 +33,7 @@ pub mod builtin;
 mod commands;
 pub mod file;
 pub mod physics;
+pub mod picture;
 pub mod plant;
 mod pole;
 mod random;

@@ -61,8 +61,18 @@ pub trait Plant: Send {
         Vec::new()
     }
 
+    /// Bytes that somebody sends down the serial line at this instant, whatever they are.
+    fn line_bytes(&mut self) -> Vec<u8> {
+        Vec::new()
+    }
+
     /// Whether the board trusts whoever sends them (the setting `line-trusted-flag`, kept in its flash from before).
     fn trusts_line(&self) -> bool {
+        false
+    }
+
+    /// Whether the board streams its frames from the start (the setting `stream-at-start-flag`, kept in its flash from before).
+    fn streams_at_start(&self) -> bool {
         false
     }
 

@@ -43,6 +43,20 @@ pub(crate) enum Source {
     Camera,
     /// The unevenness of the surface under the normal-force array.
     ArraySurface,
+    /// The camera behind the skin.
+    Skin,
+    /// What a camera behind the skin sees: textures, lights, lens, and what happens.
+    Picture,
+    /// The noise of its pixels.
+    PictureNoise,
+    /// The optics of the photoelastic head.
+    HeadMaking,
+    /// Its strip and the layer under it.
+    HeadStrip,
+    /// Its light, its ageing and the ambient light of one day.
+    HeadDay,
+    /// Its noise.
+    Head,
 }
 
 /// A source's stream of numbers.

@@ -37,6 +37,10 @@ pub struct Truth {
     pub dropped: bool,
     /// Whether the hand rose without the object, though its fingers were not opened.
     pub left_behind: bool,
+    /// Whether another hand has taken the object.
+    pub handed_over: bool,
+    /// How far it has turned about the pads, rad, towards the load.
+    pub turned_rad: f64,
     /// Elements of the sensed contact that let go, each time counted.
     pub micro_slips: u64,
     /// When the fingers first crushed it, s.
@@ -113,6 +117,10 @@ pub(crate) struct State {
     pub(crate) pitch_rad: f64,
     pub(crate) dent_mm: f64,
     pub(crate) broken: bool,
+    /// Whether another hand has the object too, or has taken it: what slides is meant to.
+    pub(crate) shared: bool,
+    /// Whether another hand has taken the object.
+    pub(crate) taken: bool,
 }
 
 impl Truth {
@@ -120,6 +128,8 @@ impl Truth {
         self.slip(step);
         let (touch, state) = (step.touch, &step.state);
         self.dropped |= state.dropped;
+        self.handed_over |= state.taken;
+        self.turned_rad = state.pitch_rad;
         self.let_go = step.opens || (self.let_go && touch.normal_n <= TOUCH_N);
         let apart_mm = state.hand_mm - state.position_mm;
         self.left_behind |= apart_mm > LEFT_MM && state.hand_mm > LEFT_MM && !self.let_go && !state.dropped;
@@ -184,7 +194,7 @@ impl Truth {
                 macro_onset_s: slide.begin_s,
                 end_s: None,
                 distance_mm: 0.0,
-                meant: step.opens,
+                meant: step.opens || step.state.shared,
             });
         }
         if slide.counts

@@ -1,7 +1,7 @@
 //! A whole world: everything that moves, everything that senses, and the line over which somebody types.
 
 use tenax_hal_shim::channel::{
-    ARRAY, COUNT, FSR, MYO_FLEXOR, OPENING, PVDF, PVDF_COUNT, SCAN_HZ, SCANS_PER_FRAME, STRAIN,
+    ARRAY, COUNT, FSR, HEAD, MYO_FLEXOR, OPENING, PVDF, PVDF_COUNT, SCAN_HZ, SCANS_PER_FRAME, STRAIN,
 };
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::Down;
@@ -25,7 +25,9 @@ use crate::sensor::fault::Faults;
 use crate::sensor::fsr::Quadrants;
 use crate::sensor::hand;
 use crate::sensor::myo::Envelopes;
+use crate::sensor::photoelastic::Head;
 use crate::sensor::pvdf::Films;
+use crate::sensor::skin::SkinCamera;
 use crate::sensor::strain::Gauges;
 use crate::truth::{self, Row, State, TRACE_HZ, Truth};
 
@@ -43,11 +45,14 @@ pub struct World {
     task: Task,
     touch: Touch,
     films: Films,
+    /// In the place of the last film.
+    head: Option<Head>,
     quadrants: Quadrants,
     envelopes: Envelopes,
     gauges: Gauges,
     elements: Elements,
     eye: Eye,
+    skin: Option<SkinCamera>,
     released_n: f64,
     slow_v: [f64; COUNT],
     faults: Faults,
@@ -98,11 +103,16 @@ impl World {
             task,
             touch: Touch::default(),
             films: Films::new(&scene.pvdf, &scene.knock, scene.contact.pitch_mm.get(), seeds),
+            head: scene.photoelastic.as_ref().map(|head| Head::new(head, &scene.knock, seeds)),
             quadrants: Quadrants::new(&scene.fsr),
             envelopes: Envelopes::new(&scene.myo, &scene.electrode_lift, scene.pvdf.mains_hz.get(), seed),
             gauges: Gauges::new(&scene.strain, seeds),
             elements: Elements::new(scene, seed),
             eye: Eye::new(&scene.camera, seed),
+            skin: scene
+                .skin
+                .as_ref()
+                .map(|skin| SkinCamera::new(skin, scene.contact.patch_radius_mm.get(), seed)),
             released_n: 0.0,
             slow_v: Pins::default().0,
             faults: Faults::new(&scene.fault),
@@ -129,6 +139,12 @@ impl World {
     #[must_use]
     pub const fn touch(&self) -> &Touch {
         &self.touch
+    }
+
+    /// The photoelastic head, if there is one.
+    #[must_use]
+    pub const fn head(&self) -> Option<&Head> {
+        self.head.as_ref()
     }
 
     /// The camera's newest words that have come over the line.
@@ -182,6 +198,8 @@ impl World {
                     pitch_rad: grasp.pitch_rad(),
                     dent_mm: grasp.body().dent_mm(),
                     broken: grasp.body().is_broken(),
+                    shared: grasp.is_shared(),
+                    taken: grasp.is_taken(),
                 }
             }
             Task::Stroke(stroke) => {
@@ -197,6 +215,8 @@ impl World {
                     pitch_rad: 0.0,
                     dent_mm: 0.0,
                     broken: false,
+                    shared: false,
+                    taken: false,
                 }
             }
         }
@@ -212,6 +232,9 @@ impl Plant for World {
         let hand_mm = state.hand_mm;
         let object_mm = if self.strokes() { 0.0 } else { state.position_mm };
         self.truth.camera.extend(self.eye.step(t_s, hand_mm, object_mm));
+        if let Some(skin) = &mut self.skin {
+            skin.step(t_s, &self.touch, state.pitch_rad);
+        }
         self.truth.step(&truth::Step {
             t_s,
             touch: &self.touch,
@@ -232,6 +255,9 @@ impl Plant for World {
             &self.touch,
             self.gripper.speed_part(),
         ));
+        if let Some(head) = &mut self.head {
+            pins_v[HEAD] = head.step(t_s, &self.touch);
+        }
         self.converter.step(pins_v);
         self.faults.apply(t_s, pins_v);
         &self.pins
@@ -245,6 +271,7 @@ impl Plant for World {
         let t_s = self.now_s();
         let mut commands = self.script.take(t_s);
         commands.extend(self.eye.teach(t_s));
+        commands.extend(self.skin.as_mut().and_then(|skin| skin.take(t_s)).map(Down::View));
         commands
     }
 

@@ -7,7 +7,7 @@
 //! |---|---|---|
 //! | 2 | vibration, 14 bits; bit 14: the drive follows; bit 15: the sets follow; little-endian | always |
 //! | 2 | o1, o2 | always |
-//! | 2 | duty per mille (bits 9..0), drive (11..10: coast, close, open), source (13..12), little-endian | while driven |
+//! | 2 | duty per mille (bits 9..0), drive (11..10: coast, close, open), source (14..12), little-endian | while driven |
 //! | 3 | the detectors that say slip or warn of it, that are believed, that the reflex acts on; a bit each | while any does |
 
 use core::fmt;
@@ -79,6 +79,7 @@ impl TickRecord {
             1 => DriveSource::Wearer,
             2 => DriveSource::Link,
             3 => DriveSource::Reflex,
+            4 => DriveSource::Behaviour,
             _ => return None,
         };
         let [said, believed, acted] = sets;
@@ -154,7 +155,13 @@ mod tests {
             .map(Duty::per_mille)
             .map(|duty| [MotorDrive::Close(duty), MotorDrive::Open(duty)]);
         let drives = drives.into_iter().flatten().chain([MotorDrive::Coast]);
-        let sources = [DriveSource::Nobody, DriveSource::Wearer, DriveSource::Link, DriveSource::Reflex];
+        let sources = [
+            DriveSource::Nobody,
+            DriveSource::Wearer,
+            DriveSource::Link,
+            DriveSource::Reflex,
+            DriveSource::Behaviour,
+        ];
         for (drive, source) in drives.flat_map(|drive| sources.map(|source| (drive, source))) {
             let [s1, mlp] = [DetectorId::S1, DetectorId::Mlp].map(DetectorSet::only);
             for (vibration, [said, believed, acted]) in
@@ -188,7 +195,7 @@ mod tests {
     fn bytes_that_no_tick_has_are_refused() {
         let driven = |driven: u16| read(&[0, 0x40, 0, 0, driven as u8, (driven >> 8) as u8]);
         assert!(driven(1 << 12).is_some());
-        for wrong in [0, 1, 1 << 10 | 1_001, 2 << 10 | 1_023, 3 << 10, 1 << 14, 1 << 15] {
+        for wrong in [0, 1, 1 << 10 | 1_001, 2 << 10 | 1_023, 3 << 10, 5 << 12, 1 << 15] {
             assert_eq!(driven(wrong), None, "{wrong:#x}");
         }
         assert!(read(&[0, 0x80, 0, 0, 1, 1, 0]).is_some());

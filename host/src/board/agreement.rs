@@ -30,7 +30,14 @@ impl Said {
             Up::Slow(slow) => self.slows.push(slow),
             Up::Event(event) => self.events.push(event),
             Up::Answer { answer, .. } => self.answers.push(answer),
-            Up::Hello { .. } | Up::Counters(_) | Up::Saved { .. } => {}
+            Up::Hello { .. }
+            | Up::Counters(_)
+            | Up::Saved { .. }
+            | Up::About(_)
+            | Up::Restored(_)
+            | Up::Raw(_)
+            | Up::Senses(_)
+            | Up::Taken { .. } => {}
         }
     }
 }
@@ -41,13 +48,18 @@ impl Said {
 /// took a press of the button. `commands` are those that the board took, in order, each with the sequence number of the
 /// frame before whose tick it took it. No frame may have been lost. Scans that do not fill a frame are left out.
 #[must_use]
-pub fn host_says(scans: &[Scan], mut device: Device, pressed: &[u32], commands: &[(u32, Down)]) -> Said {
+pub fn host_says(
+    scans: &[Scan],
+    mut device: Device,
+    pressed: &[u32],
+    commands: &[(u32, Received<Down>)],
+) -> Said {
     let mut said = Said::default();
-    let mut commands = (0..).zip(commands).peekable();
+    let mut commands = commands.iter().peekable();
     let (frames, _) = scans.as_chunks::<SCANS_PER_FRAME>();
     for (sequence, scans) in (0..).zip(frames) {
-        while let Some((of, (_, message))) = commands.next_if(|(_, (at, _))| *at <= sequence) {
-            said.take(device.command(&Received { sequence: of, message: *message }));
+        while let Some((_, command)) = commands.next_if(|(at, _)| *at <= sequence) {
+            said.take(device.command(command));
         }
         device
             .button(pressed.iter().any(|at| (at - at.min(&(DEBOUNCE_FRAMES - 1))..=*at).contains(&sequence)));

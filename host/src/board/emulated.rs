@@ -33,7 +33,7 @@ use self::line::Line;
 use self::mishaps::Mishaps;
 use self::nucleo::Nucleo;
 use self::world::{Stretch, World};
-use super::kept::{Sectors, model_of};
+use super::kept::{Provision, Sectors};
 use super::line_log::LineLog;
 use super::simulated::frames_in;
 use super::{Recorder, Run, Summary};
@@ -157,22 +157,21 @@ pub fn record<P: Plant + 'static>(
     let began = Instant::now();
     let symbols = Symbols::read(image)?;
     let frames = frames_in(plant.duration_s());
-    let trusts_line = plant.trusts_line();
+    let mut provision = Provision::of(&plant)?;
+    // What somebody else wants in the flash is not mixed with a calibration.
+    if options.flash.is_some() {
+        provision.calibrated = None;
+    }
     let (sender, reports) = mpsc::channel();
     let cost = CostMeter::new(&symbols, options.ticks.clone());
     let [tick, after_tick] = cost.watched();
     let mishaps = Mishaps::new(&options.mishaps);
     let flash = FlashArray::new(1_000 * options.word_us);
     let watched = [tick, after_tick, symbols.command];
-    // What somebody else wants in the flash is not mixed with a calibration.
-    let calibrated = match &options.flash {
-        None => plant.calibrated().as_ref().map(model_of).transpose()?,
-        Some(_) => None,
-    };
     let world = World::new(plant, frames, mishaps, cost, flash, &symbols, sender);
     let mut images =
         vec![Image::read(image, None).context("reading the image")?, cost::paint(&symbols.stack)?];
-    let kept = Sectors::provisioned(trusts_line, calibrated.as_ref()).image();
+    let kept = Sectors::provisioned(&provision).image();
     if let Some((address, bytes)) = options.flash.clone().or(Some(kept)) {
         images.push(Image::new(Path::new("flash"), bytes, Some(address))?);
     }
@@ -203,12 +202,12 @@ pub fn record<P: Plant + 'static>(
     let summary = Summary {
         virtual_s: scanned as f64 / f64::from(SCAN_HZ),
         wall_s: began.elapsed().as_secs_f64(),
-        trusts_line,
+        trusts_line: provision.trusts_line,
         taken,
         tick_cost: world.tick_cost,
         stack_bytes: world.stack_bytes,
         flash: world.flash.done,
-        calibrated,
+        calibrated: provision.calibrated,
         ..heard
     };
     Ok((summary, world.plant))

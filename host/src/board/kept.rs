@@ -8,8 +8,8 @@ use tenax_hal_shim::words::Kept;
 use tenax_logic::config::Config;
 use tenax_logic::device::Device;
 use tenax_logic::emg::model::EmgModel;
-use tenax_logic::store::{open, payload};
-use tenax_scene::plant::Calibrated;
+use tenax_logic::store::{Erase, open, payload};
+use tenax_scene::plant::{Calibrated, Plant};
 
 /// Where `memory.x` puts the log.
 pub const STORE: u64 = 0x0804_0000;
@@ -32,14 +32,58 @@ pub fn model_of(calibrated: &Calibrated) -> anyhow::Result<EmgModel> {
     .context("the wearer's calibration")
 }
 
-/// The host's device, set up the same way.
+/// What somebody has set up before the start.
+#[derive(Clone, Debug, Default)]
+pub struct Provision {
+    /// Its line is trusted.
+    pub trusts_line: bool,
+    /// It streams its frames from the start.
+    pub streams_at_start: bool,
+    /// The wearer it was calibrated to.
+    pub calibrated: Option<EmgModel>,
+}
+
+impl Provision {
+    /// What a plant's board was set up with.
+    ///
+    /// # Errors
+    /// If there can be no such wearer.
+    pub fn of(plant: &impl Plant) -> anyhow::Result<Self> {
+        Ok(Self {
+            trusts_line: plant.trusts_line(),
+            streams_at_start: plant.streams_at_start(),
+            calibrated: plant.calibrated().as_ref().map(model_of).transpose()?,
+        })
+    }
+
+    /// What is kept of it, as it lies in flash.
+    #[must_use]
+    pub fn records(&self) -> Vec<(Kept, Vec<u8>)> {
+        let mut config = Config::default();
+        // Both are in every range.
+        let _accepted = config.set(SettingId::LineTrusted, self.trusts_line.into());
+        let _accepted = config.set(SettingId::StreamAtStart, self.streams_at_start.into());
+        let settings = payload::of_settings(&config);
+        let settings = (!settings.is_empty()).then(|| (Kept::Settings, settings.to_vec()));
+        let emg = self.calibrated.as_ref().map(|model| (Kept::Emg, payload::of_emg(model).to_vec()));
+        settings.into_iter().chain(emg).collect()
+    }
+
+    /// The host's device, set up the same way.
+    #[must_use]
+    pub fn device(&self) -> Device {
+        let mut device = Device::default();
+        for (kept, payload) in self.records() {
+            device.restore(kept, &payload);
+        }
+        device
+    }
+}
+
+/// The host's device of a board that was set up so.
 #[must_use]
 pub fn device(trusts_line: bool, calibrated: Option<&EmgModel>) -> Device {
-    let mut device = if trusts_line { Device::trusting() } else { Device::default() };
-    if let Some(model) = calibrated {
-        device.restore(Kept::Emg, &payload::of_emg(model));
-    }
-    device
+    Provision { trusts_line, calibrated: calibrated.copied(), streams_at_start: false }.device()
 }
 
 /// The two sectors as a file would hold them, written by the host's own build of the log.
@@ -56,7 +100,7 @@ impl Sectors {
     /// With one more record. It must have room.
     #[must_use]
     pub fn saving(mut self, kept: Kept, payload: &[u8]) -> Self {
-        let (mut log, _) = open(&mut self);
+        let (mut log, _) = open(&mut self, Erase::Allowed);
         let mut saving = log.begin(kept, payload).expect("room");
         while !saving.step(&mut self).expect("a flash that works") {}
         self
@@ -71,23 +115,16 @@ impl Sectors {
     /// Of a board whose line is trusted.
     #[must_use]
     pub fn trusting() -> Self {
-        Self::provisioned(true, None)
+        Self::provisioned(&Provision { trusts_line: true, ..Provision::default() })
     }
 
-    /// Of a board that somebody has set up: whether its line is trusted, and the wearer it was calibrated to.
+    /// Of a board that somebody has set up.
     #[must_use]
-    pub fn provisioned(trusts_line: bool, calibrated: Option<&EmgModel>) -> Self {
-        let mut sectors = Self::blank();
-        if trusts_line {
-            let mut config = Config::default();
-            // It is in every range.
-            let _accepted = config.set(SettingId::LineTrusted, 1);
-            sectors = sectors.saving(Kept::Settings, &payload::of_settings(&config));
-        }
-        if let Some(model) = calibrated {
-            sectors = sectors.saving(Kept::Emg, &payload::of_emg(model));
-        }
-        sectors
+    pub fn provisioned(provision: &Provision) -> Self {
+        provision
+            .records()
+            .iter()
+            .fold(Self::blank(), |sectors, (kept, payload)| sectors.saving(*kept, payload))
     }
 }
 

@@ -1,6 +1,11 @@
-//! The host's own build of the logic, wired to a plant directly: no converter, no line, no core.
+//! The host's own build of the logic, wired to a plant directly: no converter, no core.
 //!
-//! Its timing is the image's: what a frame decides drives the plant from the next scan on.
+//! Its timing is the image's: what a frame decides drives the plant from the next scan on. So is its line, byte for byte but
+//! for what [`uplink`] says.
+
+mod downlink;
+mod store;
+mod uplink;
 
 use std::time::Instant;
 
@@ -8,10 +13,14 @@ use tenax_hal_shim::channel::{SCAN_HZ, SCANS_PER_FRAME};
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::frame::{Frame, Scan, scan_of_pins};
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{Answer, Counters, Down, Received, Up};
+use tenax_hal_shim::schedule::{Job, slot_of};
+use tenax_hal_shim::wire::{Answer, Identity, Restored, Up};
 use tenax_scene::plant::Plant;
 
-use super::kept::{device, model_of};
+use self::downlink::Downlink;
+use self::store::Store;
+use self::uplink::Uplink;
+use super::kept::{Provision, Sectors};
 use super::{Recorder, Run, Summary};
 
 /// Who closes the hand besides wearer and line.
@@ -58,37 +67,50 @@ fn closed_loop<P: Plant>(
 ) -> (Summary, P) {
     let began = Instant::now();
     let frames = frames_in(plant.duration_s());
-    let mut summary = Summary { starts: vec![None], ..Summary::default() };
-    let calibrated =
-        plant.calibrated().map(|calibrated| model_of(&calibrated).expect("a plant's wearer is one"));
-    let mut device = device(plant.trusts_line(), calibrated.as_ref());
-    summary.trusts_line = plant.trusts_line();
-    summary.calibrated = calibrated;
+    let provision = Provision::of(&plant).expect("a plant's wearer is one");
+    let mut device = provision.device();
+    let mut store = Store::new(Sectors::provisioned(&provision));
+    let mut summary = Summary {
+        trusts_line: provision.trusts_line,
+        calibrated: provision.calibrated,
+        ..Summary::default()
+    };
+    let mut up = Uplink::new(&mut summary, recorder);
+    up.post(device.start(Identity::default()));
+    if provision.streams_at_start {
+        for (kept, payload) in provision.records() {
+            up.post(Up::Restored(Restored::of(kept, &payload).expect("it has room for every record")));
+        }
+    }
+    let mut down = Downlink::default();
     device.fingertip_mut().act_on(match grips {
         Grips::Reflex(detectors) => detectors,
         Grips::Oracle => DetectorSet::only(DetectorId::S2),
         Grips::Constant(_) => DetectorSet::NONE,
     });
     let mut drive = MotorDrive::Coast;
-    let mut offered = None;
     for sequence in 0..frames {
+        up.count(down.counters(sequence));
         let select = Frame::lost(sequence).select();
         let mut scans = [Scan::default(); SCANS_PER_FRAME];
-        // The peer gives back what it was offered.
-        let mut commands: Vec<Down> = offered.take().map(|nonce| Down::Open { nonce }).into_iter().collect();
+        let mut commands = down.opening();
         for scan in &mut scans {
             *scan = scan_of_pins(&plant.scan(drive).codes(), select);
-            commands.extend(plant.commands());
-            recorder.scan(scan, drive, plant.slipping());
+            commands.extend(plant.commands().into_iter().map(|message| down.number(message)));
+            down.take(&plant.line_bytes());
+            up.recorder().scan(scan, drive, plant.slipping());
         }
+        commands.extend(down.command(sequence));
         for command in &commands {
-            let of = summary.taken.len() as u16;
-            summary.taken.push((sequence, *command));
-            let answer = device.command(&Received { sequence: of, message: *command });
-            if let Up::Answer { answer: Answer::Nonce(nonce), .. } = answer {
-                offered = Some(nonce);
+            up.summary().taken.push((sequence, *command));
+            if let Some(message) = device.taken(command) {
+                up.post(message);
             }
-            summary.take(answer, recorder);
+            let answer = device.command(command);
+            if let Up::Answer { of, answer: Answer::Nonce(nonce), .. } = answer {
+                down.offered(of, nonce);
+            }
+            up.post(answer);
         }
         device.button(plant.button());
         let frame = Frame::from_scans(sequence, &scans);
@@ -100,13 +122,24 @@ fn closed_loop<P: Plant>(
         };
         drive = with_plan(drive, device.fingertip().wearer_active(), planned);
         while let Some(message) = device.next_message() {
-            summary.take(message, recorder);
+            up.post(message);
+        }
+        if let Some(message) = store.end_tick(sequence) {
+            up.post(message);
+        }
+        if frame.slot() == slot_of(Job::Save) {
+            device.slow_frame_passed();
+            if store.is_free()
+                && let Some(record) = device.next_record()
+            {
+                store.save(record);
+            }
         }
         if sequence % PROGRESS_FRAMES == 0 {
             progress(seconds_of(sequence + 1));
         }
     }
-    summary.counters = Counters { frames, ticks: frames, ..Counters::default() };
+    summary.counters = down.counters(frames);
     summary.virtual_s = seconds_of(frames);
     summary.wall_s = began.elapsed().as_secs_f64();
     (summary, plant)

@@ -1,6 +1,5 @@
 //! `tenax monitor`: a board's serial line, or one that was captured.
 
-use std::fs::File;
 use std::io;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -8,21 +7,23 @@ use std::time::Duration;
 
 use anyhow::{Context, bail};
 use tenax_hal_shim::setting::SettingId;
-use tenax_hal_shim::wire::{BAUD, Down, SETTINGS_PER_ANSWER, Setting};
+use tenax_hal_shim::wire::{Down, SETTINGS_PER_ANSWER, Setting};
 
 use super::out;
-use crate::link::Outbox;
-use crate::monitor::{End, Monitor};
-use crate::settings;
+use crate::link::{Client, Target};
+use crate::{monitor, settings};
+
+/// How long a board may take to answer.
+const ANSWER_WITHIN: Duration = Duration::from_secs(2);
 
 /// Watch a board's serial line.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// The port: /dev/ttyACM0, COM3, ...
-    #[arg(long, value_name = "PORT", required_unless_present = "file", conflicts_with = "file")]
-    port: Option<String>,
-    /// A captured line instead, such as out/line.bin of `tenax run`
-    #[arg(long, value_name = "FILE")]
+    /// Where the line is: /dev/ttyACM0, COM3, /dev/pts/5, tcp:127.0.0.1:7777, or a file with a captured one
+    #[arg(long, value_name = "PORT", required_unless_present = "file")]
+    port: Option<Target>,
+    /// A captured line, such as out/glass.line.bin of `tenax run`
+    #[arg(long, value_name = "FILE", conflicts_with = "port")]
     file: Option<PathBuf>,
     /// First ask the board for something, or tell it something; may be given more than once
     #[arg(long, value_name = "COMMAND", requires = "port")]
@@ -75,63 +76,53 @@ impl From<Send> for Down {
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    let mut monitor = Monitor::default();
-    let mut out = io::stdout().lock();
-    let watched = match (&args.file, &args.port) {
-        (Some(file), _) => {
-            let mut source = File::open(file).with_context(|| format!("cannot open {}", file.display()))?;
-            monitor.watch(&mut source, &mut out)
-        }
-        (None, Some(port)) => {
-            let mut line = open(port)?;
-            tell(args, line.as_mut(), &mut |bytes| monitor.take(bytes, &mut out))?;
-            monitor.watch(line.as_mut(), &mut out)
-        }
+    let target = match (&args.port, &args.file) {
+        (Some(port), _) => port.clone(),
+        (None, Some(file)) => Target::File(file.clone()),
         (None, None) => bail!("give --port PORT or --file FILE"),
     };
-    let end = match watched {
+    let mut client = Client::open(&target)?;
+    tell(args, &mut client)?;
+    let end = match print(&mut client, &mut io::stdout().lock()) {
         // Whoever read our output has read enough.
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(ExitCode::SUCCESS),
         other => other.context("cannot print")?,
     };
-    out::note!("{}", monitor.counts());
-    match (end, &args.port) {
-        (End::Unplugged(error), Some(port)) => {
-            bail!("{port} went away ({error}): was the board unplugged? Plug it in and start again")
+    out::note!("{}", client.counts());
+    match (end.kind(), &target) {
+        (io::ErrorKind::UnexpectedEof, Target::File(_)) => Ok(ExitCode::SUCCESS),
+        (io::ErrorKind::UnexpectedEof, _) => bail!(target.after_end(None)),
+        _ => bail!(target.after_end(Some(&end))),
+    }
+}
+
+/// Prints what comes until the line ends, and says how it ended.
+fn print(client: &mut Client, out: &mut dyn io::Write) -> io::Result<io::Error> {
+    loop {
+        match client.next_frame() {
+            Ok(Some(frame)) => monitor::print(&frame, out)?,
+            // Nothing more has come so far.
+            Ok(None) => out.flush()?,
+            Err(end) => return out.flush().map(|()| end),
         }
-        (End::Over, Some(port)) => bail!("{port} was closed at its other end"),
-        _ => Ok(ExitCode::SUCCESS),
     }
 }
 
 /// Sends what is to be sent at once, and lets the teacher talk beside the watching.
-fn tell(
-    args: &Args,
-    line: &mut dyn serialport::SerialPort,
-    seen: &mut dyn FnMut(&[u8]) -> io::Result<()>,
-) -> anyhow::Result<()> {
-    let mut outbox = Outbox::new(line.try_clone().context("cannot write to the port")?);
-    let changes =
-        !args.set.is_empty() || args.teach || args.send.iter().any(|&send| !Down::from(send).reads());
-    if changes {
-        let mut printed = Ok(());
-        let mut show =
-            |bytes: &[u8]| printed = std::mem::replace(&mut printed, Ok(())).and_then(|()| seen(bytes));
-        let opened = outbox.open_session(line, &mut show).context("cannot open a session")?;
-        printed.context("cannot print")?;
-        if !opened {
-            out::note!("tenax: the board offered no session; what changes something will be refused");
-        }
-    }
+fn tell(args: &Args, client: &mut Client) -> anyhow::Result<()> {
     let set = args.set.iter().map(|&setting| Down::Set(setting));
     let get = args.get.iter().map(|&id| Down::Get(id as u8));
     // The first of each part of the table that one answer has room for.
     let all = SettingId::ALL.into_iter().step_by(SETTINGS_PER_ANSWER).map(|id| Down::Settings(id as u8));
     let all = all.filter(|_| args.settings);
     for command in args.send.iter().map(|&send| send.into()).chain(set).chain(get).chain(all) {
-        outbox.send(&command).context("cannot write to the port")?;
+        client.ask(&command, ANSWER_WITHIN)?;
     }
     if args.teach {
+        if !client.open_session(ANSWER_WITHIN)? {
+            out::note!("tenax: the board opened no session; what changes something will be refused");
+        }
+        let Some(mut outbox) = client.take_outbox() else { return Ok(()) };
         // It ends with its input, or with the process.
         std::thread::spawn(move || {
             if let Err(error) = outbox.teach(io::stdin().lock()) {
@@ -140,14 +131,4 @@ fn tell(
         });
     }
     Ok(())
-}
-
-fn open(port: &str) -> anyhow::Result<Box<dyn serialport::SerialPort>> {
-    // The timeout only decides how often the wait for bytes begins anew.
-    serialport::new(port, BAUD).timeout(Duration::from_millis(100)).open().map_err(|error| {
-        let ports = serialport::available_ports().unwrap_or_default();
-        let names: Vec<String> = ports.into_iter().map(|port| port.port_name).collect();
-        let seen = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-        anyhow::anyhow!("cannot open {port}: {error}; ports on this machine: {seen}")
-    })
 }

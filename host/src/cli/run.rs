@@ -16,6 +16,7 @@ use super::workspace;
 use crate::plot::{draw, png};
 use crate::replay::{Recording, calibrate};
 use crate::report::text::Text;
+use crate::serve::{self, Server};
 use crate::session::{self, Board, Outcome};
 
 /// Run a scene or a recording on a board; report and draw it.
@@ -48,6 +49,15 @@ pub struct Args {
     /// Where the figure, the report and the serial line's bytes are written
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
+    /// Run at real time and serve the line on a pseudo-terminal, for `tenax monitor --port` and any other program
+    #[arg(long)]
+    serve: bool,
+    /// Make a symlink to the pseudo-terminal
+    #[arg(long, value_name = "PATH", requires = "serve")]
+    serve_at: Option<PathBuf>,
+    /// Run at real time and serve the line on this TCP port of 127.0.0.1; 0: any that is free
+    #[arg(long, value_name = "PORT")]
+    serve_tcp: Option<u16>,
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
@@ -69,22 +79,27 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let path = |extension: &str| folder.join(format!("{stem}.{extension}"));
     let board = if args.host { Board::Host } else { Board::emulated(&workspace::root()?)? };
     let mut line = LineFile::new(path("line.bin"));
+    let (mut server, live) = served(args)?.unzip();
+    let recorder = &mut (&mut line, &mut server);
     let outcome = match &subject {
         Subject::Recording(file, recording) => {
             let progress = Progress::new("replay", recording.duration_s());
-            let (recipe, told) = (args.recipe.as_deref(), &mut |s| progress.at(s));
-            session::replay_with(file, recipe, calibrated, args.seed, &board, &mut line, told)?
+            let options = session::ReplayOptions { recipe: args.recipe.as_deref(), calibrated, live };
+            session::replay_served(file, options, args.seed, &board, recorder, &mut |s| progress.at(s))?
         }
         Subject::Scene(file) => {
             let progress = Progress::new(&format!("scene {}", file.name), file.duration_s());
             let mut outcome =
-                session::scene_with(file, args.seed, &board, &mut line, &mut |s| progress.at(s))?;
+                session::scene_served(file, args.seed, &board, live, recorder, &mut |s| progress.at(s))?;
             if args.controls {
                 outcome.report.controls = session::controls(file, args.seed, &outcome.truth);
             }
             outcome
         }
     };
+    if let Some(server) = server {
+        out::note!("  {:<14}{}", "served", server.close());
+    }
     let mut files = write(&outcome, &path)?;
     files.extend(line.close()?);
     args.report.print(&Text(&outcome.report), &outcome.report)?;
@@ -93,6 +108,21 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         out::note!("  {:<14}{}", "written", file.display());
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Begins to serve, if that is asked for, and says where.
+fn served(args: &Args) -> anyhow::Result<Option<(Server, serve::Live)>> {
+    if !args.serve && args.serve_tcp.is_none() {
+        return Ok(None);
+    }
+    let options = serve::Options { pty: args.serve, at: args.serve_at.clone(), tcp: args.serve_tcp };
+    let (server, live) = Server::start(&options, |part| {
+        out::note!("the board is slower than real time: it runs, and is served, at {part:.2} of it");
+    })?;
+    for place in server.places() {
+        out::note!("serving on {place}");
+    }
+    Ok(Some((server, live)))
 }
 
 /// What is run.

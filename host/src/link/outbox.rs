@@ -1,66 +1,32 @@
 //! What a person or their camera sends down a board's serial line.
 
-use std::io::{self, BufRead, ErrorKind, Read, Write};
+use std::io::{self, BufRead, Write};
 
 use anyhow::{Context, bail};
-use tenax_hal_shim::wire::{Answer, Down, FRAME_MAX, Up, encode};
+use tenax_hal_shim::wire::Down;
 use tenax_hal_shim::words::Code;
 
-use super::Inbox;
-
-/// Reads after which no answer comes any more.
-const READS_MAX: usize = 400;
+use super::Encoder;
 
 /// Numbers commands and writes them as frames.
 #[derive(Debug)]
 pub struct Outbox<W> {
     line: W,
-    sequence: u16,
+    encoder: Encoder,
 }
 
 impl<W: Write> Outbox<W> {
     /// One that has sent nothing.
     pub fn new(line: W) -> Self {
-        Self { line, sequence: 0 }
+        Self { line, encoder: Encoder::default() }
     }
 
-    /// Sends one command.
-    pub fn send(&mut self, command: &Down) -> io::Result<()> {
-        let mut buffer = [0; FRAME_MAX];
-        if let Some(frame) = encode(self.sequence, command, &mut buffer) {
-            self.line.write_all(frame)?;
-        }
-        self.sequence = self.sequence.wrapping_add(1);
-        self.line.flush()
-    }
-
-    /// Opens a session, without which the board only lets read: asks for a number on `line`, waits for it until the
-    /// source gives none for so long (its time-out), and gives it back. `seen` is told of every byte that came meanwhile.
-    ///
-    /// False if none came: an older image, or nobody there. What is sent then is refused by whoever needs a session.
-    pub fn open_session(&mut self, source: &mut dyn Read, seen: &mut dyn FnMut(&[u8])) -> io::Result<bool> {
-        let mut inbox = Inbox::default();
-        let mut buffer = [0; 256];
-        self.send(&Down::Hello)?;
-        // A second of telemetry at most.
-        for _ in 0..READS_MAX {
-            let bytes = match source.read(&mut buffer) {
-                Ok(0) => return Ok(false),
-                Ok(length) => &buffer[..length],
-                Err(error) if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => {
-                    continue;
-                }
-                Err(error) => return Err(error),
-            };
-            seen(bytes);
-            for heard in bytes.iter().filter_map(|&byte| inbox.push(byte)).flatten() {
-                if let Up::Answer { answer: Answer::Nonce(nonce), .. } = heard.received.message {
-                    self.send(&Down::Open { nonce })?;
-                    return Ok(true);
-                }
-            }
-        }
-        Ok(false)
+    /// Sends one command; returns its number, which its answer names.
+    pub fn send(&mut self, command: &Down) -> io::Result<u16> {
+        let (number, frame) = self.encoder.frame(command);
+        self.line.write_all(frame)?;
+        self.line.flush()?;
+        Ok(number)
     }
 
     /// Sends a camera's words as they come, a line each: `v1 v2 [age_ms]`, until there are no more.
@@ -128,24 +94,6 @@ mod tests {
         ];
         assert_eq!(heard.iter().map(|received| received.message).collect::<Vec<_>>(), expected);
         assert_eq!(heard.iter().map(|received| received.sequence).collect::<Vec<_>>(), [0, 1, 2]);
-    }
-
-    #[test]
-    fn a_session_is_opened_with_the_number_that_the_board_offers() {
-        let answer = Up::Answer { of: 0, frame: 7, answer: Answer::Nonce(0x1234_5678) };
-        let mut buffer = [0; FRAME_MAX];
-        let mut up = vec![1, 2, 3, 0];
-        up.extend_from_slice(encode(3, &answer, &mut buffer).unwrap());
-        let (mut line, mut seen) = (Vec::new(), 0);
-        let mut outbox = Outbox::new(&mut line);
-        assert!(outbox.open_session(&mut &up[..], &mut |bytes| seen += bytes.len()).unwrap());
-        assert!(!outbox.open_session(&mut &[][..], &mut |_| {}).unwrap(), "nobody there");
-        assert_eq!(seen, up.len());
-        let mut receiver = Receiver::new();
-        let sent: Vec<_> =
-            line.iter().filter_map(|&byte| receiver.push::<Down>(byte)).map(Result::unwrap).collect();
-        let sent: Vec<_> = sent.iter().map(|received| (received.sequence, received.message)).collect();
-        assert_eq!(sent, [(0, Down::Hello), (1, Down::Open { nonce: 0x1234_5678 }), (2, Down::Hello)]);
     }
 
     #[test]

@@ -82,7 +82,7 @@ fn in_force(name: &str, id: SettingId, subject: &Subject, (from_s, to_s): (f64, 
     config.line_trusted = subject.run.trusts_line;
     let mut points = vec![(from_s, f64::from(config.get(id)))];
     for (frame, command) in &subject.run.taken {
-        let Down::Set(setting) = command else { continue };
+        let Down::Set(setting) = command.message else { continue };
         let at_s = subject.timeline.time_s(*frame);
         let Some(own) = SettingId::from_number(setting.id).filter(|_| at_s <= to_s) else { continue };
         let before = f64::from(config.get(id));
@@ -148,11 +148,15 @@ fn muscles([flexor, extensor]: [Thin; 2], gate: Level) -> Panel {
     }
 }
 
-fn motor(Drives { wearer, reflex, link, by_link }: Drives, strip: Vec<Stretch>) -> Panel {
+fn motor(drives: Drives, strip: Vec<Stretch>) -> Panel {
+    let Drives { wearer, reflex, link, by_link, behaviour, by_behaviour } = drives;
     let mut curves =
         vec![curve("by the wearer", colour::GREEN, wearer), curve("by the reflex", colour::BLUE, reflex)];
     if by_link {
         curves.push(curve("by the line", colour::ORANGE, link));
+    }
+    if by_behaviour {
+        curves.push(curve("by a behaviour", colour::PURPLE, behaviour));
     }
     Panel {
         label: "motor, % (close > 0)".to_owned(),
@@ -194,15 +198,15 @@ fn modes(subject: &Subject, end_s: f64, (from_s, to_s): (f64, f64)) -> Vec<Stret
 }
 
 fn look(mode: GripMode) -> (RGBColor, &'static str) {
-    match mode {
-        GripMode::Standby => (colour::GREY, "standby"),
-        GripMode::Wearer => (colour::GREEN, "wearer"),
-        GripMode::Watch => (colour::SKY, "watch"),
-        GripMode::Slip => (colour::VERMILLION, "slip"),
-        GripMode::Incipient => (colour::ORANGE, "incipient"),
-        GripMode::Settle => (colour::YELLOW, "settle"),
-        GripMode::Explore => (colour::PURPLE, "explore"),
-    }
+    let colour = match mode {
+        GripMode::Standby => colour::GREY,
+        GripMode::Wearer => colour::GREEN,
+        GripMode::Watch => colour::SKY,
+        GripMode::Slip => colour::VERMILLION,
+        GripMode::Incipient => colour::ORANGE,
+        GripMode::Settle => colour::YELLOW,
+    };
+    (colour, mode.name())
 }
 
 #[cfg(test)]

@@ -52,6 +52,10 @@ pub struct Drives {
     pub link: Thin,
     /// Whether they ever did.
     pub by_link: bool,
+    /// A behaviour.
+    pub behaviour: Thin,
+    /// Whether one ever did.
+    pub by_behaviour: bool,
 }
 
 impl Sketch {
@@ -69,7 +73,14 @@ impl Sketch {
             s2: Steps::new(span_s),
             vibration: thin(),
             muscles: [thin(), thin()],
-            motor: Drives { wearer: thin(), reflex: thin(), link: thin(), by_link: false },
+            motor: Drives {
+                wearer: thin(),
+                reflex: thin(),
+                link: thin(),
+                by_link: false,
+                behaviour: thin(),
+                by_behaviour: false,
+            },
         }
     }
 
@@ -92,6 +103,8 @@ impl Sketch {
         self.motor.reflex.push((t_s, by(DriveSource::Reflex)));
         self.motor.link.push((t_s, by(DriveSource::Link)));
         self.motor.by_link |= tick.source == DriveSource::Link;
+        self.motor.behaviour.push((t_s, by(DriveSource::Behaviour)));
+        self.motor.by_behaviour |= tick.source == DriveSource::Behaviour;
     }
 }
 

@@ -17,6 +17,10 @@ pub struct Fate {
     pub dropped: bool,
     /// Whether the hand rose without it.
     pub left_behind: bool,
+    /// Whether another hand has taken it.
+    pub handed_over: bool,
+    /// How far it had turned about the pads at the end, rad.
+    pub turned_rad: f64,
     /// The greatest grip force, N. None where nothing was held.
     pub peak_grip_n: Option<f64>,
     /// The mean grip force while the hand carried it, N. None if it never did.
@@ -42,6 +46,8 @@ impl Fate {
             distance_mm: truth.slip_distance_mm,
             dropped: truth.dropped,
             left_behind: truth.left_behind,
+            handed_over: truth.handed_over,
+            turned_rad: truth.turned_rad,
             crushed_at_s: truth.crushed_at_s,
             dent_mm: truth.dent_mm,
             broken_at_s: truth.broken_at_s,

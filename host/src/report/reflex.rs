@@ -92,6 +92,10 @@ pub struct Object {
     pub kept: Option<bool>,
     /// Whether the hand rose without it.
     pub left_behind: Option<bool>,
+    /// Whether another hand has taken it.
+    pub handed_over: Option<bool>,
+    /// How far it had turned in the hand at the end, degrees.
+    pub turned_deg: Option<f64>,
 }
 
 impl Object {
@@ -101,6 +105,8 @@ impl Object {
         Self {
             kept: truth.map(|truth| !truth.dropped && !truth.left_behind),
             left_behind: truth.map(|truth| truth.left_behind),
+            handed_over: truth.map(|truth| truth.handed_over),
+            turned_deg: truth.map(|truth| truth.turned_rad.to_degrees()),
         }
     }
 }

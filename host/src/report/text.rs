@@ -96,10 +96,11 @@ fn slip(f: &mut fmt::Formatter<'_>, report: &Report) -> fmt::Result {
     let (Some(dropped), Some(distance_mm)) = (slip.dropped, slip.distance_mm) else {
         return Ok(());
     };
-    let fate = match (dropped, report.object.left_behind) {
-        (true, _) => "DROPPED",
-        (false, Some(true)) => "LEFT BEHIND",
-        (false, _) => "kept",
+    let fate = match (dropped, report.object.left_behind, report.object.handed_over) {
+        (true, ..) => "DROPPED",
+        (false, Some(true), _) => "LEFT BEHIND",
+        (false, _, Some(true)) => "handed over",
+        (false, ..) => "kept",
     };
     line!(
         f,
@@ -108,6 +109,13 @@ fn slip(f: &mut fmt::Formatter<'_>, report: &Report) -> fmt::Result {
         Or(report.oracle.distance_mm, "mm"),
         Or(report.oracle.distance_ratio, "times")
     )?;
+    if let Some(turned_deg) = report.object.turned_deg.filter(|deg| deg.abs() >= 0.05) {
+        line!(f, "turned", "{turned_deg:.1} degrees in the hand")?;
+    }
+    for ran in &report.behaviours {
+        let (end, how) = (Or(ran.end_s, "s"), ran.ending.unwrap_or("goes on"));
+        line!(f, "behaviour", "{} from {:.2} s to {end:.2}: {how}", ran.name, ran.begin_s)?;
+    }
     line!(
         f,
         "reflex",
@@ -161,6 +169,9 @@ fn slip(f: &mut fmt::Formatter<'_>, report: &Report) -> fmt::Result {
 
 fn wearer(f: &mut fmt::Formatter<'_>, report: &Report) -> fmt::Result {
     let wearer = &report.wearer;
+    if wearer.none {
+        line!(f, "wearer", "none: the reflex works without myosensors")?;
+    }
     line!(
         f,
         "wearer",

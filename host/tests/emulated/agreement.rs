@@ -92,8 +92,9 @@ fn the_host_says_the_same_when_it_takes_each_command_in_the_images_tick() {
     let agreement = Agreement::of(&run);
     assert!(agreement.holds(), "{agreement}");
     // One of them a tick early or late is another run: one that moved the hand, for the muscles refuse others.
-    let moved =
-        |n: &usize| matches!(run.taken[*n].1, Down::Drive { .. }) && run.answers[*n].1 == Answer::Done;
+    let moved = |n: &usize| {
+        matches!(run.taken[*n].1.message, Down::Drive { .. }) && run.answers[*n].1 == Answer::Done
+    };
     let moved = (0..run.taken.len()).rfind(moved).expect("some were carried out");
     for other in [run.taken[moved].0 - 1, run.taken[moved].0 + 1] {
         let own = std::mem::replace(&mut run.taken[moved].0, other);

@@ -2,10 +2,13 @@
 
 use tenax::board::agreement::Agreement;
 use tenax::board::emulated::Options;
+use tenax::board::simulated;
+use tenax::link::{Encoder, Inbox};
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::setting::SettingId;
-use tenax_hal_shim::wire::{Answer, Down, Refusal, Setting};
+use tenax_hal_shim::wire::{About, Answer, Down, Identity, Refusal, Setting, Up};
 use tenax_hal_shim::words::Code;
+use tenax_scene::plant::{Pins, Plant};
 
 use crate::{Loaded, Rest, Run, Swing, drives, run};
 
@@ -100,4 +103,85 @@ fn a_flood_of_commands_makes_no_tick_late() {
         let agreement = Agreement::of(&run);
         assert!(agreement.holds(), "{agreement}");
     }
+}
+/// What came up a line, without what the two boards tell at other instants: the counters, and the frame before which a
+/// command was taken or a record saved, which is given apart.
+fn messages(line: &[u8], frames: u32) -> (Vec<Up>, Vec<u32>) {
+    let (mut inbox, mut times) = (Inbox::default(), Vec::new());
+    let mut told = |up| match up {
+        Up::Counters(_) => None,
+        Up::Slow(ref slow) if slow.frame >= frames => None,
+        // The one is an image on a chip, the other is not.
+        Up::About(about) => Some(Up::About(About { identity: Identity::default(), ..about })),
+        Up::Answer { of, frame, answer } => {
+            times.push(frame);
+            Some(Up::Answer { of, frame: 0, answer })
+        }
+        Up::Saved { frame, kept } => {
+            times.push(frame);
+            Some(Up::Saved { frame: 0, kept })
+        }
+        other => Some(other),
+    };
+    let heard = line.iter().filter_map(|&byte| inbox.push(byte)).map(|heard| heard.expect("a message"));
+    let messages = heard.filter_map(|heard| told(heard.received.message)).collect();
+    assert_eq!((inbox.counts().missed, inbox.counts().bad_frames), (0, 0));
+    (messages, times)
+}
+
+#[test]
+fn the_hosts_board_says_on_its_line_what_the_image_says() {
+    // In the middle of a slow frame, so that both take them in the same one.
+    let plant = || {
+        let swing = Swing::new(1.0).sending(0.206, Down::Ping).sending(0.206, Down::Set(s2(400)));
+        Rest::new(swing.sending(0.306, Down::Settings(17)).sending(0.306, Down::Zero))
+    };
+    let (image, image_times) = messages(&run(plant(), &Options::default()).line, 2_000);
+    let (host, host_times) = messages(&simulated::run(plant(), &mut |_| {}).0.line, 2_000);
+    assert!(matches!(image[0], Up::Hello { .. }));
+    assert!(image.iter().any(|up| matches!(up, Up::Saved { .. })), "the setting was saved");
+    assert_eq!(host, image);
+    for (host, image) in host_times.iter().zip(&image_times) {
+        assert!(host.abs_diff(*image) <= 4, "host {host_times:?}, image {image_times:?}");
+    }
+}
+
+/// Every pin at rest, and bytes that come down as they are.
+struct Typed(Swing, Vec<u8>);
+
+impl Plant for Typed {
+    fn scan(&mut self, drive: MotorDrive) -> &Pins {
+        self.0.scan(drive)
+    }
+
+    fn commands(&mut self) -> Vec<Down> {
+        self.0.commands()
+    }
+
+    fn line_bytes(&mut self) -> Vec<u8> {
+        if self.0.t_s() < 0.2 { Vec::new() } else { std::mem::take(&mut self.1) }
+    }
+
+    fn trusts_line(&self) -> bool {
+        self.0.trusts_line()
+    }
+
+    fn duration_s(&self) -> f64 {
+        self.0.duration_s()
+    }
+}
+
+#[test]
+fn bytes_that_a_client_sends_are_commands_like_any_other() {
+    let mut encoder = Encoder::default();
+    let mut bytes = b"no message at all\0".to_vec();
+    for command in [Down::Ping, Down::Set(s2(400)), Down::Get(s2(0).id)] {
+        bytes.extend(encoder.frame(&command).1);
+    }
+    let run = run(Typed(Swing::new(0.5).sending(0.3, Down::Ping), bytes), &Options::default());
+    let set = Answer::Setting(s2(400));
+    assert_eq!(run.answers, [(0, Answer::Done), (1, set.clone()), (2, set), (0, Answer::Done)]);
+    assert_eq!(run.counters.bad_frames, 1);
+    let agreement = Agreement::of(&run);
+    assert!(agreement.holds(), "{agreement}");
 }

@@ -2,12 +2,15 @@
 #![cfg(feature = "emulator")]
 
 mod agreement;
+mod behaviours;
 mod converter;
 mod faults;
+mod head;
 mod link;
 #[path = "../../../host-tests/src/onsets.rs"]
 mod onsets;
 mod store;
+mod streams;
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;

@@ -2,11 +2,12 @@
 
 use core::ops::RangeInclusive;
 
+use tenax_hal_shim::behaviour::Ending;
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{DRIVE_HOLD_MAX_MS, Down, Refusal, Setting};
-use tenax_hal_shim::words::{Cause, GripMode, Line};
+use tenax_hal_shim::words::Line;
 
 use super::Fingertip;
 use crate::grip::Grip;
@@ -27,7 +28,9 @@ impl Fingertip {
             | Down::Get(_)
             | Down::Settings(_)
             | Down::Hello
-            | Down::Open { .. } => Ok(()),
+            | Down::Open { .. }
+            | Down::About
+            | Down::Stream { .. } => Ok(()),
             Down::Drive { hold_ms, .. } if hold_ms > DRIVE_HOLD_MAX_MS => {
                 Err(Refusal::OutOfRange { min: 0, max: DRIVE_HOLD_MAX_MS.into() })
             }
@@ -49,9 +52,13 @@ impl Fingertip {
                 let id = SettingId::from_number(id).ok_or(Refusal::UnknownSetting)?;
                 self.set(id, value)
             }
-            Down::Stroke(true) => self.begin_stroke(),
-            Down::Stroke(false) => {
-                self.end_stroke();
+            Down::Begin(what) => self.begin(what),
+            Down::End => {
+                self.end(Ending::Stopped);
+                Ok(())
+            }
+            Down::View(view) => {
+                self.eye.see(view);
                 Ok(())
             }
             Down::Teach { codes, age_ms } => {
@@ -89,9 +96,10 @@ impl Fingertip {
 
     /// Whether the line may carry this out.
     fn consents_to(&self, command: &Down) -> Result<(), Refusal> {
-        // Who trusts the line for ever has to be at the hand: that nothing is held at power-up is not enough.
-        let for_ever =
-            matches!(*command, Down::Set(Setting { id, .. }) if id == SettingId::LineTrusted as u8);
+        // Who trusts the line for ever, or says that nobody wears the hand, has to be at the hand: that nothing is held at
+        // power-up is not enough.
+        let for_ever = matches!(*command, Down::Set(Setting { id, .. })
+            if [SettingId::LineTrusted as u8, SettingId::NoWearer as u8].contains(&id));
         let consents = match self.line() {
             Line::Reading => false,
             Line::Armed { .. } => !for_ever || self.arming.is_deliberate(),
@@ -108,24 +116,5 @@ impl Fingertip {
         self.config.set(id, value).map_err(out_of_range)?;
         self.settings_changed = self.settings_changed.wrapping_add(1);
         Ok(())
-    }
-
-    fn begin_stroke(&mut self) -> Result<(), Refusal> {
-        if self.senses.gate.is_active() {
-            return Err(Refusal::WearerActive);
-        }
-        if self.senses.forces.is_none() {
-            return Err(Refusal::SensorLost);
-        }
-        self.cause(Cause::StrokeBegun);
-        if self.mode != GripMode::Explore {
-            return Err(Refusal::SensorLost);
-        }
-        self.detectors.s2.begin_stroke();
-        Ok(())
-    }
-
-    fn end_stroke(&mut self) {
-        self.cause(Cause::StrokeOver);
     }
 }

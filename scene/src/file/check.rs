@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use tenax_hal_shim::behaviour::Behaviour;
 use tenax_hal_shim::channel::{FSR, FSR_COUNT, MYO_EXTENSOR, MYO_FLEXOR};
 use toml::Spanned;
 
@@ -89,6 +90,7 @@ fn instants(scene: &SceneFile) -> Checked {
     all.extend(scene.fill.iter().map(|fill| &fill.at_s));
     all.extend(scene.moves.iter().map(|step| &step.at_s));
     all.extend(scene.swing.iter().map(|swing| &swing.at_s));
+    all.extend(scene.pull.iter().map(|pull| &pull.at_s));
     all.extend(scene.press.iter().map(|press| &press.at_s));
     all.extend(scene.sweep.iter().map(|sweep| &sweep.at_s));
     all.extend(scene.knock.iter().map(|knock| &knock.at_s));
@@ -139,7 +141,11 @@ fn one_story(scene: &SceneFile) -> Checked {
             let foreign = scene.fill.iter().map(|fill| &fill.at_s);
             let foreign = foreign.chain(scene.moves.iter().map(|step| &step.at_s));
             let foreign = foreign.chain(scene.swing.iter().map(|swing| &swing.at_s));
-            refuse(foreign, "[[fill]], [[move]] and [[swing]] need an [object]; this scene has a [robot]")
+            let foreign = foreign.chain(scene.pull.iter().map(|pull| &pull.at_s));
+            refuse(
+                foreign,
+                "[[fill]], [[move]], [[swing]] and [[pull]] need an [object]; this scene has a [robot]",
+            )
         }
     }
 }
@@ -177,9 +183,15 @@ fn command(scene: &SceneFile, command: &Command) -> Checked {
             })?;
             demand(command.for_s.is_some(), command.kind.span(), || "a drive needs for_s".to_owned())
         }
-        CommandKind::StrokeBegin | CommandKind::StrokeEnd | CommandKind::Zero | CommandKind::Consent => {
-            Ok(())
+        CommandKind::Begin(Behaviour::Turn { .. }) => {
+            let Some(value) = &command.value else {
+                return wrong(command.kind.span(), "a turn needs value, in degrees".to_owned());
+            };
+            demand((-180..=180).contains(value.get_ref()), value.span(), || {
+                format!("value = {} degrees is outside -180..=180", value.get_ref())
+            })
         }
+        CommandKind::Begin(_) | CommandKind::End | CommandKind::Zero | CommandKind::Consent => Ok(()),
         CommandKind::Set(id) => {
             let Some(value) = &command.value else {
                 return wrong(command.kind.span(), "a setting needs value".to_owned());

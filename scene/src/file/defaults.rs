@@ -3,10 +3,10 @@
 use toml::Spanned;
 
 use super::quantity::{
-    Damping, DeadTime, Duration, Gain, Hertz, Kilograms, Lever, Micrometres, Millimetres, Milliseconds,
-    Millivolts, NewtonsMax, Part, Play, Speed, Stiffness,
+    Damping, DeadTime, Degrees, Duration, Gain, Hertz, Kilograms, Lever, Micrometres, Millimetres,
+    Millinewtons, Milliseconds, Millivolts, Mu, NewtonsMax, Part, Play, Speed, Stiffness,
 };
-use super::sections::{Array, Camera, Fsr, Gripper, Myo, Pvdf, Robot, Strain, Table};
+use super::sections::{Array, Camera, Fsr, Gripper, Myo, Photoelastic, Pvdf, Robot, Skin, Strain, Table};
 
 impl Default for Gripper {
     fn default() -> Self {
@@ -141,6 +141,22 @@ impl Default for Array {
     }
 }
 
+impl Default for Skin {
+    fn default() -> Self {
+        Self {
+            // FingerVision 2017, section VI-A: the pictures are sent at 63 a second at least; read out, judged and sent within
+            // two of them (assumed).
+            rate_hz: Hertz::of(60.0),
+            delay_ms: DeadTime::of(33.0),
+            // Assumed, as the rest: a marker is found to a tenth of a pixel, and 1 N on it moves it by 10.
+            force_noise_mn: Millinewtons::of(10.0),
+            angle_noise_deg: Degrees::of(0.5),
+            speckle_e4: Gain::of(4.0),
+            dark_from_s: None,
+        }
+    }
+}
+
 impl Default for Camera {
     fn default() -> Self {
         Self {
@@ -152,6 +168,31 @@ impl Default for Camera {
             jitter_px: Part::of(0.02),
             delay_ms: DeadTime::of(53.0),
             teaches: false,
+        }
+    }
+}
+
+impl Default for Photoelastic {
+    fn default() -> Self {
+        Self {
+            strip: true,
+            // Aluminium on the strip. Assumed, as `physics::stribeck::METAL`.
+            mu_s: Mu::of(0.35),
+            mu_d: Mu::of(0.30),
+            stribeck_mm_s: Speed::of(3.0),
+            // Assumed: the head is what the object touches.
+            share: Part::of(1.0),
+            // Not in the paper: at 45 degrees a normal force alone gives all the light.
+            polariser_deg: Degrees::of(45.0),
+            // Dubey 2006, section 4: "high initial offset"; the numbers are assumed.
+            dark_mv: Millivolts::of(400.0),
+            span_mv: Millivolts::of(2_200.0),
+            // Assumed, as the rest: glued by hand.
+            spread: Part::of(0.0),
+            drift: Part::of(0.02),
+            ambient_mv: Millivolts::of(20.0),
+            knock_mn_per_mv: Gain::of(0.05),
+            noise_mv: Millivolts::of(0.5),
         }
     }
 }

@@ -17,7 +17,8 @@ pub use happening::Happening;
 use quantity::{Duration, Speed};
 use sections::{
     Arm, Array, Camera, Command, Contact, ElectrodeLift, Fill, Fsr, Gripper, Knock, Move, Muscle, Myo,
-    Object, Pitch, Press, Pvdf, Robot, SensorFault, Strain, Sweep, Swing, Table, Wet,
+    Object, Photoelastic, Pitch, Press, Pull, Pvdf, Robot, SensorFault, Skin, Strain, Sweep, Swing, Table,
+    Wet,
 };
 
 /// A whole scene, every number in it checked.
@@ -56,6 +57,8 @@ pub struct SceneFile {
     pub(crate) array: Array,
     #[serde(default)]
     pub(crate) camera: Camera,
+    pub(crate) photoelastic: Option<Photoelastic>,
+    pub(crate) skin: Option<Skin>,
     #[serde(default)]
     pub(crate) wet: Vec<Wet>,
     #[serde(default)]
@@ -64,6 +67,8 @@ pub struct SceneFile {
     pub(crate) moves: Vec<Move>,
     #[serde(default)]
     pub(crate) swing: Vec<Swing>,
+    #[serde(default)]
+    pub(crate) pull: Vec<Pull>,
     #[serde(default)]
     pub(crate) press: Vec<Press>,
     #[serde(default)]
@@ -97,7 +102,7 @@ impl SceneFile {
     /// laboratory, and its script stands for one who has set `line-trusted-flag` before.
     #[must_use]
     pub fn trusts_line(&self) -> bool {
-        self.line_trusted.unwrap_or(!self.command.is_empty() || self.camera.teaches)
+        self.line_trusted.unwrap_or(!self.command.is_empty() || self.camera.teaches || self.skin.is_some())
     }
 
     /// How long it lasts, s.

@@ -64,6 +64,12 @@ quantities! {
     Newtons: 0.0 to 200.0;
     /// The greatest force of something, N.
     NewtonsMax: 1.0 to 200.0;
+    /// The force of another hand at the object, N, either way.
+    Pulling: -200.0 to 200.0;
+    /// A small force, mN.
+    Millinewtons: 0.0 to 1000.0;
+    /// An angle, degrees.
+    Degrees: 0.0 to 90.0;
     /// A length, mm.
     Millimetres: 0.01 to 300.0;
     /// A very short way, um.

@@ -5,6 +5,7 @@ use super::hand::Hand;
 use super::level::{Level, Push};
 use super::limit::Body;
 use super::pitch::{Load, Pitch, Turn};
+use super::pull::Pulls;
 use super::{GRAVITY_M_S2, TOUCH_N, Touch};
 use crate::file::SceneFile;
 use crate::file::sections::Object;
@@ -23,6 +24,10 @@ const PADS: f64 = 2.0;
 pub struct Grasp {
     empty_kg: f64,
     fills: Vec<(Span, f64)>,
+    pulls: Pulls,
+    /// Another hand has it, or has taken it.
+    shared: bool,
+    taken: bool,
     surface: Surface,
     body: Body,
     pitch: Option<Pitch>,
@@ -64,6 +69,9 @@ impl Grasp {
         Self {
             empty_kg,
             fills,
+            pulls: Pulls::new(&scene.pull),
+            shared: false,
+            taken: false,
             surface: Surface::new(&scene.contact, &scene.wet),
             body: Body::new(object),
             pitch: scene
@@ -103,7 +111,9 @@ impl Grasp {
         } else {
             0.0
         };
-        let free_n = self.table_n - self.mass_kg * (GRAVITY_M_S2 + hand.acceleration_m_s2());
+        self.shared = self.pulls.takes(t_s);
+        let free_n =
+            self.table_n + self.pulls.force_n(t_s) - self.mass_kg * (GRAVITY_M_S2 + hand.acceleration_m_s2());
         let drag_ns_per_m = self.drag_ns_per_m(dry, grip_n);
         // Backward Euler: no drag turns the motion round.
         let free_m_s =
@@ -126,7 +136,10 @@ impl Grasp {
         self.needed_n = (along_n * along_n + turn.needed_n * turn.needed_n).sqrt();
         self.plan_n = if self.in_hand && grip_n > TOUCH_N { self.planned_n(dry, holds, hand) } else { 0.0 };
         self.lifted |= grip_n > TOUCH_N && self.table_n == 0.0;
-        self.in_hand &= self.slid_m.abs() <= self.pad_m && !self.body.is_broken();
+        self.taken |= self.in_hand && self.shared && self.lifted && grip_n == 0.0;
+        self.in_hand &= self.slid_m.abs() <= self.pad_m && !self.body.is_broken() && !self.taken;
+        // Pulled out of the fingers: they had it in their hand.
+        self.taken |= !self.in_hand && self.shared && self.lifted;
         let drop_n = (friction.mu_s - friction.mu_d) * grip_n;
         let twisted_n = if turn.onset { drop_n } else { 0.0 };
         Touch {
@@ -223,7 +236,19 @@ impl Grasp {
     /// Whether it was lifted and has then left the pads.
     #[must_use]
     pub const fn is_dropped(&self) -> bool {
-        self.lifted && !self.in_hand
+        self.lifted && !self.in_hand && !self.taken
+    }
+
+    /// Whether another hand has it too, so that what slides now is meant to.
+    #[must_use]
+    pub const fn is_shared(&self) -> bool {
+        self.shared || self.taken
+    }
+
+    /// Whether another hand has taken it.
+    #[must_use]
+    pub const fn is_taken(&self) -> bool {
+        self.taken
     }
 
     /// How far it has turned about the pads, rad.

@@ -7,8 +7,10 @@ pub(crate) mod fault;
 pub(crate) mod fsr;
 pub(crate) mod hand;
 pub(crate) mod myo;
+pub mod photoelastic;
 mod place;
 pub(crate) mod pvdf;
+pub(crate) mod skin;
 pub(crate) mod strain;
 
 /// Supply of the analogue front ends less what their outputs cannot reach, V.

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use tenax_hal_shim::wire::{Answer, Down};
+use tenax_hal_shim::wire::{Answer, Down, Received};
 
 /// What was sent, and when the image took something.
 ///
@@ -11,14 +11,14 @@ use tenax_hal_shim::wire::{Answer, Down};
 /// commands are taken and answered in one order.
 #[derive(Debug, Default)]
 pub struct Commands {
-    sent: VecDeque<(u16, Down)>,
+    sent: VecDeque<Received<Down>>,
     taken_before: Vec<u32>,
 }
 
 impl Commands {
     /// A command was sent.
-    pub fn send(&mut self, sequence: u16, command: Down) {
-        self.sent.push_back((sequence, command));
+    pub fn send(&mut self, command: Received<Down>) {
+        self.sent.push_back(command);
     }
 
     /// The image takes a command before this tick.
@@ -27,11 +27,11 @@ impl Commands {
     }
 
     /// Each command that was answered, with the sequence number of the frame before whose tick it was taken.
-    pub fn taken(mut self, answers: &[(u16, Answer)]) -> Vec<(u32, Down)> {
+    pub fn taken(mut self, answers: &[(u16, Answer)]) -> Vec<(u32, Received<Down>)> {
         let answered = answers.iter().filter_map(|(of, _)| {
             // What the line swallowed was never answered.
-            std::iter::from_fn(|| self.sent.pop_front()).find(|(sequence, _)| sequence == of)
+            std::iter::from_fn(|| self.sent.pop_front()).find(|command| command.sequence == *of)
         });
-        self.taken_before.iter().copied().zip(answered.map(|(_, command)| command)).collect()
+        self.taken_before.iter().copied().zip(answered).collect()
     }
 }

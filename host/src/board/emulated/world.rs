@@ -7,10 +7,10 @@ use std::sync::mpsc::Sender;
 use rigless::emulator::{Driver, Host, Settled, Stop};
 use rigless::session::Session;
 use rigless::time::VirtualNanos;
-use tenax_hal_shim::channel::{SCAN_HZ, SCANS_PER_FRAME};
+use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, SCAN_HZ, SCANS_PER_FRAME};
 use tenax_hal_shim::frame::{Scan, scan_of_pins};
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{Down, FRAME_MAX, encode};
+use tenax_hal_shim::wire::{Down, Received, Receiver};
 use tenax_scene::plant::Plant;
 
 use super::Broken;
@@ -22,7 +22,7 @@ use super::nucleo::Nucleo;
 use super::wires::Wires;
 use crate::board::TickCost;
 use crate::image::symbols::Symbols;
-use crate::link::Inbox;
+use crate::link::{Encoder, Inbox};
 
 const SCAN_NS: u64 = 1_000_000_000 / SCAN_HZ as u64;
 /// While the timer's phase is not known, every this often it is looked for.
@@ -31,8 +31,8 @@ const SEEK_NS: u64 = 5_000;
 const BOOT_NS: u64 = 3_000_000_000;
 /// Scans after the plant's last, so that what they led to comes up the line.
 const DRAIN_SCANS: u32 = 64;
-/// Scans between two reports: a tenth of a virtual second.
-const REPORT_SCANS: usize = 800;
+/// Scans between two reports, so that a line that is served live is late by no more than a slow frame.
+const REPORT_SCANS: usize = SCANS_PER_FRAME * FRAMES_PER_SLOW_FRAME as usize;
 
 /// What happened since the last report.
 #[derive(Debug, Default)]
@@ -66,7 +66,9 @@ pub struct World<P> {
     pulses: u64,
     stepped_at: Option<VirtualNanos>,
     codes: Scan,
-    command_sequence: u16,
+    encoder: Encoder,
+    /// Finds the commands among the bytes that are sent down as they are.
+    sent: Receiver,
     mishaps: Mishaps,
     resets: usize,
     executed: Option<(VirtualNanos, u64)>,
@@ -102,7 +104,8 @@ impl<P: Plant> World<P> {
             pulses: 0,
             stepped_at: None,
             codes: Scan::default(),
-            command_sequence: 0,
+            encoder: Encoder::default(),
+            sent: Receiver::new(),
             mishaps,
             resets: 0,
             executed: None,
@@ -146,14 +149,15 @@ impl<P: Plant> World<P> {
                 if command == Down::Hello {
                     line.listener = Some(Inbox::default());
                 }
-                let mut buffer = [0; FRAME_MAX];
-                line.down.extend(
-                    encode(self.command_sequence, &command, &mut buffer)
-                        .into_iter()
-                        .flat_map(|frame| frame.iter()),
-                );
-                self.commands.send(self.command_sequence, command);
-                self.command_sequence = self.command_sequence.wrapping_add(1);
+                let (number, frame) = self.encoder.frame(&command);
+                line.down.extend(frame);
+                self.commands.send(Received { sequence: number, message: command });
+            }
+            for byte in self.plant.line_bytes() {
+                line.down.push_back(byte);
+                if let Some(Ok(command)) = self.sent.push::<Down>(byte) {
+                    self.commands.send(command);
+                }
             }
         }
         self.mishaps.happen(scan, session, stop.at, &mut self.flash, host);

@@ -1,6 +1,7 @@
 //! What the wearer wants, and what somebody types.
 
 use serde::Deserialize;
+use tenax_hal_shim::behaviour::Behaviour;
 use tenax_hal_shim::setting::SettingId;
 use toml::Spanned;
 
@@ -38,10 +39,10 @@ pub struct Muscle {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "String")]
 pub enum CommandKind {
-    /// A stroke begins.
-    StrokeBegin,
-    /// A stroke ends.
-    StrokeEnd,
+    /// A behaviour begins; a turn is by `value` degrees.
+    Begin(Behaviour),
+    /// The behaviour that goes on ends.
+    End,
     /// The force sensor is zeroed.
     Zero,
     /// The hand is closed with `duty_permille` for `for_s`.
@@ -63,8 +64,12 @@ impl TryFrom<String> for CommandKind {
             SettingId::by_name(name).map(Self::Set)
         };
         Ok(match kind.as_str() {
-            "stroke-begin" => Self::StrokeBegin,
-            "stroke-end" => Self::StrokeEnd,
+            "stroke-begin" => Self::Begin(Behaviour::Stroke),
+            "grasp-gently" => Self::Begin(Behaviour::GentleGrasp),
+            "hold" => Self::Begin(Behaviour::Hold),
+            "hand-over" => Self::Begin(Behaviour::HandOver),
+            "turn" => Self::Begin(Behaviour::Turn { by_ddeg: 0 }),
+            "stroke-end" | "end" => Self::End,
             "zero" => Self::Zero,
             "close" => Self::Close,
             "open" => Self::Open,
@@ -72,8 +77,8 @@ impl TryFrom<String> for CommandKind {
             _ => setting().ok_or_else(|| {
                 let settings = SettingId::ALL.map(|id| format!("set-{}", id.row().name)).join(", ");
                 format!(
-                    "kind = \"{kind}\" is no command; allowed: stroke-begin, stroke-end, zero, close, open, consent, \
-                     {settings}"
+                    "kind = \"{kind}\" is no command; allowed: stroke-begin, stroke-end, grasp-gently, hold, \
+                     hand-over, turn, end, zero, close, open, consent, {settings}"
                 )
             })?,
         })

@@ -3,7 +3,8 @@
 use serde::Deserialize;
 
 use crate::file::quantity::{
-    DeadTime, Duration, Gain, Hertz, Lever, Micrometres, Millimetres, Milliseconds, Millivolts, Part, Speed,
+    DeadTime, Degrees, Duration, Gain, Hertz, Instant, Lever, Micrometres, Millimetres, Millinewtons,
+    Milliseconds, Millivolts, Part, Speed,
 };
 
 /// The PVDF films. Voltages are at the film; the front end multiplies them by `gain`.
@@ -125,6 +126,24 @@ pub struct Array {
     pub specimen: Option<u32>,
     /// Noise of a reading, rms.
     pub noise_mv: Millivolts,
+}
+
+/// The camera behind a clear skin, as the summary that its computer sends.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Skin {
+    /// Pictures a second.
+    pub rate_hz: Hertz,
+    /// From the instant of a picture until its summary has come over the serial line.
+    pub delay_ms: DeadTime,
+    /// Noise of a marker's force, rms.
+    pub force_noise_mn: Millinewtons,
+    /// Noise of the object's angle, rms.
+    pub angle_noise_deg: Degrees,
+    /// Points that move though nothing does, rms, in 1/10,000 of the picture.
+    pub speckle_e4: Gain,
+    /// When it goes dark: covered, or its cable is pulled.
+    pub dark_from_s: Option<Instant>,
 }
 
 /// The camera that watches hand and object.

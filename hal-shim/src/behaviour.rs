@@ -1,0 +1,99 @@
+//! Behaviours: what the hand can be asked to do above the reflex (FingerVision 2017, section II), and what a camera behind
+//! a clear skin tells them.
+
+use serde::{Deserialize, Serialize};
+
+/// What the hand is asked to do. It goes on until it ends by itself, by [`Down::End`](crate::wire::Down::End), or because
+/// the wearer's muscles take over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Behaviour {
+    /// Somebody strokes the finger over a surface to measure its friction: slip is expected and answered by nothing.
+    Stroke,
+    /// Close until the object is felt, and no further (section II-A).
+    GentleGrasp,
+    /// Close by a small movement whenever the object slips (section II-B).
+    Hold,
+    /// Let go as soon as somebody pulls at the object (section II-C).
+    HandOver,
+    /// Turn the object in the hand by loosening and tightening the grasp (section II-D).
+    Turn {
+        /// By this angle, tenths of a degree, in the camera's picture.
+        by_ddeg: i16,
+    },
+}
+
+impl Behaviour {
+    /// What it is called where a person reads it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Stroke => "stroke",
+            Self::GentleGrasp => "gentle grasp",
+            Self::Hold => "hold",
+            Self::HandOver => "hand over",
+            Self::Turn { .. } => "turn",
+        }
+    }
+}
+
+/// How a behaviour ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Ending {
+    /// It did what it was asked for.
+    Done,
+    /// By command.
+    Stopped,
+    /// A muscle became active, or a drive command came.
+    TakenOver,
+    /// A sensor that it needs gives no number, or the camera is silent.
+    SensorLost,
+    /// It has taken longer than it may.
+    TooLong,
+    /// The force ceiling is reached.
+    Ceiling,
+    /// Nothing is held any more.
+    Dropped,
+    /// The line may not command any more: what opens the hand needs consent as long as it lasts.
+    NotArmed,
+}
+
+impl Ending {
+    /// What a person reads.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Done => "done",
+            Self::Stopped => "stopped by command",
+            Self::TakenOver => "taken over",
+            Self::SensorLost => "gave up: a sensor that it needs is lost",
+            Self::TooLong => "gave up: it took too long",
+            Self::Ceiling => "gave up: the force ceiling is reached",
+            Self::Dropped => "gave up: nothing is held any more",
+            Self::NotArmed => "gave up: the consent is over",
+        }
+    }
+}
+
+/// Markers in one view at most.
+pub const MARKERS: usize = 24;
+/// The normal force of a marker that is not tracked.
+pub const UNTRACKED: u8 = u8::MAX;
+/// One step of a marker's normal force, mN.
+pub const NORMAL_STEP_MN: i32 = 10;
+/// One step of a marker's shear, mN.
+pub const SHEAR_STEP_MN: i32 = 20;
+
+/// What the camera behind the skin saw in one picture (FingerVision 2017, sections III and IV).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CameraView {
+    /// Age of the picture when this is sent, ms.
+    pub age_ms: u16,
+    /// Moving points on the object, of the whole picture, in 1/10,000.
+    pub moving_e4: u16,
+    /// The object's orientation, tenths of a degree. None while it is out of view, or partly.
+    pub angle_ddeg: Option<i16>,
+    /// Normal force of each marker, in steps of [`NORMAL_STEP_MN`]; [`UNTRACKED`] of those that are not tracked.
+    pub normal: [u8; MARKERS],
+    /// Shear of each marker along the finger, in steps of [`SHEAR_STEP_MN`].
+    pub shear: [i8; MARKERS],
+}

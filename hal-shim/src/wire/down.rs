@@ -1,0 +1,94 @@
+//! To the board: commands.
+
+use serde::{Deserialize, Serialize};
+
+use super::Setting;
+use crate::behaviour::{Behaviour, CameraView};
+use crate::motor::MotorDrive;
+use crate::words::Codes;
+
+/// The longest that one [`Down::Drive`] may hold, ms: a lost link stops the motor after that.
+pub const DRIVE_HOLD_MAX_MS: u16 = 250;
+
+/// To the board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Down {
+    /// Answer with [`Answer::Done`](super::Answer::Done).
+    Ping,
+    /// Drive the motor for `hold_ms`, at most [`DRIVE_HOLD_MAX_MS`]; sent again and again while a key is held.
+    Drive {
+        /// How.
+        drive: MotorDrive,
+        /// For how long, ms.
+        hold_ms: u16,
+    },
+    /// Change a setting.
+    Set(Setting),
+    /// Begin a behaviour. Another one that goes on ends.
+    Begin(Behaviour),
+    /// Take the force sensor's readings as zero. Refused while the finger is loaded.
+    Zero,
+    /// Answer with [`Answer::Samples`](super::Answer::Samples).
+    Samples,
+    /// A teacher's picture: what the object and the hand do (v1, v2). Some 30 times a second.
+    Teach {
+        /// Relative motion and direction.
+        codes: Codes,
+        /// Age of the picture that they were made from, ms.
+        age_ms: u16,
+    },
+    /// Answer with [`Answer::Network`](super::Answer::Network).
+    Network,
+    /// Forget all that the network has learned.
+    Forget,
+    /// Save what the network has learned now, and not when nothing moves any more.
+    Save,
+    /// Answer with the [`Answer::Setting`](super::Answer::Setting) of this number.
+    Get(u8),
+    /// Answer with the [`Answer::Settings`](super::Answer::Settings) from this number on, in the order of their numbers.
+    Settings(u8),
+    /// Answer with an [`Answer::Nonce`](super::Answer::Nonce).
+    Hello,
+    /// Open a session with the last [`Answer::Nonce`](super::Answer::Nonce). From here on the numbers of frames only rise.
+    Open {
+        /// That number.
+        nonce: u32,
+    },
+    /// Calibrate the myosensors to the wearer: three prompts of 5 s come up as [`EventKind::Calibration`](super::EventKind::Calibration), then the result.
+    /// Meanwhile the muscles move nothing. Refused while something is held.
+    CalibrateEmg,
+    /// Answer with [`Answer::About`](super::Answer::About).
+    About,
+    /// Send more than usual, from now on for `hold_s` seconds; sent again while it is wanted. Each one replaces the one before.
+    Stream {
+        /// [`Up::Raw`](super::Up::Raw): every frame as it was sampled, and [`Up::Taken`](super::Up::Taken): every command.
+        raw: bool,
+        /// [`Up::Senses`](super::Up::Senses).
+        senses: bool,
+        /// For how long, s. 0 ends it.
+        hold_s: u16,
+    },
+    /// End the behaviour that goes on.
+    End,
+    /// What the camera behind the skin saw. 30 to 63 times a second.
+    View(CameraView),
+}
+
+impl Down {
+    /// Whether it only reads: answered without session and consent.
+    #[must_use]
+    pub const fn reads(&self) -> bool {
+        matches!(
+            self,
+            Self::Ping
+                | Self::Samples
+                | Self::Network
+                | Self::Get(_)
+                | Self::Settings(_)
+                | Self::Hello
+                | Self::Open { .. }
+                | Self::About
+                | Self::Stream { .. }
+        )
+    }
+}

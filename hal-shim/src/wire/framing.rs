@@ -1,0 +1,113 @@
+//! Messages to bytes and back: the frames of the serial line, and a receiver that survives anything on it.
+
+use crc::{CRC_32_ISO_HDLC, Crc};
+use postcard::de_flavors::crc::from_bytes_u32;
+use postcard::ser_flavors::{Cobs, Flavor, Slice, crc::CrcModifier};
+use serde::{Serialize, de::DeserializeOwned};
+
+use super::{FRAME_MAX, VERSION};
+
+static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+
+/// A frame's contents.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Received<T> {
+    /// The sender's sequence number.
+    pub sequence: u16,
+    /// The message.
+    pub message: T,
+}
+
+/// Why a frame was skipped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BadFrame {
+    /// Not COBS, or its CRC is wrong, or it is no message.
+    Garbled,
+    /// Of another version of this protocol.
+    Version(u8),
+    /// Longer than [`FRAME_MAX`].
+    TooLong,
+    /// There was no time for it: see [`Receiver::push_if`].
+    Skipped,
+}
+
+/// Writes `message` as one frame into `buffer`; returns the frame, its zero byte included.
+///
+/// None if the buffer is too small; [`FRAME_MAX`] bytes are always enough.
+pub fn encode<'a, T: Serialize>(sequence: u16, message: &T, buffer: &'a mut [u8]) -> Option<&'a mut [u8]> {
+    let cobs = Cobs::try_new(Slice::new(buffer)).ok()?;
+    let mut serializer = postcard::Serializer { output: CrcModifier::new(cobs, CRC.digest()) };
+    (VERSION, sequence, message).serialize(&mut serializer).ok()?;
+    serializer.output.finalize().ok()
+}
+
+/// Takes bytes as they come and gives messages. Survives anything; counts nothing itself, says what it skipped.
+#[derive(Debug)]
+pub struct Receiver {
+    buffer: [u8; FRAME_MAX],
+    length: usize,
+    overlong: bool,
+}
+
+impl Default for Receiver {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Receiver {
+    /// One that has heard nothing yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { buffer: [0; FRAME_MAX], length: 0, overlong: false }
+    }
+
+    /// Takes one byte. Some when it ends a frame.
+    pub fn push<T: DeserializeOwned>(&mut self, byte: u8) -> Option<Result<Received<T>, BadFrame>> {
+        self.push_if(byte, || true)
+    }
+
+    /// Takes one byte. Some when it ends a frame, which is decoded if there is `time` for it.
+    pub fn push_if<T: DeserializeOwned>(
+        &mut self,
+        byte: u8,
+        time: impl FnOnce() -> bool,
+    ) -> Option<Result<Received<T>, BadFrame>> {
+        if byte != 0 {
+            match self.buffer.get_mut(self.length) {
+                Some(slot) => {
+                    *slot = byte;
+                    self.length += 1;
+                }
+                None => self.overlong = true,
+            }
+            return None;
+        }
+        let (length, overlong) = (self.length, self.overlong);
+        self.length = 0;
+        self.overlong = false;
+        if overlong {
+            return Some(Err(BadFrame::TooLong));
+        }
+        // A zero byte on its own is a sender clearing its throat.
+        (length > 0).then(|| if time() { decode(&mut self.buffer[..length]) } else { Err(BadFrame::Skipped) })
+    }
+}
+
+fn decode<T: DeserializeOwned>(bytes: &mut [u8]) -> Result<Received<T>, BadFrame> {
+    let length = cobs::decode_in_place(bytes).map_err(|_| BadFrame::Garbled)?;
+    let bytes = &bytes[..length];
+    let parsed = from_bytes_u32::<(u8, u16, T)>(bytes, CRC.digest());
+    match parsed {
+        Ok((VERSION, sequence, message)) => Ok(Received { sequence, message }),
+        Ok((version, ..)) => Err(BadFrame::Version(version)),
+        // A message of another version need not parse, but its CRC still covers its version byte.
+        Err(_) => match bytes.split_last_chunk::<4>() {
+            Some((body, crc)) if CRC.checksum(body) == u32::from_le_bytes(*crc) => match body.first() {
+                Some(&version) if version != VERSION => Err(BadFrame::Version(version)),
+                _ => Err(BadFrame::Garbled),
+            },
+            _ => Err(BadFrame::Garbled),
+        },
+    }
+}

@@ -1,0 +1,111 @@
+//! What was sampled, frame by frame, for whoever records it: enough to replay every decision bit for bit.
+//!
+//! Five frames go up in a message, 25 bytes each:
+//!
+//! | bytes | what |
+//! |---|---|
+//! | 0 to 20 | the twelve films, 14 bits each, the first in the lowest bits; four take seven bytes, little-endian |
+//! | 21 to 24 | little-endian: switch A (bits 13..0), switch B (bits 27..14), bit 28: the frame is valid |
+
+use serde::{Deserialize, Serialize};
+
+use crate::channel::{PVDF_COUNT, SAMPLE_MAX};
+use crate::frame::Frame;
+
+/// Frames in a message: a divisor of those in a slow frame.
+pub const FRAMES_PER_RAW: usize = 5;
+/// Bytes of a frame.
+const BYTES: usize = 25;
+const BITS: u32 = 14;
+const VALID: u32 = 1 << 28;
+
+/// Some frames, one after the other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Raw {
+    /// Sequence number of the first.
+    pub first: u32,
+    packed: [[u8; BYTES]; FRAMES_PER_RAW],
+}
+
+impl Raw {
+    /// Puts a frame in its place, which its number says.
+    pub fn put(&mut self, frame: &Frame) {
+        let place = frame.sequence as usize % FRAMES_PER_RAW;
+        self.first = frame.sequence.wrapping_sub(place as u32);
+        self.packed[place] = pack(frame);
+    }
+
+    /// The frames.
+    #[must_use]
+    pub fn frames(&self) -> [Frame; FRAMES_PER_RAW] {
+        core::array::from_fn(|place| unpack(self.first.wrapping_add(place as u32), &self.packed[place]))
+    }
+}
+
+fn pack(frame: &Frame) -> [u8; BYTES] {
+    let mut bytes = [0; BYTES];
+    for (bytes, films) in bytes.as_chunks_mut::<7>().0.iter_mut().zip(frame.pvdf.as_chunks::<4>().0) {
+        let word = films.iter().rev().fold(0, |word, &film| word << BITS | u64::from(film & SAMPLE_MAX));
+        bytes.copy_from_slice(&word.to_le_bytes()[..7]);
+    }
+    let [a, b] = [frame.switch_a, frame.switch_b].map(|sample| u32::from(sample & SAMPLE_MAX));
+    let word = a | b << BITS | if frame.valid { VALID } else { 0 };
+    bytes[BYTES - 4..].copy_from_slice(&word.to_le_bytes());
+    bytes
+}
+
+fn unpack(sequence: u32, bytes: &[u8; BYTES]) -> Frame {
+    let mut pvdf = [0; PVDF_COUNT];
+    for (films, bytes) in pvdf.as_chunks_mut::<4>().0.iter_mut().zip(bytes.as_chunks::<7>().0) {
+        let mut word = [0; 8];
+        word[..7].copy_from_slice(bytes);
+        let word = u64::from_le_bytes(word);
+        *films = [0, 1, 2, 3].map(|n| (word >> (n * BITS)) as u16 & SAMPLE_MAX);
+    }
+    let mut word = [0; 4];
+    word.copy_from_slice(&bytes[BYTES - 4..]);
+    let word = u32::from_le_bytes(word);
+    Frame {
+        sequence,
+        valid: word & VALID != 0,
+        pvdf,
+        switch_a: word as u16 & SAMPLE_MAX,
+        switch_b: (word >> BITS) as u16 & SAMPLE_MAX,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_frame_survives_its_bytes() {
+        let mut state = 1_u32;
+        let mut sample = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 16) as u16 & SAMPLE_MAX
+        };
+        for round in 0..1_000 {
+            let mut raw = Raw::default();
+            let frames: [Frame; FRAMES_PER_RAW] = core::array::from_fn(|place| match round {
+                0 => Frame::lost(place as u32),
+                1 => Frame {
+                    pvdf: [SAMPLE_MAX; PVDF_COUNT],
+                    switch_a: SAMPLE_MAX,
+                    switch_b: SAMPLE_MAX,
+                    valid: true,
+                    sequence: place as u32,
+                },
+                _ => Frame {
+                    pvdf: core::array::from_fn(|_| sample()),
+                    switch_a: sample(),
+                    switch_b: sample(),
+                    valid: sample() % 2 == 0,
+                    sequence: round * FRAMES_PER_RAW as u32 + place as u32,
+                },
+            });
+            frames.iter().for_each(|frame| raw.put(frame));
+            assert_eq!(raw.frames(), frames);
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! What goes up 80 times a second: everything that a slow frame (12.5 ms) decided; and what the network knows.
+
+use heapless::Vec;
+use serde::{Deserialize, Serialize};
+
+use super::TickRecord;
+use crate::behaviour::Behaviour;
+use crate::channel::{FRAMES_PER_SLOW_FRAME, PVDF_COUNT, STRAIN_COUNT};
+use crate::detector::{DetectorId, Evidence};
+use crate::words::{Codes, GripMode, Line, NoLesson};
+
+/// Inputs of the network: films, then strain gauges.
+pub const RECEPTORS: usize = PVDF_COUNT + STRAIN_COUNT;
+/// Outputs of the network: relative motion (o1) and direction (o2).
+pub const NETWORK_OUTPUTS: usize = 2;
+
+/// The force sensor's readings of a slow frame (Prosthesis, section 4).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Forces {
+    /// The paper's Fn, mN: see `tenax_logic::forces` for what it is not.
+    pub fn_mn: i32,
+    /// The load, mN: the sum of the quadrants. What is decided by a force is decided by this.
+    pub load_mn: i32,
+    /// Shear along x, mN.
+    pub fx_mn: i32,
+    /// Shear along y, mN.
+    pub fy_mn: i32,
+    /// Shear, mN.
+    pub ft_mn: i32,
+    /// Ft/Fn, per mille. None while the finger is not loaded enough for the ratio to mean anything.
+    pub ratio_permille: Option<u16>,
+}
+
+/// Detectors that a slow frame has room for.
+pub const DETECTORS_MAX: usize = 8;
+
+/// Everything a slow frame (12.5 ms) decided.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Slow {
+    /// Sequence number of its last frame.
+    pub frame: u32,
+    /// Its ticks.
+    pub ticks: [TickRecord; FRAMES_PER_SLOW_FRAME as usize],
+    /// The mode after its last tick.
+    pub mode: GripMode,
+    /// Forces, None while the force sensor gives no number.
+    pub forces: Option<Forces>,
+    /// The S2 in force, per mille.
+    pub s2_permille: u16,
+    /// The flexor's envelope above rest, mV. None while the sensor gives no number.
+    pub flexor_mv: Option<i16>,
+    /// The extensor's.
+    pub extensor_mv: Option<i16>,
+    /// Whether a myosensor is active, its hold time included.
+    pub wearer_active: bool,
+    /// What the network is learning, None while nothing.
+    pub lesson: Option<Codes>,
+    /// What each detector concluded last, believed or not.
+    pub evidence: Vec<(DetectorId, Evidence), DETECTORS_MAX>,
+    /// Checksum of every valid sample that the slow frame's ticks were given: the two ends agree on the input too.
+    pub samples_sum: u32,
+    /// What the serial line may do.
+    pub line: Line,
+    /// The behaviour that goes on.
+    pub behaviour: Option<Behaviour>,
+}
+
+/// What the network knows and feels (Tada 2006, equations 3 to 6).
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct NetworkState {
+    /// Sequence number of the last frame in it.
+    pub frame: u32,
+    /// Weights, a row for each output; 2^27 is 1.
+    pub weights: [[i32; RECEPTORS]; NETWORK_OUTPUTS],
+    /// Activations, 2^14 is 1: films 0 to 1, strain gauges -1 to 1.
+    pub activations: [i16; RECEPTORS],
+    /// Updates of the weights since the network knew nothing.
+    pub updates: u32,
+    /// Age of the teacher's newest picture, ms; None before the first.
+    pub teacher_age_ms: Option<u16>,
+    /// Why it is not learning, if it is not.
+    pub no_lesson: Option<NoLesson>,
+}

@@ -1,0 +1,134 @@
+//! From the board: what it counts, what happens once, and the list of all messages.
+
+use serde::{Deserialize, Serialize};
+
+use super::{About, Answer, Down, Raw, Restored, Senses, Slow};
+use crate::behaviour::{Behaviour, Ending};
+use crate::words::{Calibration, Cause, Consent, Fault, GripMode, Kept};
+
+/// What the board counted since it was switched on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Counters {
+    /// Frames taken.
+    pub frames: u32,
+    /// Frames lost.
+    pub frames_lost: u32,
+    /// Times the converter or its DMA overran and was restarted.
+    pub overruns: u32,
+    /// Control ticks run.
+    pub ticks: u32,
+    /// Ticks that ended after the next frame had begun.
+    pub ticks_late: u32,
+    /// Telemetry messages dropped so as not to delay control.
+    pub telemetry_dropped: u32,
+    /// Frames received that were no valid message.
+    pub bad_frames: u32,
+    /// Frames received faster than commands are taken: not looked at, not answered.
+    pub commands_skipped: u32,
+    /// The longest time that a frame took control, from its last code to the end of everything it caused, us.
+    pub control_us_max: u32,
+    /// The part of the core's time that control took since the counters before, per mille. What the serial line's tasks take
+    /// is not in it.
+    pub control_permille: u16,
+}
+
+/// Something that happened once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Event {
+    /// Sequence number of the frame in which it happened.
+    pub frame: u32,
+    /// What.
+    pub kind: EventKind,
+}
+
+/// What can happen once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum EventKind {
+    /// The mode changed.
+    Mode {
+        /// From.
+        from: GripMode,
+        /// To.
+        to: GripMode,
+        /// Why.
+        cause: Cause,
+    },
+    /// Something went wrong, or came back.
+    Fault(Fault),
+    /// A stroke ended with this estimate, from which S2 follows.
+    Stroke {
+        /// The peak of Ft/Fn before it slid, per mille.
+        mu_s_permille: u16,
+        /// The new S2, per mille.
+        s2_permille: u16,
+    },
+    /// More events happened in one tick than are kept; this many were lost.
+    EventsLost(u16),
+    /// Somebody at the hand consented: the line's commands are carried out for a while.
+    Armed(Consent),
+    /// The consent is over.
+    Disarmed,
+    /// From here on the line's commands are carried out without consent (true), or with it only (false). Told at the start
+    /// if it is so, and when the setting changes.
+    LineTrusted(bool),
+    /// The calibration of the myosensors goes on, or is over.
+    Calibration(Calibration),
+    /// From here on the reflex works without myosensors (true), or only with both (false). Told at the start if it is so, and
+    /// when the setting changes.
+    NoWearer(bool),
+    /// A behaviour began (None), or ended.
+    Behaviour(Behaviour, Option<Ending>),
+}
+
+/// From the board.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[allow(clippy::large_enum_variant, reason = "there is no heap to put the large one on")]
+pub enum Up {
+    /// The board has started.
+    Hello {
+        /// Samples a second on every direct pin.
+        frame_hz: u16,
+        /// Why it started, if not because it was switched on.
+        after: Option<Fault>,
+    },
+    /// A slow frame.
+    Slow(Slow),
+    /// Something that happened once.
+    Event(Event),
+    /// The counters, ten times a second.
+    Counters(Counters),
+    /// A command was carried out, or was not.
+    Answer {
+        /// Sequence number of the command's frame.
+        of: u16,
+        /// Sequence number of the last frame that was taken before the command.
+        frame: u32,
+        /// The answer.
+        answer: Answer,
+    },
+    /// This outlives a power cut from now on.
+    Saved {
+        /// Sequence number of the last frame before.
+        frame: u32,
+        /// What.
+        kept: Kept,
+    },
+    /// Who the board is; once at the start, after the hello.
+    About(About),
+    /// At the start, if the setting `stream-at-start-flag` is 1: what was taken up from flash. With it and every
+    /// [`Raw`] and [`Taken`](Self::Taken) from then on, the decisions can be repeated.
+    Restored(Restored),
+    /// Frames as they were sampled: see [`Down::Stream`](super::Down::Stream).
+    Raw(Raw),
+    /// What every sensor reads: see [`Down::Stream`](super::Down::Stream).
+    Senses(Senses),
+    /// A command, before its answer, while frames are streamed.
+    Taken {
+        /// Sequence number of the frame before whose tick it was taken.
+        before: u32,
+        /// Sequence number of the command's frame.
+        of: u16,
+        /// The command.
+        command: Down,
+    },
+}

@@ -1,0 +1,221 @@
+//! What behaviours may not do: silence the reflex, drive against the wearer, open by a fault.
+
+use tenax_hal_shim::behaviour::{Behaviour, CameraView, Ending, MARKERS};
+use tenax_hal_shim::channel::{ARRAY, ARRAY_COUNT, FSR, PVDF};
+use tenax_hal_shim::frame::Frame;
+use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::setting::SettingId;
+use tenax_hal_shim::wire::{Down, EventKind, Refusal, Setting};
+use tenax_hal_shim::words::DriveSource;
+use tenax_host_tests::Bench;
+
+fn view(moving_e4: u16, normal: u8, shear: i8) -> Down {
+    Down::View(CameraView {
+        age_ms: 30,
+        moving_e4,
+        angle_ddeg: Some(0),
+        normal: [normal; MARKERS],
+        shear: [shear; MARKERS],
+    })
+}
+
+/// Runs for so long, with a picture 60 times a second.
+fn watch(bench: &mut Bench, frames: u32, picture: &Down) -> Vec<MotorDrive> {
+    let mut drives = Vec::new();
+    for n in 0..frames {
+        if n % 33 == 0 {
+            bench.fingertip.command(picture).expect("a bench trusts its line");
+        }
+        drives.push(bench.step());
+    }
+    drives
+}
+
+fn ending(bench: &Bench) -> Option<Ending> {
+    bench.events.iter().rev().find_map(|event| match event.kind {
+        EventKind::Behaviour(_, ending) => ending,
+        _ => None,
+    })
+}
+
+fn opens(drives: &[MotorDrive]) -> bool {
+    drives.iter().any(|drive| drive.opens())
+}
+
+fn begin(bench: &mut Bench, what: Behaviour) {
+    bench.fingertip.command(&Down::Begin(what)).expect("it may begin");
+}
+
+#[test]
+fn a_hand_over_opens_for_a_pull_and_not_without() {
+    for (pulled, released) in [(0, false), (20, true)] {
+        let mut bench = Bench::holding(1);
+        watch(&mut bench, 200, &view(0, 20, 10));
+        begin(&mut bench, Behaviour::HandOver);
+        assert!(!opens(&watch(&mut bench, 1_000, &view(0, 20, 10))), "nobody pulls");
+        let drives = watch(&mut bench, 1_000, &view(0, 20, 10 + pulled));
+        assert_eq!(opens(&drives), released);
+        assert_eq!(ending(&bench) == Some(Ending::Done), released);
+    }
+}
+
+/// Without a camera, by the taxels.
+#[test]
+fn taxels_feel_a_pull_where_no_camera_does() {
+    let mut bench = Bench::holding(2);
+    bench.press(300.0);
+    bench.run(200);
+    begin(&mut bench, Behaviour::HandOver);
+    assert!(!opens(&bench.run(1_000)));
+    for taxel in 0..ARRAY_COUNT / 2 {
+        bench.pins_mv[ARRAY + taxel] += 60.0;
+        bench.pins_mv[ARRAY + ARRAY_COUNT / 2 + taxel] -= 60.0;
+    }
+    assert!(opens(&bench.run(400)));
+}
+
+/// Each fault during a hand-over: nothing opens, and what cannot go on ends.
+#[test]
+fn no_fault_opens_a_hand_that_waits_to_hand_over() {
+    type Break = fn(&mut Bench);
+    let faults: [(&str, Break); 7] = [
+        ("a film hums", |bench| bench.pins_mv[PVDF] = 3_300.0),
+        ("every film is dead", |bench| (PVDF..PVDF + 12).for_each(|film| bench.pins_mv[film] = 0.0)),
+        ("every film shakes", |bench| bench.vibration_mv = 800.0),
+        ("a taxel is dead", |bench| bench.pins_mv[ARRAY] = 0.0),
+        ("a taxel is shorted", |bench| bench.pins_mv[ARRAY + 3] = 3_300.0),
+        ("the array is dead", |bench| (ARRAY..ARRAY + ARRAY_COUNT).for_each(|n| bench.pins_mv[n] = 0.0)),
+        ("a quadrant is dead", |bench| bench.pins_mv[FSR + 1] = 0.0),
+    ];
+    for (name, fails) in faults {
+        let mut bench = Bench::holding(3);
+        bench.press(300.0);
+        bench.run(200);
+        begin(&mut bench, Behaviour::HandOver);
+        bench.run(600);
+        fails(&mut bench);
+        assert!(!opens(&bench.run(6_000)), "{name}");
+    }
+}
+
+#[test]
+fn a_camera_that_goes_dark_ends_what_it_began_and_the_hand_holds_on() {
+    for what in [Behaviour::HandOver, Behaviour::GentleGrasp, Behaviour::Turn { by_ddeg: 200 }] {
+        let mut bench = Bench::holding(4);
+        if what == Behaviour::GentleGrasp {
+            bench.load(0.0, 0.0);
+            bench.run(400);
+        }
+        watch(&mut bench, 200, &view(0, if what == Behaviour::GentleGrasp { 0 } else { 20 }, 0));
+        begin(&mut bench, what);
+        bench.run(300);
+        let drives = bench.run(1_000);
+        assert_eq!(ending(&bench), Some(Ending::SensorLost), "{what:?}");
+        assert!(drives[200..].iter().all(|drive| *drive == MotorDrive::Coast), "{what:?}");
+        // And its reflex is back.
+        bench.load(4.0, 0.4);
+        bench.run(600);
+        bench.vibration_mv = 800.0;
+        assert!(bench.run(400).iter().any(|drive| drive.closes()), "{what:?}");
+    }
+}
+
+#[test]
+fn holding_never_silences_the_reflex() {
+    let mut bench = Bench::holding(5);
+    begin(&mut bench, Behaviour::Hold);
+    watch(&mut bench, 400, &view(0, 20, 0));
+    assert!(!bench.run(200).iter().any(|drive| drive.closes()));
+    bench.vibration_mv = 800.0;
+    bench.slows.clear();
+    watch(&mut bench, 400, &view(0, 20, 0));
+    let by_reflex = |bench: &Bench| {
+        bench.slows.iter().flat_map(|slow| slow.ticks).any(|tick| tick.source == DriveSource::Reflex)
+    };
+    assert!(by_reflex(&bench));
+}
+
+#[test]
+fn holding_closes_a_little_for_what_only_the_camera_sees() {
+    for (moving_e4, closes) in [(5, false), (60, true)] {
+        let mut bench = Bench::new(6);
+        bench.run(600);
+        watch(&mut bench, 100, &view(0, 1, 0));
+        begin(&mut bench, Behaviour::Hold);
+        let drives = watch(&mut bench, 100, &view(moving_e4, 1, 0));
+        assert_eq!(drives.iter().any(|drive| drive.closes()), closes);
+    }
+}
+
+#[test]
+fn the_wearer_ends_every_behaviour() {
+    for what in [
+        Behaviour::Stroke,
+        Behaviour::GentleGrasp,
+        Behaviour::Hold,
+        Behaviour::HandOver,
+        Behaviour::Turn { by_ddeg: -200 },
+    ] {
+        let mut bench = Bench::holding(7);
+        watch(&mut bench, 100, &view(0, 20, 0));
+        begin(&mut bench, what);
+        if bench.fingertip.behaviour().is_none() {
+            continue;
+        }
+        bench.step();
+        bench.muscles(900.0, 50.0);
+        bench.run(60);
+        assert_eq!(bench.fingertip.behaviour(), None, "{what:?}");
+        assert_eq!(bench.fingertip.command(&Down::Begin(what)), Err(Refusal::WearerActive));
+        bench.slows.clear();
+        watch(&mut bench, 200, &view(200, 20, 100));
+        let mut ticks = bench.slows.iter().flat_map(|slow| slow.ticks);
+        assert!(ticks.all(|tick| tick.source != DriveSource::Behaviour), "{what:?}");
+    }
+}
+
+#[test]
+fn what_opens_needs_consent_as_long_as_it_lasts() {
+    for revoked in [false, true] {
+        let mut bench = Bench::holding(8);
+        bench.press(300.0);
+        bench.run(200);
+        begin(&mut bench, Behaviour::HandOver);
+        if revoked {
+            let revoke = Down::Set(Setting { id: SettingId::LineTrusted as u8, value: 0 });
+            bench.fingertip.command(&revoke).expect("a trusted line may give it back");
+        }
+        // What consent there was at power-up is over long before.
+        bench.run(22_000);
+        (0..ARRAY_COUNT).for_each(|taxel| bench.pins_mv[ARRAY + taxel] += 200.0);
+        assert_eq!(opens(&bench.run(2_000)), !revoked);
+        assert_eq!(ending(&bench), Some(if revoked { Ending::NotArmed } else { Ending::Done }));
+    }
+}
+
+#[test]
+fn a_turn_that_falls_is_the_reflexs() {
+    let mut bench = Bench::holding(9);
+    watch(&mut bench, 100, &view(0, 20, 0));
+    begin(&mut bench, Behaviour::Turn { by_ddeg: 200 });
+    watch(&mut bench, 200, &view(0, 20, 0));
+    bench.vibration_mv = 800.0;
+    bench.slows.clear();
+    watch(&mut bench, 1_400, &view(200, 20, 0));
+    let ticks = || bench.slows.iter().flat_map(|slow| slow.ticks);
+    assert!(ticks().any(|tick| tick.source == DriveSource::Reflex));
+    assert!(ticks().all(|tick| !tick.drive.opens()), "it slips: nothing is loosened");
+}
+
+#[test]
+fn lost_frames_move_nothing() {
+    let mut bench = Bench::new(10);
+    bench.run(600);
+    watch(&mut bench, 100, &view(0, 0, 0));
+    begin(&mut bench, Behaviour::GentleGrasp);
+    assert!(watch(&mut bench, 100, &view(0, 0, 0)).iter().any(|drive| drive.closes()), "it grasps");
+    for _ in 0..200 {
+        let lost = Frame::lost(bench.frame().sequence);
+        assert_eq!(bench.give(&lost), MotorDrive::Coast);
+    }
+}

@@ -1,0 +1,270 @@
+//! `tenax vision`: cameras behind the skin.
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Duration;
+
+use anyhow::{Context, bail};
+use tenax_hal_shim::wire::Down;
+
+use super::folder;
+use super::format::Format;
+use super::out;
+use crate::link::{Client, Outbox, Target};
+use crate::vision::calibrate::{self, Skin};
+use crate::vision::film::{self, Plan};
+use crate::vision::source::Source;
+use crate::vision::told::Gains;
+use crate::vision::{scored, told};
+
+const EXAMPLES: &str = "\
+Examples:
+  tenax vision                                         drawn scenes, scored against what they truly show
+  tenax vision --report json                           for programs
+  tenax vision --video skin.m4v --out seen --overlay-every 50
+                                                       markers.csv, object.csv and overlays of a video
+  tenax vision --device /dev/video0 --port /dev/ttyACM0
+                                                       a board's behaviours feel with a camera; --teach: it learns slip from it
+  tenax vision calibrate --loads loads.csv --leave-out 584
+                                                       force from marker moves, tried on a mass that was left out
+  tenax vision calibrate --loads loads.csv --try-loads others.csv";
+
+/// Follow skin and object with a camera behind a clear skin.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
+pub struct Args {
+    #[command(subcommand)]
+    command: Option<Command>,
+    /// A video file, which ffmpeg decodes
+    #[arg(long, value_name = "FILE", group = "source")]
+    video: Option<PathBuf>,
+    /// A folder of pictures, in the order of their names
+    #[arg(long, value_name = "FOLDER", group = "source")]
+    folder: Option<PathBuf>,
+    /// A camera of Video4Linux, such as /dev/video0
+    #[arg(long, value_name = "DEVICE", group = "source")]
+    device: Option<PathBuf>,
+    /// Pictures a second, where the source does not say it [default: 30]
+    #[arg(long, value_name = "HZ", requires = "source")]
+    rate_hz: Option<f64>,
+    /// Where markers.csv, object.csv and overlays go
+    #[arg(long, value_name = "FOLDER", requires = "source")]
+    out: Option<PathBuf>,
+    /// Draw every so many pictures, with what was made of them
+    #[arg(long, value_name = "N", default_value_t = 0, requires = "out")]
+    overlay_every: usize,
+    /// Send a board what the camera sees, for its behaviours: a port, or tcp:HOST:PORT
+    #[arg(long, value_name = "PORT", requires = "source")]
+    port: Option<Target>,
+    /// Send the teacher's words, too; without --port print them for `tenax monitor --teach`, one line a picture, and nothing
+    /// else
+    #[arg(long, requires = "source", conflicts_with = "report")]
+    teach: bool,
+    /// Normal force that a marker's move stands for, for the board, mN a px
+    #[arg(long, value_name = "MN", default_value_t = 100.0, requires = "port")]
+    normal_mn_per_px: f32,
+    /// Shear that a marker's move along the finger stands for, for the board, mN a px
+    #[arg(long, value_name = "MN", default_value_t = 40.0, requires = "port")]
+    shear_mn_per_px: f32,
+    /// Seed of the drawn scenes
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// How many sessions are drawn
+    #[arg(long, value_name = "N", default_value_t = 3)]
+    sessions: u64,
+    /// How to report
+    #[arg(long, value_enum, default_value = "text")]
+    report: Format,
+}
+
+#[derive(Debug, clap::Subcommand)]
+enum Command {
+    /// Calibrate force from the markers' moves under known loads
+    Calibrate(CalibrateArgs),
+}
+
+/// Calibrate force from the markers' moves under known loads.
+#[derive(Debug, clap::Args)]
+struct CalibrateArgs {
+    /// The table: image,mass_g,fx_n,fy_n,fz_n; pictures beside it or in its folder `loads`
+    #[arg(long, value_name = "FILE.csv")]
+    loads: PathBuf,
+    /// Leave this mass out, and try the calibration on it; may be given more than once, g
+    #[arg(long, value_name = "G")]
+    leave_out: Vec<f64>,
+    /// Another table of loads on the same skin, on which the calibration is tried
+    #[arg(long, value_name = "FILE.csv")]
+    try_loads: Option<PathBuf>,
+    /// How to report
+    #[arg(long, value_enum, default_value = "text")]
+    report: Format,
+}
+
+pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
+    if let Some(Command::Calibrate(args)) = &args.command {
+        return calibrated(args);
+    }
+    let source = match (&args.video, &args.folder, &args.device) {
+        (Some(file), ..) => Source::Video(file.clone()),
+        (_, Some(folder), _) => Source::Folder(folder.clone()),
+        (.., Some(device)) => Source::Device(device.clone()),
+        _ => return drawn(args),
+    };
+    if args.rate_hz.is_some_and(|rate| !(rate > 0.0 && rate.is_finite())) {
+        bail!("--rate-hz must be above 0");
+    }
+    let folder = args.out.as_deref().map(folder::made).transpose()?;
+    let plan = Plan { source, rate_hz: args.rate_hz, folder, overlay_every: args.overlay_every };
+    let mut line = args.port.as_ref().map(connect).transpose()?;
+    let gains = Gains { normal_mn: args.normal_mn_per_px, shear_mn: args.shear_mn_per_px };
+    let report = film::follow(&plan, |camera, summary| {
+        match &mut line {
+            Some(line) => {
+                let view = told::view(camera, summary, gains, 0).map(Down::View);
+                let words = told::teach(summary, 0).filter(|_| args.teach);
+                for command in view.into_iter().chain(words) {
+                    line.send(&command).context("cannot write to the line")?;
+                }
+            }
+            None => {
+                if let Some(words) = told::teaching(summary, 0).filter(|_| args.teach) {
+                    out::say!("{words}")?;
+                }
+            }
+        }
+        Ok(())
+    })?;
+    if args.teach && args.port.is_none() {
+        return Ok(ExitCode::SUCCESS);
+    }
+    match args.report {
+        Format::Json => out::say!("{}", serde_json::to_string_pretty(&report)?)?,
+        Format::Text => {
+            out::say!("{} pictures, {:.0} a second on one core", report.frames, report.fps_per_core)?;
+            out::say!(
+                "{} markers, {:.2} % of updates failed, longest jump {:.2} px",
+                report.markers,
+                100.0 * report.failed_share,
+                report.longest_jump_px
+            )?;
+            out::say!(
+                "an object in {:.1} % of the pictures, slip in {:.1} %; blind: {} late, {} frozen, {} covered",
+                100.0 * report.object_share,
+                100.0 * report.slip_share,
+                report.blind.late,
+                report.blind.frozen,
+                report.blind.covered
+            )?;
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// A board that listens. What it says is read and thrown away, so that its line does not fill.
+fn connect(target: &Target) -> anyhow::Result<Outbox<Box<dyn Write + Send>>> {
+    let mut client = Client::open(target)?;
+    if !client.open_session(Duration::from_secs(1))? {
+        out::note!("tenax: the board offered no session; it will not listen to the camera");
+    }
+    let outbox = client.take_outbox().context("a captured line cannot be told anything")?;
+    std::thread::spawn(move || while client.next_frame().is_ok() {});
+    Ok(outbox)
+}
+
+fn drawn(args: &Args) -> anyhow::Result<ExitCode> {
+    if args.sessions == 0 {
+        bail!("--sessions must be at least 1");
+    }
+    let report = scored::score(args.seed, args.sessions)?;
+    match args.report {
+        Format::Json => out::say!("{}", serde_json::to_string_pretty(&report)?)?,
+        Format::Text => {
+            let shown = |value: Option<f64>, scale: f64, digits: usize| {
+                value.map_or_else(|| "-".to_owned(), |value| format!("{:.*}", digits, scale * value))
+            };
+            let percent = |value| shown(value, 100.0, 2);
+            out::say!("{} sessions from seed {}, {} pictures", report.sessions, report.seed, report.frames)?;
+            out::say!(
+                "{:.0} pictures a second on one core, markers and object together",
+                report.fps_per_core
+            )?;
+            out::say!(
+                "markers: {} % calibrated, {} % of updates failed, {} px rms from the truth",
+                percent(report.markers_found),
+                percent(report.failed_share),
+                shown(report.marker_px_rms, 1.0, 3)
+            )?;
+            out::say!("direction of shear: {} degrees rms", shown(report.force_deg_rms, 1.0, 2))?;
+            out::say!(
+                "object: seen in {} % of the pictures in which it is held, in {} % of those without; angle {} degrees rms; \
+                 'out of view' said in {} % of the pictures in which a part of it is",
+                percent(report.object_seen),
+                percent(report.object_false),
+                shown(report.angle_deg_rms, 1.0, 2),
+                percent(report.cut_said)
+            )?;
+            out::say!(
+                "slip: recall {} %, false {} %, while the background moves {} %",
+                percent(report.slip.recall),
+                percent(report.slip.false_rate),
+                percent(report.slip.false_rate_moving_background)
+            )?;
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn calibrated(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
+    let skin = Skin::at_rest(&args.loads)?;
+    let samples = skin.samples(&args.loads)?;
+    let (out_of_it, learned) = calibrate::left_out(&samples, &args.leave_out);
+    if !args.leave_out.is_empty() && out_of_it.is_empty() {
+        bail!("no load of {} has one of the masses to leave out", args.loads.display());
+    }
+    let loads = calibrate::fit(&learned)?;
+    let mut scores = vec![("learned", calibrate::score(&loads, &learned))];
+    let mut tried = out_of_it;
+    if let Some(table) = &args.try_loads {
+        tried.extend(skin.samples(table)?);
+    }
+    if !tried.is_empty() {
+        scores.push(("tried", calibrate::score(&loads, &tried)));
+    }
+    if matches!(args.report, Format::Json) {
+        let scores: serde_json::Map<_, _> = scores
+            .iter()
+            .map(|(name, score)| Ok(((*name).to_owned(), serde_json::to_value(score)?)))
+            .collect::<anyhow::Result<_>>()?;
+        out::say!("{}", serde_json::to_string_pretty(&scores)?)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    out::say!("{} markers", skin.markers())?;
+    let percent =
+        |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{:.0} %", 100.0 * value));
+    for (name, score) in &scores {
+        out::say!(
+            "{name}: {} pictures, shear {:.2} N rms in x and {:.2} in z; normal force above 3 N: {} rms, {} within 15 %",
+            score.pictures,
+            score.x_rms_n,
+            score.z_rms_n,
+            percent(score.normal_rms_share),
+            percent(score.normal_within_15_percent)
+        )?;
+    }
+    if !tried.is_empty() {
+        out::say!("tried, a load a row, N:   mass_g   truth x   normal   z      estimate x   normal   z")?;
+        for (mass, truth, estimate) in calibrate::table(&loads, &tried) {
+            out::say!(
+                "{mass:34.1}{:10.2}{:9.2}{:7.2}{:16.2}{:9.2}{:7.2}",
+                truth[0],
+                truth[1],
+                truth[2],
+                estimate[0],
+                estimate[1],
+                estimate[2]
+            )?;
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}

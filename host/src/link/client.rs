@@ -1,0 +1,162 @@
+//! Both directions of a line: commands are sent, their answers waited for, and every message counted.
+
+use std::collections::VecDeque;
+use std::io::{self, ErrorKind, Read, Write};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, bail};
+use tenax_hal_shim::wire::{Answer, BadFrame, Down, Refusal, Up};
+
+use super::{Counts, Heard, Inbox, Line, Outbox, Target};
+
+/// How often a session is asked for, if somebody else on the line asks for one at the same time.
+const SESSIONS_MAX: u32 = 8;
+
+/// A client of a board.
+pub struct Client {
+    up: Box<dyn Read + Send>,
+    outbox: Option<Outbox<Box<dyn Write + Send>>>,
+    inbox: Inbox,
+    heard: VecDeque<Result<Heard, BadFrame>>,
+    /// Messages at the front of `heard` that were looked at while an answer was waited for.
+    looked_at: usize,
+}
+
+impl From<Line> for Client {
+    fn from(line: Line) -> Self {
+        Self {
+            up: line.up,
+            outbox: line.down.map(Outbox::new),
+            inbox: Inbox::default(),
+            heard: VecDeque::new(),
+            looked_at: 0,
+        }
+    }
+}
+
+impl Client {
+    /// One on the line at `target`.
+    ///
+    /// # Errors
+    /// As [`Target::open`].
+    pub fn open(target: &Target) -> anyhow::Result<Self> {
+        target.open().map(Self::from)
+    }
+
+    /// What has been counted.
+    #[must_use]
+    pub fn counts(&self) -> Counts {
+        self.inbox.counts()
+    }
+
+    /// The next message. None while there is none yet, after a tenth of a second at most.
+    ///
+    /// # Errors
+    /// If the line has ended: `UnexpectedEof` where it was closed in order.
+    pub fn next_message(&mut self) -> io::Result<Option<Heard>> {
+        Ok(self.next_frame()?.and_then(Result::ok))
+    }
+
+    /// The next message, or a frame that was none. None while nothing has come.
+    ///
+    /// # Errors
+    /// As [`next_message`](Self::next_message).
+    pub fn next_frame(&mut self) -> io::Result<Option<Result<Heard, BadFrame>>> {
+        if self.heard.is_empty() {
+            self.read()?;
+        }
+        self.looked_at = self.looked_at.saturating_sub(1);
+        Ok(self.heard.pop_front())
+    }
+
+    /// Whether commands can be sent: a captured line takes none.
+    #[must_use]
+    pub const fn can_send(&self) -> bool {
+        self.outbox.is_some()
+    }
+
+    /// Sends a command without waiting; returns its number, which its answer names.
+    ///
+    /// # Errors
+    /// If the line is a captured one, or has ended.
+    pub fn send(&mut self, command: &Down) -> anyhow::Result<u16> {
+        let Some(outbox) = &mut self.outbox else {
+            bail!("a captured line cannot be told anything: give a port, or tcp:HOST:PORT");
+        };
+        outbox.send(command).context("cannot write to the line")
+    }
+
+    /// Sends a command and returns its answer. All messages that come meanwhile, the answer too, are still given by
+    /// [`next_message`](Self::next_message). What changes something needs a session: one is opened when the board asks
+    /// for it.
+    ///
+    /// # Errors
+    /// If there is no answer in `within`, or the line has ended, or is a captured one.
+    pub fn ask(&mut self, command: &Down, within: Duration) -> anyhow::Result<Answer> {
+        let mut answer = self.ask_once(command, within)?;
+        for attempt in 1..=SESSIONS_MAX {
+            // Somebody else on the same line may have opened one of their own: then the numbers that count are theirs.
+            if !matches!(answer, Answer::Refused(Refusal::NoSession | Refusal::Replayed)) {
+                break;
+            }
+            self.open_session(within)?;
+            answer = self.ask_once(command, within)?;
+            if matches!(answer, Answer::Refused(Refusal::NoSession | Refusal::Replayed)) {
+                // Two who ask in step would void each other's sessions for ever.
+                thread::sleep(Duration::from_millis(u64::from(std::process::id() % 31 * attempt)));
+            }
+        }
+        Ok(answer)
+    }
+
+    /// Opens a session, without which the board only lets read. False if it refused.
+    ///
+    /// # Errors
+    /// As [`ask`](Self::ask).
+    pub fn open_session(&mut self, within: Duration) -> anyhow::Result<bool> {
+        let Answer::Nonce(nonce) = self.ask_once(&Down::Hello, within)? else { return Ok(false) };
+        Ok(self.ask_once(&Down::Open { nonce }, within)? == Answer::Done)
+    }
+
+    /// The sender, for a thread of its own. Nothing can be asked afterwards.
+    pub fn take_outbox(&mut self) -> Option<Outbox<Box<dyn Write + Send>>> {
+        self.outbox.take()
+    }
+
+    fn ask_once(&mut self, command: &Down, within: Duration) -> anyhow::Result<Answer> {
+        let number = self.send(command)?;
+        let began = Instant::now();
+        while began.elapsed() < within {
+            while let Some(heard) = self.heard.get(self.looked_at) {
+                self.looked_at += 1;
+                if let Ok(heard) = heard
+                    && let Up::Answer { of, answer, .. } = &heard.received.message
+                    && *of == number
+                {
+                    return Ok(answer.clone());
+                }
+            }
+            self.read().context("the line ended before the answer came")?;
+        }
+        bail!("no answer in {} s: is this a fingertip's line?", within.as_secs_f64())
+    }
+
+    fn read(&mut self) -> io::Result<()> {
+        let mut buffer = [0; 4096];
+        match self.up.read(&mut buffer) {
+            Ok(0) => Err(ErrorKind::UnexpectedEof.into()),
+            Ok(length) => {
+                self.heard.extend(buffer[..length].iter().filter_map(|&byte| self.inbox.push(byte)));
+                Ok(())
+            }
+            Err(error) if is_silence(&error) => Ok(()),
+            Err(error) => Err(error),
+        }
+    }
+}
+
+/// Whether a read failed only because nothing has come yet.
+pub fn is_silence(error: &io::Error) -> bool {
+    matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted)
+}

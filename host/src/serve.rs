@@ -1,0 +1,130 @@
+//! A running board's line for other programs, live: on a pseudo-terminal and on TCP, as a real board's on its serial port.
+//!
+//! Whatever comes up the line goes to every client, frame by frame; whatever a client sends goes down it, frame by frame,
+//! so that two who talk at once do not garble each other. It is one line: all clients see the answers to all commands.
+//! The run waits for nobody: a client that does not keep up loses whole messages, which are counted here and seen by it
+//! as gaps in their numbers.
+
+mod client;
+mod framer;
+mod hub;
+mod live;
+#[cfg(unix)]
+mod pty;
+mod tcp;
+
+use std::fmt::{self, Display};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::mpsc::sync_channel;
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+use self::client::Ends;
+use self::framer::Framer;
+use self::hub::Hub;
+use crate::board::Recorder;
+
+pub use self::live::{Live, Served};
+
+/// Frames on their way down to the board; a client that sends more waits.
+const DOWN_FRAMES: usize = 64;
+/// How long clients may take to read what is left when the run is over.
+const LAST_READ: Duration = Duration::from_millis(500);
+
+/// Where to serve.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    /// On a pseudo-terminal.
+    pub pty: bool,
+    /// A symlink to it.
+    pub at: Option<PathBuf>,
+    /// On this TCP port of 127.0.0.1; 0 is any that is free.
+    pub tcp: Option<u16>,
+}
+
+/// Who was served.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Clients.
+    pub clients: u64,
+    /// Messages that were dropped for a client that did not keep up.
+    pub dropped: u64,
+}
+
+impl Display for Tally {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { clients, dropped } = self;
+        write!(f, "{clients} clients, {dropped} messages dropped for those that did not keep up")
+    }
+}
+
+/// Serves a line. As a [`Recorder`] it hears what comes up.
+pub struct Server {
+    hub: Arc<Hub>,
+    framer: Framer,
+    places: Vec<String>,
+    doors: Vec<JoinHandle<()>>,
+}
+
+impl Server {
+    /// Begins to serve. What comes back with it goes to the board with the plant, in [`Served`]; `behind` is told once, if
+    /// at all, that the board is slower than real time, and at which part of it it runs.
+    ///
+    /// # Errors
+    /// If a place cannot be had; says which and what to do.
+    pub fn start(options: &Options, behind: fn(f64)) -> anyhow::Result<(Self, Live)> {
+        let (down, bytes) = sync_channel(DOWN_FRAMES);
+        let hub = Arc::new(Hub::default());
+        let ends = Ends { hub: Arc::clone(&hub), down };
+        let (mut places, mut doors) = (Vec::new(), Vec::new());
+        if options.pty {
+            #[cfg(unix)]
+            {
+                let pty = pty::Pty::new(options.at.as_deref())?;
+                places.extend(pty.places());
+                let ends = ends.clone();
+                doors.push(thread::spawn(move || pty.serve(&ends)));
+            }
+            #[cfg(not(unix))]
+            anyhow::bail!("this system has no pseudo-terminals: serve on TCP, with --serve-tcp PORT");
+        }
+        if let Some(port) = options.tcp {
+            let tcp = tcp::Tcp::new(port)?;
+            places.push(tcp.place()?);
+            doors.push(thread::spawn(move || tcp.serve(&ends)));
+        }
+        Ok((Self { hub, framer: Framer::default(), places, doors }, Live::new(bytes, behind)))
+    }
+
+    /// Where it serves, as `tenax monitor --port` takes it.
+    #[must_use]
+    pub fn places(&self) -> &[String] {
+        &self.places
+    }
+
+    /// Ends when every client has read what is left, or half a second later.
+    pub fn close(self) -> Tally {
+        self.hub.no_more();
+        let began = Instant::now();
+        while self.hub.writers() > 0 && began.elapsed() < LAST_READ {
+            thread::sleep(Duration::from_millis(5));
+        }
+        self.hub.close();
+        for door in self.doors {
+            // A door that panicked has said so.
+            let _ = door.join();
+        }
+        self.hub.tally()
+    }
+}
+
+impl Recorder for Server {
+    fn line(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
+            if let Some(frame) = self.framer.push(byte) {
+                self.hub.publish(&frame);
+            }
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! The line on a pseudo-terminal, where any program that knows a serial port finds it.
+//!
+//! Nobody is there while the far end is not open; what comes up meanwhile goes nowhere, as on a cable that is not plugged in.
+//! Who opens it then hears the line from the next message on, and nothing that is old.
+
+use std::fs;
+use std::io::{ErrorKind, Read};
+use std::os::unix::fs::symlink;
+use std::path::{Path, PathBuf};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use anyhow::{Context, bail};
+use serialport::{SerialPort, TTYPort};
+use tenax_hal_shim::wire::BAUD;
+
+use super::client::Ends;
+use super::framer::Framer;
+
+/// How often it is looked whether anybody has come or gone.
+const LOOK_EVERY: Duration = Duration::from_millis(10);
+/// How long a client has to read the last bytes: what it has not read is lost when the near end closes.
+const LAST_READ: Duration = Duration::from_millis(100);
+
+/// The near end of a pseudo-terminal.
+pub struct Pty {
+    near: TTYPort,
+    path: String,
+    link: Option<Link>,
+}
+
+impl Pty {
+    /// A new one, with a symlink `at` this path.
+    pub fn new(at: Option<&Path>) -> anyhow::Result<Self> {
+        let what = "cannot make a pseudo-terminal; serve on TCP instead, with --serve-tcp PORT";
+        let (mut near, far) = TTYPort::pair().context(what)?;
+        near.set_timeout(LOOK_EVERY).context(what)?;
+        let path = far.name().context(what)?;
+        let link = at.map(|at| Link::new(at, &path)).transpose()?;
+        // The far end closes here, and stays raw as long as the near one is open.
+        Ok(Self { near, path, link })
+    }
+
+    /// As `tenax monitor --port` takes it.
+    pub fn places(&self) -> Vec<String> {
+        let link = self.link.as_ref().map(|link| link.0.display().to_string());
+        [self.path.clone()].into_iter().chain(link).collect()
+    }
+
+    /// Serves one client after the other until nobody is served any more.
+    pub fn serve(mut self, ends: &Ends) {
+        let mut client: Option<JoinHandle<()>> = None;
+        let (mut framer, mut buffer) = (Framer::default(), [0; 4096]);
+        while !ends.hub.is_closed() {
+            let read = self.near.read(&mut buffer);
+            if matches!(&read, Err(error) if error.kind() == ErrorKind::BrokenPipe) {
+                if let Some(writer) = client.take() {
+                    // It fails now, if it has not yet: nobody is at the far end.
+                    drop(writer);
+                    framer.clear();
+                    self.forget();
+                }
+                thread::sleep(LOOK_EVERY);
+                continue;
+            }
+            if client.is_none() {
+                client = self.write(ends);
+            }
+            if let Ok(count) = read {
+                ends.pass_on(&mut framer, &buffer[..count]);
+            }
+        }
+        if client.is_some() {
+            thread::sleep(LAST_READ);
+        }
+    }
+
+    fn write(&self, ends: &Ends) -> Option<JoinHandle<()>> {
+        let mut near = self.near.try_clone_native().ok()?;
+        let (frames, ends) = (ends.hub.join(), ends.clone());
+        Some(thread::spawn(move || {
+            let _left = ends.write(&frames, &mut near);
+        }))
+    }
+
+    /// Reads what the last client has not read, so that the next does not take it for new.
+    fn forget(&self) {
+        let far = serialport::new(&self.path, BAUD).exclusive(false).timeout(Duration::ZERO);
+        if let Ok(mut far) = far.open_native() {
+            let mut buffer = [0; 4096];
+            while far.read(&mut buffer).is_ok_and(|count| count > 0) {}
+        }
+    }
+}
+
+/// A symlink that goes when the pseudo-terminal does.
+struct Link(PathBuf);
+
+impl Link {
+    fn new(at: &Path, path: &str) -> anyhow::Result<Self> {
+        match fs::symlink_metadata(at) {
+            // One that a run left which was killed.
+            Ok(there) if there.is_symlink() => {
+                fs::remove_file(at).with_context(|| format!("cannot replace {}", at.display()))?;
+            }
+            Ok(_) => bail!("{} is there already and no symlink: choose another path", at.display()),
+            Err(_) => {}
+        }
+        symlink(path, at).with_context(|| format!("cannot make the symlink {}", at.display()))?;
+        Ok(Self(at.to_owned()))
+    }
+}
+
+impl Drop for Link {
+    fn drop(&mut self) {
+        // If somebody else took it away, that is as good.
+        let _ = fs::remove_file(&self.0);
+    }
+}

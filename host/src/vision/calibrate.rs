@@ -1,0 +1,282 @@
+//! Calibrates a skin under known loads, and tries the calibration on loads that it has not seen.
+//!
+//! A table names a picture a row: `image,mass_g,fx_n,fy_n,fz_n`, with x to the picture's right, y into the skin, z the
+//! picture's other direction. Rows of mass 0 show the skin at rest.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use serde::{Deserialize, Serialize};
+use tenax_vision::frame::{FRAME_BYTES, Frame, plane};
+use tenax_vision::loads::{Features, Loads, NORMAL_FEATURES, SHEAR_FEATURES};
+use tenax_vision::markers::{Calibration, Markers};
+
+use super::source::Source;
+
+/// Ridge of the shear's weights, px^2: chosen by leaving out one load after the other.
+const SHEAR_RIDGE: f64 = 30.0;
+/// Ridge of the normal force's.
+const NORMAL_RIDGE: f64 = 0.5;
+/// Normal force above which its relative error counts, N.
+const NORMAL_MIN_N: f64 = 3.0;
+
+/// A row of the table.
+#[derive(Clone, Debug, Deserialize)]
+struct Row {
+    image: String,
+    mass_g: f64,
+    fx_n: f64,
+    fy_n: f64,
+    fz_n: f64,
+}
+
+/// A picture under a known load.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// What hangs or stands on the skin, g.
+    pub mass_g: f64,
+    /// Force: x, into the skin, z; N.
+    pub force_n: [f64; 3],
+    features: Features,
+}
+
+/// How a calibration does on samples.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Score {
+    /// Pictures.
+    pub pictures: usize,
+    /// Shear along x, N rms.
+    pub x_rms_n: f64,
+    /// Shear along z, N rms.
+    pub z_rms_n: f64,
+    /// Normal force above 3 N: error of the load, rms.
+    pub normal_rms_share: Option<f64>,
+    /// Share of those pictures within 15 % of the load.
+    pub normal_within_15_percent: Option<f64>,
+}
+
+/// The skin of a folder of pictures.
+#[derive(Clone, Debug)]
+pub struct Skin {
+    markers: Markers,
+}
+
+/// The rows of a table, with the pictures' paths: in the folder `loads` beside it, or beside it.
+fn rows_of(table: &Path) -> Result<Vec<(Row, PathBuf)>> {
+    let mut reader =
+        csv::Reader::from_path(table).with_context(|| format!("cannot read {}", table.display()))?;
+    let rows = reader.deserialize().collect::<Result<Vec<Row>, _>>();
+    let rows = rows.with_context(|| format!("{} is no table of loads", table.display()))?;
+    let folder = table.parent().unwrap_or(Path::new("."));
+    let find = |row: Row| {
+        let places = [folder.join("loads"), folder.to_owned(), table.with_extension("")];
+        let found = places.iter().map(|place| place.join(&row.image)).find(|path| path.exists());
+        let path = found.with_context(|| format!("the picture {} is not there", row.image))?;
+        Ok((row, path))
+    };
+    rows.into_iter().map(find).collect()
+}
+
+fn for_each_picture(paths: Vec<PathBuf>, mut each: impl FnMut(usize, &Frame) -> Result<()>) -> Result<()> {
+    let wanted = paths.len();
+    let mut pictures = Source::Pictures(paths).open()?;
+    let mut planes: Box<[u8; FRAME_BYTES]> =
+        vec![0; FRAME_BYTES].try_into().ok().context("a picture's size")?;
+    let mut number = 0;
+    while number < wanted && pictures.next(&mut planes)? {
+        each(number, &Frame::from_gbrp(&planes[..]).context("a picture's size")?)?;
+        number += 1;
+    }
+    if number != wanted {
+        bail!("ffmpeg decoded {number} of {wanted} pictures");
+    }
+    Ok(())
+}
+
+impl Skin {
+    /// The skin whose pictures at rest are in a table.
+    ///
+    /// # Errors
+    /// If there are none, or hardly a marker is seen in them.
+    pub fn at_rest(table: &Path) -> Result<Self> {
+        let rest: Vec<PathBuf> =
+            rows_of(table)?.into_iter().filter(|(row, _)| row.mass_g == 0.0).map(|(_, path)| path).collect();
+        if rest.is_empty() {
+            bail!("{} has no pictures of mass 0, which show the skin at rest", table.display());
+        }
+        // As often as a calibration wants pictures.
+        let mut again = rest.clone();
+        while again.len() < tenax_vision::markers::CALIBRATION_FRAMES as usize {
+            again.extend(rest.iter().cloned());
+        }
+        let (mut calibration, mut grey) = (Calibration::new(), plane());
+        for_each_picture(again, |_, frame| {
+            frame.grey(&mut grey);
+            calibration.frame(&grey);
+            Ok(())
+        })?;
+        let markers = Markers::new(&calibration);
+        if markers.len() < 6 {
+            bail!("{} markers are too few for a force", markers.len());
+        }
+        Ok(Self { markers })
+    }
+
+    /// How many markers it has.
+    #[must_use]
+    pub fn markers(&self) -> usize {
+        self.markers.len()
+    }
+
+    /// The samples of a table of loads on this skin.
+    ///
+    /// # Errors
+    /// If pictures cannot be read, or too few markers are found in one.
+    pub fn samples(&self, table: &Path) -> Result<Vec<Sample>> {
+        let (rows, paths): (Vec<Row>, Vec<PathBuf>) = rows_of(table)?.into_iter().unzip();
+        let mut grey = plane();
+        let mut samples = Vec::new();
+        for_each_picture(paths, |number, frame| {
+            let row = &rows[number];
+            frame.grey(&mut grey);
+            let mut markers = self.markers.clone();
+            markers.locate(&grey);
+            let features =
+                Features::of(&markers).with_context(|| format!("too few markers in {}", row.image))?;
+            samples.push(Sample { mass_g: row.mass_g, force_n: [row.fx_n, row.fy_n, row.fz_n], features });
+            Ok(())
+        })?;
+        Ok(samples)
+    }
+}
+
+/// Weights that bring the samples' features nearest to their forces; light loads count more, for errors are relative.
+///
+/// # Errors
+/// If there are no samples.
+pub fn fit(samples: &[Sample]) -> Result<Loads> {
+    if samples.is_empty() {
+        bail!("no loads to calibrate on");
+    }
+    let weight = |sample: &Sample| {
+        1.0 / (0.5 + 0.1 * sample.force_n.iter().map(|force| force * force).sum::<f64>().sqrt())
+    };
+    let rows = |of: &dyn Fn(&Sample) -> Vec<f64>| -> Vec<Vec<f64>> {
+        samples.iter().map(|sample| of(sample).iter().map(|value| value * weight(sample)).collect()).collect()
+    };
+    let shear = rows(&|sample| sample.features.shear.map(f64::from).to_vec());
+    let normal = rows(&|sample| sample.features.normal.map(f64::from).to_vec());
+    let target = |axis: usize| -> Vec<f64> {
+        samples.iter().map(|sample| sample.force_n[axis] * weight(sample)).collect()
+    };
+    let x = ridge(&shear, &target(0), SHEAR_RIDGE);
+    // The picture's y goes down, which is against z.
+    let y = ridge(&shear, &target(2), SHEAR_RIDGE);
+    let into = ridge(&normal, &target(1), NORMAL_RIDGE);
+    let mut loads = Loads { shear: [[0.0; 2]; SHEAR_FEATURES], normal: [0.0; NORMAL_FEATURES] };
+    for (slot, (x, y)) in loads.shear.iter_mut().zip(x.iter().zip(&y)) {
+        *slot = [*x as f32, *y as f32];
+    }
+    for (slot, value) in loads.normal.iter_mut().zip(into) {
+        *slot = value as f32;
+    }
+    Ok(loads)
+}
+
+/// Ridge regression by the normal equations and Cholesky's factors.
+fn ridge(rows: &[Vec<f64>], targets: &[f64], ridge: f64) -> Vec<f64> {
+    let n = rows.first().map_or(0, Vec::len);
+    let mut a = vec![vec![0.0; n]; n];
+    let mut b = vec![0.0; n];
+    for (row, target) in rows.iter().zip(targets) {
+        for i in 0..n {
+            if row[i] != 0.0 {
+                b[i] += row[i] * target;
+                (0..=i).for_each(|j| a[i][j] += row[i] * row[j]);
+            }
+        }
+    }
+    (0..n).for_each(|i| a[i][i] += ridge);
+    for i in 0..n {
+        for j in 0..=i {
+            let dot: f64 = (0..j).map(|k| a[i][k] * a[j][k]).sum();
+            a[i][j] = if i == j { (a[i][i] - dot).sqrt() } else { (a[i][j] - dot) / a[j][j] };
+        }
+    }
+    for i in 0..n {
+        b[i] = (b[i] - (0..i).map(|k| a[i][k] * b[k]).sum::<f64>()) / a[i][i];
+    }
+    for i in (0..n).rev() {
+        b[i] = (b[i] - (i + 1..n).map(|k| a[k][i] * b[k]).sum::<f64>()) / a[i][i];
+    }
+    b
+}
+
+/// How weights do on samples.
+#[must_use]
+pub fn score(loads: &Loads, samples: &[Sample]) -> Score {
+    let forces: Vec<_> =
+        samples.iter().map(|sample| (loads.newtons(&sample.features), sample.force_n)).collect();
+    let rms = |errors: &mut dyn Iterator<Item = f64>| {
+        let (sum, count) = errors.fold((0.0, 0u32), |(sum, count), error| (sum + error * error, count + 1));
+        (count > 0).then(|| (sum / f64::from(count)).sqrt())
+    };
+    let relative: Vec<f64> = forces
+        .iter()
+        .filter(|(_, truth)| truth[1] > NORMAL_MIN_N)
+        .map(|(force, truth)| f64::from(force.normal) / truth[1] - 1.0)
+        .collect();
+    let within = relative.iter().filter(|error| error.abs() <= 0.15).count();
+    Score {
+        pictures: samples.len(),
+        x_rms_n: rms(&mut forces.iter().map(|(force, truth)| f64::from(force.x) - truth[0]))
+            .unwrap_or(f64::NAN),
+        z_rms_n: rms(&mut forces.iter().map(|(force, truth)| f64::from(force.y) - truth[2]))
+            .unwrap_or(f64::NAN),
+        normal_rms_share: rms(&mut relative.iter().copied()),
+        normal_within_15_percent: (!relative.is_empty()).then(|| within as f64 / relative.len() as f64),
+    }
+}
+
+/// Each load's truth and estimate: mean over its pictures, N.
+#[must_use]
+pub fn table(loads: &Loads, samples: &[Sample]) -> Vec<(f64, [f64; 3], [f64; 3])> {
+    let mut sums: BTreeMap<[i64; 4], (f64, [f64; 3], [f64; 3], f64)> = BTreeMap::new();
+    for sample in samples {
+        let key = [sample.mass_g, sample.force_n[0], sample.force_n[1], sample.force_n[2]];
+        let force = loads.newtons(&sample.features);
+        let entry = sums.entry(key.map(|value| (value * 1e4).round() as i64));
+        let entry = entry.or_insert((sample.mass_g, sample.force_n, [0.0; 3], 0.0));
+        for (sum, value) in entry.2.iter_mut().zip([force.x, force.normal, force.y]) {
+            *sum += f64::from(value);
+        }
+        entry.3 += 1.0;
+    }
+    sums.into_values().map(|(mass, truth, sum, count)| (mass, truth, sum.map(|sum| sum / count))).collect()
+}
+
+/// Samples whose mass is within 2 % of one of `masses_g`, and the others.
+#[must_use]
+pub fn left_out(samples: &[Sample], masses_g: &[f64]) -> (Vec<Sample>, Vec<Sample>) {
+    let is = |sample: &&Sample| masses_g.iter().any(|mass| (sample.mass_g - mass).abs() <= 0.02 * mass);
+    (
+        samples.iter().filter(is).cloned().collect(),
+        samples.iter().filter(|sample| !is(sample)).cloned().collect(),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ridge_finds_the_line_and_shrinks_it() {
+        let rows: Vec<Vec<f64>> =
+            (0..20).map(|at| vec![f64::from(at), f64::from(at * at % 7), 0.0]).collect();
+        let targets: Vec<f64> = rows.iter().map(|row| 2.0 * row[0] - 3.0 * row[1]).collect();
+        let exact = ridge(&rows, &targets, 1e-9);
+        assert!((exact[0] - 2.0).abs() < 1e-6 && (exact[1] + 3.0).abs() < 1e-6 && exact[2].abs() < 1e-6);
+        assert!(ridge(&rows, &targets, 1e3)[1].abs() < 3.0);
+    }
+}

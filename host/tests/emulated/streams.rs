@@ -1,0 +1,118 @@
+//! Telemetry only looks: what the hand does is the same without it, with all of it, and with more than the line carries.
+
+use std::collections::BTreeSet;
+
+use tenax::board::Run;
+use tenax::board::emulated::Options;
+use tenax::link::Inbox;
+use tenax::session::load_scene;
+use tenax_hal_shim::channel::SCAN_HZ;
+use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::wire::{BAUD, Down, FRAMES_PER_RAW, Up};
+use tenax_scene::World;
+use tenax_scene::plant::{Calibrated, Pins, Plant};
+
+use crate::{Swing, run};
+
+/// Somebody asks for frames and readings from the start, and for the network every so many scans.
+struct Asked<P> {
+    plant: P,
+    streams: bool,
+    network_every: Option<u32>,
+    scans: u32,
+}
+
+impl<P: Plant> Asked<P> {
+    fn new(plant: P, streams: bool, network_every: Option<u32>) -> Self {
+        Self { plant, streams, network_every, scans: 0 }
+    }
+}
+
+impl<P: Plant> Plant for Asked<P> {
+    fn scan(&mut self, drive: MotorDrive) -> &Pins {
+        self.scans += 1;
+        self.plant.scan(drive)
+    }
+
+    fn commands(&mut self) -> Vec<Down> {
+        let mut commands = self.plant.commands();
+        if self.streams && self.scans % (10 * SCAN_HZ) == 8 {
+            commands.push(Down::Stream { raw: true, senses: true, hold_s: 20 });
+        }
+        if self.network_every.is_some_and(|every| self.scans.is_multiple_of(every)) {
+            commands.push(Down::Network);
+        }
+        commands
+    }
+
+    fn streams_at_start(&self) -> bool {
+        self.streams
+    }
+
+    fn trusts_line(&self) -> bool {
+        self.plant.trusts_line()
+    }
+
+    fn calibrated(&self) -> Option<Calibrated> {
+        self.plant.calibrated()
+    }
+
+    fn duration_s(&self) -> f64 {
+        self.plant.duration_s()
+    }
+}
+
+/// How many messages of frames and of readings came up, and that no frame is missing between the first and the last.
+fn streamed(run: &Run) -> (usize, usize) {
+    let (mut inbox, mut firsts, mut senses) = (Inbox::default(), BTreeSet::new(), 0);
+    for heard in run.line.iter().filter_map(|&byte| inbox.push(byte)).flatten() {
+        match heard.received.message {
+            Up::Raw(raw) => _ = firsts.insert(raw.first),
+            Up::Senses(_) => senses += 1,
+            _ => {}
+        }
+    }
+    let whole: BTreeSet<u32> = (0..).step_by(FRAMES_PER_RAW).take(firsts.len()).collect();
+    assert!(run.messages_missed > 0 || firsts == whole, "a frame is missing");
+    (firsts.len(), senses)
+}
+
+#[test]
+fn decisions_are_the_same_without_telemetry_with_all_of_it_and_with_too_much() {
+    let scene = |streams, network_every| {
+        let world = World::new(&load_scene("pick-up-reflex").expect("a scene"), 1);
+        run(Asked::new(world, streams, network_every), &Options::default())
+    };
+    let (off, on, saturated) = (scene(false, None), scene(true, None), scene(true, Some(97)));
+    assert!(off.drives.iter().any(|drive| *drive != MotorDrive::Coast), "something is decided");
+    assert!(off.drives == on.drives && off.scans == on.scans && off.slows == on.slows);
+    assert!(off.drives == saturated.drives && off.scans == saturated.scans);
+    for run in [&off, &on, &saturated] {
+        let counters = run.counters;
+        println!("{} bytes, {} missed, {counters:?}", run.line_bytes, run.messages_missed);
+        assert_eq!((counters.frames_lost, counters.ticks_late, counters.overruns), (0, 0, 0));
+        assert_eq!(run.bad_frames, 0);
+    }
+    assert_eq!((on.counters.telemetry_dropped, on.messages_missed), (0, 0));
+    // A few more come while the last messages go up the line.
+    let (frames, senses) = streamed(&on);
+    assert!(frames >= 12_000 / FRAMES_PER_RAW && senses >= 480, "{frames} {senses}");
+    let line = on.line_bytes as f64 / on.virtual_s / f64::from(BAUD / 10);
+    assert!((0.6..0.95).contains(&line), "{line} of the line");
+    let dropped = u64::from(saturated.counters.telemetry_dropped);
+    assert!(dropped > 50, "the line was asked for more than it carries: {dropped}");
+    // What was dropped after the last counters is seen at the host only.
+    assert!((dropped..dropped + 200).contains(&saturated.messages_missed), "{}", saturated.messages_missed);
+}
+
+/// Ten minutes with everything on: no message and no frame is lost. It takes two minutes.
+#[test]
+#[ignore = "two minutes; `cargo test --release --features emulator --test emulated -- --ignored ten_minutes`"]
+fn ten_minutes_of_everything_lose_nothing() {
+    let run = run(Asked::new(Swing::new(600.0), true, Some(8_000)), &Options::default());
+    println!("{} bytes, {} missed, {:?}", run.line_bytes, run.messages_missed, run.counters);
+    assert_eq!((run.messages_missed, run.bad_frames, run.counters.telemetry_dropped), (0, 0, 0));
+    assert_eq!((run.counters.frames_lost, run.counters.ticks_late), (0, 0));
+    let (frames, senses) = streamed(&run);
+    assert!(frames >= 1_200_000 / FRAMES_PER_RAW && senses >= 48_000, "{frames} {senses}");
+}

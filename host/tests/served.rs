@@ -1,0 +1,220 @@
+//! A running board's line, served: settings are set and read back, nothing is missed, and nobody can hold up the run.
+#![cfg(unix)]
+
+use std::collections::HashSet;
+use std::fs;
+use std::io::{BufRead, BufReader};
+use std::process::{Command, Output, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use tenax::board::{Recorder, Run};
+use tenax::link::{Client, Target};
+use tenax::serve::{Options, Served, Server, Tally};
+use tenax::session::Board;
+use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::setting::SettingId;
+use tenax_hal_shim::wire::{Answer, Down, Refusal, Setting, Up};
+use tenax_scene::plant::{Pins, Plant};
+
+const WITHIN: Duration = Duration::from_secs(5);
+
+/// Every pin at rest.
+struct Rest(Pins, f64);
+
+impl Plant for Rest {
+    fn scan(&mut self, _drive: MotorDrive) -> &Pins {
+        &self.0
+    }
+
+    fn duration_s(&self) -> f64 {
+        self.1
+    }
+}
+
+fn start(options: &Options) -> (Server, tenax::serve::Live) {
+    Server::start(options, |_| {}).expect("this machine has ptys and free ports")
+}
+
+/// Serves a hand at rest for so long, while `visit` is told where.
+fn serve(options: &Options, duration_s: f64, visit: impl FnOnce(&[Target]) + Send) -> (Run, Tally) {
+    let (mut server, live) = start(options);
+    let places: Vec<Target> = server.places().iter().map(|place| place.parse().unwrap()).collect();
+    thread::scope(|scope| {
+        let visitor = scope.spawn(move || visit(&places));
+        let mut run = Run::default();
+        let plant = Served { plant: Rest(Pins::default(), duration_s), live: Some(live) };
+        let began = Instant::now();
+        let (summary, _) =
+            Board::Host.record(plant, &mut (&mut run, &mut server), &mut |_| {}).expect("a run");
+        run.summary = summary;
+        assert!(began.elapsed().as_secs_f64() > duration_s - 0.01, "never faster than real time");
+        visitor.join().expect("the visitor found what it looked for");
+        (run, server.close())
+    })
+}
+
+fn setting(id: SettingId, value: i32) -> Setting {
+    Setting { id: id as u8, value }
+}
+
+/// Sets S1, reads it back, and listens for half a second: everything comes, in order.
+fn set_and_read_back(target: &Target, mv: i32) {
+    let mut client = Client::open(target).unwrap();
+    let s1 = setting(SettingId::S1, mv);
+    assert_eq!(client.ask(&Down::Set(s1), WITHIN).unwrap(), Answer::Setting(s1));
+    assert_eq!(client.ask(&Down::Get(s1.id), WITHIN).unwrap(), Answer::Setting(s1));
+    let Answer::Settings(settings) = client.ask(&Down::Settings(0), WITHIN).unwrap() else {
+        panic!("the settings were asked for");
+    };
+    assert!(settings.contains(&s1));
+    let refused = client.ask(&Down::Set(setting(SettingId::S1, -1)), WITHIN).unwrap();
+    assert!(matches!(refused, Answer::Refused(Refusal::OutOfRange { .. })), "{refused:?}");
+    let began = Instant::now();
+    let mut slows = 0;
+    while began.elapsed() < Duration::from_millis(500) {
+        let heard = client.next_message().unwrap();
+        slows += usize::from(heard.is_some_and(|heard| matches!(heard.received.message, Up::Slow(_))));
+    }
+    assert!(slows > 10, "{slows}");
+    assert_eq!((client.counts().missed, client.counts().bad_frames), (0, 0), "{}", client.counts());
+}
+
+#[test]
+fn a_setting_is_set_and_read_back_on_a_pty_on_its_symlink_and_on_tcp() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path().join("board");
+    let options = Options { pty: true, at: Some(at.clone()), tcp: Some(0) };
+    let (run, tally) = serve(&options, 6.0, |places| {
+        assert_eq!(places.len(), 3);
+        for (target, mv) in places.iter().zip([120, 130, 140]) {
+            set_and_read_back(target, mv);
+            // Whoever opens a pty within 10 ms of the one before is taken for the same.
+            thread::sleep(Duration::from_millis(100));
+        }
+    });
+    // Four commands each, and the session that the first asked for: a refusal, its number, its opening.
+    assert_eq!(run.answers.len(), 3 * 7);
+    assert_eq!(tally, Tally { clients: 3, dropped: 0 });
+    assert!(fs::symlink_metadata(&at).is_err(), "the symlink is gone");
+}
+
+/// With a client that never reads on each, far more comes up than any of them has room for.
+#[test]
+fn a_client_that_never_reads_holds_up_nothing() {
+    let (mut server, _live) = start(&Options { pty: true, at: None, tcp: Some(0) });
+    let targets: Vec<Target> = server.places().iter().map(|place| place.parse().unwrap()).collect();
+    let clients: Vec<_> = targets.iter().map(|target| target.open().unwrap()).collect();
+    let joined = Instant::now();
+    let frame: Vec<u8> = (0..200).map(|n| u8::from(n < 199)).collect();
+    let (mut sent, mut longest) = (0, Duration::ZERO);
+    // Until both have come and are full; a pty notices a client after 10 ms.
+    while sent < 100_000 || joined.elapsed() < Duration::from_millis(500) {
+        let began = Instant::now();
+        server.line(&frame);
+        longest = longest.max(began.elapsed());
+        sent += 1;
+    }
+    assert!(longest < Duration::from_millis(500), "{longest:?}");
+    let began = Instant::now();
+    let tally = server.close();
+    assert!(began.elapsed() < Duration::from_secs(2), "{:?}", began.elapsed());
+    assert_eq!(tally.clients, 2);
+    assert!(tally.dropped > 10_000, "{tally}");
+    drop(clients);
+}
+
+#[test]
+fn who_comes_and_goes_and_who_never_reads_changes_nothing_in_the_run() {
+    let options = Options { pty: true, at: None, tcp: Some(0) };
+    let (run, tally) = serve(&options, 2.0, |places| {
+        let _silent: Vec<_> = places.iter().map(|place| place.open().unwrap()).collect();
+        for _ in 0..5 {
+            let gone = places[1].open().unwrap();
+            thread::sleep(Duration::from_millis(50));
+            drop(gone);
+        }
+        thread::sleep(Duration::from_millis(500));
+    });
+    let (alone, _) = Board::Host.run(Rest(Pins::default(), 2.0), &mut |_| {}).unwrap();
+    assert!(run.slows == alone.slows);
+    assert_eq!((run.events.clone(), run.counters), (alone.events.clone(), alone.counters));
+    assert_eq!(tally.clients, 7);
+}
+
+/// What a client has not read is not the next one's.
+#[test]
+fn the_second_client_of_a_pty_hears_nothing_old() {
+    let options = Options { pty: true, ..Options::default() };
+    serve(&options, 3.0, |places| {
+        let silent = places[0].open().unwrap();
+        thread::sleep(Duration::from_millis(800));
+        drop(silent);
+        thread::sleep(Duration::from_millis(400));
+        let mut client = Client::open(&places[0]).unwrap();
+        let frames: HashSet<u32> = std::iter::from_fn(|| Some(client.next_message().unwrap()))
+            .take(60)
+            .flatten()
+            .filter_map(|heard| match heard.received.message {
+                Up::Slow(slow) => Some(slow.frame),
+                _ => None,
+            })
+            .collect();
+        assert!(frames.iter().all(|&frame| frame > 2 * 1_200 - 100), "{:?}", frames.iter().min());
+        assert_eq!((client.counts().missed, client.counts().bad_frames), (0, 0), "{}", client.counts());
+    });
+}
+
+/// The tool against itself, as a person uses it.
+#[test]
+fn the_monitor_sets_a_setting_of_a_scene_that_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let tenax = || Command::new(env!("CARGO_BIN_EXE_tenax"));
+    let mut run = tenax()
+        .args(["run", "--host", "--scene", "rig", "--serve", "--serve-tcp", "0", "--out"])
+        .arg(folder.path())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut said = BufReader::new(run.stderr.take().unwrap()).lines().map(Result::unwrap);
+    let places: Vec<String> =
+        said.by_ref().take(2).map(|line| line.strip_prefix("serving on ").unwrap().to_owned()).collect();
+    assert!(places[0].starts_with("/dev/") && places[1].starts_with("tcp:127.0.0.1:"), "{places:?}");
+    let monitors: Vec<_> = places
+        .iter()
+        .map(|place| {
+            let args = ["monitor", "--port", place, "--set", "s1-mv=120", "--send", "ping", "--settings"];
+            tenax().args(args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+        })
+        .collect();
+    for (monitor, place) in monitors.into_iter().zip(&places) {
+        let Output { status, stdout, stderr } = monitor.wait_with_output().unwrap();
+        let [text, error] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+        assert!(text.contains(" s1-mv = 120 mV\n"), "{text}{error}");
+        assert!(text.contains(" done: command 0\n"), "{text}");
+        assert!(text.contains(" settings:\n"), "{text}");
+        assert!(error.contains(" 0 bad frames skipped, 0 messages missed\n"), "{error}");
+        assert!(error.contains("served run"), "{error}");
+        assert_eq!((status.code(), error.contains(place.as_str())), (Some(2), true), "{error}");
+    }
+    let rest: Vec<String> = said.collect();
+    assert!(rest.iter().any(|line| line.contains("2 clients, 0 messages dropped")), "{rest:?}");
+    assert!(run.wait().unwrap().success());
+}
+
+#[test]
+fn a_place_that_cannot_be_had_is_named() {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    let error = |options: &Options| format!("{:#}", Server::start(options, |_| {}).err().unwrap());
+    let at = Options { pty: true, at: Some(file.path().to_owned()), tcp: None };
+    assert!(error(&at).contains("no symlink: choose another path"), "{}", error(&at));
+    let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = taken.local_addr().unwrap().port();
+    let tcp = Options { tcp: Some(port), ..Options::default() };
+    assert!(
+        error(&tcp).contains(&format!("cannot serve on TCP port {port}: choose another")),
+        "{}",
+        error(&tcp)
+    );
+}

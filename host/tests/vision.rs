@@ -1,0 +1,67 @@
+//! `tenax vision`: its report's keys, its bars on drawn scenes, and the real sensor's loads.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde_json::Value;
+
+fn vision(args: &[&str]) -> Value {
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_tenax")).arg("vision").args(args).output().expect("it starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).expect("JSON")
+}
+
+fn recording(name: &str) -> Option<PathBuf> {
+    let folders = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .ancestors()
+        .map(|folder| folder.join("shared/data/fingervision"));
+    let path = folders.map(|folder| folder.join(name)).find(|path| path.exists());
+    let ffmpeg = Command::new("ffmpeg").arg("-version").output().is_ok();
+    if path.is_none() || !ffmpeg {
+        println!("skipped, recording not present or no ffmpeg: fingervision/{name}");
+    }
+    path.filter(|_| ffmpeg)
+}
+
+#[test]
+fn drawn_scenes_are_seen_as_they_are() {
+    let report = vision(&["--sessions", "3", "--seed", "11", "--report", "json"]);
+    let keys = [
+        "fps_per_core",
+        "markers_found",
+        "failed_share",
+        "marker_px_rms",
+        "force_deg_rms",
+        "angle_deg_rms",
+        "cut_said",
+        "object_seen",
+        "object_false",
+    ];
+    for key in keys {
+        assert!(report.get(key).is_some(), "{key} is gone: {report}");
+    }
+    let number = |value: &Value| value.as_f64().unwrap_or_else(|| panic!("no number in {report}"));
+    assert!(number(&report["marker_px_rms"]) <= 0.1, "{report}");
+    assert!(number(&report["force_deg_rms"]) <= 5.0, "{report}");
+    assert!(number(&report["slip"]["recall"]) >= 0.8, "{report}");
+    assert!(number(&report["slip"]["false_rate"]) <= 0.1, "{report}");
+    assert!(number(&report["object_seen"]) >= 0.95, "{report}");
+}
+
+#[test]
+fn real_loads_are_weighed_by_a_mass_that_was_left_out() {
+    let Some(loads) = recording("loads.csv") else { return };
+    let loads = loads.to_str().expect("a path");
+    let light = vision(&["calibrate", "--loads", loads, "--leave-out", "135.6", "--report", "json"]);
+    let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
+    for axis in ["x_rms_n", "z_rms_n"] {
+        assert!(number(&light["tried"][axis]) <= 0.35, "{light}");
+    }
+    // The heavy half of the loads from the light half and two weights without shear: four times beyond what it has learned.
+    let heavy = vision(&["calibrate", "--loads", loads, "--leave-out", "584", "--report", "json"]);
+    for axis in ["x_rms_n", "z_rms_n"] {
+        assert!(number(&heavy["tried"][axis]) <= 0.7, "{heavy}");
+    }
+    assert!(number(&heavy["tried"]["normal_rms_share"]) <= 0.25, "{heavy}");
+}

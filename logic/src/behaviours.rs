@@ -1,0 +1,186 @@
+//! Behaviours above the reflex: what the hand does of its own accord when it is asked to (FingerVision 2017, section II).
+//!
+//! A behaviour says in each tick whether it would tighten or relax the grasp. It never drives the motor itself: the reflex
+//! may tighten at any time, the wearer and the line come before both, and a wish to relax has rules of its own
+//! ([`may_relax`]). What a behaviour feels with are senses ([`Felt`]), whether a camera behind the skin gives them or the
+//! finger's own sensors.
+//!
+//! Two behaviours expect slip and answer it themselves ([`Running::answers_slip`]): a stroke, and a hand that gives
+//! something away. Each of them ends by itself.
+
+mod felt;
+mod gentle_grasp;
+mod hand_over;
+mod hold;
+mod movement;
+mod turn;
+
+use tenax_hal_shim::behaviour::{Behaviour, Ending};
+use tenax_hal_shim::motor::{Duty, MotorDrive};
+use tenax_hal_shim::words::{GripMode, Line};
+
+use self::gentle_grasp::GentleGrasp;
+use self::hand_over::HandOver;
+use self::hold::Hold;
+use self::movement::Movement;
+use self::turn::Turn;
+use crate::config::frames;
+use crate::grip::Grip;
+
+pub use felt::{Felt, Skin};
+
+/// What a behaviour may be told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BehaviourConfig {
+    /// Duty of its movements, per mille.
+    pub duty_permille: u16,
+    /// Length of a small movement, in frames.
+    pub movement_frames: u32,
+    /// How long it waits after one for what it does to show, in frames (section II-D: 0.1 s).
+    pub wait_frames: u32,
+    /// The sum of the scores beyond which an object is held gently (section II-A).
+    pub gentle_score: u16,
+    /// So many cells of the skin must feel another force for a hand-over (section II-C).
+    pub changed_cells: u16,
+    /// Moving points that are slip, in 1/10,000 of the picture.
+    pub moving_e4: u16,
+    /// How far ahead of what is seen a turn is foreseen, in frames; 0: not at all, as in the paper.
+    pub turn_lead_frames: u32,
+}
+
+/// What a behaviour asks for in one tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Wish {
+    /// Nothing.
+    #[default]
+    Rest,
+    /// To close.
+    Tighten(Duty),
+    /// To open, if that is allowed.
+    Relax(Duty),
+}
+
+/// What one tick of a behaviour comes to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Course {
+    /// It goes on, and asks for this.
+    On(Wish),
+    /// It has ended.
+    Ends(Ending),
+}
+
+/// How long each may last, in frames.
+const STROKE_FRAMES_MAX: u32 = frames(60_000);
+const GRASP_FRAMES_MAX: u32 = frames(20_000);
+const HAND_OVER_FRAMES_MAX: u32 = frames(20_000);
+const TURN_FRAMES_MAX: u32 = frames(60_000);
+
+/// The behaviour that goes on.
+#[derive(Clone, Debug)]
+pub struct Running {
+    what: Behaviour,
+    elapsed: u32,
+    doing: Doing,
+}
+
+#[derive(Clone, Debug)]
+enum Doing {
+    Stroke,
+    GentleGrasp(GentleGrasp),
+    Hold(Hold),
+    HandOver(HandOver),
+    Turn(Turn),
+}
+
+impl Running {
+    /// Begins a behaviour. None if what it cannot do without is not there.
+    #[must_use]
+    pub fn begin(what: Behaviour, felt: &Felt<'_>) -> Option<Self> {
+        let doing = match what {
+            Behaviour::Stroke if felt.grip == Grip::Unknown => return None,
+            Behaviour::Stroke => Doing::Stroke,
+            Behaviour::GentleGrasp => Doing::GentleGrasp(GentleGrasp::begin(felt)?),
+            Behaviour::Hold => Doing::Hold(Hold::default()),
+            Behaviour::HandOver => Doing::HandOver(HandOver::begin(felt)?),
+            Behaviour::Turn { by_ddeg } => Doing::Turn(Turn::begin(felt, by_ddeg)?),
+        };
+        Some(Self { what, elapsed: 0, doing })
+    }
+
+    /// What was asked for.
+    #[must_use]
+    pub const fn what(&self) -> Behaviour {
+        self.what
+    }
+
+    /// Whether it expects slip and answers it itself, so that the reflex is not to.
+    #[must_use]
+    pub const fn answers_slip(&self) -> bool {
+        match &self.doing {
+            Doing::Stroke | Doing::HandOver(_) => true,
+            Doing::Turn(turn) => turn.answers_slip(),
+            Doing::GentleGrasp(_) | Doing::Hold(_) => false,
+        }
+    }
+
+    /// Goes on by one tick.
+    pub fn step(&mut self, config: &BehaviourConfig, felt: &Felt<'_>) -> Course {
+        self.elapsed = self.elapsed.saturating_add(1);
+        let (course, longest) = match &mut self.doing {
+            Doing::Stroke => (Course::On(Wish::Rest), STROKE_FRAMES_MAX),
+            Doing::GentleGrasp(grasp) => (grasp.step(config, felt), GRASP_FRAMES_MAX),
+            // Whoever holds something holds it until something else is asked for.
+            Doing::Hold(hold) => (hold.step(config, felt), u32::MAX),
+            Doing::HandOver(hand_over) => (hand_over.step(config, felt), HAND_OVER_FRAMES_MAX),
+            Doing::Turn(turn) => (turn.step(config, felt), TURN_FRAMES_MAX),
+        };
+        match course {
+            Course::On(_) if self.elapsed >= longest => Course::Ends(Ending::TooLong),
+            course => course,
+        }
+    }
+}
+
+/// Whether a behaviour may relax the grasp in this tick: the line that asked for it may still command, the finger knows what
+/// it holds, and the reflex has nothing to tighten.
+#[must_use]
+pub const fn may_relax(line: Line, grip: Grip, mode: GripMode) -> bool {
+    let commands = matches!(line, Line::Armed { .. } | Line::Trusted);
+    let known = !matches!(grip, Grip::Unknown);
+    commands && known && matches!(mode, GripMode::Watch | GripMode::Wearer)
+}
+
+impl Wish {
+    /// The drive that it asks for.
+    #[must_use]
+    pub const fn drive(self) -> MotorDrive {
+        match self {
+            Self::Rest => MotorDrive::Coast,
+            Self::Tighten(duty) => MotorDrive::Close(duty),
+            Self::Relax(duty) => MotorDrive::Open(duty),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn relaxing_needs_consent_a_known_force_and_a_reflex_at_rest() {
+        let armed = Line::Armed { left_s: 3 };
+        let holds = Grip::Holds(2_000);
+        for (line, grip, mode, may) in [
+            (armed, holds, GripMode::Watch, true),
+            (Line::Trusted, Grip::Unloaded, GripMode::Wearer, true),
+            (Line::Reading, holds, GripMode::Watch, false),
+            (armed, Grip::Unknown, GripMode::Watch, false),
+            (armed, holds, GripMode::Slip, false),
+            (armed, holds, GripMode::Incipient, false),
+            (armed, holds, GripMode::Settle, false),
+            (armed, holds, GripMode::Standby, false),
+        ] {
+            assert_eq!(may_relax(line, grip, mode), may, "{line:?} {grip:?} {mode:?}");
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! What a behaviour feels in one tick: the skin cell by cell, slip, and how hard the finger presses.
+//!
+//! The skin's cells are the camera's markers while it sees, and the taxels of the normal-force array while it does not.
+
+use tenax_hal_shim::behaviour::{CameraView, MARKERS, NORMAL_STEP_MN, SHEAR_STEP_MN, UNTRACKED};
+
+use crate::array::{ELEMENTS, Reading};
+use crate::grip::Grip;
+
+/// A taxel's reading is so many samples for 1 N (200 mV; the array's data sheet in `docs/wiring.md`), so a sample is 1 mN.
+const TAXEL_SAMPLES_PER_N: i32 = 993;
+
+/// Scores of a cell's normal force, mN: noise, sufficient, medium, large (FingerVision 2017, section II-A).
+const SCORES: [(i32, u16); 3] = [(300, 5), (100, 3), (30, 1)];
+/// A cell feels another force than before if it has changed by this, mN, or by a quarter of what it was.
+const CHANGE_MN: i32 = 60;
+
+/// What is felt in one tick.
+#[derive(Clone, Copy, Debug)]
+pub struct Felt<'a> {
+    /// The camera's last picture, None if it is too old to be believed.
+    pub view: Option<&'a CameraView>,
+    /// Whether it came in this tick.
+    pub view_is_new: bool,
+    /// The normal-force array's last readings.
+    pub taxels: &'a Reading,
+    /// How hard the finger presses.
+    pub grip: Grip,
+    /// Whether a detector that is believed says slip.
+    pub slips: bool,
+    /// Whether the films hear half of what would be slip.
+    pub stirs: bool,
+}
+
+/// The cells of the skin, and what they felt at first.
+#[derive(Clone, Copy, Debug)]
+pub enum Skin {
+    /// Markers: normal force and shear, mN.
+    Markers {
+        /// At first.
+        normal_mn: [Option<i16>; MARKERS],
+        /// At first.
+        shear_mn: [i16; MARKERS],
+    },
+    /// Taxels: their samples.
+    Taxels([Option<u16>; ELEMENTS]),
+}
+
+impl Skin {
+    /// As it feels now. None if there is no skin that gives numbers.
+    #[must_use]
+    pub fn now(felt: &Felt<'_>) -> Option<Self> {
+        if let Some(view) = felt.view {
+            return Some(Self::Markers {
+                normal_mn: core::array::from_fn(|n| normal_mn(view, n)),
+                shear_mn: core::array::from_fn(|n| shear_mn(view, n)),
+            });
+        }
+        felt.taxels.iter().any(Option::is_some).then_some(Self::Taxels(*felt.taxels))
+    }
+
+    /// The sum of the cells' scores (section II-A). Markers start from no force; taxels from what they felt at first, which
+    /// must have been nothing. None while the skin of the beginning gives no numbers.
+    #[must_use]
+    pub fn score(&self, felt: &Felt<'_>) -> Option<u16> {
+        match (self, felt.view) {
+            (Self::Markers { .. }, Some(view)) => {
+                Some((0..MARKERS).filter_map(|n| normal_mn(view, n)).map(|mn| score(mn.into())).sum())
+            }
+            (Self::Markers { .. }, None) => None,
+            (Self::Taxels(first), _) => {
+                let risen = |n: usize| Some(taxel_mn(i32::from(felt.taxels[n]?) - i32::from(first[n]?)));
+                let mut known = (0..ELEMENTS).filter_map(risen).peekable();
+                known.peek()?;
+                Some(known.map(score).sum())
+            }
+        }
+    }
+
+    /// How many cells feel another force than at first (section II-C). None while the skin of the beginning gives no
+    /// numbers.
+    #[must_use]
+    pub fn changed(&self, felt: &Felt<'_>) -> Option<u16> {
+        match (self, felt.view) {
+            (Self::Markers { normal_mn: normals, shear_mn: shears }, Some(view)) => {
+                let changed = |n: usize| {
+                    let (was, is) = (i32::from(normals[n]?), i32::from(normal_mn(view, n)?));
+                    let sheared = i32::from(shear_mn(view, n)) - i32::from(shears[n]);
+                    Some(u16::from(differs(was, is - was) || differs(was, sheared)))
+                };
+                Some((0..MARKERS).filter_map(changed).sum())
+            }
+            (Self::Markers { .. }, None) => None,
+            (Self::Taxels(first), _) => {
+                let changed = |n: usize| {
+                    let (was, is) = (i32::from(first[n]?), i32::from(felt.taxels[n]?));
+                    Some(u16::from(differs(0, taxel_mn(is - was))))
+                };
+                let mut known = (0..ELEMENTS).filter_map(changed).peekable();
+                known.peek()?;
+                // There are fewer taxels than markers.
+                Some(known.sum::<u16>() * (MARKERS / ELEMENTS) as u16)
+            }
+        }
+    }
+}
+
+impl Felt<'_> {
+    /// Whether the object slips: moving points, or a detector (section II-B). `sensitively`: half as much is enough (section
+    /// II-D).
+    #[must_use]
+    pub fn is_slipping(&self, moving_e4: u16, sensitively: bool) -> bool {
+        self.is_moving(moving_e4, sensitively) || self.slips || (sensitively && self.stirs)
+    }
+
+    /// Whether the camera sees moving points.
+    #[must_use]
+    pub fn is_moving(&self, moving_e4: u16, sensitively: bool) -> bool {
+        let least = if sensitively { moving_e4 / 2 } else { moving_e4 };
+        self.view.is_some_and(|view| view.moving_e4 > least)
+    }
+}
+
+fn normal_mn(view: &CameraView, n: usize) -> Option<i16> {
+    let steps = *view.normal.get(n)?;
+    (steps != UNTRACKED).then_some(i16::from(steps) * NORMAL_STEP_MN as i16)
+}
+
+fn shear_mn(view: &CameraView, n: usize) -> i16 {
+    view.shear.get(n).map_or(0, |&steps| i16::from(steps) * SHEAR_STEP_MN as i16)
+}
+
+const fn taxel_mn(samples: i32) -> i32 {
+    samples * 1_000 / TAXEL_SAMPLES_PER_N
+}
+
+const fn differs(was_mn: i32, by_mn: i32) -> bool {
+    by_mn.abs() > CHANGE_MN && by_mn.abs() > was_mn / 4
+}
+
+fn score(mn: i32) -> u16 {
+    SCORES.iter().find(|(from_mn, _)| mn >= *from_mn).map_or(0, |&(_, score)| score)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn view(normal: u8, shear: i8) -> CameraView {
+        CameraView {
+            age_ms: 0,
+            moving_e4: 0,
+            angle_ddeg: None,
+            normal: [normal; MARKERS],
+            shear: [shear; MARKERS],
+        }
+    }
+
+    fn felt<'a>(view: Option<&'a CameraView>, taxels: &'a Reading) -> Felt<'a> {
+        Felt { view, view_is_new: true, taxels, grip: Grip::Unknown, slips: false, stirs: false }
+    }
+
+    #[test]
+    fn a_force_is_scored_0_1_3_or_5() {
+        assert_eq!([0, 29, 30, 99, 100, 299, 300, 2_000].map(score), [0, 0, 1, 1, 3, 3, 5, 5]);
+    }
+
+    #[test]
+    fn markers_count_while_the_camera_sees_and_taxels_while_it_does_not() {
+        let (light, none) = (view(3, 0), [None; ELEMENTS]);
+        let skin = Skin::now(&felt(Some(&light), &none)).expect("markers");
+        assert_eq!(skin.score(&felt(Some(&light), &none)), Some(MARKERS as u16));
+        assert_eq!(skin.score(&felt(None, &none)), None, "a camera that went silent is no zero");
+        assert!(Skin::now(&felt(None, &none)).is_none());
+
+        let (rest, pressed) = ([Some(2_000); ELEMENTS], [Some(2_110); ELEMENTS]);
+        let skin = Skin::now(&felt(None, &rest)).expect("taxels");
+        assert_eq!(skin.score(&felt(None, &rest)), Some(0));
+        assert_eq!(skin.score(&felt(None, &pressed)), Some(3 * ELEMENTS as u16));
+        assert_eq!(skin.score(&felt(None, &none)), None);
+    }
+
+    #[test]
+    fn a_pull_changes_markers_and_a_lost_marker_changes_none() {
+        let (before, pulled) = (view(20, 0), view(20, 10));
+        let none = [None; ELEMENTS];
+        let skin = Skin::now(&felt(Some(&before), &none)).expect("markers");
+        assert_eq!(skin.changed(&felt(Some(&before), &none)), Some(0));
+        assert_eq!(skin.changed(&felt(Some(&pulled), &none)), Some(MARKERS as u16));
+        let lost = CameraView { normal: [UNTRACKED; MARKERS], ..pulled };
+        assert_eq!(skin.changed(&felt(Some(&lost), &none)), Some(0));
+    }
+}

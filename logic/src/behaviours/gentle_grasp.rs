@@ -1,0 +1,54 @@
+//! Gentle grasp: close until the object is felt, and no further (FingerVision 2017, section II-A).
+
+use tenax_hal_shim::behaviour::Ending;
+use tenax_hal_shim::motor::Duty;
+
+use super::{BehaviourConfig, Course, Felt, Movement, Skin, Wish};
+use crate::grip::Grip;
+
+/// The fingers come until the skin feels half of what is enough, which its noise does not reach, and from there on by small movements, each of which is waited for:
+/// what is fragile gives way before a camera's next picture.
+#[derive(Clone, Debug)]
+pub struct GentleGrasp {
+    skin: Option<Skin>,
+    touched: bool,
+    movement: Movement,
+}
+
+impl GentleGrasp {
+    /// None without any sense of touch.
+    pub fn begin(felt: &Felt<'_>) -> Option<Self> {
+        let skin = Skin::now(felt);
+        (skin.is_some() || felt.grip != Grip::Unknown).then_some(Self {
+            skin,
+            touched: false,
+            movement: Movement::default(),
+        })
+    }
+
+    pub fn step(&mut self, config: &BehaviourConfig, felt: &Felt<'_>) -> Course {
+        let score = match &self.skin {
+            Some(skin) => match skin.score(felt) {
+                Some(score) => score,
+                None => return Course::Ends(Ending::SensorLost),
+            },
+            // The force sensor alone knows two states.
+            None => match felt.grip {
+                Grip::Unknown => return Course::Ends(Ending::SensorLost),
+                Grip::Unloaded => 0,
+                Grip::Holds(_) => u16::MAX,
+            },
+        };
+        if score > config.gentle_score || matches!(felt.grip, Grip::Holds(_)) {
+            return Course::Ends(Ending::Done);
+        }
+        self.touched |= score > config.gentle_score / 2;
+        if !self.touched {
+            return Course::On(Wish::Tighten(Duty::per_mille(config.duty_permille)));
+        }
+        if self.movement.is_over() {
+            self.movement = Movement::tighten(config);
+        }
+        Course::On(self.movement.step())
+    }
+}

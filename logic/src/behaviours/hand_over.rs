@@ -1,0 +1,64 @@
+//! Hand-over: let go as soon as somebody pulls at the object (FingerVision 2017, section II-C).
+//!
+//! No broken sensor is to let go of anything: a detector's slip counts only where the skin feels another force too, and a
+//! skin that gives no numbers ends the hand-over with the fingers as they are.
+
+use tenax_hal_shim::behaviour::Ending;
+use tenax_hal_shim::motor::Duty;
+
+use super::{BehaviourConfig, Course, Felt, Skin, Wish};
+use crate::config::frames;
+use crate::grip::Grip;
+
+/// How long the hand opens, in frames: at full speed, some centimetres.
+const OPEN_FRAMES: u32 = frames(400);
+/// A force that is another one must be so for this long, in frames: three pictures, or four readings of the taxels. A knock is
+/// shorter.
+const STAYS_FRAMES: u32 = frames(50);
+/// What happens within this time after the beginning is not the other hand's doing, in frames.
+const BEGINS_FRAMES: u32 = frames(200);
+
+/// Waits for a pull, then opens.
+#[derive(Clone, Debug)]
+pub struct HandOver {
+    skin: Skin,
+    waited: u32,
+    changed_for: u32,
+    slips_for: u32,
+    opened: u32,
+}
+
+impl HandOver {
+    /// None without a skin and a sense of force.
+    pub fn begin(felt: &Felt<'_>) -> Option<Self> {
+        if felt.grip == Grip::Unknown {
+            return None;
+        }
+        Some(Self { skin: Skin::now(felt)?, waited: 0, changed_for: 0, slips_for: 0, opened: 0 })
+    }
+
+    pub fn step(&mut self, config: &BehaviourConfig, felt: &Felt<'_>) -> Course {
+        if self.opened > 0 {
+            self.opened += 1;
+            return if self.opened > OPEN_FRAMES {
+                Course::Ends(Ending::Done)
+            } else {
+                Course::On(Wish::Relax(Duty::FULL))
+            };
+        }
+        if felt.grip == Grip::Unknown {
+            return Course::Ends(Ending::SensorLost);
+        }
+        let Some(changed) = self.skin.changed(felt) else { return Course::Ends(Ending::SensorLost) };
+        let slips = felt.is_moving(config.moving_e4, false) || (felt.slips && changed > 0);
+        self.waited = self.waited.saturating_add(1);
+        self.changed_for = if changed > config.changed_cells { self.changed_for + 1 } else { 0 };
+        self.slips_for = if slips { self.slips_for + 1 } else { 0 };
+        if self.waited >= BEGINS_FRAMES
+            && (self.changed_for >= STAYS_FRAMES || self.slips_for >= STAYS_FRAMES)
+        {
+            self.opened = 1;
+        }
+        Course::On(Wish::Rest)
+    }
+}

@@ -1,0 +1,50 @@
+//! A small movement of the fingers, and the wait after it: all that a behaviour ever does (FingerVision 2017, section II).
+
+use tenax_hal_shim::motor::Duty;
+
+use super::{BehaviourConfig, Wish};
+
+/// A movement that goes on, and the wait after it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Movement {
+    wish: Wish,
+    drives_left: u32,
+    waits_left: u32,
+}
+
+impl Movement {
+    /// A small one that closes.
+    pub const fn tighten(config: &BehaviourConfig) -> Self {
+        Self::lasting(config, Wish::Tighten(Duty::per_mille(config.duty_permille)), config.movement_frames)
+    }
+
+    /// A small one that opens.
+    pub const fn relax(config: &BehaviourConfig) -> Self {
+        Self::lasting(config, Wish::Relax(Duty::per_mille(config.duty_permille)), config.movement_frames)
+    }
+
+    /// One that lasts for so many frames.
+    pub const fn lasting(config: &BehaviourConfig, wish: Wish, frames: u32) -> Self {
+        Self { wish, drives_left: frames, waits_left: config.wait_frames }
+    }
+
+    /// Whether it is over, its wait included.
+    pub const fn is_over(&self) -> bool {
+        self.drives_left == 0 && self.waits_left == 0
+    }
+
+    /// Whether it still drives.
+    pub const fn drives(&self) -> bool {
+        self.drives_left > 0
+    }
+
+    /// Goes on by one tick.
+    pub const fn step(&mut self) -> Wish {
+        if self.drives_left > 0 {
+            self.drives_left -= 1;
+            return self.wish;
+        }
+        self.waits_left = self.waits_left.saturating_sub(1);
+        Wish::Rest
+    }
+}

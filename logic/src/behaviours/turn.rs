@@ -1,0 +1,178 @@
+//! In-hand rotation: loosen until the object slips, tighten until it does not, until the angle is there (FingerVision 2017,
+//! section II-D).
+//!
+//! The paper's objects turn too far: gravity is faster than a camera and a gripper. With `turn_lead_frames` the angle is
+//! foreseen: what the object will have turned by the time at which a closing finger stops it; and a turn ends where another
+//! slip would lead further away than it is.
+
+use tenax_hal_shim::behaviour::Ending;
+use tenax_hal_shim::channel::FRAME_HZ;
+use tenax_hal_shim::motor::Duty;
+
+use super::{BehaviourConfig, Course, Felt, Movement, Wish};
+use crate::config::frames;
+use crate::grip::Grip;
+
+/// What still slips after being tightened for this long falls, in frames: that is the reflex's.
+const FALLS_FRAMES: u32 = frames(300);
+/// Small movements that the grasp is kept away from where it slipped last; up to there it is loosened without waiting.
+const MARGIN_MOVEMENTS: i32 = 6;
+
+/// What the hand is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    /// Small movements that open, each waited for.
+    Loosens,
+    /// Small movements that close, until nothing slips.
+    Tightens,
+    /// As firm as it was.
+    Secures,
+}
+
+/// A turn that goes on.
+#[derive(Clone, Debug)]
+pub struct Turn {
+    target_ddeg: i32,
+    /// The sign of the way there.
+    sign: i32,
+    phase: Phase,
+    movement: Movement,
+    angle_ddeg: i32,
+    /// How fast it turns, tenths of a degree a second.
+    rate_ddeg_s: i32,
+    /// Frames since the picture before.
+    since_view: u32,
+    /// Where it was when it was last loosened.
+    loosened_at_ddeg: i32,
+    /// What the last slip brought.
+    stride_ddeg: i32,
+    /// How much looser the grasp is than at first, per mille of full duty times frames.
+    loosened: i32,
+    /// How loose it was when it slipped last.
+    slipped_at: Option<i32>,
+    tightens_for: u32,
+}
+
+impl Turn {
+    /// None without a camera that sees the object, or without a grasp.
+    pub fn begin(felt: &Felt<'_>, by_ddeg: i16) -> Option<Self> {
+        let angle_ddeg = i32::from(felt.view?.angle_ddeg?);
+        matches!(felt.grip, Grip::Holds(_)).then_some(Self {
+            target_ddeg: angle_ddeg + i32::from(by_ddeg),
+            sign: i32::from(by_ddeg).signum(),
+            phase: Phase::Loosens,
+            movement: Movement::default(),
+            angle_ddeg,
+            rate_ddeg_s: 0,
+            since_view: 0,
+            loosened_at_ddeg: angle_ddeg,
+            stride_ddeg: 0,
+            loosened: 0,
+            slipped_at: None,
+            tightens_for: 0,
+        })
+    }
+
+    /// While it slips on purpose: until it is clear that it falls.
+    pub const fn answers_slip(&self) -> bool {
+        !matches!(self.phase, Phase::Secures) && self.tightens_for < FALLS_FRAMES
+    }
+
+    pub fn step(&mut self, config: &BehaviourConfig, felt: &Felt<'_>) -> Course {
+        if let Err(ending) = self.look(felt) {
+            return Course::Ends(ending);
+        }
+        let slips = felt.is_slipping(config.moving_e4, true);
+        match self.phase {
+            Phase::Loosens if slips || self.is_there(config) => {
+                self.slipped_at = Some(self.loosened);
+                self.enter(Phase::Tightens);
+            }
+            Phase::Loosens => {
+                if self.movement.is_over() || (self.is_far(config) && !self.movement.drives()) {
+                    self.movement = Movement::relax(config);
+                }
+            }
+            Phase::Tightens => {
+                self.tightens_for = self.tightens_for.saturating_add(1);
+                if slips && !self.movement.drives() {
+                    self.movement = Movement::lasting(config, tighten(config), config.movement_frames);
+                } else if self.movement.is_over() {
+                    self.stride_ddeg = (self.angle_ddeg - self.loosened_at_ddeg) * self.sign;
+                    let next = if self.is_there(config) { Phase::Secures } else { Phase::Loosens };
+                    self.enter(next);
+                }
+            }
+            Phase::Secures => {
+                if self.loosened <= 0 {
+                    return Course::Ends(Ending::Done);
+                }
+                self.movement = Movement::lasting(config, tighten(config), 1);
+            }
+        }
+        let wish = self.movement.step();
+        self.loosened += match wish {
+            Wish::Relax(duty) => i32::from(duty.as_per_mille()),
+            Wish::Tighten(duty) => -i32::from(duty.as_per_mille()),
+            Wish::Rest => 0,
+        };
+        Course::On(wish)
+    }
+
+    /// Takes a picture in, if there is a new one.
+    fn look(&mut self, felt: &Felt<'_>) -> Result<(), Ending> {
+        self.since_view = self.since_view.saturating_add(1);
+        let view = felt.view.ok_or(Ending::SensorLost)?;
+        let Grip::Holds(_) = felt.grip else { return Err(Ending::Dropped) };
+        if !felt.view_is_new {
+            return Ok(());
+        }
+        let angle_ddeg = i32::from(view.angle_ddeg.ok_or(Ending::SensorLost)?);
+        let turned_ddeg = angle_ddeg - self.angle_ddeg;
+        self.rate_ddeg_s = turned_ddeg * FRAME_HZ as i32 / self.since_view.clamp(1, FRAME_HZ) as i32;
+        self.angle_ddeg = angle_ddeg;
+        self.since_view = 0;
+        Ok(())
+    }
+
+    /// Whether it is much firmer than where it slipped last.
+    fn is_far(&self, config: &BehaviourConfig) -> bool {
+        let margin = MARGIN_MOVEMENTS * i32::from(config.duty_permille) * config.movement_frames as i32;
+        self.slipped_at.is_some_and(|slipped_at| self.loosened + margin < slipped_at)
+    }
+
+    /// Whether it has turned far enough: now, or by the time at which it can be stopped; or nearer than the next slip would
+    /// bring it.
+    fn is_there(&self, config: &BehaviourConfig) -> bool {
+        let lead = config.turn_lead_frames as i32;
+        let left_ddeg = (self.target_ddeg - self.angle_ddeg) * self.sign;
+        if lead == 0 {
+            return left_ddeg <= 0;
+        }
+        let foreseen_ddeg = match self.phase {
+            // A movement that goes on goes on until the fingers have closed.
+            Phase::Tightens if !self.movement.is_over() => {
+                self.rate_ddeg_s * self.sign * lead / FRAME_HZ as i32
+            }
+            // And the next slip brings as much as the last.
+            _ => self.stride_ddeg / 2,
+        };
+        left_ddeg <= foreseen_ddeg.max(0)
+    }
+
+    fn enter(&mut self, phase: Phase) {
+        self.phase = phase;
+        self.movement = Movement::default();
+        self.tightens_for = 0;
+        if phase == Phase::Loosens {
+            self.loosened_at_ddeg = self.angle_ddeg;
+        }
+        if phase == Phase::Tightens {
+            self.tightens_for = 1;
+        }
+    }
+}
+
+fn tighten(config: &BehaviourConfig) -> Wish {
+    Wish::Tighten(Duty::per_mille(config.duty_permille.saturating_mul(2)))
+}

@@ -1,0 +1,128 @@
+//! The behaviour that goes on in the fingertip: how it begins, what it may ask for in a tick, how it ends.
+
+use tenax_hal_shim::behaviour::{Behaviour, CameraView, Ending};
+use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::wire::{EventKind, Refusal};
+use tenax_hal_shim::words::{GripMode, Line};
+
+use super::Fingertip;
+use super::heard::Heard;
+use crate::behaviours::{Course, Felt, Running, Wish, may_relax};
+use crate::config::frames;
+
+/// A picture is too old to be believed after this, in frames, its own age included: the camera is lost, covered by its
+/// computer's load, or frozen.
+const VIEW_FRAMES_MAX: u32 = frames(200);
+
+/// What the camera behind the skin saw last.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Eye {
+    view: Option<CameraView>,
+    age_frames: u32,
+    is_new: bool,
+}
+
+impl Eye {
+    /// Takes a picture's contents.
+    pub fn see(&mut self, view: CameraView) {
+        let age_frames = frames(view.age_ms.into());
+        *self = Self { view: (age_frames < VIEW_FRAMES_MAX).then_some(view), age_frames, is_new: true };
+    }
+
+    /// Goes on by one tick.
+    fn tick(&mut self) {
+        self.is_new = false;
+        self.age_frames += 1;
+        if self.age_frames >= VIEW_FRAMES_MAX {
+            self.view = None;
+        }
+    }
+}
+
+impl Fingertip {
+    /// The behaviour that goes on.
+    #[must_use]
+    pub fn behaviour(&self) -> Option<Behaviour> {
+        self.behaviour.as_ref().map(Running::what)
+    }
+
+    pub(super) fn begin(&mut self, what: Behaviour) -> Result<(), Refusal> {
+        if self.senses.gate.is_active() {
+            return Err(Refusal::WearerActive);
+        }
+        let may_begin = matches!(self.mode, GripMode::Watch | GripMode::Settle) || self.behaviour.is_some();
+        let running = Running::begin(what, &self.felt(None)).filter(|_| may_begin);
+        let running = running.ok_or(Refusal::SensorLost)?;
+        self.end(Ending::Stopped);
+        if what == Behaviour::Stroke {
+            self.detectors.s2.begin_stroke();
+        }
+        self.behaviour = Some(running);
+        self.journal.event(EventKind::Behaviour(what, None));
+        Ok(())
+    }
+
+    /// Ends the behaviour that goes on, if one does.
+    pub(super) fn end(&mut self, ending: Ending) {
+        let Some(running) = self.behaviour.take() else { return };
+        self.journal.event(EventKind::Behaviour(running.what(), Some(ending)));
+        if running.what() == Behaviour::Stroke {
+            self.measured();
+        }
+    }
+
+    /// What the behaviour asks for in this tick, and may have.
+    pub(super) fn behave(&mut self, heard: Heard) -> MotorDrive {
+        if self.behaviour.is_none() && self.eye.view.is_none() {
+            return MotorDrive::Coast;
+        }
+        let wish = self.step_behaviour(heard);
+        self.eye.tick();
+        wish
+    }
+
+    fn step_behaviour(&mut self, heard: Heard) -> MotorDrive {
+        if self.behaviour.is_none() {
+            return MotorDrive::Coast;
+        }
+        if self.senses.gate.is_active() || self.link.drive().is_some() {
+            self.end(Ending::TakenOver);
+            return MotorDrive::Coast;
+        }
+        if !self.senses.ready(&self.config) {
+            self.end(Ending::SensorLost);
+            return MotorDrive::Coast;
+        }
+        let Some(mut running) = self.behaviour.take() else { return MotorDrive::Coast };
+        let felt = self.felt(Some(heard));
+        let (grip, course) = (felt.grip, running.step(&self.config.behaviour, &felt));
+        self.behaviour = Some(running);
+        let ends = match course {
+            Course::On(Wish::Tighten(_)) if !self.reflex.link_may_close(&self.config.grip, grip) => {
+                Ending::Ceiling
+            }
+            Course::On(wish @ Wish::Relax(_)) => match may_relax(self.line(), grip, self.mode) {
+                true => return wish.drive(),
+                false if self.line() == Line::Reading => Ending::NotArmed,
+                // The reflex tightens, and the behaviour waits for it.
+                false => return MotorDrive::Coast,
+            },
+            Course::On(wish) => return wish.drive(),
+            Course::Ends(ending) => ending,
+        };
+        self.end(ends);
+        MotorDrive::Coast
+    }
+
+    fn felt(&self, heard: Option<Heard>) -> Felt<'_> {
+        let vibration = self.senses.vibration;
+        Felt {
+            view: self.eye.view.as_ref(),
+            view_is_new: self.eye.is_new,
+            taxels: self.senses.taxels(),
+            grip: self.senses.grip(&self.config),
+            slips: heard.is_some_and(|heard| !heard.slip.is_empty()),
+            stirs: !vibration.knock && vibration.level >= self.config.vibration.s1 / 2,
+        }
+    }
+}

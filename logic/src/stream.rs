@@ -1,0 +1,143 @@
+//! What goes up the line beyond the usual while somebody asks for it: frames as they were sampled, and every sensor's
+//! reading. It only looks; nothing that is decided depends on it.
+
+use tenax_hal_shim::channel::{FRAME_HZ, FRAMES_PER_SLOW_FRAME};
+use tenax_hal_shim::frame::Frame;
+use tenax_hal_shim::wire::{FRAMES_PER_RAW, Raw};
+
+const _: () = assert!((FRAMES_PER_SLOW_FRAME as usize).is_multiple_of(FRAMES_PER_RAW));
+
+/// For ever: until somebody asks for something else.
+const EVER: u32 = u32::MAX;
+
+/// The slot whose tick sends the readings: nothing long is decided or sent in it.
+const SENSES_SLOT: u8 = 2;
+
+/// What is asked for, and what has gathered.
+#[derive(Clone, Debug, Default)]
+pub struct Stream {
+    /// Sequence number of the frame to come.
+    next: u32,
+    raw: bool,
+    senses: bool,
+    /// Frames for which it goes on.
+    left: u32,
+    gathered: Raw,
+    /// The five before, which are sent in the tick after their last: that one may have ended a slow frame, and two long
+    /// messages in one tick last into the next frame.
+    whole: Raw,
+    is_whole: bool,
+    raw_is_ready: bool,
+    senses_are_due: bool,
+    /// The first frames of a message went by before anybody asked.
+    is_torn: bool,
+}
+
+impl Stream {
+    /// From the first frame on.
+    pub const fn start(&mut self) {
+        self.raw = true;
+        self.left = EVER;
+    }
+
+    /// Somebody asks.
+    pub fn ask(&mut self, raw: bool, senses: bool, hold_s: u16) {
+        self.is_torn |= raw && !self.raw && !(self.next as usize).is_multiple_of(FRAMES_PER_RAW);
+        self.left = u32::from(hold_s) * FRAME_HZ;
+        (self.raw, self.senses) = (raw && hold_s > 0, senses && hold_s > 0);
+    }
+
+    /// A frame had its tick.
+    pub fn take(&mut self, frame: &Frame) {
+        self.next = frame.sequence.wrapping_add(1);
+        if self.left > 0 || self.is_whole {
+            self.gather(frame);
+        }
+    }
+
+    #[inline(never)]
+    fn gather(&mut self, frame: &Frame) {
+        self.raw_is_ready = core::mem::take(&mut self.is_whole);
+        if self.raw {
+            self.gathered.put(frame);
+            if (frame.sequence as usize + 1).is_multiple_of(FRAMES_PER_RAW) {
+                self.whole = self.gathered;
+                self.is_whole = !core::mem::take(&mut self.is_torn);
+            }
+        }
+        self.senses_are_due = self.senses && frame.slot() == SENSES_SLOT;
+        if self.left != EVER && self.left > 0 {
+            self.left -= 1;
+            let goes_on = self.left > 0;
+            (self.raw, self.senses) = (self.raw && goes_on, self.senses && goes_on);
+        }
+    }
+
+    /// Sequence number of the frame to come.
+    pub const fn next(&self) -> u32 {
+        self.next
+    }
+
+    /// Whether frames are streamed.
+    pub const fn is_raw(&self) -> bool {
+        self.raw
+    }
+
+    /// Whether a message of frames is full.
+    pub const fn has_raw(&self) -> bool {
+        self.raw_is_ready
+    }
+
+    /// The message of frames, if it is full.
+    pub fn take_raw(&mut self) -> Option<Raw> {
+        core::mem::take(&mut self.raw_is_ready).then_some(self.whole)
+    }
+
+    /// Whether the sensors' readings are to be sent.
+    pub const fn wants_senses(&self) -> bool {
+        self.senses_are_due
+    }
+
+    /// They were.
+    pub const fn gave_senses(&mut self) {
+        self.senses_are_due = false;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::vec::Vec;
+
+    fn firsts(stream: &mut Stream, frames: core::ops::Range<u32>) -> Vec<u32> {
+        let step = |sequence| {
+            stream.take(&Frame::lost(sequence));
+            stream.take_raw().map(|raw| raw.first)
+        };
+        frames.filter_map(step).collect()
+    }
+
+    #[test]
+    fn frames_come_five_at_a_time_and_only_whole_fives() {
+        let mut stream = Stream::default();
+        assert_eq!(firsts(&mut stream, 0..7), []);
+        stream.ask(true, false, 1);
+        assert_eq!(firsts(&mut stream, 7..26), [10, 15, 20]);
+        stream.ask(false, true, 1);
+        assert_eq!(firsts(&mut stream, 26..53), []);
+        assert!(stream.wants_senses(), "slot 2");
+    }
+
+    #[test]
+    fn it_ends_when_nobody_asks_any_more_unless_it_is_for_ever() {
+        let mut stream = Stream::default();
+        stream.ask(true, true, 1);
+        assert_eq!(firsts(&mut stream, 0..10 * FRAME_HZ).len(), FRAME_HZ as usize / FRAMES_PER_RAW);
+        stream.start();
+        // The last five are sent in the tick after them.
+        let seen = firsts(&mut stream, 0..10 * FRAME_HZ + 1).len();
+        assert_eq!(seen, 10 * FRAME_HZ as usize / FRAMES_PER_RAW);
+        stream.ask(true, true, 0);
+        assert_eq!(firsts(&mut stream, 0..100), []);
+    }
+}

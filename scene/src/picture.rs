@@ -1,0 +1,306 @@
+//! What a camera behind a clear skin sees: markers that the contact moves, an object, a background, drawn with the faults
+//! of a cheap camera: fisheye, blur, noise, rolling shutter, changing light (FingerVision 2017).
+//!
+//! Whatever has no measured value is drawn for each session: textures, colours, light, lens, markers and story. The same
+//! seed gives the same pictures. What is imaged exactly where is the [`Truth`].
+
+mod lens;
+pub mod story;
+mod texture;
+
+use self::story::{State, Story};
+use self::texture::Texture;
+use crate::random::{Noise, Source};
+
+pub use self::lens::Lens;
+
+/// Columns of a picture.
+pub const WIDTH: usize = 320;
+/// Rows of a picture.
+pub const HEIGHT: usize = 240;
+/// Pixels of a picture.
+pub const PIXELS: usize = WIDTH * HEIGHT;
+/// Samples of noise that pictures take theirs from.
+const NOISE: usize = 1 << 18;
+
+/// What a session is drawn from; `seed` draws the rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Seed of everything.
+    pub seed: u64,
+    /// Pictures a second.
+    pub rate_hz: f64,
+    /// Whether the lens is a fisheye.
+    pub fisheye: bool,
+}
+
+/// A camera's session.
+#[derive(Clone, Debug)]
+pub struct Session {
+    options: Options,
+    story: Story,
+    lens: Lens,
+    background: Texture,
+    surface: Texture,
+    half: (f64, f64),
+    markers: Vec<Marker>,
+    contact_px: f64,
+    sigma: f64,
+    readout_s: f64,
+    noise: Vec<f32>,
+    /// The flat place of each pixel.
+    flat: Vec<(f32, f32)>,
+    frame: u32,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Marker {
+    at: (f64, f64),
+    radius_px: f64,
+    level: f32,
+}
+
+/// What a picture truly shows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Truth {
+    /// When its first row was taken, s.
+    pub t_s: f64,
+    /// Where each marker's middle is imaged, px, and where it would be with nothing touching the skin.
+    pub markers: Vec<((f64, f64), (f64, f64))>,
+    /// The world as the middle row was taken.
+    pub state: State,
+    /// Whether a part of the object is in view.
+    pub in_view: bool,
+    /// Whether all of it is.
+    pub whole: bool,
+    /// Whether the object moves against the finger.
+    pub slides: bool,
+    /// Whether it is gripped.
+    pub gripped: bool,
+}
+
+impl Session {
+    /// Draws a session.
+    #[must_use]
+    pub fn new(options: Options) -> Self {
+        let mut noise = Noise::new(options.seed, Source::Picture);
+        let middle = ((WIDTH as f64 - 1.0) / 2.0, (HEIGHT as f64 - 1.0) / 2.0);
+        let focal_px = if options.fisheye { noise.between(190.0, 300.0) } else { f64::INFINITY };
+        let lens = Lens { focal_px, middle };
+        let wall = noise.between(110.0, 190.0);
+        let base = [0.0; 3].map(|_: f64| wall * noise.between(0.85, 1.1));
+        let background = Texture::drawn(&mut noise, base, 30.0, 60);
+        // An object that differs from the wall in colour or in brightness, and may share parts of both.
+        let own = [0.0; 3].map(|_: f64| noise.between(30.0, 220.0));
+        let contrast = noise.between(15.0, 45.0);
+        let surface = Texture::drawn(&mut noise, own, contrast, 500);
+        let half = (noise.between(65.0, 95.0), noise.between(16.0, 30.0));
+        let story = Story::drawn(&mut noise);
+        let (pitch, radius_px) = (noise.between(38.0, 48.0), noise.between(3.6, 5.4));
+        let level = noise.between(10.0, 32.0);
+        let mut markers = Vec::new();
+        for row in -4i32..=4 {
+            for column in -5i32..=5 {
+                let shaken = (noise.between(-2.0, 2.0), noise.between(-2.0, 2.0));
+                let at = (
+                    middle.0 + pitch * f64::from(column) + shaken.0,
+                    middle.1 + pitch * f64::from(row) + shaken.1,
+                );
+                let radius_px = radius_px * noise.between(0.9, 1.1);
+                let level = (level * noise.between(0.8, 1.2)) as f32;
+                let seen = lens.seen(at);
+                let inside = |place: f64, end: usize| place > 16.0 && place < end as f64 - 17.0;
+                if inside(seen.0, WIDTH) && inside(seen.1, HEIGHT) {
+                    markers.push(Marker { at, radius_px, level });
+                }
+            }
+        }
+        let contact_px = noise.between(50.0, 90.0);
+        let (sigma, readout_s) = (noise.between(1.0, 3.0), noise.between(0.004, 0.016));
+        let mut grain = Noise::new(options.seed, Source::PictureNoise);
+        let noise = (0..NOISE).map(|_| grain.normal() as f32).collect();
+        let flat = (0..PIXELS)
+            .map(|at| lens.flat(((at % WIDTH) as f64, (at / WIDTH) as f64)))
+            .map(|(x, y)| (x as f32, y as f32))
+            .collect();
+        Self {
+            options,
+            story,
+            lens,
+            background,
+            surface,
+            half,
+            markers,
+            contact_px,
+            sigma,
+            readout_s,
+            noise,
+            flat,
+            frame: 0,
+        }
+    }
+
+    /// The lens.
+    #[must_use]
+    pub const fn lens(&self) -> Lens {
+        self.lens
+    }
+
+    /// How many markers are in view.
+    #[must_use]
+    pub const fn markers(&self) -> usize {
+        self.markers.len()
+    }
+
+    /// Draws the next picture, planes in the order green, blue, red. None after the story's end.
+    pub fn picture(&mut self, gbrp: &mut [u8]) -> Option<Truth> {
+        let t_s = f64::from(self.frame) / self.options.rate_hz;
+        if t_s >= story::END_S || gbrp.len() != 3 * PIXELS {
+            return None;
+        }
+        // Any place will do, and the same seed gives the same ones.
+        let start = (self.frame as usize).wrapping_mul(104_729) % NOISE;
+        self.frame += 1;
+        let (green, rest) = gbrp.split_at_mut(PIXELS);
+        let (blue, red) = rest.split_at_mut(PIXELS);
+        for y in 0..HEIGHT {
+            let state = self.story.at(self.row_time_s(t_s, y as f64));
+            let near = self.near(&state, y as f64);
+            for x in 0..WIDTH {
+                let at = y * WIDTH + x;
+                let colour = self.colour(&state, &near, at);
+                let grain = |plane: usize| self.noise[(start + 3 * at + plane) % NOISE] * self.sigma as f32;
+                let level = |plane: usize| {
+                    (colour[plane] * state.exposure as f32 + grain(plane)).round().clamp(0.0, 255.0)
+                };
+                (red[at], green[at], blue[at]) = (level(0) as u8, level(1) as u8, level(2) as u8);
+            }
+        }
+        Some(self.truth(t_s))
+    }
+
+    /// When a row is taken: a rolling shutter takes one after the other.
+    fn row_time_s(&self, t_s: f64, y: f64) -> f64 {
+        t_s + self.readout_s * y / HEIGHT as f64
+    }
+
+    /// Markers that a row may cross, moved: flat middle, radius, level.
+    fn near(&self, state: &State, y: f64) -> Vec<((f64, f64), f64, f32)> {
+        let moved =
+            self.markers.iter().map(|marker| (self.moved(state, marker.at), marker.radius_px, marker.level));
+        moved.filter(|(at, radius, _)| (self.lens.seen(*at).1 - y).abs() < radius + 3.0).collect()
+    }
+
+    /// Where a place of the skin is while it is sheared and pressed: as one in the contact, ever less outside of it.
+    fn moved(&self, state: &State, (x, y): (f64, f64)) -> (f64, f64) {
+        let (dx, dy) = (x - self.lens.middle.0, y - self.lens.middle.1);
+        let r = libm::hypot(dx, dy) / self.contact_px;
+        let sheared = 0.3 + 0.7 * libm::exp(-r * r / 2.0);
+        // Incompressible skin is pushed outwards, most at the contact's rim.
+        let pushed = state.press_px * libm::exp((1.0 - r * r) / 2.0) / self.contact_px;
+        (x + state.shear_px.0 * sheared + dx * pushed, y + state.shear_px.1 * sheared + dy * pushed)
+    }
+
+    fn colour(&self, state: &State, near: &[((f64, f64), f64, f32)], at: usize) -> [f32; 3] {
+        let (x, y) = (f64::from(self.flat[at].0), f64::from(self.flat[at].1));
+        let (sin, cos) = (libm::sin(state.angle_rad), libm::cos(state.angle_rad));
+        let (dx, dy) = (x - state.object.0, y - state.object.1);
+        let (along, across) = (dx * cos + dy * sin, dy * cos - dx * sin);
+        // How far inside the object, px: its rim is blurred over one.
+        let inside = (self.half.0 - along.abs()).min(self.half.1 - across.abs());
+        let part = (inside + 0.5).clamp(0.0, 1.0) as f32;
+        let mut colour = if part < 1.0 {
+            self.background.at(x + state.background.0, y + state.background.1)
+        } else {
+            [0.0; 3]
+        };
+        if part > 0.0 {
+            let own = self.surface.at(along + 256.0, across + 256.0);
+            (0..3).for_each(|plane| colour[plane] += (own[plane].clamp(5.0, 250.0) - colour[plane]) * part);
+        }
+        for ((mx, my), radius, level) in near {
+            let covered = ((radius - libm::hypot(x - mx, y - my)) / 1.4 + 0.5).clamp(0.0, 1.0) as f32;
+            (0..3).for_each(|plane| colour[plane] += (level - colour[plane]) * covered);
+        }
+        colour
+    }
+
+    fn truth(&self, t_s: f64) -> Truth {
+        let seen = |place: (f64, f64)| self.lens.seen(place);
+        let imaged = |marker: &Marker| {
+            let rest = seen(marker.at);
+            let state = self.story.at(self.row_time_s(t_s, rest.1));
+            (seen(self.moved(&state, marker.at)), rest)
+        };
+        let state = self.story.at(self.row_time_s(t_s, HEIGHT as f64 / 2.0));
+        let (sin, cos) = (libm::sin(state.angle_rad), libm::cos(state.angle_rad));
+        let place = |along: f64, across: f64| {
+            let (x, y) = seen((
+                state.object.0 + along * cos - across * sin,
+                state.object.1 + along * sin + across * cos,
+            ));
+            x > 0.0 && y > 0.0 && x < WIDTH as f64 - 1.0 && y < HEIGHT as f64 - 1.0
+        };
+        let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)];
+        let whole = corners.iter().all(|(a, b)| place(a * self.half.0, b * self.half.1));
+        let in_view = (-4..=4).any(|step| place(f64::from(step) / 4.0 * self.half.0, 0.0));
+        let middle_s = self.row_time_s(t_s, HEIGHT as f64 / 2.0);
+        Truth {
+            t_s,
+            markers: self.markers.iter().map(imaged).collect(),
+            state,
+            in_view,
+            whole,
+            slides: Story::slides(middle_s),
+            gripped: Story::gripped(middle_s),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn options(seed: u64) -> Options {
+        Options { seed, rate_hz: 30.0, fisheye: true }
+    }
+
+    #[test]
+    fn the_same_seed_gives_the_same_pictures_and_another_gives_others() {
+        let drawn = |seed| {
+            let mut session = Session::new(options(seed));
+            let mut bytes = vec![0; 3 * PIXELS];
+            let truth = (0..3).map(|_| session.picture(&mut bytes)).last().flatten();
+            (bytes, truth)
+        };
+        assert_eq!(drawn(1), drawn(1));
+        assert_ne!(drawn(1).0, drawn(2).0);
+    }
+
+    #[test]
+    fn a_marker_is_dark_where_the_truth_says() {
+        let mut session = Session::new(options(3));
+        let mut bytes = vec![0; 3 * PIXELS];
+        for _ in 0..4 {
+            let truth = session.picture(&mut bytes).unwrap();
+            assert!(truth.markers.len() >= 15, "{} markers", truth.markers.len());
+            for ((x, y), rest) in &truth.markers {
+                assert_eq!((*x, *y), *rest, "nothing touches the skin yet");
+                assert!(bytes[y.round() as usize * WIDTH + x.round() as usize] < 70);
+            }
+        }
+    }
+
+    #[test]
+    fn a_story_has_an_end_and_all_that_it_tells() {
+        let mut session = Session::new(Options { rate_hz: 5.0, ..options(4) });
+        let mut bytes = vec![0; 3 * PIXELS];
+        let truths: Vec<Truth> = std::iter::from_fn(|| session.picture(&mut bytes)).collect();
+        assert_eq!(truths.len(), 50);
+        assert!(
+            truths.iter().any(|truth| truth.slides)
+                && truths.iter().any(|truth| truth.gripped && !truth.slides)
+        );
+        assert!(!truths[0].in_view && truths[20].in_view && !truths[49].in_view);
+    }
+}

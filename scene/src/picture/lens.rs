@@ -1,0 +1,52 @@
+//! A fisheye lens: equidistant, r = f theta.
+
+/// How far from the middle of the picture, in both worlds, px.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lens {
+    /// Focal length, px. Infinite: no distortion.
+    pub focal_px: f64,
+    /// Middle of the picture, px.
+    pub middle: (f64, f64),
+}
+
+impl Lens {
+    /// Where a place of the flat world is seen.
+    #[must_use]
+    pub fn seen(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        self.scaled((x, y), |r| self.focal_px * libm::atan(r / self.focal_px))
+    }
+
+    /// What place of the flat world is seen there.
+    #[must_use]
+    pub fn flat(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        // Nothing is seen beyond 80 degrees.
+        self.scaled((x, y), |r| self.focal_px * libm::tan((r / self.focal_px).min(1.4)))
+    }
+
+    fn scaled(&self, (x, y): (f64, f64), radius: impl Fn(f64) -> f64) -> (f64, f64) {
+        let (dx, dy) = (x - self.middle.0, y - self.middle.1);
+        let r = libm::hypot(dx, dy);
+        if r < 1e-9 || !self.focal_px.is_finite() {
+            return (x, y);
+        }
+        let scale = radius(r) / r;
+        (self.middle.0 + dx * scale, self.middle.1 + dy * scale)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn there_and_back() {
+        let lens = Lens { focal_px: 220.0, middle: (159.5, 119.5) };
+        for place in [(159.5, 119.5), (0.0, 0.0), (300.0, 20.0), (150.0, 230.0)] {
+            let (x, y) = lens.seen(lens.flat(place));
+            assert!((x - place.0).abs() < 1e-9 && (y - place.1).abs() < 1e-9);
+        }
+        // A right angle away is seen at f pi / 2.
+        let (x, _) = lens.seen((1e9, 119.5));
+        assert!((x - 159.5 - 220.0 * std::f64::consts::FRAC_PI_2).abs() < 1e-3);
+    }
+}

@@ -1,0 +1,153 @@
+//! Force and torque from the markers' moves (FingerVision 2017, section IV A).
+//!
+//! The paper's estimate has no unit: shear is a marker's move, normal force is the size of that move. [`Forces`] is that.
+//! [`Loads`](crate::loads::Loads) makes newtons of it, with coefficients that are calibrated under known loads.
+
+use crate::frame::{HEIGHT, Point, WIDTH};
+use crate::markers::Marker;
+
+/// The middle of the picture, about which torque is taken.
+pub const MIDDLE: Point = Point { x: (WIDTH - 1) as f32 / 2.0, y: (HEIGHT - 1) as f32 / 2.0 };
+
+/// What all markers together say, px: means over the markers that are known.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Forces {
+    /// Moved to the right: shear along x.
+    pub x: f32,
+    /// Moved down: shear along the picture's y.
+    pub y: f32,
+    /// How far they moved, whatever the direction: the paper's normal force.
+    pub normal: f32,
+    /// How far they moved away from the middle of the picture.
+    pub spread: f32,
+    /// How much their radius has grown.
+    pub growth: f32,
+    /// Torque about the skin's normal, px^2: the move across the way from the middle, times its length.
+    pub twist: f32,
+    /// Markers that say so.
+    pub markers: usize,
+}
+
+impl Forces {
+    /// The means over the markers that are known. None if there are fewer than `least`.
+    #[must_use]
+    pub fn of(markers: &[Marker], least: usize) -> Option<Self> {
+        let mut sum = Self::default();
+        for marker in markers.iter().filter(|marker| marker.known()) {
+            let (x, y) = marker.moved();
+            let (rx, ry) = (marker.rest.at.x - MIDDLE.x, marker.rest.at.y - MIDDLE.y);
+            let far = libm::hypotf(rx, ry).max(1.0);
+            sum.x += x;
+            sum.y += y;
+            sum.normal += libm::hypotf(x, y);
+            sum.spread += (x * rx + y * ry) / far;
+            sum.growth += marker.growth;
+            sum.twist += rx * y - ry * x;
+            sum.markers += 1;
+        }
+        if sum.markers < least.max(1) {
+            return None;
+        }
+        let n = sum.markers as f32;
+        Some(Self {
+            x: sum.x / n,
+            y: sum.y / n,
+            normal: sum.normal / n,
+            spread: sum.spread / n,
+            growth: sum.growth / n,
+            twist: sum.twist / n,
+            markers: sum.markers,
+        })
+    }
+}
+
+/// How a marker's move is scored for a gentle grasp (FingerVision 2017, section II A).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scores {
+    /// Moves above which a marker scores 1, 3 and 5, px.
+    pub above_px: [f32; 3],
+}
+
+impl Default for Scores {
+    /// The thresholds of the author's software.
+    fn default() -> Self {
+        Self { above_px: [0.8, 1.8, 2.5] }
+    }
+}
+
+impl Scores {
+    /// The sum over the markers: above 7 the object is held.
+    #[must_use]
+    pub fn sum(&self, markers: &[Marker]) -> u32 {
+        let score = |marker: &Marker| {
+            let (x, y) = marker.moved();
+            let far = libm::hypotf(x, y);
+            match self.above_px.iter().filter(|&&above| far > above).count() {
+                0 => 0,
+                1 => 1,
+                2 => 3,
+                _ => 5,
+            }
+        };
+        markers.iter().filter(|marker| marker.known()).map(score).sum()
+    }
+}
+
+/// How many markers have moved by more than `apart_px` since `before`: above 5 of them, somebody pulls (section II C).
+#[must_use]
+pub fn changed(markers: &[Marker], before: &[(f32, f32)], apart_px: f32) -> usize {
+    let moved = markers.iter().zip(before).filter(|(marker, before)| {
+        let (x, y) = marker.moved();
+        marker.known() && libm::hypotf(x - before.0, y - before.1) > apart_px
+    });
+    moved.count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::markers::{RAYS, Shape};
+    use alloc::vec::Vec;
+
+    fn markers(moved: impl Fn(f32, f32) -> (f32, f32)) -> Vec<Marker> {
+        (0..25)
+            .map(|at| {
+                let (x, y) = (MIDDLE.x + 40.0 * (at % 5 - 2) as f32, MIDDLE.y + 40.0 * (at / 5 - 2) as f32);
+                let rest = Shape { at: Point { x, y }, radii: [4.0; RAYS], area: 50, dark_pixels: 50 };
+                let mut marker = Marker::new(rest);
+                let (dx, dy) = moved(x - MIDDLE.x, y - MIDDLE.y);
+                marker.at = Point { x: x + dx, y: y + dy };
+                marker
+            })
+            .collect()
+    }
+
+    #[test]
+    fn shear_is_a_common_move_and_a_press_is_none() {
+        let sheared = Forces::of(&markers(|_, _| (3.0, -4.0)), 5).unwrap();
+        assert!(
+            (sheared.x - 3.0).abs() < 1e-4
+                && (sheared.y + 4.0).abs() < 1e-4
+                && (sheared.normal - 5.0).abs() < 1e-4
+        );
+        assert!(sheared.spread.abs() < 0.01 && sheared.twist.abs() < 0.01);
+        let pressed = Forces::of(&markers(|x, y| (0.05 * x, 0.05 * y)), 5).unwrap();
+        assert!(
+            pressed.x.abs() < 1e-4 && pressed.normal > 2.0 && (pressed.spread - pressed.normal).abs() < 1e-3
+        );
+        let turned = Forces::of(&markers(|x, y| (-0.05 * y, 0.05 * x)), 5).unwrap();
+        assert!(turned.twist > 100.0 && turned.spread.abs() < 1e-3);
+        assert_eq!(Forces::of(&[], 1), None);
+    }
+
+    #[test]
+    fn scores_are_the_papers() {
+        let scores = Scores::default();
+        assert_eq!(scores.sum(&markers(|_, _| (0.5, 0.0))), 0);
+        assert_eq!(scores.sum(&markers(|_, _| (0.0, 1.0))), 25);
+        assert_eq!(scores.sum(&markers(|x, _| (if x > 1.0 { 2.0 } else { 0.0 }, 0.0))), 30);
+        assert_eq!(scores.sum(&markers(|x, y| (if x * x + y * y < 1.0 { 9.0 } else { 0.0 }, 0.0))), 5);
+        let before: Vec<(f32, f32)> = (0..25).map(|_| (0.0, 0.0)).collect();
+        assert_eq!(changed(&markers(|x, _| (if x > 1.0 { 2.0 } else { 0.0 }, 0.0)), &before, 1.0), 10);
+    }
+}

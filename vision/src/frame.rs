@@ -1,0 +1,106 @@
+//! A picture as planes of bytes: every loop over one is a loop over a whole slice, which the compiler vectorises.
+
+/// Columns of a picture.
+pub const WIDTH: usize = 320;
+/// Rows of a picture.
+pub const HEIGHT: usize = 240;
+/// Pixels of a picture.
+pub const PIXELS: usize = WIDTH * HEIGHT;
+/// Bytes of a picture of three planes.
+pub const FRAME_BYTES: usize = 3 * PIXELS;
+
+/// One colour of a picture, row by row.
+pub type Plane = [u8; PIXELS];
+
+/// A black plane on the heap, which was never on the stack.
+#[must_use]
+pub fn plane() -> alloc::boxed::Box<Plane> {
+    match alloc::vec![0; PIXELS].into_boxed_slice().try_into() {
+        Ok(plane) => plane,
+        Err(_) => unreachable!("its length is that of a plane"),
+    }
+}
+
+/// A picture: three planes that somebody else owns.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame<'a> {
+    /// Red, 0 to 255.
+    pub red: &'a Plane,
+    /// Green.
+    pub green: &'a Plane,
+    /// Blue.
+    pub blue: &'a Plane,
+}
+
+impl<'a> Frame<'a> {
+    /// The picture in `bytes`, planes in the order green, blue, red: ffmpeg's raw `gbrp`. None if the length is another.
+    #[must_use]
+    pub fn from_gbrp(bytes: &'a [u8]) -> Option<Self> {
+        let (green, rest) = bytes.split_first_chunk::<PIXELS>()?;
+        let (blue, rest) = rest.split_first_chunk::<PIXELS>()?;
+        let red = rest.try_into().ok()?;
+        Some(Self { red, green, blue })
+    }
+
+    /// Its grey plane: green counts twice, for a camera's chip has twice as many green cells.
+    pub fn grey(&self, into: &mut Plane) {
+        let colours = self.red.iter().zip(self.green).zip(self.blue);
+        for (grey, ((&red, &green), &blue)) in into.iter_mut().zip(colours) {
+            let sum = u16::from(red) + 2 * u16::from(green) + u16::from(blue) + 2;
+            *grey = (sum >> 2) as u8;
+        }
+    }
+}
+
+/// Sorts interleaved red, green, blue (`rgb24`) into planes (`gbrp`); what lies past either end is left alone.
+pub fn planes_of_rgb(rgb: &[u8], gbrp: &mut [u8; FRAME_BYTES]) {
+    let (green, rest) = gbrp.split_at_mut(PIXELS);
+    let (blue, red) = rest.split_at_mut(PIXELS);
+    let planes = green.iter_mut().zip(blue).zip(red);
+    for (pixel, ((green, blue), red)) in rgb.chunks_exact(3).zip(planes) {
+        (*red, *green, *blue) = (pixel[0], pixel[1], pixel[2]);
+    }
+}
+
+/// A place in a picture, pixels; the middle of the top left pixel is (0, 0), x goes right and y down.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Point {
+    /// Column.
+    pub x: f32,
+    /// Row.
+    pub y: f32,
+}
+
+impl Point {
+    /// How far it is from another, px.
+    #[must_use]
+    pub fn distance(self, other: Self) -> f32 {
+        libm::hypotf(self.x - other.x, self.y - other.y)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec;
+
+    #[test]
+    fn planes_and_interleaved_pixels_are_the_same_picture() {
+        let rgb: alloc::vec::Vec<u8> = (0..FRAME_BYTES).map(|at| (at * 7 % 251) as u8).collect();
+        let mut planes: alloc::boxed::Box<[u8; FRAME_BYTES]> =
+            vec![0; FRAME_BYTES].into_boxed_slice().try_into().unwrap();
+        planes_of_rgb(&rgb, &mut planes);
+        let frame = Frame::from_gbrp(&planes[..]).unwrap();
+        assert_eq!((frame.red[9], frame.green[9], frame.blue[9]), (rgb[27], rgb[28], rgb[29]));
+        assert!(Frame::from_gbrp(&planes[1..]).is_none());
+    }
+
+    #[test]
+    fn grey_of_grey_is_the_same() {
+        let plane: alloc::boxed::Box<Plane> = vec![200; PIXELS].into_boxed_slice().try_into().unwrap();
+        let mut grey = plane.clone();
+        grey.fill(0);
+        Frame { red: &plane, green: &plane, blue: &plane }.grey(&mut grey);
+        assert!(grey.iter().all(|&level| level == 200));
+    }
+}

@@ -1,0 +1,210 @@
+//! A marker's outline, ray by ray, to a part of a pixel.
+//!
+//! A threshold moves the middle of a blob when the background behind one of its sides changes. So the edge is looked for
+//! along rays from the middle, each against its own background, and compared with where that ray met the edge when the
+//! marker was calibrated: a ray that sees no edge, or another one, is left out.
+
+use crate::frame::{HEIGHT, Plane, Point, WIDTH};
+
+/// Rays from the middle.
+pub const RAYS: usize = 16;
+/// How far from where it is expected an edge is looked for, px.
+const REACH: f32 = 2.5;
+/// Steps along a ray, px.
+const STEP: f32 = 0.5;
+/// Samples along a ray: one more at each end, for the slope.
+const SAMPLES: usize = (2.0 * REACH / STEP) as usize + 3;
+/// The rise from the marker to its surround that counts as an edge, grey levels.
+const CONTRAST_MIN: f32 = 10.0;
+/// Above this contrast an edge is no better known.
+const CONTRAST_FULL: f32 = 40.0;
+/// Rays that must agree.
+const RAYS_MIN: usize = 8;
+/// The farthest that an edge may be from where the others put it, px.
+const STRAY: f32 = 0.6;
+
+/// A grey level of [`sample`].
+const ONE_LEVEL: i32 = 256 * 256;
+
+/// Directions of the rays: cosine and sine of k/16 turns.
+#[rustfmt::skip]
+const DIRECTIONS: [(f32, f32); RAYS] = [
+    (1.0, 0.0), (0.923_879_5, 0.382_683_43), (0.707_106_77, 0.707_106_77), (0.382_683_43, 0.923_879_5),
+    (0.0, 1.0), (-0.382_683_43, 0.923_879_5), (-0.707_106_77, 0.707_106_77), (-0.923_879_5, 0.382_683_43),
+    (-1.0, 0.0), (-0.923_879_5, -0.382_683_43), (-0.707_106_77, -0.707_106_77), (-0.382_683_43, -0.923_879_5),
+    (0.0, -1.0), (0.382_683_43, -0.923_879_5), (0.707_106_77, -0.707_106_77), (0.923_879_5, -0.382_683_43),
+];
+
+/// What one ray met.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Edge {
+    /// Where, px from the middle.
+    pub radius: f32,
+    /// How much brighter it is outside, grey levels; 0 if no edge was met.
+    pub contrast: f32,
+}
+
+/// Edges seen from one place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outline {
+    /// The place.
+    pub middle: Point,
+    /// What each ray met.
+    pub edges: [Edge; RAYS],
+}
+
+/// How an outline lies to a calibrated one.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Fit {
+    /// Moved to the right, px.
+    pub x: f32,
+    /// Moved down, px.
+    pub y: f32,
+    /// Grown in radius, px.
+    pub growth: f32,
+    /// Rays that agree.
+    pub rays: usize,
+    /// Their rms distance from what the fit says, px.
+    pub stray: f32,
+}
+
+impl Outline {
+    /// Looks from `middle` for edges near `radii`.
+    #[must_use]
+    pub fn look(grey: &Plane, middle: Point, radii: &[f32; RAYS]) -> Self {
+        let mut edges = [Edge::default(); RAYS];
+        for ((edge, &radius), direction) in edges.iter_mut().zip(radii).zip(DIRECTIONS) {
+            *edge = along(grey, middle, radius, direction);
+        }
+        Self { middle, edges }
+    }
+
+    /// Moves and grows `radii` until they lie on the edges, those left out that no move explains. None if too few agree.
+    #[must_use]
+    pub fn fit(&self, radii: &[f32; RAYS]) -> Option<Fit> {
+        let mut used = self.edges.map(|edge| edge.contrast >= CONTRAST_MIN);
+        let mut fit = None;
+        for round in 0..3 {
+            let now = least_squares(&self.edges, radii, &used)?;
+            fit = Some(now);
+            // The first round is pulled by the strays, so it may only drop the worst of them.
+            let limit =
+                if round == 0 { (2.0 * now.stray).max(STRAY) } else { (2.5 * now.stray).clamp(0.2, STRAY) };
+            let mut dropped = false;
+            for ray in 0..RAYS {
+                if used[ray] && residual(&now, ray, self.edges[ray], radii[ray]) > limit {
+                    (used[ray], dropped) = (false, true);
+                }
+            }
+            if !dropped {
+                break;
+            }
+        }
+        fit.filter(|fit| fit.rays >= RAYS_MIN && fit.stray < STRAY)
+    }
+}
+
+/// The rms distance of radii from the ellipse that fits them best, as a share of their mean.
+#[must_use]
+pub fn irregularity(radii: &[f32; RAYS]) -> f32 {
+    let n = RAYS as f32;
+    let mean = radii.iter().sum::<f32>() / n;
+    // An ellipse, and a middle that is a little off, are the first two harmonics.
+    let (mut first, mut second) = ((0.0, 0.0), (0.0, 0.0));
+    for (&radius, (cos, sin)) in radii.iter().zip(DIRECTIONS) {
+        first = (first.0 + radius * cos, first.1 + radius * sin);
+        second = (second.0 + radius * (cos * cos - sin * sin), second.1 + radius * 2.0 * sin * cos);
+    }
+    let mut sum = 0.0;
+    for (&radius, (cos, sin)) in radii.iter().zip(DIRECTIONS) {
+        let ellipse =
+            first.0 * cos + first.1 * sin + second.0 * (cos * cos - sin * sin) + second.1 * 2.0 * sin * cos;
+        let off = radius - mean - 2.0 * ellipse / n;
+        sum += off * off;
+    }
+    libm::sqrtf(sum / n) / mean
+}
+
+/// How far `edge` is from where `fit` puts it, px.
+fn residual(fit: &Fit, ray: usize, edge: Edge, radius: f32) -> f32 {
+    let (cos, sin) = DIRECTIONS[ray];
+    (edge.radius - radius - fit.growth - fit.x * cos - fit.y * sin).abs()
+}
+
+/// Growth and move that bring `radii` nearest to the edges that are used, the clear ones counting more.
+fn least_squares(edges: &[Edge; RAYS], radii: &[f32; RAYS], used: &[bool; RAYS]) -> Option<Fit> {
+    let (mut n, mut c, mut s, mut cc, mut cs, mut ss) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    let (mut b, mut bc, mut bs) = (0.0f32, 0.0, 0.0);
+    let mut rays = 0;
+    for ray in (0..RAYS).filter(|&ray| used[ray]) {
+        let (cos, sin) = DIRECTIONS[ray];
+        let weight = edges[ray].contrast.min(CONTRAST_FULL) / CONTRAST_FULL;
+        let off = edges[ray].radius - radii[ray];
+        rays += 1;
+        n += weight;
+        (c, s) = (c + weight * cos, s + weight * sin);
+        (cc, cs, ss) = (cc + weight * cos * cos, cs + weight * cos * sin, ss + weight * sin * sin);
+        (b, bc, bs) = (b + weight * off, bc + weight * off * cos, bs + weight * off * sin);
+    }
+    if rays < RAYS_MIN {
+        return None;
+    }
+    // A stiff wish that it has not grown: of half an outline nobody can tell growth from a move.
+    let n_stiff = n + 1.0;
+    let det = n_stiff * (cc * ss - cs * cs) - c * (c * ss - cs * s) + s * (c * cs - cc * s);
+    if det < 0.02 * n_stiff * n * n {
+        return None;
+    }
+    let growth = (b * (cc * ss - cs * cs) - c * (bc * ss - cs * bs) + s * (bc * cs - cc * bs)) / det;
+    let x = (n_stiff * (bc * ss - cs * bs) - b * (c * ss - cs * s) + s * (c * bs - bc * s)) / det;
+    let y = (n_stiff * (cc * bs - bc * cs) - c * (c * bs - bc * s) + b * (c * cs - cc * s)) / det;
+    let mut fit = Fit { x, y, growth, rays, stray: 0.0 };
+    let mut sum = 0.0;
+    for ray in (0..RAYS).filter(|&ray| used[ray]) {
+        let off = residual(&fit, ray, edges[ray], radii[ray]);
+        sum += off * off;
+    }
+    fit.stray = libm::sqrtf(sum / rays as f32);
+    Some(fit)
+}
+
+/// The edge that a ray meets near `radius`: the middle of the rise, each place counting by the square of its slope.
+fn along(grey: &Plane, middle: Point, radius: f32, (cos, sin): (f32, f32)) -> Edge {
+    let first = radius - REACH - STEP;
+    let mut levels = [0i32; SAMPLES];
+    for (k, level) in levels.iter_mut().enumerate() {
+        let r = first + k as f32 * STEP;
+        match sample(grey, middle.x + r * cos, middle.y + r * sin) {
+            Some(found) => *level = found,
+            None => return Edge::default(),
+        }
+    }
+    let (mut rise, mut sum, mut weighted) = (0, 0.0, 0.0);
+    for k in 1..SAMPLES - 1 {
+        // Inside of the middle the ray would see the far edge, which falls; a fall is no edge anyway.
+        let slope = (levels[k + 1] - levels[k - 1]).max(0);
+        // A slope this small is noise or shading.
+        let slope = if slope < 2 * ONE_LEVEL { 0 } else { slope };
+        rise += slope;
+        // Squared, for shading behind the skin rises too, only less steeply.
+        let square = slope as f32 * slope as f32;
+        (sum, weighted) = (sum + square, weighted + square * k as f32);
+    }
+    if rise == 0 {
+        return Edge::default();
+    }
+    Edge { radius: first + STEP * weighted / sum, contrast: rise as f32 / (2 * ONE_LEVEL) as f32 }
+}
+
+/// The level between four pixels, [`ONE_LEVEL`] a grey level. None outside of the picture.
+fn sample(grey: &Plane, x: f32, y: f32) -> Option<i32> {
+    if !(x >= 0.0 && y >= 0.0 && x < (WIDTH - 1) as f32 && y < (HEIGHT - 1) as f32) {
+        return None;
+    }
+    let (column, row) = (x as usize, y as usize);
+    let (right, down) = (((x - column as f32) * 256.0) as i32, ((y - row as f32) * 256.0) as i32);
+    let level = |column: usize, row: usize| i32::from(grey[row * WIDTH + column]);
+    let top = level(column, row) * (256 - right) + level(column + 1, row) * right;
+    let bottom = level(column, row + 1) * (256 - right) + level(column + 1, row + 1) * right;
+    Some(top * (256 - down) + bottom * down)
+}

@@ -1,0 +1,210 @@
+//! Local blob detection: what is dark in a window of 30 x 30 pixels, and in how many pieces.
+//!
+//! A row of the window is a word of bits, so that growing a blob by one pixel in all directions is a few shifts.
+
+use crate::frame::{HEIGHT, Plane, Point, WIDTH};
+
+/// Side of the window, px (FingerVision 2017, section IV).
+pub const SIDE: usize = 30;
+
+/// A window's place in the picture and what it holds.
+#[derive(Clone, Debug)]
+pub struct Window {
+    left: usize,
+    top: usize,
+    levels: [[u8; SIDE]; SIDE],
+}
+
+/// One connected dark piece.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Blob {
+    /// Its middle.
+    pub at: Point,
+    /// Its pixels.
+    pub area: u32,
+    /// Whether it reaches the window's border, where nobody knows how it goes on.
+    pub cut: bool,
+}
+
+impl Blob {
+    /// No blob.
+    pub const NONE: Self = Self { at: Point { x: 0.0, y: 0.0 }, area: 0, cut: true };
+}
+
+/// The levels between which a window's threshold lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Levels {
+    /// Level that a hundredth of the pixels is below.
+    pub dark: u8,
+    /// Level that half of the pixels is below.
+    pub surround: u8,
+}
+
+impl Levels {
+    /// The level that is `eighths` of the way from dark to usual.
+    #[must_use]
+    pub const fn cut(self, eighths: u16) -> u8 {
+        (self.dark as u16 + (self.surround.saturating_sub(self.dark) as u16 * eighths) / 8) as u8
+    }
+}
+
+impl Window {
+    /// The window whose middle is `at`, moved inside the picture where it would stick out.
+    #[must_use]
+    pub fn around(grey: &Plane, at: Point) -> Self {
+        let corner = |middle: f32, end: usize| (middle as usize).saturating_sub(SIDE / 2).min(end - SIDE);
+        let (left, top) = (corner(at.x + 0.5, WIDTH), corner(at.y + 0.5, HEIGHT));
+        let mut levels = [[0; SIDE]; SIDE];
+        for (row, into) in levels.iter_mut().enumerate() {
+            let start = (top + row) * WIDTH + left;
+            into.copy_from_slice(&grey[start..start + SIDE]);
+        }
+        Self { left, top, levels }
+    }
+
+    /// Its dark and its usual level.
+    #[must_use]
+    pub fn levels(&self) -> Levels {
+        // Steps of 4: finer than the noise, and four times fewer to add up.
+        let mut counts = [0u16; 64];
+        for &level in self.levels.iter().flatten() {
+            counts[usize::from(level >> 2)] += 1;
+        }
+        let below = |wanted: u16| {
+            let mut sum = 0;
+            let step = counts.iter().position(|&count| {
+                sum += count;
+                sum > wanted
+            });
+            (step.unwrap_or(63) * 4 + 2) as u8
+        };
+        let pixels = (SIDE * SIDE) as u16;
+        Levels { dark: below(pixels / 100), surround: below(pixels / 2) }
+    }
+
+    /// The pixels that are below `threshold`, a word a row.
+    #[must_use]
+    pub fn below(&self, threshold: u8) -> [u32; SIDE] {
+        self.levels.map(|row| {
+            let mut bits = 0;
+            for (column, &level) in row.iter().enumerate() {
+                bits |= u32::from(level < threshold) << column;
+            }
+            bits
+        })
+    }
+
+    /// The blobs of at least `area_min` pixels in `dark`; at most as many as `into` holds. Returns how many there are.
+    pub fn blobs(&self, dark: &[u32; SIDE], area_min: u32, into: &mut [Blob]) -> usize {
+        let mut rest = *dark;
+        let mut found = 0;
+        for row in 0..SIDE {
+            while rest[row] != 0 && found < into.len() {
+                let piece = flood(&rest, row);
+                let (mut area, mut sum_x, mut sum_y) = (0, 0, 0);
+                let mut cut = (piece[0] | piece[SIDE - 1]) != 0;
+                for (y, (&bits, rest)) in piece.iter().zip(&mut rest).enumerate() {
+                    *rest &= !bits;
+                    let count = bits.count_ones();
+                    area += count;
+                    sum_y += y as u32 * count;
+                    let mut left = bits;
+                    while left != 0 {
+                        sum_x += left.trailing_zeros();
+                        left &= left - 1;
+                    }
+                    cut |= bits & (1 | 1 << (SIDE - 1)) != 0;
+                }
+                if area >= area_min {
+                    let middle = |sum: u32, corner: usize| sum as f32 / area as f32 + corner as f32;
+                    let at = Point { x: middle(sum_x, self.left), y: middle(sum_y, self.top) };
+                    into[found] = Blob { at, area, cut };
+                    found += 1;
+                }
+            }
+        }
+        found
+    }
+}
+
+/// The connected piece that the lowest bit of `row` belongs to; pixels that touch at a corner are connected.
+fn flood(dark: &[u32; SIDE], row: usize) -> [u32; SIDE] {
+    let mut piece = [0u32; SIDE];
+    piece[row] = dark[row] & dark[row].wrapping_neg();
+    loop {
+        let mut grown = false;
+        // Down and up in turns: a convex blob is whole after one of each.
+        for down in [true, false] {
+            let mut carried = 0;
+            for step in 0..SIDE {
+                let at = if down { step } else { SIDE - 1 - step };
+                let mut bits = piece[at] | carried;
+                loop {
+                    let wider = (bits | bits << 1 | bits >> 1) & dark[at];
+                    if wider == bits & dark[at] {
+                        bits = wider;
+                        break;
+                    }
+                    bits = wider;
+                }
+                grown |= bits != piece[at];
+                piece[at] = bits;
+                carried = bits | bits << 1 | bits >> 1;
+            }
+        }
+        if !grown {
+            return piece;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec;
+
+    fn picture(discs: &[(f32, f32, f32)]) -> alloc::boxed::Box<Plane> {
+        let mut grey: alloc::boxed::Box<Plane> =
+            vec![200; crate::frame::PIXELS].into_boxed_slice().try_into().unwrap();
+        for (at, level) in grey.iter_mut().enumerate() {
+            let (x, y) = ((at % WIDTH) as f32, (at / WIDTH) as f32);
+            if discs.iter().any(|&(cx, cy, r)| libm::hypotf(x - cx, y - cy) <= r) {
+                *level = 20;
+            }
+        }
+        grey
+    }
+
+    #[test]
+    fn two_discs_are_two_blobs() {
+        let grey = picture(&[(100.0, 100.0, 4.0), (109.0, 104.0, 3.0), (113.0, 90.0, 0.5)]);
+        let window = Window::around(&grey, Point { x: 103.0, y: 100.0 });
+        assert_eq!(window.levels(), Levels { dark: 22, surround: 202 });
+        let mut blobs = [Blob::NONE; 8];
+        let found = window.blobs(&window.below(110), 5, &mut blobs);
+        assert_eq!(found, 2, "{blobs:?}");
+        assert_eq!((blobs[0].at, blobs[0].area), (Point { x: 100.0, y: 100.0 }, 49));
+        assert_eq!((blobs[1].at, blobs[1].area), (Point { x: 109.0, y: 104.0 }, 29));
+        assert!(!blobs[0].cut && !blobs[1].cut);
+    }
+
+    #[test]
+    fn a_spiral_is_one_blob_and_a_full_window_ends() {
+        let grey = picture(&[]);
+        let window = Window::around(&grey, Point { x: 0.0, y: 239.0 });
+        let mut rows = [0; SIDE];
+        for (at, row) in rows.iter_mut().enumerate() {
+            *row = match at % 4 {
+                0 | 2 => (1 << SIDE) - 1,
+                1 => 1,
+                _ => 1 << (SIDE - 1),
+            };
+        }
+        let mut blobs = [Blob::NONE; 8];
+        assert_eq!(window.blobs(&rows, 1, &mut blobs), 1);
+        assert!(blobs[0].cut);
+        assert_eq!(window.blobs(&[(1 << SIDE) - 1; SIDE], 1, &mut blobs), 1);
+        assert_eq!(blobs[0].area, 900);
+        assert_eq!(window.blobs(&[0; SIDE], 1, &mut blobs), 0);
+    }
+}

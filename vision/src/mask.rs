@@ -1,0 +1,472 @@
+//! A set of pixels, one bit each: growing and shrinking it are shifts of whole words.
+
+use crate::frame::{HEIGHT, PIXELS, Point, WIDTH};
+
+/// Words of a row.
+pub const WORDS: usize = WIDTH / 64;
+
+/// Pieces that [`Mask::keep_large`] tells apart.
+pub const PIECES_MAX: usize = 48;
+
+/// A set of pixels.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Mask {
+    rows: [[u64; WORDS]; HEIGHT],
+}
+
+impl Default for Mask {
+    fn default() -> Self {
+        Self::EMPTY
+    }
+}
+
+impl Mask {
+    /// No pixel.
+    pub const EMPTY: Self = Self { rows: [[0; WORDS]; HEIGHT] };
+
+    /// Its rows, the leftmost pixel of a word in the lowest bit.
+    #[must_use]
+    pub const fn rows(&self) -> &[[u64; WORDS]; HEIGHT] {
+        &self.rows
+    }
+
+    /// Its words, row by row.
+    pub fn words_mut(&mut self) -> impl Iterator<Item = &mut u64> {
+        self.rows.iter_mut().flatten()
+    }
+
+    /// The pixels whose byte is 1 and not 0.
+    pub fn pack(&mut self, bytes: &[u8; PIXELS]) {
+        for (word, bytes) in self.words_mut().zip(bytes.chunks_exact(64)) {
+            *word = 0;
+            for (place, eight) in bytes.chunks_exact(8).enumerate() {
+                let eight = eight.try_into().map_or(0, u64::from_le_bytes);
+                // Eight bytes of one bit each slide into the top byte.
+                *word |= (eight.wrapping_mul(0x0102_0408_1020_4080) >> 56) << (8 * place);
+            }
+        }
+    }
+
+    /// 1 for a pixel that is in the set, 0 for another.
+    pub fn unpack(&self, bytes: &mut [u8; PIXELS]) {
+        for (word, bytes) in self.rows.iter().flatten().zip(bytes.chunks_exact_mut(64)) {
+            for (bit, byte) in bytes.iter_mut().enumerate() {
+                *byte = (word >> bit & 1) as u8;
+            }
+        }
+    }
+
+    /// Puts a pixel in.
+    pub fn insert(&mut self, x: usize, y: usize) {
+        self.rows[y][x / 64] |= 1 << (x % 64);
+    }
+
+    /// Whether a pixel is in it.
+    #[must_use]
+    pub const fn contains(&self, x: usize, y: usize) -> bool {
+        self.rows[y][x / 64] >> (x % 64) & 1 != 0
+    }
+
+    /// How many pixels are in it.
+    #[must_use]
+    pub fn count(&self) -> u32 {
+        self.rows.iter().flatten().map(|word| word.count_ones()).sum()
+    }
+
+    /// Keeps what is in `other` too.
+    pub fn intersect(&mut self, other: &Self) {
+        for (word, other) in self.words_mut().zip(other.rows.iter().flatten()) {
+            *word &= other;
+        }
+    }
+
+    /// Takes out what is in `other`.
+    pub fn subtract(&mut self, other: &Self) {
+        for (word, other) in self.words_mut().zip(other.rows.iter().flatten()) {
+            *word &= !other;
+        }
+    }
+
+    /// Adds what is in `other`.
+    pub fn unite(&mut self, other: &Self) {
+        for (word, other) in self.words_mut().zip(other.rows.iter().flatten()) {
+            *word |= other;
+        }
+    }
+
+    /// Grows it by a pixel in all eight directions, `times` over.
+    pub fn dilate(&mut self, times: usize) {
+        for _ in 0..times {
+            for row in &mut self.rows {
+                *row = wider(row);
+            }
+            let mut above = [0; WORDS];
+            for y in 0..HEIGHT {
+                let (row, below) = (self.rows[y], self.rows.get(y + 1).copied().unwrap_or_default());
+                for word in 0..WORDS {
+                    self.rows[y][word] = above[word] | row[word] | below[word];
+                }
+                above = row;
+            }
+        }
+    }
+
+    /// Shrinks it by a pixel in all eight directions, `times` over; outside of the picture counts as inside.
+    pub fn erode(&mut self, times: usize) {
+        self.invert();
+        self.dilate(times);
+        self.invert();
+    }
+
+    /// Keeps one row of `keep`.
+    pub fn thin(&mut self, keep: usize) {
+        let gone = self.rows.iter_mut().enumerate().filter(|(y, _)| y % keep != 0);
+        gone.for_each(|(_, row)| *row = [0; WORDS]);
+    }
+
+    /// Takes out what is in it and puts in what is not.
+    pub fn invert(&mut self) {
+        for word in self.words_mut() {
+            *word = !*word;
+        }
+    }
+
+    /// Puts in what it surrounds: every pixel from which the border cannot be reached but through it.
+    pub fn fill_holes(&mut self) {
+        let mut free = self.clone();
+        free.invert();
+        let mut outside = Self::EMPTY;
+        for (y, (row, free)) in outside.rows.iter_mut().zip(&free.rows).enumerate() {
+            *row = if y == 0 || y == HEIGHT - 1 { *free } else { [0; WORDS] };
+            row[0] |= free[0] & 1;
+            row[WORDS - 1] |= free[WORDS - 1] & 1 << 63;
+            *row = flood(row, free);
+        }
+        let mut grown = true;
+        while grown {
+            grown = false;
+            for step in 0..2 * HEIGHT - 2 {
+                // Down, then up.
+                let (from, to) = if step < HEIGHT - 1 {
+                    (step, step + 1)
+                } else {
+                    (2 * HEIGHT - 2 - step, 2 * HEIGHT - 3 - step)
+                };
+                let mut seed = outside.rows[to];
+                let mut new = 0;
+                for (word, seed) in seed.iter_mut().enumerate() {
+                    let reached = outside.rows[from][word] & free.rows[to][word];
+                    new |= reached & !*seed;
+                    *seed |= reached;
+                }
+                if new != 0 {
+                    (outside.rows[to], grown) = (flood(&seed, &free.rows[to]), true);
+                }
+            }
+        }
+        outside.invert();
+        *self = outside;
+    }
+
+    /// Keeps its connected pieces that are at least `percent` of the largest; of more than [`PIECES_MAX`] the first ones.
+    pub fn keep_large(&mut self, percent: u32) {
+        let mut rest = self.clone();
+        let mut largest = 0;
+        let mut starts = [(0, 0, 0); PIECES_MAX];
+        let mut count = 0;
+        while count < PIECES_MAX {
+            let Some((start, piece)) = rest.take_piece() else { break };
+            let area = piece.count();
+            largest = largest.max(area);
+            starts[count] = (start.0, start.1, area);
+            count += 1;
+        }
+        if count < 2 {
+            return;
+        }
+        let mut rest = core::mem::take(self);
+        for &(_, _, area) in &starts[..count] {
+            // Pieces come in the same order again.
+            let Some((_, piece)) = rest.take_piece() else { break };
+            if 100 * area >= percent * largest {
+                self.unite(&piece);
+            }
+        }
+    }
+
+    /// Takes the piece out that holds the first pixel: the row and word where it begins, and the piece.
+    fn take_piece(&mut self) -> Option<((usize, usize), Self)> {
+        let (y, word) = (0..HEIGHT)
+            .find_map(|y| self.rows[y].iter().position(|&word| word != 0).map(|word| (y, word)))?;
+        let mut piece = Self::EMPTY;
+        let mut seed = [0; WORDS];
+        seed[word] = self.rows[y][word] & self.rows[y][word].wrapping_neg();
+        piece.rows[y] = flood(&seed, &self.rows[y]);
+        // Rows between which it may still grow.
+        let (mut top, mut bottom) = (y, y);
+        let mut grown = true;
+        while grown {
+            grown = false;
+            while bottom + 1 < HEIGHT && piece.grow(bottom, bottom + 1, self) {
+                (bottom, grown) = (bottom + 1, true);
+            }
+            for from in top..bottom {
+                grown |= piece.grow(from, from + 1, self);
+            }
+            for from in (top + 1..=bottom).rev() {
+                grown |= piece.grow(from, from - 1, self);
+            }
+            while top > 0 && piece.grow(top, top - 1, self) {
+                (top, grown) = (top - 1, true);
+            }
+        }
+        for (row, taken) in self.rows.iter_mut().zip(&piece.rows) {
+            row.iter_mut().zip(taken).for_each(|(word, taken)| *word &= !taken);
+        }
+        Some(((y, word), piece))
+    }
+
+    /// Grows from a row into the next as far as `within` goes. Returns whether it did.
+    fn grow(&mut self, from: usize, to: usize, within: &Self) -> bool {
+        let (mut seed, mut new) = (self.rows[to], 0);
+        for (word, seed) in seed.iter_mut().enumerate() {
+            let reached = self.rows[from][word] & within.rows[to][word];
+            new |= reached & !*seed;
+            *seed |= reached;
+        }
+        if new != 0 {
+            self.rows[to] = flood(&seed, &within.rows[to]);
+        }
+        new != 0
+    }
+
+    /// Calls `each` with every pixel's place in a plane.
+    #[inline]
+    pub fn for_each(&self, mut each: impl FnMut(usize)) {
+        for (number, &word) in self.rows.iter().flatten().enumerate() {
+            let mut left = word;
+            while left != 0 {
+                each(64 * number + left.trailing_zeros() as usize);
+                left &= left - 1;
+            }
+        }
+    }
+
+    /// How it lies. None of an empty set.
+    #[must_use]
+    pub fn moments(&self) -> Option<Moments> {
+        let (mut n, mut sx, mut sy, mut sxx, mut sxy, mut syy) = (0u64, 0, 0, 0, 0, 0);
+        for (y, row) in self.rows.iter().enumerate() {
+            let (mut count, mut sum, mut squares) = (0u64, 0u64, 0u64);
+            for (place, &word) in row.iter().enumerate() {
+                for (byte, bits) in word.to_le_bytes().into_iter().enumerate().filter(|(_, bits)| *bits != 0)
+                {
+                    let (ones, bit_sum, bit_squares) = BYTES[usize::from(bits)];
+                    let (ones, bit_sum, bit_squares) =
+                        (u64::from(ones), u64::from(bit_sum), u64::from(bit_squares));
+                    let left = (64 * place + 8 * byte) as u64;
+                    count += ones;
+                    sum += ones * left + bit_sum;
+                    squares += ones * left * left + 2 * left * bit_sum + bit_squares;
+                }
+            }
+            let y = y as u64;
+            (n, sx, sy) = (n + count, sx + sum, sy + count * y);
+            (sxx, sxy, syy) = (sxx + squares, sxy + sum * y, syy + count * y * y);
+        }
+        if n == 0 {
+            return None;
+        }
+        let mean = |sum: u64| sum as f64 / n as f64;
+        let (x, y) = (mean(sx), mean(sy));
+        let (xx, xy, yy) = (mean(sxx) - x * x, mean(sxy) - x * y, mean(syy) - y * y);
+        Some(Moments {
+            area: n as u32,
+            middle: Point { x: x as f32, y: y as f32 },
+            xx: xx as f32,
+            xy: xy as f32,
+            yy: yy as f32,
+        })
+    }
+}
+
+/// A row and its neighbours to the left and right.
+fn wider(row: &[u64; WORDS]) -> [u64; WORDS] {
+    let mut wide = *row;
+    for word in 0..WORDS {
+        let from_left = if word > 0 { row[word - 1] >> 63 } else { 0 };
+        let from_right = if word + 1 < WORDS { row[word + 1] << 63 } else { 0 };
+        wide[word] |= row[word] << 1 | row[word] >> 1 | from_left | from_right;
+    }
+    wide
+}
+
+/// The runs of `free` that hold a pixel of `seed`. An addition carries from the seed to the end of its run.
+fn flood(seed: &[u64; WORDS], free: &[u64; WORDS]) -> [u64; WORDS] {
+    let up = |seed: &[u64; WORDS], free: &[u64; WORDS]| {
+        let (mut filled, mut carried) = ([0; WORDS], 0);
+        for word in 0..WORDS {
+            let start = (seed[word] | carried) & free[word];
+            let (sum, over) = free[word].overflowing_add(start);
+            filled[word] = free[word] & (free[word] ^ sum) | start;
+            carried = u64::from(over);
+        }
+        filled
+    };
+    let mirrored = |row: &[u64; WORDS]| {
+        let mut mirror = row.map(u64::reverse_bits);
+        mirror.reverse();
+        mirror
+    };
+    let right = up(seed, free);
+    let left = mirrored(&up(&mirrored(seed), &mirrored(free)));
+    core::array::from_fn(|word| right[word] | left[word])
+}
+
+/// Of each byte: its ones, the sum of their places, and the sum of their squares.
+const BYTES: [(u8, u8, u8); 256] = {
+    let mut table = [(0, 0, 0); 256];
+    let mut byte = 0;
+    while byte < 256 {
+        let mut bit = 0;
+        while bit < 8 {
+            if byte >> bit & 1 != 0 {
+                let (ones, sum, squares) = table[byte];
+                table[byte] = (ones + 1, sum + bit, squares + bit * bit);
+            }
+            bit += 1;
+        }
+        byte += 1;
+    }
+    table
+};
+
+/// How a set of pixels lies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moments {
+    /// Its pixels.
+    pub area: u32,
+    /// Its middle.
+    pub middle: Point,
+    /// Second moments about the middle, px^2.
+    pub xx: f32,
+    /// The mixed one.
+    pub xy: f32,
+    /// The one of the rows.
+    pub yy: f32,
+}
+
+impl Moments {
+    /// The direction of its long axis, radians from -pi/2 to pi/2, from x towards y (down).
+    #[must_use]
+    pub fn angle_rad(&self) -> f32 {
+        0.5 * libm::atan2f(2.0 * self.xy, self.xx - self.yy)
+    }
+
+    /// How much longer it is than wide, 0 for a disc and 1 for a line: below 0.3 its angle says little.
+    #[must_use]
+    pub fn eccentricity(&self) -> f32 {
+        let both = self.xx + self.yy;
+        let apart = libm::hypotf(self.xx - self.yy, 2.0 * self.xy);
+        if both > 0.0 { apart / both } else { 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::vec;
+    use alloc::vec::Vec;
+
+    fn rectangle(left: usize, top: usize, right: usize, bottom: usize) -> Mask {
+        let mut mask = Mask::EMPTY;
+        (top..bottom).for_each(|y| (left..right).for_each(|x| mask.insert(x, y)));
+        mask
+    }
+
+    #[test]
+    fn growing_and_shrinking_cross_words_and_stop_at_the_border() {
+        let mut mask = rectangle(62, 10, 66, 12);
+        mask.dilate(7);
+        assert_eq!(mask, rectangle(55, 3, 73, 19));
+        mask.erode(7);
+        assert_eq!(mask, rectangle(62, 10, 66, 12));
+        let mut corner = rectangle(0, 0, 3, 3);
+        corner.erode(2);
+        assert_eq!(corner, rectangle(0, 0, 1, 1));
+        corner.dilate(2);
+        assert_eq!(corner, rectangle(0, 0, 3, 3));
+    }
+
+    #[test]
+    fn holes_are_filled_and_bays_are_not() {
+        let mut ring = rectangle(40, 40, 200, 150);
+        let mut hole = rectangle(50, 50, 190, 140);
+        hole.invert();
+        ring.intersect(&hole);
+        let mut filled = ring.clone();
+        filled.fill_holes();
+        assert_eq!(filled, rectangle(40, 40, 200, 150));
+        // A winding way out of it: a bay, and nothing to fill.
+        ring.invert();
+        ring.unite(&rectangle(100, 60, 102, 70));
+        ring.unite(&rectangle(120, 140, 121, 150));
+        ring.invert();
+        let mut open = ring.clone();
+        open.fill_holes();
+        assert_eq!(open, ring);
+        let mut empty = Mask::EMPTY;
+        empty.fill_holes();
+        assert_eq!(empty, Mask::EMPTY);
+    }
+
+    #[test]
+    fn small_pieces_go_and_large_ones_stay() {
+        let mut mask = rectangle(10, 10, 50, 50);
+        mask.unite(&rectangle(100, 20, 130, 60));
+        let large = mask.clone();
+        mask.unite(&rectangle(200, 5, 205, 10));
+        mask.unite(&rectangle(70, 200, 75, 203));
+        mask.keep_large(25);
+        assert_eq!(mask, large);
+        // A winding piece is one.
+        let mut spiral = rectangle(0, 0, 200, 2);
+        spiral.unite(&rectangle(198, 0, 200, 200));
+        spiral.unite(&rectangle(20, 198, 200, 200));
+        spiral.unite(&rectangle(20, 100, 22, 200));
+        spiral.unite(&rectangle(20, 100, 150, 102));
+        let whole = spiral.clone();
+        spiral.keep_large(100);
+        assert_eq!(spiral, whole);
+        let mut empty = Mask::EMPTY;
+        empty.keep_large(25);
+        assert_eq!(empty, Mask::EMPTY);
+    }
+
+    #[test]
+    fn packing_is_the_bytes() {
+        let bytes: Vec<u8> = (0..PIXELS).map(|at| (at * at % 7 == 2) as u8).collect();
+        let mut mask = Mask::EMPTY;
+        mask.pack(bytes.as_slice().try_into().unwrap());
+        assert!((0..PIXELS).all(|at| mask.contains(at % WIDTH, at / WIDTH) == (bytes[at] == 1)));
+        let mut back = vec![0; PIXELS];
+        mask.unpack(back.as_mut_slice().try_into().unwrap());
+        assert_eq!(back, bytes);
+        let mut places = Vec::new();
+        mask.for_each(|at| places.push(at));
+        assert_eq!(places.len() as u32, mask.count());
+        assert!(places.iter().all(|&at| bytes[at] == 1));
+    }
+
+    #[test]
+    fn moments_are_those_of_a_rectangle() {
+        let moments = rectangle(60, 100, 160, 120).moments().unwrap();
+        assert_eq!((moments.area, moments.middle), (2000, Point { x: 109.5, y: 109.5 }));
+        assert!((moments.xx - (100.0 * 100.0 - 1.0) / 12.0).abs() < 0.01 && moments.xy.abs() < 0.01);
+        assert!(moments.angle_rad().abs() < 1e-4 && moments.eccentricity() > 0.9);
+        let mut slanted = Mask::EMPTY;
+        (0..100).for_each(|at| slanted.insert(100 + at, 200 - at));
+        assert!((slanted.moments().unwrap().angle_rad() + core::f32::consts::FRAC_PI_4).abs() < 1e-4);
+        assert!(Mask::EMPTY.moments().is_none());
+    }
+}

@@ -1,0 +1,282 @@
+//! The object behind the skin, and whether it slips (FingerVision 2017, section III).
+//!
+//! The paper takes for the object whatever has the colours of what moved. A white card before a white wall has no colour of
+//! its own, so a pixel must also differ from what the camera remembers there ([`Scene`]), and the colours that are taken
+//! away from the object's are those that it now hides. Either alone is not enough: a person who walks by behind the skin
+//! differs from the scene, and a wall has the colours of a card.
+
+pub mod colour;
+mod ghost;
+mod hand;
+mod model;
+mod movement;
+mod scene;
+
+use alloc::boxed::Box;
+
+use crate::frame::{Frame, PIXELS, Plane, plane};
+use crate::mask::{Mask, Moments};
+use crate::rectify::Rectifier;
+
+use self::colour::{BINS, Bins};
+pub use self::model::{Histogram, ObjectModel};
+pub use self::movement::{Mixture, Movement, Running};
+pub use self::scene::Scene;
+
+/// What differs from the scene while there is an object is believed to be the scene in one frame of so many.
+const DOUBT_FRAMES: u32 = 32;
+/// And while there is none.
+const DOUBT_FRAMES_EMPTY: u32 = 4;
+/// Every so many pixels of the scene stand for all of it: a prime, so that no column is taken again and again.
+const SAMPLE: usize = 13;
+/// Pieces of an object that are smaller than this part of the largest are noise, per cent.
+const PIECES_PERCENT: u32 = 25;
+/// Moving pixels below which an object is still.
+const STILL_PX: u32 = 150;
+/// Frames after which what looks like a ghost is one.
+const GHOST_FRAMES: u32 = 5;
+/// How far from moving pixels others belong to what moves, px.
+const INSIDE_PX: usize = 10;
+
+/// Numbers that a person may choose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Config {
+    /// Back projection from which a pixel's colour is the object's, 1 to 255.
+    pub colour_min: u8,
+    /// The least part of the picture that is an object: what is smaller may be somebody behind the skin, or a spot where the
+    /// light has changed.
+    pub area_min: f32,
+    /// The least part of the picture that must move, and differ from the scene, for its colours to be learned.
+    pub learn_min: f32,
+    /// The scene follows what is no object by this power of two of frames.
+    pub scene_rate: u32,
+    /// Whether a hand that brings an object is left out of it.
+    pub skip_hand: bool,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self { colour_min: 45, area_min: 0.04, learn_min: 0.01, scene_rate: 5, skip_hand: true }
+    }
+}
+
+/// What is seen of an object.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sighting {
+    /// How it lies.
+    pub moments: Moments,
+    /// Part of the picture that it covers.
+    pub area: f32,
+    /// Moving pixels on it.
+    pub slip_px: u32,
+    /// Whether it reaches the picture's border, beyond which nobody knows how it goes on: its middle and its angle are those
+    /// of the part that is seen.
+    pub cut: bool,
+}
+
+/// Follows an object. Nothing is allocated after `new`.
+#[derive(Clone, Debug)]
+pub struct Tracker<M> {
+    config: Config,
+    bins: Bins,
+    scene: Scene,
+    movement: M,
+    model: ObjectModel,
+    object: Mask,
+    /// The object and the hand that brings it.
+    near: Mask,
+    moving: Mask,
+    slip: Mask,
+    bytes: Box<Plane>,
+    held: Box<Plane>,
+    lens: Option<Rectifier>,
+    frames: u32,
+    seen: bool,
+    /// Frames in a row in which the object looked like a ghost.
+    ghosts: u32,
+}
+
+impl<M: Movement> Tracker<M> {
+    /// One that has seen nothing.
+    #[must_use]
+    pub fn new(config: Config, movement: M) -> Self {
+        Self {
+            config,
+            bins: Bins::new(),
+            scene: Scene::new(),
+            movement,
+            model: ObjectModel::new(),
+            object: Mask::EMPTY,
+            near: Mask::EMPTY,
+            moving: Mask::EMPTY,
+            slip: Mask::EMPTY,
+            bytes: plane(),
+            held: plane(),
+            lens: None,
+            frames: 0,
+            seen: false,
+            ghosts: 0,
+        }
+    }
+
+    /// From here on the object's middle and angle are those behind this lens.
+    pub fn rectify(&mut self, lens: Rectifier) {
+        self.lens = Some(lens);
+    }
+
+    /// The object's pixels in the last frame.
+    #[must_use]
+    pub const fn object(&self) -> &Mask {
+        &self.object
+    }
+
+    /// The object's pixels and those of the hand that brings it.
+    #[must_use]
+    pub const fn near(&self) -> &Mask {
+        &self.near
+    }
+
+    /// The moving pixels of the last frame, the object's and others.
+    #[must_use]
+    pub const fn moving(&self) -> &Mask {
+        &self.moving
+    }
+
+    /// The moving pixels on the object.
+    #[must_use]
+    pub const fn slip(&self) -> &Mask {
+        &self.slip
+    }
+
+    /// Takes a frame and its grey plane. With `learn`, the object's colours are learned from what moves: until the hand
+    /// closes. What moves in `skin`, where the markers are, is no slip. None while there is no object.
+    pub fn step(&mut self, frame: &Frame, grey: &Plane, skin: &Mask, learn: bool) -> Option<Sighting> {
+        self.frames = self.frames.saturating_add(1);
+        self.movement.step(frame, grey, &mut self.bytes);
+        self.moving.pack(&self.bytes);
+        if self.frames == 1 {
+            self.scene.follow(frame, &self.held, 0);
+        }
+        self.scene.follow_light(grey, &self.near);
+        self.scene.differs(frame, &mut self.bytes);
+        let mut differs = core::mem::take(&mut self.object);
+        differs.pack(&self.bytes);
+        if learn {
+            self.learn(frame, &differs);
+        }
+        let apart = differs.clone();
+        self.project(frame, &mut differs);
+        // Noise goes (erosion 2), and what the markers cut out is closed (dilation 7, and back).
+        differs.erode(2);
+        differs.dilate(7);
+        differs.fill_holes();
+        differs.erode(5);
+        differs.keep_large(PIECES_PERCENT);
+        self.object = differs;
+        self.near.clone_from(&self.object);
+        if self.config.skip_hand {
+            hand::leave_out(&mut self.object, frame, self.scene.mean_colour());
+        }
+
+        let part = |pixels: u32| pixels as f32 / PIXELS as f32;
+        let moments = self.object.moments().filter(|moments| part(moments.area) >= self.config.area_min);
+        self.seen = moments.is_some();
+        if !self.seen {
+            self.object = Mask::EMPTY;
+            self.near = Mask::EMPTY;
+        }
+        self.remember(frame, &apart);
+        self.slip.clone_from(&self.object);
+        self.slip.intersect(&self.moving);
+        self.slip.subtract(skin);
+        let slip_px = self.slip.count();
+        let ghost = learn && self.seen && slip_px < STILL_PX && ghost::is_one(&self.object, skin, grey);
+        self.ghosts = if ghost { self.ghosts + 1 } else { 0 };
+        if self.ghosts >= GHOST_FRAMES {
+            self.lay_ghost(frame);
+            return None;
+        }
+        let flat = self.lens.as_ref().filter(|_| self.seen).and_then(|lens| lens.moments(&self.object));
+        moments.map(|moments| Sighting {
+            moments: flat.unwrap_or(moments),
+            area: part(moments.area),
+            slip_px,
+            cut: touches_border(&self.object),
+        })
+    }
+
+    /// Takes what is seen now for the scene, and forgets the object.
+    fn lay_ghost(&mut self, frame: &Frame) {
+        self.near.invert();
+        self.near.unpack(&mut self.held);
+        self.scene.follow(frame, &self.held, 0);
+        self.model.forget();
+        (self.object, self.near, self.slip) = (Mask::EMPTY, Mask::EMPTY, Mask::EMPTY);
+        (self.ghosts, self.seen) = (0, false);
+    }
+
+    /// Learns the colours of what moves and is not the scene.
+    fn learn(&mut self, frame: &Frame, differs: &Mask) {
+        let mut new = self.moving.clone();
+        new.intersect(differs);
+        new.erode(1);
+        if (new.count() as f32) < self.config.learn_min * PIXELS as f32 {
+            return;
+        }
+        // The inside of a plain object looks the same while it moves.
+        new.dilate(INSIDE_PX);
+        new.intersect(differs);
+        let (mut moving, mut hidden): (Histogram, Histogram) = ([0; BINS], [0; BINS]);
+        new.for_each(|at| {
+            moving[self.bins.of(frame.red[at], frame.green[at], frame.blue[at])] += 1;
+            let (red, green, blue) = self.scene.colour(at);
+            hidden[self.bins.of(red, green, blue)] += 1;
+        });
+        // Where the background moves it hides colours behind other ones of its own: half of its usual share is taken away too.
+        let mut scene: Histogram = [0; BINS];
+        (0..PIXELS).step_by(SAMPLE).for_each(|at| {
+            let (red, green, blue) = self.scene.colour(at);
+            scene[self.bins.of(red, green, blue)] += 1;
+        });
+        let count = new.count();
+        for (hidden, scene) in hidden.iter_mut().zip(scene) {
+            *hidden = (*hidden).max(scene * count / (2 * PIXELS / SAMPLE) as u32);
+        }
+        self.model.learn(&moving, &hidden);
+    }
+
+    /// Keeps of a mask the pixels that have the object's colours.
+    fn project(&self, frame: &Frame, mask: &mut Mask) {
+        for (number, word) in mask.words_mut().enumerate() {
+            let mut left = *word;
+            while left != 0 {
+                let bit = left.trailing_zeros();
+                left &= left - 1;
+                let at = 64 * number + bit as usize;
+                let bin = self.bins.of(frame.red[at], frame.green[at], frame.blue[at]);
+                let has = self.model.value(bin) >= self.config.colour_min;
+                *word &= !(u64::from(!has) << bit);
+            }
+        }
+    }
+
+    /// Lets the scene follow what is not hidden by the object and a margin around it. What differs may be an object that is
+    /// not recognised yet, or a part of one, and is followed in one frame of several only.
+    fn remember(&mut self, frame: &Frame, differs: &Mask) {
+        let mut hidden = self.near.clone();
+        let doubt = if self.seen { DOUBT_FRAMES } else { DOUBT_FRAMES_EMPTY };
+        if !self.frames.is_multiple_of(doubt) {
+            hidden.unite(differs);
+        }
+        hidden.dilate(3);
+        hidden.unpack(&mut self.held);
+        self.scene.follow(frame, &self.held, self.config.scene_rate);
+    }
+}
+
+/// Whether a part of it is at the border of the picture.
+fn touches_border(mask: &Mask) -> bool {
+    let rows = mask.rows();
+    let ends = rows[0].iter().chain(&rows[rows.len() - 1]).any(|&word| word != 0);
+    ends || rows.iter().any(|row| row[0] & 1 != 0 || row[row.len() - 1] >> 63 != 0)
+}

@@ -1,0 +1,51 @@
+//! Leaves the hand that brings an object out of it: middle and angle are to be the object's.
+//!
+//! Skin is redder than the scene's mean colour, and not as red as paint. An object of wood or cardboard is too, so a hand
+//! is left out only where most of what is seen is something else.
+
+use crate::frame::{Frame, WIDTH};
+use crate::mask::Mask;
+
+/// How much redder than green skin is, white balance corrected, 1/64.
+const REDDER: (u32, u32) = (70, 110);
+/// How much redder than blue, 1/64.
+const WARMER: u32 = 74;
+
+/// Takes a hand out of `object`.
+pub fn leave_out(object: &mut Mask, frame: &Frame, white: [u8; 3]) {
+    let all = object.count();
+    if all == 0 {
+        return;
+    }
+    let white = white.map(|level| u32::from(level.max(1)));
+    let mut skin = Mask::EMPTY;
+    object.for_each(|at| {
+        // Each as bright as green, were it grey.
+        let red = u32::from(frame.red[at]) * white[1] / white[0];
+        let blue = u32::from(frame.blue[at]) * white[1] / white[2];
+        let green = u32::from(frame.green[at]);
+        let redder = 64 * red > REDDER.0 * green && 64 * red < REDDER.1 * green;
+        if redder && 64 * red > WARMER * blue {
+            skin.insert(at % WIDTH, at / WIDTH);
+        }
+    });
+    // Specks are noise; gaps between them are skin in another light.
+    skin.erode(1);
+    skin.dilate(6);
+    skin.erode(4);
+    if skin.count() == 0 {
+        return;
+    }
+    let mut rest = skin;
+    rest.invert();
+    rest.intersect(object);
+    // What is left of its rim is not the object.
+    rest.erode(4);
+    rest.dilate(4);
+    rest.intersect(object);
+    // A hand comes from outside: what is surrounded by the object is printed on it.
+    rest.fill_holes();
+    if 2 * rest.count() >= all {
+        *object = rest;
+    }
+}

@@ -1,0 +1,99 @@
+//! What colours the object has (FingerVision 2017, equation 1).
+
+use alloc::boxed::Box;
+use alloc::vec;
+
+use super::colour::BINS;
+
+/// A count of pixels for each bin.
+pub type Histogram = [u32; BINS];
+
+/// Frames that the model is made of: the last ones in which something moved.
+pub const FRAMES: usize = 200;
+/// How much of the background is taken away, in halves (f_bg = 1.5).
+const BACKGROUND_HALVES: u32 = 3;
+/// What is left counts half (f_gain = 0.5).
+const GAIN_HALVES: u32 = 1;
+/// The most that a bin holds.
+const FULL: u32 = 255;
+
+/// The object's colours.
+#[derive(Clone, Debug)]
+pub struct ObjectModel {
+    /// What each of the last frames added.
+    added: Box<[[u8; BINS]]>,
+    sums: Box<Histogram>,
+    next: usize,
+}
+
+impl Default for ObjectModel {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl ObjectModel {
+    /// One that knows no object.
+    #[must_use]
+    pub fn new() -> Self {
+        Self { added: vec![[0; BINS]; FRAMES].into_boxed_slice(), sums: Box::new([0; BINS]), next: 0 }
+    }
+
+    /// Adds what moves, less what the background holds of it.
+    pub fn learn(&mut self, moving: &Histogram, background: &Histogram) {
+        let bins =
+            self.added[self.next].iter_mut().zip(self.sums.iter_mut()).zip(moving.iter().zip(background));
+        for ((slot, sum), (&moving, &background)) in bins {
+            let rest = (2 * moving).saturating_sub(BACKGROUND_HALVES * background) / 2;
+            let new = (rest * GAIN_HALVES / 2).min(FULL);
+            *sum = *sum + new - u32::from(*slot);
+            *slot = new as u8;
+        }
+        self.next = (self.next + 1) % FRAMES;
+    }
+
+    /// The model's value at a bin, 0 to 255: the back projection of a pixel of this colour.
+    #[inline]
+    #[must_use]
+    pub fn value(&self, bin: usize) -> u8 {
+        self.sums[bin].min(FULL) as u8
+    }
+
+    /// Knows no object again.
+    pub fn forget(&mut self) {
+        self.added.iter_mut().for_each(|frame| frame.fill(0));
+        self.sums.fill(0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_colour_of_the_background_is_not_the_objects() {
+        let (mut model, mut moving, mut background) = (ObjectModel::new(), [0; BINS], [0; BINS]);
+        (moving[3], moving[4], moving[5]) = (100, 100, 40);
+        (background[3], background[4]) = (20, 70);
+        model.learn(&moving, &background);
+        assert_eq!([3, 4, 5, 6].map(|bin| model.value(bin)), [35, 0, 20, 0]);
+        (0..20).for_each(|_| model.learn(&moving, &background));
+        assert_eq!([3, 4, 5, 6].map(|bin| model.value(bin)), [255, 0, 255, 0]);
+    }
+
+    #[test]
+    fn it_forgets_after_its_frames_and_at_once_when_told() {
+        let (mut model, mut moving, background) = (ObjectModel::new(), [0; BINS], [0; BINS]);
+        moving[9] = 1000;
+        model.learn(&moving, &background);
+        moving[9] = 0;
+        (1..FRAMES).for_each(|_| model.learn(&moving, &background));
+        assert_eq!(model.value(9), 255);
+        model.learn(&moving, &background);
+        assert_eq!(model.value(9), 0);
+        moving[8] = 1000;
+        model.learn(&moving, &background);
+        model.forget();
+        assert_eq!(model.value(8), 0);
+    }
+}

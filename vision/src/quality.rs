@@ -1,0 +1,145 @@
+//! Whether a camera's pictures can be believed: lost, late, frozen and covered cameras say nothing about the object.
+
+use crate::frame::{PIXELS, Plane};
+
+/// Why a camera's word does not count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Blind {
+    /// No picture has come for so long, ms.
+    Lost(u32),
+    /// The newest picture was taken so long ago, ms.
+    Late(u32),
+    /// The same picture has come for so long, ms: a real one has noise.
+    Frozen(u32),
+    /// It is dark, or all of it is alike, or hardly a marker is seen.
+    Covered,
+}
+
+/// A picture's age from which it is late, ms: what it shows is older than a slip takes.
+pub const LATE_MS: u32 = 150;
+/// Silence after which a camera is lost, ms.
+pub const LOST_MS: u32 = 200;
+/// How long the same picture may come, ms: cameras repeat one when they miss one.
+pub const FROZEN_MS: u32 = 150;
+/// A picture whose grey levels differ less than this (standard deviation) shows nothing.
+const CONTRAST_MIN: f32 = 5.0;
+/// A picture darker than this shows nothing, grey levels.
+const LEVEL_MIN: f32 = 10.0;
+/// The least share of the markers that must be found, per cent.
+const MARKERS_MIN_PERCENT: usize = 34;
+
+/// Watches one camera. Time is the caller's, ms.
+#[derive(Clone, Debug, Default)]
+pub struct Watch {
+    last_ms: Option<u32>,
+    same_since_ms: Option<u32>,
+    sum: u64,
+}
+
+impl Watch {
+    /// Takes a picture that was taken at `taken_ms` and has come at `now_ms`; `found` of `markers` markers were found in it.
+    pub fn picture(
+        &mut self,
+        grey: &Plane,
+        (found, markers): (usize, usize),
+        taken_ms: u32,
+        now_ms: u32,
+    ) -> Option<Blind> {
+        let seen = Seen::of(grey);
+        let same = self.last_ms.is_some() && seen.checksum == self.sum;
+        (self.last_ms, self.sum) = (Some(now_ms), seen.checksum);
+        self.same_since_ms = if same { self.same_since_ms.or(Some(now_ms)) } else { None };
+        let age = now_ms.wrapping_sub(taken_ms);
+        let frozen = self.same_since_ms.map_or(0, |since| now_ms.wrapping_sub(since));
+        let covered = seen.level < LEVEL_MIN
+            || seen.contrast < CONTRAST_MIN
+            || 100 * found < MARKERS_MIN_PERCENT * markers;
+        match () {
+            () if age >= LATE_MS => Some(Blind::Late(age)),
+            () if frozen >= FROZEN_MS => Some(Blind::Frozen(frozen)),
+            () if covered => Some(Blind::Covered),
+            () => None,
+        }
+    }
+
+    /// What is to be thought of the camera while no picture comes.
+    #[must_use]
+    pub fn silence(&self, now_ms: u32) -> Option<Blind> {
+        let silent = self.last_ms.map_or(now_ms, |last| now_ms.wrapping_sub(last));
+        (silent >= LOST_MS).then_some(Blind::Lost(silent))
+    }
+}
+
+/// What a picture is like as a whole.
+struct Seen {
+    level: f32,
+    contrast: f32,
+    checksum: u64,
+}
+
+impl Seen {
+    /// Every fifth row is enough for level and contrast, and noise makes any of them differ.
+    fn of(grey: &Plane) -> Self {
+        let (mut sum, mut squares, mut checksum, mut count) = (0u64, 0u64, 0u64, 0u32);
+        for row in grey.chunks_exact(crate::frame::WIDTH).step_by(5) {
+            let (mut row_sum, mut row_squares) = (0u32, 0u32);
+            for &level in row {
+                row_sum += u32::from(level);
+                row_squares += u32::from(level) * u32::from(level);
+            }
+            for eight in row.chunks_exact(8) {
+                let eight = eight.try_into().map_or(0, u64::from_le_bytes);
+                checksum = (checksum.rotate_left(5) ^ eight).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            }
+            (sum, squares, count) =
+                (sum + u64::from(row_sum), squares + u64::from(row_squares), count + row.len() as u32);
+        }
+        debug_assert!(count as usize == PIXELS / 5);
+        let n = count as f32;
+        let level = sum as f32 / n;
+        Self { level, contrast: libm::sqrtf((squares as f32 / n - level * level).max(0.0)), checksum }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use alloc::boxed::Box;
+    use alloc::vec;
+
+    fn picture(seed: u32) -> Box<Plane> {
+        let mut grey: Box<Plane> = vec![0; PIXELS].into_boxed_slice().try_into().unwrap();
+        grey.iter_mut()
+            .enumerate()
+            .for_each(|(at, level)| *level = (at as u32 % 200 + (at as u32 ^ seed) % 3) as u8);
+        grey
+    }
+
+    #[test]
+    fn a_camera_that_works_is_believed() {
+        let mut watch = Watch::default();
+        for frame in 0..100 {
+            let now = 33 * frame;
+            assert_eq!(watch.silence(now + 30), None);
+            assert_eq!(watch.picture(&picture(frame), (20, 23), now.saturating_sub(40), now), None);
+        }
+    }
+
+    #[test]
+    fn late_frozen_covered_and_lost_are_told_apart() {
+        let mut watch = Watch::default();
+        assert_eq!(watch.picture(&picture(1), (20, 23), 0, 200), Some(Blind::Late(200)));
+        let told: alloc::vec::Vec<_> =
+            (0..9).map(|at| watch.picture(&picture(2), (20, 23), 233 + 33 * at, 233 + 33 * at)).collect();
+        assert_eq!(told[..5], [None; 5]);
+        assert_eq!(told[6..], [165, 198, 231].map(|same| Some(Blind::Frozen(same))));
+        assert_eq!(watch.picture(&picture(3), (20, 23), 600, 600), None);
+        assert_eq!(watch.picture(&picture(4), (5, 23), 633, 633), Some(Blind::Covered));
+        let mut dark = picture(5);
+        dark.iter_mut().for_each(|level| *level /= 32);
+        assert_eq!(watch.picture(&dark, (20, 23), 666, 666), Some(Blind::Covered));
+        assert_eq!(watch.silence(800), None);
+        assert_eq!(watch.silence(866), Some(Blind::Lost(200)));
+        assert_eq!(Watch::default().silence(300), Some(Blind::Lost(300)));
+    }
+}

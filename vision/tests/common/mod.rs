@@ -1,0 +1,83 @@
+//! Recordings of the real sensor, decoded by the `ffmpeg` program, and pictures that are drawn.
+#![allow(dead_code, reason = "each test binary uses a part of it")]
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use tenax_vision::frame::{FRAME_BYTES, Frame, PIXELS, Plane, WIDTH};
+
+/// A file of the real recordings, if they are here.
+pub fn recording(name: &str) -> Option<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().find_map(|folder| {
+        let data = folder.join("shared/data/fingervision");
+        data.is_dir().then_some(data)
+    });
+    let path = folder.map(|folder| folder.join(name)).filter(|path| path.exists());
+    if path.is_none() {
+        println!("skipped, recording not present: fingervision/{name}");
+    }
+    path
+}
+
+/// Calls `each` with the number and the picture of every frame of a video. False, with a message, without `ffmpeg`.
+pub fn for_each_frame(video: &Path, mut each: impl FnMut(usize, Frame)) -> bool {
+    let ffmpeg = Command::new("ffmpeg")
+        .args(["-v", "error", "-i"])
+        .arg(video)
+        .args(["-fps_mode", "passthrough", "-f", "rawvideo", "-pix_fmt", "gbrp", "-"])
+        .stdout(Stdio::piped())
+        .spawn();
+    let Ok(mut ffmpeg) = ffmpeg else {
+        println!("skipped, the program ffmpeg is not installed");
+        return false;
+    };
+    let mut bytes = vec![0; FRAME_BYTES];
+    let mut frames = ffmpeg.stdout.take().expect("piped");
+    let mut number = 0;
+    while frames.read_exact(&mut bytes).is_ok() {
+        each(number, Frame::from_gbrp(&bytes).expect("whole"));
+        number += 1;
+    }
+    ffmpeg.wait().expect("ffmpeg ends").success()
+}
+
+/// A plane on the heap.
+pub fn plane(level: u8) -> Box<Plane> {
+    vec![level; PIXELS].into_boxed_slice().try_into().expect("its size")
+}
+
+/// Numbers without pattern, the same every time.
+pub struct Noise(pub u64);
+
+impl Noise {
+    /// Evenly from 0 to 1.
+    pub fn even(&mut self) -> f32 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 40) as f32 / (1u64 << 24) as f32
+    }
+
+    /// Nearly normal, standard deviation 1.
+    pub fn normal(&mut self) -> f32 {
+        (0..12).map(|_| self.even()).sum::<f32>() - 6.0
+    }
+}
+
+/// Draws dark discs on `background`, each pixel as far dark as it is covered, and adds noise of `sigma` grey levels.
+pub fn draw_discs(
+    discs: &[(f32, f32, f32)],
+    background: impl Fn(f32, f32) -> f32,
+    sigma: f32,
+    noise: &mut Noise,
+    into: &mut Plane,
+) {
+    for (at, level) in into.iter_mut().enumerate() {
+        let (x, y) = ((at % WIDTH) as f32, (at / WIDTH) as f32);
+        let covered = discs
+            .iter()
+            .map(|&(cx, cy, r)| (r - (x - cx).hypot(y - cy)).clamp(-1.0, 1.0) * 0.5 + 0.5)
+            .fold(0.0, f32::max);
+        let clean = background(x, y) * (1.0 - covered) + 18.0 * covered;
+        *level = (clean + sigma * noise.normal()).round().clamp(0.0, 255.0) as u8;
+    }
+}
