@@ -13,12 +13,15 @@ use tenax_hal_shim::motor::{Duty, MotorBridge, MotorDrive};
 /// Above what a person hears, and 5000 timer ticks a period at 100 MHz: five for each per mille.
 const PWM_HZ: Hertz = Hertz(20_000);
 
-type Side = SimplePwmChannel<'static, TIM1>;
+/// The timer's channels of both sides, counted from 0.
+const CLOSE: usize = 0;
+const OPEN: usize = 1;
 
 /// Both sides of the bridge. A side that is not driven is low.
 pub struct Bridge {
-    close: Side,
-    open: Side,
+    _sides: [SimplePwmChannel<'static, TIM1>; 2],
+    /// What a side is compared with to be driven all the time, timer ticks.
+    full: u32,
 }
 
 impl Bridge {
@@ -33,13 +36,26 @@ impl Bridge {
             PWM_HZ,
             CountingMode::EdgeAlignedUp,
         );
-        let SimplePwmChannels { ch1: mut close, ch2: mut open, .. } = pwm.split();
-        for side in [&mut close, &mut open] {
+        let SimplePwmChannels { ch1, ch2, .. } = pwm.split();
+        let mut sides = [ch1, ch2];
+        let full = sides[0].max_duty_cycle();
+        for side in &mut sides {
             side.set_duty_cycle_fully_off();
             side.enable();
         }
-        Self { close, open }
+        Self { _sides: sides, full }
     }
+
+    fn drive_side<const DRIVEN: usize, const RELEASED: usize>(&self, duty: Duty) {
+        compare::<RELEASED>(0);
+        compare::<DRIVEN>(u32::from(duty.as_per_mille()) * self.full / u32::from(Duty::FULL.as_per_mille()));
+    }
+}
+
+/// Drives a side for so many ticks of each period. embassy's own function asserts what holds here by itself, and no tick may
+/// have a way to panic.
+fn compare<const SIDE: usize>(ticks: u32) {
+    pac::TIM1.ccr(SIDE).write(|w| w.set_ccr(ticks as u16));
 }
 
 impl MotorBridge for Bridge {
@@ -50,18 +66,13 @@ impl MotorBridge for Bridge {
     fn drive(&mut self, drive: MotorDrive) {
         match drive {
             MotorDrive::Coast => {
-                self.close.set_duty_cycle_fully_off();
-                self.open.set_duty_cycle_fully_off();
+                compare::<CLOSE>(0);
+                compare::<OPEN>(0);
             }
-            MotorDrive::Close(duty) => drive_side(&mut self.close, &mut self.open, duty),
-            MotorDrive::Open(duty) => drive_side(&mut self.open, &mut self.close, duty),
+            MotorDrive::Close(duty) => self.drive_side::<CLOSE, OPEN>(duty),
+            MotorDrive::Open(duty) => self.drive_side::<OPEN, CLOSE>(duty),
         }
     }
-}
-
-fn drive_side(driven: &mut Side, released: &mut Side, duty: Duty) {
-    released.set_duty_cycle_fully_off();
-    driven.set_duty_cycle_fraction(u32::from(duty.as_per_mille()), u32::from(Duty::FULL.as_per_mille()));
 }
 
 /// Stops driving the motor from anywhere, whatever state the image is in: for a panic or a fault, after which nobody

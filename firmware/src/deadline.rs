@@ -73,10 +73,16 @@ impl Deadline {
 
     /// Waits until `ready` gives something, or until after `at`: then None. Ready is asked once more at the end, so what
     /// came in time is not missed.
-    pub async fn until<T>(&self, at: Micros, mut ready: impl FnMut() -> Option<T>) -> Option<T> {
+    ///
+    /// Not an `async fn`: one that has an end can be asked again after it, which is a way to panic.
+    pub fn until<T>(
+        &self,
+        at: Micros,
+        mut ready: impl FnMut() -> Option<T>,
+    ) -> impl Future<Output = Option<T>> {
         // Not `at` itself: at the interrupt it has to be over.
         pac::TIM2.ccr(0).write_value(at.after(1).0);
-        poll_fn(|context| {
+        poll_fn(move |context| {
             WAITING.register(context.waker());
             let over = self.now().is_after(at);
             match ready() {
@@ -85,7 +91,6 @@ impl Deadline {
                 None => Poll::Pending,
             }
         })
-        .await
     }
 }
 

@@ -61,8 +61,8 @@ fn set_mark(mark: u32) {
     unsafe { addr_of_mut!(MARK).cast::<u32>().write_volatile(mark) }
 }
 
-/// Turns the bridge off, leaves the mark, resets.
-fn end() -> ! {
+/// The image can go on no longer: as a panic, without a word about it.
+pub fn give_up() -> ! {
     cortex_m::interrupt::disable();
     bridge::off();
     set_mark(PANICKED);
@@ -74,7 +74,7 @@ fn on_panic(info: &PanicInfo) -> ! {
     cortex_m::interrupt::disable();
     bridge::off();
     defmt::error!("{}", defmt::Display2Format(info));
-    end()
+    give_up()
 }
 
 /// A fault of the core: as a panic.
@@ -83,7 +83,7 @@ fn on_panic(info: &PanicInfo) -> ! {
 /// Called by the core only.
 #[exception]
 unsafe fn HardFault(_frame: &ExceptionFrame) -> ! {
-    end()
+    give_up()
 }
 
 /// An interrupt that nobody bound: as a panic.
@@ -92,5 +92,5 @@ unsafe fn HardFault(_frame: &ExceptionFrame) -> ! {
 /// Called by the core only.
 #[exception]
 unsafe fn DefaultHandler(_irq: i16) -> ! {
-    end()
+    give_up()
 }

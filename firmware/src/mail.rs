@@ -1,25 +1,57 @@
 //! The bounded boxes between control, which never waits, and the tasks of the serial line and of the store, which do.
+//!
+//! embassy's channels keep a `RefCell` inside, which is a way to panic; `tenax lint-image` sees to it that control has none.
 
+use core::cell::Cell;
+use core::future::poll_fn;
 use core::sync::atomic::{AtomicBool, AtomicU16, Ordering::Relaxed};
+use core::task::Poll;
 
+use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
-use embassy_sync::channel::Channel;
 use embassy_sync::signal::Signal;
+use embassy_sync::waitqueue::AtomicWaker;
+use heapless::Deque;
 use tenax_hal_shim::wire::{Down, Received, Up};
 use tenax_logic::allowance::BURST;
 use tenax_logic::store::record::Record;
 
 use crate::counts;
 
+/// A bounded queue that nobody waits to put something into.
+struct Mailbox<T, const N: usize>(Mutex<CriticalSectionRawMutex, Deque<T, N>>);
+
+impl<T, const N: usize> Mailbox<T, N> {
+    const fn new() -> Self {
+        Self(Mutex::new(Deque::new()))
+    }
+
+    /// False if it is full.
+    fn put(&self, item: T) -> bool {
+        // SAFETY: the closure does not come back here.
+        unsafe { self.0.lock_mut(|queue| queue.push_back(item).is_ok()) }
+    }
+
+    fn take(&self) -> Option<T> {
+        // SAFETY: the closure does not come back here.
+        unsafe { self.0.lock_mut(Deque::pop_front) }
+    }
+}
+
 /// Messages on their way up. A slow frame comes every 12.5 ms and takes 2 ms on the line, so this holds a burst of
 /// events and an answer or two; what does not fit is dropped.
-static UP: Channel<CriticalSectionRawMutex, Received<Up>, 16> = Channel::new();
+static UP: Mailbox<Received<Up>, 16> = Mailbox::new();
+/// Telemetry, while it waits for one.
+static UP_WAITING: AtomicWaker = AtomicWaker::new();
 /// Number of the next message.
 static NUMBER: AtomicU16 = AtomicU16::new(0);
 /// Commands on their way to control.
-static DOWN: Channel<CriticalSectionRawMutex, Received<Down>, { BURST as usize }> = Channel::new();
+static DOWN: Mailbox<Received<Down>, { BURST as usize }> = Mailbox::new();
 /// A record on its way to flash.
-static RECORD: Channel<CriticalSectionRawMutex, Record, 1> = Channel::new();
+static RECORD: Mutex<CriticalSectionRawMutex, Cell<Option<Record>>> = Mutex::new(Cell::new(None));
+static RECORD_WAITS: AtomicBool = AtomicBool::new(false);
+/// The store, while it waits for one.
+static RECORD_WAITING: AtomicWaker = AtomicWaker::new();
 /// Control has just ended a tick; signalled only while the store waits for one.
 static TICK: Signal<CriticalSectionRawMutex, ()> = Signal::new();
 static TICK_WANTED: AtomicBool = AtomicBool::new(false);
@@ -28,40 +60,55 @@ static TICK_WANTED: AtomicBool = AtomicBool::new(false);
 /// other end sees the gap in the numbers.
 pub fn post(message: Up) {
     let sequence = NUMBER.fetch_add(1, Relaxed);
-    if UP.try_send(Received { sequence, message }).is_err() {
+    if !UP.put(Received { sequence, message }) {
         counts::TELEMETRY_DROPPED.add_one();
     }
+    UP_WAITING.wake();
 }
 
 /// The oldest message posted; waits for one.
 pub async fn next_message() -> Received<Up> {
-    UP.receive().await
+    wait_for(&UP_WAITING, || UP.take()).await
 }
 
 /// Hands a command to control. Never waits: false if control has not taken the ones before, and no more than are earned
 /// at once fit anyway.
 pub fn hand_over(command: Received<Down>) -> bool {
-    DOWN.try_send(command).is_ok()
+    DOWN.put(command)
 }
 
 /// The oldest command that control has not taken. Never waits.
 pub fn next_command() -> Option<Received<Down>> {
-    DOWN.try_receive().ok()
+    DOWN.take()
 }
 
 /// Whether the store would take a record.
 pub fn store_is_free() -> bool {
-    RECORD.is_empty()
+    !RECORD_WAITS.load(Relaxed)
 }
 
 /// Hands a record to the store. Never waits: only control does so, and only when the store is free.
 pub fn save(record: Record) {
-    let _taken = RECORD.try_send(record);
+    RECORD.lock(|cell| cell.set(Some(record)));
+    RECORD_WAITS.store(true, Relaxed);
+    RECORD_WAITING.wake();
 }
 
 /// The next record to save; waits for one.
 pub async fn next_record() -> Record {
-    RECORD.receive().await
+    let record = wait_for(&RECORD_WAITING, || RECORD.lock(Cell::take)).await;
+    RECORD_WAITS.store(false, Relaxed);
+    record
+}
+
+/// Waits until `take` gives something.
+async fn wait_for<T>(waiting: &AtomicWaker, take: impl Fn() -> Option<T>) -> T {
+    poll_fn(|context| {
+        // Before it is asked: what comes in between wakes.
+        waiting.register(context.waker());
+        take().map_or(Poll::Pending, Poll::Ready)
+    })
+    .await
 }
 
 /// Says that a tick has ended, if anybody waits for it.

@@ -46,6 +46,7 @@ use static_cell::{ConstStaticCell, StaticCell};
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::wire::{BAUD, ResetCause, Up};
 use tenax_logic::device::Device;
+use tenax_logic::store::Erase;
 
 bind_interrupts!(struct Irqs {
     DMA2_STREAM0 => halves::OnHalf;
@@ -80,9 +81,12 @@ async fn main(spawner: Spawner) {
     let p = embassy_stm32::init(config);
     // Before anything that could take time: from here on both sides are held low.
     let bridge = bridge::Bridge::new(p.TIM1, p.PA8, p.PA9);
-    // While nothing moves yet: this may erase a sector, and then the core stands still for a second or two.
+    // While nothing moves yet: switched on, this may erase a sector, and then the core stands still for a second or two. After
+    // a reset something may be held, and the wearer must be able to let go of it.
     let mut flash = flash::Flash::new(p.FLASH);
-    let (log, found) = tenax_logic::store::open(&mut flash);
+    let switched_on = cause == ResetCause::PowerOn;
+    let erase = if switched_on { Erase::Allowed } else { Erase::Postponed };
+    let (log, found) = tenax_logic::store::open(&mut flash, erase);
     clock::accelerate_flash();
     interrupt::DMA2_STREAM0.set_priority(Priority::P1);
     interrupt::TIM5.set_priority(Priority::P1);
@@ -125,7 +129,7 @@ async fn main(spawner: Spawner) {
         .spawn(commands::commands(down.into_ring_buffered(COMMAND_RING.take())).expect("one commands task"));
     let control = CONTROL.init_with(|| control::Control::new(bridge, switches, button, watchdog));
     control.restore(|device| store::restore(device, &flash, &found));
-    if cause != ResetCause::PowerOn {
+    if !switched_on {
         control.restore(Device::was_reset);
     }
     control.restore(|device| {

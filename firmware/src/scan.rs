@@ -11,7 +11,9 @@
 use embassy_stm32::Peri;
 use embassy_stm32::adc::{Adc, AnyAdcChannel};
 use embassy_stm32::pac;
+use embassy_stm32::pac::adc::regs::{Smpr1, Smpr2, Sqr1, Sqr2, Sqr3};
 use embassy_stm32::pac::adc::vals::{Dds, Exten, SampleTime};
+use embassy_stm32::pac::adccommon::vals::Adcpre;
 use embassy_stm32::peripherals::{ADC1, DMA2_CH0, TIM3};
 use embassy_stm32::time::Hertz;
 use embassy_stm32::timer::low_level::{MasterMode, RoundTo, Timer as HardwareTimer};
@@ -31,20 +33,9 @@ const SAMPLE_TIME: SampleTime = SampleTime::CYCLES56;
 /// A frame that is this late is not waited for any more, us: the switches have begun to show the following one.
 const PATIENCE_US: u32 = SCAN_US;
 
-/// Why a recording ended.
-#[derive(defmt::Format)]
-enum Trouble {
-    /// The converter had a code that DMA did not fetch (OVR); its requests have stopped.
-    Overrun,
-    /// A frame did not come in time.
-    Silent,
-    /// A frame was read only after the following one had begun, or DMA was in it when it was read.
-    Behind,
-}
-
 /// The converter, its timer and its DMA.
 pub struct Scan {
-    adc: Peri<'static, ADC1>,
+    _adc: Adc<'static, ADC1>,
     stream: Peri<'static, DMA2_CH0>,
     ring: &'static mut [u32; RING_LEN],
     timer: HardwareTimer<'static, TIM3>,
@@ -85,90 +76,90 @@ impl Scan {
         timer.set_frequency(Hertz(SCAN_HZ), RoundTo::Faster);
         timer.set_master_mode(MasterMode::UPDATE);
         let due = Due { sequence: 0, begins: deadline.now() };
-        Self { adc, stream, ring, timer, deadline, due }
+        // Its clock, and proof that nobody else has it.
+        let _adc = Adc::new(adc);
+        Self { _adc, stream, ring, timer, deadline, due }
     }
 
     /// Hands every frame to `on_frame` as soon as its last code has been converted, for ever. Frames that are lost are
     /// handed over as such, so that whoever counts time by frames keeps time.
     ///
-    /// `on_frame` has until the next frame begins, 87 us, to step the switches for it.
+    /// `on_frame` has until the next frame begins, 87 us, to step the switches for it. All that waits stands in this one
+    /// function: an `async fn` that has an end can be asked again after it, which is a way to panic.
     pub async fn run(mut self, mut on_frame: impl FnMut(&Frame)) -> ! {
         self.timer.start();
         // The first trigger comes one period after the start.
         self.due.begins = self.deadline.now().after(SCAN_US);
         loop {
-            self.catch_up(&mut on_frame).await;
-            let trouble = self.record(&mut on_frame).await;
+            let arm_at = self.catch_up(&mut on_frame);
+            self.deadline.until(arm_at, || None::<()>).await;
+
+            // Whatever the converter was doing is over.
+            reset();
+            let converter = pac::ADC1;
+            let mut halves = Halves::start(self.stream.reborrow(), self.ring, converter.dr().as_ptr().cast());
+            listen(converter);
+            loop {
+                let following_begins = self.due.begins.after(FRAME_US);
+                let filled = || halves.is_filled().then_some(());
+                if self.deadline.until(following_begins.after(PATIENCE_US), filled).await.is_none() {
+                    // The converter had a code that DMA did not fetch (OVR), after which it is silent; or it is dead.
+                    break;
+                }
+                // Read only after the following one had begun, or DMA was in it: it is not whole.
+                let Ok(frame) = halves.read(self.due.sequence) else { break };
+                // Then the switches do not show yet what the following frame is reading.
+                let began = self.deadline.now();
+                let behind = began.is_after(following_begins);
+                on_frame(&frame);
+                counts::FRAMES.add_one();
+                let ended = self.deadline.now();
+                counts::CONTROL_US.add(ended.since(began));
+                counts::CONTROL_US_MAX.max(ended.since(began));
+                if ended.is_after(following_begins) {
+                    counts::TICKS_LATE.add_one();
+                }
+                self.due.step();
+                if behind {
+                    break;
+                }
+            }
+            drop(halves);
             counts::OVERRUNS.add_one();
-            defmt::warn!("scan: {} at frame {}, restarting", trouble, self.due.sequence);
         }
     }
 
-    /// Gives up the frames that have begun, and waits until the scan before the next one has been triggered.
-    async fn catch_up(&mut self, on_frame: &mut impl FnMut(&Frame)) {
+    /// Gives up the frames that have begun: the instant, still to come, at which the scan before the next one has been
+    /// triggered.
+    fn catch_up(&mut self, on_frame: &mut impl FnMut(&Frame)) -> Micros {
         loop {
             let arm_at = self.due.begins.before(SCAN_US / 2);
             if !self.deadline.now().is_after(arm_at) {
-                let never = || None::<()>;
-                self.deadline.until(arm_at, never).await;
-                return;
+                return arm_at;
             }
             counts::FRAMES_LOST.add_one();
             on_frame(&Frame::lost(self.due.sequence));
             self.due.step();
         }
     }
+}
 
-    /// Sets the converter and its DMA up from reset, and hands over frames until something goes wrong.
-    async fn record(&mut self, on_frame: &mut impl FnMut(&Frame)) -> Trouble {
-        let Self { adc, stream, ring, deadline, due, .. } = self;
-        // Resets the converter: whatever it was doing is over.
-        let _adc = Adc::new(adc.reborrow());
-        let converter = pac::ADC1;
-        let mut halves = Halves::start(stream.reborrow(), ring, converter.dr().as_ptr().cast());
-        listen(converter);
-
-        loop {
-            let following_begins = due.begins.after(FRAME_US);
-            let filled = || halves.is_filled().then_some(());
-            if deadline.until(following_begins.after(PATIENCE_US), filled).await.is_none() {
-                return if converter.sr().read().ovr() { Trouble::Overrun } else { Trouble::Silent };
-            }
-            let Ok(frame) = halves.read(due.sequence) else { return Trouble::Behind };
-            // Then the switches do not show yet what the following frame is reading.
-            let began = deadline.now();
-            let behind = began.is_after(following_begins);
-            on_frame(&frame);
-            counts::FRAMES.add_one();
-            let ended = deadline.now();
-            counts::CONTROL_US.add(ended.since(began));
-            counts::CONTROL_US_MAX.max(ended.since(began));
-            if ended.is_after(following_begins) {
-                counts::TICKS_LATE.add_one();
-            }
-            due.step();
-            if behind {
-                return Trouble::Behind;
-            }
-        }
-    }
+/// Sets the converter up as after a reset of the chip, and switches it on. It needs 3 us until it converts (DS10314, ADC
+/// characteristics); the first trigger is half a scan away.
+fn reset() {
+    pac::RCC.apb2rstr().modify(|w| w.set_adcrst(true));
+    pac::RCC.apb2rstr().modify(|w| w.set_adcrst(false));
+    pac::ADC1_COMMON.ccr().modify(|w| w.set_adcpre(Adcpre::DIV4));
+    pac::ADC1.cr2().modify(|w| w.set_adon(true));
 }
 
 /// Lets TIM3 trigger scans of all ranks.
 fn listen(converter: pac::adc::Adc) {
-    converter.sqr1().modify(|w| w.set_l(SCAN_LEN as u8 - 1));
-    for (index, rank) in SCAN.iter().enumerate() {
-        match index {
-            0..=5 => converter.sqr3().modify(|w| w.set_sq(index, rank.adc)),
-            6..=11 => converter.sqr2().modify(|w| w.set_sq(index - 6, rank.adc)),
-            _ => converter.sqr1().modify(|w| w.set_sq(index - 12, rank.adc)),
-        }
-        let channel = usize::from(rank.adc);
-        match channel {
-            0..=9 => converter.smpr2().modify(|w| w.set_smp(channel, SAMPLE_TIME)),
-            _ => converter.smpr1().modify(|w| w.set_smp(channel - 10, SAMPLE_TIME)),
-        }
-    }
+    converter.sqr3().write_value(Sqr3(SEQUENCE[0]));
+    converter.sqr2().write_value(Sqr2(SEQUENCE[1]));
+    converter.sqr1().write_value(Sqr1(SEQUENCE[2] | (SCAN_LEN as u32 - 1) << LENGTH_SHIFT));
+    converter.smpr1().write_value(Smpr1(SAMPLE_TIMES >> 3));
+    converter.smpr2().write_value(Smpr2(SAMPLE_TIMES));
     converter.cr1().modify(|w| w.set_scan(true));
     converter.cr2().modify(|w| {
         w.set_dma(true);
@@ -177,3 +168,26 @@ fn listen(converter: pac::adc::Adc) {
         w.set_exten(Exten::RISING_EDGE);
     });
 }
+
+/// SQR3, SQR2 and SQR1: six ranks of five bits in each, the first in the lowest (RM0383, section 11.12.9).
+const SEQUENCE: [u32; 3] = {
+    let mut sequence = [0; 3];
+    let mut index = 0;
+    while index < SCAN_LEN {
+        sequence[index / 6] |= (SCAN[index].adc as u32) << (5 * (index % 6));
+        index += 1;
+    }
+    sequence
+};
+/// Where SQR1 has the number of ranks, less one.
+const LENGTH_SHIFT: u32 = 20;
+/// [`SAMPLE_TIME`] for each of the ten channels of SMPR2, three bits each. SMPR1 has nine.
+const SAMPLE_TIMES: u32 = {
+    let mut times = 0;
+    let mut channel = 0;
+    while channel < 9 {
+        times |= (SAMPLE_TIME as u32) << (3 * channel);
+        channel += 1;
+    }
+    times | (SAMPLE_TIME as u32) << 27
+};

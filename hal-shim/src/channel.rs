@@ -85,6 +85,41 @@ impl Channel {
     }
 }
 
+/// What a channel's sensor measures: the map says where it is, this says what the fingertip takes it for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// A PVDF film.
+    Vibration,
+    /// A photoelastic head.
+    Photoelastic,
+    /// A strain gauge.
+    Strain,
+    /// A quadrant of the force sensing resistor.
+    Force,
+    /// An element of the normal-force array.
+    Taxel,
+    /// A myoelectric envelope.
+    Muscle,
+    /// The hand's own: opening and motor current.
+    Hand,
+}
+
+impl Role {
+    /// Of a channel. `head_is_fitted`: a photoelastic head is in the place of film 12.
+    #[must_use]
+    pub const fn of(channel: usize, head_is_fitted: bool) -> Self {
+        match channel {
+            HEAD if head_is_fitted => Self::Photoelastic,
+            ..STRAIN => Self::Vibration,
+            STRAIN..FSR => Self::Strain,
+            FSR..ARRAY => Self::Force,
+            ARRAY..MYO_FLEXOR => Self::Taxel,
+            MYO_FLEXOR..=MYO_EXTENSOR => Self::Muscle,
+            _ => Self::Hand,
+        }
+    }
+}
+
 /// Number of PVDF films.
 pub const PVDF_COUNT: usize = 12;
 /// Number of strain gauges.
@@ -96,6 +131,8 @@ pub const ARRAY_COUNT: usize = 10;
 
 /// Index of PVDF film 1.
 pub const PVDF: usize = 0;
+/// Index of the film whose place a photoelastic head can take.
+pub const HEAD: usize = PVDF + PVDF_COUNT - 1;
 /// Index of strain gauge 1.
 pub const STRAIN: usize = PVDF + PVDF_COUNT;
 /// Index of FSR quadrant A; B, C and D follow.
@@ -256,6 +293,23 @@ mod tests {
             assert_eq!(by_name(name), Some(index));
         }
         assert_eq!(by_name("pvdf_13"), None);
+    }
+
+    #[test]
+    fn roles_are_those_of_the_names_and_only_the_heads_can_change() {
+        for (n, channel) in CHANNELS.iter().enumerate() {
+            let named = match channel.name.split('_').next() {
+                Some("pvdf") => Role::Vibration,
+                Some("strain") => Role::Strain,
+                Some("fsr") => Role::Force,
+                Some("array") => Role::Taxel,
+                Some("myo") => Role::Muscle,
+                _ => Role::Hand,
+            };
+            assert_eq!(Role::of(n, false), named, "{}", channel.name);
+            let fitted = if channel.name == "pvdf_12" { Role::Photoelastic } else { named };
+            assert_eq!(Role::of(n, true), fitted, "{}", channel.name);
+        }
     }
 
     #[test]

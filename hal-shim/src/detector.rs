@@ -19,11 +19,14 @@ pub enum DetectorId {
     Mlp,
     /// Evidence from outside: the oracle of a scene.
     Injected,
+    /// The flicker of a photoelastic head (Dubey 2006).
+    Photoelastic,
 }
 
 impl DetectorId {
     /// Every detector, in the order of their numbers.
-    pub const ALL: [Self; 5] = [Self::S1, Self::S2, Self::Hebbian, Self::Mlp, Self::Injected];
+    pub const ALL: [Self; 6] =
+        [Self::S1, Self::S2, Self::Hebbian, Self::Mlp, Self::Injected, Self::Photoelastic];
     /// How many there are.
     pub const COUNT: usize = Self::ALL.len();
 
@@ -36,6 +39,7 @@ impl DetectorId {
             Self::Hebbian => "hebbian",
             Self::Mlp => "mlp",
             Self::Injected => "injected",
+            Self::Photoelastic => "photoelastic",
         }
     }
 
@@ -48,6 +52,7 @@ impl DetectorId {
             Self::Hebbian => "Hebbian",
             Self::Mlp => "MLP",
             Self::Injected => "injected",
+            Self::Photoelastic => "photoelastic",
         }
     }
 }
@@ -169,7 +174,7 @@ pub struct Evidence {
     /// Whether it can be asked at all.
     pub health: DetectorHealth,
     /// What it decided by, on its own scale: the envelope (S1, 14-bit samples), Ft/Fn (S2, per mille), the PVDF part of o1
-    /// (Hebbian, per mille), the logit (MLP).
+    /// (Hebbian, per mille), the logit (MLP), how fast it slips (photoelastic, um/s).
     pub raw: i32,
 }
 

@@ -19,7 +19,8 @@ pub const ARRAY_SHARES: u8 = 5;
 /// A job that runs once a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Job {
-    /// All quadrants of the force sensor have been read: forces, Ft/Fn, S2.
+    /// All quadrants of the force sensor have been read: forces, Ft/Fn, S2. What a photoelastic head says of force, too: it
+    /// stands in where the quadrants say nothing.
     Forces,
     /// All elements of the array have been read: the first of [`ARRAY_SHARES`] shares of what there is to compute.
     ArrayBegins,

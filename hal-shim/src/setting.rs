@@ -142,6 +142,8 @@ settings! {
     40 LineTrusted "line-trusted-flag" "flag" [0, 1] = 0;
     /// 1: frames are streamed from the start on, so that a recording can be replayed bit for bit
     41 StreamAtStart "stream-at-start-flag" "flag" [0, 1] = 0;
+    /// 1: no wearer, the reflex works without myosensors (a gripper on a robot). Set by muscle or button only
+    42 NoWearer "no-wearer-flag" "flag" [0, 1] = 0;
     /// Behaviours: motor duty of their movements
     50 BehaviourDuty "behaviour-duty-permille" "per mille" [50, 300] = 100;
     /// Behaviours: length of a small movement
@@ -156,6 +158,30 @@ settings! {
     55 MovingPoints "moving-points-e4" "e4" [2, 1_000] = 30;
     /// Turn: how far ahead of the camera a turn is foreseen; 0: not at all, as in FingerVision 2017
     56 TurnLead "turn-lead-ms" "ms" [0, 300] = 90;
+    /// 1: a photoelastic head is in the place of PVDF film 12
+    60 Head "head-photoelastic-flag" "flag" [0, 1] = 0;
+    /// Photoelastic: mean size of the ac part that means slip
+    61 HeadSlip "head-slip-mv" "mV" [1, 100] = 2;
+    /// Photoelastic calibration: voltage without load
+    62 HeadDark "head-dark-mv" "mV" [50, 2_000] = 400;
+    /// Photoelastic calibration: voltage at the peak
+    63 HeadBright "head-bright-mv" "mV" [200, 3_300] = 2_600;
+    /// Photoelastic calibration: force at an eighth of half a turn of phase
+    64 HeadForce1 "head-force-1-mn" "mN" [1, 30_000] = 136;
+    /// Photoelastic calibration: force at two eighths
+    65 HeadForce2 "head-force-2-mn" "mN" [1, 30_000] = 481;
+    /// Photoelastic calibration: force at three eighths
+    66 HeadForce3 "head-force-3-mn" "mN" [1, 30_000] = 1_007;
+    /// Photoelastic calibration: force at four eighths, the peak
+    67 HeadForce4 "head-force-4-mn" "mN" [1, 30_000] = 1_700;
+    /// Photoelastic calibration: force at five eighths
+    68 HeadForce5 "head-force-5-mn" "mN" [1, 30_000] = 2_551;
+    /// Photoelastic calibration: force at six eighths
+    69 HeadForce6 "head-force-6-mn" "mN" [1, 30_000] = 3_554;
+    /// Photoelastic calibration: force at seven eighths
+    70 HeadForce7 "head-force-7-mn" "mN" [1, 30_000] = 4_706;
+    /// Photoelastic calibration: force at half a turn, where the voltage is back at its first value
+    71 HeadForce8 "head-force-8-mn" "mN" [1, 30_000] = 6_000;
 }
 
 impl SettingId {

@@ -221,6 +221,7 @@ fn up() -> Vec<Up> {
         EventKind::Fault(Fault::RecordDamaged(Kept::Emg)),
         EventKind::Behaviour(Behaviour::HandOver, None),
         EventKind::Behaviour(Behaviour::HandOver, Some(Ending::Done)),
+        EventKind::NoWearer(true),
     ];
     all.extend(events.map(|kind| Up::Event(Event { frame: 50, kind })));
     all.extend(answers().into_iter().map(|answer| Up::Answer { of: 7, frame: 50, answer }));

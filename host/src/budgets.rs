@@ -1,10 +1,12 @@
 //! `budgets.toml`: what the image may take of the chip.
 
+use std::collections::BTreeMap;
+
 use anyhow::{Context, Result};
 use serde::Deserialize;
 
 /// The budgets, in the file's words and units.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Budgets {
     /// Code, constants and first values.
@@ -27,6 +29,8 @@ pub struct Budgets {
     pub array_network_instructions: u64,
     /// All that the array costs in a slow frame.
     pub array_slow_frame_instructions: u64,
+    /// Places from which the image may panic, by the crate whose source they are in.
+    pub panic_sites: BTreeMap<String, u64>,
 }
 
 impl Budgets {

@@ -1,5 +1,6 @@
 //! The command line: one file a subcommand.
 
+mod calibrate;
 mod chart;
 mod check;
 mod dataset;
@@ -72,6 +73,8 @@ enum Command {
     Evaluate(evaluate::Args),
     /// Train the force array's slip detector from labelled recordings
     Train(train::Args),
+    /// Calibrate a sensor from known weights
+    Calibrate(calibrate::Args),
     /// Draw the charts behind a page of docs/
     Chart(chart::Args),
     /// Follow skin and object with a camera behind a clear skin, or calibrate its force
@@ -100,6 +103,7 @@ pub fn main() -> ExitCode {
         Command::Test(args) => test::main(&args),
         Command::Check(args) => check::main(&args),
         Command::Train(args) => train::main(&args),
+        Command::Calibrate(args) => calibrate::main(&args),
         Command::Chart(args) => chart::main(&args),
         Command::Dataset(args) => dataset::main(&args),
         Command::Evaluate(args) => evaluate::main(&args),

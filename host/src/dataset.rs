@@ -22,6 +22,7 @@ use session::{Session, Sizes, Split, sessions};
 use story::Story;
 
 use crate::jobs::{Jobs, Told};
+use crate::scorer::onsets;
 
 /// Who says that it slipped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, clap::ValueEnum)]
@@ -109,16 +110,29 @@ impl Dataset {
     pub fn csv(&self) -> anyhow::Result<Vec<u8>> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         let elements = (1..=ARRAY_COUNT).map(|n| format!("a{n}"));
-        let first = ["split", "session", "material", "recording", "t_s", "label"].map(str::to_owned);
+        let first =
+            ["split", "session", "material", "recording", "task", "t_s", "label", "slips"].map(str::to_owned);
         writer.write_record(first.into_iter().chain(elements))?;
         for (session, recordings) in &self.sessions {
             for recording in recordings {
                 let name = format!("{}-{}", session.name, recording.story.name());
+                let mut spans = recording.spans.iter().peekable();
+                let last_s = recording.steps.last().map_or(0.0, |step| step.t_s);
                 for step in &recording.steps {
                     let label = u8::from(self.plan.label.of(step)).to_string();
-                    let first = [session.split.name(), &session.name, session.material, &name];
-                    let fields =
-                        first.map(str::to_owned).into_iter().chain([format!("{:.4}", step.t_s), label]);
+                    // What begins behind the last step is in it, too: nothing is left out.
+                    let until_s = if step.t_s < last_s { step.t_s } else { f64::INFINITY };
+                    let begun = std::iter::from_fn(|| spans.next_if(|span| span.micro_onset_s <= until_s));
+                    let slips = onsets::text(begun);
+                    let first = [
+                        session.split.name(),
+                        &session.name,
+                        session.material,
+                        &name,
+                        recording.story.name(),
+                    ];
+                    let fields = first.map(str::to_owned).into_iter();
+                    let fields = fields.chain([format!("{:.4}", step.t_s), label, slips]);
                     writer.write_record(fields.chain(step.samples.map(|sample| sample.to_string())))?;
                 }
             }

@@ -1,12 +1,16 @@
 //! `tenax evaluate`: the shipped network of the force array on recordings that it never saw, step by step and slip by
 //! slip; and with the hand around it, in the paper's two tasks and in the scenes where it has to fail.
 
+pub mod adapt;
 #[cfg(feature = "emulator")]
 pub mod core;
+pub mod draws;
 pub mod events;
 pub mod failures;
+pub mod network;
 pub mod online;
 pub mod ran;
+pub mod real;
 pub mod report;
 pub mod text;
 

@@ -1,6 +1,8 @@
 //! The image for the microcontroller: building it, and reading what it says about itself.
 
+pub mod calls;
 pub mod kernels;
+pub mod panics;
 pub mod size;
 pub mod symbols;
 

@@ -48,11 +48,20 @@ pub struct Options {
     pub lifts: u64,
     /// Fingers made by chance.
     pub fingertips: u64,
+    /// Whether the films hear no mains hum: the most that a canceller of it could bring.
+    pub without_hum: bool,
+}
+
+impl Options {
+    /// A finger as these options have it.
+    fn finger(&self, finger: Finger) -> Finger {
+        if self.without_hum { finger.with(("pvdf.mains_mv", 0.0)) } else { finger }
+    }
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { seed: 1, trials: 50, minutes: 60, lifts: 20, fingertips: 20 }
+        Self { seed: 1, trials: 50, minutes: 60, lifts: 20, fingertips: 20, without_hum: false }
     }
 }
 
@@ -74,14 +83,16 @@ pub struct Outcome {
     pub trials: Vec<Trial>,
     /// Their score.
     pub score: Score,
+    /// The score of the same trials with equal weights in place of learned ones, on the host.
+    pub equal: Score,
     /// The time of holding.
     pub holding: Holding,
     /// Lifts with the reflex.
     pub lifts: Vec<Three>,
     /// Pours.
     pub pours: Vec<Three>,
-    /// The scores of the other fingers.
-    pub others: Vec<Score>,
+    /// The other fingers.
+    pub others: Vec<Other>,
     /// What the receptors felt in the last three lessons.
     pub felt: Vec<figures::Felt>,
 }
@@ -94,12 +105,14 @@ pub type Progress<'a> = &'a (dyn Fn(&str, f64) + Sync);
 /// # Errors
 /// If a scene cannot be made or the board cannot be run.
 pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Result<Outcome> {
-    let finger = Finger::plain(options.seed);
+    let finger = options.finger(Finger::plain(options.seed));
     let mut untaught = Bench::default();
     let silent = untaught.trial(Setup::new(&finger, held_out(options.seed, 0), false)?);
     let loudest = silent.outputs.iter().flatten().map(|output| output.unsigned_abs()).max();
 
     let (learned, lessons, felt) = lessons_on_host(&finger, options, progress)?;
+    let equal = learned.with_equal_weights()?;
+    let equal = Score::of(&trials_on_host(&finger, equal, options, progress)?);
     let (trials, agreement) = match board {
         Board::Host => (trials_on_host(&finger, learned.clone(), options, progress)?, None),
         #[cfg(feature = "emulator")]
@@ -119,18 +132,19 @@ pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Resu
     let pours = reflex::pours(&finger, &learned, options.lifts, seed(options.seed, 5, 0))?;
     let over = AtomicU64::new(0);
     let others = (1..=options.fingertips).into_par_iter().map(|n| {
-        let score = other(options.seed, n);
+        let score = other(options, n);
         let over = over.fetch_add(1, Ordering::Relaxed);
         progress("other fingers", over as f64 / options.fingertips as f64);
         score
     });
-    let others = others.collect::<anyhow::Result<Vec<Score>>>()?;
+    let others = others.collect::<anyhow::Result<Vec<Other>>>()?;
     Ok(Outcome {
         options: *options,
         board: board.name(),
         agreement,
         untaught: loudest.unwrap_or(0),
         score: Score::of(&trials),
+        equal,
         lessons,
         trials,
         holding,
@@ -197,19 +211,34 @@ fn on_board(
     Ok((chain.trials(&run).split_off(LESSONS as usize), agreement))
 }
 
-/// A finger made by chance: the same lessons, and some held-out trials.
-fn other(all: u64, n: u64) -> anyhow::Result<Score> {
-    let own = seed(all, 6, n);
-    let finger = Finger::random(own);
+/// A finger made by chance.
+#[derive(Clone, Debug, Default)]
+pub struct Other {
+    /// What sliding keeps of its static friction.
+    pub ratio: f64,
+    /// Its held-out trials.
+    pub score: Score,
+    /// The same with equal weights.
+    pub equal: Score,
+}
+
+/// The same lessons, and some held-out trials.
+fn other(options: &Options, n: u64) -> anyhow::Result<Other> {
+    let own = seed(options.seed, 6, n);
+    let finger = options.finger(Finger::random(own));
     let mut bench = Bench::default();
     for n in 0..LESSONS {
         bench.trial(Setup::new(&finger, lesson(own, n), true)?);
     }
-    let mut trials = Vec::new();
+    let mut equal = bench.with_equal_weights()?;
+    let mut trials = [Vec::new(), Vec::new()];
     for n in 0..TRIALS_OF_OTHERS {
-        trials.push(bench.trial(Setup::new(&finger, held_out(own, n), false)?));
+        for (trials, bench) in trials.iter_mut().zip([&mut bench, &mut equal]) {
+            trials.push(bench.trial(Setup::new(&finger, held_out(own, n), false)?));
+        }
     }
-    Ok(Score::of(&trials))
+    let [score, equal] = trials.map(|trials| Score::of(&trials));
+    Ok(Other { ratio: finger.ratio(), score, equal })
 }
 
 fn lesson(all: u64, n: u64) -> u64 {

@@ -50,6 +50,8 @@ pub struct Report {
     pub slip: scores::Slip,
     /// The same controller told the true onset without delay: the gripper's physical limit in this scene.
     pub oracle: oracle::Oracle,
+    /// The same scene with other grips (`run --controls`): no reflex, a constant grip of the same mean force, each detector alone.
+    pub controls: Vec<oracle::Control>,
     /// Grip force.
     pub grip: Grip,
     /// The wearer's part.
@@ -202,6 +204,7 @@ impl Report {
             stack_bytes: run.stack_bytes,
             slip: scores::Slip::of(timeline, subject.truth),
             oracle: oracle::Oracle::of(subject.truth, subject.oracle),
+            controls: Vec::new(),
             reflex: reflex::Reflex::of(subject.added, timeline, &run.events, subject.truth),
             object: reflex::Object::of(subject.truth),
             behaviours: behaviours::of(&run.events, timeline),
@@ -212,9 +215,10 @@ impl Report {
                 dent_mm: truth.crushed_at_s.map(|_| truth.dent_mm),
                 broken_at_s: truth.broken_at_s,
             }),
-            wearer: subject
-                .judge
-                .verdict(timeline.wearer(&run.events).first().copied(), myosensors_lost(run)),
+            wearer: wearer::Wearer {
+                none: nobody_wears_it(run),
+                ..subject.judge.verdict(timeline.wearer(&run.events).first().copied(), myosensors_lost(run))
+            },
             detectors: scores::Detectors::of(timeline, &run.events, subject.truth),
             faults: faults(run, timeline),
             line: Line {
@@ -226,6 +230,15 @@ impl Report {
             replay: None,
         }
     }
+}
+
+/// Whether the board last said that nobody wears the hand.
+fn nobody_wears_it(run: &Summary) -> bool {
+    let told = run.events.iter().rev().find_map(|event| match event.kind {
+        EventKind::NoWearer(none) => Some(none),
+        _ => None,
+    });
+    told.unwrap_or(false)
 }
 
 /// How often a myosensor was lost.

@@ -17,6 +17,8 @@ use std::path::Path;
 use std::path::PathBuf;
 
 use anyhow::{Context, bail};
+use rayon::prelude::*;
+use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::frame::Scan;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Down, Slow};
@@ -27,13 +29,14 @@ use tenax_scene::{SceneFile, World, builtin};
 #[cfg(feature = "emulator")]
 use crate::board::emulated;
 use crate::board::kept::model_of;
-use crate::board::simulated::{frames_in, seconds_of};
+use crate::board::simulated::{Grips, frames_in, seconds_of};
 use crate::board::{Recorder, Run, Summary, simulated};
 use crate::input;
 use crate::plot::sketch::{Needs, Sketch};
 use crate::plot::{Figure, panels};
 use crate::replay::{Recording, ReplayPlant, library};
 use crate::report::fate::Fate;
+use crate::report::oracle::Control;
 use crate::report::reflex::Added;
 use crate::report::replay::{ActivePart, Replay};
 use crate::report::wearer::Judge;
@@ -120,6 +123,8 @@ pub struct Outcome {
     pub report: Report,
     /// The figure.
     pub figure: Figure,
+    /// What really happened. Nothing is known of a recording.
+    pub truth: Fate,
 }
 
 /// A scene by its name in the repository, or by its file.
@@ -203,6 +208,14 @@ impl Plant for Drawn {
         self.world.button()
     }
 
+    fn planned(&self) -> Option<MotorDrive> {
+        self.world.planned()
+    }
+
+    fn closing_to(&self, target_n: f64) -> Option<MotorDrive> {
+        self.world.closing_to(target_n)
+    }
+
     fn slipping(&self) -> bool {
         self.world.slipping()
     }
@@ -254,8 +267,8 @@ pub fn scene_served(
     let (run, Served { mut plant, .. }) = board.record(plant, &mut (&mut witness, recorder), progress)?;
     plant.draw();
     // The oracle's is always the host's: it is a bound on the gripper, not on the image.
-    let oracle = simulated::run_oracle(Drawn::new(World::new(file, seed), span_s), &mut |_| {});
-    let (truth, oracle) = (Fate::of(plant.world.truth()), Fate::of(oracle.world.truth()));
+    let oracle = simulated::run_with(Drawn::new(World::new(file, seed), span_s), Grips::Oracle, &mut |_| {});
+    let (truth, oracle) = (Fate::of(plant.world.truth(), file), Fate::of(oracle.world.truth(), file));
     let Witness { timeline, judge, added, mut sketch } = witness;
     sketch.needs = Some(plant.needs);
     let subject = Subject {
@@ -272,7 +285,23 @@ pub fn scene_served(
     let report = Report::new(&subject);
     let mut figure = panels::figure(&subject, sketch);
     figure.subtitle = format!("{}; {}", file.title, figure.subtitle);
-    Ok(Outcome { run, report, figure })
+    Ok(Outcome { run, report, figure, truth })
+}
+
+/// The controls of a scene: what becomes of the object without the reflex, with a constant grip of the same mean force as
+/// `truth`'s run had, and with each detector alone. Always on the host.
+#[must_use]
+pub fn controls(file: &SceneFile, seed: u64, truth: &Fate) -> Vec<Control> {
+    let alone = DetectorId::ALL.into_iter().filter(|&id| id != DetectorId::Injected);
+    let mut all = vec![("no reflex".to_owned(), Grips::Reflex(DetectorSet::NONE))];
+    all.extend(truth.mean_grip_n.map(|grip_n| ("constant grip".to_owned(), Grips::Constant(grip_n))));
+    all.extend(alone.map(|id| (format!("{} alone", id.name()), Grips::Reflex(DetectorSet::only(id)))));
+    let run = |(name, grips): &(String, Grips)| {
+        let span_s = (0.0, seconds_of(frames_in(file.duration_s())));
+        let plant = simulated::run_with(Drawn::new(World::new(file, seed), span_s), *grips, &mut |_| {});
+        Control::of(name, &Fate::of(plant.world.truth(), file))
+    };
+    all.par_iter().map(run).collect()
 }
 
 /// Plays a recording. Without a recipe, the one that its name calls for.
@@ -360,7 +389,7 @@ pub fn replay_served(
     if let Some(named) = &named {
         figure.subtitle = format!("{} ({}), {}", named.recipe.title, named.name, figure.subtitle);
     }
-    Ok(Outcome { run, report, figure })
+    Ok(Outcome { run, report, figure, truth: Fate::default() })
 }
 
 /// What a recording is called: its file's name.

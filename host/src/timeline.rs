@@ -6,6 +6,7 @@ use tenax_hal_shim::wire::{Event, EventKind, Slow, TickRecord};
 use tenax_hal_shim::words::Cause;
 
 use crate::board::Recorder;
+use crate::scorer::Verdict;
 
 /// When each detector began to speak in a run, gathered while it goes.
 #[derive(Clone, Debug, Default)]
@@ -66,17 +67,16 @@ impl Timeline {
         self.times_s(&self.believed[id as usize])
     }
 
-    /// The same, without what began while the wearer moved the hand: what they do on purpose is neither caught nor false.
+    /// The stretches in which it said so and was believed, for the [scorer](crate::scorer).
     #[must_use]
-    pub fn unmeant(&self, id: DetectorId) -> Vec<f64> {
-        let edges = &self.believed[id as usize];
-        edges
-            .frames
-            .iter()
-            .zip(&edges.by_wearer)
-            .filter(|(_, by)| !**by)
-            .map(|(&frame, _)| self.time_s(frame))
-            .collect()
+    pub fn verdicts(&self, id: DetectorId) -> Vec<Verdict> {
+        self.stretches(&self.believed[id as usize])
+    }
+
+    /// The stretches in which it said so, believed or not.
+    #[must_use]
+    pub fn verdicts_said(&self, id: DetectorId) -> Vec<Verdict> {
+        self.stretches(&self.said[id as usize])
     }
 
     /// When the reflex began to act on it, s.
@@ -97,6 +97,12 @@ impl Timeline {
         let taken_over: Vec<f64> = taken_over.collect();
         let exact = |end: f64| taken_over.iter().copied().find(|&t| t > end - slow_frame_s && t <= end);
         self.times_s(&self.wearer).into_iter().map(|end| exact(end).unwrap_or(end)).collect()
+    }
+
+    fn stretches(&self, edges: &Edges) -> Vec<Verdict> {
+        let ends = edges.ends.iter().map(|&frame| self.time_s(frame)).chain([f64::INFINITY]);
+        let verdict = |((&frame, &by_wearer), to_s)| Verdict { from_s: self.time_s(frame), to_s, by_wearer };
+        edges.frames.iter().zip(&edges.by_wearer).zip(ends).map(verdict).collect()
     }
 
     fn times_s(&self, edges: &Edges) -> Vec<f64> {
@@ -120,6 +126,8 @@ pub(crate) fn ticks(slow: &Slow) -> impl Iterator<Item = (u32, &TickRecord)> {
 struct Edges {
     before: bool,
     frames: Vec<u32>,
+    /// The frames in which it becomes false again.
+    ends: Vec<u32>,
     /// Whether the wearer moved the hand in each.
     by_wearer: Vec<bool>,
 }
@@ -129,6 +137,9 @@ impl Edges {
         if now && !self.before {
             self.frames.push(frame);
             self.by_wearer.push(by_wearer);
+        }
+        if self.before && !now {
+            self.ends.push(frame);
         }
         self.before = now;
     }
@@ -144,7 +155,7 @@ mod tests {
         for (frame, on) in (0..).zip([true, true, false, true, false]) {
             edges.push(frame, on, false);
         }
-        assert_eq!(edges.frames, [0, 3]);
+        assert_eq!((edges.frames.as_slice(), edges.ends.as_slice()), (&[0, 3][..], &[2, 4][..]));
         assert!(Edges::default().frames.is_empty());
     }
 }

@@ -19,10 +19,13 @@ fn a_small_one_is_what_its_manifest_says() {
     let csv = dataset.csv().unwrap();
     let manifest = dataset.manifest("small.csv", &csv);
     let text = toml::to_string(&manifest).unwrap();
-    assert!(text.contains(&manifest.sha256) && text.contains("held_out = \"cardboard\""));
+    assert!(text.contains(&manifest.sha256) && text.contains("held_out = \"rubber\""));
 
     let header = String::from_utf8(csv.clone()).unwrap().lines().next().unwrap().to_owned();
-    assert_eq!(header, "split,session,material,recording,t_s,label,a1,a2,a3,a4,a5,a6,a7,a8,a9,a10");
+    assert_eq!(
+        header,
+        "split,session,material,recording,task,t_s,label,slips,a1,a2,a3,a4,a5,a6,a7,a8,a9,a10"
+    );
     let rows = rows(&csv);
     let steps: usize = manifest.split.values().map(|counts| counts.steps).sum();
     assert_eq!(rows.len(), steps);
@@ -38,13 +41,13 @@ fn a_small_one_is_what_its_manifest_says() {
 
     // Every split has slip and its absence; what disturbs is never slip; every sample has 14 bits.
     for split in ["train", "validation", "test"] {
-        let slips = rows.iter().filter(|row| &row[0] == split && &row[5] == "1").count();
+        let slips = rows.iter().filter(|row| &row[0] == split && &row[6] == "1").count();
         let all = rows.iter().filter(|row| &row[0] == split).count();
         assert!(slips > all / 50 && slips < all / 2, "{slips} of {all} in {split}");
     }
-    assert!(rows.iter().filter(|row| row[3].ends_with("-disturb")).all(|row| &row[5] == "0"));
+    assert!(rows.iter().filter(|row| row[3].ends_with("-disturb")).all(|row| &row[6] == "0"));
     assert!(
-        rows.iter().flat_map(|row| row.iter().skip(6)).all(|sample| sample.parse::<u16>().unwrap() <= 16_380)
+        rows.iter().flat_map(|row| row.iter().skip(8)).all(|sample| sample.parse::<u16>().unwrap() <= 16_380)
     );
     // The marker sees the same slips, through a camera.
     assert!(manifest.marker_agrees_percent > 90.0, "{} %", manifest.marker_agrees_percent);

@@ -1,10 +1,19 @@
 //! `tenax evaluate`: the keys that programs read, the worst first, and the online tasks at a small scale.
 
-use tenax::evaluate::online;
+use tenax::dataset::session::Split;
+use tenax::dataset::{Dataset, Label, Plan};
+use tenax::evaluate::events::stretches;
 use tenax::evaluate::report::Report;
-use tenax::evaluate::test_split;
-use tenax::labelled::{Part, Recording, Step};
-use tenax::session::Board;
+use tenax::evaluate::{online, ran, test_split, verdicts};
+use tenax::labelled::{self, Part, Recording, Step, library};
+use tenax::scorer::{Card, Doing, SlipSpan};
+use tenax::session::{self, Board};
+use tenax_hal_shim::detector::DetectorId;
+use tenax_logic::array::ShippedDetector;
+
+/// Steps 30 to 49: the first of them ends at 0.38 s.
+const SLIP: SlipSpan =
+    SlipSpan { micro_onset_s: 0.2, macro_onset_s: Some(0.37), end_s: 0.63, distance_mm: 2.0, meant: false };
 
 fn recording(material: &str, slips: &[bool]) -> Recording {
     Recording {
@@ -12,6 +21,10 @@ fn recording(material: &str, slips: &[bool]) -> Recording {
         session: format!("{material}-01"),
         material: material.to_owned(),
         part: Some(Part::Test),
+        doing: Doing::Pour,
+        first_s: 0.005,
+        slips: vec![SLIP],
+        exact: true,
         steps: slips.iter().map(|&slip| Step { samples: [1_000; 10], slip }).collect(),
     }
 }
@@ -28,26 +41,96 @@ fn the_keys_are_those_of_the_issue_and_the_worst_comes_first() {
     assert_eq!(
         keys,
         [
+            "pour",
+            "real",
             "steps",
             "missed",
             "false",
             "accuracy",
+            "balanced",
+            "prevalence",
             "events",
             "false_per_hour",
+            "false_by",
             "by_material",
             "by_session",
-            "without_lookback"
+            "without_lookback",
+            "by_draw"
         ]
     );
     assert_eq!((&value["steps"], &value["missed"], &value["false"]), (&160.into(), &22.into(), &0.into()));
     let events: Vec<&String> = value["events"].as_object().unwrap().keys().collect();
-    assert_eq!(events, ["count", "caught", "latency_ms_p50", "latency_ms_p95"]);
+    assert_eq!(
+        events,
+        [
+            "count",
+            "caught",
+            "early",
+            "late",
+            "said_before",
+            "missed",
+            "latency_ms_p50",
+            "latency_ms_p95",
+            "after_micro_ms_p50"
+        ]
+    );
     assert_eq!((&value["events"]["count"], &value["events"]["caught"]), (&2.into(), &1.into()));
-    assert_eq!(value["events"]["latency_ms_p50"], 25.0);
+    // Step 32 is read at 0.405 s and decided 2.5 ms later.
+    let latency_ms = value["events"]["latency_ms_p50"].as_f64().unwrap();
+    assert!((latency_ms - 37.5).abs() < 1e-9, "{latency_ms} ms");
+    let pour = &value["pour"];
+    for key in
+        ["balanced", "accuracy", "prevalence", "caught_50ms", "false_per_hour", "missed_2800", "false_2800"]
+    {
+        assert!(pour[key].is_f64(), "pour.{key} is {}", pour[key]);
+    }
+    assert_eq!((&pour["prevalence"], &pour["caught_50ms"]), (&0.25.into(), &0.5.into()));
+    assert!((pour["balanced"].as_f64().unwrap() - (18.0 / 40.0 + 1.0) / 2.0).abs() < 1e-12);
+    assert!(value["real"].is_null());
     let materials: Vec<&String> = value["by_material"].as_object().unwrap().keys().collect();
     assert_eq!(materials, ["wood", "plastic"]);
     assert_eq!(value["by_session"]["wood-01"]["missed"], 20);
     assert_eq!(value["without_lookback"]["missed"], 40);
+}
+
+#[test]
+fn run_and_evaluate_say_the_same_of_the_same_scene() {
+    // One scene in which the array catches, one in which it says what is false, one in which the wearer lets go.
+    for scene in ["array-pour", "array-disturb", "array-pick", "array-opening"] {
+        let file = session::load_scene(scene).unwrap();
+        let mut ran = ran::Steps::default();
+        let outcome = session::scene_with(&file, 1, &Board::Host, &mut ran, &mut |_| {}).unwrap();
+        let mut detector = ShippedDetector::default();
+        let said = verdicts(|reading| detector.push(reading).slip, &ran.steps);
+        let truth = &outcome.truth;
+        let evaluated = Card::of(&truth.slips, &stretches(ran::FIRST_S, &said), &truth.doing);
+        let own = outcome.report.detectors.of_id(DetectorId::Mlp);
+        // What is not believed of an empty hand is said all the same.
+        assert_eq!(own.said, own.detections, "{scene}: the scene is none for this test");
+        assert_eq!(own.events.as_ref(), Some(&evaluated), "{scene}");
+        println!("{scene}: {} of {} caught", evaluated.caught, evaluated.count);
+    }
+}
+
+#[test]
+fn a_data_set_carries_the_onsets_of_its_worlds_exactly() {
+    let plan = Plan { seed: 5, sessions: 1, label: Label::Truth };
+    let dataset = Dataset::make_split(plan, Split::Validation, &|_| {}).unwrap();
+    let recipe = library::choose("array_dataset.csv".as_ref(), None).unwrap();
+    let read = labelled::parse(dataset.csv().unwrap().as_slice(), &recipe, "d.csv").unwrap();
+    let mut slips = 0;
+    for (made, read) in dataset.sessions.iter().flat_map(|(_, made)| made).zip(&read) {
+        assert!(read.exact && read.doing == Doing::named(made.story.name()));
+        assert_eq!(made.spans.len(), read.slips.len(), "{}", read.name);
+        for (made, read) in made.spans.iter().zip(&read.slips) {
+            assert!((made.micro_onset_s - read.micro_onset_s).abs() < 1e-6);
+            let apart_s = made.macro_onset_s.zip(read.macro_onset_s).map(|(made, read)| (made - read).abs());
+            assert!(apart_s.is_none_or(|s| s < 1e-6) && made.meant == read.meant);
+            assert_eq!(made.macro_onset_s.is_some(), read.macro_onset_s.is_some());
+            slips += usize::from(made.macro_onset_s.is_some());
+        }
+    }
+    assert!(slips > 0);
 }
 
 #[test]

@@ -11,16 +11,19 @@ const KEYS: &str = "
     ticks.core_load_percent load.tick_instructions_mean load.period_instructions_mean stack_bytes
     slip.micro_onset_s slip.macro_onset_s slip.caught slip.latency_ms slip.distance_mm slip.dropped
     slip.macro_slips slip.macro_slips_caught
-    oracle.distance_mm oracle.peak_force_n oracle.distance_ratio oracle.peak_force_ratio
+    oracle.distance_mm oracle.peak_force_n oracle.distance_ratio oracle.peak_force_ratio oracle.why controls
     grip.peak_force_n grip.needed_force_n grip.crushed_at_s grip.dent_mm grip.broken_at_s
-    wearer.reflex_while_active wearer.open_latency_ms wearer.active_first_s wearer.active_permille wearer.reflex_ticks
+    wearer.none wearer.reflex_while_active wearer.open_latency_ms wearer.active_first_s wearer.active_permille wearer.reflex_ticks
     wearer.closing_s wearer.opening_s wearer.longest_open_ms wearer.longest_close_ms wearer.faults
     reflex.pulses reflex.without_slip reflex.added_force_n object.kept object.left_behind
     object.handed_over object.turned_deg behaviours
 ";
 
 /// Of each detector, below its name.
-const DETECTOR_KEYS: [&str; 5] = ["first_s", "detections", "false_alarms", "said", "acted"];
+const DETECTOR_KEYS: [&str; 6] = ["first_s", "detections", "false_alarms", "said", "acted", "events"];
+
+/// Of its event scores, which a recording has not; behind them, false alarms by what the scene was doing.
+const EVENT_KEYS: [&str; 6] = ["count", "caught", "early", "late", "said_before", "missed"];
 
 /// Those behind them.
 const LAST_KEYS: &str = "
@@ -40,7 +43,7 @@ const REPLAY_KEYS: &str = "
 
 fn leaves(value: &Value, path: &str, into: &mut Vec<String>) {
     match value {
-        Value::Object(map) => {
+        Value::Object(map) if !path.ends_with(".events") => {
             for (key, value) in map {
                 leaves(value, format!("{path}.{key}").trim_start_matches('.'), into);
             }
@@ -79,7 +82,51 @@ fn played(csv: &str, recipe: Option<&str>) -> Value {
 fn a_scenes_keys_are_stable() {
     let file = session::load_scene(session::DEFAULT_SCENE).unwrap();
     let outcome = session::scene(&file, 1, &Board::Host, &mut |_| {}).unwrap();
-    assert_eq!(found(&serde_json::to_value(&outcome.report).unwrap()), expected("replay"));
+    let report = serde_json::to_value(&outcome.report).unwrap();
+    assert_eq!(found(&report), expected("replay"));
+    let events = &report["detectors"]["s1"]["events"];
+    for key in EVENT_KEYS {
+        assert!(events[key].is_u64(), "events.{key}");
+    }
+    let by = events["false_by"].as_object().unwrap();
+    assert!(by.keys().map(String::as_str).eq(["hold", "pour", "move", "disturb"]), "{by:?}");
+    for alarms in by.values().chain([&events["false_alarms"]]) {
+        assert!(alarms["per_hour"].is_f64() && alarms["hours"].as_f64() > Some(0.0));
+    }
+}
+
+#[test]
+fn the_oracle_is_a_bound_or_the_run_says_why() {
+    // A patch, a rotation, a wearer, an array that dies, a pour with the hand alone; controls beside the default scene.
+    for scene in ["glass", "steel-balls", "pour", "hold", "array-lost", "array-pick"] {
+        let file = session::load_scene(scene).unwrap();
+        let outcome = session::scene(&file, 1, &Board::Host, &mut |_| {}).unwrap();
+        let oracle = &outcome.report.oracle;
+        let below = |ratio: Option<f64>| ratio.is_some_and(|ratio| ratio < 0.98);
+        println!("{scene}: {:?} {:?} {:?}", oracle.distance_ratio, oracle.peak_force_ratio, oracle.why);
+        if below(oracle.peak_force_ratio) {
+            assert!(oracle.why.is_some(), "{scene}");
+        }
+        assert!(
+            !oracle.why.as_ref().is_some_and(|why| why.contains("NO REASON")),
+            "{scene}: {:?}",
+            oracle.why
+        );
+    }
+}
+
+#[test]
+fn the_controls_of_a_scene_are_worse_than_the_reflex() {
+    let file = session::load_scene("array-pour").unwrap();
+    let outcome = session::scene(&file, 1, &Board::Host, &mut |_| {}).unwrap();
+    let controls = session::controls(&file, 1, &outcome.truth);
+    let names: Vec<&str> = controls.iter().map(|control| control.name.as_str()).collect();
+    let expected = ["no reflex", "constant grip", "s1 alone", "s2 alone", "hebbian alone", "mlp alone"];
+    assert_eq!(names, expected);
+    assert!(outcome.report.object.kept == Some(true) && !controls[0].kept, "{:?}", controls[0]);
+    // The constant grip has the run's mean force, within the edge of closing.
+    let (own, mean) = (outcome.truth.mean_grip_n.unwrap(), controls[1].mean_force_n.unwrap());
+    assert!((mean / own - 1.0).abs() < 0.05, "{mean} N for {own} N");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use crate::behaviours::BehaviourConfig;
 use crate::hebbian::{LearningConfig, Rule, TeacherConfig};
+use crate::photoelastic::HeadConfig;
 use tenax_hal_shim::setting::SettingId;
 
 /// Frames in this many milliseconds.
@@ -110,10 +111,14 @@ pub struct Config {
     pub grip: GripConfig,
     /// What is above it.
     pub behaviour: BehaviourConfig,
+    /// The photoelastic head.
+    pub head: HeadConfig,
     /// The serial line needs no consent.
     pub line_trusted: bool,
     /// Frames are streamed from the start on.
     pub stream_at_start: bool,
+    /// There is no wearer: a myosensor that gives no number is not missed.
+    pub no_wearer: bool,
 }
 
 impl Config {
@@ -151,8 +156,10 @@ impl Config {
             moving_e4: 0,
             turn_lead_frames: 0,
         },
+        head: HeadConfig::BLANK,
         line_trusted: false,
         stream_at_start: false,
+        no_wearer: false,
     };
 }
 

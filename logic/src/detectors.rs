@@ -5,6 +5,7 @@
 mod hebbian;
 mod injected;
 mod mlp;
+mod photoelastic;
 mod s1;
 mod s2;
 
@@ -17,6 +18,7 @@ use tenax_hal_shim::wire::{DETECTORS_MAX, Forces};
 use crate::array::{MLP_DECIDES, Reading};
 use crate::config::Config;
 use crate::friction::FrictionDetector;
+use crate::photoelastic::Head;
 use crate::plausibility::Plausibility;
 use crate::strain::Gauges;
 use crate::touch::Touch;
@@ -24,6 +26,7 @@ use crate::vibration::Vibration;
 
 pub use injected::Injected;
 pub use mlp::MlpDetector;
+pub use photoelastic::PhotoelasticDetector;
 pub use s1::S1;
 
 /// What was sensed in one frame, conditioned: what every detector judges by.
@@ -49,6 +52,8 @@ pub struct Sensed<'a> {
     pub forces_are_new: bool,
     /// The normal-force array's last readings.
     pub taxels: &'a Reading,
+    /// The photoelastic head. While its place is a film's it has heard nothing.
+    pub head: &'a Head,
     /// The finger is known to touch nothing.
     pub unloaded: bool,
     /// The finger holds something.
@@ -156,6 +161,10 @@ macro_rules! for_each_detector {
             let ($detector, $own) = (&mut $self.injected, &());
             $body;
         }
+        {
+            let ($detector, $own) = (&mut $self.photoelastic, &$config.head);
+            $body;
+        }
     }};
 }
 
@@ -170,6 +179,7 @@ pub struct Detectors {
     mlp: MlpDetector,
     /// Evidence from outside.
     pub injected: Injected,
+    photoelastic: PhotoelasticDetector,
     record: Record,
 }
 
@@ -260,18 +270,21 @@ impl Detectors {
         let mut all = Vec::new();
         for_each_detector!(self, config, |detector, own| {
             let id = id_of(detector);
-            let Description { confidence_permille, direction, health, raw } = detector.describe(own);
-            let evidence = Evidence {
-                slip: self.record.slip.contains(id),
-                incipient: self.record.incipient.contains(id),
-                confidence_permille,
-                direction,
-                decided_at: self.record.decided_at[id as usize],
-                health,
-                raw,
-            };
-            // There is room for every detector.
-            let _fits = all.push((id, evidence));
+            // A head that is not there has no evidence.
+            if id != DetectorId::Photoelastic || config.head.fitted {
+                let Description { confidence_permille, direction, health, raw } = detector.describe(own);
+                let evidence = Evidence {
+                    slip: self.record.slip.contains(id),
+                    incipient: self.record.incipient.contains(id),
+                    confidence_permille,
+                    direction,
+                    decided_at: self.record.decided_at[id as usize],
+                    health,
+                    raw,
+                };
+                // There is room for every detector.
+                let _fits = all.push((id, evidence));
+            }
         });
         all
     }
@@ -281,6 +294,8 @@ const _: () = assert!(DetectorId::COUNT <= DETECTORS_MAX);
 
 /// How sure a threshold is: 500 per mille at it, 0 at nothing, 1000 at twice it.
 fn confidence(value: i32, threshold: i32) -> u16 {
-    let permille = i64::from(value.max(0)) * 500 / i64::from(threshold.max(1));
+    // Nothing is above 2^22, and 32 bits are divided by one instruction.
+    let value = value.clamp(0, 1 << 22).unsigned_abs();
+    let permille = value * 500 / threshold.max(1).unsigned_abs();
     permille.min(1_000) as u16
 }

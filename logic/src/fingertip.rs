@@ -55,8 +55,9 @@ pub struct Fingertip {
     link: Link,
     arming: Arming,
     button: bool,
-    /// What was last told about the line.
+    /// What was last told about the line, and about the wearer.
     line: Line,
+    told_no_wearer: bool,
     journal: Journal,
     slow: Option<Slow>,
     save_asked: bool,
@@ -212,6 +213,12 @@ impl Fingertip {
         self.senses.gate.is_active()
     }
 
+    /// What the Hebbian network has learned, with the maxima that its weights belong to.
+    #[must_use]
+    pub fn learned(&self) -> crate::touch::Learned {
+        self.detectors.hebbian.learned()
+    }
+
     /// What the network knows and feels.
     #[must_use]
     pub fn network(&self) -> NetworkState {
@@ -251,6 +258,7 @@ impl Fingertip {
             forces: self.senses.forces.as_ref(),
             forces_are_new: self.senses.forces_are_new,
             taxels: self.senses.taxels(),
+            head: self.senses.head(),
             unloaded: self.senses.is_unloaded(&self.config),
             grasp: matches!(self.senses.grip(&self.config), Grip::Holds(_)),
             noisy: vibration.knock || duty >= self.config.touch.loud_duty_permille,

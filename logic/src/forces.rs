@@ -99,7 +99,8 @@ pub fn forces([a, b, c, d]: [i32; FSR_COUNT], loaded_mn: i32) -> Forces {
 
 /// Root of the sum of squares, rounded down: core's integer root, exact, where micromath's is off by up to 3.7 %.
 fn root<const N: usize>(values: [i32; N]) -> i32 {
-    let squares: i64 = values.iter().map(|&value| i64::from(value) * i64::from(value)).sum();
+    // Of a number without a sign: core's root of one that has it would panic below 0.
+    let squares: u64 = values.iter().map(|&value| u64::from(value.unsigned_abs()).pow(2)).sum();
     squares.isqrt() as i32
 }
 

@@ -45,6 +45,7 @@ pub mod journal;
 pub mod low_pass;
 pub mod mode;
 pub mod muscles;
+pub mod photoelastic;
 pub mod plausibility;
 mod samples;
 pub mod senses;

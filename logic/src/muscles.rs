@@ -77,7 +77,8 @@ impl Muscles {
         gone
     }
 
-    fn read(&mut self, n: usize, uv: Option<i32>, journal: &mut Journal) {
+    fn read(&mut self, muscle: usize, uv: Option<i32>, journal: &mut Journal) {
+        let n = muscle.min(1);
         self.emg.read(n, uv);
         self.uv[n] = uv;
         if n == 1 && self.lesson.is_some() {
@@ -91,7 +92,8 @@ impl Muscles {
 
     /// The first reason is told; one that stood still may later turn out to be mains.
     #[inline(never)]
-    fn tell(&mut self, n: usize, lost: Option<Reason>, journal: &mut Journal) {
+    fn tell(&mut self, muscle: usize, lost: Option<Reason>, journal: &mut Journal) {
+        let n = muscle.min(1);
         let channel = (if n == 0 { MYO_FLEXOR } else { MYO_EXTENSOR }) as u8;
         match (self.lost[n], lost) {
             (None, Some(reason)) | (Some(Reason::Flat | Reason::Stuck), Some(reason @ Reason::Hum)) => {

@@ -27,10 +27,11 @@ impl LastSamples {
     /// The last sample of every channel, in the order of [`CHANNELS`].
     #[must_use]
     pub fn in_order(&self) -> [u16; COUNT] {
+        let last = |samples: &[u16], place: u8| samples.get(usize::from(place)).copied().unwrap_or(0);
         CHANNELS.map(|channel| match channel.input {
-            Input::Direct { rank } => self.pvdf[usize::from(rank)],
-            Input::SwitchA { select } => self.switch_a[usize::from(select)],
-            Input::SwitchB { select } => self.switch_b[usize::from(select)],
+            Input::Direct { rank } => last(&self.pvdf, rank),
+            Input::SwitchA { select } => last(&self.switch_a, select),
+            Input::SwitchB { select } => last(&self.switch_b, select),
         })
     }
 }

@@ -1,7 +1,8 @@
 //! Conditions a frame: which sensors are valid, and what they measure.
 
 use tenax_hal_shim::channel::{
-    ARRAY, CHANNELS, FSR, FSR_COUNT, MYO_EXTENSOR, MYO_FLEXOR, PVDF, PVDF_COUNT, SLOW_HZ, STRAIN,
+    ARRAY, CHANNELS, FSR, FSR_COUNT, HEAD, MYO_EXTENSOR, MYO_FLEXOR, PVDF, PVDF_COUNT, Role, SAMPLE_MAX,
+    SLOW_HZ, STRAIN,
 };
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::front_end::FSR_REST_MV;
@@ -21,6 +22,8 @@ use crate::grip::Grip;
 use crate::health::{Change, Limits, SensorHealth};
 use crate::journal::Journal;
 use crate::muscles::Muscles;
+use crate::photoelastic::Head;
+use crate::photoelastic::track::Hints;
 use crate::strain::Gauges;
 use crate::vibration::{Trust, Vibration, VibrationDetector};
 
@@ -53,6 +56,11 @@ pub struct Senses {
     detector: VibrationDetector,
     gauges: Gauges,
     elements: Elements,
+    /// In the place of the last film, if it is fitted.
+    head: Head,
+    head_is_fitted: bool,
+    /// 1 while the motor closes, -1 while it opens.
+    drive: i8,
     frames_seen: u32,
     /// Frames in which the hand was opened since it was last closed.
     open_frames: u32,
@@ -97,6 +105,7 @@ impl Senses {
     pub fn lose(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
         self.frames_lost = self.frames_lost.saturating_add(1);
         self.vibration = Vibration { masked: self.vibration.masked, ..Vibration::default() };
+        self.head.miss();
         self.forces_are_new = false;
         let slot = &SCHEDULE[usize::from(frame.slot())];
         for channel in [slot.switch_a, slot.switch_b].into_iter().flatten() {
@@ -115,6 +124,11 @@ impl Senses {
     /// How the motor was driven in the last so many frames: what has been opened for a while, and not closed since, holds
     /// nothing.
     pub const fn driven(&mut self, drive: MotorDrive, frames: u32) {
+        self.drive = match drive {
+            MotorDrive::Open(_) => -1,
+            MotorDrive::Close(_) => 1,
+            MotorDrive::Coast => 0,
+        };
         match drive {
             MotorDrive::Open(_) => self.open_frames = self.open_frames.saturating_add(frames),
             MotorDrive::Close(_) => self.open_frames = 0,
@@ -172,18 +186,25 @@ impl Senses {
         self.elements.reading()
     }
 
+    /// The photoelastic head. While its place is a film's it has heard nothing.
+    #[must_use]
+    pub const fn head(&self) -> &Head {
+        &self.head
+    }
+
     /// Whether vibration can be heard at all.
     #[must_use]
     pub const fn hears(&self) -> bool {
         self.films_usable
     }
 
-    /// Whether the reflex has all that it cannot do without: both muscles known, and a way to feel slip.
+    /// Whether the reflex has all that it cannot do without: both muscles known, if there is a wearer, and a way to feel
+    /// slip.
     #[must_use]
     pub fn ready(&self, config: &Config) -> bool {
         self.frames_seen >= WARM_UP_FRAMES
-            && self.gate.is_certain(&config.gate)
-            && (self.films_usable || self.forces.is_some())
+            && (config.no_wearer || self.gate.is_certain(&config.gate))
+            && (self.films_usable || self.forces.is_some() || self.head.is_usable())
     }
 
     /// What is known about force.
@@ -202,13 +223,61 @@ impl Senses {
         !self.pressed && self.forces.is_some_and(|forces| forces.load_mn < config.friction.loaded_mn / 4)
     }
 
+    #[inline(always)]
     fn listen(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
-        let trusts = self.films.take(&frame.pvdf, |film, change| report(journal, PVDF + film, Some(change)));
-        self.films_usable = trusts.is_none_or(|trusts| trusts.iter().any(|&trust| trust != Trust::None));
+        if config.head.fitted | self.head_is_fitted {
+            self.look(config, frame, journal);
+        } else {
+            self.hear(config, &frame.pvdf, PVDF_COUNT, journal);
+        }
+    }
+
+    /// Takes the samples of the films, which are the first so many.
+    #[inline(always)]
+    fn hear(&mut self, config: &Config, pvdf: &[u16; PVDF_COUNT], films: usize, journal: &mut Journal) {
+        let trusts = self.films.take(pvdf, |film, change| report(journal, PVDF + film, Some(change)));
+        self.films_usable =
+            trusts.is_none_or(|trusts| trusts[..films].iter().any(|&trust| trust != Trust::None));
         let masked = self.vibration.masked;
-        self.vibration = self.detector.hear(&config.vibration, &frame.pvdf, trusts.as_ref());
+        self.vibration = self.detector.hear(&config.vibration, pvdf, trusts.as_ref());
         if self.vibration.masked != masked {
             self.mask(masked ^ self.vibration.masked, journal);
+        }
+    }
+
+    /// The head takes its sample. What the films are given in its place is a film that is whole and hears nothing: the middle of
+    /// the range, and one count of dither, so that it does not look frozen.
+    ///
+    /// The films' part is compiled twice, here and for twelve films, which then cost nothing more. Most hands have no head.
+    #[cold]
+    #[inline(never)]
+    fn look(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
+        let is_fitted = Role::of(HEAD, config.head.fitted) == Role::Photoelastic;
+        if self.head_is_fitted != is_fitted {
+            // A head takes a film's place, or gives it back: neither has heard the jump.
+            self.head_is_fitted = is_fitted;
+            self.head = Head::default();
+            self.detector.forget(HEAD - PVDF);
+        }
+        let mut pvdf = frame.pvdf;
+        if is_fitted {
+            let silent = SAMPLE_MAX / 2 + (frame.sequence & 1) as u16;
+            let sample = core::mem::replace(&mut pvdf[HEAD - PVDF], silent);
+            let change = self.head.take(&config.head, sample);
+            report(journal, HEAD, change);
+        }
+        let films = if is_fitted { HEAD - PVDF } else { PVDF_COUNT };
+        self.hear(config, &pvdf, films, journal);
+    }
+
+    /// The head's force, once a cycle, after the quadrants' if they give one.
+    #[inline(never)]
+    fn track(&mut self, config: &Config) {
+        let force_mn = self.forces.filter(|_| !self.pressed).map(|forces| forces.load_mn);
+        let hints = Hints { unloaded: self.open_frames >= OPEN_FRAMES, force_mn, drive: self.drive };
+        self.head.cycle(&config.head, hints);
+        if self.forces.is_none() {
+            self.forces = self.head.stand_in();
         }
     }
 
@@ -275,6 +344,14 @@ impl Senses {
             return;
         }
         self.forces_are_new = true;
+        self.quadrants(config, journal);
+        if self.head_is_fitted {
+            self.track(config);
+        }
+    }
+
+    /// All quadrants have been read.
+    fn quadrants(&mut self, config: &Config, journal: &mut Journal) {
         let [Some(a), Some(b), Some(c), Some(d)] = self.fsr_readings else {
             self.forces = None;
             return;
@@ -313,7 +390,7 @@ impl Senses {
             return;
         }
         let now = [
-            (Capability::Vibration, !self.films_usable),
+            (Capability::Vibration, !self.films_usable && !self.head.is_usable()),
             (Capability::Force, self.forces.is_none()),
             (Capability::WearerIntent, !self.gate.is_known()),
         ];

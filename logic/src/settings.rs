@@ -53,6 +53,19 @@ impl Config {
             Id::TurnLead => ms(self.behaviour.turn_lead_frames),
             Id::LineTrusted => self.line_trusted.into(),
             Id::StreamAtStart => self.stream_at_start.into(),
+            Id::NoWearer => self.no_wearer.into(),
+            Id::Head => self.head.fitted.into(),
+            Id::HeadSlip => mv(self.head.slip),
+            Id::HeadDark => mv_of_q4(self.head.curve.dark_q4),
+            Id::HeadBright => mv_of_q4(self.head.curve.bright_q4),
+            Id::HeadForce1 => self.head.curve.force_mn[0],
+            Id::HeadForce2 => self.head.curve.force_mn[1],
+            Id::HeadForce3 => self.head.curve.force_mn[2],
+            Id::HeadForce4 => self.head.curve.force_mn[3],
+            Id::HeadForce5 => self.head.curve.force_mn[4],
+            Id::HeadForce6 => self.head.curve.force_mn[5],
+            Id::HeadForce7 => self.head.curve.force_mn[6],
+            Id::HeadForce8 => self.head.curve.force_mn[7],
         }
     }
 
@@ -131,6 +144,19 @@ impl Config {
             Id::TurnLead => self.behaviour.turn_lead_frames = frames(number),
             Id::LineTrusted => self.line_trusted = number > 0,
             Id::StreamAtStart => self.stream_at_start = number > 0,
+            Id::NoWearer => self.no_wearer = number > 0,
+            Id::Head => self.head.fitted = number > 0,
+            Id::HeadSlip => self.head.slip = sample_from_mv(number),
+            Id::HeadDark => self.head.curve.dark_q4 = i32::from(sample_from_mv(number)) << 4,
+            Id::HeadBright => self.head.curve.bright_q4 = i32::from(sample_from_mv(number)) << 4,
+            Id::HeadForce1 => self.head.curve.force_mn[0] = value,
+            Id::HeadForce2 => self.head.curve.force_mn[1] = value,
+            Id::HeadForce3 => self.head.curve.force_mn[2] = value,
+            Id::HeadForce4 => self.head.curve.force_mn[3] = value,
+            Id::HeadForce5 => self.head.curve.force_mn[4] = value,
+            Id::HeadForce6 => self.head.curve.force_mn[5] = value,
+            Id::HeadForce7 => self.head.curve.force_mn[6] = value,
+            Id::HeadForce8 => self.head.curve.force_mn[7] = value,
         }
         if matches!(id, Id::HebbianAlpha | Id::HebbianBeta | Id::HebbianDelta) {
             self.touch.rule = Rule::of(&self.touch.learning);
@@ -141,6 +167,10 @@ impl Config {
 /// A 14-bit sample has more steps than there are millivolts: each comes back as it was set.
 fn mv(sample: u16) -> i32 {
     mv_from_sample(sample) as i32
+}
+
+fn mv_of_q4(level_q4: i32) -> i32 {
+    mv((level_q4 >> 4) as u16)
 }
 
 fn ms(frames: u32) -> i32 {

@@ -4,19 +4,22 @@
 //! erased while the hand works, because an erase stalls the core for a second or two. That is left to [`open`], which is
 //! called at boot: it finds what counts, and when the sector is half full it erases the other one, copies there what
 //! counts, and makes that the one to append to. The old sector is left as it is until its turn comes again, so there is
-//! a second copy of everything for as long.
+//! a second copy of everything for as long. A boot after a reset postpones that ([`Erase`]): something may be held.
 //!
 //! A power cut at any instant leaves, of each kind, the record before or the record after, whole. Why:
 //! - a record counts only with its CRC and, programmed after it, its commit word;
+//! - only a record that counts is skipped by its length, so a tag that was cut hides nothing that was appended later;
+//! - what a session appends begins with a word of zeros: the first blank word may be one that a power cut left half
+//!   programmed, and would not read blank the next time;
 //! - only the sector that holds nothing that counts is ever erased;
 //! - a copy has the sequence number of the original, so half a copied sector is never newer than the original, and its
 //!   opening words, which break the tie, are programmed last.
 //!
 //! # Wear
 //! A record takes its payload and [`OVERHEAD_WORDS`](record::OVERHEAD_WORDS) words. Of 128 KiB sectors at least half is
-//! filled between two erases, so the network's 78 words are saved 210 times for one erase, settings (4 words and one
+//! filled between two erases, so the network's 78 words are saved 207 times for one erase, settings (4 words and one
 //! for each that is not at its default, 33 at most) 490 times or more. The chip's 10 000 erases
-//! of each of two sectors (DS10314, flash memory endurance) are 4.2 million saves of the network: eight years of one a
+//! of each of two sectors (DS10314, flash memory endurance) are 4.1 million saves of the network: eight years of one a
 //! minute, day and night.
 //!
 //! The crate `sequential-storage` does most of this, but erases whenever a page is full.
@@ -29,7 +32,7 @@ mod sector;
 use tenax_hal_shim::flash::{FlashArea, FlashFailed, Sector};
 use tenax_hal_shim::words::Kept;
 
-use record::{Saving, Tag};
+use record::{MARK, Saving, Tag};
 use sector::{Entry, OPENING_WORDS, Survey};
 
 /// Where the next record goes.
@@ -40,6 +43,8 @@ pub struct Log {
     /// Words that records of a session may fill: the rest is for [`open`].
     limit: usize,
     next_sequence: u32,
+    /// Whether the first word of this session was programmed.
+    marked: bool,
     /// The flash failed at boot: nothing more is saved before the next.
     failed: bool,
 }
@@ -53,6 +58,15 @@ pub enum Refused {
     Failed,
     /// Longer than 255 words, or not whole words.
     Length,
+}
+
+/// Whether [`open`] may erase a sector, which takes a second or two in which nobody can move the hand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Erase {
+    /// Somebody has just switched the hand on.
+    Allowed,
+    /// The hand was reset in the middle of its work, and may hold something: what room there is must do.
+    Postponed,
 }
 
 /// What [`open`] found.
@@ -78,10 +92,10 @@ impl Found {
     }
 }
 
-/// Finds what counts and makes room. May erase, so it stalls the core for seconds: at boot, before anything moves.
+/// Finds what counts and makes room. If it may erase, it may stall the core for seconds: at boot, before anything moves.
 ///
 /// A flash that fails costs the log, never what was found in it.
-pub fn open(area: &mut impl FlashArea) -> (Log, Found) {
+pub fn open(area: &mut impl FlashArea, erase: Erase) -> (Log, Found) {
     let [a, b] = Sector::BOTH.map(|sector| Survey::of(area, sector));
     let (active, stale) = if b.rank() > a.rank() { (b, a) } else { (a, b) };
     let mut found = Found {
@@ -100,9 +114,10 @@ pub fn open(area: &mut impl FlashArea) -> (Log, Found) {
         end: active.end,
         limit: area.sector_words() / 8 * 7,
         next_sequence: active.last_sequence.max(stale.last_sequence).saturating_add(1),
+        marked: false,
         failed: false,
     };
-    log.failed = log.make_room(area, &active, &mut found).is_err();
+    log.failed = log.make_room(area, erase, &active, &mut found).is_err();
     (log, found)
 }
 
@@ -119,11 +134,14 @@ impl Log {
         let (words, rest) = payload.as_chunks::<4>();
         let tag =
             Tag::new(record::number(kept), words.len()).filter(|_| rest.is_empty()).ok_or(Refused::Length)?;
-        let after = self.end + tag.record_words();
+        let at = self.end + usize::from(!self.marked);
+        let after = at + tag.record_words();
         if after > self.limit {
             return Err(Refused::Full);
         }
-        let saving = Saving::new(self.sector, self.end, tag, self.next_sequence, words);
+        let mark = (!self.marked).then_some(self.end);
+        let saving = Saving::new(self.sector, at, tag, self.next_sequence, words, mark);
+        self.marked = true;
         self.end = after;
         self.next_sequence = self.next_sequence.saturating_add(1);
         Ok(saving)
@@ -132,39 +150,49 @@ impl Log {
     /// Words that can still be filled before the next boot.
     #[must_use]
     pub const fn free_words(&self) -> usize {
-        if self.failed { 0 } else { self.limit.saturating_sub(self.end) }
+        if self.failed { 0 } else { self.limit.saturating_sub(self.end + !self.marked as usize) }
     }
 
     /// Sees to it that the active sector is opened, holds everything that counts, and has room for a day.
     fn make_room(
         &mut self,
         area: &mut impl FlashArea,
+        erase: Erase,
         active: &Survey,
         found: &mut Found,
     ) -> Result<(), FlashFailed> {
         if active.generation.is_none() && found.newest.iter().all(Option::is_none) {
             // A new chip, or nothing worth keeping.
             if !sector::is_blank(area, self.sector) {
+                if erase == Erase::Postponed {
+                    self.limit = 0;
+                    return Ok(());
+                }
                 area.erase(self.sector)?;
             }
-            self.end = OPENING_WORDS;
+            (self.end, self.marked) = (OPENING_WORDS, true);
             found.generation = 1;
             return sector::write_opening(area, self.sector, 1);
         }
         // A record that counts only in the stale sector (its successor here is damaged) would go with it.
         let kept = self.sector;
         for entry in found.newest.iter_mut().flatten().filter(|entry| entry.sector != kept) {
-            if self.end + entry.tag().record_words() > area.sector_words() {
+            if self.end + entry.tag().record_words() >= area.sector_words() {
                 return Err(FlashFailed);
+            }
+            if !self.marked {
+                program(area, self.sector, self.end, MARK)?;
+                (self.end, self.marked) = (self.end + 1, true);
             }
             self.copy(area, entry)?;
         }
-        if active.generation.is_some() && self.end <= area.sector_words() / 2 {
+        let has_room = active.generation.is_some() && self.end <= area.sector_words() / 2;
+        if has_room || erase == Erase::Postponed {
             return Ok(());
         }
         let target = self.sector.other();
         area.erase(target)?;
-        let mut to = Self { sector: target, end: OPENING_WORDS, ..self.clone() };
+        let mut to = Self { sector: target, end: OPENING_WORDS, marked: true, ..self.clone() };
         let mut newest = found.newest;
         for entry in newest.iter_mut().flatten() {
             to.copy(area, entry)?;
@@ -180,7 +208,8 @@ impl Log {
     /// Copies a record to the end of this log, word by word; it is found there from now on.
     fn copy(&mut self, area: &mut impl FlashArea, entry: &mut Entry) -> Result<(), FlashFailed> {
         for n in 0..entry.tag().record_words() {
-            let word = area.read(entry.sector, entry.at + n);
+            // The tag as it was meant: a bit of it may read wrong.
+            let word = if n == 0 { entry.tag().to_word() } else { area.read(entry.sector, entry.at + n) };
             program(area, self.sector, self.end + n, word)?;
         }
         (entry.sector, entry.at) = (self.sector, self.end);

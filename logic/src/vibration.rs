@@ -144,6 +144,7 @@ pub struct VibrationDetector {
 
 impl VibrationDetector {
     /// Takes every film's sample of one tick, and how far each can be believed: None if all of them can.
+    #[inline(always)]
     pub fn hear(
         &mut self,
         config: &VibrationConfig,
@@ -161,6 +162,14 @@ impl VibrationDetector {
             Some(trusts) => self.hear_each(samples, trusts),
         };
         self.judge(config, loudest)
+    }
+
+    /// Another sensor is in a film's place from now on: its jump is no vibration.
+    pub fn forget(&mut self, film: usize) {
+        if let Some(film) = self.films.get_mut(film) {
+            *film = Film::default();
+            self.all_primed = false;
+        }
     }
 
     /// What a masked film hears is as doubtful as what a freezing one does.

@@ -24,6 +24,8 @@ pub const fn builtin() -> &'static [(&'static str, &'static str)] {
         "pick-up",
         "pick-up-trial",
         "pick-up-reflex",
+        "gripper",
+        "gripper-control",
         "pour",
         "hold",
         "steel-balls",
@@ -52,5 +54,7 @@ pub const fn builtin() -> &'static [(&'static str, &'static str)] {
         "array-opening",
         "can",
         "rig",
+        "head-blocks",
+        "head-alone",
     ]
 }

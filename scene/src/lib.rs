@@ -24,7 +24,7 @@
 //! | module | one type with one step function for each of |
 //! |---|---|
 //! | [`physics`] | contact at three levels, gripper, grasped object, stroked surface, hand, wearer |
-//! | [`sensor`] | PVDF, strain, FSR, force array, myoelectric, camera, opening, motor current, and the faults of all of them |
+//! | [`sensor`] | PVDF, strain, FSR, force array, myoelectric, camera, photoelastic head, opening, motor current, and the faults of all of them |
 //! | [`picture`] | what a camera behind a clear skin sees, drawn pixel by pixel |
 //! | [`truth`] | nothing of the world: it writes down what really happened |
 #![forbid(unsafe_code)]

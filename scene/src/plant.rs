@@ -81,7 +81,19 @@ pub trait Plant: Send {
         false
     }
 
-    /// Whether the object moves relative to the finger at this instant: what the oracle is told.
+    /// How an oracle drives the motor for the next frame: it knows friction, load, force, what slides, and what the motor was
+    /// told before, and closes to the least force that holds. None where nothing has to be closed.
+    fn planned(&self) -> Option<MotorDrive> {
+        None
+    }
+
+    /// How the motor has to be driven for the next frame so that each finger comes to press what it touches with `target_n`, and
+    /// no more. None if it will anyway.
+    fn closing_to(&self, _target_n: f64) -> Option<MotorDrive> {
+        None
+    }
+
+    /// Whether the object moves relative to the finger at this instant.
     fn slipping(&self) -> bool {
         false
     }

@@ -49,6 +49,14 @@ pub(crate) enum Source {
     Picture,
     /// The noise of its pixels.
     PictureNoise,
+    /// The optics of the photoelastic head.
+    HeadMaking,
+    /// Its strip and the layer under it.
+    HeadStrip,
+    /// Its light, its ageing and the ambient light of one day.
+    HeadDay,
+    /// Its noise.
+    Head,
 }
 
 /// A source's stream of numbers.

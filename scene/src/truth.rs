@@ -9,7 +9,7 @@ use crate::physics::{TOUCH_N, Touch};
 use crate::schedule::STEP_S;
 use crate::sensor::camera::Seen;
 
-pub use record::{Activity, Phase, Row, Slip};
+pub use record::{Activity, MicroRun, Phase, Row, Slip};
 
 /// Rows of the trace a second.
 pub const TRACE_HZ: u32 = 200;
@@ -29,6 +29,8 @@ const LEFT_MM: f64 = 40.0;
 pub struct Truth {
     /// Every slip, in order.
     pub slips: Vec<Slip>,
+    /// Runs of micro slips that came to nothing: everything stuck again before all of it slid faster than the floor.
+    pub micro_runs: Vec<MicroRun>,
     /// Way of all slips that were not meant, mm.
     pub slip_distance_mm: f64,
     /// Whether the object left the pads after it was lifted.
@@ -51,6 +53,10 @@ pub struct Truth {
     pub pitch_rad: f64,
     /// The greatest grip force of a finger, N.
     pub peak_grip_n: f64,
+    /// The grip force of a finger while the hand carried the object: its integral, N s, and for how long, s.
+    pub carried_ns: f64,
+    /// See above.
+    pub carried_s: f64,
     /// The greatest grip force that was ever needed while the hand carried the object, N.
     pub needed_grip_n: f64,
     /// The wearer's wishes, one after the other.
@@ -137,6 +143,10 @@ impl Truth {
         self.pitch_rad = self.pitch_rad.max(state.pitch_rad.abs());
         self.peak_grip_n = self.peak_grip_n.max(touch.normal_n);
         self.needed_grip_n = self.needed_grip_n.max(state.needed_n);
+        if state.needed_n > 0.0 {
+            self.carried_ns += touch.normal_n * STEP_S;
+            self.carried_s += STEP_S;
+        }
         if step.trace {
             self.trace.push(Row {
                 t_s: step.t_s,
@@ -198,6 +208,9 @@ impl Truth {
         }
         self.slide = slides.then_some(slide);
         if !slides {
+            if !slide.counts && step.touch.normal_n > TOUCH_N {
+                self.micro_runs.push(MicroRun { begin_s: slide.micro_s, end_s: step.t_s });
+            }
             // Everything sticks again: what lets go from now on leads to another slip.
             self.micro = None;
         }
@@ -205,7 +218,11 @@ impl Truth {
 
     fn micro(&mut self, step: &Step<'_>) {
         let t_s = step.t_s;
-        self.micro = self.micro.filter(|run| t_s - run.last_s <= MICRO_PAUSE_S);
+        if let Some(run) = self.micro.take_if(|run| t_s - run.last_s > MICRO_PAUSE_S)
+            && self.slide.is_none()
+        {
+            self.micro_runs.push(MicroRun { begin_s: run.begin_s, end_s: run.last_s });
+        }
         if step.touch.let_go > 0 && step.touch.normal_n > TOUCH_N {
             self.micro_slips += step.touch.let_go as u64;
             self.micro.get_or_insert(Micro { begin_s: t_s, last_s: t_s }).last_s = t_s;

@@ -1,7 +1,7 @@
 //! A whole world: everything that moves, everything that senses, and the line over which somebody types.
 
 use tenax_hal_shim::channel::{
-    ARRAY, COUNT, FSR, MYO_FLEXOR, OPENING, PVDF, PVDF_COUNT, SCAN_HZ, SCANS_PER_FRAME, STRAIN,
+    ARRAY, COUNT, FSR, HEAD, MYO_FLEXOR, OPENING, PVDF, PVDF_COUNT, SCAN_HZ, SCANS_PER_FRAME, STRAIN,
 };
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::Down;
@@ -9,12 +9,12 @@ use tenax_hal_shim::wire::Down;
 use crate::commands::Script;
 use crate::file::SceneFile;
 use crate::file::sections::Arm;
-use crate::physics::Touch;
 use crate::physics::grasp::Grasp;
 use crate::physics::gripper::Gripper;
 use crate::physics::hand::Hand;
 use crate::physics::stroke::Stroke;
 use crate::physics::wearer::{Effort, Wearer};
+use crate::physics::{TOUCH_N, Touch};
 use crate::plant::{Calibrated, Pins, Plant};
 use crate::random::Seeds;
 use crate::schedule::STEP_S;
@@ -25,6 +25,7 @@ use crate::sensor::fault::Faults;
 use crate::sensor::fsr::Quadrants;
 use crate::sensor::hand;
 use crate::sensor::myo::Envelopes;
+use crate::sensor::photoelastic::Head;
 use crate::sensor::pvdf::Films;
 use crate::sensor::skin::SkinCamera;
 use crate::sensor::strain::Gauges;
@@ -44,6 +45,8 @@ pub struct World {
     task: Task,
     touch: Touch,
     films: Films,
+    /// In the place of the last film.
+    head: Option<Head>,
     quadrants: Quadrants,
     envelopes: Envelopes,
     gauges: Gauges,
@@ -100,6 +103,7 @@ impl World {
             task,
             touch: Touch::default(),
             films: Films::new(&scene.pvdf, &scene.knock, scene.contact.pitch_mm.get(), seeds),
+            head: scene.photoelastic.as_ref().map(|head| Head::new(head, &scene.knock, seeds)),
             quadrants: Quadrants::new(&scene.fsr),
             envelopes: Envelopes::new(&scene.myo, &scene.electrode_lift, scene.pvdf.mains_hz.get(), seed),
             gauges: Gauges::new(&scene.strain, seeds),
@@ -135,6 +139,12 @@ impl World {
     #[must_use]
     pub const fn touch(&self) -> &Touch {
         &self.touch
+    }
+
+    /// The photoelastic head, if there is one.
+    #[must_use]
+    pub const fn head(&self) -> Option<&Head> {
+        self.head.as_ref()
     }
 
     /// The camera's newest words that have come over the line.
@@ -245,6 +255,9 @@ impl Plant for World {
             &self.touch,
             self.gripper.speed_part(),
         ));
+        if let Some(head) = &mut self.head {
+            pins_v[HEAD] = head.step(t_s, &self.touch);
+        }
         self.converter.step(pins_v);
         self.faults.apply(t_s, pins_v);
         &self.pins
@@ -268,6 +281,18 @@ impl Plant for World {
 
     fn button(&self) -> bool {
         self.script.button(self.now_s())
+    }
+
+    fn planned(&self) -> Option<MotorDrive> {
+        let Task::Grasp { grasp, .. } = &self.task else { return None };
+        self.closing_to(grasp.plan_n())
+    }
+
+    fn closing_to(&self, target_n: f64) -> Option<MotorDrive> {
+        let Task::Grasp { grasp, .. } = &self.task else { return None };
+        let touched = self.touch.normal_n > TOUCH_N;
+        let spring = grasp.between_the_fingers().filter(|_| touched)?;
+        self.gripper.closing_to(target_n, self.touch.normal_n, spring)
     }
 
     fn slipping(&self) -> bool {

@@ -143,15 +143,19 @@ fn the_figures_are_the_recordings() {
         return;
     };
     let modelled = patch_onset();
-    for column in [1, 2] {
+    let figures = [peak_to_peak, half_height_ms, |film: &[f64]| energy_part(film, 0.0..100.0)];
+    let of_film = |column: usize| {
         let volts = text.lines().skip(1).filter_map(|line| line.split(',').nth(column)?.parse::<f64>().ok());
         let film: Vec<f64> = volts.map(|volts| volts * 1e3).collect();
-        let figures = [peak_to_peak, half_height_ms, |film: &[f64]| energy_part(film, 0.0..100.0)];
-        let sides = figures.map(|figure| (figure(&film), median(&modelled, figure)));
-        println!("film {column}, recorded and modelled: mV, ms, part below 100 Hz: {sides:.2?}");
-        for (real, model) in sides {
-            assert!((1.0 / 3.0..3.0).contains(&(model / real)), "{real} recorded, {model} modelled");
-        }
+        figures.map(|figure| figure(&film))
+    };
+    let films = [1, 2].map(of_film);
+    for (n, name) in ["mV", "ms", "part below 100 Hz"].into_iter().enumerate() {
+        // The two films of one finger differ by up to 1.7 times themselves: the figure is what lies between them.
+        let real = (films[0][n] * films[1][n]).sqrt();
+        let model = median(&modelled, figures[n]);
+        println!("{name}: recorded {:.2} and {:.2}, modelled {model:.2}", films[0][n], films[1][n]);
+        assert!((1.0 / 2.0..2.0).contains(&(model / real)), "{name}: {real} recorded, {model} modelled");
     }
 }
 

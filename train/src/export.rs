@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use tenax::evaluate::network::Saved;
 use tenax_logic::array::{COVARIANCE_WINDOW, FEATURES, SPECTRUM_WINDOW};
 
 use crate::features::Recipe;
@@ -87,6 +88,34 @@ pub static MODEL: Model<{H1}, {back}, {H2}{windows}> = Model {{
         last = matrix(std::slice::from_ref(&quantised.last)),
     );
     text
+}
+
+/// The network as `tenax evaluate --network` reads it.
+#[must_use]
+pub fn saved(
+    quantised: &Quantised,
+    recipe: &Recipe,
+    choice: &Choice,
+    sha256: &str,
+    noise_samples: [f64; 2],
+) -> Saved {
+    let (slope, intercept) = choice.calibration;
+    let per_nat = quantised.per_logit / slope;
+    let last_bias = f64::from(quantised.last_bias) + intercept * per_nat;
+    Saved {
+        sha256: sha256.to_owned(),
+        lag: recipe.lag as u8,
+        window: recipe.window,
+        covariance_knee: recipe.covariance_knee,
+        spectrum_knee: recipe.spectrum_knee,
+        structure_knee: recipe.structure_knee,
+        first: (quantised.first.clone(), quantised.first_bias.clone(), quantised.first_shift),
+        second: (quantised.second.clone(), quantised.second_bias.clone(), quantised.second_shift),
+        last: (quantised.last.clone(), last_bias.round() as i32),
+        logit_per_nat: per_nat.round() as i32,
+        on_permille: permille(choice),
+        noise_samples,
+    }
 }
 
 /// The threshold as a confidence, per mille.

@@ -1,6 +1,7 @@
 //! What the network sees of a recording: the firmware's own integers.
 
 use tenax::labelled::{Part, Recording};
+use tenax::scorer::Doing;
 use tenax_logic::array::logarithm::Knee;
 use tenax_logic::array::past::Past;
 use tenax_logic::array::spectrum::SlidingSpectrum;
@@ -64,6 +65,8 @@ pub struct Sequence {
     pub material: String,
     /// What it is for, if its file says so.
     pub part: Option<Part>,
+    /// What was done in it.
+    pub doing: Doing,
     /// Features of each step from the one on with which the windows are full.
     pub features: Vec<[i16; FEATURES]>,
     /// Whether it slipped in that step.
@@ -122,6 +125,7 @@ pub fn sequence(recording: &Recording, recipe: &Recipe) -> Sequence {
         session: recording.session.clone(),
         material: recording.material.clone(),
         part: recording.part,
+        doing: recording.doing,
         features,
         slips,
     }

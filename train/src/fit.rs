@@ -3,6 +3,7 @@
 use anyhow::{bail, ensure};
 use serde::Serialize;
 use tenax::labelled::Part;
+use tenax::scorer::Doing;
 
 use crate::features::Sequence;
 use crate::linear::{Linear, logistic};
@@ -86,7 +87,7 @@ pub fn fit(
         // Of each number of passes, what every fold's network says of the sessions it has not seen.
         let mut judged = vec![Vec::<Judged>::new(); candidate.epochs + 1];
         for (n, fold) in folds.iter().enumerate() {
-            let unseen = Table::of(fold.judge.iter().map(|&n| &sequences[n]));
+            let unseen = Table::of(judged_by(sequences, &fold.judge, aim));
             run(sequences, &fold.learn, candidate, candidate.epochs, aim, seed, &mut |passes, network| {
                 judged[passes].push(judge(network, &unseen));
                 let done = (place * folds.len() + n) as f64 + passes as f64 / candidate.epochs.max(1) as f64;
@@ -115,6 +116,13 @@ pub fn fit(
     progress(1.0);
     let Some(network) = network else { bail!("nothing was learned") };
     Ok(Trained { network, choice, tried })
+}
+
+/// What it is chosen by: where the aim is pours, those of them that are.
+fn judged_by<'a>(sequences: &'a [Sequence], judge: &[usize], aim: Aim) -> Vec<&'a Sequence> {
+    let all = || judge.iter().map(|&n| &sequences[n]);
+    let pours: Vec<&Sequence> = all().filter(|sequence| sequence.doing == Doing::Pour).collect();
+    if aim == Aim::Pours && !pours.is_empty() { pours } else { all().collect() }
 }
 
 /// Sequences that the final network learns: of the training part, or all that are for nothing in particular.
@@ -221,7 +229,7 @@ fn choice(candidate: Candidate, passes: usize, judged: &[Judged], aim: Aim) -> C
         let score = score(fold, threshold);
         match aim {
             Aim::Accuracy => score.accuracy,
-            Aim::Balanced => score.balanced,
+            Aim::Balanced | Aim::Pours => score.balanced,
         }
     };
     let unseen = judged.iter().map(of).sum::<f64>() / judged.len().max(1) as f64;

@@ -8,8 +8,10 @@ use std::process::ExitCode;
 use anyhow::{Context, ensure};
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
+use tenax::evaluate::adapt::noise_samples;
 use tenax::labelled::recipe::ArrayRecipe;
 use tenax::labelled::{self, Part, library};
+use tenax::scorer::Doing;
 use tenax_train::compare;
 use tenax_train::export;
 use tenax_train::features::{self, Recipe, Sequence};
@@ -41,6 +43,12 @@ struct Args {
     /// How to print the report
     #[arg(long, value_enum, default_value_t = Format::Text)]
     report: Format,
+    /// Score on the data's own test part, too: do it once, for what is to be shipped
+    #[arg(long)]
+    open_test: bool,
+    /// Learn from the paper's 76 features alone: the control
+    #[arg(long)]
+    paper_only: bool,
     /// Instead: compare the paper's five classifiers, and write DIR/detectors.csv
     #[arg(long)]
     compare: bool,
@@ -66,8 +74,8 @@ fn main() -> ExitCode {
 
 fn run(args: &Args) -> anyhow::Result<()> {
     let recipe = library::choose(&args.dataset, args.recipe.as_deref())?;
-    let features = features_of(&recipe);
-    let (data, sequences) = load(&args.dataset, &recipe, &features)?;
+    let features = Recipe { paper_only: args.paper_only, ..features_of(&recipe) };
+    let (data, sequences, noise) = load(&args.dataset, &recipe, &features)?;
     let bar = bar();
     if args.compare {
         let recordings = labelled::read(&args.dataset, &recipe)?;
@@ -82,7 +90,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
     bar.set_message("training");
     let parts = sequences.iter().any(|sequence| sequence.part.is_some());
     let (aim, candidates) = if parts {
-        (Aim::Accuracy, compare::perceptrons(1).to_vec())
+        (Aim::Pours, compare::shipped().to_vec())
     } else {
         (Aim::Balanced, compare::FEW_OBJECTS.to_vec())
     };
@@ -90,10 +98,12 @@ fn run(args: &Args) -> anyhow::Result<()> {
         fit::fit(&sequences, &candidates, aim, args.seed, &mut |part| bar.set_position((1e3 * part) as u64))?;
     bar.finish_and_clear();
     let mut tests: Vec<Sequence> =
-        sequences.iter().filter(|sequence| sequence.part == Some(Part::Test)).cloned().collect();
+        sequences.iter().filter(|own| args.open_test && own.part == Some(Part::Test)).cloned().collect();
+    let pours = sequences.iter().filter(|own| own.part == Some(Part::Validation) && own.doing == Doing::Pour);
+    let pours: Vec<Sequence> = pours.cloned().collect();
     let mut test_data = None;
     for path in &args.test {
-        let (data, more) = load(path, &recipe, &features)?;
+        let (data, more, _) = load(path, &recipe, &features)?;
         tests.extend(more);
         test_data = Some(data);
     }
@@ -108,6 +118,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
         choice: trained.choice,
         threshold_permille: export::permille(&trained.choice),
         sizes: compare::sizes(trained.choice.candidate.look_back),
+        validation: test_quantised(&trained, &quantised, &pours)?,
         float: test(&trained, &tests),
         quantised: test_quantised(&trained, &quantised, &tests)?,
         quantised_16: {
@@ -120,6 +131,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
         report.data.file, report.data.sha256, report.seed
     );
     let rust = export::rust(&quantised, &features, &trained.choice, &about);
+    let saved = export::saved(&quantised, &features, &trained.choice, &report.data.sha256, noise);
     let json = serde_json::to_vec_pretty(&report)?;
     match args.report {
         Format::Text => print!("{}", report.card()),
@@ -127,6 +139,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
     }
     let files = [
         ("network.rs", rust.into_bytes()),
+        (tenax::evaluate::network::FILE, serde_json::to_vec(&saved)?),
         ("model-card.md", report.card().into_bytes()),
         ("report.json", json),
     ];
@@ -156,7 +169,12 @@ fn features_of(recipe: &ArrayRecipe) -> Recipe {
     }
 }
 
-fn load(path: &Path, recipe: &ArrayRecipe, features: &Recipe) -> anyhow::Result<(Data, Vec<Sequence>)> {
+/// A file, its sequences, and the least and the greatest noise of those to learn from.
+fn load(
+    path: &Path,
+    recipe: &ArrayRecipe,
+    features: &Recipe,
+) -> anyhow::Result<(Data, Vec<Sequence>, [f64; 2])> {
     let name = path.display().to_string();
     let bytes = fs::read(path).with_context(|| format!("{name}: cannot be read"))?;
     let recordings = labelled::parse(bytes.as_slice(), recipe, &name)?;
@@ -167,9 +185,12 @@ fn load(path: &Path, recipe: &ArrayRecipe, features: &Recipe) -> anyhow::Result<
         "{name}: every recording is shorter than the windows, {} readings at 80 Hz",
         features.ready_after()
     );
+    let may_learn = recordings.iter().filter(|own| matches!(own.part, None | Some(Part::Train)));
+    let noise = may_learn.map(|own| noise_samples(&own.steps));
+    let noise = noise.fold([f64::INFINITY, 0.0], |[low, high], own| [low.min(own), own.max(high)]);
     let file = path.file_name().map_or(name.clone(), |file| file.to_string_lossy().into_owned());
     let learned = sequences.iter().filter(|s| matches!(s.part, None | Some(Part::Train)));
-    Ok((Data::of(&file, &bytes, learned), sequences))
+    Ok((Data::of(&file, &bytes, learned), sequences, noise))
 }
 
 fn test(trained: &Trained, tests: &[Sequence]) -> Option<Test> {

@@ -118,6 +118,8 @@ pub struct Report {
     pub threshold_permille: u16,
     /// Sizes of the layers.
     pub sizes: String,
+    /// Scores on the pours of the validation part, which everything was chosen by, of the network that is exported.
+    pub validation: Option<Test>,
     /// Scores in single precision.
     pub float: Option<Test>,
     /// Scores of the network that is exported: integers, the firmware's own arithmetic.
@@ -178,6 +180,22 @@ impl Report {
             "| calibration | Platt: log-odds = {:.4} logit {:+.4}; slip from a confidence of {} per mille |\n",
             choice.calibration.0, choice.calibration.1, self.threshold_permille
         );
+        if let Some(validation) = &self.validation {
+            let _ = writeln!(
+                text,
+                "## Pours of the validation part: what it was chosen by\n\n\
+                 | | steps | missed | false | accuracy | balanced | AUC |\n|---|---|---|---|---|---|---|"
+            );
+            line(&mut text, "**exported**", &validation.steps);
+            for (name, score) in &validation.by_material {
+                line(&mut text, name, score);
+            }
+            let _ = writeln!(
+                text,
+                "\nIn 2800 steps {:.0} missed and {:.0} false.\n",
+                validation.missed_per_2800, validation.false_per_2800
+            );
+        }
         if let (Some(float), Some(quantised)) = (&self.float, &self.quantised) {
             let _ = writeln!(
                 text,

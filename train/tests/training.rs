@@ -29,7 +29,8 @@ fn trembling(seed: u64) -> Vec<Recording> {
                 })
                 .collect();
             let session = format!("object {}", n % 4);
-            Recording { name: n.to_string(), material: session.clone(), session, part: None, steps }
+            let made = Recording::of_steps(&n.to_string(), steps);
+            Recording { material: session.clone(), session, ..made }
         })
         .collect()
 }

@@ -73,6 +73,9 @@ pub enum EventKind {
     LineTrusted(bool),
     /// The calibration of the myosensors goes on, or is over.
     Calibration(Calibration),
+    /// From here on the reflex works without myosensors (true), or only with both (false). Told at the start if it is so, and
+    /// when the setting changes.
+    NoWearer(bool),
     /// A behaviour began (None), or ended.
     Behaviour(Behaviour, Option<Ending>),
 }

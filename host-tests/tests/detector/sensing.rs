@@ -35,6 +35,7 @@ impl Sensing {
             forces: senses.forces.as_ref(),
             forces_are_new: senses.forces_are_new,
             taxels: senses.taxels(),
+            head: senses.head(),
             unloaded: senses.is_unloaded(&self.config),
             grasp: matches!(senses.grip(&self.config), Grip::Holds(_)),
             noisy: senses.vibration.knock,

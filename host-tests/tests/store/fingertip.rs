@@ -8,14 +8,14 @@ use tenax_hal_shim::words::{Fault, Kept};
 use tenax_host_tests::Bench;
 use tenax_logic::fingertip::Fingertip;
 use tenax_logic::store::keeper::Keeper;
-use tenax_logic::store::open;
 use tenax_logic::store::record::{PAYLOAD_BYTES, Record};
+use tenax_logic::store::{Erase, open};
 
 use crate::flash::TestFlash;
 
 /// Everything that `fingertip` wants saved goes into `flash`.
 fn save_all(fingertip: &mut Fingertip, keeper: &mut Keeper, flash: &mut TestFlash) -> Vec<Kept> {
-    let (mut log, _) = open(flash);
+    let (mut log, _) = open(flash, Erase::Allowed);
     let save = |record: Record| {
         let mut buffer = [0; PAYLOAD_BYTES];
         let mut saving = log.begin(record.kept(), record.payload(&mut buffer)).expect("room");
@@ -27,7 +27,7 @@ fn save_all(fingertip: &mut Fingertip, keeper: &mut Keeper, flash: &mut TestFlas
 
 /// A new fingertip with what `flash` holds.
 fn booted(flash: &mut TestFlash) -> Fingertip {
-    let (_, found) = open(flash);
+    let (_, found) = open(flash, Erase::Allowed);
     let mut fingertip = Fingertip::trusting();
     let mut buffer = [0; PAYLOAD_BYTES];
     for kept in Kept::ALL {

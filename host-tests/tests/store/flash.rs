@@ -13,6 +13,9 @@ pub enum Harm {
     Bits(u32),
     /// A word as above; every word of an erased sector reads something else.
     Noise(u32),
+    /// The bits of this mask are hardly programmed, if they were to be: they read as programmed at one time and not at another. Of
+    /// the others, all are (true) or none is.
+    Marginal(u32, bool),
 }
 
 /// Every harm that a test with a cut tries.
@@ -29,6 +32,10 @@ pub const HARMS: [Harm; 6] = [
 #[derive(Clone, Debug)]
 pub struct TestFlash {
     words: [Vec<u32>; 2],
+    /// Bits of a word that read as programmed or not, as [`weak_reads_programmed`](Self::weak_reads_programmed) says.
+    weak: Vec<(Sector, usize, u32)>,
+    /// How bits that are hardly programmed read now.
+    pub weak_reads_programmed: bool,
     /// Operations until the power goes, and what the last one does.
     pub cut: Option<(usize, Harm)>,
     /// Whether the power is gone.
@@ -49,7 +56,16 @@ impl TestFlash {
 
     /// Whatever it holds.
     pub fn holding(words: [Vec<u32>; 2]) -> Self {
-        Self { words, cut: None, dead: false, worn: false, operations: 0, erases: [0; 2] }
+        Self {
+            words,
+            weak: Vec::new(),
+            weak_reads_programmed: false,
+            cut: None,
+            dead: false,
+            worn: false,
+            operations: 0,
+            erases: [0; 2],
+        }
     }
 
     /// Its words, to do harm to.
@@ -87,17 +103,27 @@ impl FlashArea for TestFlash {
     }
 
     fn read(&self, sector: Sector, word: usize) -> u32 {
-        self.words[sector as usize].get(word).copied().unwrap_or(BLANK)
+        let bits = self.words[sector as usize].get(word).copied().unwrap_or(BLANK);
+        let weak = self.weak.iter().filter(|weak| (weak.0, weak.1) == (sector, word)).map(|weak| weak.2);
+        weak.fold(bits, |bits, mask| if self.weak_reads_programmed { bits & !mask } else { bits | mask })
     }
 
     fn program(&mut self, sector: Sector, word: usize, value: u32) -> Result<(), FlashFailed> {
         let harm = self.begin()?;
+        assert_eq!(self.read(sector, word), BLANK, "{sector:?} {word} is programmed twice");
         let cell = self.words[sector as usize].get_mut(word).expect("a word of the sector");
-        assert_eq!(*cell, BLANK, "{sector:?} {word} is programmed twice");
+        // A weak bit that is programmed at last is weak no more.
+        for (_, _, mask) in self.weak.iter_mut().filter(|weak| (weak.0, weak.1) == (sector, word)) {
+            *mask &= value;
+        }
         *cell = match harm {
             None | Some(Harm::Everything) => value,
             Some(Harm::Nothing) => BLANK,
             Some(Harm::Bits(mask) | Harm::Noise(mask)) => value | mask,
+            Some(Harm::Marginal(mask, others)) => {
+                self.weak.push((sector, word, mask & !value));
+                if others { value | mask } else { BLANK }
+            }
         };
         if harm.is_some() { Err(FlashFailed) } else { Ok(()) }
     }
@@ -108,10 +134,11 @@ impl FlashArea for TestFlash {
             return Err(FlashFailed);
         }
         self.erases[sector as usize] += 1;
+        self.weak.retain(|weak| weak.0 != sector);
         for (n, word) in self.words[sector as usize].iter_mut().enumerate() {
             *word = match harm {
                 None | Some(Harm::Everything) => BLANK,
-                Some(Harm::Nothing) => *word,
+                Some(Harm::Nothing | Harm::Marginal(..)) => *word,
                 Some(Harm::Bits(mask)) => *word | !mask,
                 Some(Harm::Noise(seed)) => seed.wrapping_mul(2 * n as u32 + 1).rotate_left(n as u32),
             };

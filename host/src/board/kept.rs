@@ -8,7 +8,7 @@ use tenax_hal_shim::words::Kept;
 use tenax_logic::config::Config;
 use tenax_logic::device::Device;
 use tenax_logic::emg::model::EmgModel;
-use tenax_logic::store::{open, payload};
+use tenax_logic::store::{Erase, open, payload};
 use tenax_scene::plant::{Calibrated, Plant};
 
 /// Where `memory.x` puts the log.
@@ -100,7 +100,7 @@ impl Sectors {
     /// With one more record. It must have room.
     #[must_use]
     pub fn saving(mut self, kept: Kept, payload: &[u8]) -> Self {
-        let (mut log, _) = open(&mut self);
+        let (mut log, _) = open(&mut self, Erase::Allowed);
         let mut saving = log.begin(kept, payload).expect("room");
         while !saving.step(&mut self).expect("a flash that works") {}
         self

@@ -15,7 +15,6 @@ use tenax_hal_shim::frame::{Frame, Scan, scan_of_pins};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::wire::{Answer, Identity, Restored, Up};
-use tenax_logic::detectors::Said;
 use tenax_scene::plant::Plant;
 
 use self::downlink::Downlink;
@@ -24,13 +23,16 @@ use self::uplink::Uplink;
 use super::kept::{Provision, Sectors};
 use super::{Recorder, Run, Summary};
 
-/// Who says that the object slips.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Judge {
-    /// The fingertip's own detectors.
-    Detectors,
-    /// The plant, which knows: the oracle's.
-    Plant,
+/// Who closes the hand besides wearer and line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Grips {
+    /// The fingertip's reflex, which acts on these detectors; on none of them it never acts.
+    Reflex(DetectorSet),
+    /// An oracle: the reflex on S2, and the plant's own plan wherever neither the wearer nor a command opens the hand. It knows
+    /// what is, not what will be, and only the gripper limits it.
+    Oracle,
+    /// Nobody who feels: whatever is touched is pressed with so much, N.
+    Constant(f64),
 }
 
 /// Runs the plant to its end under the fingertip and keeps everything.
@@ -49,18 +51,17 @@ pub fn record<P: Plant>(
     recorder: &mut dyn Recorder,
     progress: &mut dyn FnMut(f64),
 ) -> (Summary, P) {
-    closed_loop(plant, Judge::Detectors, recorder, progress)
+    closed_loop(plant, Grips::Reflex(DetectorSet::ALL), recorder, progress)
 }
 
-/// Runs the plant to its end under the same fingertip, which is told in each tick whether the object slips, with no
-/// delay: the physical limit of that gripper.
-pub fn run_oracle<P: Plant>(plant: P, progress: &mut dyn FnMut(f64)) -> P {
-    closed_loop(plant, Judge::Plant, &mut (), progress).1
+/// Runs the plant to its end with somebody else's grip.
+pub fn run_with<P: Plant>(plant: P, grips: Grips, progress: &mut dyn FnMut(f64)) -> P {
+    closed_loop(plant, grips, &mut (), progress).1
 }
 
 fn closed_loop<P: Plant>(
     mut plant: P,
-    judge: Judge,
+    grips: Grips,
     recorder: &mut dyn Recorder,
     progress: &mut dyn FnMut(f64),
 ) -> (Summary, P) {
@@ -82,9 +83,11 @@ fn closed_loop<P: Plant>(
         }
     }
     let mut down = Downlink::default();
-    if judge == Judge::Plant {
-        device.fingertip_mut().act_on(DetectorSet::only(DetectorId::Injected));
-    }
+    device.fingertip_mut().act_on(match grips {
+        Grips::Reflex(detectors) => detectors,
+        Grips::Oracle => DetectorSet::only(DetectorId::S2),
+        Grips::Constant(_) => DetectorSet::NONE,
+    });
     let mut drive = MotorDrive::Coast;
     for sequence in 0..frames {
         up.count(down.counters(sequence));
@@ -111,10 +114,13 @@ fn closed_loop<P: Plant>(
         }
         device.button(plant.button());
         let frame = Frame::from_scans(sequence, &scans);
-        if judge == Judge::Plant {
-            device.fingertip_mut().inject(Said::slip(plant.slipping()));
-        }
         drive = device.tick(&frame);
+        let planned = match grips {
+            Grips::Reflex(_) => None,
+            Grips::Oracle => plant.planned(),
+            Grips::Constant(target_n) => plant.closing_to(target_n),
+        };
+        drive = with_plan(drive, device.fingertip().wearer_active(), planned);
         while let Some(message) = device.next_message() {
             up.post(message);
         }
@@ -137,6 +143,17 @@ fn closed_loop<P: Plant>(
     summary.virtual_s = seconds_of(frames);
     summary.wall_s = began.elapsed().as_secs_f64();
     (summary, plant)
+}
+
+/// The plan closes further than what the hand does by itself, never against the wearer nor what opens.
+pub(crate) fn with_plan(drive: MotorDrive, wearer_active: bool, planned: Option<MotorDrive>) -> MotorDrive {
+    match (drive, planned) {
+        (MotorDrive::Coast, Some(plan)) if !wearer_active => plan,
+        (MotorDrive::Close(own), Some(MotorDrive::Close(plan))) if !wearer_active => {
+            MotorDrive::Close(if plan.as_per_mille() > own.as_per_mille() { plan } else { own })
+        }
+        _ => drive,
+    }
 }
 
 /// Frames between two calls of `progress`: a tenth of a virtual second.

@@ -281,7 +281,7 @@ mod tests {
         Recording {
             story: Story::Pour,
             steps: (0..400).map(step).collect(),
-            slips: 1,
+            spans: Vec::new(),
             slid_mm: 1.0,
             dropped: false,
         }

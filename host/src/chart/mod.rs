@@ -1,6 +1,7 @@
 //! The charts of `tenax chart scenes`: where each way of stepping friction fails, and what it costs where it does not.
 //! Of `tenax chart sensors`: the scenes' sensors beside real ones. Of `tenax chart detectors`: what detectors from normal
-//! force get wrong against what they cost. And of `tenax chart features`: what tells slip from rest.
+//! force get wrong against what they cost. Of `tenax chart features`: what tells slip from rest. And of `tenax chart
+//! photoelastic`: what a photoelastic head tells of force and slip.
 
 mod cost;
 pub mod detectors;
@@ -9,6 +10,7 @@ pub mod features;
 mod growth;
 mod map;
 mod patch;
+pub mod photoelastic;
 pub mod sensors;
 pub(crate) mod sheet;
 

@@ -8,6 +8,7 @@ use anyhow::Context;
 use clap::ValueEnum;
 
 use super::folder;
+use super::format::Format;
 use super::out;
 use super::progress::with_bar;
 use super::workspace;
@@ -29,6 +30,9 @@ pub struct Args {
     /// Where the recordings are [default: shared/data beside the checkout]
     #[arg(long, value_name = "DIR")]
     recordings: Option<PathBuf>,
+    /// Of photoelastic: how its figures are printed
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    report: Format,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -41,6 +45,8 @@ enum Subject {
     Detectors,
     /// What tells slip from rest in the force array: force sum, derivative, covariance, frequency, and their windows
     Features,
+    /// What a photoelastic head tells of normal force and slip: its curve, force followed, rates, where slip is seen
+    Photoelastic,
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
@@ -56,14 +62,25 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             vec![with_bar("sensors", |progress| chart::sensors::chart(&recordings, progress))?]
         }
         Subject::Detectors => vec![detectors(args.scores.as_deref())?],
+        Subject::Photoelastic => {
+            let (chart, measured) =
+                with_bar("photoelastic", |progress| chart::photoelastic::chart(progress))?;
+            out::unless_closed(args.report.print(&format_args!("{measured}\n"), &measured.report))?;
+            vec![chart]
+        }
     };
+    let is_for_programs = args.report == Format::Json;
     for chart in charts {
         let files =
             [("svg", chart.svg.as_bytes()), ("png", &png::png(&chart.svg)?), ("csv", chart.csv.as_bytes())];
         for (extension, bytes) in files {
             let path = folder.join(chart.name).with_extension(extension);
             fs::write(&path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
-            out::unless_closed(out::say!("{}", path.display()))?;
+            if is_for_programs {
+                out::note!("{}", path.display());
+            } else {
+                out::unless_closed(out::say!("{}", path.display()))?;
+            }
         }
     }
     Ok(ExitCode::SUCCESS)

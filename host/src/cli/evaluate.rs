@@ -4,17 +4,20 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::bail;
+use rayon::prelude::*;
 use tenax_logic::array::{Reading, ShippedDetector};
 
 use super::format::Format;
 use super::out;
 use super::progress::with_bar;
 use super::workspace;
-use crate::dataset::session::{Sizes, Split};
+use crate::dataset::session::{Sizes, Split, sessions};
 use crate::dataset::{Dataset, Label, Plan};
+use crate::evaluate::network::Network;
+use crate::evaluate::real::Real;
 use crate::evaluate::report::Report;
 use crate::evaluate::text::Text;
-use crate::evaluate::{failures, judge, online, test_split};
+use crate::evaluate::{Verdicts, adapt, draws, failures, online, readings, test_split};
 use crate::labelled::{self, Recording, library};
 use crate::session::Board;
 
@@ -23,7 +26,10 @@ Examples:
   tenax evaluate                                   the shipped network on the test split of the built-in data set
   tenax evaluate --report json                     for programs
   tenax evaluate --core                            and on the emulated core, bit for bit
-  tenax evaluate --dataset my.csv --recipe my.toml on recordings of one's own
+  tenax evaluate --dataset my.csv --recipe my.toml --adapt 6
+                                                   on recordings of one's own array, after 6 s of quiet holding of each object
+  tenax evaluate --dataset my.csv --network out/train
+                                                   the network that `tenax train` has made of one's own
   tenax evaluate --online --host                   the paper's two tasks, ten times with each of four materials
   tenax evaluate --failures --host                 the scenes where it may fail, and what the hand does then";
 
@@ -37,12 +43,21 @@ pub struct Args {
     /// How its columns are read: a recipe file, or the name of one in recipes/ [default: by its name]
     #[arg(long, value_name = "FILE.toml|NAME", requires = "dataset")]
     recipe: Option<String>,
+    /// The network in this folder of `tenax train` instead of the one that ships
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["online", "failures", "core"])]
+    network: Option<PathBuf>,
+    /// Fit scale and threshold to each session's first N seconds in which nothing slips; they are not scored
+    #[arg(long, value_name = "N", requires = "dataset", conflicts_with = "core")]
+    adapt: Option<f64>,
     /// Seed of the built-in data set, or of the online tasks
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Sessions to learn from, of each material, of the built-in data set: those to test are in proportion
     #[arg(long, value_name = "N", default_value_t = Sizes::DEFAULT_TRAIN, conflicts_with = "dataset")]
     sessions: usize,
+    /// Of the built-in data set: which part. The test part is for figures that nothing is chosen by
+    #[arg(long, value_name = "PART", value_enum, default_value_t = Split::Test, conflicts_with = "dataset")]
+    part: Split,
     /// The paper's two tasks with the whole hand, instead of recordings
     #[arg(long, conflicts_with_all = ["dataset", "sessions"])]
     online: bool,
@@ -73,19 +88,69 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if args.host {
         bail!("--host is for --online and --failures: recordings are always judged on this machine");
     }
-    let recordings = test_split(recordings(args)?);
+    let recordings = recordings(args)?;
+    let recordings = if args.dataset.is_some() { test_split(recordings) } else { recordings };
     if recordings.is_empty() {
         bail!("the data has no recording that is called test");
     }
-    let said = with_bar("judging", |_| judge(shipped_detector, &recordings));
-    // The network that ships looks back over one frame, itself: there is no other to compare it with.
-    let said_without = said.clone();
-    let report = Report::new(&recordings, &said, &said_without);
+    let network = args.network.as_deref().map_or_else(|| Ok(Network::shipped()), Network::read)?;
+    let report = match args.adapt {
+        Some(quiet_s) => {
+            if !(quiet_s > 0.0 && quiet_s <= 3_600.0) {
+                bail!("--adapt {quiet_s}: more than 0 s and at most an hour is allowed");
+            }
+            adapted(&network, &recordings, quiet_s)?
+        }
+        None => {
+            if args.dataset.is_some() {
+                adapt::accept(&network, &recordings)?;
+            }
+            let judge = |recording: &Recording| network.judge(&readings(&recording.steps)).1;
+            let said: Vec<Verdicts> =
+                with_bar("judging", |_| recordings.par_iter().map(judge).collect::<Vec<_>>());
+            // The network that ships looks back over one frame, itself: there is no other to compare it with.
+            let mut report = Report::new(&recordings, &said, &said);
+            if args.dataset.is_none() {
+                report.real = real(&network)?;
+                let drawn = sessions(args.seed, Sizes::of_train(args.sessions));
+                report.by_draw = draws::draws(&drawn, &recordings, &said);
+            }
+            report
+        }
+    };
     out::unless_closed(args.report.print(&Text(&report), &report))?;
     if args.core {
         on_the_core(&recordings)?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// What a network that has adapted to each session says of the rest of it.
+fn adapted(network: &Network, recordings: &[Recording], quiet_s: f64) -> anyhow::Result<Report> {
+    let judged = adapt::adapt(network, recordings, quiet_s)?;
+    let said: Vec<Verdicts> = judged
+        .logits
+        .iter()
+        .zip(&judged.on)
+        .map(|(logits, &on)| logits.iter().map(|logit| logit.is_some_and(|logit| logit >= on)).collect())
+        .collect();
+    let mut report = Report::new(&judged.recordings, &said, &said);
+    report.real = Real::of(&judged.recordings, &judged.logits, &judged.on);
+    Ok(report)
+}
+
+/// Recordings of a real array, and how long a network may hold each object quietly to adapt to it, s.
+const REAL: (&str, f64) = ("../shared/data/array_biotac_sp_solids.csv", 6.0);
+
+/// The same of the real array, where its recordings are present.
+fn real(network: &Network) -> anyhow::Result<Option<Real>> {
+    let (file, quiet_s) = REAL;
+    let Some(file) = workspace::root().ok().map(|root| root.join(file)).filter(|file| file.exists()) else {
+        out::note!("a real array: skipped, recording not present");
+        return Ok(None);
+    };
+    let recordings = labelled::read(&file, &library::choose(&file, None)?)?;
+    Ok(adapted(network, &recordings, quiet_s)?.real)
 }
 
 /// Says whether the emulated core judges recordings as this machine does.
@@ -119,7 +184,7 @@ fn recordings(args: &Args) -> anyhow::Result<Vec<Recording>> {
         bail!("--sessions must be at least 1");
     }
     let plan = Plan { seed: args.seed, sessions: args.sessions, label: Label::Truth };
-    let csv = with_bar("sessions", |progress| Dataset::make_split(plan, Split::Test, progress))?.csv()?;
+    let csv = with_bar("sessions", |progress| Dataset::make_split(plan, args.part, progress))?.csv()?;
     // The same bytes that `tenax dataset` writes, read as a user's file is.
     let name = "array_dataset.csv";
     let recipe = library::choose(name.as_ref(), None)?;

@@ -43,6 +43,9 @@ pub struct Args {
     /// Fingertips made by chance that learn the same way
     #[arg(long, value_name = "N", default_value_t = Options::default().fingertips)]
     fingertips: u64,
+    /// Let the films hear no mains hum: the most that a canceller of it could bring
+    #[arg(long)]
+    without_hum: bool,
     /// Seed of everything
     #[arg(long, default_value_t = Options::default().seed)]
     seed: u64,
@@ -63,6 +66,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         minutes: args.minutes,
         lifts: args.lifts,
         fingertips: args.fingertips,
+        without_hum: args.without_hum,
     };
     let counts = [
         ("trials", options.trials),

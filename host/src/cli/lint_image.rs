@@ -1,13 +1,32 @@
-//! `tenax lint-image`: Clippy on the image's package.
+//! `tenax lint-image`: Clippy on the image's package, and no way to panic in its control.
 
 use std::process::ExitCode;
 
 use super::out;
 use super::workspace;
+use crate::budgets::Budgets;
 use crate::image;
+use crate::image::panics;
 
 pub fn main() -> anyhow::Result<ExitCode> {
-    image::clippy(&workspace::root()?)?;
+    let root = workspace::root()?;
+    image::clippy(&root)?;
     out::say!("image: no warnings")?;
-    Ok(ExitCode::SUCCESS)
+    let elf = image::build(&root)?;
+    let control = panics::check(&elf)?;
+    out::say!(
+        "image: none of the {} functions from a frame's interrupt to the bridge can panic",
+        control.functions
+    )?;
+
+    let budgets = Budgets::of_checkout()?;
+    let sites = panics::sites(&elf)?;
+    let mut kept = true;
+    for (source, &count) in &sites {
+        let most = budgets.panic_sites.get(source).copied().unwrap_or(0);
+        kept &= count <= most;
+        let passed = if count > most { "  PASSED" } else { "" };
+        out::say!("image: {source:<16} {count:>4} places that may panic, at most {most}{passed}")?;
+    }
+    Ok(if kept { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

@@ -37,6 +37,9 @@ pub struct Args {
     /// First calibrate the board to the wearer of these recordings: rest, closing, opening [default: not calibrated]
     #[arg(long, value_name = "REST.csv,CLOSE.csv,OPEN.csv", value_delimiter = ',', requires = "replay")]
     calibrate_emg: Option<Vec<PathBuf>>,
+    /// Run the scene's controls on the host, too: no reflex, a constant grip of the same mean force, each detector alone
+    #[arg(long, conflicts_with = "replay")]
+    controls: bool,
     /// Seed of every noise
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -86,7 +89,12 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         }
         Subject::Scene(file) => {
             let progress = Progress::new(&format!("scene {}", file.name), file.duration_s());
-            session::scene_served(file, args.seed, &board, live, recorder, &mut |s| progress.at(s))?
+            let mut outcome =
+                session::scene_served(file, args.seed, &board, live, recorder, &mut |s| progress.at(s))?;
+            if args.controls {
+                outcome.report.controls = session::controls(file, args.seed, &outcome.truth);
+            }
+            outcome
         }
     };
     if let Some(server) = server {

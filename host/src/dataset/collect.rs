@@ -11,6 +11,8 @@ use super::marker::Marker;
 use super::operator::Operator;
 use super::session::Session;
 use super::story::Story;
+use crate::report::fate;
+use crate::scorer::SlipSpan;
 
 /// One scan, s.
 const SCAN_S: f64 = 1.0 / SCAN_HZ as f64;
@@ -36,12 +38,20 @@ pub struct Recording {
     pub story: Story,
     /// Its steps, 80 a second.
     pub steps: Vec<Step>,
-    /// Slips that the world counted.
-    pub slips: usize,
+    /// Slips that the world counted, and micro slip that came to nothing.
+    pub spans: Vec<SlipSpan>,
     /// How far the box slid in all of them, mm.
     pub slid_mm: f64,
     /// Whether it fell; then the recording ends there.
     pub dropped: bool,
+}
+
+impl Recording {
+    /// Slips that the world counted.
+    #[must_use]
+    pub fn slips(&self) -> usize {
+        self.spans.iter().filter(|span| span.macro_onset_s.is_some()).count()
+    }
 }
 
 /// What draws for a recording, each a stream of the session's seed.
@@ -129,7 +139,7 @@ impl Camera<'_> {
         Recording {
             story,
             steps,
-            slips: truth.slips.len(),
+            spans: fate::spans(truth),
             slid_mm: truth.slips.iter().map(|slip| slip.distance_mm).sum(),
             dropped: truth.dropped,
         }

@@ -42,8 +42,10 @@ pub struct Manifest {
 }
 
 /// What the columns are.
-const COLUMNS: &str = "split, session, material, recording; t_s: when the tenth element was read, s; label: 1 slipped since \
-                       the step before; a1 to a10: the elements' samples, 14 bits, 3300 mV full scale";
+const COLUMNS: &str = "split, session, material, recording; task: what is done in it; t_s: when the tenth element was read, s; \
+                       label: 1 slipped since the step before; slips: exact onsets of the slips whose micro onset is since the \
+                       step before, as micro/macro/end/mm in s and mm, no macro onset where it came to nothing, ! where it was \
+                       meant; a1 to a10: the elements' samples, 14 bits, 3300 mV full scale";
 
 /// How much there is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -90,7 +92,7 @@ impl Manifest {
                 counts.recordings += 1;
                 counts.steps += recording.steps.len();
                 counts.slip_steps += slip_steps(recording, plan.label);
-                counts.slips += recording.slips;
+                counts.slips += recording.slips();
                 counts.dropped += usize::from(recording.dropped);
                 agree += recording.steps.iter().filter(|step| step.slips == step.marker_slips).count();
                 steps += recording.steps.len();
@@ -118,7 +120,7 @@ fn entry(session: &Session, recordings: &[Recording], label: Label) -> SessionEn
     SessionEntry {
         steps: recordings.iter().map(|recording| recording.steps.len()).sum(),
         slip_steps: recordings.iter().map(|recording| slip_steps(recording, label)).sum(),
-        slips: recordings.iter().map(|recording| recording.slips).sum(),
+        slips: recordings.iter().map(Recording::slips).sum(),
         slid_mm: hundredths(recordings.iter().map(|recording| recording.slid_mm).sum()),
         setup: session.clone(),
     }

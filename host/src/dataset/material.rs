@@ -1,6 +1,14 @@
 //! What the boxes' sides are made of: Bamshad 2023 (section 3.2) takes four materials and gives no number of any.
+//!
+//! Nobody has measured these surfaces under this cover, so each has ranges and no values, and a session draws from them. The
+//! ends are from texts where a text has them: skin and rubber on solids have friction of 0.2 to 1.2, the more the smoother and
+//! drier (Derler and Gerhardt 2012, a review); Ft/Fn on raw wood peaks at about 0.5 (Prosthesis, section 5); sliding keeps 0.6
+//! to 0.95 of it (the recorded rig: 0.65). The rest is assumed.
 
 use serde::Serialize;
+
+/// From and to.
+pub type Ends = [f64; 2];
 
 /// One material under the array's silicone cover.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -8,70 +16,174 @@ pub struct Material {
     /// What it is called in the data.
     pub name: &'static str,
     /// Static friction.
-    pub mu_s: f64,
-    /// Dynamic friction of slow sliding.
-    pub mu_d: f64,
-    /// How much that rises with each decade of speed, as a part.
-    pub mu_per_decade: f64,
+    pub mu_s: Ends,
+    /// Dynamic friction of slow sliding over static friction.
+    pub mu_ratio: Ends,
+    /// How much dynamic friction rises with each decade of speed, as a part.
+    pub mu_per_decade: Ends,
     /// Pitch of its texture or of the cover's grooves, the coarser, mm.
-    pub pitch_mm: f64,
+    pub pitch_mm: Ends,
     /// Unevenness, as a part of an element's load.
-    pub uneven: f64,
+    pub uneven: Ends,
     /// Stiffness of cover and wall together, a finger, N/mm.
-    pub stiffness_n_per_mm: f64,
+    pub stiffness_n_per_mm: Ends,
+    /// What every surface has in its own measure.
+    pub contact: Contact,
 }
 
-/// The four that a detector may learn from. Assumed, but for wood's `mu_s`.
+/// What a contact does to an array: nobody has measured it, so it is the same decade for every material but one.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Contact {
+    /// The way over which all contacts under an element are new ones, um: single contacts on polymers are some micrometres to
+    /// some tens wide (Dieterich and Kilgore 1994).
+    pub renews_um: Ends,
+    /// How much of the shear that lets go comes off an element's load.
+    pub slip_part: Ends,
+    /// The part of it that goes to the cover's rim.
+    pub rim_part: Ends,
+    /// Sensitivity of the array, mV/N: 14.7 N over 3 V is 200 (Bamshad 2023, section 2.1); a skin spreads the load.
+    pub mv_per_n: Ends,
+    /// How unlike its elements are.
+    pub spread: Ends,
+    /// Noise of a reading, mV: a tenth of the converter's step to a real BioTac's (3 counts, 2.4 mV here).
+    pub noise_mv: Ends,
+    /// What a knock presses on the pad, mN for each mV at a film.
+    pub knock_mn_per_mv: Ends,
+    /// What the gear's teeth press on it, as a part of the load.
+    pub motor_part: Ends,
+}
+
+const DECADES: Contact = Contact {
+    renews_um: [10.0, 100.0],
+    slip_part: [0.05, 0.5],
+    rim_part: [0.08, 0.8],
+    mv_per_n: [50.0, 500.0],
+    spread: [0.05, 0.5],
+    noise_mv: [0.2, 2.0],
+    knock_mn_per_mv: [0.3, 3.0],
+    motor_part: [0.001, 0.01],
+};
+
+/// The four that a detector may learn from.
 pub const SEEN: [Material; 4] = [
     // A drawn wall: it slides evenly, and the cover's own grooves are its texture.
     Material {
         name: "plastic",
-        mu_s: 0.60,
-        mu_d: 0.54,
-        mu_per_decade: 0.08,
-        pitch_mm: 0.8,
-        uneven: 0.03,
-        stiffness_n_per_mm: 4.0,
+        mu_s: [0.30, 1.0],
+        mu_ratio: [0.75, 0.95],
+        mu_per_decade: [0.02, 0.10],
+        pitch_mm: [0.2, 1.2],
+        uneven: [0.006, 0.03],
+        stiffness_n_per_mm: [2.0, 8.0],
+        contact: DECADES,
     },
     // Fibres: it lets go with a jerk. A wall of paper gives.
     Material {
         name: "paper",
-        mu_s: 0.55,
-        mu_d: 0.48,
-        mu_per_decade: 0.06,
-        pitch_mm: 0.4,
-        uneven: 0.04,
-        stiffness_n_per_mm: 2.0,
+        mu_s: [0.25, 0.8],
+        mu_ratio: [0.70, 0.92],
+        mu_per_decade: [0.02, 0.10],
+        pitch_mm: [0.2, 0.8],
+        uneven: [0.01, 0.05],
+        stiffness_n_per_mm: [1.5, 4.0],
+        contact: DECADES,
     },
-    // Ra 0.8 um: smooth, hard and slippery, and the one that Bamshad's detector was weakest on (figure 9).
+    // Ra 0.8 um: smooth and hard, and the one that Bamshad's detector was weakest on (figure 9).
     Material {
         name: "aluminium",
-        mu_s: 0.42,
-        mu_d: 0.39,
-        mu_per_decade: 0.07,
-        pitch_mm: 0.3,
-        uneven: 0.015,
-        stiffness_n_per_mm: 8.0,
+        mu_s: [0.25, 0.9],
+        mu_ratio: [0.75, 0.95],
+        mu_per_decade: [0.02, 0.10],
+        pitch_mm: [0.2, 0.6],
+        uneven: [0.006, 0.02],
+        stiffness_n_per_mm: [5.0, 15.0],
+        contact: DECADES,
     },
-    // Prosthesis, section 5: Ft/Fn peaks at about 0.5 on raw wood. Grain.
+    // Grain.
     Material {
         name: "wood",
-        mu_s: 0.50,
-        mu_d: 0.43,
-        mu_per_decade: 0.05,
-        pitch_mm: 1.0,
-        uneven: 0.06,
-        stiffness_n_per_mm: 6.0,
+        mu_s: [0.30, 1.1],
+        mu_ratio: [0.66, 0.90],
+        mu_per_decade: [0.02, 0.10],
+        pitch_mm: [0.5, 2.0],
+        uneven: [0.02, 0.06],
+        stiffness_n_per_mm: [3.0, 12.0],
+        contact: DECADES,
     },
 ];
 
-/// The one that no detector sees before it is tested: between the others in everything. Assumed.
+/// The one that no detector sees before it is tested, outside the hull of the others in everything: soft ribbed rubber, on an
+/// array that is less sensitive and noisier. It slips with a jerk, which is easy, and hides it under a thick cover, which is not.
 pub const HELD_OUT: Material = Material {
-    name: "cardboard",
-    mu_s: 0.46,
-    mu_d: 0.40,
-    mu_per_decade: 0.06,
-    pitch_mm: 0.6,
-    uneven: 0.045,
-    stiffness_n_per_mm: 2.5,
+    name: "rubber",
+    mu_s: [1.12, 1.2],
+    mu_ratio: [0.60, 0.64],
+    mu_per_decade: [0.11, 0.14],
+    pitch_mm: [2.2, 3.0],
+    uneven: [0.065, 0.09],
+    stiffness_n_per_mm: [1.0, 1.4],
+    contact: Contact {
+        renews_um: [110.0, 200.0],
+        slip_part: [0.55, 0.8],
+        rim_part: [0.85, 0.95],
+        mv_per_n: [35.0, 48.0],
+        spread: [0.55, 0.6],
+        noise_mv: [2.2, 3.0],
+        knock_mn_per_mv: [3.2, 4.0],
+        motor_part: [0.011, 0.015],
+    },
 };
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every range of a material.
+    fn ranges(material: &Material) -> [Ends; 14] {
+        let Material { mu_s, mu_ratio, mu_per_decade, pitch_mm, uneven, stiffness_n_per_mm, contact, .. } =
+            *material;
+        let Contact {
+            renews_um,
+            slip_part,
+            rim_part,
+            mv_per_n,
+            spread,
+            noise_mv,
+            knock_mn_per_mv,
+            motor_part,
+        } = contact;
+        [
+            mu_s,
+            mu_ratio,
+            mu_per_decade,
+            pitch_mm,
+            uneven,
+            stiffness_n_per_mm,
+            renews_um,
+            slip_part,
+            rim_part,
+            mv_per_n,
+            spread,
+            noise_mv,
+            knock_mn_per_mv,
+            motor_part,
+        ]
+    }
+
+    #[test]
+    fn the_one_that_is_held_out_is_outside_the_hull_of_the_others_in_everything() {
+        for (n, own) in ranges(&HELD_OUT).into_iter().enumerate() {
+            let others = SEEN.map(|material| ranges(&material)[n]);
+            let low = others.iter().map(|ends| ends[0]).fold(f64::INFINITY, f64::min);
+            let high = others.iter().map(|ends| ends[1]).fold(0.0, f64::max);
+            assert!(own[1] < low || own[0] > high, "quantity {n}: {own:?} in {low} to {high}");
+        }
+    }
+
+    #[test]
+    fn what_nobody_has_measured_is_drawn_over_a_decade() {
+        for ends in ranges(&SEEN[0])[6..].iter() {
+            assert!(ends[1] / ends[0] > 9.99, "{ends:?}");
+        }
+    }
+}

@@ -3,10 +3,10 @@
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use serde::Serialize;
 
-use super::material::{HELD_OUT, Material, SEEN};
+use super::material::{Ends, HELD_OUT, Material, SEEN};
 
 /// What a session's data is for. Whole sessions are: no step of one is in two splits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Split {
     /// A classifier learns from it.
@@ -64,7 +64,7 @@ pub struct Session {
     pub seed: u64,
     /// Which array: gains and offsets of its elements.
     pub specimen: u32,
-    /// Static friction: the material's, on that day.
+    /// Static friction.
     pub mu_s: f64,
     /// Dynamic friction.
     pub mu_d: f64,
@@ -76,6 +76,12 @@ pub struct Session {
     pub uneven: f64,
     /// Stiffness of cover and wall, a finger, N/mm.
     pub stiffness_n_per_mm: f64,
+    /// The way over which contacts are new ones, um.
+    pub renews_um: f64,
+    /// How much of the shear that lets go comes off an element's load.
+    pub slip_part: f64,
+    /// The part of it that goes to the cover's rim.
+    pub rim_part: f64,
     /// Where the box lies along the array, mm from its middle.
     pub place_mm: f64,
     /// How far beside the pads the mass of the box lies, mm.
@@ -88,40 +94,53 @@ pub struct Session {
     pub spread: f64,
     /// Noise of a reading, rms, mV.
     pub noise_mv: f64,
+    /// What a knock presses on the pad, mN for each mV at a film.
+    pub knock_mn_per_mv: f64,
+    /// What the gear's teeth press on it, as a part of the load.
+    pub motor_part: f64,
 }
 
 impl Session {
     fn draw(name: String, split: Split, material: &Material, rng: &mut ChaCha8Rng) -> Self {
-        let mut round = |low: f64, high: f64| thousandths(rng.random_range(low..high));
-        // Wear, dust and damp: both coefficients together, then the gap between them.
-        let day = round(0.85, 1.15);
-        let mu_s = thousandths(material.mu_s * day);
-        let mu_d = thousandths(mu_s - (material.mu_s - material.mu_d) * round(0.7, 1.3));
+        let seed = rng.random();
+        let specimen = rng.random();
+        let mut evenly = |low: f64, high: f64| rounded(rng.random_range(low..high));
+        let (place_mm, offset_mm, hang_mm) = (evenly(-3.0, 3.0), evenly(-12.0, 12.0), evenly(6.0, 20.0));
+        // As often in one tenth of a decade as in another: nobody knows more than the ends.
+        let mut drawn =
+            |[low, high]: Ends| rounded((low.ln() + (high / low).ln() * rng.random_range(0.0..1.0)).exp());
+        let contact = &material.contact;
+        let mu_s = drawn(material.mu_s);
         Self {
             mu_s,
-            mu_d,
-            mu_per_decade: thousandths(material.mu_per_decade * round(0.8, 1.2)),
-            pitch_mm: thousandths(material.pitch_mm * round(0.8, 1.2)),
-            uneven: thousandths(material.uneven * round(0.8, 1.2)),
-            stiffness_n_per_mm: thousandths(material.stiffness_n_per_mm * round(0.8, 1.2)),
-            place_mm: round(-3.0, 3.0),
-            offset_mm: round(-12.0, 12.0),
-            hang_mm: round(6.0, 20.0),
-            mv_per_n: round(160.0, 240.0),
-            spread: round(0.05, 0.25),
-            noise_mv: round(0.2, 0.6),
+            mu_d: rounded(mu_s * drawn(material.mu_ratio)),
+            mu_per_decade: drawn(material.mu_per_decade),
+            pitch_mm: drawn(material.pitch_mm),
+            uneven: drawn(material.uneven),
+            stiffness_n_per_mm: drawn(material.stiffness_n_per_mm),
+            renews_um: drawn(contact.renews_um),
+            slip_part: drawn(contact.slip_part),
+            rim_part: drawn(contact.rim_part),
+            place_mm,
+            offset_mm,
+            hang_mm,
+            mv_per_n: drawn(contact.mv_per_n),
+            spread: drawn(contact.spread),
+            noise_mv: drawn(contact.noise_mv),
+            knock_mn_per_mv: drawn(contact.knock_mn_per_mv),
+            motor_part: drawn(contact.motor_part),
             name,
             split,
             material: material.name,
-            seed: rng.random(),
-            specimen: rng.random(),
+            seed,
+            specimen,
         }
     }
 }
 
-/// To three places: what the manifest says is what was run.
-fn thousandths(value: f64) -> f64 {
-    (value * 1e3).round() / 1e3
+/// To four places: what the manifest says is what was run.
+fn rounded(value: f64) -> f64 {
+    (value * 1e4).round() / 1e4
 }
 
 /// All sessions of a data set, the same for the same seed. Each draws from a stream of its own material, split and number:

@@ -68,6 +68,11 @@ impl Story {
             ("pitch", "offset_mm", session.offset_mm),
             ("pitch", "hang_mm", session.hang_mm),
             ("array", "uneven", session.uneven),
+            ("array", "renews_um", session.renews_um),
+            ("array", "slip_part", session.slip_part),
+            ("array", "rim_part", session.rim_part),
+            ("array", "knock_mn_per_mv", session.knock_mn_per_mv),
+            ("array", "motor_part", session.motor_part),
             ("array", "place_mm", session.place_mm),
             ("array", "mv_per_n", session.mv_per_n),
             ("array", "spread", session.spread),
@@ -127,9 +132,11 @@ impl Story {
                 let knock = |rng: &mut ChaCha8Rng, at_s: f64| {
                     entry(&[
                         ("at_s", at_s + rng.random_range(0.0..0.5)),
-                        ("peak_mv", rng.random_range(30.0..300.0)),
-                        ("ring_hz", rng.random_range(60.0..500.0)),
-                        ("decay_ms", rng.random_range(3.0..25.0)),
+                        ("peak_mv", over_decades(rng, 30.0..300.0)),
+                        // Frames and tools ring from 50 Hz to 2 kHz, for 1 to 30 ms.
+                        ("ring_hz", over_decades(rng, 50.0..2_000.0)),
+                        ("decay_ms", over_decades(rng, 1.0..30.0)),
+                        ("uneven", rng.random_range(0.0..1.0)),
                     ])
                 };
                 let knocks = (0..5).map(|n| knock(rng, 3.3 + 0.6 * f64::from(n))).collect();
@@ -148,6 +155,11 @@ impl Story {
             }
         }
     }
+}
+
+/// As often in one part of a decade as in another.
+fn over_decades(rng: &mut ChaCha8Rng, ends: std::ops::Range<f64>) -> f64 {
+    rng.random_range(ends.start.ln()..ends.end.ln()).exp()
 }
 
 /// How long a pour lasts, s.

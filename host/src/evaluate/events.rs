@@ -1,118 +1,57 @@
-//! Slips as events: whether each was caught, how soon, and what was called slip and was none (`docs/glossary.md`, event scores).
-//!
-//! A labelled recording does not say when micro slip began, so what speaks up to 50 ms before the first step of a slip is
-//! taken as that slip's, and no earlier.
+//! Slips of a recording and what a detector said of them, scored by [`crate::scorer`].
 
-use tenax_hal_shim::channel::SLOW_HZ;
+use tenax_hal_shim::channel::{FRAME_HZ, SLOW_HZ};
+use tenax_hal_shim::schedule::{Job, slot_of};
 
-use crate::labelled::Step;
+use super::Verdicts;
+use crate::labelled::Recording;
+use crate::scorer::{Card, Stretch, Verdict};
 
-/// 50 ms: two slips that are nearer than this are one, and a detection may be so early or so late.
-const NEAR: usize = SLOW_HZ as usize / 20;
-/// A step, ms.
-const STEP_MS: f64 = 1e3 / SLOW_HZ as f64;
+/// A step, s.
+const STEP_S: f64 = 1.0 / SLOW_HZ as f64;
 
-/// What became of the slips of recordings.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Events {
-    /// Slips.
-    pub count: usize,
-    /// Latency of each that was caught, ms: of the first step that was called slip after the slip's first step.
-    pub latencies_ms: Vec<f64>,
-    /// Detections that belong to no slip.
-    pub false_alarms: usize,
+/// From the end of the frame that reads a step's last element to the end of the frame whose tick decides about it, s.
+fn decided_after_s() -> f64 {
+    // The array begins in the slot behind the last reading.
+    f64::from(slot_of(Job::MlpDecides) + 1 - slot_of(Job::ArrayBegins)) / f64::from(FRAME_HZ)
 }
 
-impl Events {
-    /// Adds those of one recording.
-    pub fn take(&mut self, steps: &[Step], verdicts: &[bool]) {
-        let slips = slips(steps);
-        let rises: Vec<usize> = rises(verdicts);
-        self.count += slips.len();
-        for &(first, _) in &slips {
-            let early = first.saturating_sub(NEAR);
-            // A verdict that rose long before is no detection of this slip, but its standing so is.
-            let rose = rises.iter().copied().find(|rise| (early..=first + NEAR).contains(rise));
-            let stands = verdicts.get(first).is_some_and(|&slip| slip).then_some(first);
-            if let Some(at) = rose.or(stands) {
-                self.latencies_ms.push((at as f64 - first as f64) * STEP_MS);
-            }
-        }
-        let belongs = |rise: &usize| {
-            slips.iter().any(|&(first, last)| (first.saturating_sub(NEAR)..=last + NEAR).contains(rise))
-        };
-        self.false_alarms += rises.iter().filter(|rise| !belongs(rise)).count();
-    }
-
-    /// The latency that this part of those caught do not exceed, ms. None if none was caught.
-    #[must_use]
-    pub fn latency_ms(&self, part: f64) -> Option<f64> {
-        let mut sorted = self.latencies_ms.clone();
-        sorted.sort_by(f64::total_cmp);
-        let rank = (part * sorted.len() as f64).ceil() as usize;
-        sorted.get(rank.max(1) - 1).copied()
-    }
-}
-
-/// First and last step of each slip.
+/// The stretches in which slip was said of a recording that begins at `first_s`.
 #[must_use]
-pub fn slips(steps: &[Step]) -> Vec<(usize, usize)> {
-    let mut slips: Vec<(usize, usize)> = Vec::new();
-    for (at, _) in steps.iter().enumerate().filter(|(_, step)| step.slip) {
-        match slips.last_mut() {
-            Some((_, last)) if at - *last <= NEAR => *last = at,
-            _ => slips.push((at, at)),
+pub fn stretches(first_s: f64, said: &[bool]) -> Vec<Verdict> {
+    let at_s = |step: usize| first_s + step as f64 * STEP_S + decided_after_s();
+    let mut all: Vec<Verdict> = Vec::new();
+    let mut before = false;
+    for (step, &now) in said.iter().enumerate() {
+        match (before, now, all.last_mut()) {
+            (false, true, _) => all.push(Verdict::new(at_s(step), f64::INFINITY)),
+            (true, false, Some(last)) => last.to_s = at_s(step),
+            _ => {}
         }
+        before = now;
     }
-    slips
+    all
 }
 
-fn rises(verdicts: &[bool]) -> Vec<usize> {
-    (0..verdicts.len()).filter(|&at| verdicts[at] && (at == 0 || !verdicts[at - 1])).collect()
+/// The event scores of one recording.
+#[must_use]
+pub fn card(recording: &Recording, said: &Verdicts) -> Card {
+    let from_s = recording.first_s;
+    let whole =
+        Stretch { from_s, to_s: from_s + recording.steps.len() as f64 * STEP_S, doing: recording.doing };
+    Card::of(&recording.slips, &stretches(from_s, said), &[whole])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn steps(slips: &[std::ops::RangeInclusive<usize>]) -> Vec<Step> {
-        let slip = |at: usize| slips.iter().any(|slip| slip.contains(&at));
-        (0..100).map(|at| Step { samples: [0; 10], slip: slip(at) }).collect()
-    }
-
-    fn verdicts(spans: &[std::ops::RangeInclusive<usize>]) -> Vec<bool> {
-        steps(spans).iter().map(|step| step.slip).collect()
-    }
-
     #[test]
-    fn slips_within_50_ms_of_each_other_are_one() {
-        assert_eq!(slips(&steps(&[10..=12, 16..=20, 25..=30])), [(10, 20), (25, 30)]);
-    }
-
-    #[test]
-    fn caught_is_from_50_ms_before_to_50_ms_after() {
-        for (said, caught_ms, false_alarms) in [
-            (6..=9, Some(-50.0), 0),
-            (10..=12, Some(0.0), 0),
-            (14..=14, Some(50.0), 0),
-            // Too late to catch it, but it is this slip all the same.
-            (15..=16, None, 0),
-            (24..=24, None, 0),
-            (25..=25, None, 1),
-            (5..=9, None, 1),
-            (2..=30, Some(0.0), 1),
-        ] {
-            let mut events = Events::default();
-            events.take(&steps(&[10..=20]), &verdicts(std::slice::from_ref(&said)));
-            assert_eq!((events.latency_ms(0.5), events.false_alarms), (caught_ms, false_alarms), "{said:?}");
-            assert_eq!(events.count, 1);
-        }
-    }
-
-    #[test]
-    fn quantiles_are_of_those_caught() {
-        let events = Events { count: 9, latencies_ms: vec![30.0, 10.0, 20.0], false_alarms: 0 };
-        assert_eq!((events.latency_ms(0.5), events.latency_ms(0.95)), (Some(20.0), Some(30.0)));
-        assert_eq!(Events::default().latency_ms(0.5), None);
+    fn a_verdict_begins_where_its_tick_decides() {
+        // The tenth element is read in slot 9 and the verdict falls in slot 14: 2.5 ms later.
+        let said = [false, true, true, false, true];
+        let found = stretches(0.005, &said);
+        assert!((found[0].from_s - 0.020).abs() < 1e-12 && (found[0].to_s - 0.045).abs() < 1e-12);
+        assert_eq!((found.len(), found[1].to_s), (2, f64::INFINITY));
     }
 }

@@ -5,10 +5,11 @@ use rayon::prelude::*;
 use serde::Serialize;
 use tenax_logic::array::Reading;
 
-use super::events::Events;
+use super::events::stretches;
 use super::report::Steps;
 use super::{ran, verdicts};
 use crate::jobs::{Jobs, Told};
+use crate::scorer::Card;
 use crate::session::{self, Board};
 
 /// The scenes: first the two that the others are the failures of.
@@ -36,6 +37,8 @@ pub struct Row {
     pub steps: Steps,
     /// Slips, those that it caught within 50 ms, and its false alarms.
     pub slips: [usize; 3],
+    /// All event scores of it.
+    pub events: Card,
     /// Whether the object stayed in the hand. Null where the hand strokes a surface.
     pub kept: Option<bool>,
     /// How far it slid, mm, and with an oracle.
@@ -65,12 +68,13 @@ pub fn rows<D: FnMut(&Reading) -> bool>(
             .with_context(|| format!("scene {scene}"))?;
         let steps = ran.steps;
         let said = verdicts(fresh(), &steps);
-        let (mut events, report) = (Events::default(), outcome.report);
-        events.take(&steps, &said);
+        let report = outcome.report;
+        let card = Card::of(&outcome.truth.slips, &stretches(ran::FIRST_S, &said), &outcome.truth.doing);
         Ok(Row {
             scene,
             steps: Steps::of(&steps, &said),
-            slips: [events.count, events.latencies_ms.len(), events.false_alarms],
+            slips: [card.count, card.caught, card.false_alarms.count],
+            events: card,
             kept: report.grip.needed_force_n.and(report.slip.dropped).map(|dropped| !dropped),
             distance_mm: [report.slip.distance_mm, report.oracle.distance_mm],
             peak_force_n: [report.grip.peak_force_n, report.oracle.peak_force_n],

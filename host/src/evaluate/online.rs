@@ -30,7 +30,9 @@ pub struct Try {
     pub kept: bool,
     /// How far it slid, mm.
     pub distance_mm: f64,
-    /// How far with an oracle that tells the same hand of slip at once, mm.
+    /// Whether it did without the reflex, and in a constant grip of the same mean force.
+    pub kept_without: [bool; 2],
+    /// How far with an oracle, mm.
     pub oracle_distance_mm: f64,
     /// The greatest force of a finger, N.
     pub peak_force_n: f64,
@@ -84,13 +86,17 @@ fn attempt(task: Story, session: &Session, board: &Board, mut job: Job) -> anyho
     let mut rng = ChaCha8Rng::seed_from_u64(session.seed);
     let scene = task.task_in(session, &mut rng)?;
     let mut told = |s: f64| job.at(s / scene.duration_s());
-    let report = session::scene(&scene, session.seed, board, &mut told)?.report;
+    let outcome = session::scene(&scene, session.seed, board, &mut told)?;
+    let controls = session::controls(&scene, session.seed, &outcome.truth);
+    let kept_without = |name: &str| controls.iter().find(|own| own.name == name).is_some_and(|own| own.kept);
+    let report = outcome.report;
     let known = "a scene knows what became of its object";
     Ok(Try {
         material: session.material,
         task: task.name(),
         seed: session.seed,
         kept: !report.slip.dropped.context(known)?,
+        kept_without: ["no reflex", "constant grip"].map(kept_without),
         distance_mm: report.slip.distance_mm.context(known)?,
         oracle_distance_mm: report.oracle.distance_mm.context(known)?,
         peak_force_n: report.grip.peak_force_n.context(known)?,

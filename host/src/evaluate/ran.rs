@@ -1,11 +1,14 @@
 //! A run of a board as a labelled recording: what its converter read of the array, and when the object slipped.
 
-use tenax_hal_shim::channel::{ARRAY_COUNT, FRAMES_PER_SLOW_FRAME, RANK_SWITCH_B, SCANS_PER_FRAME};
+use tenax_hal_shim::channel::{ARRAY_COUNT, FRAME_HZ, FRAMES_PER_SLOW_FRAME, RANK_SWITCH_B, SCANS_PER_FRAME};
 use tenax_hal_shim::frame::Scan;
 use tenax_hal_shim::motor::MotorDrive;
 
 use crate::board::Recorder;
 use crate::labelled::Step;
+
+/// When the first step's last element is read, s: at the end of the tenth frame.
+pub const FIRST_S: f64 = ARRAY_COUNT as f64 / FRAME_HZ as f64;
 
 /// The steps of a run, gathered while it goes. A step slipped if the object did for at least half of the time since the
 /// step before.

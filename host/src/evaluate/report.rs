@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 
 use serde::{Serialize, Serializer};
-use tenax_hal_shim::channel::SLOW_HZ;
 
-use super::Verdicts;
-use super::events::Events;
+use super::draws::Draw;
+use super::real::Real;
+use super::{Verdicts, events};
 use crate::labelled::{Recording, Step};
+use crate::scorer::{Alarms, Card, Doing};
 
 /// Steps, counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -21,6 +22,12 @@ pub struct Steps {
     pub false_steps: usize,
     /// Part of them that is right.
     pub accuracy: f64,
+    /// Mean of the part of slipping steps that was called slip and the part of the others that was not.
+    pub balanced: f64,
+    /// Part of them that slipped: who always says 'never' has all the others right.
+    pub prevalence: f64,
+    #[serde(skip)]
+    slipped: usize,
 }
 
 impl Steps {
@@ -32,28 +39,89 @@ impl Steps {
         counted
     }
 
-    fn take(&mut self, steps: &[Step], verdicts: &[bool]) {
+    /// Adds those of another.
+    pub fn take(&mut self, steps: &[Step], verdicts: &[bool]) {
         for (step, &said) in steps.iter().zip(verdicts) {
             self.steps += 1;
+            self.slipped += usize::from(step.slip);
             self.missed += usize::from(step.slip && !said);
             self.false_steps += usize::from(!step.slip && said);
         }
-        let wrong = (self.missed + self.false_steps) as f64;
-        self.accuracy = 1.0 - wrong / self.steps.max(1) as f64;
+        let right = |wrong: usize, of: usize| 1.0 - wrong as f64 / of.max(1) as f64;
+        self.accuracy = right(self.missed + self.false_steps, self.steps);
+        self.prevalence = self.slipped as f64 / self.steps.max(1) as f64;
+        // Where there is only one kind of step there is nothing to balance.
+        self.balanced = if self.slipped == 0 || self.slipped == self.steps {
+            self.accuracy
+        } else {
+            (right(self.missed, self.slipped) + right(self.false_steps, self.steps - self.slipped)) / 2.0
+        };
     }
 }
 
-/// Slips, counted.
+/// Slips, counted by [`crate::scorer`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct EventScores {
-    /// All of them.
+    /// All macro slips.
     pub count: usize,
-    /// Those that were detected within 50 ms of their first step.
+    /// Those that a detection began in between micro onset and 50 ms after macro onset.
     pub caught: usize,
-    /// Median time from the first step of a slip to the step that was called slip, ms.
+    /// Those of them that it began in before macro onset.
+    pub early: usize,
+    /// Detected later.
+    pub late: usize,
+    /// Nothing began; a verdict stood before.
+    pub said_before: usize,
+    /// Nothing was said.
+    pub missed: usize,
+    /// Median time from macro onset to the detection, of those caught, ms: negative is early.
     pub latency_ms_p50: Option<f64>,
     /// The time that 95 % of those caught do not exceed, ms.
     pub latency_ms_p95: Option<f64>,
+    /// Median time from micro onset to the detection, of those caught, ms.
+    pub after_micro_ms_p50: Option<f64>,
+}
+
+impl EventScores {
+    fn of(card: &Card) -> Self {
+        let after_micro = Card { latencies_ms: card.after_micro_ms.clone(), ..Card::default() };
+        Self {
+            count: card.count,
+            caught: card.caught,
+            early: card.early,
+            late: card.late,
+            said_before: card.said_before,
+            missed: card.missed,
+            latency_ms_p50: card.latency_ms(0.50),
+            latency_ms_p95: card.latency_ms(0.95),
+            after_micro_ms_p50: after_micro.latency_ms(0.50),
+        }
+    }
+}
+
+/// Pours alone: the paper's task.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Pour {
+    /// Mean of the part of slipping steps that was called slip and the part of the others that was not.
+    pub balanced: f64,
+    /// Part of the steps that is right.
+    pub accuracy: f64,
+    /// Part of the steps that slipped; 1 less this is the accuracy of who always says 'never'.
+    pub prevalence: f64,
+    /// Part of the macro slips that a detection began in by 50 ms after macro onset. Null if nothing slipped.
+    pub caught_50ms: Option<f64>,
+    /// Detections that belong to no slip, an hour.
+    pub false_per_hour: f64,
+    /// Missed steps in 2800 (the paper: 103 with look-back, 162 without).
+    pub missed_2800: f64,
+    /// False ones in 2800 (the paper: 36 with look-back, 47 without).
+    pub false_2800: f64,
+    /// Steps.
+    pub steps: usize,
+    /// Macro slips.
+    pub slips: usize,
+    /// Those steps by material, the worst first.
+    pub by_material: By,
 }
 
 /// The same network without a look-back queue.
@@ -77,7 +145,7 @@ impl By {
             all.entry(name).or_default().take(&recording.steps, verdicts);
         }
         let mut all: Vec<_> = all.into_iter().map(|(name, steps)| (name.to_owned(), steps)).collect();
-        all.sort_by(|(_, a), (_, b)| a.accuracy.total_cmp(&b.accuracy));
+        all.sort_by(|(_, a), (_, b)| a.balanced.total_cmp(&b.balanced));
         Self(all)
     }
 }
@@ -91,6 +159,10 @@ impl Serialize for By {
 /// The report of `tenax evaluate`. Its keys are stable.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
+    /// Pours alone: the headline. Null if the data has none.
+    pub pour: Option<Pour>,
+    /// Recordings of a real array. Null where they are not present.
+    pub real: Option<Real>,
     /// Steps of all recordings.
     pub steps: usize,
     /// Those that slipped and were not called slip.
@@ -100,43 +172,50 @@ pub struct Report {
     pub false_steps: usize,
     /// Part of them that is right.
     pub accuracy: f64,
+    /// Mean of the part of slipping steps that was called slip and the part of the others that was not.
+    pub balanced: f64,
+    /// Part of them that slipped.
+    pub prevalence: f64,
     /// Their slips.
     pub events: EventScores,
     /// Detections that belong to no slip, an hour.
     pub false_per_hour: f64,
+    /// The same by what was done in the recordings.
+    pub false_by: BTreeMap<Doing, Alarms>,
     /// By material, the worst first.
     pub by_material: By,
     /// By session, the worst first.
     pub by_session: By,
     /// The network without look-back, on the same steps.
     pub without_lookback: Without,
+    /// Pours against each quantity that the built-in data set draws, the one that matters most first.
+    pub by_draw: Vec<Draw>,
 }
 
 impl Report {
-    /// Scores what was said of recordings, by the network that ships and by the one without look-back.
+    /// Scores what was said of recordings, by a network and by the one without look-back.
     #[must_use]
     pub fn new(recordings: &[Recording], said: &[Verdicts], said_without: &[Verdicts]) -> Self {
-        let (mut all, mut without, mut events) = (Steps::default(), Steps::default(), Events::default());
+        let (mut all, mut without) = (Steps::default(), Steps::default());
         for ((recording, said), said_without) in recordings.iter().zip(said).zip(said_without) {
             all.take(&recording.steps, said);
             without.take(&recording.steps, said_without);
-            events.take(&recording.steps, said);
         }
-        let hours = all.steps as f64 / f64::from(SLOW_HZ) / 3_600.0;
+        let card = card(recordings.iter().zip(said));
         let judged = || recordings.iter().zip(said);
-        let Steps { steps, missed, false_steps, accuracy } = all;
+        let Steps { steps, missed, false_steps, accuracy, balanced, prevalence, .. } = all;
         Self {
+            pour: pour(&judged().filter(|(recording, _)| recording.doing == Doing::Pour).collect::<Vec<_>>()),
+            real: None,
             steps,
             missed,
             false_steps,
             accuracy,
-            events: EventScores {
-                count: events.count,
-                caught: events.latencies_ms.len(),
-                latency_ms_p50: events.latency_ms(0.50),
-                latency_ms_p95: events.latency_ms(0.95),
-            },
-            false_per_hour: if hours > 0.0 { events.false_alarms as f64 / hours } else { 0.0 },
+            balanced,
+            prevalence,
+            events: EventScores::of(&card),
+            false_per_hour: card.false_alarms.per_hour,
+            false_by: card.false_by,
             by_material: By::of(
                 judged().map(|(recording, said)| (recording.material.as_str(), recording, said)),
             ),
@@ -144,6 +223,38 @@ impl Report {
                 judged().map(|(recording, said)| (recording.session.as_str(), recording, said)),
             ),
             without_lookback: Without { missed: without.missed, false_steps: without.false_steps },
+            by_draw: Vec::new(),
         }
     }
+}
+
+fn card<'a>(judged: impl Iterator<Item = (&'a Recording, &'a Verdicts)>) -> Card {
+    let mut card = Card::default();
+    for (recording, said) in judged {
+        card.add(&events::card(recording, said));
+    }
+    card
+}
+
+fn pour(judged: &[(&Recording, &Verdicts)]) -> Option<Pour> {
+    let mut all = Steps::default();
+    for (recording, said) in judged {
+        all.take(&recording.steps, said);
+    }
+    let card = card(judged.iter().copied());
+    let per_2800 = |count: usize| 2_800.0 * count as f64 / all.steps.max(1) as f64;
+    (all.steps > 0).then(|| Pour {
+        balanced: all.balanced,
+        accuracy: all.accuracy,
+        prevalence: all.prevalence,
+        caught_50ms: card.caught_part(),
+        false_per_hour: card.false_alarms.per_hour,
+        missed_2800: per_2800(all.missed),
+        false_2800: per_2800(all.false_steps),
+        steps: all.steps,
+        slips: card.count,
+        by_material: By::of(
+            judged.iter().map(|(recording, said)| (recording.material.as_str(), *recording, *said)),
+        ),
+    })
 }

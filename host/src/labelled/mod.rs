@@ -15,6 +15,8 @@ use std::collections::BTreeSet;
 use serde::Deserialize;
 use tenax_hal_shim::channel::ARRAY_COUNT;
 
+use crate::scorer::{Doing, SlipSpan, onsets};
+
 pub use read::{LabelledError, parse, read};
 pub use recipe::ArrayRecipe;
 
@@ -55,7 +57,7 @@ pub struct Step {
 }
 
 /// A recording without a gap.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     /// What it is called.
     pub name: String,
@@ -65,8 +67,34 @@ pub struct Recording {
     pub material: String,
     /// What it is for, if the file says so.
     pub part: Option<Part>,
+    /// What was done in it, for false alarms to be counted by.
+    pub doing: Doing,
+    /// Its time at the first step, s.
+    pub first_s: f64,
     /// Its steps, 80 a second.
     pub steps: Vec<Step>,
+    /// Its slips, by micro onset: exact where the file has onsets, else [made of its labels](crate::scorer::onsets::of_labels).
+    pub slips: Vec<SlipSpan>,
+    /// Whether the file has onsets.
+    pub exact: bool,
+}
+
+impl Recording {
+    /// One whose labels are all that is known of its slips: a session of its own, for nothing in particular.
+    #[must_use]
+    pub fn of_steps(name: &str, steps: Vec<Step>) -> Self {
+        Self {
+            name: name.to_owned(),
+            session: name.to_owned(),
+            material: name.to_owned(),
+            part: None,
+            doing: Doing::Unknown,
+            first_s: 0.0,
+            slips: onsets::of_labels(&steps, 0.0),
+            steps,
+            exact: false,
+        }
+    }
 }
 
 /// The sessions of recordings, in order.

@@ -13,6 +13,7 @@ use super::recipe::ArrayRecipe;
 use super::resample::instants;
 use super::{Part, Recording, Step};
 use crate::input::{Rows, TooLong, too_long};
+use crate::scorer::{Doing, SlipSpan, onsets};
 
 /// The longest time between two rows of a recording, s: over a longer one a straight line is an invention.
 const GAP_MAX_S: f64 = 0.5;
@@ -98,7 +99,7 @@ pub fn parse(source: impl Read, recipe: &ArrayRecipe, file: &str) -> Result<Vec<
     if order.is_empty() {
         return Err(LabelledError::Empty { file: file.to_owned() });
     }
-    Ok(order.into_iter().map(Open::close).collect())
+    Ok(order.into_iter().map(|open| open.close(columns.onsets.is_some())).collect())
 }
 
 /// Where the columns are.
@@ -110,6 +111,8 @@ struct Columns {
     session: Option<usize>,
     material: Option<usize>,
     part: Option<usize>,
+    task: Option<usize>,
+    onsets: Option<usize>,
 }
 
 /// A row, understood.
@@ -118,9 +121,11 @@ struct Row {
     session: String,
     material: String,
     part: Option<Part>,
+    doing: Doing,
     t_s: Option<f64>,
     samples: [f64; ARRAY_COUNT],
     slip: bool,
+    slips: Vec<SlipSpan>,
 }
 
 impl Columns {
@@ -136,6 +141,8 @@ impl Columns {
             })
         };
         let maybe = |column: Option<&String>| column.map(|column| place(column)).transpose();
+        let if_there =
+            |column: Option<&String>| column.and_then(|column| header.iter().position(|name| name == column));
         let mut array = [0; ARRAY_COUNT];
         for (found, column) in array.iter_mut().zip(recipe.array.columns.get_ref()) {
             *found = place(column)?;
@@ -148,6 +155,8 @@ impl Columns {
             session: maybe(recipe.recordings.session.as_ref())?,
             material: maybe(recipe.recordings.material.as_ref())?,
             part: maybe(recipe.recordings.part.as_ref())?,
+            task: if_there(recipe.recordings.task.as_ref()),
+            onsets: if_there(recipe.labels.onsets.as_ref()),
         })
     }
 
@@ -186,6 +195,8 @@ impl Columns {
                 (Some(place), Some(column)) => Some(number(place, column.get_ref())?),
                 _ => None,
             },
+            doing: self.task.map_or(Doing::Unknown, |place| Doing::named(&record[place])),
+            slips: self.onsets.map_or(Ok(Vec::new()), |place| onsets::parse(&record[place]))?,
             name,
             session,
             samples,
@@ -207,9 +218,11 @@ struct Open {
     session: String,
     material: String,
     part: Option<Part>,
+    doing: Doing,
     t_s: Vec<f64>,
     samples: Vec<[f64; ARRAY_COUNT]>,
-    slips: Vec<bool>,
+    labels: Vec<bool>,
+    slips: Vec<SlipSpan>,
 }
 
 impl Open {
@@ -219,15 +232,19 @@ impl Open {
             session: row.session.clone(),
             material: row.material.clone(),
             part: row.part,
+            doing: row.doing,
             t_s: Vec::new(),
             samples: Vec::new(),
+            labels: Vec::new(),
             slips: Vec::new(),
         }
     }
 
     fn take(&mut self, row: Row, recipe: &ArrayRecipe) -> Result<(), String> {
-        if (&self.session, &self.material, self.part) != (&row.session, &row.material, row.part) {
-            return Err(format!("recording `{}` changes its session, material or part here", row.name));
+        if (&self.session, &self.material, self.part, self.doing)
+            != (&row.session, &row.material, row.part, row.doing)
+        {
+            return Err(format!("recording `{}` changes its session, material, part or task here", row.name));
         }
         let t_s = match (row.t_s, &recipe.array.rate_hz) {
             (Some(t_s), _) => t_s,
@@ -252,12 +269,13 @@ impl Open {
         }
         self.t_s.push(t_s);
         self.samples.push(row.samples);
-        self.slips.push(row.slip);
+        self.labels.push(row.slip);
+        self.slips.extend(row.slips);
         Ok(())
     }
 
-    fn close(self) -> Recording {
-        let steps = instants(&self.t_s)
+    fn close(mut self, exact: bool) -> Recording {
+        let steps: Vec<Step> = instants(&self.t_s)
             .into_iter()
             .map(|(row, part)| {
                 let next = (row + 1).min(self.samples.len() - 1);
@@ -265,10 +283,25 @@ impl Open {
                 for ((sample, a), b) in samples.iter_mut().zip(self.samples[row]).zip(self.samples[next]) {
                     *sample = (a + part * (b - a)).round().clamp(0.0, f64::from(SAMPLE_MAX)) as u16;
                 }
-                Step { samples, slip: self.slips[if part < 0.5 { row } else { next }] }
+                Step { samples, slip: self.labels[if part < 0.5 { row } else { next }] }
             })
             .collect();
-        Recording { name: self.name, session: self.session, material: self.material, part: self.part, steps }
+        let first_s = self.t_s.first().copied().unwrap_or_default();
+        if !exact {
+            self.slips = onsets::of_labels(&steps, first_s);
+        }
+        self.slips.sort_by(|a, b| a.micro_onset_s.total_cmp(&b.micro_onset_s));
+        Recording {
+            name: self.name,
+            session: self.session,
+            material: self.material,
+            part: self.part,
+            doing: self.doing,
+            first_s,
+            steps,
+            slips: self.slips,
+            exact,
+        }
     }
 }
 
@@ -341,7 +374,7 @@ no_slip = ['no']
             ("x,train,no,0.1,0,0,0,0,0,nan,0,0,0,0\n", "only finite numbers"),
             ("x,train,maybe,0.1,0,0,0,0,0,0,0,0,0,0\n", "the recipe knows yes (slip) and no (none)"),
             ("x,exam,no,0.1,0,0,0,0,0,0,0,0,0,0\n", "train, validation and test"),
-            ("x,test,no,0.1,0,0,0,0,0,0,0,0,0,0\n", "changes its session, material or part"),
+            ("x,test,no,0.1,0,0,0,0,0,0,0,0,0,0\n", "changes its session, material, part or task"),
             ("x,train,no,-0.1,0,0,0,0,0,0,0,0,0,0\n", "time goes backwards"),
             ("x,train,no,2.0,0,0,0,0,0,0,0,0,0,0\n", "gap of 2.000 s"),
             ("x,train,no,0.1,0,0,0,0\n", "8 cells, but the header has 14"),

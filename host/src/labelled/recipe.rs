@@ -62,6 +62,8 @@ pub struct Recordings {
     pub session: Option<String>,
     /// What scores are reported by, too. Default: the session.
     pub material: Option<String>,
+    /// What was done in it: `pour`, `pick`, `disturb`, `hold`. False alarms are counted by it. A file may lack the column.
+    pub task: Option<String>,
     /// `train`, `validation` or `test`. Default: sessions are left out in turn.
     pub part: Option<String>,
 }
@@ -74,6 +76,8 @@ pub struct Labels {
     pub column: String,
     /// Values that mean slip.
     pub slip: Spanned<Vec<String>>,
+    /// The column with exact onsets (`docs/training.md`). A file may lack it: then slips are made of the labels.
+    pub onsets: Option<String>,
     /// Values that mean none. A value that is in neither list is an error in that row.
     pub no_slip: Spanned<Vec<String>>,
 }

@@ -3,13 +3,13 @@
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
-use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
-use tenax_hal_shim::detector::DetectorId;
 use tenax_scene::{SceneFile, Seeds, World};
 
 use super::bench::{Bench, Judge};
 use super::finger::{Finger, edited};
 use super::trial::Trial;
+use crate::report::fate;
+use crate::scorer::false_alarms_s;
 
 const SCENE: &str = "hold";
 /// The block is in the air and the hand still, s.
@@ -18,8 +18,6 @@ const FROM_S: f64 = 4.0;
 const KNOCKS: u32 = 6;
 const SWINGS: u32 = 2;
 const RUNS: u32 = 2;
-/// Slip said this long after a slip that was true is still that slip's, s.
-const AFTER_S: f64 = 0.1;
 
 /// What came of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -60,27 +58,15 @@ pub fn hold(
 fn one(finger: &Finger, learned: &Bench, seed: u64) -> anyhow::Result<Holding> {
     let scene = minute(finger, seed)?;
     let mut bench = learned.clone();
-    let mut said: Vec<f64> = Vec::new();
-    let mut before = false;
+    let mut trial = Trial::default();
     let world = World::seeded(&scene, Seeds { making: finger.making, noise: seed });
-    let world = bench.run(world, Judge::Touch, &mut |n, slow, _| {
-        for (place, tick) in slow.ticks.iter().enumerate() {
-            let t_s = Trial::time_s(n * usize::from(FRAMES_PER_SLOW_FRAME) + place);
-            if tick.said.contains(DetectorId::Hebbian) && !before && t_s > FROM_S {
-                said.push(t_s);
-            }
-            before = tick.said.contains(DetectorId::Hebbian);
-        }
-    });
-    let slips = &world.truth().slips;
-    let is_true = |t_s: f64| {
-        slips
-            .iter()
-            .any(|slip| (slip.micro_onset_s..slip.end_s.unwrap_or(f64::INFINITY) + AFTER_S).contains(&t_s))
-    };
+    let world = bench.run(world, Judge::Touch, &mut |n, slow, _| trial.hear(n, slow));
+    trial.end(world.truth().clone());
+    let alarms_s = false_alarms_s(&fate::spans(&trial.truth), &trial.verdicts());
+    let slips = &trial.truth.slips;
     Ok(Holding {
         hours: (scene.duration_s() - FROM_S) / 3_600.0,
-        false_alarms: said.iter().filter(|&&t_s| !is_true(t_s)).count() as u32,
+        false_alarms: alarms_s.iter().filter(|&&t_s| t_s > FROM_S).count() as u32,
         slips: slips.iter().filter(|slip| slip.macro_onset_s > FROM_S).count() as u32,
     })
 }
@@ -102,8 +88,10 @@ fn minute(finger: &Finger, seed: u64) -> anyhow::Result<SceneFile> {
         knocks.push(table(&[
             ("at_s", at_s(n, between(0.0, 0.5))),
             ("peak_mv", 2.0 * (between(0.0, 40.0_f64.ln())).exp()),
-            ("ring_hz", between(200.0, 450.0)),
-            ("decay_ms", between(2.0, 8.0)),
+            // Frames and tools ring from 50 Hz to 2 kHz for 1 to 30 ms; where it comes from decides which films hear it.
+            ("ring_hz", between(50.0_f64.ln(), 2_000.0_f64.ln()).exp()),
+            ("decay_ms", between(0.0, 30.0_f64.ln()).exp()),
+            ("uneven", between(0.0, 1.0)),
         ]));
     }
     let mut swings = Vec::new();

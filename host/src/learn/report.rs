@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::reflex::{JUDGES, Reflexed, Three};
 use super::trial::Trial;
-use super::{LESSONS, Outcome};
+use super::{LESSONS, Other, Outcome};
 
 /// Mean, standard deviation and least of a sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -49,6 +49,8 @@ pub struct Score {
     pub macro_s: Vec<f64>,
     /// How much earlier the network was.
     pub lead_s: Vec<f64>,
+    /// The same over a camera without delay.
+    pub lead_no_delay_s: Vec<f64>,
     /// Trials whose slip the network did not see.
     pub missed: u64,
     /// Slips, up or down, of which o2 said the wrong direction.
@@ -78,6 +80,8 @@ impl Score {
                 Some(network_s) => {
                     score.network_s.push(network_s - trial.lift_s);
                     score.lead_s.extend(vision_s.map(|vision_s| vision_s - network_s));
+                    let without_s = trial.vision_without_delay_s();
+                    score.lead_no_delay_s.extend(without_s.map(|vision_s| vision_s - network_s));
                 }
                 None => score.missed += 1,
             }
@@ -103,6 +107,12 @@ pub struct Report {
     pub vision_first_s_mean: f64,
     /// How much earlier the network was, s.
     pub lead_s: Spread,
+    /// The same over a camera without delay.
+    pub lead_s_no_delay: Spread,
+    /// The same as `lead_s` with equal weights in place of learned ones.
+    pub lead_s_equal_weights: Spread,
+    /// The mean lead of the worst finger made by chance, s: of those trials in which it saw the slip. Null if there is none.
+    pub worst_finger_lead_s: Option<f64>,
     /// Trials whose slip the network did not see.
     pub missed: u64,
     /// False alarms in an hour of holding.
@@ -121,6 +131,50 @@ pub struct Fingertips {
     /// The mean lead of the worst of them, s. Null if one of them missed a slip or told a direction wrongly, or there are
     /// none.
     pub worst_lead_s: Option<f64>,
+    /// Trials of theirs whose slip was not seen, and all of them.
+    pub missed: [u64; 2],
+    /// Where sliding keeps at most 0.75 of static friction.
+    pub slippery: Group,
+    /// Where it keeps more.
+    pub even: Group,
+}
+
+/// Some of them.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Group {
+    /// How many.
+    pub count: usize,
+    /// Mean lead, s.
+    pub lead_s: f64,
+    /// The same over a camera without delay.
+    pub lead_s_no_delay: f64,
+    /// The same as `lead_s` with equal weights.
+    pub lead_s_equal_weights: f64,
+    /// Trials whose slip was not seen, and with equal weights.
+    pub missed: [u64; 2],
+}
+
+/// Sliding keeps so much of static friction at most in the fingers of the first group.
+const SLIPPERY: f64 = 0.75;
+
+impl Group {
+    fn of<'a>(others: impl Iterator<Item = &'a Other>) -> Self {
+        let others: Vec<&Other> = others.collect();
+        let mean = |of: &dyn Fn(&Other) -> &Vec<f64>| {
+            let all: Vec<f64> = others.iter().flat_map(|other| of(other).iter().copied()).collect();
+            Spread::of(&all).mean
+        };
+        Self {
+            count: others.len(),
+            lead_s: mean(&|other| &other.score.lead_s),
+            lead_s_no_delay: mean(&|other| &other.score.lead_no_delay_s),
+            lead_s_equal_weights: mean(&|other| &other.equal.lead_s),
+            missed: [
+                others.iter().map(|other| other.score.missed).sum(),
+                others.iter().map(|other| other.equal.missed).sum(),
+            ],
+        }
+    }
 }
 
 impl Report {
@@ -133,12 +187,21 @@ impl Report {
             network_first_s_mean: Spread::of(&score.network_s).mean,
             vision_first_s_mean: Spread::of(&score.vision_s).mean,
             lead_s: score.lead(),
+            lead_s_no_delay: Spread::of(&score.lead_no_delay_s),
+            lead_s_equal_weights: outcome.equal.lead(),
+            worst_finger_lead_s: outcome.worst_lead_s(),
             missed: score.missed,
             false_per_hour: outcome.false_per_hour(),
             direction_wrong: score.direction_wrong,
             fingertips: Fingertips {
                 count: outcome.others.len() as u64,
                 worst_lead_s: outcome.others_work().then(|| outcome.worst_lead_s()).flatten(),
+                missed: [
+                    outcome.others.iter().map(|other| other.score.missed).sum(),
+                    outcome.others.iter().map(|other| other.score.trials).sum(),
+                ],
+                slippery: outcome.group(true),
+                even: outcome.group(false),
             },
         }
     }
@@ -154,13 +217,20 @@ impl Outcome {
     /// Whether every finger made by chance saw every slip and its direction.
     #[must_use]
     pub fn others_work(&self) -> bool {
-        self.others.iter().all(|score| score.missed == 0 && score.direction_wrong == 0)
+        self.others.iter().all(|other| other.score.missed == 0 && other.score.direction_wrong == 0)
     }
 
     /// The mean lead of the worst finger made by chance, s.
     #[must_use]
     pub fn worst_lead_s(&self) -> Option<f64> {
-        self.others.iter().map(|score| score.lead().mean).min_by(f64::total_cmp)
+        let seen = self.others.iter().filter(|other| !other.score.lead_s.is_empty());
+        seen.map(|other| other.score.lead().mean).min_by(f64::total_cmp)
+    }
+
+    /// The fingers made by chance whose sliding keeps at most 0.75 of static friction, or the others.
+    #[must_use]
+    pub fn group(&self, slippery: bool) -> Group {
+        Group::of(self.others.iter().filter(|other| (other.ratio <= SLIPPERY) == slippery))
     }
 }
 
@@ -194,6 +264,11 @@ impl fmt::Display for Text<'_> {
         line("all of it slid", seconds(Spread::of(&score.macro_s)))?;
         let lead = score.lead();
         line("touch is earlier by", format!("{}, worst {:.3}", seconds(lead), lead.min))?;
+        line("over a camera at once", seconds(Spread::of(&score.lead_no_delay_s)))?;
+        line(
+            "with equal weights",
+            format!("{}, {} missed", seconds(outcome.equal.lead()), outcome.equal.missed),
+        )?;
         line("direction wrong", format!("{} of {} slips", score.direction_wrong, 2 * score.trials))?;
         line("false in the trials", format!("{} of {}", score.false_alarms, score.trials))?;
         line(
@@ -210,7 +285,18 @@ impl fmt::Display for Text<'_> {
         line("lift, secured after", three(&outcome.lifts, "s", |run| run.secured_s))?;
         line("lift, slipped", three(&outcome.lifts, "mm", |run| run.distance_mm))?;
         line("pour, slipped", three(&outcome.pours, "mm", |run| run.distance_mm))?;
-        let sum = |of: fn(&Score) -> u64| outcome.others.iter().map(of).sum::<u64>();
+        for (what, slippery) in [("fingers, ratio to 0.75", true), ("fingers, ratio above", false)] {
+            let group = outcome.group(slippery);
+            let [missed, equal_missed] = group.missed;
+            line(
+                what,
+                format!(
+                    "{}: lead {:.3} s, {:.3} over a camera at once, {missed} missed; equal weights {:.3} s, {equal_missed} missed",
+                    group.count, group.lead_s, group.lead_s_no_delay, group.lead_s_equal_weights
+                ),
+            )?;
+        }
+        let sum = |of: fn(&Score) -> u64| outcome.others.iter().map(|other| of(&other.score)).sum::<u64>();
         let trials = sum(|score| score.trials);
         line(
             "other fingers",

@@ -7,10 +7,13 @@ use rand::{RngExt, SeedableRng};
 use tenax_hal_shim::channel::{FRAME_HZ, FRAMES_PER_SLOW_FRAME};
 use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::wire::Slow;
+use tenax_scene::sensor::camera::Seen;
 use tenax_scene::truth::Slip;
 use tenax_scene::{Seeds, Truth, World};
 
 use super::finger::Finger;
+use crate::report::fate;
+use crate::scorer::{Card, Doing, Outcome, Stretch, Verdict, outcome};
 
 /// The scene of a trial.
 pub const SCENE: &str = "pick-up-trial";
@@ -90,19 +93,57 @@ impl Trial {
         Some([up, down])
     }
 
-    /// When the network first said slip, from the first place that let go until all of it stuck again, s.
+    /// The stretches in which the network said slip.
+    #[must_use]
+    pub fn verdicts(&self) -> Vec<Verdict> {
+        let mut all: Vec<Verdict> = Vec::new();
+        let mut before = false;
+        for (tick, &now) in self.slips.iter().enumerate() {
+            match (before, now, all.last_mut()) {
+                (false, true, _) => all.push(Verdict::new(Self::time_s(tick), f64::INFINITY)),
+                (true, false, Some(last)) => last.to_s = Self::time_s(tick),
+                _ => {}
+            }
+            before = now;
+        }
+        all
+    }
+
+    /// When the network first said slip in the slip up, in time or late, s.
     #[must_use]
     pub fn network_s(&self) -> Option<f64> {
         let [up, _] = self.both_slips()?;
-        let mut ticks = self.ticks(up.micro_onset_s..up.end_s.unwrap_or(f64::INFINITY));
-        ticks.find(|&tick| self.slips[tick]).map(Self::time_s)
+        let span =
+            fate::spans(&self.truth).into_iter().find(|span| span.macro_onset_s == Some(up.macro_onset_s))?;
+        match outcome(&span, up.macro_onset_s, &self.verdicts()) {
+            Outcome::Caught(latency_s) | Outcome::Late(latency_s) => Some(up.macro_onset_s + latency_s),
+            Outcome::SaidBefore | Outcome::Missed => None,
+        }
+    }
+
+    /// The event scores of the trial, from its beginning to the end of the slip down. What rubs afterwards stands on the table.
+    #[must_use]
+    pub fn card(&self) -> Card {
+        let Some([_, down]) = self.both_slips() else { return Card::default() };
+        let to_s = down.end_s.unwrap_or(f64::INFINITY).min(Self::time_s(self.slips.len()));
+        let whole = Stretch { from_s: 0.0, to_s, doing: Doing::Move };
+        Card::of(&fate::spans(&self.truth), &self.verdicts(), &[whole])
     }
 
     /// When the camera's first v1 = -1 after that came over the line, s.
     #[must_use]
     pub fn vision_s(&self) -> Option<f64> {
-        let seen = self.truth.camera.iter().find(|seen| seen.v1 < 0 && seen.t_s > self.lift_s)?;
-        Some(seen.arrives_s)
+        Some(self.first_seen()?.arrives_s)
+    }
+
+    /// When the second of its images was taken, s: a camera without delay had said it then.
+    #[must_use]
+    pub fn vision_without_delay_s(&self) -> Option<f64> {
+        Some(self.first_seen()?.t_s)
+    }
+
+    fn first_seen(&self) -> Option<&Seen> {
+        self.truth.camera.iter().find(|seen| seen.v1 < 0 && seen.t_s > self.lift_s)
     }
 
     /// Ticks between two instants.
@@ -120,14 +161,9 @@ impl Trial {
         said.iter().map(|outputs| f64::from(outputs[1])).sum::<f64>() / (128.0 * said.len().max(1) as f64)
     }
 
-    /// Whether slip was said before anything let go, or while the object was carried.
+    /// Whether slip was said where none was.
     #[must_use]
     pub fn false_alarm(&self) -> bool {
-        let Some([up, down]) = self.both_slips() else { return false };
-        // What the envelopes still have of the end of a slip is no new one.
-        let carried = up.end_s.unwrap_or(f64::INFINITY) + 0.1..down.micro_onset_s;
-        [0.0..up.micro_onset_s, carried]
-            .into_iter()
-            .any(|span_s| self.slips[self.ticks(span_s)].contains(&true))
+        self.card().false_alarms.count > 0
     }
 }

@@ -258,6 +258,8 @@ fn event_words(f: &mut fmt::Formatter<'_>, event: &Event) -> fmt::Result {
         EventKind::Disarmed => f.write_str("disarmed: the line is only read"),
         EventKind::LineTrusted(true) => f.write_str("the line is trusted: it moves the hand without consent"),
         EventKind::LineTrusted(false) => f.write_str("the line is trusted no more"),
+        EventKind::NoWearer(true) => f.write_str("no wearer: the reflex works without myosensors"),
+        EventKind::NoWearer(false) => f.write_str("a wearer: the reflex works with both myosensors only"),
         EventKind::EventsLost(count) => write!(f, "{count} events lost"),
         EventKind::Behaviour(what, None) => write!(f, "behaviour: {} begins", what.name()),
         EventKind::Behaviour(what, Some(ending)) => {

@@ -1,13 +1,16 @@
-//! The panels of a run, from top to bottom: forces, Ft/Fn and S2, vibration and S1, muscles and gate, motor and mode.
+//! The panels of a run, from top to bottom: forces, Ft/Fn and S2, vibration and S1, what each detector says, muscles and gate,
+//! motor and mode. Thresholds are those in force: a command of the scene or of a person changes them.
 
 use plotters::style::RGBColor;
-use tenax_hal_shim::wire::EventKind;
+use tenax_hal_shim::detector::DetectorId;
+use tenax_hal_shim::setting::SettingId;
+use tenax_hal_shim::wire::{Down, EventKind};
 use tenax_hal_shim::words::GripMode;
 use tenax_logic::config::Config;
 
 use super::figure::{Curve, Figure, Level, Panel, Stretch, colour};
-use super::sketch::{self, Drives, Needs, Sketch};
-use super::thin::Thin;
+use super::sketch::{Drives, Needs, Sketch};
+use super::thin::{Thin, thin};
 use crate::report::Subject;
 
 /// The figure of a run: what was drawn of it while it went.
@@ -37,12 +40,13 @@ pub fn figure(subject: &Subject, sketch: Sketch) -> Figure {
             Panel {
                 label: "vibration, mV".to_owned(),
                 curves: vec![curve("PVDF envelope", colour::BLUE, vibration)],
-                levels: vec![constant("S1", sketch::mv(Config::default().vibration.s1), span_s)],
+                levels: vec![in_force("S1", SettingId::S1, subject, span_s)],
                 at_least: (0.0, 150.0),
                 height: 1.0,
                 ..Panel::default()
             },
-            muscles(envelopes, span_s),
+            detectors(subject, span_s),
+            muscles(envelopes, in_force("gate", SettingId::EmgOn, subject, span_s)),
             motor(drives, strip),
         ],
     }
@@ -72,8 +76,54 @@ fn curve(name: &str, colour: RGBColor, thin: Thin) -> Curve {
     Curve { name: name.to_owned(), colour, points: thin.points() }
 }
 
-fn constant(name: &str, value: f64, (from_s, to_s): (f64, f64)) -> Level {
-    Level { name: name.to_owned(), points: vec![(from_s, value), (to_s, value)] }
+/// A threshold as it was in force: the default, and what each command that was taken made of it.
+fn in_force(name: &str, id: SettingId, subject: &Subject, (from_s, to_s): (f64, f64)) -> Level {
+    let mut config = Config::default();
+    config.line_trusted = subject.run.trusts_line;
+    let mut points = vec![(from_s, f64::from(config.get(id)))];
+    for (frame, command) in &subject.run.taken {
+        let Down::Set(setting) = command.message else { continue };
+        let at_s = subject.timeline.time_s(*frame);
+        let Some(own) = SettingId::from_number(setting.id).filter(|_| at_s <= to_s) else { continue };
+        let before = f64::from(config.get(id));
+        if config.set(own, setting.value).is_ok() && own == id {
+            points.extend([(at_s.max(from_s), before), (at_s.max(from_s), f64::from(config.get(id)))]);
+        }
+    }
+    points.push((to_s, f64::from(config.get(id))));
+    Level { name: name.to_owned(), points }
+}
+
+/// When each detector said slip, or warned of it: a row for each, high while it did.
+fn detectors(subject: &Subject, span_s: (f64, f64)) -> Panel {
+    const COLOURS: [RGBColor; 4] = [colour::BLUE, colour::ORANGE, colour::PURPLE, colour::GREEN];
+    // Nothing is injected but by a person.
+    let all = DetectorId::ALL.into_iter().filter(|&id| id != DetectorId::Injected);
+    let curve = |(row, id): (usize, DetectorId)| {
+        let low = row as f64;
+        let (mut points, high) = (vec![(span_s.0, low)], low + 0.8);
+        for verdict in subject.timeline.verdicts_said(id) {
+            let (from_s, to_s) = (verdict.from_s.max(span_s.0), verdict.to_s.min(span_s.1));
+            if from_s <= to_s {
+                points.extend([(from_s, low), (from_s, high), (to_s, high), (to_s, low)]);
+            }
+        }
+        points.push((span_s.1, low));
+        Curve {
+            name: id.title().to_owned(),
+            colour: COLOURS[row % COLOURS.len()],
+            points: thin(points, span_s),
+        }
+    };
+    let curves: Vec<Curve> = all.enumerate().map(curve).collect();
+    let rows = curves.len() as f64;
+    Panel {
+        label: "detector says".to_owned(),
+        curves,
+        at_least: (-0.2, rows),
+        height: 0.8,
+        ..Panel::default()
+    }
 }
 
 fn forces([normal, shear]: [Thin; 2], needs: Option<Needs>) -> Panel {
@@ -87,11 +137,11 @@ fn forces([normal, shear]: [Thin; 2], needs: Option<Needs>) -> Panel {
     Panel { label: "force, N".to_owned(), curves, at_least: (0.0, 1.0), height: 1.3, ..Panel::default() }
 }
 
-fn muscles([flexor, extensor]: [Thin; 2], span_s: (f64, f64)) -> Panel {
+fn muscles([flexor, extensor]: [Thin; 2], gate: Level) -> Panel {
     Panel {
         label: "muscles, mV".to_owned(),
         curves: vec![curve("flexor", colour::GREEN, flexor), curve("extensor", colour::ORANGE, extensor)],
-        levels: vec![constant("gate", f64::from(Config::default().gate.on_mv), span_s)],
+        levels: vec![gate],
         at_least: (-50.0, 250.0),
         height: 1.0,
         ..Panel::default()
@@ -162,6 +212,23 @@ fn look(mode: GripMode) -> (RGBColor, &'static str) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn thresholds_are_those_in_force_and_every_detector_has_a_row() {
+        // The scene makes the films as good as deaf at 0.1 s.
+        let file = crate::session::load_scene("array-pour").unwrap();
+        let outcome = crate::session::scene(&file, 1, &crate::session::Board::Host, &mut |_| {}).unwrap();
+        let panel = |label: &str| outcome.figure.panels.iter().find(|panel| panel.label.starts_with(label));
+        let s1 = &panel("vibration").unwrap().levels[0].points;
+        assert_eq!((s1.first().map(|p| p.1), s1.last().map(|p| p.1)), (Some(100.0), Some(1_500.0)), "{s1:?}");
+        assert!(s1.iter().any(|point| (point.0 - 0.1).abs() < 0.01));
+        let rows = &panel("detector").unwrap().curves;
+        assert_eq!(rows.len(), DetectorId::COUNT - 1);
+        let highest = |row: &Curve| row.points.iter().map(|point| point.1).fold(0.0, f64::max);
+        let mlp = rows.iter().find(|row| row.name == DetectorId::Mlp.title()).unwrap();
+        let said = outcome.report.detectors.of_id(DetectorId::Mlp).said;
+        assert_eq!(highest(mlp).fract() > 0.5, said > 0, "said {said} times");
+    }
 
     #[test]
     fn a_few_slips_are_drawn_as_they_are_and_many_in_no_more_than_the_pixels() {

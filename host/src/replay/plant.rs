@@ -1,6 +1,6 @@
 //! A recording as a plant: its columns at the pins, whatever the motor does.
 
-use anyhow::{Context, bail};
+use anyhow::{Context, anyhow, bail};
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
@@ -30,6 +30,37 @@ struct Track {
     /// Channel and its voltage for zero, V.
     pins: Vec<(usize, f64)>,
     clip_v: [f64; 2],
+}
+
+/// The greatest voltage at a pin, V.
+const PIN_MAX_V: f64 = 3.3;
+/// A front end rings over its supply by this part and no more.
+const OVER: f64 = 0.02;
+
+/// Refuses what no pin can have, and says in which unit it likely is.
+fn in_volts(rows: &[f64]) -> Result<(), String> {
+    let known = || rows.iter().copied().filter(|value| value.is_finite());
+    let (low, high) =
+        known().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+    if low >= -OVER * PIN_MAX_V && high <= (1.0 + OVER) * PIN_MAX_V {
+        return Ok(());
+    }
+    let whole = known().all(|value| value.fract() == 0.0);
+    let likely = match high {
+        _ if low < -OVER * PIN_MAX_V => {
+            "it goes below 0: likely an offset was taken off, or it is no voltage at a pin"
+        }
+        _ if whole && high <= 4_095.0 && high > 3_300.0 => "likely codes of 12 bits, 1241 a volt",
+        _ if high <= 3_300.0 * (1.0 + OVER) => "likely millivolts, 1000 a volt",
+        _ if whole && high <= 16_380.0 => "likely samples of 14 bits, 4964 a volt",
+        _ if whole && high <= 65_535.0 => "likely codes of 16 bits, 19859 a volt",
+        _ if high <= 3_300_000.0 * (1.0 + OVER) => "likely microvolts, 1000000 a volt",
+        _ => "no usual unit fits",
+    };
+    Err(format!(
+        "{low} to {high}, but a pin has 0 to {PIN_MAX_V} V; {likely}. Give volts at the pin, or say with --recipe FILE \
+         how the column reaches it (gain and offset_v, docs/recipes.md)"
+    ))
 }
 
 /// A recording, seen from the board.
@@ -91,7 +122,9 @@ impl ReplayPlant {
                     names.join(", ")
                 );
             };
-            let drawn = plant.grid.draw(recording.t_s(), &recording.series(column)?);
+            let rows = recording.series(column)?;
+            in_volts(&rows).map_err(|what| anyhow!("{}: column `{column}`: {what}", recording.file()))?;
+            let drawn = plant.grid.draw(recording.t_s(), &rows);
             plant.tracks.push(Track {
                 volts: plant.grid.thin(&drawn),
                 pins: vec![(index, 0.0)],
@@ -244,4 +277,25 @@ fn mean<'a>(values: impl Iterator<Item = &'a f64>) -> Option<f64> {
         count += 1;
     }
     (count > 0).then(|| sum / f64::from(count))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::in_volts;
+
+    #[test]
+    fn what_no_pin_can_have_is_refused_with_its_likely_unit() {
+        assert_eq!(in_volts(&[0.0, 1.65, 3.3, f64::NAN]), Ok(()));
+        for (rows, says) in [
+            ([1_650.0, 1_672.5], "millivolts"),
+            ([2_048.0, 4_000.0], "12 bits"),
+            ([8_190.0, 9_000.0], "14 bits"),
+            ([8_190.0, 60_000.0], "16 bits"),
+            ([1_650_000.0, 1_672_000.5], "microvolts"),
+            ([-0.2, 0.3], "below 0"),
+        ] {
+            let said = in_volts(&rows).unwrap_err();
+            assert!(said.contains(says) && said.contains("recipe"), "{rows:?}: {said}");
+        }
+    }
 }

@@ -1,27 +1,16 @@
 //! What really happened in a scene, as far as the scores need it.
 
-use tenax_scene::Truth;
+use tenax_scene::{SceneFile, Truth};
 
-/// One slip.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SlipSpan {
-    /// When some of the contact began to slide, s.
-    pub micro_onset_s: f64,
-    /// When all of it did, s. None if it never came to that.
-    pub macro_onset_s: Option<f64>,
-    /// When everything stuck again, s. Infinite if it never did.
-    pub end_s: f64,
-    /// How far the object slid, mm.
-    pub distance_mm: f64,
-    /// Whether the wearer was letting go, so that it was meant: nothing is to be caught.
-    pub meant: bool,
-}
+use crate::scorer::{SlipSpan, Stretch, doing};
 
 /// What really happened.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Fate {
-    /// Every slip, in order.
+    /// Every slip and every run of micro slips that came to nothing, by micro onset.
     pub slips: Vec<SlipSpan>,
+    /// What was going on when.
+    pub doing: Vec<Stretch>,
     /// How far the object slid altogether when it was not meant to, mm.
     pub distance_mm: f64,
     /// Whether it was dropped.
@@ -34,6 +23,8 @@ pub struct Fate {
     pub turned_rad: f64,
     /// The greatest grip force, N. None where nothing was held.
     pub peak_grip_n: Option<f64>,
+    /// The mean grip force while the hand carried it, N. None if it never did.
+    pub mean_grip_n: Option<f64>,
     /// When the fingers first crushed it, s.
     pub crushed_at_s: Option<f64>,
     /// How deep, for good, mm.
@@ -45,19 +36,13 @@ pub struct Fate {
 }
 
 impl Fate {
-    /// A world's log, as far as it goes.
+    /// A world's log, as far as it goes, of this scene.
     #[must_use]
-    pub fn of(truth: &Truth) -> Self {
-        let slip = |slip: &tenax_scene::truth::Slip| SlipSpan {
-            micro_onset_s: slip.micro_onset_s,
-            macro_onset_s: Some(slip.macro_onset_s),
-            end_s: slip.end_s.unwrap_or(f64::INFINITY),
-            distance_mm: slip.distance_mm,
-            meant: slip.meant,
-        };
+    pub fn of(truth: &Truth, scene: &SceneFile) -> Self {
         let held = truth.needed_grip_n > 0.0;
         Self {
-            slips: truth.slips.iter().map(slip).collect(),
+            slips: spans(truth),
+            doing: doing::in_scene(scene),
             distance_mm: truth.slip_distance_mm,
             dropped: truth.dropped,
             left_behind: truth.left_behind,
@@ -66,8 +51,31 @@ impl Fate {
             crushed_at_s: truth.crushed_at_s,
             dent_mm: truth.dent_mm,
             broken_at_s: truth.broken_at_s,
+            mean_grip_n: (truth.carried_s > 0.0).then(|| truth.carried_ns / truth.carried_s),
             peak_grip_n: (truth.peak_grip_n > 0.0).then_some(truth.peak_grip_n),
             needed_force_n: held.then_some(truth.needed_grip_n),
         }
     }
+}
+
+/// Every slip of a world and every run of micro slips that came to nothing, by micro onset.
+#[must_use]
+pub fn spans(truth: &Truth) -> Vec<SlipSpan> {
+    let slips = truth.slips.iter().map(|slip| SlipSpan {
+        micro_onset_s: slip.micro_onset_s,
+        macro_onset_s: Some(slip.macro_onset_s),
+        end_s: slip.end_s.unwrap_or(f64::INFINITY),
+        distance_mm: slip.distance_mm,
+        meant: slip.meant,
+    });
+    let runs = truth.micro_runs.iter().map(|run| SlipSpan {
+        micro_onset_s: run.begin_s,
+        macro_onset_s: None,
+        end_s: run.end_s,
+        distance_mm: 0.0,
+        meant: false,
+    });
+    let mut all: Vec<SlipSpan> = slips.chain(runs).collect();
+    all.sort_by(|a, b| a.micro_onset_s.total_cmp(&b.micro_onset_s));
+    all
 }

@@ -6,7 +6,6 @@ use tenax_hal_shim::wire::{Event, EventKind, Slow};
 use tenax_hal_shim::words::{Cause, DriveSource, GripMode};
 
 use super::fate::Fate;
-use super::scores::CAUGHT_WITHIN_S;
 use crate::board::Recorder;
 use crate::timeline::{Timeline, ticks};
 
@@ -70,9 +69,7 @@ impl Reflex {
         let pulses: Vec<(f64, Cause)> = pulses.collect();
         let answers_none = |t_s: f64, truth: &Fate| {
             !truth.slips.iter().any(|slip| {
-                let last_s =
-                    slip.macro_onset_s.map_or(slip.end_s, |onset| slip.end_s.max(onset + CAUGHT_WITHIN_S));
-                (slip.micro_onset_s - BEFORE_S..=last_s).contains(&t_s)
+                slip.macro_onset_s.is_some() && (slip.micro_onset_s - BEFORE_S..=slip.last_s()).contains(&t_s)
             })
         };
         let without = |truth: &Fate| {

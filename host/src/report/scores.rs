@@ -1,17 +1,14 @@
-//! Event scores (`docs/glossary.md`): a macro slip is caught if a detection falls between its micro onset and 50 ms after
-//! its macro onset; a detection outside every slip is a false alarm. A detection is where a detector begins to say slip, or to
-//! warn of it, and is believed.
+//! Event scores of a run, by [`crate::scorer`]. A detection is where a detector begins to say slip, or to warn of it, and is
+//! believed.
 
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::wire::Event;
 
-use super::fate::{Fate, SlipSpan};
+use super::fate::Fate;
+use crate::scorer::{Card, Outcome, SlipSpan, Verdict, false_alarms_s, outcome};
 use crate::timeline::Timeline;
-
-/// How long after macro onset a detection still catches it, s.
-pub const CAUGHT_WITHIN_S: f64 = 0.050;
 
 /// The first macro slip, and the object's fate over the whole run.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -34,6 +31,9 @@ pub struct Slip {
     pub macro_slips_caught: Option<usize>,
 }
 
+/// What it says is a warning: it has a row of its own and catches no slip.
+const WARNS: [DetectorId; 1] = [DetectorId::S2];
+
 impl Slip {
     /// Scores a run.
     #[must_use]
@@ -41,14 +41,18 @@ impl Slip {
         let Some(truth) = truth else {
             return Self::default();
         };
-        let mut detections = DetectorId::ALL.map(|id| timeline.believed(id)).concat();
-        detections.sort_by(f64::total_cmp);
+        let of_slip = DetectorId::ALL.into_iter().filter(|id| !WARNS.contains(id));
+        let verdicts: Vec<Vec<Verdict>> = of_slip.map(|id| timeline.verdicts(id)).collect();
         let macro_slips: Vec<&SlipSpan> =
-            truth.slips.iter().filter(|slip| slip.macro_onset_s.is_some()).collect();
+            truth.slips.iter().filter(|slip| slip.macro_onset_s.is_some() && !slip.meant).collect();
+        // Whoever caught it first.
         let latency_s = |slip: &SlipSpan| {
-            let onset = slip.macro_onset_s?;
-            let window = slip.micro_onset_s..=onset + CAUGHT_WITHIN_S;
-            detections.iter().find(|t| window.contains(t)).map(|t| t - onset)
+            let onset_s = slip.macro_onset_s?;
+            let caught = |verdicts: &Vec<Verdict>| match outcome(slip, onset_s, verdicts) {
+                Outcome::Caught(latency_s) => Some(latency_s),
+                _ => None,
+            };
+            verdicts.iter().filter_map(caught).min_by(f64::total_cmp)
         };
         let caught = macro_slips.iter().filter(|slip| latency_s(slip).is_some()).count();
         let first = macro_slips.first().copied();
@@ -79,6 +83,9 @@ pub struct Detector {
     pub said: usize,
     /// How often the reflex began to act on it.
     pub acted: usize,
+    /// Its event scores: slips caught, early, late, said before, missed; false alarms by what was going on. Null where nobody
+    /// knows when it slipped.
+    pub events: Option<Card>,
 }
 
 /// The myoelectric gate's part; it has no false alarms here, since its truth is not slip.
@@ -116,10 +123,9 @@ impl Detectors {
     /// Scores a run.
     #[must_use]
     pub fn of(timeline: &Timeline, events: &[Event], truth: Option<&Fate>) -> Self {
-        let slips = truth.map(|truth| truth.slips.as_slice());
         let wearer = timeline.wearer(events);
         Self {
-            all: DetectorId::ALL.map(|id| (id, detector(timeline, id, slips))).into(),
+            all: DetectorId::ALL.map(|id| (id, detector(timeline, id, truth))).into(),
             wearer: Gate { first_s: wearer.first().copied(), detections: wearer.len(), false_alarms: None },
         }
     }
@@ -131,42 +137,15 @@ impl Detectors {
     }
 }
 
-fn detector(timeline: &Timeline, id: DetectorId, slips: Option<&[SlipSpan]>) -> Detector {
+fn detector(timeline: &Timeline, id: DetectorId, truth: Option<&Fate>) -> Detector {
     let believed = timeline.believed(id);
+    let verdicts = timeline.verdicts(id);
     Detector {
         first_s: believed.first().copied(),
         detections: believed.len(),
-        false_alarms: slips.map(|slips| outside(&timeline.unmeant(id), slips)),
+        false_alarms: truth.map(|truth| false_alarms_s(&truth.slips, &verdicts).len()),
         said: timeline.said(id).len(),
         acted: timeline.acted(id).len(),
-    }
-}
-
-/// How many of these instants belong to no slip.
-fn outside(detections: &[f64], slips: &[SlipSpan]) -> usize {
-    let in_slip = |t: f64| slips.iter().any(|slip| (slip.micro_onset_s..=last_s(slip)).contains(&t));
-    detections.iter().filter(|&&t| !in_slip(t)).count()
-}
-
-/// Until when a detection belongs to this slip, s.
-fn last_s(slip: &SlipSpan) -> f64 {
-    slip.macro_onset_s.map_or(slip.end_s, |onset| slip.end_s.max(onset + CAUGHT_WITHIN_S))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const SLIP: SlipSpan = SlipSpan {
-        micro_onset_s: 1.0,
-        macro_onset_s: Some(1.1),
-        end_s: 1.12,
-        distance_mm: 1.0,
-        meant: false,
-    };
-
-    #[test]
-    fn a_detection_belongs_to_a_slip_from_its_micro_onset_to_50_ms_after_its_macro_onset() {
-        assert_eq!(outside(&[0.99, 1.0, 1.1499, 1.16], &[SLIP]), 2);
+        events: truth.map(|truth| Card::of(&truth.slips, &verdicts, &truth.doing)),
     }
 }

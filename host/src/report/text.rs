@@ -133,6 +133,20 @@ fn slip(f: &mut fmt::Formatter<'_>, report: &Report) -> fmt::Result {
         Or(report.oracle.peak_force_n, "N"),
         Or(report.oracle.peak_force_ratio, "times")
     )?;
+    if let Some(why) = &report.oracle.why {
+        line!(f, "below oracle", "{why}")?;
+    }
+    for control in &report.controls {
+        line!(
+            f,
+            control.name,
+            "{}; slid {:.2} mm, peak {:.2}, mean {:.2}",
+            if control.kept { "kept" } else { "LOST" },
+            control.distance_mm,
+            Or(control.peak_force_n, "N"),
+            Or(control.mean_force_n, "N")
+        )?;
+    }
     if let (Some(at_s), Some(dent_mm)) = (report.grip.crushed_at_s, report.grip.dent_mm) {
         line!(f, "damage", "CRUSHED at {at_s:.2} s by {dent_mm:.2} mm")?;
     }
@@ -155,6 +169,9 @@ fn slip(f: &mut fmt::Formatter<'_>, report: &Report) -> fmt::Result {
 
 fn wearer(f: &mut fmt::Formatter<'_>, report: &Report) -> fmt::Result {
     let wearer = &report.wearer;
+    if wearer.none {
+        line!(f, "wearer", "none: the reflex works without myosensors")?;
+    }
     line!(
         f,
         "wearer",

@@ -25,6 +25,8 @@ const ON_MV: i64 = 160;
 /// The wearer's part of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Wearer {
+    /// Whether the board said that nobody wears the hand: its reflex works without myosensors.
+    pub none: bool,
     /// Ticks in which the reflex drove the motor while a myosensor's last reading at the pin was above its threshold.
     pub reflex_while_active: u64,
     /// The longest time from an opening wish at the pins to the motor opening, ms: from the first reading that is a fifth
@@ -240,6 +242,7 @@ impl Judge {
     pub fn verdict(&self, active_first_s: Option<f64>, faults: usize) -> Wearer {
         let seconds = |ticks: u64| ticks as f64 / f64::from(FRAME_HZ);
         Wearer {
+            none: false,
             reflex_while_active: self.reflex_while_active,
             open_latency_ms: self.slowest.map(|frames| frames as f64 * 1e3 / f64::from(FRAME_HZ)),
             active_first_s,

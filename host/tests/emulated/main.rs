@@ -5,6 +5,7 @@ mod agreement;
 mod behaviours;
 mod converter;
 mod faults;
+mod head;
 mod link;
 #[path = "../../../host-tests/src/onsets.rs"]
 mod onsets;

@@ -98,6 +98,8 @@ fn kernels_cost_no_more_than_promised() {
     assert!(most("covariance") <= 300);
     assert!(most("spectrum") <= 1_750);
     assert!(most("mlp_structure_8_1") <= 6_100);
+    // A sample of the photoelastic head: ac, dc, envelope, swings and presence.
+    assert!(most("head_sample") <= 150);
     // A hundredth of what the core executes in 12.5 ms, at one instruction a cycle.
     assert!(most("slow_frame") <= 12_500);
 }

@@ -70,8 +70,9 @@ impl Phase {
     }
 
     fn mean(&self) -> Point {
-        let count = self.summed.max(1) as i32;
-        [self.sum[0] / count, self.sum[1] / count]
+        // Not an `i32`: core's division by one panics for -1.
+        let count = i64::from(self.summed.max(1));
+        self.sum.map(|sum| (i64::from(sum) / count) as i32)
     }
 
     /// Variance about the mean, Q20.

@@ -351,5 +351,6 @@ impl Intent {
 
 /// Where a level lies between its end and its full strength, per mille.
 fn strength(level: i32, ends: i32, full: i32) -> u16 {
-    ((level.clamp(ends, full) - ends) * 1_000 / (full - ends).max(1)) as u16
+    // Not `clamp`, which panics if its ends are in the wrong order.
+    ((level.min(full).max(ends) - ends) * 1_000 / (full - ends).max(1)) as u16
 }

@@ -212,7 +212,9 @@ impl Watch {
         let level = level_of(uv);
         let (middle, far) = (self.before(LAG), self.before(2 * LAG));
         let curve_uv = (uv - 2 * middle + far).abs();
-        self.past_uv[usize::from(self.place)] = uv;
+        if let Some(oldest) = self.past_uv.get_mut(usize::from(self.place)) {
+            *oldest = uv;
+        }
         self.place = (self.place + 1) % (2 * LAG) as u8;
 
         self.follow_activity(expected, level);

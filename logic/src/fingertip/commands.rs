@@ -96,9 +96,10 @@ impl Fingertip {
 
     /// Whether the line may carry this out.
     fn consents_to(&self, command: &Down) -> Result<(), Refusal> {
-        // Who trusts the line for ever has to be at the hand: that nothing is held at power-up is not enough.
-        let for_ever =
-            matches!(*command, Down::Set(Setting { id, .. }) if id == SettingId::LineTrusted as u8);
+        // Who trusts the line for ever, or says that nobody wears the hand, has to be at the hand: that nothing is held at
+        // power-up is not enough.
+        let for_ever = matches!(*command, Down::Set(Setting { id, .. })
+            if [SettingId::LineTrusted as u8, SettingId::NoWearer as u8].contains(&id));
         let consents = match self.line() {
             Line::Reading => false,
             Line::Armed { .. } => !for_ever || self.arming.is_deliberate(),

@@ -53,6 +53,9 @@ impl Fingertip {
             (Line::Armed { .. }, Line::Reading) => self.journal.event(EventKind::Disarmed),
             _ => {}
         }
+        if core::mem::replace(&mut self.told_no_wearer, self.config.no_wearer) != self.config.no_wearer {
+            self.journal.event(EventKind::NoWearer(self.config.no_wearer));
+        }
     }
 
     /// What the line asks for and may have: it closes no harder than the reflex might.

@@ -1,7 +1,8 @@
 //! A record, in words, in the order in which they are programmed.
 //!
 //! ```text
-//! tag        kind, payload's words, and the complements of both: a tag that is half programmed is none
+//! tag        kind, payload's words, and the complements of both: a tag that is half programmed is none, and one whose
+//!            bit reads wrong is found all the same
 //! sequence   higher is newer, over both sectors
 //! payload    up to 255 whole words, little-endian
 //! CRC-32     of all of the above (ISO-HDLC, the wire's)
@@ -18,6 +19,9 @@ use crate::touch::{Learned, SNAPSHOT_LENGTH};
 
 /// Words of a record beside its payload.
 pub const OVERHEAD_WORDS: usize = 4;
+
+/// What a session programs before its first record: every bit, so that none is left half programmed, and no tag.
+pub(super) const MARK: u32 = 0;
 
 const COMMIT: u32 = 0x3C5A_96E1;
 
@@ -89,7 +93,7 @@ impl Tag {
         self.words as usize + OVERHEAD_WORDS
     }
 
-    const fn to_word(self) -> u32 {
+    pub const fn to_word(self) -> u32 {
         u32::from_le_bytes([self.kind, self.words, !self.kind, !self.words])
     }
 
@@ -100,11 +104,26 @@ impl Tag {
         (tag.to_word() == word).then_some(tag)
     }
 
+    /// The tags that `word` may be: none, itself, or, if one bit of it differs from its complement, each of the two that have
+    /// one of them right. A bit that was hardly programmed may read either way, now so and now so.
+    pub fn read_from(word: u32) -> impl Iterator<Item = Self> {
+        let [kind, words, not_kind, not_words] = word.to_le_bytes();
+        let (read, complement) = (Self { kind, words }, Self { kind: !not_kind, words: !not_words });
+        let differ = (kind ^ complement.kind).count_ones() + (words ^ complement.words).count_ones();
+        let first = (differ <= 1).then_some(read);
+        let second = (differ == 1).then_some(complement);
+        first.into_iter().chain(second)
+    }
+
     /// The sequence number of the record at `at`. None if it is not whole.
     pub fn check(self, area: &impl FlashArea, sector: Sector, at: usize) -> Option<u32> {
         let payload_end = at + 2 + usize::from(self.words);
+        if payload_end + 2 > area.sector_words() {
+            return None;
+        }
         let mut digest = CRC.digest();
-        for word in at..payload_end {
+        digest.update(&self.to_word().to_le_bytes());
+        for word in at + 1..payload_end {
             digest.update(&area.read(sector, word).to_le_bytes());
         }
         let whole = area.read(sector, payload_end) == digest.finalize()
@@ -122,11 +141,20 @@ pub struct Saving<'a> {
     payload: &'a [[u8; 4]],
     digest: Digest<'static, u32>,
     step: usize,
+    /// Where to put a mark first.
+    mark: Option<usize>,
 }
 
 impl<'a> Saving<'a> {
-    pub(super) fn new(sector: Sector, at: usize, tag: Tag, sequence: u32, payload: &'a [[u8; 4]]) -> Self {
-        Self { sector, at, tag, sequence, payload, digest: CRC.digest(), step: 0 }
+    pub(super) fn new(
+        sector: Sector,
+        at: usize,
+        tag: Tag,
+        sequence: u32,
+        payload: &'a [[u8; 4]],
+        mark: Option<usize>,
+    ) -> Self {
+        Self { sector, at, tag, sequence, payload, digest: CRC.digest(), step: 0, mark }
     }
 
     /// Programs the next word; true when it was the last one, and the record counts.
@@ -134,6 +162,10 @@ impl<'a> Saving<'a> {
     /// # Errors
     /// If the flash failed. The record does not count and never will.
     pub fn step(&mut self, area: &mut impl FlashArea) -> Result<bool, FlashFailed> {
+        if let Some(place) = self.mark.take() {
+            super::program(area, self.sector, place, MARK)?;
+            return Ok(false);
+        }
         let word = match self.step {
             0 => self.tag.to_word(),
             1 => self.sequence,

@@ -73,23 +73,33 @@ impl Survey {
         };
         let mut at = OPENING_WORDS;
         while at < area.sector_words() {
-            let word = area.read(sector, at);
-            let tag = Tag::from_word(word).filter(|tag| at + tag.record_words() <= area.sector_words());
-            // A word that is no tag is what a power cut left of one.
-            let next = at + tag.map_or(1, Tag::record_words);
-            if word != BLANK {
-                survey.end = next;
-            }
-            if let Some((tag, kept)) = tag.and_then(|tag| Some((tag, record::from_number(tag.kind)?))) {
-                let sequence = tag.check(area, sector, at);
-                survey.damaged[kept as usize] = sequence.is_none();
-                if let Some(sequence) = sequence {
-                    survey.enter(Entry { sector, at, kept, words: tag.words, sequence });
-                }
-            }
-            at = next;
+            at = survey.take(area, at);
         }
         survey
+    }
+
+    /// Takes what begins at `at`; where the next may begin. Only a record that checks out is skipped by its length: a tag
+    /// that a power cut left half programmed may name any length, and another one each time it is read.
+    fn take(&mut self, area: &impl FlashArea, at: usize) -> usize {
+        let word = area.read(self.sector, at);
+        if word == BLANK {
+            return at + 1;
+        }
+        self.end = at + 1;
+        for tag in Tag::read_from(word) {
+            let Some(sequence) = tag.check(area, self.sector, at) else { continue };
+            self.end = at + tag.record_words();
+            if let Some(kept) = record::from_number(tag.kind) {
+                self.damaged[kept as usize] = false;
+                self.enter(Entry { sector: self.sector, at, kept, words: tag.words, sequence });
+            }
+            return self.end;
+        }
+        // Any word may differ from a tag by a bit; only a tag that is whole was to be a record.
+        if let Some(kept) = Tag::from_word(word).and_then(|tag| record::from_number(tag.kind)) {
+            self.damaged[kept as usize] = true;
+        }
+        self.end
     }
 
     fn enter(&mut self, entry: Entry) {

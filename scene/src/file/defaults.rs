@@ -3,10 +3,10 @@
 use toml::Spanned;
 
 use super::quantity::{
-    Damping, DeadTime, Degrees, Duration, Gain, Hertz, Kilograms, Lever, Millimetres, Millinewtons,
-    Milliseconds, Millivolts, NewtonsMax, Part, Play, Speed, Stiffness,
+    Damping, DeadTime, Degrees, Duration, Gain, Hertz, Kilograms, Lever, Micrometres, Millimetres,
+    Millinewtons, Milliseconds, Millivolts, Mu, NewtonsMax, Part, Play, Speed, Stiffness,
 };
-use super::sections::{Array, Camera, Fsr, Gripper, Myo, Pvdf, Robot, Skin, Strain, Table};
+use super::sections::{Array, Camera, Fsr, Gripper, Myo, Photoelastic, Pvdf, Robot, Skin, Strain, Table};
 
 impl Default for Gripper {
     fn default() -> Self {
@@ -128,6 +128,9 @@ impl Default for Array {
             offset_mv: Millivolts::of(30.0),
             tilt: Part::of(0.5),
             slip_part: Part::of(0.5),
+            rim_part: Part::of(0.5),
+            // Some tens of micrometres on polymers (Dieterich and Kilgore 1994); assumed for the cover.
+            renews_um: Micrometres::of(50.0),
             uneven: Part::of(0.02),
             knock_mn_per_mv: Gain::of(1.0),
             motor_part: Part::of(0.003),
@@ -165,6 +168,31 @@ impl Default for Camera {
             jitter_px: Part::of(0.02),
             delay_ms: DeadTime::of(53.0),
             teaches: false,
+        }
+    }
+}
+
+impl Default for Photoelastic {
+    fn default() -> Self {
+        Self {
+            strip: true,
+            // Aluminium on the strip. Assumed, as `physics::stribeck::METAL`.
+            mu_s: Mu::of(0.35),
+            mu_d: Mu::of(0.30),
+            stribeck_mm_s: Speed::of(3.0),
+            // Assumed: the head is what the object touches.
+            share: Part::of(1.0),
+            // Not in the paper: at 45 degrees a normal force alone gives all the light.
+            polariser_deg: Degrees::of(45.0),
+            // Dubey 2006, section 4: "high initial offset"; the numbers are assumed.
+            dark_mv: Millivolts::of(400.0),
+            span_mv: Millivolts::of(2_200.0),
+            // Assumed, as the rest: glued by hand.
+            spread: Part::of(0.0),
+            drift: Part::of(0.02),
+            ambient_mv: Millivolts::of(20.0),
+            knock_mn_per_mv: Gain::of(0.05),
+            noise_mv: Millivolts::of(0.5),
         }
     }
 }

@@ -4,6 +4,7 @@ pub mod channel;
 mod check;
 mod defaults;
 mod error;
+mod happening;
 pub mod quantity;
 pub mod sections;
 mod step;
@@ -12,10 +13,12 @@ use serde::Deserialize;
 use toml::Spanned;
 
 pub use error::SceneError;
+pub use happening::Happening;
 use quantity::{Duration, Speed};
 use sections::{
     Arm, Array, Camera, Command, Contact, ElectrodeLift, Fill, Fsr, Gripper, Knock, Move, Muscle, Myo,
-    Object, Pitch, Press, Pull, Pvdf, Robot, SensorFault, Skin, Strain, Sweep, Swing, Table, Wet,
+    Object, Photoelastic, Pitch, Press, Pull, Pvdf, Robot, SensorFault, Skin, Strain, Sweep, Swing, Table,
+    Wet,
 };
 
 /// A whole scene, every number in it checked.
@@ -54,6 +57,7 @@ pub struct SceneFile {
     pub(crate) array: Array,
     #[serde(default)]
     pub(crate) camera: Camera,
+    pub(crate) photoelastic: Option<Photoelastic>,
     pub(crate) skin: Option<Skin>,
     #[serde(default)]
     pub(crate) wet: Vec<Wet>,

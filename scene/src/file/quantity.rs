@@ -72,6 +72,8 @@ quantities! {
     Degrees: 0.0 to 90.0;
     /// A length, mm.
     Millimetres: 0.01 to 300.0;
+    /// A very short way, um.
+    Micrometres: 1.0 to 1000.0;
     /// A short way, mm: 0 is none.
     Play: 0.0 to 20.0;
     /// Where a load hangs beside or under the pads, mm, either way.
@@ -90,6 +92,8 @@ quantities! {
     Acceleration: 0.0 to 30.0;
     /// A frequency below half the frame rate, Hz.
     Hertz: 0.01 to 1000.0;
+    /// What a knock rings at, Hz: the films are scanned four times a frame, so more than half the frame rate folds down.
+    RingHertz: 0.01 to 2000.0;
     /// A voltage, mV.
     Millivolts: 0.0 to 3300.0;
     /// A factor without unit.

@@ -46,7 +46,13 @@ pub struct Grasp {
     mass_kg: f64,
     table_n: f64,
     needed_n: f64,
+    plan_n: f64,
 }
+
+/// The plan's part above what holds exactly: nothing holds on the edge of sliding.
+const PLAN_MARGIN: f64 = 0.02;
+/// What slides is to stand still so soon, s: the motor's dead time, before which nothing can be known to have helped.
+const STOPS_S: f64 = 0.030;
 
 impl Grasp {
     /// `object` is the scene's.
@@ -87,6 +93,7 @@ impl Grasp {
             mass_kg: empty_kg,
             table_n: empty_kg * GRAVITY_M_S2,
             needed_n: 0.0,
+            plan_n: 0.0,
         }
     }
 
@@ -127,6 +134,7 @@ impl Grasp {
         // Both at once, by the ellipsoid.
         let along_n = free_n.abs() / PADS / holds;
         self.needed_n = (along_n * along_n + turn.needed_n * turn.needed_n).sqrt();
+        self.plan_n = if self.in_hand && grip_n > TOUCH_N { self.planned_n(dry, holds, hand) } else { 0.0 };
         self.lifted |= grip_n > TOUCH_N && self.table_n == 0.0;
         self.taken |= self.in_hand && self.shared && self.lifted && grip_n == 0.0;
         self.in_hand &= self.slid_m.abs() <= self.pad_m && !self.body.is_broken() && !self.taken;
@@ -146,6 +154,17 @@ impl Grasp {
             released_n: outcome.released_n + twisted_n,
             drop_n,
         }
+    }
+
+    /// The least force that carries all of it as it is now, and stops it if it slides, N.
+    fn planned_n(&self, dry: Friction, holds: f64, hand: &Hand) -> f64 {
+        let slides = !self.sticks || self.turns();
+        let mu = if slides { dry.mu_d.min(holds) } else { holds };
+        let stops_m_s2 = if slides { self.rubs_m_s() / STOPS_S } else { 0.0 };
+        let weight_n = self.mass_kg * (GRAVITY_M_S2 + hand.acceleration_m_s2().max(0.0) + stops_m_s2);
+        let along_n = weight_n / PADS / mu;
+        let turning_n = self.pitch.as_ref().map_or(0.0, |pitch| pitch.holds_n(weight_n, mu));
+        (1.0 + PLAN_MARGIN) * (along_n * along_n + turning_n * turning_n).sqrt()
     }
 
     /// The table keeps what stands on it from turning.
@@ -242,6 +261,13 @@ impl Grasp {
     #[must_use]
     pub const fn body(&self) -> &Body {
         &self.body
+    }
+
+    /// What an oracle plans: the least force that carries all of it, the table's part too, as it is now, and stops it if it
+    /// slides, N. 0 while nothing presses on it.
+    #[must_use]
+    pub const fn plan_n(&self) -> f64 {
+        self.plan_n
     }
 
     /// The least grip force that would hold it at this instant, N.

@@ -2,7 +2,8 @@
 
 use std::collections::VecDeque;
 
-use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::channel::SCANS_PER_FRAME;
+use tenax_hal_shim::motor::{Duty, MotorDrive};
 
 use crate::file::sections;
 use crate::schedule::STEP_S;
@@ -63,6 +64,43 @@ impl Gripper {
         self.current = current;
     }
 
+    /// What the motor has to be told for the next frame so that each finger comes to press with `target_n` and no more, once
+    /// what it was told before has reached the fingers; None if it will press so hard anyway.
+    #[must_use]
+    pub fn closing_to(
+        &self,
+        target_n: f64,
+        grip_n: f64,
+        (width_mm, stiffness_n_per_mm): (f64, f64),
+    ) -> Option<MotorDrive> {
+        let load = grip_n / self.force_max_n;
+        let comes_mm: f64 = self
+            .pipeline
+            .iter()
+            .map(|drive| match drive {
+                MotorDrive::Coast => 0.0,
+                MotorDrive::Close(duty) => (f64::from(duty.as_per_mille()) / 1e3 - load).max(0.0),
+                MotorDrive::Open(duty) => -f64::from(duty.as_per_mille()) / 1e3,
+            })
+            .sum::<f64>()
+            * self.speed_max_mm_s
+            * STEP_S;
+        let aim_mm = self.aim_mm - comes_mm;
+        let opening_mm = if self.step_mm > 0.0 {
+            // The whole step that it stands on: it needs to aim half a step further for the next one.
+            (aim_mm / self.step_mm).round() * self.step_mm
+        } else {
+            aim_mm
+        };
+        let missing_mm = 2.0 * target_n / stiffness_n_per_mm - (width_mm - opening_mm);
+        if missing_mm <= 0.0 {
+            return None;
+        }
+        let frame_mm = self.speed_max_mm_s * STEP_S * SCANS_PER_FRAME as f64;
+        let permille = (1e3 * (load + missing_mm / frame_mm)).ceil().min(1e3);
+        Some(MotorDrive::Close(Duty::per_mille(permille as u16)))
+    }
+
     /// Where the fingers are next: at the aim, or on the way to the whole step nearest to it, as fast as they can.
     fn reach(&self, load: f64) -> f64 {
         if self.step_mm == 0.0 {
@@ -114,7 +152,6 @@ impl Gripper {
 mod tests {
     use super::*;
     use crate::file::quantity::Play;
-    use tenax_hal_shim::motor::Duty;
 
     const WIDTH_MM: f64 = 70.0;
     const STIFFNESS_N_PER_MM: f64 = 3.0;
@@ -149,6 +186,22 @@ mod tests {
         assert_eq!(gripper.grip_n(WIDTH_MM, STIFFNESS_N_PER_MM), grip_n);
         run(&mut gripper, MotorDrive::Close(Duty::per_mille(100)), 1.0);
         assert_eq!(gripper.grip_n(WIDTH_MM, STIFFNESS_N_PER_MM), grip_n);
+    }
+
+    #[test]
+    fn it_comes_to_press_as_asked_and_no_harder() {
+        let mut gripper = Gripper::new(&sections::Gripper::default());
+        let mut drive = MotorDrive::Coast;
+        for scan in 0..8_000 {
+            let grip_n = gripper.grip_n(WIDTH_MM, STIFFNESS_N_PER_MM);
+            if scan % SCANS_PER_FRAME == 0 {
+                let asked = gripper.closing_to(12.0, grip_n, (WIDTH_MM, STIFFNESS_N_PER_MM));
+                drive = asked.unwrap_or(MotorDrive::Coast);
+            }
+            gripper.step(drive, grip_n);
+        }
+        let grip_n = gripper.grip_n(WIDTH_MM, STIFFNESS_N_PER_MM);
+        assert!((12.0..12.1).contains(&grip_n), "{grip_n} N");
     }
 
     #[test]

@@ -101,6 +101,13 @@ impl Pitch {
         }
     }
 
+    /// The least force of each pad that would keep this weight from turning as it hangs now, N, if nothing slid.
+    #[must_use]
+    pub fn holds_n(&self, weight_n: f64, mu: f64) -> f64 {
+        let (sin, cos) = (libm::sin(self.angle_rad), libm::cos(self.angle_rad));
+        (weight_n * (self.offset_m * cos - self.hang_m * sin)).abs() / (2.0 * TORSION * self.radius_m * mu)
+    }
+
     /// The friction along the pad that torsion leaves.
     #[must_use]
     pub fn leaves(&self, friction: Friction) -> Friction {

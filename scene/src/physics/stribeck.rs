@@ -160,5 +160,8 @@ pub const STRIP: Slider =
 /// Metal on the metal strip. Assumed.
 pub const METAL: Stribeck = Stribeck { mu_s: 0.35, mu_d: 0.30, speed_m_s: 0.003 };
 
+/// Plastic on the metal strip. Assumed: friction falls less than on metal ("higher in metal-metal contacts", section 6).
+pub const PLASTIC: Stribeck = Stribeck { mu_s: 0.30, mu_d: 0.27, speed_m_s: 0.003 };
+
 /// The weight of Dubey's aluminium block (105 g), N: the order of the normal force in its experiments.
 pub const BLOCK_N: f64 = 0.105 * GRAVITY_M_S2;

@@ -22,12 +22,6 @@ const FORGETS_S: f64 = 0.030;
 const SPREADS: f64 = 1.4;
 /// The least share of the load that an element at the edge of it has, beside one in the middle (assumed).
 const EDGE_PART: f64 = 0.05;
-/// What leaves one element by sliding goes to the rim of the cover, which nothing senses, by this part, and to the other
-/// elements by the rest (assumed).
-const RIM_PART: f64 = 0.5;
-/// The way over which the contacts under an element are all new ones, m: friction's memory, some tens of micrometres on
-/// polymers (Dieterich and Kilgore 1994); assumed for the cover.
-const RENEWS_M: f64 = 50e-6;
 /// Waves of a surface's unevenness: from one pitch of its texture on, each so many times as long as the last (assumed).
 const WAVES: usize = 5;
 const WAVE_RATIO: f64 = 1.7;
@@ -157,9 +151,10 @@ impl Elements {
         let mean = |what: &dyn Fn(&Element) -> f64| {
             self.elements.iter().map(|element| element.part * what(element)).sum::<f64>()
         };
-        let lean = mean(&tilts) + (1.0 - RIM_PART) * mean(&uneven);
+        let stays = 1.0 - p.rim_part.get();
+        let lean = mean(&tilts) + stays * mean(&uneven);
         let moved_n = self.elements.iter().map(|element| element.moved_n).sum::<f64>() / ARRAY_COUNT as f64;
-        let moved_n = (1.0 - RIM_PART) * moved_n;
+        let moved_n = stays * moved_n;
         let load_n = touch.normal_n + shaken_n;
         let mut pins = [0.0; ARRAY_COUNT];
         for (n, element) in self.elements.iter().enumerate() {
@@ -190,6 +185,7 @@ impl Elements {
     fn slip(&mut self, touch: &Touch, released_n: f64) {
         let forgets = libm::exp(-FRAME_S / FORGETS_S);
         let part = self.parameters.slip_part.get();
+        let renews_m = self.parameters.renews_um.get() / 1e6;
         let slides = !touch.sticks && touch.normal_n > TOUCH_N && touch.rub_m_s() > 0.0;
         for element in &mut self.elements {
             if !slides {
@@ -202,7 +198,7 @@ impl Elements {
                 element.uneven = uneven(&self.waves, element, self.patch_m);
             }
             // New contacts deal the load out anew.
-            let keeps = libm::exp(-by_m / RENEWS_M);
+            let keeps = libm::exp(-by_m / renews_m);
             let dealt_n = part * touch.drop_n * element.part * (1.0 - keeps * keeps).sqrt();
             element.moved_n = keeps * element.moved_n + dealt_n * self.slips.normal();
         }

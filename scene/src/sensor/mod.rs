@@ -7,6 +7,7 @@ pub(crate) mod fault;
 pub(crate) mod fsr;
 pub(crate) mod hand;
 pub(crate) mod myo;
+pub mod photoelastic;
 mod place;
 pub(crate) mod pvdf;
 pub(crate) mod skin;

@@ -131,7 +131,7 @@ impl Films {
         }
         for knock in self.knocks.iter().filter(|knock| rings(knock, t_s)) {
             for (film_mv, film) in films_mv.iter_mut().zip(&self.films) {
-                *film_mv += ring_mv(knock, t_s, film.phase);
+                *film_mv += film.hears(knock) * ring_mv(knock, t_s, film.phase);
             }
         }
         let draws: [f64; PVDF_COUNT] = self.noise.normals();
@@ -140,6 +140,14 @@ impl Films {
             let film_mv = self.gains[n] * (films_mv[n] + everywhere_mv) + noise_mv * draws[n];
             front_end_v(f64::from(PVDF_REST_MV) + gain * film_mv)
         })
+    }
+}
+
+impl Film {
+    /// How much of a knock it hears. Where a knock comes from is drawn by its instant: the films of one side hear it more.
+    fn hears(&self, knock: &Knock) -> f64 {
+        let comes_from = (knock.at_s.get_ref().get() * 7.389).fract();
+        1.0 + knock.uneven.get() * libm::cos(TAU * (self.phase - comes_from))
     }
 }
 

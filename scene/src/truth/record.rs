@@ -18,6 +18,15 @@ pub struct Slip {
     pub meant: bool,
 }
 
+/// Micro slips with no pause longer than [`MICRO_PAUSE_S`](super::MICRO_PAUSE_S) between two of them, which led to no slip.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MicroRun {
+    /// When the first element let go, s.
+    pub begin_s: f64,
+    /// When the last did, s.
+    pub end_s: f64,
+}
+
 /// A wish of the wearer, from its first instant to its last.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Phase {

@@ -1,4 +1,4 @@
-//! The parts of the detector, each by itself.
+//! The parts of the detector, each by itself, and a sample of the photoelastic head.
 
 use core::hint::black_box;
 
@@ -8,6 +8,7 @@ use tenax_logic::array::past::Past;
 use tenax_logic::array::spectrum::SlidingSpectrum;
 use tenax_logic::array::structure::{self, STRUCTURES, Structure, WINDOWS};
 use tenax_logic::array::{BINS, ELEMENTS, Features, Preprocessor, PreprocessorConfig, Reading};
+use tenax_logic::photoelastic::{Head, HeadConfig};
 
 /// Their state.
 pub struct Parts {
@@ -20,6 +21,7 @@ pub struct Parts {
     features: Preprocessor<10, 40>,
     features_half: Preprocessor<5, 20>,
     features_least: Preprocessor<1, 10>,
+    head: Head,
 }
 
 impl Default for Parts {
@@ -34,6 +36,7 @@ impl Default for Parts {
             features: Preprocessor::new(config),
             features_half: Preprocessor::new(config),
             features_least: Preprocessor::new(config),
+            head: Head::default(),
         }
     }
 }
@@ -50,6 +53,10 @@ impl Parts {
         black_box(tenax_kernel_features_10_40(&mut self.features, reading));
         black_box(tenax_kernel_features_5_20(&mut self.features_half, reading));
         black_box(tenax_kernel_features_1_10(&mut self.features_least, reading));
+        let config = HeadConfig { slip: 10, ..HeadConfig::BLANK };
+        for sample in reading.iter().flatten() {
+            tenax_kernel_head_sample(&mut self.head, &config, *sample);
+        }
     }
 }
 
@@ -98,4 +105,11 @@ fn tenax_kernel_features_5_20<'p>(p: &'p mut Preprocessor<5, 20>, reading: &Read
 #[unsafe(no_mangle)]
 fn tenax_kernel_features_1_10<'p>(p: &'p mut Preprocessor<1, 10>, reading: &Reading) -> Option<&'p Features> {
     p.push(reading)
+}
+
+#[inline(never)]
+#[unsafe(no_mangle)]
+fn tenax_kernel_head_sample(head: &mut Head, config: &HeadConfig, sample: u16) {
+    // Its faults are another kernel's.
+    let _change = head.take(config, sample);
 }

@@ -5,7 +5,7 @@ use tenax_hal_shim::flash::FlashFailed;
 use tenax_hal_shim::wire::{Event, EventKind, Up};
 use tenax_hal_shim::words::{Fault, Kept};
 use tenax_logic::store::record::{OVERHEAD_WORDS, PAYLOAD_BYTES, Record};
-use tenax_logic::store::{Log, Refused, open};
+use tenax_logic::store::{Erase, Log, Refused, open};
 
 use crate::board::kept::Sectors;
 
@@ -22,7 +22,7 @@ pub struct Store {
 impl Store {
     /// One whose flash holds this at the start.
     pub fn new(mut flash: Sectors) -> Self {
-        let (log, _) = open(&mut flash);
+        let (log, _) = open(&mut flash, Erase::Allowed);
         Self { flash, log, saving: None }
     }
 

@@ -4,7 +4,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use crate::file::channel::ChannelName;
-use crate::file::quantity::{Duration, Hertz, Instant, Milliseconds, Millivolts, Newtons};
+use crate::file::quantity::{Duration, Instant, Milliseconds, Millivolts, Newtons, Part, RingHertz};
 
 /// Something hits the hand or the table: a short ring in every film.
 #[derive(Clone, Debug, Deserialize)]
@@ -15,9 +15,18 @@ pub struct Knock {
     /// First peak, at the film.
     pub peak_mv: Millivolts,
     /// What rings.
-    pub ring_hz: Hertz,
+    pub ring_hz: RingHertz,
     /// Until it has fallen to 1/e.
     pub decay_ms: Milliseconds,
+    /// How unlike the films hear it: 0 is all alike, 1 is from nothing to twice the peak, by where the film lies.
+    #[serde(default = "Knock::alike")]
+    pub uneven: Part,
+}
+
+impl Knock {
+    const fn alike() -> Part {
+        Part::of(0.0)
+    }
 }
 
 /// An electrode lifts off the skin: it hears no muscle, and more mains.

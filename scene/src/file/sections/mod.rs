@@ -6,6 +6,7 @@
 mod arm;
 mod contact;
 mod gripper;
+mod head;
 mod mishap;
 mod object;
 mod person;
@@ -15,6 +16,7 @@ mod sensor;
 pub use arm::{Arm, Move, Press, Robot, Sweep, Swing};
 pub use contact::{Contact, Level, Wet};
 pub use gripper::Gripper;
+pub use head::Photoelastic;
 pub use mishap::{ElectrodeLift, FaultKind, Knock, SensorFault};
 pub use object::{Fill, Object, Pitch, Table};
 pub use person::{Command, CommandKind, Intent, Muscle};

@@ -3,8 +3,8 @@
 use serde::Deserialize;
 
 use crate::file::quantity::{
-    DeadTime, Degrees, Duration, Gain, Hertz, Instant, Lever, Millimetres, Millinewtons, Milliseconds,
-    Millivolts, Part, Speed,
+    DeadTime, Degrees, Duration, Gain, Hertz, Instant, Lever, Micrometres, Millimetres, Millinewtons,
+    Milliseconds, Millivolts, Part, Speed,
 };
 
 /// The PVDF films. Voltages are at the film; the front end multiplies them by `gain`.
@@ -109,6 +109,11 @@ pub struct Array {
     pub tilt: Part,
     /// How much of the shear that an element lets go of comes off its load.
     pub slip_part: Part,
+    /// What leaves one element by sliding goes to the rim of the cover, which nothing senses, by this part, and to the other
+    /// elements by the rest.
+    pub rim_part: Part,
+    /// The way over which the contacts under an element are all new ones: friction's memory.
+    pub renews_um: Micrometres,
     /// What the unevenness of a surface that slides over an element adds to its load and takes from it, rms, as a part.
     pub uneven: Part,
     /// What a knock of 1 mV at a film adds to the load of the whole pad while it rings.

@@ -1,0 +1,90 @@
+//! What was going on, for false alarms to be counted by.
+
+use serde::{Serialize, Serializer};
+use tenax_scene::SceneFile;
+use tenax_scene::file::Happening;
+
+/// What was going on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Doing {
+    /// Nothing of what follows.
+    Hold,
+    /// It was poured into, or got lighter; of a data set, a whole recording of that.
+    Pour,
+    /// The hand moved, or a surface was stroked; of a data set, a recording of a pick and place.
+    Move,
+    /// It was knocked, swung or shaken; of a data set, a recording of that.
+    Disturb,
+    /// Nobody says.
+    Unknown,
+}
+
+impl Doing {
+    /// As in data and reports.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Hold => "hold",
+            Self::Pour => "pour",
+            Self::Move => "move",
+            Self::Disturb => "disturb",
+            Self::Unknown => "unknown",
+        }
+    }
+
+    /// By its name in a data set's column.
+    #[must_use]
+    pub fn named(name: &str) -> Self {
+        match name {
+            "pick" => Self::Move,
+            _ => [Self::Hold, Self::Pour, Self::Move, Self::Disturb]
+                .into_iter()
+                .find(|doing| doing.name() == name)
+                .unwrap_or(Self::Unknown),
+        }
+    }
+}
+
+impl Serialize for Doing {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+/// A stretch of one doing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretch {
+    /// From, s.
+    pub from_s: f64,
+    /// To, s.
+    pub to_s: f64,
+    /// What.
+    pub doing: Doing,
+}
+
+/// What goes on in a scene, without a gap. Of several things at once, the one that disturbs most.
+#[must_use]
+pub fn in_scene(scene: &SceneFile) -> Vec<Stretch> {
+    let happenings = scene.happenings();
+    let end_s = scene.duration_s();
+    let mut edges: Vec<f64> = happenings.iter().flat_map(|&(from_s, to_s, _)| [from_s, to_s]).collect();
+    edges.extend([0.0, end_s]);
+    edges.retain(|edge| (0.0..=end_s).contains(edge));
+    edges.sort_by(f64::total_cmp);
+    edges.dedup();
+    let at = |t_s: f64| {
+        let is = |what: Happening| {
+            happenings.iter().any(|&(from_s, to_s, own)| own == what && (from_s..to_s).contains(&t_s))
+        };
+        match () {
+            () if is(Happening::Disturb) => Doing::Disturb,
+            () if is(Happening::Pour) => Doing::Pour,
+            () if is(Happening::Move) => Doing::Move,
+            () => Doing::Hold,
+        }
+    };
+    let pairs = edges.windows(2);
+    pairs
+        .map(|pair| Stretch { from_s: pair[0], to_s: pair[1], doing: at((pair[0] + pair[1]) / 2.0) })
+        .collect()
+}

@@ -1,0 +1,133 @@
+//! From the dc part to force: the calibration curve as data, and both forces that one intensity can mean.
+//!
+//! The intensity follows a sine squared (equation 9), so its phase is an arcsine of a root. Force over phase is a table: the
+//! paper's curve is not symmetric, and no formula of it is known (`docs/photoelastic.md`). In phase the table needs few
+//! knots, where in voltage it would need many at the peak.
+
+/// Half a turn of phase, from no load to the force at which the intensity is back at its first value.
+pub const HALF_TURN: i32 = 8_192;
+/// The phase at the peak.
+pub const PEAK: i32 = HALF_TURN / 2;
+/// Knots of the table besides no load.
+pub const KNOTS: usize = 8;
+/// Phase between two knots.
+const KNOT_PHASE: i32 = HALF_TURN / KNOTS as i32;
+/// One, as a part of the span.
+pub const ONE: i32 = 1 << 20;
+
+/// The calibration of one head. Levels are means in 1/16 of a sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Curve {
+    /// Level without load.
+    pub dark_q4: i32,
+    /// Level at the peak.
+    pub bright_q4: i32,
+    /// Force at each eighth of half a turn, mN, the first without load left out. The fourth is the peak, the last where the
+    /// intensity is back.
+    pub force_mn: [i32; KNOTS],
+}
+
+impl Curve {
+    /// A level as a part of what the peak adds to no load, [`ONE`] at the peak. May be outside of 0 to 1.
+    #[must_use]
+    pub fn part(&self, level_q4: i32) -> i32 {
+        let span = i64::from(self.bright_q4 - self.dark_q4).max(1);
+        let part = (i64::from(level_q4) - i64::from(self.dark_q4)) * i64::from(ONE) / span;
+        part.clamp(-i64::from(ONE), 2 * i64::from(ONE)) as i32
+    }
+
+    /// The force at a phase, mN: between two knots the mean of the parabolas through them and either next one.
+    #[must_use]
+    pub fn force_mn(&self, phase: i32) -> i32 {
+        let phase = phase.clamp(0, HALF_TURN);
+        let knot = (phase / KNOT_PHASE).min(KNOTS as i32 - 1);
+        let part = phase - knot * KNOT_PHASE;
+        let at = |knot: i32| match knot {
+            ..=0 => 0,
+            knot => self.force_mn.get(knot as usize - 1).map_or(0, |mn| *mn),
+        };
+        let (below, above) = (at(knot), at(knot + 1));
+        let bend = |knot: i32| at(knot - 1) - 2 * at(knot) + at(knot + 1);
+        // At either end there is only one.
+        let bends = bend(knot.max(1)) + bend((knot + 1).min(KNOTS as i32 - 1));
+        let line = (above - below) * part / KNOT_PHASE;
+        below + line - bends / 4 * (part * (KNOT_PHASE - part) / KNOT_PHASE) / KNOT_PHASE
+    }
+}
+
+/// The phase on the rising branch, 0 to [`PEAK`], that has this part of the span: `asin(sqrt(part))`.
+#[must_use]
+pub fn phase_of(part: i32) -> i32 {
+    let part = part.clamp(0, ONE);
+    // Near 1 the root's slope would be the arcsine's undoing; there the other leg of the triangle is small.
+    if part <= ONE / 2 { asin_of_root(part) } else { PEAK - asin_of_root(ONE - part) }
+}
+
+/// `asin(sqrt(part))` up to a half, within 3 units of phase.
+fn asin_of_root(part: i32) -> i32 {
+    // The root of a Q20 as Q15.
+    let s = i64::from((u64::from(part.unsigned_abs()) << 10).isqrt() as u32);
+    let square = s * s >> 15;
+    // asin(s) = s (1 + s^2/6 + 3 s^4/40 + ...), its last coefficient raised for what is cut off. Q15.
+    const THIRD: i64 = 5_461;
+    const FIFTH: i64 = 2_458;
+    const SEVENTH: i64 = 2_560;
+    let series = (1 << 15) + (square * (THIRD + (square * (FIFTH + (square * SEVENTH >> 15)) >> 15)) >> 15);
+    let asin_q15 = s * series >> 15;
+    // pi rad are half a turn: 8192 / (pi 2^15) in Q20.
+    const PHASE_OF_Q15: i64 = 83_443;
+    ((asin_q15 * PHASE_OF_Q15 + (1 << 19)) >> 20) as i32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    /// Figure 14 as `F = 1.7 (2 phase / pi)^1.82`.
+    pub const FIGURE_14: Curve = Curve {
+        dark_q4: 32_000,
+        bright_q4: 207_000,
+        force_mn: [136, 481, 1_007, 1_700, 2_551, 3_554, 4_706, 6_000],
+    };
+
+    #[test]
+    fn the_phase_is_f64s_within_3_units() {
+        for part in 0..=ONE {
+            let exact = (f64::from(part) / f64::from(ONE)).sqrt().asin() / PI * f64::from(HALF_TURN);
+            assert!((f64::from(phase_of(part)) - exact).abs() < 3.0, "{part}: {} {exact}", phase_of(part));
+        }
+        assert_eq!((phase_of(i32::MIN), phase_of(i32::MAX)), (0, PEAK));
+    }
+
+    #[test]
+    fn the_table_is_figure_14_within_a_tenth_percent_of_full_scale() {
+        let exponent = (6.0_f64 / 1.7).log2();
+        for phase in 0..=HALF_TURN {
+            let exact = 1_700.0 * (f64::from(phase) / f64::from(PEAK)).powf(exponent);
+            let error = (f64::from(FIGURE_14.force_mn(phase)) - exact).abs();
+            assert!(error < 8.0, "{phase}: {error} mN");
+        }
+        assert_eq!(FIGURE_14.force_mn(PEAK), 1_700);
+        assert_eq!((FIGURE_14.force_mn(i32::MAX), FIGURE_14.force_mn(-1)), (6_000, 0));
+    }
+
+    #[test]
+    fn an_intensity_comes_back_as_its_force_on_both_branches() {
+        for hundredths in 5..590 {
+            let force_n = f64::from(hundredths) / 100.0;
+            let phase = FRAC_PI_2 * (force_n / 1.7).powf(1.0 / (6.0_f64 / 1.7).log2());
+            let level = 32_000.0 + 175_000.0 * phase.sin().powi(2);
+            let rising = phase_of(FIGURE_14.part(level.round() as i32));
+            let phase = if force_n < 1.7 { rising } else { HALF_TURN - rising };
+            let error = (f64::from(FIGURE_14.force_mn(phase)) / 1e3 - force_n).abs();
+            assert!(error < 0.04, "{force_n} N: {error}");
+        }
+    }
+
+    #[test]
+    fn a_curve_without_a_span_gives_parts_all_the_same() {
+        let flat = Curve { dark_q4: 5, bright_q4: 5, ..FIGURE_14 };
+        assert_eq!((flat.part(5), flat.part(i32::MAX), flat.part(i32::MIN)), (0, 2 * ONE, -ONE));
+    }
+}

@@ -1,0 +1,97 @@
+//! How fast it slips, from amplitude and frequency of the ac part.
+//!
+//! Both rise with the rate, and neither follows a law that holds for all materials: the amplitude grows with the drop of
+//! friction, too. So the rate is a fit of logarithms, calibrated with one material (`tenax calibrate photoelastic`):
+//! `log2 rate = a + b log2 amplitude + c log2 frequency + d log2 force`. On another material it is off by a factor.
+
+use crate::emg::log2::{LEVEL_Q, level_of};
+
+/// A calibration. Logarithms and factors in Q10; amplitude as a part of the span in Q20, frequency in mHz, force in mN, rate
+/// in um/s.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RateFit {
+    /// a.
+    pub constant: i32,
+    /// b.
+    pub amplitude: i32,
+    /// c.
+    pub frequency: i32,
+    /// d.
+    pub force: i32,
+}
+
+/// Above this nothing was calibrated, um/s.
+const RATE_MAX_UM_S: i32 = 20_000;
+/// Numbers are raised by this before their logarithm is taken, which begins at 8000.
+const RAISED: u32 = 13;
+
+/// `log2`, Q10, of 1 to 2^17.
+fn log2(number: i32) -> i32 {
+    level_of(number.clamp(1, 1 << 17) << RAISED) - ((RAISED as i32) << LEVEL_Q)
+}
+
+/// `2^x`, x in Q10, rounded down; a parabola between powers, within 0.3 %.
+fn exp2(x: i32) -> i32 {
+    let (whole, part) = (x >> LEVEL_Q, i64::from(x & ((1 << LEVEL_Q) - 1)));
+    // 2^p = 1 + p - 0.3437 p (1 - p), Q20.
+    let bent = (1 << 20) + (part << 10) - 352 * part * ((1 << LEVEL_Q) - part) / 1_024;
+    match whole {
+        ..0 => 0,
+        0..20 => (bent >> (20 - whole)) as i32,
+        _ => RATE_MAX_UM_S,
+    }
+}
+
+impl RateFit {
+    /// What the fit takes: logarithms, Q10, of amplitude, frequency and force.
+    #[must_use]
+    pub fn features(amplitude_q20: i32, period_q4: u16, force_mn: i32) -> [i32; 3] {
+        // 2000 frames a second in 1/16: 32 000 000 mHz over the period. A quarter of it has room.
+        let quarter_mhz = 8_000_000 / i32::from(period_q4.max(1));
+        [log2(amplitude_q20), log2(quarter_mhz) + (2 << LEVEL_Q), log2(force_mn)]
+    }
+
+    /// The rate, um/s.
+    #[must_use]
+    pub fn rate_um_s(&self, amplitude_q20: i32, period_q4: u16, force_mn: i32) -> i32 {
+        let [amplitude, frequency, force] = Self::features(amplitude_q20, period_q4, force_mn).map(i64::from);
+        let sum = amplitude * i64::from(self.amplitude)
+            + frequency * i64::from(self.frequency)
+            + force * i64::from(self.force);
+        let log2_rate = i64::from(self.constant) + (sum >> LEVEL_Q);
+        exp2(log2_rate.clamp(-(1 << 20), 1 << 20) as i32).min(RATE_MAX_UM_S)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn logarithm_and_power_are_f64s_within_a_percent() {
+        for number in (1..1 << 17).step_by(13) {
+            let exact = f64::from(number).log2();
+            assert!((f64::from(log2(number)) / 1_024.0 - exact).abs() < 0.011, "{number}");
+        }
+        for x in 4 << LEVEL_Q..14 << LEVEL_Q {
+            let exact = (f64::from(x) / 1_024.0).exp2();
+            assert!((f64::from(exp2(x)) - exact).abs() < 0.005 * exact + 1.0, "{x}: {} {exact}", exp2(x));
+        }
+        assert_eq!((exp2(-1), exp2(i32::MAX), log2(i32::MIN)), (0, RATE_MAX_UM_S, 0));
+    }
+
+    #[test]
+    fn a_fit_is_what_it_says() {
+        // rate = 2 amplitude frequency / force.
+        let fit = RateFit {
+            constant: 1 << LEVEL_Q,
+            amplitude: 1 << LEVEL_Q,
+            frequency: 1 << LEVEL_Q,
+            force: -(1 << LEVEL_Q),
+        };
+        // 320 frames a swing: 6.25 Hz.
+        let rate = f64::from(fit.rate_um_s(64, 5_120, 1_000));
+        assert!((rate / (2.0 * 64.0 * 6_250.0 / 1_000.0) - 1.0).abs() < 0.03, "{rate}");
+        assert_eq!(fit.rate_um_s(i32::MAX, 0, i32::MIN), RATE_MAX_UM_S);
+    }
+}

@@ -1,0 +1,128 @@
+//! Equations 3 to 9 of Dubey 2006, as printed, with the sensor's dimensions.
+//!
+//! `docs/photoelastic.md` lists how each is read and what the paper's own figure 14 contradicts.
+
+/// The photoelastic layer between crossed polarisers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Layer {
+    /// b: along the slip, m.
+    pub breadth_m: f64,
+    /// t: along the light, m.
+    pub thickness_m: f64,
+    /// lambda, m.
+    pub wavelength_m: f64,
+    /// c: stress-optic coefficient, m^2/N.
+    pub stress_optic_m2_n: f64,
+    /// Angle between the polariser's axis and x, the direction of the normal force, rad.
+    pub polariser_rad: f64,
+}
+
+impl Layer {
+    /// The enhanced sensor: 9 mm x 5 mm x 3 mm, sensing area 9 mm x 3 mm, 850 nm (section 3).
+    pub const DUBEY: Self = Self {
+        breadth_m: 9e-3,
+        thickness_m: 3e-3,
+        wavelength_m: 850e-9,
+        // Not in the paper. This one puts equation 9's first peak at figure 14's 1.7 N; handbooks give 3e-9 for urethane
+        // rubber.
+        stress_optic_m2_n: 850e-9 * 9e-3 / (2.0 * 1.7),
+        // Not in the paper. At 45 degrees a normal force alone gives the whole intensity.
+        polariser_rad: std::f64::consts::FRAC_PI_4,
+    };
+
+    /// Equation 5: the sensing area, m^2.
+    #[must_use]
+    pub fn area_m2(&self) -> f64 {
+        self.breadth_m * self.thickness_m
+    }
+
+    /// Equations 3, 4 and 6 to 8: plane stress under a normal and a shear force.
+    #[must_use]
+    pub fn stress(&self, normal_n: f64, shear_n: f64) -> Stress {
+        let (sigma_x, tau_xy) = (normal_n / self.area_m2(), shear_n / self.area_m2());
+        let root = libm::sqrt(sigma_x * sigma_x + 4.0 * tau_xy * tau_xy);
+        let twice_alpha = if root > 0.0 { libm::asin(2.0 * tau_xy / root) } else { 0.0 };
+        Stress {
+            sigma_x,
+            tau_xy,
+            sigma_1: sigma_x / 2.0 + root / 2.0,
+            sigma_2: sigma_x / 2.0 - root / 2.0,
+            alpha_rad: twice_alpha / 2.0,
+        }
+    }
+
+    /// The argument of equation 9's second sine: half the retardation, rad.
+    #[must_use]
+    pub fn phase_rad(&self, stress: &Stress) -> f64 {
+        std::f64::consts::PI * self.thickness_m * (stress.sigma_1 - stress.sigma_2) * self.stress_optic_m2_n
+            / self.wavelength_m
+    }
+
+    /// Equation 9's first factor, `sin^2 2 theta`; theta lies between the plane of sigma_1 and that of polarisation.
+    #[must_use]
+    pub fn orientation(&self, stress: &Stress) -> f64 {
+        let sine = libm::sin(2.0 * (self.polariser_rad - stress.alpha_rad));
+        sine * sine
+    }
+
+    /// Equation 9 as printed: the part of the incident light that comes out.
+    #[must_use]
+    pub fn intensity(&self, normal_n: f64, shear_n: f64) -> f64 {
+        let stress = self.stress(normal_n, shear_n);
+        let sine = libm::sin(self.phase_rad(&stress));
+        self.orientation(&stress) * sine * sine
+    }
+}
+
+/// Stress in the layer, N/m^2.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stress {
+    /// Along the normal force. The paper counts compression as positive.
+    pub sigma_x: f64,
+    /// Along the surface.
+    pub tau_xy: f64,
+    /// The greater principal stress.
+    pub sigma_1: f64,
+    /// The smaller.
+    pub sigma_2: f64,
+    /// Between x and sigma_1, rad.
+    pub alpha_rad: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_4;
+
+    #[test]
+    fn principal_stresses_are_the_eigenvalues_and_alpha_their_direction() {
+        for (normal_n, shear_n) in [(1.7, 0.0), (1.0, 0.35), (4.0, -1.2), (0.5, 2.0)] {
+            let s = Layer::DUBEY.stress(normal_n, shear_n);
+            assert!((s.sigma_1 + s.sigma_2 - s.sigma_x).abs() < 1e-6 * s.sigma_x, "trace");
+            assert!(
+                (s.sigma_1 * s.sigma_2 + s.tau_xy * s.tau_xy).abs() < 1e-6 * s.tau_xy.abs().max(1.0).powi(2)
+            );
+            // The shear on the plane of sigma_1 is nothing.
+            let (sin, cos) = (2.0 * s.alpha_rad).sin_cos();
+            assert!((-s.sigma_x / 2.0 * sin + s.tau_xy * cos).abs() < 1e-6 * s.sigma_x.max(s.tau_xy.abs()));
+        }
+    }
+
+    #[test]
+    fn as_printed_it_peaks_at_the_fold_and_is_back_at_twice_the_force_not_at_6_n() {
+        let at = |normal_n| Layer::DUBEY.intensity(normal_n, 0.0);
+        assert!((at(1.7) - 1.0).abs() < 1e-12 && at(0.0) == 0.0);
+        assert!(at(3.4) < 1e-12, "equation 9 is symmetric about its peak; figure 14 is not");
+    }
+
+    #[test]
+    fn with_the_polariser_along_x_a_normal_force_alone_gives_no_light() {
+        let along = Layer { polariser_rad: 0.0, ..Layer::DUBEY };
+        assert!(along.intensity(1.0, 0.0) < 1e-30 && along.intensity(1.0, 0.3) > 0.05);
+        // At 45 degrees and small loads shear does not matter: what it adds to the phase, orientation takes away.
+        let [without, with] = [0.0, 0.003].map(|shear_n| Layer::DUBEY.intensity(0.01, shear_n));
+        assert!(
+            (with / without - 1.0).abs() < 1e-3 && (Layer::DUBEY.polariser_rad - FRAC_PI_4).abs() < 1e-12
+        );
+    }
+}
