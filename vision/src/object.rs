@@ -174,7 +174,8 @@ impl<M: Movement> Tracker<M> {
         differs.keep_large(PIECES_PERCENT);
         self.object = differs;
         self.near.clone_from(&self.object);
-        if self.config.skip_hand {
+        // A hand that has closed took the object from somebody's.
+        if learn && self.config.skip_hand {
             hand::leave_out(&mut self.object, frame, self.scene.mean_colour());
         }
 

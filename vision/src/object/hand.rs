@@ -46,6 +46,7 @@ pub fn leave_out(object: &mut Mask, frame: &Frame, white: [u8; 3]) {
     // A hand comes from outside: what is surrounded by the object is printed on it.
     rest.fill_holes();
     if 2 * rest.count() >= all {
+        rest.keep_large(25);
         *object = rest;
     }
 }
