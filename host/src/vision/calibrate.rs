@@ -239,10 +239,13 @@ pub fn score(loads: &Loads, samples: &[Sample]) -> Score {
     }
 }
 
+/// A load's mass, truth, sum of the estimates, and pictures.
+type Sum = (f64, [f64; 3], [f64; 3], f64);
+
 /// Each load's truth and estimate: mean over its pictures, N.
 #[must_use]
 pub fn table(loads: &Loads, samples: &[Sample]) -> Vec<(f64, [f64; 3], [f64; 3])> {
-    let mut sums: BTreeMap<[i64; 4], (f64, [f64; 3], [f64; 3], f64)> = BTreeMap::new();
+    let mut sums: BTreeMap<[i64; 4], Sum> = BTreeMap::new();
     for sample in samples {
         let key = [sample.mass_g, sample.force_n[0], sample.force_n[1], sample.force_n[2]];
         let force = loads.newtons(&sample.features);

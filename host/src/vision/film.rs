@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
@@ -67,7 +67,7 @@ pub struct Blindness {
 pub fn follow(plan: &Plan, mut told: impl FnMut(&Camera, &Summary) -> Result<()>) -> Result<Report> {
     let mut pictures = plan.source.open()?;
     let rate_hz = plan.rate_hz.or_else(|| plan.source.rate_hz()).unwrap_or(30.0);
-    let mut tables = plan.folder.as_ref().map(Tables::create).transpose()?;
+    let mut tables = plan.folder.as_deref().map(Tables::create).transpose()?;
     let mut camera = Camera::new(Config::default());
     let mut planes: Box<[u8; FRAME_BYTES]> =
         vec![0; FRAME_BYTES].try_into().ok().context("a picture's size")?;
@@ -127,7 +127,7 @@ struct Tables {
 }
 
 impl Tables {
-    fn create(folder: &PathBuf) -> Result<Self> {
+    fn create(folder: &Path) -> Result<Self> {
         let create = |name: &str| -> Result<_> {
             let path = folder.join(name);
             Ok(BufWriter::new(
@@ -140,7 +140,7 @@ impl Tables {
             object,
             "frame,area,x,y,angle_rad,cut,slip_px,moving_px,slips,flow_x,flow_y,shear_x_px,shear_y_px,normal_px,twist_px2,blind"
         )?;
-        Ok(Self { folder: folder.clone(), markers, object })
+        Ok(Self { folder: folder.to_owned(), markers, object })
     }
 
     fn write(&mut self, camera: &Camera, summary: &Summary) -> Result<()> {
