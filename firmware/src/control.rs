@@ -57,8 +57,9 @@ impl Control {
         self.switches.show(select_of_slot((next % u32::from(FRAMES_PER_SLOW_FRAME)) as u8));
 
         self.device.button(self.button.is_down());
-        // The tick in which frames may be sent has no room for a command and its answer as well, streamed or not.
-        if !usize::from(frame.slot()).is_multiple_of(FRAMES_PER_RAW) {
+        // A tick in which frames may be sent, or that ends a slow frame, has no room for a command and its answer as well,
+        // streamed or not.
+        if !usize::from(frame.slot()).is_multiple_of(FRAMES_PER_RAW) && !frame.ends_slow_frame() {
             self.take_command();
         }
         let drive = tenax_control_tick(self.device.fingertip_mut(), frame);

@@ -167,7 +167,7 @@ fn about() -> About {
 fn raw() -> Raw {
     let mut raw = Raw::default();
     for n in 0..5 {
-        let sample = |channel: u16| 1_000 * n as u16 + 100 * channel;
+        let sample = |channel: u16| 1_001 * n as u16 + 101 * channel;
         raw.put(&Frame {
             sequence: 45 + n,
             valid: n != 3,

@@ -1,6 +1,7 @@
 //! Every promise of the README as a bar: what is promised, what was measured, whether it holds.
 
 pub mod agreement;
+pub mod array;
 pub mod default_scene;
 pub mod learn;
 pub mod mistakes;

@@ -3,6 +3,7 @@
 mod calibrate;
 mod chart;
 mod check;
+mod config;
 mod dataset;
 mod evaluate;
 mod flash;
@@ -13,7 +14,11 @@ mod line_file;
 mod lint_image;
 mod monitor;
 mod out;
+mod play;
+mod plot;
+mod port;
 mod progress;
+mod record;
 mod run;
 mod scenes;
 mod settings;
@@ -41,9 +46,10 @@ Examples:
   tenax scenes                              what there is to run
   tenax check                               every promise, measured
   tenax chart scenes                        how friction is stepped, where that fails, and what it costs
-  tenax monitor --port /dev/ttyACM0         watch a real board
-  tenax monitor --port /dev/pts/5 --set s1-mv=120 --settings
-                                            set up a running scene: the path is what `tenax run --serve` printed
+  tenax monitor                             watch the board that is plugged in
+  tenax monitor --port /dev/pts/5           watch a running scene: the path is what `tenax run --serve` printed
+  tenax config --port /dev/pts/5 set s1-mv=120
+  tenax record --out grasp.mcap             record it, for Foxglove, PlotJuggler, Python and `run --replay`
   tenax monitor --port tcp:127.0.0.1:7777   the same over TCP
   tenax monitor --port out/glass.line.bin   what a run sent";
 
@@ -81,8 +87,16 @@ enum Command {
     Vision(vision::Args),
     /// Flash a NUCLEO-F411RE through probe-rs
     Flash(flash::Args),
-    /// Watch a board's serial line, one line a message
+    /// Watch a board: a screen, or one line a message
     Monitor(monitor::Args),
+    /// Record a board's line
+    Record(record::Args),
+    /// Play a recording: serve its line, or write it as CSV
+    Play(play::Args),
+    /// Draw a recording
+    Plot(plot::Args),
+    /// Show and change a board's settings
+    Config(config::Args),
     /// Flash, RAM, worst stack and instructions a tick of the image, beside their budgets
     Size(size::Args),
     /// Run Clippy on the image with the toolchain that builds it
@@ -110,6 +124,10 @@ pub fn main() -> ExitCode {
         Command::Vision(args) => vision::main(&args),
         Command::Flash(args) => flash::main(&args),
         Command::Monitor(args) => monitor::main(&args),
+        Command::Record(args) => record::main(&args),
+        Command::Play(args) => play::main(&args),
+        Command::Plot(args) => plot::main(&args),
+        Command::Config(args) => config::main(&args),
         Command::Size(args) => size::main(&args),
         Command::LintImage => lint_image::main(),
         Command::Wiring => wiring::main(),

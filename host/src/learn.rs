@@ -20,6 +20,7 @@ pub mod trial;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
+use tenax_hal_shim::wire::Setting;
 
 use crate::board::agreement::Agreement;
 use crate::session::Board;
@@ -36,7 +37,7 @@ pub const LESSONS: u64 = 7;
 const TRIALS_OF_OTHERS: u64 = 10;
 
 /// What is tried.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Options {
     /// Seed of everything.
     pub seed: u64,
@@ -50,6 +51,8 @@ pub struct Options {
     pub fingertips: u64,
     /// Whether the films hear no mains hum: the most that a canceller of it could bring.
     pub without_hum: bool,
+    /// Settings of the fingertips that are not the defaults, on the host only.
+    pub settings: Vec<Setting>,
 }
 
 impl Options {
@@ -61,7 +64,15 @@ impl Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { seed: 1, trials: 50, minutes: 60, lifts: 20, fingertips: 20, without_hum: false }
+        Self {
+            seed: 1,
+            trials: 50,
+            minutes: 60,
+            lifts: 20,
+            fingertips: 20,
+            without_hum: false,
+            settings: Vec::new(),
+        }
     }
 }
 
@@ -139,7 +150,7 @@ pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Resu
     });
     let others = others.collect::<anyhow::Result<Vec<Other>>>()?;
     Ok(Outcome {
-        options: *options,
+        options: options.clone(),
         board: board.name(),
         agreement,
         untaught: loudest.unwrap_or(0),
@@ -159,7 +170,7 @@ pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Resu
 type Learned = (Bench, Vec<Trial>, Vec<figures::Felt>);
 
 fn lessons_on_host(finger: &Finger, options: &Options, progress: Progress) -> anyhow::Result<Learned> {
-    let mut bench = Bench::default();
+    let mut bench = Bench::with_settings(&options.settings)?;
     let (mut lessons, mut felt) = (Vec::new(), Vec::new());
     for n in 0..LESSONS {
         let setup = Setup::new(finger, lesson(options.seed, n), true)?;
@@ -226,7 +237,7 @@ pub struct Other {
 fn other(options: &Options, n: u64) -> anyhow::Result<Other> {
     let own = seed(options.seed, 6, n);
     let finger = options.finger(Finger::random(own));
-    let mut bench = Bench::default();
+    let mut bench = Bench::with_settings(&options.settings)?;
     for n in 0..LESSONS {
         bench.trial(Setup::new(&finger, lesson(own, n), true)?);
     }

@@ -1,5 +1,9 @@
 //! A board's serial line for people: one line a message, what is missing counted, whatever comes.
 
+pub mod app;
+pub mod screen;
+pub mod source;
+pub mod view;
 mod words;
 
 use std::io::{self, Read, Write};

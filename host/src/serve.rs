@@ -43,6 +43,22 @@ pub struct Options {
     pub tcp: Option<u16>,
 }
 
+/// How a run's line is used.
+#[derive(Default)]
+pub struct Use {
+    /// With it, it is served.
+    pub live: Option<Live>,
+    /// Its board streams its frames from the start: what a recording needs that is to be replayed.
+    pub streams_at_start: bool,
+}
+
+impl Use {
+    /// The plant of such a run.
+    pub fn of<P>(self, plant: P) -> Served<P> {
+        Served { plant, live: self.live, streams_at_start: self.streams_at_start }
+    }
+}
+
 /// Who was served.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {

@@ -29,6 +29,7 @@ use tenax_scene::{SceneFile, World, builtin};
 #[cfg(feature = "emulator")]
 use crate::board::emulated;
 use crate::board::kept::model_of;
+use crate::board::line_log::LineLog;
 use crate::board::simulated::{Grips, frames_in, seconds_of};
 use crate::board::{Recorder, Run, Summary, simulated};
 use crate::input;
@@ -41,7 +42,7 @@ use crate::report::reflex::Added;
 use crate::report::replay::{ActivePart, Replay};
 use crate::report::wearer::Judge;
 use crate::report::{Report, Subject};
-use crate::serve::{Live, Served};
+use crate::serve::{Served, Use};
 use crate::timeline::Timeline;
 
 /// The scene that is run when none is asked for.
@@ -247,22 +248,22 @@ pub fn scene_with(
     recorder: &mut dyn Recorder,
     progress: &mut dyn FnMut(f64),
 ) -> anyhow::Result<Outcome> {
-    scene_served(file, seed, board, None, recorder, progress)
+    scene_served(file, seed, board, Use::default(), recorder, progress)
 }
 
-/// As [`scene_with`]; with `live`, the board's line is served.
+/// As [`scene_with`], with the board's line used so.
 pub fn scene_served(
     file: &SceneFile,
     seed: u64,
     board: &Board,
-    live: Option<Live>,
+    line: Use,
     recorder: &mut dyn Recorder,
     progress: &mut dyn FnMut(f64),
 ) -> anyhow::Result<Outcome> {
     let span_s = (0.0, seconds_of(frames_in(file.duration_s())));
     let world = World::new(file, seed);
     let calibrated = world.calibrated().as_ref().map(model_of).transpose()?;
-    let plant = Served { plant: Drawn::new(world, span_s), live };
+    let plant = line.of(Drawn::new(world, span_s));
     let mut witness = Witness::new(0.0, span_s, calibrated.as_ref());
     let (run, Served { mut plant, .. }) = board.record(plant, &mut (&mut witness, recorder), progress)?;
     plant.draw();
@@ -325,7 +326,7 @@ pub fn replay_with(
     recorder: &mut dyn Recorder,
     progress: &mut dyn FnMut(f64),
 ) -> anyhow::Result<Outcome> {
-    let options = ReplayOptions { recipe, calibrated, live: None };
+    let options = ReplayOptions { recipe, calibrated, line: Use::default() };
     replay_served(path, options, seed, board, recorder, progress)
 }
 
@@ -336,8 +337,8 @@ pub struct ReplayOptions<'a> {
     pub recipe: Option<&'a str>,
     /// The wearer to whom the board is calibrated.
     pub calibrated: Option<EmgModel>,
-    /// With it, the board's line is served.
-    pub live: Option<Live>,
+    /// What its board's line is used for.
+    pub line: Use,
 }
 
 /// Plays a recording; `recorder` is told of the run as it goes.
@@ -349,7 +350,7 @@ pub fn replay_served(
     recorder: &mut dyn Recorder,
     progress: &mut dyn FnMut(f64),
 ) -> anyhow::Result<Outcome> {
-    let ReplayOptions { recipe, calibrated, live } = options;
+    let ReplayOptions { recipe, calibrated, line } = options;
     let recording = Recording::read(path)?;
     let named = library::choose(&recording, path, recipe)?;
     let mut plant = match &named {
@@ -366,7 +367,7 @@ pub fn replay_served(
     let calibrated = plant.calibrated().as_ref().map(model_of).transpose()?;
     let mut witness = Witness::new(zero_s, span_s, calibrated.as_ref());
     let mut active = ActivePart::new(&recording, zero_s);
-    let plant = Served { plant, live };
+    let plant = line.of(plant);
     let (run, _) = board.record(plant, &mut (&mut (&mut witness, &mut active), recorder), progress)?;
     let scene = name_of(path);
     let Witness { timeline, judge, added, sketch } = witness;
@@ -389,6 +390,35 @@ pub fn replay_served(
     if let Some(named) = &named {
         figure.subtitle = format!("{} ({}), {}", named.recipe.title, named.name, figure.subtitle);
     }
+    Ok(Outcome { run, report, figure, truth: Fate::default() })
+}
+
+/// What a line says that was captured or recorded: its report and its figure. What the plant did is not known.
+pub fn recorded(name: &str, line: &[u8]) -> anyhow::Result<Outcome> {
+    let mut run = Summary::default();
+    let mut slows = Run::default();
+    LineLog::new(u32::MAX).hear(line, &mut run, &mut slows);
+    let (Some(first), Some(last)) = (slows.slows.first(), slows.slows.last()) else {
+        bail!("{name} has no slow frame: it is no board's line");
+    };
+    let span_s = (seconds_of(first.frame), seconds_of(last.frame + 1));
+    run.virtual_s = span_s.1 - span_s.0;
+    let mut witness = Witness::new(0.0, span_s, None);
+    slows.slows.iter().for_each(|slow| witness.slow(slow));
+    let Witness { timeline, judge, added, sketch } = witness;
+    let subject = Subject {
+        scene: name,
+        board: "recorded",
+        seed: 0,
+        run: &run,
+        timeline: &timeline,
+        judge: &judge,
+        added: &added,
+        truth: None,
+        oracle: None,
+    };
+    let report = Report::new(&subject);
+    let figure = panels::figure(&subject, sketch);
     Ok(Outcome { run, report, figure, truth: Fate::default() })
 }
 

@@ -59,6 +59,37 @@ pub fn named(name: &str) -> anyhow::Result<SettingId> {
     })
 }
 
+/// Settings as a TOML file, with what each does.
+#[must_use]
+pub fn toml(settings: &[Setting]) -> String {
+    let mut text =
+        String::from("# Settings of a Tenax board. `tenax config import` sets what is named here.\n");
+    for setting in settings {
+        if let Some(id) = SettingId::from_number(setting.id) {
+            let row = id.row();
+            // Writing into a String cannot fail.
+            let _ = writeln!(
+                text,
+                "\n# {}; {}, {} to {}, default {}\n{} = {}",
+                row.meaning, row.unit, row.min, row.max, row.default, row.name, setting.value
+            );
+        }
+    }
+    text
+}
+
+/// The settings that a TOML file names. Whether the line is trusted comes last: a narrower range is in force after it.
+///
+/// # Errors
+/// Says what is wrong with it.
+pub fn of_toml(text: &str) -> anyhow::Result<Vec<Setting>> {
+    let table: toml::Table = text.parse().context("this is no TOML")?;
+    let mut settings: Vec<Setting> =
+        table.iter().map(|(name, value)| parse(&format!("{name}={value}"))).collect::<anyhow::Result<_>>()?;
+    settings.sort_by_key(|setting| setting.id == SettingId::LineTrusted as u8);
+    Ok(settings)
+}
+
 /// A setting and its value from `NAME=VALUE`.
 ///
 /// # Errors
@@ -78,6 +109,18 @@ pub fn parse(text: &str) -> anyhow::Result<Setting> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_exported_file_is_imported_as_it_was() {
+        let all = SettingId::ALL.map(|id| Setting { id: id as u8, value: id.row().min });
+        let mut back = of_toml(&toml(&all)).unwrap();
+        back.sort_by_key(|setting| setting.id);
+        assert_eq!(back, all);
+        for (wrong, word) in [("s1-mv = 5", "20 to"), ("s1 = 1", "no setting"), ("s1-mv = [", "no TOML")] {
+            let error = format!("{:#}", of_toml(wrong).unwrap_err());
+            assert!(error.contains(word), "{error}");
+        }
+    }
 
     #[test]
     fn a_setting_is_read_by_either_name_and_a_wrong_one_says_what_is_right() {

@@ -5,7 +5,15 @@ use tenax::learn::{self, Options, Outcome};
 use tenax::session::Board;
 
 /// So few trials that a test may run them; the bars themselves are measured by `tenax check`.
-const FEW: Options = Options { seed: 11, trials: 4, minutes: 2, lifts: 3, fingertips: 1, without_hum: false };
+const FEW: Options = Options {
+    seed: 11,
+    trials: 4,
+    minutes: 2,
+    lifts: 3,
+    fingertips: 1,
+    without_hum: false,
+    settings: Vec::new(),
+};
 
 fn outcome() -> Outcome {
     learn::run(&FEW, &Board::Host, &|_, _| ()).unwrap()

@@ -29,11 +29,11 @@ fn force_is_followed_within_3_percent_on_the_right_branch_and_is_never_certain_w
 }
 
 #[test]
-fn a_calibration_from_weights_is_the_heads_within_half_a_percent() {
+fn a_calibration_from_weights_is_the_heads_within_a_percent() {
     for seed in SEEDS {
         let making = Making::drawn(seed.into(), 0.2);
         let calibration = balance::weigh(&making, &Day::FIRST, seed.into());
-        assert!(calibration.worst_percent() < 0.6, "{seed}: {}", calibration.worst_percent());
+        assert!(calibration.worst_percent() < 1.0, "{seed}: {}", calibration.worst_percent());
     }
     // Of the mean head it is the default of the settings, within their millivolts and a twentieth of a newton.
     let mean = balance::weigh(&Making::MEAN, &Day::FIRST, 1.into());

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use tenax::board::{Recorder, Run};
 use tenax::link::{Client, Target};
-use tenax::serve::{Options, Served, Server, Tally};
+use tenax::serve::{Options, Server, Tally, Use};
 use tenax::session::Board;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::setting::SettingId;
@@ -43,7 +43,7 @@ fn serve(options: &Options, duration_s: f64, visit: impl FnOnce(&[Target]) + Sen
     thread::scope(|scope| {
         let visitor = scope.spawn(move || visit(&places));
         let mut run = Run::default();
-        let plant = Served { plant: Rest(Pins::default(), duration_s), live: Some(live) };
+        let plant = Use { live: Some(live), streams_at_start: false }.of(Rest(Pins::default(), duration_s));
         let began = Instant::now();
         let (summary, _) =
             Board::Host.record(plant, &mut (&mut run, &mut server), &mut |_| {}).expect("a run");

@@ -197,7 +197,7 @@ impl Device {
 
     #[inline(never)]
     fn senses(&self) -> Senses {
-        let films = self.fingertip.films().map(|film| u16::try_from(film).unwrap_or(u16::MAX));
+        let films = self.fingertip.films();
         Senses { frame: self.fingertip.frame(), samples: self.samples.in_order(), films }
     }
 

@@ -32,6 +32,7 @@ use crate::senses::Senses;
 use crate::store::keeper::{Keeper, Now};
 use crate::store::payload;
 use crate::store::record::Record;
+use crate::vibration::Q;
 
 /// Consent is looked for in this slot of each step: the array's heaviest share is in another.
 const CONSENT_SLOT: u32 = 0;
@@ -198,8 +199,8 @@ impl Fingertip {
 
     /// The vibration envelope of each film, in samples.
     #[must_use]
-    pub const fn films(&self) -> &[i32; PVDF_COUNT] {
-        self.senses.envelopes()
+    pub fn films(&self) -> [u16; PVDF_COUNT] {
+        self.senses.envelopes().map(|envelope| u16::try_from(envelope >> Q).unwrap_or(u16::MAX))
     }
 
     /// What the reflex is doing.

@@ -34,7 +34,7 @@ const KNOCK_RINGS: u32 = 12;
 const PEAK_SHIFT: u32 = 8;
 
 /// Fraction bits of a conditioned sample.
-const Q: u32 = 16;
+pub(crate) const Q: u32 = 16;
 /// The sample in the middle of the converter's range.
 const MIDDLE: i32 = 1 << 13;
 

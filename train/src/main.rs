@@ -185,7 +185,10 @@ fn load(
         "{name}: every recording is shorter than the windows, {} readings at 80 Hz",
         features.ready_after()
     );
-    let may_learn = recordings.iter().filter(|own| matches!(own.part, None | Some(Part::Train)));
+    // What is disturbed has more noise than its array, and no slip to be learned in it.
+    let may_learn = recordings
+        .iter()
+        .filter(|own| matches!(own.part, None | Some(Part::Train)) && own.doing != Doing::Disturb);
     let noise = may_learn.map(|own| noise_samples(&own.steps));
     let noise = noise.fold([f64::INFINITY, 0.0], |[low, high], own| [low.min(own), own.max(high)]);
     let file = path.file_name().map_or(name.clone(), |file| file.to_string_lossy().into_owned());

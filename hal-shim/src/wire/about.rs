@@ -4,10 +4,13 @@ use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::Setting;
+use crate::setting::SettingId;
 use crate::words::Kept;
 
 /// Settings that a message has room for.
-pub const SETTINGS_MAX: usize = 48;
+pub const SETTINGS_MAX: usize = 64;
+// Whoever adds the next one finds out here, and not when the board starts.
+const _: () = assert!(SettingId::ALL.len() <= SETTINGS_MAX);
 /// Bytes of what was kept, at most.
 pub const KEPT_MAX: usize = 320;
 

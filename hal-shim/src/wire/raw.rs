@@ -9,7 +9,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::channel::{PVDF_COUNT, SAMPLE_MAX};
+use crate::channel::PVDF_COUNT;
 use crate::frame::Frame;
 
 /// Frames in a message: a divisor of those in a slow frame.
@@ -17,6 +17,8 @@ pub const FRAMES_PER_RAW: usize = 5;
 /// Bytes of a frame.
 const BYTES: usize = 25;
 const BITS: u32 = 14;
+/// A sample's bits. Not its largest value, four times 4095, which lacks the lowest two.
+const MASK: u16 = (1 << BITS) - 1;
 const VALID: u32 = 1 << 28;
 
 /// Some frames, one after the other.
@@ -45,10 +47,10 @@ impl Raw {
 fn pack(frame: &Frame) -> [u8; BYTES] {
     let mut bytes = [0; BYTES];
     for (bytes, films) in bytes.as_chunks_mut::<7>().0.iter_mut().zip(frame.pvdf.as_chunks::<4>().0) {
-        let word = films.iter().rev().fold(0, |word, &film| word << BITS | u64::from(film & SAMPLE_MAX));
+        let word = films.iter().rev().fold(0, |word, &film| word << BITS | u64::from(film & MASK));
         bytes.copy_from_slice(&word.to_le_bytes()[..7]);
     }
-    let [a, b] = [frame.switch_a, frame.switch_b].map(|sample| u32::from(sample & SAMPLE_MAX));
+    let [a, b] = [frame.switch_a, frame.switch_b].map(|sample| u32::from(sample & MASK));
     let word = a | b << BITS | if frame.valid { VALID } else { 0 };
     bytes[BYTES - 4..].copy_from_slice(&word.to_le_bytes());
     bytes
@@ -60,7 +62,7 @@ fn unpack(sequence: u32, bytes: &[u8; BYTES]) -> Frame {
         let mut word = [0; 8];
         word[..7].copy_from_slice(bytes);
         let word = u64::from_le_bytes(word);
-        *films = [0, 1, 2, 3].map(|n| (word >> (n * BITS)) as u16 & SAMPLE_MAX);
+        *films = [0, 1, 2, 3].map(|n| (word >> (n * BITS)) as u16 & MASK);
     }
     let mut word = [0; 4];
     word.copy_from_slice(&bytes[BYTES - 4..]);
@@ -69,8 +71,8 @@ fn unpack(sequence: u32, bytes: &[u8; BYTES]) -> Frame {
         sequence,
         valid: word & VALID != 0,
         pvdf,
-        switch_a: word as u16 & SAMPLE_MAX,
-        switch_b: (word >> BITS) as u16 & SAMPLE_MAX,
+        switch_a: word as u16 & MASK,
+        switch_b: (word >> BITS) as u16 & MASK,
     }
 }
 
@@ -83,16 +85,16 @@ mod tests {
         let mut state = 1_u32;
         let mut sample = || {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (state >> 16) as u16 & SAMPLE_MAX
+            (state >> 16) as u16 & MASK
         };
         for round in 0..1_000 {
             let mut raw = Raw::default();
             let frames: [Frame; FRAMES_PER_RAW] = core::array::from_fn(|place| match round {
                 0 => Frame::lost(place as u32),
                 1 => Frame {
-                    pvdf: [SAMPLE_MAX; PVDF_COUNT],
-                    switch_a: SAMPLE_MAX,
-                    switch_b: SAMPLE_MAX,
+                    pvdf: [MASK; PVDF_COUNT],
+                    switch_a: MASK,
+                    switch_b: MASK,
                     valid: true,
                     sequence: place as u32,
                 },

@@ -134,7 +134,7 @@ impl fmt::Display for Agreement {
 /// The first difference.
 fn difference(run: &Run, host: &Said) -> Option<String> {
     if let Some((image, host)) = run.slows.iter().zip(&host.slows).find(|(image, host)| image != host) {
-        return Some(of_slows(image, host));
+        return Some(slow_difference(image, host));
     }
     // The board is switched off in the middle of a slow frame; what it had not yet sent cannot be compared.
     let whole = host.slows.len().saturating_sub(1);
@@ -162,7 +162,8 @@ fn first<T: PartialEq + fmt::Debug>(what: &str, image: &[T], host: &[T], due: us
 }
 
 /// Where two slow frames begin to differ.
-fn of_slows(image: &Slow, host: &Slow) -> String {
+#[must_use]
+pub fn slow_difference(image: &Slow, host: &Slow) -> String {
     let first = image.frame.saturating_sub(u32::from(FRAMES_PER_SLOW_FRAME) - 1);
     match (first..).zip(image.ticks.iter().zip(&host.ticks)).find(|(_, (image, host))| image != host) {
         Some((frame, (image, host))) => format!("frame {frame}: image {image:?}, host {host:?}"),

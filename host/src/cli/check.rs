@@ -9,7 +9,7 @@ use super::{out, size, test, workspace};
 use crate::board::Run;
 use crate::budgets::Line;
 use crate::check::side_by_side::{Group, measure};
-use crate::check::{Bar, Verdict, default_scene, learn, mistakes, recordings, wearer};
+use crate::check::{Bar, Verdict, array, default_scene, learn, mistakes, recordings, wearer};
 use crate::session::{self, Board};
 
 /// Measure every promise of the project, one line each; fails if one is not kept.
@@ -43,6 +43,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     ];
     groups.extend(recordings::groups(&data, &board)?);
     groups.push(Group::new("learn", learn::bars));
+    groups.push(Group::new("array", array::bars));
     groups.push(Group::new("mistakes", || Ok(mistakes::bars())));
 
     let status = Status::new("check");

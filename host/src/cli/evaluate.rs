@@ -198,14 +198,18 @@ fn online_tasks(args: &Args) -> anyhow::Result<ExitCode> {
         out::say!("{}", serde_json::to_string_pretty(&tries)?)?;
         return Ok(ExitCode::SUCCESS);
     }
-    out::say!("task  material    kept      slid, mm (oracle)   peak, N (oracle, needed)")?;
+    out::say!(
+        "task  material    kept      no reflex, constant grip   slid, mm (oracle)   peak, N (oracle, needed)"
+    )?;
     for row in online::rows(&tries) {
         out::say!(
-            "{:<6}{:<12}{:>2} of {:<2}  {:>8.2} ({:>6.2})   {:>8.2} ({:>5.2}, {:>5.2})",
+            "{:<6}{:<12}{:>2} of {:<2}  {:>9}, {:<15}  {:>8.2} ({:>6.2})   {:>8.2} ({:>5.2}, {:>5.2})",
             row.task,
             row.material,
             row.kept,
             row.tries,
+            row.kept_without[0],
+            row.kept_without[1],
             row.distance_mm,
             row.oracle_distance_mm,
             row.peak_force_n,

@@ -7,6 +7,9 @@ use std::sync::{Mutex, PoisonError};
 
 use anyhow::{Context, ensure};
 
+use tenax_hal_shim::setting::SettingId;
+use tenax_hal_shim::wire::Setting;
+
 use super::format::Format;
 use super::out;
 use super::progress::Progress;
@@ -46,6 +49,9 @@ pub struct Args {
     /// Let the films hear no mains hum: the most that a canceller of it could bring
     #[arg(long)]
     without_hum: bool,
+    /// A setting of the fingertips (docs/settings.md), on the host only; may be given more than once
+    #[arg(long, value_name = "NAME=VALUE", requires = "host")]
+    set: Vec<String>,
     /// Seed of everything
     #[arg(long, default_value_t = Options::default().seed)]
     seed: u64,
@@ -67,6 +73,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         lifts: args.lifts,
         fingertips: args.fingertips,
         without_hum: args.without_hum,
+        settings: args.set.iter().map(|text| setting(text)).collect::<anyhow::Result<_>>()?,
     };
     let counts = [
         ("trials", options.trials),
@@ -88,6 +95,16 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let agrees = outcome.agreement.as_ref().is_none_or(Agreement::holds);
     Ok(if agrees { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// A setting by its name.
+fn setting(text: &str) -> anyhow::Result<Setting> {
+    let (name, value) =
+        text.split_once('=').with_context(|| format!("--set {text}: NAME=VALUE is needed"))?;
+    let id =
+        SettingId::by_name(name).with_context(|| format!("--set {text}: no setting is called {name}"))?;
+    let value = value.parse().with_context(|| format!("--set {text}: {value} is no whole number"))?;
+    Ok(Setting { id: id as u8, value })
 }
 
 /// All of it, with a bar for each part.

@@ -1,6 +1,6 @@
 //! `tenax monitor`: a board's serial line, or one that was captured.
 
-use std::io;
+use std::io::{self, IsTerminal};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
@@ -9,8 +9,10 @@ use anyhow::{Context, bail};
 use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{Down, SETTINGS_PER_ANSWER, Setting};
 
-use super::out;
+use super::{out, port};
 use crate::link::{Client, Target};
+use crate::monitor::app;
+use crate::web::Web;
 use crate::{monitor, settings};
 
 /// How long a board may take to answer.
@@ -19,26 +21,36 @@ const ANSWER_WITHIN: Duration = Duration::from_secs(2);
 /// Watch a board's serial line.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Where the line is: /dev/ttyACM0, COM3, /dev/pts/5, tcp:127.0.0.1:7777, or a file with a captured one
-    #[arg(long, value_name = "PORT", required_unless_present = "file")]
+    /// Where the line is: /dev/ttyACM0, COM3, /dev/pts/5, tcp:127.0.0.1:7777, or a file with a captured one [default: the
+    /// only board that is plugged in]
+    #[arg(long, value_name = "PORT")]
     port: Option<Target>,
     /// A captured line, such as out/glass.line.bin of `tenax run`
     #[arg(long, value_name = "FILE", conflicts_with = "port")]
     file: Option<PathBuf>,
+    /// One line a message instead of the screen, as always where the output is no terminal
+    #[arg(long)]
+    plain: bool,
+    /// Instead of the screen, a page in the browser, on this port of 127.0.0.1; 0: any that is free
+    #[arg(long, value_name = "HTTP_PORT", num_args = 0..=1, default_missing_value = "7780", conflicts_with = "plain")]
+    web: Option<u16>,
+    /// Let the screen's keys change something: settings, zero, calibration, the teacher
+    #[arg(long, conflicts_with = "plain")]
+    control: bool,
     /// First ask the board for something, or tell it something; may be given more than once
-    #[arg(long, value_name = "COMMAND", requires = "port")]
+    #[arg(long, value_name = "COMMAND")]
     send: Vec<Send>,
     /// Change a setting, such as s1-mv=120; may be given more than once
-    #[arg(long, requires = "port", value_name = "NAME=VALUE", value_parser = |text: &str| settings::parse(text))]
+    #[arg(long, value_name = "NAME=VALUE", value_parser = |text: &str| settings::parse(text))]
     set: Vec<Setting>,
     /// Ask for a setting; may be given more than once
-    #[arg(long, requires = "port", value_name = "NAME", value_parser = |name: &str| settings::named(name))]
+    #[arg(long, value_name = "NAME", value_parser = |name: &str| settings::named(name))]
     get: Vec<SettingId>,
     /// Ask for every setting
-    #[arg(long, requires = "port")]
+    #[arg(long)]
     settings: bool,
     /// Pass a camera's words on to the board, from standard input: a line `v1 v2 [age_ms]` for each picture
-    #[arg(long, requires = "port")]
+    #[arg(long)]
     teach: bool,
 }
 
@@ -76,11 +88,23 @@ impl From<Send> for Down {
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    let target = match (&args.port, &args.file) {
-        (Some(port), _) => port.clone(),
-        (None, Some(file)) => Target::File(file.clone()),
-        (None, None) => bail!("give --port PORT or --file FILE"),
+    let target = match &args.file {
+        Some(file) => Target::File(file.clone()),
+        None => port::or_found(args.port.as_ref())?,
     };
+    if let Some(port) = args.web {
+        let web = Web::new(&target, args.control, port)?;
+        out::note!("open {} in a browser of this machine; Ctrl-C ends it", web.place());
+        web.serve();
+        return Ok(ExitCode::SUCCESS);
+    }
+    let told =
+        !args.send.is_empty() || !args.set.is_empty() || !args.get.is_empty() || args.settings || args.teach;
+    let plain = args.plain || told || !io::stdout().is_terminal() || matches!(target, Target::File(_));
+    if !plain {
+        app::show(&target, args.control)?;
+        return Ok(ExitCode::SUCCESS);
+    }
     let mut client = Client::open(&target)?;
     tell(args, &mut client)?;
     let end = match print(&mut client, &mut io::stdout().lock()) {

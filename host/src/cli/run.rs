@@ -14,7 +14,8 @@ use super::out;
 use super::progress::Progress;
 use super::workspace;
 use crate::plot::{draw, png};
-use crate::replay::{Recording, calibrate};
+use crate::record::{self, Recording, is_recording};
+use crate::replay::{self, calibrate};
 use crate::report::text::Text;
 use crate::serve::{self, Server};
 use crate::session::{self, Board, Outcome};
@@ -28,8 +29,8 @@ pub struct Args {
     /// A scene file, or the name of one that `tenax scenes` lists
     #[arg(long, value_name = "FILE.toml|NAME", default_value = session::DEFAULT_SCENE, conflicts_with = "replay")]
     scene: String,
-    /// Play a recording (CSV) instead of a scene
-    #[arg(long, value_name = "RECORDING.csv")]
+    /// Play a recording instead of a scene: CSV at the pins, or what a board's line said (MCAP) to the host's logic
+    #[arg(long, value_name = "RECORDING.csv|FILE.mcap")]
     replay: Option<PathBuf>,
     /// How the recording's columns reach the pins: a recipe file, or the name of one in recipes/ [default: by its name]
     #[arg(long, value_name = "FILE.toml|NAME", requires = "replay")]
@@ -58,13 +59,21 @@ pub struct Args {
     /// Run at real time and serve the line on this TCP port of 127.0.0.1; 0: any that is free
     #[arg(long, value_name = "PORT")]
     serve_tcp: Option<u16>,
+    /// Record the line, every frame included, so that `run --replay FILE.mcap` can decide everything once more
+    #[arg(long, value_name = "FILE.mcap")]
+    record: Option<PathBuf>,
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
+    if let Some(recording) = args.replay.as_deref().filter(|path| is_recording(path)) {
+        let outcome = record::replay::replay(recording)?;
+        out::say!("{outcome}")?;
+        return Ok(ExitCode::from(u8::from(outcome.difference.is_some())));
+    }
     let folder = folder::made(&args.out)?;
     // What is to be run is looked at before the image is built, which can take minutes.
     let subject = match &args.replay {
-        Some(path) => Subject::Recording(path, Recording::read(path)?),
+        Some(path) => Subject::Recording(path, replay::Recording::read(path)?),
         None => Subject::Scene(Box::new(session::load_scene(&args.scene)?)),
     };
     let recordings = args.calibrate_emg.as_deref();
@@ -80,17 +89,20 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let board = if args.host { Board::Host } else { Board::emulated(&workspace::root()?)? };
     let mut line = LineFile::new(path("line.bin"));
     let (mut server, live) = served(args)?.unzip();
-    let recorder = &mut (&mut line, &mut server);
+    let mut recording = args.record.as_deref().map(Recording::create).transpose()?;
+    let line_use = serve::Use { live, streams_at_start: recording.is_some() };
+    let recorder = &mut (&mut (&mut line, &mut server), &mut recording);
     let outcome = match &subject {
         Subject::Recording(file, recording) => {
             let progress = Progress::new("replay", recording.duration_s());
-            let options = session::ReplayOptions { recipe: args.recipe.as_deref(), calibrated, live };
+            let options =
+                session::ReplayOptions { recipe: args.recipe.as_deref(), calibrated, line: line_use };
             session::replay_served(file, options, args.seed, &board, recorder, &mut |s| progress.at(s))?
         }
         Subject::Scene(file) => {
             let progress = Progress::new(&format!("scene {}", file.name), file.duration_s());
             let mut outcome =
-                session::scene_served(file, args.seed, &board, live, recorder, &mut |s| progress.at(s))?;
+                session::scene_served(file, args.seed, &board, line_use, recorder, &mut |s| progress.at(s))?;
             if args.controls {
                 outcome.report.controls = session::controls(file, args.seed, &outcome.truth);
             }
@@ -101,6 +113,10 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         out::note!("  {:<14}{}", "served", server.close());
     }
     let mut files = write(&outcome, &path)?;
+    if let (Some(recording), Some(path)) = (recording, &args.record) {
+        recording.finish().with_context(|| format!("cannot write {}", path.display()))?;
+        files.push(path.clone());
+    }
     files.extend(line.close()?);
     args.report.print(&Text(&outcome.report), &outcome.report)?;
     // On stderr, so that a program that reads the report reads nothing else.
@@ -127,7 +143,7 @@ fn served(args: &Args) -> anyhow::Result<Option<(Server, serve::Live)>> {
 
 /// What is run.
 enum Subject<'a> {
-    Recording(&'a Path, Recording),
+    Recording(&'a Path, replay::Recording),
     Scene(Box<SceneFile>),
 }
 

@@ -44,6 +44,12 @@ pub struct Args {
     /// How to print the report: text or json
     #[arg(long, default_value = "text", value_parser = ["text", "json"])]
     report: String,
+    /// Score on the data's own test part, too: do it once, for what is to be shipped
+    #[arg(long)]
+    open_test: bool,
+    /// Learn from the paper's 76 features alone: the control
+    #[arg(long)]
+    paper_only: bool,
     /// Instead: compare the paper's five classifiers
     #[arg(long)]
     compare: bool,
@@ -81,8 +87,12 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         command.arg("--test").arg(file);
     }
     command.arg("--out").arg(&args.out).args(["--seed", &args.seed.to_string(), "--report", &args.report]);
-    if args.compare {
-        command.arg("--compare");
+    for (is_set, flag) in
+        [(args.compare, "--compare"), (args.open_test, "--open-test"), (args.paper_only, "--paper-only")]
+    {
+        if is_set {
+            command.arg(flag);
+        }
     }
     // The matrices are small: a second thread costs more than it saves, and with one nothing depends on who was first.
     command.env("RAYON_NUM_THREADS", "1");

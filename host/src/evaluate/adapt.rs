@@ -16,8 +16,8 @@ use super::readings;
 use super::real::Logits;
 use crate::labelled::{Recording, Step};
 
-/// A noise may be so many times less or more than what was learned before a network refuses.
-const BEYOND: f64 = 1.25;
+/// A noise may be so many times less or more than what was learned before a network refuses: what estimating it is off by.
+const BEYOND: f64 = 1.1;
 /// One of so many quiet steps may be called slip.
 const QUIET_PART: f64 = 0.01;
 

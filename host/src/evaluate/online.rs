@@ -53,6 +53,8 @@ pub struct Row {
     pub tries: usize,
     /// Those in which the box was kept.
     pub kept: usize,
+    /// The controls: those in which it was kept without the reflex, and in a constant grip of the same mean force.
+    pub kept_without: [usize; 2],
     /// Means over the tries: slid, the oracle's, mm; greatest force, the oracle's, needed, N.
     pub distance_mm: f64,
     /// See above.
@@ -118,6 +120,7 @@ pub fn rows(tries: &[Try]) -> Vec<Row> {
             task,
             tries: own.len(),
             kept: own.iter().filter(|own| own.kept).count(),
+            kept_without: [0, 1].map(|n| own.iter().filter(|own| own.kept_without[n]).count()),
             distance_mm: mean(|own| own.distance_mm),
             oracle_distance_mm: mean(|own| own.oracle_distance_mm),
             peak_force_n: mean(|own| own.peak_force_n),

@@ -5,7 +5,7 @@ use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, PVDF_COUNT, SCANS_PER_FRAME
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::frame::{Frame, Scan, scan_of_pins};
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{Down, NETWORK_OUTPUTS, NetworkState, RECEPTORS, Slow};
+use tenax_hal_shim::wire::{Down, NETWORK_OUTPUTS, NetworkState, RECEPTORS, Setting, Slow};
 use tenax_hal_shim::words::Kept;
 use tenax_logic::detectors::Said;
 use tenax_logic::fingertip::Fingertip;
@@ -94,6 +94,19 @@ impl Bench {
         let world = self.run(setup.world, Judge::Touch, &mut |n, slow, _| trial.hear(n, slow));
         trial.end(world.truth().clone());
         trial
+    }
+
+    /// A new fingertip with these settings.
+    ///
+    /// # Errors
+    /// If a setting does not take its value.
+    pub fn with_settings(settings: &[Setting]) -> anyhow::Result<Self> {
+        let mut bench = Self::default();
+        for setting in settings {
+            let taken = bench.fingertip.command(&Down::Set(*setting));
+            taken.map_err(|refusal| anyhow!("setting {} to {}: {refusal:?}", setting.id, setting.value))?;
+        }
+        Ok(bench)
     }
 
     /// The same fingertip with equal weights in place of learned ones: each film's part of o1 is the mean of theirs, so that

@@ -13,12 +13,19 @@ use super::{Counts, Heard, Inbox, Line, Outbox, Target};
 /// How often a session is asked for, if somebody else on the line asks for one at the same time.
 const SESSIONS_MAX: u32 = 8;
 
+/// The board takes 500 commands a second, and skips what comes faster: a little less than that is sent.
+const EACH: Duration = Duration::from_micros(2_500);
+/// Commands that one with a long answer counts as.
+const LONG: u32 = 6;
+
 /// A client of a board.
 pub struct Client {
     up: Box<dyn Read + Send>,
     outbox: Option<Outbox<Box<dyn Write + Send>>>,
     inbox: Inbox,
     heard: VecDeque<Result<Heard, BadFrame>>,
+    /// When the next command may be sent.
+    free_at: Option<Instant>,
     /// Messages at the front of `heard` that were looked at while an answer was waited for.
     looked_at: usize,
 }
@@ -30,6 +37,7 @@ impl From<Line> for Client {
             outbox: line.down.map(Outbox::new),
             inbox: Inbox::default(),
             heard: VecDeque::new(),
+            free_at: None,
             looked_at: 0,
         }
     }
@@ -84,6 +92,10 @@ impl Client {
         let Some(outbox) = &mut self.outbox else {
             bail!("a captured line cannot be told anything: give a port, or tcp:HOST:PORT");
         };
+        let now = Instant::now();
+        let free_at = self.free_at.map_or(now, |at| at.max(now));
+        thread::sleep(free_at - now);
+        self.free_at = Some(free_at + if has_long_answer(command) { EACH * LONG } else { EACH });
         outbox.send(command).context("cannot write to the line")
     }
 
@@ -125,6 +137,18 @@ impl Client {
     }
 
     fn ask_once(&mut self, command: &Down, within: Duration) -> anyhow::Result<Answer> {
+        // A board that is slower than real time takes fewer commands; the same twice does no more than once.
+        let again = command.reads() || matches!(command, Down::Set(_));
+        if again && let Some(answer) = self.ask_number(command, within / 2)? {
+            return Ok(answer);
+        }
+        match self.ask_number(command, within)? {
+            Some(answer) => Ok(answer),
+            None => bail!("no answer in {} s: is this a fingertip's line?", within.as_secs_f64()),
+        }
+    }
+
+    fn ask_number(&mut self, command: &Down, within: Duration) -> anyhow::Result<Option<Answer>> {
         let number = self.send(command)?;
         let began = Instant::now();
         while began.elapsed() < within {
@@ -134,12 +158,12 @@ impl Client {
                     && let Up::Answer { of, answer, .. } = &heard.received.message
                     && *of == number
                 {
-                    return Ok(answer.clone());
+                    return Ok(Some(answer.clone()));
                 }
             }
             self.read().context("the line ended before the answer came")?;
         }
-        bail!("no answer in {} s: is this a fingertip's line?", within.as_secs_f64())
+        Ok(None)
     }
 
     fn read(&mut self) -> io::Result<()> {
@@ -154,6 +178,11 @@ impl Client {
             Err(error) => Err(error),
         }
     }
+}
+
+/// Whether a command's answer takes a good part of the line, so that the board counts it as several.
+const fn has_long_answer(command: &Down) -> bool {
+    matches!(command, Down::Samples | Down::Network | Down::Settings(_) | Down::About)
 }
 
 /// Whether a read failed only because nothing has come yet.

@@ -11,6 +11,8 @@ use std::time::Duration;
 use anyhow::{Context, anyhow, bail};
 use tenax_hal_shim::wire::BAUD;
 
+use crate::record::{is_recording, line_of};
+
 /// How long a read waits for bytes before it returns, so that whoever reads can look at something else meanwhile.
 const READ_TIMEOUT: Duration = Duration::from_millis(100);
 /// How long a TCP address may take to answer.
@@ -81,8 +83,12 @@ impl Target {
                 format!("cannot connect to {self}: is `tenax run --serve-tcp {port}` running there?")
             }),
             Self::File(path) => {
-                let file = File::open(path).with_context(|| format!("cannot open {self}"))?;
-                Ok(Line { up: Box::new(file), down: None })
+                let up: Box<dyn Read + Send> = if is_recording(path) {
+                    Box::new(io::Cursor::new(line_of(path)?))
+                } else {
+                    Box::new(File::open(path).with_context(|| format!("cannot open {self}"))?)
+                };
+                Ok(Line { up, down: None })
             }
         }
     }

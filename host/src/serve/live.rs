@@ -103,6 +103,8 @@ pub struct Served<P> {
     pub plant: P,
     /// None: as fast as it goes, and nobody sends anything.
     pub live: Option<Live>,
+    /// Its board streams its frames from the start, whatever the plant says.
+    pub streams_at_start: bool,
 }
 
 impl<P: Plant> Plant for Served<P> {
@@ -126,7 +128,7 @@ impl<P: Plant> Plant for Served<P> {
     }
 
     fn streams_at_start(&self) -> bool {
-        self.plant.streams_at_start()
+        self.streams_at_start || self.plant.streams_at_start()
     }
 
     fn trusts_line(&self) -> bool {

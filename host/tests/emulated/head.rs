@@ -1,26 +1,23 @@
 //! A board that feels with a photoelastic head alone.
 
-use tenax::board::Run;
 use tenax::board::agreement::Agreement;
 use tenax::board::emulated::Options;
-use tenax::session::{self, Board};
+use tenax::session;
 use tenax_hal_shim::detector::DetectorId;
+use tenax_hal_shim::wire::Slow;
+use tenax_scene::World;
 
-use crate::image;
+use crate::run;
 
+/// That the block is kept is `host/tests/photoelastic.rs`; here the image does what the host does.
 #[test]
-fn the_image_holds_a_pulled_block_with_it_as_the_host_would() {
+fn the_image_answers_a_pulled_block_with_it_as_the_host_would() {
     let file = session::load_scene("head-alone").unwrap();
-    let board = Board::Emulated { image: image().to_owned(), options: Options::default() };
-    let mut run = Run::default();
-    let outcome = session::scene_with(&file, 1, &board, &mut run, &mut |_| {}).unwrap();
+    let run = run(World::new(&file, 1), &Options::default());
     let agreement = Agreement::of(&run);
     assert!(agreement.holds(), "{agreement}");
-    assert_eq!(outcome.report.slip.dropped, Some(false));
-    let slid_mm = outcome.report.slip.distance_mm.expect("it slipped");
-    assert!((0.05..2.0).contains(&slid_mm), "{slid_mm} mm");
-    let acts = |slow: &tenax_hal_shim::wire::Slow| {
-        slow.ticks.iter().any(|tick| tick.acted.contains(DetectorId::Photoelastic))
-    };
+    let acts = |slow: &Slow| slow.ticks.iter().any(|tick| tick.acted.contains(DetectorId::Photoelastic));
     assert!(run.slows.iter().any(acts), "the head's pulse");
+    let stood_in = run.slows.iter().filter(|slow| slow.forces.is_some()).count();
+    assert!(stood_in > run.slows.len() * 3 / 4, "{stood_in} of {}", run.slows.len());
 }

@@ -67,13 +67,14 @@ pub fn phase_of(part: i32) -> i32 {
 fn asin_of_root(part: i32) -> i32 {
     // The root of a Q20 as Q15.
     let s = i64::from((u64::from(part.unsigned_abs()) << 10).isqrt() as u32);
-    let square = s * s >> 15;
+    let times = |a: i64, b: i64| (a * b) >> 15;
+    let square = times(s, s);
     // asin(s) = s (1 + s^2/6 + 3 s^4/40 + ...), its last coefficient raised for what is cut off. Q15.
     const THIRD: i64 = 5_461;
     const FIFTH: i64 = 2_458;
     const SEVENTH: i64 = 2_560;
-    let series = (1 << 15) + (square * (THIRD + (square * (FIFTH + (square * SEVENTH >> 15)) >> 15)) >> 15);
-    let asin_q15 = s * series >> 15;
+    let series = (1 << 15) + times(square, THIRD + times(square, FIFTH + times(square, SEVENTH)));
+    let asin_q15 = times(s, series);
     // pi rad are half a turn: 8192 / (pi 2^15) in Q20.
     const PHASE_OF_Q15: i64 = 83_443;
     ((asin_q15 * PHASE_OF_Q15 + (1 << 19)) >> 20) as i32

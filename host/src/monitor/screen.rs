@@ -1,0 +1,116 @@
+//! The screen of `tenax monitor`, from 80 x 24 characters on.
+
+mod charts;
+mod panels;
+mod settings;
+
+use ratatui::Frame;
+use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::style::{Color, Modifier, Style};
+use ratatui::text::{Line as Text, Span};
+use ratatui::widgets::Paragraph;
+use tenax_hal_shim::words::Line;
+
+use super::view::View;
+
+pub use self::settings::Edit;
+
+/// From this height on every sensor's reading is shown too.
+const TALL: u16 = 40;
+
+/// What is shown beside the board.
+#[derive(Debug, Default)]
+pub struct Shown {
+    /// Where its line is.
+    pub place: String,
+    /// Keys may change something.
+    pub control: bool,
+    /// What comes is kept back.
+    pub paused: bool,
+    /// Where it is recorded.
+    pub recording: Option<String>,
+    /// The settings are open.
+    pub edit: Option<Edit>,
+}
+
+/// Draws everything.
+pub fn draw(frame: &mut Frame<'_>, view: &View, shown: &Shown) {
+    let [head, body, keys] =
+        Layout::vertical([Constraint::Length(1), Constraint::Min(0), Constraint::Length(1)])
+            .areas(frame.area());
+    frame.render_widget(Paragraph::new(title(view, shown)), head);
+    frame.render_widget(Paragraph::new(help(shown)).style(Style::new().fg(Color::DarkGray)), keys);
+    let tall = frame.area().height >= TALL;
+    let [left, right] =
+        Layout::horizontal([Constraint::Percentage(52), Constraint::Percentage(48)]).areas(body);
+    draw_left(frame, left, view, tall);
+    let [detectors, muscles, line, log] = Layout::vertical([
+        Constraint::Length(7),
+        Constraint::Length(4),
+        Constraint::Length(6),
+        Constraint::Min(3),
+    ])
+    .areas(right);
+    panels::detectors(frame, detectors, view);
+    panels::muscles(frame, muscles, view);
+    panels::line(frame, line, view);
+    panels::log(frame, log, view);
+    if let Some(edit) = &shown.edit {
+        settings::draw(frame, body, view, edit, shown.control);
+    }
+}
+
+fn draw_left(frame: &mut Frame<'_>, area: Rect, view: &View, tall: bool) {
+    let readings = if tall { Constraint::Length(14) } else { Constraint::Length(0) };
+    let third = Constraint::Ratio(1, 3);
+    let [charts, senses] = Layout::vertical([Constraint::Min(0), readings]).areas(area);
+    let [vibration, ratio, load] = Layout::vertical([third; 3]).areas(charts);
+    charts::vibration(frame, vibration, view);
+    charts::ratio(frame, ratio, view);
+    charts::load(frame, load, view);
+    if tall {
+        panels::senses(frame, senses, view);
+    }
+}
+
+fn title<'a>(view: &View, shown: &'a Shown) -> Text<'a> {
+    let strong = Style::new().add_modifier(Modifier::BOLD);
+    let mut spans = vec![Span::styled(format!(" tenax {} ", shown.place), strong.fg(Color::Cyan))];
+    if let Some(why) = &view.other_version {
+        spans.push(Span::styled(format!(" a board {why}"), strong.fg(Color::Red)));
+        return Text::from(spans);
+    }
+    match (&view.gone, &view.slow) {
+        (Some(_), _) => spans.push(Span::styled(" NO LINE, trying again ", strong.fg(Color::Red))),
+        (None, None) => spans.push(Span::raw(" nothing heard yet ")),
+        (None, Some(slow)) => {
+            spans.push(Span::styled(format!(" {:?} ", slow.mode), strong.fg(Color::Black).bg(Color::Green)));
+            spans.push(Span::raw(format!(" {:.1} s ", view.t_s())));
+            spans.push(match slow.line {
+                Line::Reading => Span::raw(" line reads only "),
+                Line::Armed { left_s } => {
+                    Span::styled(format!(" ARMED {left_s} s "), strong.fg(Color::Yellow))
+                }
+                Line::Trusted => Span::styled(" LINE TRUSTED ", strong.fg(Color::Yellow)),
+            });
+        }
+    }
+    if let Some(file) = &shown.recording {
+        spans.push(Span::styled(format!(" REC {file} "), strong.fg(Color::Red)));
+    }
+    if shown.paused {
+        spans.push(Span::styled(" PAUSED ", strong.fg(Color::Black).bg(Color::Yellow)));
+    }
+    Text::from(spans)
+}
+
+fn help(shown: &Shown) -> &'static str {
+    match (&shown.edit, shown.control) {
+        (Some(_), true) => " up/down choose   Enter change   d default   Esc close",
+        (Some(_), false) => " up/down   Esc close   (to change: start with --control)",
+        (None, true) => {
+            " q quit  space pause  m mark  r record  s settings  z zero  t slips  y holds  c calibrate"
+        }
+        (None, false) => " q quit  space pause  m mark  r record  s settings   read only: --control",
+    }
+}

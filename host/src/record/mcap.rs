@@ -1,0 +1,306 @@
+//! MCAP files (mcap.dev, version 0): written in chunks without compression, with an index of the chunks; read from begin
+//! to end.
+//!
+//! The crate `mcap` does this too, but its derive macros turn on a feature of `proc-macro2` with which everything that has
+//! macros, the emulator included, is compiled anew.
+
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+
+use anyhow::{Context, bail};
+
+const MAGIC: &[u8] = b"\x89MCAP0\r\n";
+const HEADER: u8 = 1;
+const FOOTER: u8 = 2;
+const SCHEMA: u8 = 3;
+const CHANNEL: u8 = 4;
+const MESSAGE: u8 = 5;
+const CHUNK: u8 = 6;
+const CHUNK_INDEX: u8 = 8;
+const STATISTICS: u8 = 11;
+const DATA_END: u8 = 15;
+/// A chunk is written when it is this long, bytes.
+const CHUNK_BYTES: usize = 1 << 20;
+
+/// A record's content as it grows.
+#[derive(Default)]
+struct Content(Vec<u8>);
+
+impl Content {
+    fn u16(mut self, value: u16) -> Self {
+        self.0.extend_from_slice(&value.to_le_bytes());
+        self
+    }
+
+    fn u32(mut self, value: u32) -> Self {
+        self.0.extend_from_slice(&value.to_le_bytes());
+        self
+    }
+
+    fn u64(mut self, value: u64) -> Self {
+        self.0.extend_from_slice(&value.to_le_bytes());
+        self
+    }
+
+    /// Bytes after their length.
+    fn bytes(mut self, bytes: &[u8]) -> Self {
+        self = self.u32(bytes.len() as u32);
+        self.0.extend_from_slice(bytes);
+        self
+    }
+
+    fn raw(mut self, bytes: &[u8]) -> Self {
+        self.0.extend_from_slice(bytes);
+        self
+    }
+
+    fn record(&self, opcode: u8) -> Vec<u8> {
+        [&[opcode][..], &(self.0.len() as u64).to_le_bytes(), &self.0].concat()
+    }
+}
+
+/// Where a chunk is.
+struct Indexed {
+    first_ns: u64,
+    last_ns: u64,
+    at: u64,
+    length: u64,
+    content: u64,
+}
+
+/// Writes a file.
+pub struct Writer<W: Write> {
+    out: W,
+    at: u64,
+    channels: Vec<u8>,
+    counts: BTreeMap<u16, u64>,
+    chunk: Vec<u8>,
+    span_ns: Option<(u64, u64)>,
+    index: Vec<Indexed>,
+}
+
+impl<W: Write> Writer<W> {
+    /// A file without messages.
+    pub fn new(out: W) -> io::Result<Self> {
+        let mut writer = Self {
+            out,
+            at: 0,
+            channels: Vec::new(),
+            counts: BTreeMap::new(),
+            chunk: Vec::new(),
+            span_ns: None,
+            index: Vec::new(),
+        };
+        writer.put(MAGIC)?;
+        let library = concat!("tenax ", env!("CARGO_PKG_VERSION"));
+        writer.put(&Content::default().bytes(b"").bytes(library.as_bytes()).record(HEADER))?;
+        Ok(writer)
+    }
+
+    /// A topic whose messages are of one protobuf message; returns its number.
+    pub fn channel(&mut self, topic: &str, message: &str, descriptor: &[u8]) -> u16 {
+        let id = self.counts.len() as u16 + 1;
+        let schema =
+            Content::default().u16(id).bytes(message.as_bytes()).bytes(b"protobuf").bytes(descriptor);
+        let channel = Content::default().u16(id).u16(id).bytes(topic.as_bytes()).bytes(b"protobuf").u32(0);
+        let both = [schema.record(SCHEMA), channel.record(CHANNEL)].concat();
+        self.chunk.extend_from_slice(&both);
+        self.channels.extend_from_slice(&both);
+        self.counts.insert(id, 0);
+        id
+    }
+
+    /// A message of a channel at an instant.
+    pub fn message(&mut self, channel: u16, at_ns: u64, data: &[u8]) -> io::Result<()> {
+        let count = self.counts.entry(channel).or_default();
+        let content = Content::default().u16(channel).u32(*count as u32).u64(at_ns).u64(at_ns).raw(data);
+        *count += 1;
+        self.chunk.extend_from_slice(&content.record(MESSAGE));
+        let (first, last) = self.span_ns.unwrap_or((at_ns, at_ns));
+        self.span_ns = Some((first.min(at_ns), last.max(at_ns)));
+        if self.chunk.len() >= CHUNK_BYTES { self.end_chunk() } else { Ok(()) }
+    }
+
+    /// Ends the file.
+    pub fn finish(mut self) -> io::Result<W> {
+        self.end_chunk()?;
+        self.put(&Content::default().u32(0).record(DATA_END))?;
+        let summary = self.at;
+        let channels = std::mem::take(&mut self.channels);
+        self.put(&channels)?;
+        let (chunks, mut first, mut last) = (self.index.len() as u32, u64::MAX, 0);
+        for chunk in std::mem::take(&mut self.index) {
+            (first, last) = (first.min(chunk.first_ns), last.max(chunk.last_ns));
+            let content =
+                Content::default().u64(chunk.first_ns).u64(chunk.last_ns).u64(chunk.at).u64(chunk.length);
+            // No index of single messages: a chunk is read whole.
+            let content = content.u32(0).u64(0).bytes(b"").u64(chunk.content).u64(chunk.content);
+            self.put(&content.record(CHUNK_INDEX))?;
+        }
+        let counts = std::mem::take(&mut self.counts);
+        let mut each = Content::default();
+        for (channel, count) in &counts {
+            each = each.u16(*channel).u64(*count);
+        }
+        let content = Content::default().u64(counts.values().sum()).u16(counts.len() as u16);
+        let content = content.u32(counts.len() as u32).u32(0).u32(0).u32(chunks);
+        let content = content.u64(first.min(last)).u64(last).bytes(&each.0);
+        self.put(&content.record(STATISTICS))?;
+        self.put(&Content::default().u64(summary).u64(0).u32(0).record(FOOTER))?;
+        self.put(MAGIC)?;
+        self.out.flush()?;
+        Ok(self.out)
+    }
+
+    fn end_chunk(&mut self) -> io::Result<()> {
+        let records = std::mem::take(&mut self.chunk);
+        let (first_ns, last_ns) = self.span_ns.take().unwrap_or((0, 0));
+        if records.is_empty() {
+            return Ok(());
+        }
+        let content = records.len() as u64;
+        // A checksum of 0 says that there is none.
+        let chunk = Content::default().u64(first_ns).u64(last_ns).u64(content).u32(0).bytes(b"").u64(content);
+        let record = chunk.raw(&records).record(CHUNK);
+        self.index.push(Indexed { first_ns, last_ns, at: self.at, length: record.len() as u64, content });
+        self.put(&record)
+    }
+
+    fn put(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.at += bytes.len() as u64;
+        self.out.write_all(bytes)
+    }
+}
+
+/// Hands every message of a file to `each`: its topic, its time and its data. A file that ends early, because whoever wrote
+/// it was killed, is read as far as it goes.
+///
+/// # Errors
+/// If it is no such file, or is compressed.
+pub fn read(file: &[u8], each: &mut dyn FnMut(&str, u64, &[u8])) -> anyhow::Result<()> {
+    let records = file.strip_prefix(MAGIC).context("this is no MCAP file")?;
+    let mut topics = BTreeMap::new();
+    walk(records, &mut topics, each)
+}
+
+fn walk(
+    mut rest: &[u8],
+    topics: &mut BTreeMap<u16, String>,
+    each: &mut dyn FnMut(&str, u64, &[u8]),
+) -> anyhow::Result<()> {
+    while let Some((opcode, content)) = next(&mut rest) {
+        match opcode {
+            CHANNEL => {
+                let mut fields = Fields(content);
+                if let (Some(id), Some(_), Some(topic)) = (fields.u16(), fields.u16(), fields.text()) {
+                    topics.insert(id, topic);
+                }
+            }
+            MESSAGE => {
+                let mut fields = Fields(content);
+                if let (Some(id), Some(_), Some(at_ns), Some(_)) =
+                    (fields.u16(), fields.take(4), fields.u64(), fields.u64())
+                    && let Some(topic) = topics.get(&id)
+                {
+                    each(topic, at_ns, fields.0);
+                }
+            }
+            CHUNK => {
+                let mut fields = Fields(content);
+                let compression = fields.take(28).and_then(|_| fields.text());
+                match compression.as_deref() {
+                    Some("") => {}
+                    Some(other) => {
+                        bail!("this MCAP file is compressed ({other}): `mcap convert` undoes that")
+                    }
+                    None => continue,
+                }
+                if fields.u64().is_some() {
+                    walk(fields.0, topics, each)?;
+                }
+            }
+            DATA_END | FOOTER => break,
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// The next record: its kind and its content.
+fn next<'a>(rest: &mut &'a [u8]) -> Option<(u8, &'a [u8])> {
+    let mut fields = Fields(rest);
+    let opcode = fields.take(1)?[0];
+    let length = usize::try_from(fields.u64()?).ok()?;
+    let content = fields.take(length)?;
+    *rest = fields.0;
+    Some((opcode, content))
+}
+
+struct Fields<'a>(&'a [u8]);
+
+impl<'a> Fields<'a> {
+    fn take(&mut self, length: usize) -> Option<&'a [u8]> {
+        let (taken, rest) = self.0.split_at_checked(length)?;
+        self.0 = rest;
+        Some(taken)
+    }
+
+    fn u16(&mut self) -> Option<u16> {
+        Some(u16::from_le_bytes(self.take(2)?.try_into().ok()?))
+    }
+
+    fn u64(&mut self) -> Option<u64> {
+        Some(u64::from_le_bytes(self.take(8)?.try_into().ok()?))
+    }
+
+    fn text(&mut self) -> Option<String> {
+        let length = u32::from_le_bytes(self.take(4)?.try_into().ok()?);
+        String::from_utf8(self.take(length as usize)?.to_vec()).ok()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn file(messages: u64) -> Vec<u8> {
+        let mut writer = Writer::new(Vec::new()).unwrap();
+        let topics = ["/a", "/b"].map(|topic| writer.channel(topic, "tenax.A", b"descriptor"));
+        for n in 0..messages {
+            writer.message(topics[n as usize % 2], n, &[n as u8; 100]).unwrap();
+        }
+        writer.finish().unwrap()
+    }
+
+    fn count(file: &[u8]) -> u64 {
+        let mut count = 0;
+        read(file, &mut |topic, at_ns, data| {
+            assert_eq!((topic, data), (["/a", "/b"][at_ns as usize % 2], &[at_ns as u8; 100][..]));
+            assert_eq!(at_ns, count);
+            count += 1;
+        })
+        .unwrap();
+        count
+    }
+
+    #[test]
+    fn messages_come_back_in_order_over_several_chunks() {
+        assert_eq!(count(&file(20_000)), 20_000);
+        assert_eq!(count(&file(0)), 0);
+    }
+
+    #[test]
+    fn a_file_that_was_cut_short_gives_its_whole_chunks_and_garbage_is_no_panic() {
+        let whole = file(20_000);
+        for cut in [0, 1, 7, 8, 100, whole.len() / 2, whole.len() - 1] {
+            let _short = read(&whole[..cut], &mut |_, _, _| {});
+        }
+        assert!(count(&whole[..2 << 20]) > 5_000);
+        let mut torn = whole;
+        for n in (8..torn.len()).step_by(997) {
+            torn[n] ^= 0x55;
+        }
+        let _torn = read(&torn, &mut |_, _, _| {});
+        assert!(read(b"no such file", &mut |_, _, _| {}).is_err());
+    }
+}

@@ -1,0 +1,84 @@
+//! The Python package reads a served board: the proof that `docs/protocol.md` is enough.
+#![cfg(unix)]
+
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+fn package() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().join("python")
+}
+
+/// A scene whose board trusts its line, so that nobody at the hand has to consent.
+fn trusting(folder: &Path) -> PathBuf {
+    let path = folder.join("trusting.toml");
+    let rig = include_str!("../../scenes/rig.toml");
+    std::fs::write(&path, rig.replacen("\n[contact]", "\nline_trusted = true\n\n[contact]", 1)).unwrap();
+    path
+}
+
+/// python3 with the package; None where there is no Python.
+fn python() -> Option<Command> {
+    let there = Command::new("python3").arg("--version").stdout(Stdio::null()).status();
+    if !there.is_ok_and(|status| status.success()) {
+        println!("skipped: there is no python3");
+        return None;
+    }
+    let mut python = Command::new("python3");
+    python.env("PYTHONPATH", package()).env("PYTHONDONTWRITEBYTECODE", "1");
+    Some(python)
+}
+
+#[test]
+fn every_golden_frame_is_decoded() {
+    let Some(mut python) = python() else { return };
+    let ran =
+        python.args(["-m", "unittest", "discover", "-s", "tests"]).current_dir(package()).output().unwrap();
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+}
+
+const VISIT: &str = r"
+import sys
+import tenax
+
+with tenax.open(sys.argv[1]) as board:
+    about = board.ask('About')
+    assert about.kind == 'About' and about.build == 0 and len(about.settings) > 20, about
+    answer = board.ask('Set', 1, 120)
+    assert (answer.kind, answer.value) == ('Setting', 120), answer
+    refused = board.ask('Set', 1, 5)
+    assert (refused.why.kind, refused.why.min) == ('OutOfRange', 20), refused
+    board.stream(raw=True, senses=True)
+    kinds, frames = {}, []
+    for message in board:
+        kinds[message.kind] = kinds.get(message.kind, 0) + 1
+        if message.kind == 'Raw':
+            frames.append(message.first)
+        if len(frames) == 400:
+            break
+    assert frames == list(range(frames[0], frames[0] + 2000, 5)), 'a frame is missing'
+    assert 78 <= kinds['Slow'] <= 82 and 78 <= kinds['Senses'] <= 82, kinds
+    assert (board.missed, board.bad) == (0, 0), (board.missed, board.bad)
+    print(sum(kinds.values()))
+";
+
+#[test]
+fn it_reads_sets_and_streams_a_served_board() {
+    let Some(mut python) = python() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let mut run = Command::new(env!("CARGO_BIN_EXE_tenax"))
+        .args(["run", "--host", "--serve-tcp", "0", "--scene"])
+        .arg(trusting(folder.path()))
+        .arg("--out")
+        .arg(folder.path())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut said = BufReader::new(run.stderr.take().unwrap()).lines().map(Result::unwrap);
+    let place = said.next().unwrap().strip_prefix("serving on ").unwrap().to_owned();
+    let visit = python.args(["-c", VISIT, &place]).output().unwrap();
+    assert!(visit.status.success(), "{}", String::from_utf8_lossy(&visit.stderr));
+    said.for_each(drop);
+    assert!(run.wait().unwrap().success());
+}

@@ -1,0 +1,147 @@
+//! Recordings: what is in them is what was on the line, and decides the same once more.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use tenax::board::Recorder;
+use tenax::record::replay::Recorded;
+use tenax::record::{Recording, line_of};
+use tenax::serve::Use;
+use tenax::session::{Board, load_scene};
+use tenax_hal_shim::wire::{Raw, Up};
+use tenax_scene::World;
+
+const SCENE: &str = "pick-up-reflex";
+
+/// A scene's recording, and the bytes of its line.
+fn record(path: &Path, streams_at_start: bool) -> Vec<u8> {
+    struct Both(Recording, Vec<u8>);
+    impl Recorder for Both {
+        fn line(&mut self, bytes: &[u8]) {
+            self.0.line(bytes);
+            self.1.extend_from_slice(bytes);
+        }
+    }
+    let plant = Use { live: None, streams_at_start }.of(World::new(&load_scene(SCENE).unwrap(), 1));
+    let mut both = Both(Recording::create(path).unwrap(), Vec::new());
+    Board::Host.record(plant, &mut both, &mut |_| {}).unwrap();
+    both.0.finish().unwrap();
+    both.1
+}
+
+/// A line with every message of frames changed by `change`; None leaves it out.
+fn changed(line: &[u8], change: impl Fn(Raw) -> Option<Raw>) -> Vec<u8> {
+    let (mut inbox, mut encoder, mut out) =
+        (tenax::link::Inbox::default(), tenax::link::Encoder::default(), Vec::new());
+    for heard in line.iter().filter_map(|&byte| inbox.push(byte)).flatten() {
+        let message = match heard.received.message {
+            Up::Raw(raw) => change(raw).map(Up::Raw),
+            other => Some(other),
+        };
+        out.extend(message.iter().flat_map(|message| encoder.frame(message).1.to_vec()));
+    }
+    out
+}
+
+#[test]
+fn a_recording_decides_the_same_bit_for_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.mcap");
+    let line = record(&path, true);
+    // The zero that ends whatever a reset cut short is no message.
+    assert!(line_of(&path).unwrap() == line[1..], "the bytes are those of the line");
+    let outcome = Recorded::of(&line).unwrap().replay();
+    assert_eq!(outcome.difference, None);
+    assert!(outcome.frames >= 11_990 && outcome.slows >= 479 && outcome.events > 5, "{outcome:?}");
+    let run =
+        Command::new(env!("CARGO_BIN_EXE_tenax")).args(["run", "--replay"]).arg(&path).output().unwrap();
+    assert_eq!(String::from_utf8(run.stdout).unwrap().trim(), outcome.to_string());
+    // The control: one bit of one sample is another decision, or at least another checksum.
+    let torn = changed(&line, |mut raw| {
+        if raw.first == 4_000 {
+            let mut frame = raw.frames()[2];
+            frame.pvdf[5] ^= 1;
+            raw.put(&frame);
+        }
+        Some(raw)
+    });
+    assert!(Recorded::of(&torn).unwrap().replay().difference.is_some());
+}
+
+#[test]
+fn what_is_missing_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = record(&folder.path().join("scene.mcap"), true);
+    let error = |line: &[u8]| format!("{:#}", Recorded::of(line).unwrap_err());
+    let gap = changed(&line, |raw| (raw.first != 4_000).then_some(raw));
+    assert!(error(&gap).contains("frame 4000 is missing, and after it comes 4005"), "{}", error(&gap));
+    let joined_late = &line[line.len() / 2..];
+    assert!(error(joined_late).contains("does not begin before the board's start"));
+    let plain = record(&folder.path().join("plain.mcap"), false);
+    assert!(error(&plain).contains("has no frames: set stream-at-start-flag to 1"), "{}", error(&plain));
+}
+
+/// MCAP as the public Python package reads it, against our CSV.
+const READER: &str = r"
+import csv, math, sys
+from mcap.reader import make_reader
+from mcap_protobuf.decoder import DecoderFactory
+
+topics = {}
+with open(sys.argv[1], 'rb') as file:
+    for _, channel, _, message in make_reader(file, decoder_factories=[DecoderFactory()]).iter_decoded_messages():
+        topics.setdefault(channel.topic, []).append(message)
+compared = 0
+for topic, messages in topics.items():
+    if topic == '/line':
+        continue
+    rows = list(csv.DictReader(open(sys.argv[2] + '/' + topic[1:].replace('/', '-') + '.csv')))
+    assert len(rows) == len(messages), topic
+    for row, message in zip(rows, messages):
+        for name, text in row.items():
+            if name == 'time_s':
+                continue
+            stem, _, place = name.rpartition('_')
+            value = getattr(message, stem)[int(place) - 1] if not hasattr(message, name) else getattr(message, name)
+            if isinstance(value, bool):
+                assert text == str(int(value)), (topic, name)
+            elif isinstance(value, float):
+                assert float(text) == value or math.isnan(value) and text == 'NaN', (topic, name, text, value)
+            else:
+                assert text == value, (topic, name)
+            compared += 1
+print(compared)
+";
+
+#[test]
+fn the_public_reader_finds_the_numbers_of_the_csv() {
+    let python = std::env::var("TENAX_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let has = Command::new(&python)
+        .args(["-c", "import mcap, mcap_protobuf"])
+        .stderr(Stdio::null())
+        .status()
+        .is_ok_and(|status| status.success());
+    if !has {
+        println!(
+            "skipped: {python} has no `mcap` and `mcap-protobuf-support`; TENAX_PYTHON names one that has"
+        );
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.mcap");
+    record(&path, true);
+    let csv = folder.path().join("csv");
+    let played = Command::new(env!("CARGO_BIN_EXE_tenax"))
+        .arg("play")
+        .arg(&path)
+        .arg("--csv")
+        .arg(&csv)
+        .output()
+        .unwrap();
+    assert!(played.status.success());
+    let read = Command::new(&python).args(["-c", READER]).arg(&path).arg(&csv).output().unwrap();
+    assert!(read.status.success(), "{}", String::from_utf8_lossy(&read.stderr));
+    let compared: u32 = String::from_utf8(read.stdout).unwrap().trim().parse().unwrap();
+    println!("{compared} values compared");
+    assert!(compared > 250_000, "{compared}");
+}

@@ -1,0 +1,112 @@
+//! The monitor's screen as a person sees it, at two sizes, of a scene's line.
+
+use std::time::Instant;
+
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+use tenax::board::Run;
+use tenax::link::Inbox;
+use tenax::monitor::screen::{Edit, Shown, draw};
+use tenax::monitor::source::News;
+use tenax::monitor::view::View;
+use tenax::session::{Board, load_scene};
+use tenax_hal_shim::wire::{Answer, BadFrame, Down, Refusal};
+use tenax_scene::World;
+
+/// A view that has heard a scene's line.
+fn heard(scene: &str, seconds: f64) -> View {
+    let (run, _): (Run, _) =
+        Board::Host.run(World::new(&load_scene(scene).unwrap(), 1), &mut |_| {}).unwrap();
+    let (mut view, mut inbox) = (View::default(), Inbox::default());
+    view.take(News::Open);
+    for &byte in &run.line {
+        if let Some(frame) = inbox.push(byte) {
+            view.take(News::Frame(frame, inbox.counts(), Instant::now()));
+        }
+        if view.t_s() >= seconds {
+            break;
+        }
+    }
+    view
+}
+
+fn picture(view: &View, shown: &Shown, width: u16, height: u16) -> String {
+    let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
+    terminal.draw(|frame| draw(frame, view, shown)).unwrap();
+    let buffer = terminal.backend().buffer();
+    let line = |y| (0..width).map(|x| buffer[(x, y)].symbol()).collect::<String>();
+    (0..height).map(|y| line(y) + "\n").collect()
+}
+
+#[test]
+fn what_matters_is_on_the_screen_at_80_by_24_and_at_200_by_60() {
+    let view = heard("glass", 20.0);
+    let shown = Shown { place: "/dev/pts/5".to_owned(), ..Shown::default() };
+    for (width, height) in [(80, 24), (200, 60)] {
+        let picture = picture(&view, &shown, width, height);
+        println!("{picture}");
+        for word in [
+            "tenax /dev/pts/5",
+            "vibration ",
+            "S1 100",
+            "Ft/Fn ",
+            "S2 0.3",
+            "grip force ",
+            "s1 ",
+            "hebbian",
+            "mlp",
+            "flexor ",
+            "extensor ",
+            "motor ",
+            "missed 0 bad 0",
+            "control ",
+            "what happened",
+            "q quit",
+            "read only: --control",
+        ] {
+            assert!(picture.contains(word), "{word} at {width} x {height}");
+        }
+        assert!(
+            picture.contains('⠤') || picture.chars().any(|c| ('\u{2801}'..='\u{28ff}').contains(&c)),
+            "a trace"
+        );
+    }
+}
+
+#[test]
+fn an_answer_a_lost_line_and_another_version_are_said() {
+    let mut view = heard("rig", 2.0);
+    let shown = Shown { place: "COM3".to_owned(), control: true, ..Shown::default() };
+    view.take(News::Answered(Down::Zero, Ok(Answer::Refused(Refusal::Loaded))));
+    assert!(picture(&view, &shown, 80, 24).contains("> Zero: refused: Loaded"));
+    view.take(News::Gone("unplugged".to_owned()));
+    assert!(picture(&view, &shown, 80, 24).contains("NO LINE, trying again"));
+    view.take(News::Open);
+    view.take(News::Frame(Err(BadFrame::Version(9)), view.counts, Instant::now()));
+    assert!(picture(&view, &shown, 80, 24).contains("a board of version 9, and this tool speaks 3"));
+}
+
+#[test]
+fn settings_are_shown_with_their_ranges_and_what_is_typed() {
+    let view = heard("rig", 2.0);
+    let mut edit = Edit::default();
+    edit.typed = Some("12".to_owned());
+    let shown = Shown { control: true, edit: Some(edit), ..Shown::default() };
+    let text = picture(&view, &shown, 80, 24);
+    assert!(text.contains("s1-mv") && text.contains("20 to 250, default 100"), "{text}");
+    assert!(text.contains("new value, mV: 12_"), "{text}");
+    let mut last = Edit::default();
+    last.step(false);
+    let shown = Shown { edit: Some(last), ..Shown::default() };
+    assert!(picture(&view, &shown, 80, 24).contains("stream-at-start-flag"), "the last row is scrolled to");
+}
+
+#[test]
+fn a_terminal_of_any_size_is_drawn_on() {
+    let view = heard("rig", 1.0);
+    for (width, height) in [(1, 1), (3, 2), (20, 5), (79, 10), (400, 100)] {
+        for edit in [None, Some(Edit::default())] {
+            picture(&view, &Shown { edit, ..Shown::default() }, width, height);
+        }
+    }
+}
