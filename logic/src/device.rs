@@ -102,7 +102,10 @@ impl Device {
 
     #[inline(never)]
     fn about(&self) -> About {
-        let settings = SettingId::ALL.into_iter().map(|id| self.setting(id)).collect();
+        // It has room for all of them. `collect` would panic if it had not, and nothing that a frame reaches may.
+        let mut settings = Vec::new();
+        let all = SettingId::ALL.into_iter().map(|id| self.setting(id));
+        all.take_while(|setting| settings.push(*setting).is_ok()).for_each(drop);
         About { identity: self.identity, frames: self.stream.next(), settings }
     }
 

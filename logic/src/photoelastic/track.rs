@@ -199,7 +199,7 @@ impl Tracker {
         };
         let span = calibrated.bright_q4 - calibrated.dark_q4;
         today.bright_q4 =
-            self.top_q4.clamp(calibrated.bright_q4 - span / 10, calibrated.bright_q4 + span / 10);
+            self.top_q4.min(calibrated.bright_q4 + span / 10).max(calibrated.bright_q4 - span / 10);
         self.bright_off = BRIGHT_SEEN;
     }
 

@@ -117,11 +117,12 @@ impl Turn {
         }
         let Visit { from, towards, left_at } = *visit;
         let (in_first, in_last, out_first) = ((*towards.get(n)?)?, towards[0]?, left_at?);
+        let level = *LEVELS.get(n)?;
         let inwards = i64::from(in_last.wrapping_sub(in_first).min(LONGEST));
         let outwards = i64::from(at.wrapping_sub(out_first).min(LONGEST));
         let way = |branch: Branch| {
             let at = |distance: i32| curve.force_mn(branch.whole(PEAK - distance));
-            i64::from((at(LEVELS[0]) - at(LEVELS[n])).abs())
+            i64::from((at(LEVELS[0]) - at(level)).abs())
         };
         let is_last = n + 1 == LEVELS.len();
         if is_last {
