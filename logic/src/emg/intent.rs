@@ -57,8 +57,6 @@ const CLOSE_ALONE: i32 = octaves(300);
 
 /// Readings for which an unproven contraction may move the hand: 92 ms.
 pub const UNPROVEN_READINGS: u16 = 22;
-/// The same if the other electrode hears it too: 0.3 s. A muscle has curved by then; a fault beside the other muscle's tone has not.
-const UNPROVEN_TOGETHER_READINGS: u16 = 72;
 /// How far the other electrode stands out from rest when it hears the same contraction: by 23 %. A fault has one electrode.
 const HEARS_TOO: i32 = octaves(300);
 
@@ -226,12 +224,11 @@ impl Intent {
                 (self.wish, usize::from(self.wish == Wish::Open), false)
             }
         };
-        self.bound(wish, electrodes[mover].proven, other_hears)
+        self.bound(wish, electrodes[mover].proven || other_hears)
     }
 
     /// Lets an unproven contraction move the hand for a while only. A pause does not begin a new while.
-    fn bound(&mut self, wish: Wish, proven: bool, other_hears: bool) -> Wish {
-        let most = if other_hears { UNPROVEN_TOGETHER_READINGS } else { UNPROVEN_READINGS };
+    fn bound(&mut self, wish: Wish, proven: bool) -> Wish {
         if proven {
             self.unproven = 0;
             return wish;
@@ -240,12 +237,12 @@ impl Intent {
             self.unproven = self.unproven.saturating_sub(1);
             return wish;
         }
-        if self.unproven >= most {
+        if self.unproven >= UNPROVEN_READINGS {
             return Wish::Rest;
         }
         self.unproven += 1;
         // The last one: what follows a pause has to wait as long as it has been.
-        if self.unproven == most {
+        if self.unproven == UNPROVEN_READINGS {
             self.unproven = 4 * UNPROVEN_READINGS;
         }
         wish

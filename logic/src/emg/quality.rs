@@ -143,7 +143,6 @@ pub struct Watch {
     crest_uv: i32,
     climbing: u16,
     at_top: u16,
-    since_top: u8,
     silent: u16,
     restless: u16,
     unrest_frames: u16,
@@ -173,7 +172,6 @@ impl Default for Watch {
             crest_uv: 0,
             climbing: 0,
             at_top: 0,
-            since_top: 0,
             silent: 0,
             restless: 0,
             unrest_frames: 0,
@@ -223,10 +221,7 @@ impl Watch {
         let tall = expected.rest.is_none_or(|rest| level >= rest + PROOF_RISE);
         self.tall = self.active_for > 0 && (self.tall || tall);
         let curves = curve_uv > uv.max(1) / PROOF_PART;
-        // The step down from the top of the range curves too, and proves nothing.
-        self.since_top = if uv >= TOP_UV { 0 } else { self.since_top.saturating_add(1) };
-        let below_top = self.since_top > 2 * LAG as u8 + 1;
-        self.proven |= self.active_for >= PROOF_FRAMES && self.tall && curves && below_top;
+        self.proven |= self.active_for >= PROOF_FRAMES && self.tall && curves && uv < TOP_UV;
         self.stand(uv);
         self.climb(uv);
         if uv >= TOP_UV {
@@ -258,9 +253,8 @@ impl Watch {
             Some(quality) => self.lose(quality),
             None => self.good = self.good.saturating_add(1),
         }
-        // A fault may end in another, and the step between them curves as a muscle does: nothing is good again before it has been
-        // seen at rest.
-        if self.good >= BACK_FRAMES && !active {
+        // A fault may end in another: nothing is good again before a muscle has been seen at rest or at work.
+        if self.good >= BACK_FRAMES && (!active || self.proven) {
             self.lost = None;
         }
     }
