@@ -52,7 +52,7 @@ fn check_calls(calls: &Calls) -> Result<Control> {
     ensure!(!panics.is_empty(), "has no function {PANIC}: nothing can be said about panics");
 
     let reached = calls.reached(&roots);
-    for (&place, _) in &reached {
+    for &place in reached.keys() {
         let own = &calls.0[place];
         let way = || calls.way(&reached, place);
         ensure!(!panics.contains(&place), "control may panic:\n    {}", way());

@@ -1,7 +1,7 @@
 //! The screen's loop: keys, what the line tells, and twenty pictures a second.
 
 use std::path::PathBuf;
-use std::sync::mpsc::{Sender, TryRecvError, channel};
+use std::sync::mpsc::{Sender, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -33,10 +33,7 @@ pub fn show(target: &Target, control: bool) -> anyhow::Result<()> {
     let shown = Shown { place: target.to_string(), control, ..Shown::default() };
     let mut app = App { view: View::default(), shown, commands, recording: None, marks: 0, over: false };
     let mut terminal = ratatui::try_init().context("this is no terminal: use --plain")?;
-    let ended = app.run(&mut terminal, &mut || match news.try_recv() {
-        Ok(news) => Some(news),
-        Err(TryRecvError::Empty | TryRecvError::Disconnected) => None,
-    });
+    let ended = app.run(&mut terminal, &mut || news.try_recv().ok());
     ratatui::restore();
     app.end_recording()?;
     ended

@@ -179,18 +179,14 @@ impl View {
     }
 
     fn slow(&mut self, slow: Slow, now: Instant) {
-        let sets: [(fn(&TickRecord) -> DetectorSet, fn(&mut Fate) -> &mut Option<u32>); 3] = [
-            (|tick| tick.said, |fate| &mut fate.said),
-            (|tick| tick.believed, |fate| &mut fate.believed),
-            (|tick| tick.acted, |fate| &mut fate.acted),
-        ];
         for id in DetectorId::ALL {
             let fate = &mut self.fates[id as usize];
-            for (set, when) in sets {
-                if slow.ticks.iter().any(|tick| set(tick).contains(id)) {
-                    *when(fate) = Some(slow.frame);
-                }
-            }
+            let is_in = |set: fn(&TickRecord) -> DetectorSet| {
+                slow.ticks.iter().any(|tick| set(tick).contains(id)).then_some(slow.frame)
+            };
+            fate.said = is_in(|tick| tick.said).or(fate.said);
+            fate.believed = is_in(|tick| tick.believed).or(fate.believed);
+            fate.acted = is_in(|tick| tick.acted).or(fate.acted);
         }
         for (id, evidence) in &slow.evidence {
             self.fates[*id as usize].evidence = Some(*evidence);

@@ -78,8 +78,7 @@ fn curve(name: &str, colour: RGBColor, thin: Thin) -> Curve {
 
 /// A threshold as it was in force: the default, and what each command that was taken made of it.
 fn in_force(name: &str, id: SettingId, subject: &Subject, (from_s, to_s): (f64, f64)) -> Level {
-    let mut config = Config::default();
-    config.line_trusted = subject.run.trusts_line;
+    let mut config = Config { line_trusted: subject.run.trusts_line, ..Config::default() };
     let mut points = vec![(from_s, f64::from(config.get(id)))];
     for (frame, command) in &subject.run.taken {
         let Down::Set(setting) = command.message else { continue };
