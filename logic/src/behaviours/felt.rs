@@ -22,6 +22,8 @@ pub struct Felt<'a> {
     pub view: Option<&'a CameraView>,
     /// Whether it came in this tick.
     pub view_is_new: bool,
+    /// Whether this tick ends a cycle, so that every taxel has been read anew.
+    pub cycle_is_over: bool,
     /// The normal-force array's last readings.
     pub taxels: &'a Reading,
     /// How hard the finger presses.
@@ -106,6 +108,13 @@ impl Skin {
 }
 
 impl Felt<'_> {
+    /// Whether the skin may feel something new: a picture came, or a cycle of the taxels is over. In between nobody needs to look at
+    /// every cell.
+    #[must_use]
+    pub const fn skin_is_new(&self) -> bool {
+        self.view_is_new || self.cycle_is_over
+    }
+
     /// Whether the object slips: moving points, or a detector (section II-B). `sensitively`: half as much is enough (section
     /// II-D).
     #[must_use]
@@ -157,7 +166,15 @@ mod tests {
     }
 
     fn felt<'a>(view: Option<&'a CameraView>, taxels: &'a Reading) -> Felt<'a> {
-        Felt { view, view_is_new: true, taxels, grip: Grip::Unknown, slips: false, stirs: false }
+        Felt {
+            view,
+            view_is_new: true,
+            cycle_is_over: true,
+            taxels,
+            grip: Grip::Unknown,
+            slips: false,
+            stirs: false,
+        }
     }
 
     #[test]

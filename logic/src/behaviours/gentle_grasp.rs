@@ -11,6 +11,8 @@ use crate::grip::Grip;
 #[derive(Clone, Debug)]
 pub struct GentleGrasp {
     skin: Option<Skin>,
+    /// When the skin was last looked at.
+    score: u16,
     touched: bool,
     movement: Movement,
 }
@@ -21,6 +23,7 @@ impl GentleGrasp {
         let skin = Skin::now(felt);
         (skin.is_some() || felt.grip != Grip::Unknown).then_some(Self {
             skin,
+            score: 0,
             touched: false,
             movement: Movement::default(),
         })
@@ -28,6 +31,7 @@ impl GentleGrasp {
 
     pub fn step(&mut self, config: &BehaviourConfig, felt: &Felt<'_>) -> Course {
         let score = match &self.skin {
+            Some(_) if !felt.skin_is_new() => self.score,
             Some(skin) => match skin.score(felt) {
                 Some(score) => score,
                 None => return Course::Ends(Ending::SensorLost),
@@ -42,6 +46,7 @@ impl GentleGrasp {
         if score > config.gentle_score || matches!(felt.grip, Grip::Holds(_)) {
             return Course::Ends(Ending::Done);
         }
+        self.score = score;
         self.touched |= score > config.gentle_score / 2;
         if !self.touched {
             return Course::On(Wish::Tighten(Duty::per_mille(config.duty_permille)));

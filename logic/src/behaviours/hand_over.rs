@@ -22,6 +22,8 @@ const BEGINS_FRAMES: u32 = frames(200);
 #[derive(Clone, Debug)]
 pub struct HandOver {
     skin: Skin,
+    /// Cells that feel another force, when they were last looked at.
+    changed: u16,
     waited: u32,
     changed_for: u32,
     slips_for: u32,
@@ -34,7 +36,7 @@ impl HandOver {
         if felt.grip == Grip::Unknown {
             return None;
         }
-        Some(Self { skin: Skin::now(felt)?, waited: 0, changed_for: 0, slips_for: 0, opened: 0 })
+        Some(Self { skin: Skin::now(felt)?, changed: 0, waited: 0, changed_for: 0, slips_for: 0, opened: 0 })
     }
 
     pub fn step(&mut self, config: &BehaviourConfig, felt: &Felt<'_>) -> Course {
@@ -49,7 +51,11 @@ impl HandOver {
         if felt.grip == Grip::Unknown {
             return Course::Ends(Ending::SensorLost);
         }
-        let Some(changed) = self.skin.changed(felt) else { return Course::Ends(Ending::SensorLost) };
+        if felt.skin_is_new() {
+            let Some(changed) = self.skin.changed(felt) else { return Course::Ends(Ending::SensorLost) };
+            self.changed = changed;
+        }
+        let changed = self.changed;
         let slips = felt.is_moving(config.moving_e4, false) || (felt.slips && changed > 0);
         self.waited = self.waited.saturating_add(1);
         self.changed_for = if changed > config.changed_cells { self.changed_for + 1 } else { 0 };

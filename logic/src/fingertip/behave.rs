@@ -1,7 +1,9 @@
 //! The behaviour that goes on in the fingertip: how it begins, what it may ask for in a tick, how it ends.
 
 use tenax_hal_shim::behaviour::{Behaviour, CameraView, Ending};
+use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
 use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::wire::{EventKind, Refusal};
 use tenax_hal_shim::words::{GripMode, Line};
 
@@ -119,6 +121,8 @@ impl Fingertip {
         Felt {
             view: self.eye.view.as_ref(),
             view_is_new: self.eye.is_new,
+            cycle_is_over: self.journal.frame() % u32::from(FRAMES_PER_SLOW_FRAME)
+                == u32::from(slot_of(Job::EndOfCycle)),
             taxels: self.senses.taxels(),
             grip: self.senses.grip(&self.config),
             slips: heard.is_some_and(|heard| !heard.slip.is_empty()),

@@ -10,15 +10,16 @@ pub mod sections;
 mod step;
 
 use serde::Deserialize;
+use tenax_hal_shim::setting::SettingId;
 use toml::Spanned;
 
 pub use error::SceneError;
 pub use happening::Happening;
 use quantity::{Duration, Speed};
 use sections::{
-    Arm, Array, Camera, Command, Contact, ElectrodeLift, Fill, Fsr, Gripper, Knock, Move, Muscle, Myo,
-    Object, Photoelastic, Pitch, Press, Pull, Pvdf, Robot, SensorFault, Skin, Strain, Sweep, Swing, Table,
-    Wet,
+    Arm, Array, Camera, Command, CommandKind, Contact, ElectrodeLift, Fill, Fsr, Gripper, Knock, Move,
+    Muscle, Myo, Object, Photoelastic, Pitch, Press, Pull, Pvdf, Robot, SensorFault, Skin, Strain, Sweep,
+    Swing, Table, Wet,
 };
 
 /// A whole scene, every number in it checked.
@@ -103,6 +104,16 @@ impl SceneFile {
     #[must_use]
     pub fn trusts_line(&self) -> bool {
         self.line_trusted.unwrap_or(!self.command.is_empty() || self.camera.teaches || self.skin.is_some())
+    }
+
+    /// Whether somebody sets the board up for a photoelastic head.
+    #[must_use]
+    pub fn fits_head(&self) -> bool {
+        let fits = |command: &Command| {
+            *command.kind.get_ref() == CommandKind::Set(SettingId::Head)
+                && command.value.as_ref().is_some_and(|value| *value.get_ref() > 0)
+        };
+        self.command.iter().any(fits)
     }
 
     /// How long it lasts, s.

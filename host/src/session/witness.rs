@@ -1,0 +1,102 @@
+//! What a run is witnessed by: everything that its report and its figure are made from.
+
+use tenax_hal_shim::frame::Scan;
+use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::wire::{Down, Slow};
+use tenax_logic::emg::model::EmgModel;
+use tenax_scene::World;
+use tenax_scene::plant::{Calibrated, Pins, Plant};
+
+use crate::board::Recorder;
+use crate::plot::sketch::{Needs, Sketch};
+use crate::report::reflex::Added;
+use crate::report::wearer::Judge;
+use crate::timeline::Timeline;
+
+/// What a report and a figure are made from, gathered while the run goes.
+pub(super) struct Witness {
+    pub(super) timeline: Timeline,
+    pub(super) judge: Judge,
+    pub(super) added: Added,
+    pub(super) sketch: Sketch,
+}
+
+impl Witness {
+    pub(super) fn new(zero_s: f64, span_s: (f64, f64), calibrated: Option<&EmgModel>) -> Self {
+        let sketch = Sketch::new(zero_s, span_s);
+        Self {
+            timeline: Timeline::new(zero_s),
+            judge: Judge::new(calibrated),
+            added: Added::default(),
+            sketch,
+        }
+    }
+}
+
+impl Recorder for Witness {
+    fn scan(&mut self, codes: &Scan, drive: MotorDrive, slipping: bool) {
+        self.judge.scan(codes, drive, slipping);
+    }
+
+    fn slow(&mut self, slow: &Slow) {
+        self.timeline.slow(slow);
+        self.judge.slow(slow);
+        self.added.slow(slow);
+        self.sketch.slow(slow);
+    }
+}
+
+/// A world whose trace is drawn while it goes, and not kept.
+pub(super) struct Drawn {
+    pub(super) world: World,
+    pub(super) needs: Needs,
+}
+
+impl Drawn {
+    pub(super) fn new(world: World, span_s: (f64, f64)) -> Self {
+        Self { world, needs: Needs::new(span_s) }
+    }
+
+    pub(super) fn draw(&mut self) {
+        self.world.take_trace().for_each(|row| self.needs.push(&row));
+    }
+}
+
+impl Plant for Drawn {
+    fn scan(&mut self, drive: MotorDrive) -> &Pins {
+        self.draw();
+        self.world.scan(drive)
+    }
+
+    fn commands(&mut self) -> Vec<Down> {
+        self.world.commands()
+    }
+
+    fn trusts_line(&self) -> bool {
+        self.world.trusts_line()
+    }
+
+    fn button(&self) -> bool {
+        self.world.button()
+    }
+
+    fn planned(&self) -> Option<MotorDrive> {
+        self.world.planned()
+    }
+
+    fn closing_to(&self, target_n: f64) -> Option<MotorDrive> {
+        self.world.closing_to(target_n)
+    }
+
+    fn slipping(&self) -> bool {
+        self.world.slipping()
+    }
+
+    fn calibrated(&self) -> Option<Calibrated> {
+        self.world.calibrated()
+    }
+
+    fn duration_s(&self) -> f64 {
+        self.world.duration_s()
+    }
+}

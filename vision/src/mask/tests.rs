@@ -1,0 +1,95 @@
+use super::*;
+use alloc::vec;
+use alloc::vec::Vec;
+
+fn rectangle(left: usize, top: usize, right: usize, bottom: usize) -> Mask {
+    let mut mask = Mask::EMPTY;
+    (top..bottom).for_each(|y| (left..right).for_each(|x| mask.insert(x, y)));
+    mask
+}
+
+#[test]
+fn growing_and_shrinking_cross_words_and_stop_at_the_border() {
+    let mut mask = rectangle(62, 10, 66, 12);
+    mask.dilate(7);
+    assert_eq!(mask, rectangle(55, 3, 73, 19));
+    mask.erode(7);
+    assert_eq!(mask, rectangle(62, 10, 66, 12));
+    let mut corner = rectangle(0, 0, 3, 3);
+    corner.erode(2);
+    assert_eq!(corner, rectangle(0, 0, 1, 1));
+    corner.dilate(2);
+    assert_eq!(corner, rectangle(0, 0, 3, 3));
+}
+
+#[test]
+fn holes_are_filled_and_bays_are_not() {
+    let mut ring = rectangle(40, 40, 200, 150);
+    let mut hole = rectangle(50, 50, 190, 140);
+    hole.invert();
+    ring.intersect(&hole);
+    let mut filled = ring.clone();
+    filled.fill_holes();
+    assert_eq!(filled, rectangle(40, 40, 200, 150));
+    // A winding way out of it: a bay, and nothing to fill.
+    ring.invert();
+    ring.unite(&rectangle(100, 60, 102, 70));
+    ring.unite(&rectangle(120, 140, 121, 150));
+    ring.invert();
+    let mut open = ring.clone();
+    open.fill_holes();
+    assert_eq!(open, ring);
+    let mut empty = Mask::EMPTY;
+    empty.fill_holes();
+    assert_eq!(empty, Mask::EMPTY);
+}
+
+#[test]
+fn small_pieces_go_and_large_ones_stay() {
+    let mut mask = rectangle(10, 10, 50, 50);
+    mask.unite(&rectangle(100, 20, 130, 60));
+    let large = mask.clone();
+    mask.unite(&rectangle(200, 5, 205, 10));
+    mask.unite(&rectangle(70, 200, 75, 203));
+    mask.keep_large(25);
+    assert_eq!(mask, large);
+    // A winding piece is one.
+    let mut spiral = rectangle(0, 0, 200, 2);
+    spiral.unite(&rectangle(198, 0, 200, 200));
+    spiral.unite(&rectangle(20, 198, 200, 200));
+    spiral.unite(&rectangle(20, 100, 22, 200));
+    spiral.unite(&rectangle(20, 100, 150, 102));
+    let whole = spiral.clone();
+    spiral.keep_large(100);
+    assert_eq!(spiral, whole);
+    let mut empty = Mask::EMPTY;
+    empty.keep_large(25);
+    assert_eq!(empty, Mask::EMPTY);
+}
+
+#[test]
+fn packing_is_the_bytes() {
+    let bytes: Vec<u8> = (0..PIXELS).map(|at| (at * at % 7 == 2) as u8).collect();
+    let mut mask = Mask::EMPTY;
+    mask.pack(bytes.as_slice().try_into().unwrap());
+    assert!((0..PIXELS).all(|at| mask.contains(at % WIDTH, at / WIDTH) == (bytes[at] == 1)));
+    let mut back = vec![0; PIXELS];
+    mask.unpack(back.as_mut_slice().try_into().unwrap());
+    assert_eq!(back, bytes);
+    let mut places = Vec::new();
+    mask.for_each(|at| places.push(at));
+    assert_eq!(places.len() as u32, mask.count());
+    assert!(places.iter().all(|&at| bytes[at] == 1));
+}
+
+#[test]
+fn moments_are_those_of_a_rectangle() {
+    let moments = rectangle(60, 100, 160, 120).moments().unwrap();
+    assert_eq!((moments.area, moments.middle), (2000, Point { x: 109.5, y: 109.5 }));
+    assert!((moments.xx - (100.0 * 100.0 - 1.0) / 12.0).abs() < 0.01 && moments.xy.abs() < 0.01);
+    assert!(moments.angle_rad().abs() < 1e-4 && moments.eccentricity() > 0.9);
+    let mut slanted = Mask::EMPTY;
+    (0..100).for_each(|at| slanted.insert(100 + at, 200 - at));
+    assert!((slanted.moments().unwrap().angle_rad() + core::f32::consts::FRAC_PI_4).abs() < 1e-4);
+    assert!(Mask::EMPTY.moments().is_none());
+}
