@@ -90,8 +90,7 @@ fn an_answer_a_lost_line_and_another_version_are_said() {
 #[test]
 fn settings_are_shown_with_their_ranges_and_what_is_typed() {
     let view = heard("rig", 2.0);
-    let mut edit = Edit::default();
-    edit.typed = Some("12".to_owned());
+    let edit = Edit { typed: Some("12".to_owned()), ..Edit::default() };
     let shown = Shown { control: true, edit: Some(edit), ..Shown::default() };
     let text = picture(&view, &shown, 80, 24);
     assert!(text.contains("s1-mv") && text.contains("20 to 250, default 100"), "{text}");
