@@ -38,7 +38,7 @@ pub fn scenes() -> anyhow::Result<Vec<Bar>> {
     ])
 }
 
-/// The contract against random hands: `host-tests/tests/wearer.rs`, run by cargo.
+/// The contract against random hands: `host-tests/tests/wearer.rs` and `random_steps.rs`, run by cargo.
 #[must_use]
 pub fn random(test: &mut Command) -> Bar {
     const PROMISE: &str =
@@ -50,7 +50,7 @@ pub fn random(test: &mut Command) -> Bar {
     let text = String::from_utf8_lossy(&output.stdout);
     let result = text.lines().find_map(|line| line.strip_prefix("test result: "));
     let figure = match result.and_then(|line| line.split(';').next()) {
-        Some(line) => format!("host-tests/tests/wearer.rs: {line}"),
+        Some(line) => format!("host-tests/tests/wearer.rs and random_steps.rs: {line}"),
         None => format!("the tests did not run: {}", String::from_utf8_lossy(&output.stderr).trim()),
     };
     Bar::new(PROMISE, figure, output.status.success() && result.is_some())

@@ -38,7 +38,11 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         Group::new("default scene", || default_scene(&root, &board, args)),
         Group::new("wearer in all scenes", wearer::scenes),
         Group::new("random hands", || {
-            Ok(vec![wearer::random(test::logic().args(["--quiet", "--test", "wearer"]).current_dir(&root))])
+            Ok(vec![wearer::random(
+                test::logic()
+                    .args(["--quiet", "--test", "wearer", "--test", "random_steps"])
+                    .current_dir(&root),
+            )])
         }),
     ];
     groups.extend(recordings::groups(&data, &board)?);

@@ -1,0 +1,67 @@
+//! The force sensor's quadrants: each reading as it comes, and the forces when all four have.
+
+use tenax_hal_shim::channel::{FSR, FSR_COUNT};
+use tenax_hal_shim::words::Fault;
+
+use super::{DOUBTED_AFTER, FSR_LIMITS, OPEN_FRAMES, PRESSED_UV, Senses, report};
+use crate::config::Config;
+use crate::fsr;
+use crate::journal::Journal;
+
+impl Senses {
+    pub(super) fn quadrant(&mut self, config: &Config, quadrant: usize, sample: u16, journal: &mut Journal) {
+        self.fsr_missed[quadrant] = 0;
+        let (reading, change) = self.fsr[quadrant].take(&FSR_LIMITS, sample);
+        report(journal, FSR + quadrant, change);
+        self.fsr_readings[quadrant] = reading.ok();
+        if quadrant + 1 < FSR_COUNT {
+            return;
+        }
+        self.forces_are_new = true;
+        self.quadrants(config, journal);
+        if self.head_is_fitted {
+            self.track(config);
+        }
+    }
+
+    /// All quadrants have been read.
+    fn quadrants(&mut self, config: &Config, journal: &mut Journal) {
+        let [Some(a), Some(b), Some(c), Some(d)] = self.fsr_readings else {
+            self.forces = None;
+            return;
+        };
+        let samples = [a, b, c, d];
+        let is_pressed = |sample: u16| fsr::uv_above_rest(sample) > PRESSED_UV;
+        if !self.fsr_seen {
+            self.fsr_seen = true;
+            for (n, _) in samples.iter().enumerate().filter(|&(_, &sample)| is_pressed(sample)) {
+                journal.fault(Fault::PressedAtBoot { channel: (FSR + n) as u8 });
+                self.pressed = true;
+            }
+        }
+        // Once it has been seen unloaded, its zero is known again.
+        self.pressed &= samples.into_iter().any(is_pressed);
+        let mut forces = self.force_sensor.process(samples, config.friction.loaded_mn);
+        if self.pressed {
+            // What presses it may be no object: the size of the force is still a bound, its direction is not.
+            forces.ratio_permille = None;
+        }
+        self.forces = Some(forces);
+        if self.open_frames >= OPEN_FRAMES {
+            self.force_sensor.follow();
+            self.doubt_load(config, journal);
+        }
+    }
+
+    /// The hand is surely open: what it still reads after its zeros had time to follow is no load.
+    fn doubt_load(&mut self, config: &Config, journal: &mut Journal) {
+        if self.is_unloaded(config) {
+            self.open_and_loaded = 0;
+            return;
+        }
+        self.open_and_loaded = self.open_and_loaded.saturating_add(1);
+        if self.open_and_loaded == DOUBTED_AFTER {
+            journal.fault(Fault::NeverUnloaded);
+        }
+    }
+}
