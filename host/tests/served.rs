@@ -15,6 +15,7 @@ use tenax::session::Board;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{Answer, Down, Refusal, Setting, Up};
+use tenax_hal_shim::words::Line;
 use tenax_scene::plant::{Pins, Plant};
 
 const WITHIN: Duration = Duration::from_secs(5);
@@ -62,6 +63,12 @@ fn setting(id: SettingId, value: i32) -> Setting {
 fn set_and_read_back(target: &Target, mv: i32) {
     let mut client = Client::open(target).unwrap();
     let s1 = setting(SettingId::S1, mv);
+    // Switched on with nothing held, the board consents within its first cycles: whoever is there before is refused.
+    let began = Instant::now();
+    let is_armed = |up: &Up| matches!(up, Up::Slow(slow) if slow.line != Line::Reading);
+    while !client.next_message().unwrap().is_some_and(|heard| is_armed(&heard.received.message)) {
+        assert!(began.elapsed() < WITHIN, "it never consents");
+    }
     assert_eq!(client.ask(&Down::Set(s1), WITHIN).unwrap(), Answer::Setting(s1));
     assert_eq!(client.ask(&Down::Get(s1.id), WITHIN).unwrap(), Answer::Setting(s1));
     let Answer::Settings(settings) = client.ask(&Down::Settings(0), WITHIN).unwrap() else {
