@@ -53,6 +53,8 @@ pub enum Ending {
     Ceiling,
     /// Nothing is held any more.
     Dropped,
+    /// It was loosened as far as it may be, and nothing slipped: the grasp is as firm as before.
+    NoSlip,
     /// The line may not command any more: what opens the hand needs consent as long as it lasts.
     NotArmed,
 }
@@ -69,6 +71,7 @@ impl Ending {
             Self::TooLong => "gave up: it took too long",
             Self::Ceiling => "gave up: the force ceiling is reached",
             Self::Dropped => "gave up: nothing is held any more",
+            Self::NoSlip => "gave up: nothing slipped",
             Self::NotArmed => "gave up: the consent is over",
         }
     }

@@ -219,3 +219,65 @@ fn lost_frames_move_nothing() {
         assert_eq!(bench.give(&lost), MotorDrive::Coast);
     }
 }
+
+/// A camera that sees motion for ever is broken: what it adds ends.
+#[test]
+fn a_camera_that_sees_motion_for_ever_closes_the_hand_for_half_a_second() {
+    let mut bench = Bench::holding(11);
+    watch(&mut bench, 200, &view(0, 20, 0));
+    begin(&mut bench, Behaviour::Hold);
+    let closing = |drives: &[MotorDrive]| drives.iter().filter(|drive| drive.closes()).count();
+    let closed = closing(&watch(&mut bench, 20_000, &view(200, 20, 0)));
+    assert!((900..=1_020).contains(&closed), "{closed} frames of 0.5 ms");
+    watch(&mut bench, 1_000, &view(0, 20, 0));
+    assert!(closing(&watch(&mut bench, 1_000, &view(200, 20, 0))) > 0, "it has been still");
+}
+
+/// What a camera alone sees opens nothing: light changes too.
+#[test]
+fn motion_in_the_picture_is_no_pull_unless_the_skin_feels_one() {
+    for (shear, released) in [(10, false), (20, true)] {
+        let mut bench = Bench::holding(12);
+        watch(&mut bench, 200, &view(0, 20, 10));
+        begin(&mut bench, Behaviour::HandOver);
+        watch(&mut bench, 600, &view(0, 20, 10));
+        assert_eq!(opens(&watch(&mut bench, 2_000, &view(200, 20, shear))), released, "{shear}");
+    }
+}
+
+/// Nothing that would feel it says that it slips: the grasp is loosened by so much, and no further.
+#[test]
+fn a_turn_in_which_nothing_slips_gives_up_before_the_object_falls() {
+    let mut bench = Bench::holding(13);
+    watch(&mut bench, 200, &view(0, 20, 0));
+    begin(&mut bench, Behaviour::Turn { by_ddeg: 200 });
+    bench.load(1.9, 0.1);
+    let drives = watch(&mut bench, 4_000, &view(0, 20, 0));
+    assert!(opens(&drives[..200]), "it is loosened first");
+    bench.load(1.2, 0.1);
+    let drives = watch(&mut bench, 4_000, &view(0, 20, 0));
+    assert!(!opens(&drives[100..]), "less than a third is left of the grasp");
+    assert!(drives.iter().any(|drive| drive.closes()), "it is as firm as before");
+    assert_eq!(ending(&bench), Some(Ending::NoSlip));
+}
+
+/// Begun again and again, a behaviour that answers slip itself silences the reflex as long as somebody's consent lasts, and until
+/// the last one is over: 80 s. Not for ever.
+#[test]
+fn a_row_of_hand_overs_silences_the_reflex_as_long_as_the_consent() {
+    let mut bench = Bench::holding(14);
+    bench.press(300.0);
+    let distrust = Down::Set(Setting { id: SettingId::LineTrusted as u8, value: 0 });
+    bench.run(600);
+    bench.fingertip.command(&distrust).expect("a trusted line may give it back");
+    let mut silent = 0;
+    for step in 0..400_000_u32 {
+        bench.fingertip.button((100..400).contains(&step));
+        if step % 1_000 == 500 {
+            let _refused = bench.fingertip.command(&Down::Begin(Behaviour::HandOver));
+        }
+        bench.step();
+        silent += u32::from(bench.fingertip.behaviour().is_some());
+    }
+    assert!((110_000..=161_000).contains(&silent), "{silent} of 400,000 frames");
+}

@@ -57,7 +57,7 @@ DRIVE = ("enum", "MotorDrive", [("Coast", []), ("Close", [("permille", "u16")]),
 BEHAVIOUR = ("enum", "Behaviour", [
     ("Stroke", []), ("GentleGrasp", []), ("Hold", []), ("HandOver", []), ("Turn", [("by_ddeg", "i16")]),
 ])
-ENDING = _unit("Ending", "Done", "Stopped", "TakenOver", "SensorLost", "TooLong", "Ceiling", "Dropped", "NotArmed")
+ENDING = _unit("Ending", "Done", "Stopped", "TakenOver", "SensorLost", "TooLong", "Ceiling", "Dropped", "NoSlip", "NotArmed")
 CAMERA_VIEW = [
     ("age_ms", "u16"), ("moving_e4", "u16"), ("angle_ddeg", ("opt", "i16")), ("normal", ("arr", 24, "u8")),
     ("shear", ("arr", 24, "i8")),

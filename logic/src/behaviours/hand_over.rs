@@ -1,7 +1,7 @@
 //! Hand-over: let go as soon as somebody pulls at the object (FingerVision 2017, section II-C).
 //!
-//! No broken sensor is to let go of anything: a detector's slip counts only where the skin feels another force too, and a
-//! skin that gives no numbers ends the hand-over with the fingers as they are.
+//! No broken sensor is to let go of anything: slip, a detector's or what the camera sees move, counts only where the skin feels
+//! another force too, and a skin that gives no numbers ends the hand-over with the fingers as they are.
 
 use tenax_hal_shim::behaviour::Ending;
 use tenax_hal_shim::motor::Duty;
@@ -56,7 +56,7 @@ impl HandOver {
             self.changed = changed;
         }
         let changed = self.changed;
-        let slips = felt.is_moving(config.moving_e4, false) || (felt.slips && changed > 0);
+        let slips = felt.is_slipping(config.moving_e4, false) && changed > 0;
         self.waited = self.waited.saturating_add(1);
         self.changed_for = if changed > config.changed_cells { self.changed_for + 1 } else { 0 };
         self.slips_for = if slips { self.slips_for + 1 } else { 0 };

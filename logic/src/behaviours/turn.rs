@@ -15,6 +15,9 @@ use crate::grip::Grip;
 
 /// What still slips after being tightened for this long falls, in frames: that is the reflex's.
 const FALLS_FRAMES: u32 = frames(300);
+/// The part of the first load that is left when it is loosened no further: whoever holds with three times what is needed holds
+/// firmly, and what slips at less should have slipped before.
+const LEAST_PART: i32 = 3;
 /// Small movements that the grasp is kept away from where it slipped last; up to there it is loosened without waiting.
 const MARGIN_MOVEMENTS: i32 = 6;
 
@@ -33,6 +36,10 @@ enum Phase {
 #[derive(Clone, Debug)]
 pub struct Turn {
     target_ddeg: i32,
+    first_mn: i32,
+    load_mn: i32,
+    /// Whether it was loosened as far as it may be, and nothing slipped.
+    gives_up: bool,
     /// The sign of the way there.
     sign: i32,
     phase: Phase,
@@ -57,8 +64,12 @@ impl Turn {
     /// None without a camera that sees the object, or without a grasp.
     pub fn begin(felt: &Felt<'_>, by_ddeg: i16) -> Option<Self> {
         let angle_ddeg = i32::from(felt.view?.angle_ddeg?);
-        matches!(felt.grip, Grip::Holds(_)).then_some(Self {
+        let Grip::Holds(load_mn) = felt.grip else { return None };
+        Some(Self {
             target_ddeg: angle_ddeg + i32::from(by_ddeg),
+            first_mn: load_mn,
+            load_mn,
+            gives_up: false,
             sign: i32::from(by_ddeg).signum(),
             phase: Phase::Loosens,
             movement: Movement::default(),
@@ -88,6 +99,10 @@ impl Turn {
                 self.slipped_at = Some(self.loosened);
                 self.enter(Phase::Tightens);
             }
+            Phase::Loosens if self.load_mn.saturating_mul(LEAST_PART) < self.first_mn => {
+                self.gives_up = true;
+                self.enter(Phase::Secures);
+            }
             Phase::Loosens => {
                 if self.movement.is_over() || (self.is_far(config) && !self.movement.drives()) {
                     self.movement = Movement::relax(config);
@@ -105,7 +120,7 @@ impl Turn {
             }
             Phase::Secures => {
                 if self.loosened <= 0 {
-                    return Course::Ends(Ending::Done);
+                    return Course::Ends(if self.gives_up { Ending::NoSlip } else { Ending::Done });
                 }
                 self.movement = Movement::lasting(config, tighten(config), 1);
             }
@@ -123,7 +138,8 @@ impl Turn {
     fn look(&mut self, felt: &Felt<'_>) -> Result<(), Ending> {
         self.since_view = self.since_view.saturating_add(1);
         let view = felt.view.ok_or(Ending::SensorLost)?;
-        let Grip::Holds(_) = felt.grip else { return Err(Ending::Dropped) };
+        let Grip::Holds(load_mn) = felt.grip else { return Err(Ending::Dropped) };
+        self.load_mn = load_mn;
         if !felt.view_is_new {
             return Ok(());
         }
