@@ -1,19 +1,14 @@
 //! `tenax config` against a served board: every setting is set, read back, exported, imported and reset.
 #![cfg(unix)]
 
-use std::io::{BufRead, BufReader};
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+#[path = "common/serving.rs"]
+mod serving;
+
+use std::process::{Command, Output};
 
 use tenax_hal_shim::setting::SettingId;
 
-/// A scene whose board trusts its line, so that nobody at the hand has to consent.
-fn trusting(folder: &Path) -> PathBuf {
-    let path = folder.join("trusting.toml");
-    let rig = include_str!("../../scenes/rig.toml");
-    std::fs::write(&path, rig.replacen("\n[contact]", "\nline_trusted = true\n\n[contact]", 1)).unwrap();
-    path
-}
+use self::serving::Serving;
 
 fn config(place: &str, args: &[&str]) -> (bool, String, String) {
     let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_tenax"))
@@ -27,20 +22,10 @@ fn config(place: &str, args: &[&str]) -> (bool, String, String) {
 
 #[test]
 fn every_setting_is_set_read_back_exported_imported_and_reset() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut run = Command::new(env!("CARGO_BIN_EXE_tenax"))
-        .args(["run", "--host", "--serve-tcp", "0", "--scene"])
-        .arg(trusting(folder.path()))
-        .arg("--out")
-        .arg(folder.path())
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut said = BufReader::new(run.stderr.take().unwrap()).lines().map(Result::unwrap);
-    let place = said.next().unwrap().strip_prefix("serving on ").unwrap().to_owned();
+    let served = Serving::trusting();
+    let place = served.places[0].as_str();
 
-    let (_, list, _) = config(&place, &["list"]);
+    let (_, list, _) = config(place, &["list"]);
     assert_eq!(list.lines().count(), SettingId::ALL.len(), "{list}");
     assert!(list.contains("s1-mv") && list.contains("20 to 250, default 100: S1"), "{list}");
 
@@ -50,26 +35,25 @@ fn every_setting_is_set_read_back_exported_imported_and_reset() {
     let wanted: Vec<String> =
         settable.iter().map(|id| format!("{}={}", id.row().name, id.row().min)).collect();
     let args: Vec<&str> = ["set"].into_iter().chain(wanted.iter().map(String::as_str)).collect();
-    let (done, out, error) = config(&place, &args);
+    let (done, out, error) = config(place, &args);
     assert!(done && out.lines().count() == settable.len(), "{out}{error}");
 
-    let file = folder.path().join("settings.toml");
+    let file = served.folder.path().join("settings.toml");
     let file = file.to_str().unwrap();
-    assert!(config(&place, &["export", file]).0);
-    assert!(config(&place, &["reset"]).0);
-    assert_eq!(config(&place, &["get", "s1-mv"]).1, "100\n");
+    assert!(config(place, &["export", file]).0);
+    assert!(config(place, &["reset"]).0);
+    assert_eq!(config(place, &["get", "s1-mv"]).1, "100\n");
     assert!(std::fs::read_to_string(file).unwrap().contains("\ns1-mv = 20\n"));
-    let (_, exported, _) = config(&place, &["export"]);
+    let (_, exported, _) = config(place, &["export"]);
     assert!(exported.contains("\ns1-mv = 100\n"), "{exported}");
 
-    let (done, _, error) = config(&place, &["set", "s1-mv=1501"]);
+    let (done, _, error) = config(place, &["set", "s1-mv=1501"]);
     assert!(!done && error.contains("s1-mv = 1501 mV is outside 20 to 1500"), "{error}");
     // From here on the narrower range is in force, and somebody has to be at the hand.
-    assert!(config(&place, &["set", "line-trusted-flag=0"]).0);
-    let (done, _, error) = config(&place, &["set", "s1-mv=120"]);
+    assert!(config(place, &["set", "line-trusted-flag=0"]).0);
+    let (done, _, error) = config(place, &["set", "s1-mv=120"]);
     assert!(!done && error.contains("nobody at the hand has consented"), "{error}");
-    let (done, _, error) = config(&place, &["get", "s1"]);
+    let (done, _, error) = config(place, &["get", "s1"]);
     assert!(!done && error.contains("no setting is called s1; the settings are s1-mv"), "{error}");
-    said.for_each(drop);
-    assert!(run.wait().unwrap().success());
+    served.end();
 }

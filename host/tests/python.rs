@@ -1,20 +1,16 @@
 //! The Python package reads a served board: the proof that `docs/protocol.md` is enough.
 #![cfg(unix)]
 
-use std::io::{BufRead, BufReader};
+#[path = "common/serving.rs"]
+mod serving;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+use self::serving::Serving;
+
 fn package() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().join("python")
-}
-
-/// A scene whose board trusts its line, so that nobody at the hand has to consent.
-fn trusting(folder: &Path) -> PathBuf {
-    let path = folder.join("trusting.toml");
-    let rig = include_str!("../../scenes/rig.toml");
-    std::fs::write(&path, rig.replacen("\n[contact]", "\nline_trusted = true\n\n[contact]", 1)).unwrap();
-    path
 }
 
 /// python3 with the package; None where there is no Python.
@@ -65,20 +61,8 @@ with tenax.open(sys.argv[1]) as board:
 #[test]
 fn it_reads_sets_and_streams_a_served_board() {
     let Some(mut python) = python() else { return };
-    let folder = tempfile::tempdir().unwrap();
-    let mut run = Command::new(env!("CARGO_BIN_EXE_tenax"))
-        .args(["run", "--host", "--serve-tcp", "0", "--scene"])
-        .arg(trusting(folder.path()))
-        .arg("--out")
-        .arg(folder.path())
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut said = BufReader::new(run.stderr.take().unwrap()).lines().map(Result::unwrap);
-    let place = said.next().unwrap().strip_prefix("serving on ").unwrap().to_owned();
-    let visit = python.args(["-c", VISIT, &place]).output().unwrap();
+    let served = Serving::trusting();
+    let visit = python.args(["-c", VISIT, &served.places[0]]).output().unwrap();
     assert!(visit.status.success(), "{}", String::from_utf8_lossy(&visit.stderr));
-    said.for_each(drop);
-    assert!(run.wait().unwrap().success());
+    served.end();
 }

@@ -1,9 +1,11 @@
 //! A running board's line, served: settings are set and read back, nothing is missed, and nobody can hold up the run.
 #![cfg(unix)]
 
+#[path = "common/serving.rs"]
+mod serving;
+
 use std::collections::HashSet;
 use std::fs;
-use std::io::{BufRead, BufReader};
 use std::process::{Command, Output, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -17,6 +19,8 @@ use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{Answer, Down, Refusal, Setting, Up};
 use tenax_hal_shim::words::Line;
 use tenax_scene::plant::{Pins, Plant};
+
+use self::serving::Serving;
 
 const WITHIN: Duration = Duration::from_secs(5);
 
@@ -175,18 +179,9 @@ fn the_second_client_of_a_pty_hears_nothing_old() {
 /// The tool against itself, as a person uses it.
 #[test]
 fn the_monitor_sets_a_setting_of_a_scene_that_runs() {
-    let folder = tempfile::tempdir().unwrap();
     let tenax = || Command::new(env!("CARGO_BIN_EXE_tenax"));
-    let mut run = tenax()
-        .args(["run", "--host", "--scene", "rig", "--serve", "--serve-tcp", "0", "--out"])
-        .arg(folder.path())
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut said = BufReader::new(run.stderr.take().unwrap()).lines().map(Result::unwrap);
-    let places: Vec<String> =
-        said.by_ref().take(2).map(|line| line.strip_prefix("serving on ").unwrap().to_owned()).collect();
+    let served = Serving::start(include_str!("../../scenes/rig.toml"), &["--serve"]);
+    let places = served.places.clone();
     assert!(places[0].starts_with("/dev/") && places[1].starts_with("tcp:127.0.0.1:"), "{places:?}");
     let monitors: Vec<_> = places
         .iter()
@@ -205,9 +200,8 @@ fn the_monitor_sets_a_setting_of_a_scene_that_runs() {
         assert!(error.contains("served run"), "{error}");
         assert_eq!((status.code(), error.contains(place.as_str())), (Some(2), true), "{error}");
     }
-    let rest: Vec<String> = said.collect();
+    let rest = served.end();
     assert!(rest.iter().any(|line| line.contains("2 clients, 0 messages dropped")), "{rest:?}");
-    assert!(run.wait().unwrap().success());
 }
 
 #[test]

@@ -1,0 +1,57 @@
+//! A scene that the tool serves, as a person starts it.
+#![allow(dead_code, reason = "each test file uses its own part of this one")]
+
+use std::io::{BufRead, BufReader};
+use std::process::{Child, ChildStderr, Command, Stdio};
+
+use tempfile::TempDir;
+
+/// `tenax run --host --serve-tcp 0`, and where it serves.
+pub struct Serving {
+    run: Child,
+    said: BufReader<ChildStderr>,
+    /// In the order in which it says them.
+    pub places: Vec<String>,
+    /// Where it writes what a run leaves.
+    pub folder: TempDir,
+}
+
+impl Serving {
+    /// Serves a scene file's text at one place more than `more` asks for.
+    pub fn start(scene: &str, more: &[&str]) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("served.toml");
+        std::fs::write(&path, scene).unwrap();
+        let mut run = Command::new(env!("CARGO_BIN_EXE_tenax"))
+            .args(["run", "--host", "--serve-tcp", "0", "--scene"])
+            .arg(path)
+            .args(more)
+            .arg("--out")
+            .arg(folder.path())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut said = BufReader::new(run.stderr.take().unwrap());
+        let place = |_| {
+            let mut line = String::new();
+            said.read_line(&mut line).unwrap();
+            line.trim_end().strip_prefix("serving on ").unwrap_or_else(|| panic!("{line}")).to_owned()
+        };
+        let places = (0..=more.len()).map(place).collect();
+        Self { run, said, places, folder }
+    }
+
+    /// Serves a board that trusts its line, so that nobody at the hand has to consent.
+    pub fn trusting() -> Self {
+        let rig = include_str!("../../../scenes/rig.toml");
+        Self::start(&rig.replacen("\n[contact]", "\nline_trusted = true\n\n[contact]", 1), &[])
+    }
+
+    /// Waits for the run's end; what else it said.
+    pub fn end(mut self) -> Vec<String> {
+        let rest = self.said.lines().map(Result::unwrap).collect();
+        assert!(self.run.wait().unwrap().success());
+        rest
+    }
+}
