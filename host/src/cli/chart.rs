@@ -43,6 +43,8 @@ enum Subject {
     Sensors,
     /// What detectors from normal force get wrong against the instructions that they take
     Detectors,
+    /// How the force array's network does against each quantity that sessions draw: where the method fails
+    Array,
     /// What tells slip from rest in the force array: force sum, derivative, covariance, frequency, and their windows
     Features,
     /// What a photoelastic head tells of normal force and slip: its curve, force followed, rates, where slip is seen
@@ -53,6 +55,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let folder = folder::made(&args.out)?;
     let charts = match args.subject {
         Subject::Scenes => with_bar("charts", |progress| chart::scenes(progress))?,
+        Subject::Array => vec![with_bar("array", |progress| chart::array::chart(progress))?],
         Subject::Features => vec![with_bar("features", |progress| chart::features::chart(progress))?],
         Subject::Sensors => {
             let recordings = match &args.recordings {
