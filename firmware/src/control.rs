@@ -11,6 +11,7 @@ use tenax_logic::device::Device;
 use tenax_logic::fingertip::Fingertip;
 use tenax_logic::stream::SENSES_SLOT;
 
+use crate::black_box;
 use crate::bridge::Bridge;
 use crate::button::Button;
 use crate::counts;
@@ -112,7 +113,9 @@ impl Control {
             mail::post(message);
         }
         let done = tenax_control_command(&mut self.device, command);
-        mail::post(self.device.answer(command, done));
+        let mut answer = self.device.answer(command, done);
+        black_box::read(&mut answer);
+        mail::post(answer);
     }
 }
 

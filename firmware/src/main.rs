@@ -17,6 +17,7 @@
 #![no_std]
 #![no_main]
 
+mod black_box;
 mod bridge;
 mod button;
 mod chip;
@@ -80,6 +81,7 @@ static CONTROL: StaticCell<control::Control> = StaticCell::new();
 async fn main(spawner: Spawner) {
     let last_words::Start { after, cause, stay_off } = last_words::start();
     let switched_on = cause == ResetCause::PowerOn;
+    black_box::start(after, switched_on);
     let crystal = clock::has_crystal();
     let mut config = clock::config(crystal);
     config.dma_interrupt_priority = Priority::P6;

@@ -57,6 +57,8 @@ fn attend(mut client: Client, commands: &Receiver<Down>, news: &Sender<News>) ->
     if client.can_send() {
         // They only read, and an older image answers what it knows.
         let _asked = client.send(&Down::About);
+        // Whether its last run ended in a fault.
+        let _asked = client.send(&Down::Last(0));
     }
     loop {
         if client.can_send() && streamed.is_none_or(|at| at.elapsed() >= STREAM_EVERY) {

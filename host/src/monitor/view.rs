@@ -157,6 +157,9 @@ impl View {
             Up::Senses(senses) => self.senses = Some(senses.clone()),
             Up::Counters(counters) => self.counters = Some(*counters),
             Up::About(about) => self.about(about.clone()),
+            Up::Answer { answer: Answer::Last(last), .. } if last.after.is_some() && last.from == 0 => {
+                self.say(Words(&received.message).to_string());
+            }
             Up::Answer { answer, .. } => self.learn(answer),
             Up::Hello { .. } => {
                 self.faults.clear();
