@@ -280,3 +280,22 @@ pub fn text(lines: &[Line]) -> String {
     text.push_str("pours, where there are any; missed and false in 2800 steps\n");
     text
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_without_parts_is_learned_from_but_for_its_last_session() {
+        let own = |session: &str| Recording {
+            session: session.to_owned(),
+            ..Recording::of_steps(session, Vec::new())
+        };
+        let parted = with_parts(vec![own("b"), own("a"), own("b")], vec![own("c")]);
+        let parts: Vec<Option<Part>> = parted.iter().map(|own| own.part).collect();
+        assert_eq!(parts, [Part::Validation, Part::Train, Part::Validation, Part::Test].map(Some));
+        // The control: parts that a file has are kept.
+        let named = Recording { part: Some(Part::Train), ..own("z") };
+        assert_eq!(with_parts(vec![named, own("a")], Vec::new())[0].part, Some(Part::Train));
+    }
+}
