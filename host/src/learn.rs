@@ -15,6 +15,7 @@ pub mod crackle;
 pub mod figures;
 pub mod finger;
 pub mod holding;
+pub mod observer;
 pub mod reflex;
 pub mod report;
 pub mod trial;
