@@ -25,8 +25,8 @@ const HOLD_FRAMES: u32 = 200;
 const ACTIVE_MV: i32 = 162;
 /// A fault of a myosensor may look like a contraction for 92 ms (docs/emg.md), and its last reading counts for 6.5 ms, in frames.
 const STRAY_FRAMES: u32 = 200;
-/// And for this long if the other muscle rises meanwhile: 0.25 s, and its last reading.
-const STRAY_TOGETHER_FRAMES: u32 = 550;
+/// And for this long if the other muscle rises meanwhile: 0.4 s, and its last reading.
+const STRAY_TOGETHER_FRAMES: u32 = 840;
 /// How long the muscles rest and are well before an opening is held to its time: 6 s.
 const WELL_FRAMES: u32 = 12_000;
 /// An opening that a muscle began goes on for a while when its electrode fails (docs/emg.md), in frames: 0.6 s.

@@ -10,9 +10,12 @@
 
 pub mod bench;
 pub mod chain;
+pub mod control;
+pub mod crackle;
 pub mod figures;
 pub mod finger;
 pub mod holding;
+pub mod observer;
 pub mod reflex;
 pub mod report;
 pub mod trial;
@@ -25,14 +28,19 @@ use tenax_hal_shim::wire::Setting;
 use crate::board::agreement::Agreement;
 use crate::session::Board;
 use bench::Bench;
+use control::Control;
 use finger::Finger;
 use holding::Holding;
 use reflex::Three;
-use report::Score;
+use report::{Safe, Score};
 use trial::{Setup, Trial};
 
 /// Trials of a lesson (Tada 2006, section III-C).
 pub const LESSONS: u64 = 7;
+/// How long a trial is that ends with the slip up, s from the lift on.
+const SLIP_UP_S: f64 = 1.5;
+/// Lifts of each finger made by chance with more force than the object needs.
+const SAFE_LIFTS: u64 = 5;
 /// Held-out trials of each finger made by chance.
 const TRIALS_OF_OTHERS: u64 = 10;
 
@@ -51,6 +59,8 @@ pub struct Options {
     pub fingertips: u64,
     /// Whether the films hear no mains hum: the most that a canceller of it could bring.
     pub without_hum: bool,
+    /// Whether one film of the plain finger is made to crackle, too.
+    pub crackling: bool,
     /// Settings of the fingertips that are not the defaults, on the host only.
     pub settings: Vec<Setting>,
 }
@@ -71,6 +81,7 @@ impl Default for Options {
             lifts: 20,
             fingertips: 20,
             without_hum: false,
+            crackling: false,
             settings: Vec::new(),
         }
     }
@@ -102,6 +113,8 @@ pub struct Outcome {
     pub lifts: Vec<Three>,
     /// Pours.
     pub pours: Vec<Three>,
+    /// The plain finger with a film that crackles: with what it has learned, and with equal weights.
+    pub crackling: Option<[crackle::Tried; 2]>,
     /// The other fingers.
     pub others: Vec<Other>,
     /// What the receptors felt in the last three lessons.
@@ -122,7 +135,7 @@ pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Resu
     let loudest = silent.outputs.iter().flatten().map(|output| output.unsigned_abs()).max();
 
     let (learned, lessons, felt) = lessons_on_host(&finger, options, progress)?;
-    let equal = learned.with_equal_weights()?;
+    let equal = learned.controlled(Control::EqualWeights)?;
     let equal = Score::of(&trials_on_host(&finger, equal, options, progress)?);
     let (trials, agreement) = match board {
         Board::Host => (trials_on_host(&finger, learned.clone(), options, progress)?, None),
@@ -141,6 +154,7 @@ pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Resu
     progress("lifting and pouring", 0.0);
     let lifts = reflex::lifts(&finger, &learned, options.lifts, seed(options.seed, 4, 0))?;
     let pours = reflex::pours(&finger, &learned, options.lifts, seed(options.seed, 5, 0))?;
+    let crackling = if options.crackling { Some(crackle::compare(options)?) } else { None };
     let over = AtomicU64::new(0);
     let others = (1..=options.fingertips).into_par_iter().map(|n| {
         let score = other(options, n);
@@ -161,6 +175,7 @@ pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Resu
         holding,
         lifts,
         pours,
+        crackling,
         others,
         felt,
     })
@@ -229,9 +244,21 @@ pub struct Other {
     pub ratio: f64,
     /// Its held-out trials.
     pub score: Score,
-    /// The same with equal weights.
-    pub equal: Score,
+    /// The same of each control, in the order of [`Control::ALL`].
+    pub controls: [Score; Control::ALL.len()],
+    /// Lifts with more force than the object needs.
+    pub safe: Safe,
 }
+
+impl Other {
+    /// The control of what learning which film to believe is worth.
+    #[must_use]
+    pub const fn equal(&self) -> &Score {
+        &self.controls[Control::EqualWeights as usize]
+    }
+}
+
+const _: () = assert!(Control::ALL[0] as usize == 0 && Control::EqualWeights as usize == 0);
 
 /// The same lessons, and some held-out trials.
 fn other(options: &Options, n: u64) -> anyhow::Result<Other> {
@@ -241,15 +268,32 @@ fn other(options: &Options, n: u64) -> anyhow::Result<Other> {
     for n in 0..LESSONS {
         bench.trial(Setup::new(&finger, lesson(own, n), true)?);
     }
-    let mut equal = bench.with_equal_weights()?;
-    let mut trials = [Vec::new(), Vec::new()];
-    for n in 0..TRIALS_OF_OTHERS {
-        for (trials, bench) in trials.iter_mut().zip([&mut bench, &mut equal]) {
-            trials.push(bench.trial(Setup::new(&finger, held_out(own, n), false)?));
+    let mut controls: [Score; Control::ALL.len()] = Default::default();
+    for (score, control) in controls.iter_mut().zip(Control::ALL) {
+        let bench = bench.controlled(control)?;
+        let mut trials = Vec::new();
+        for n in 0..TRIALS_OF_OTHERS {
+            // Each from the end of the lessons: a trial that is cut short is no beginning for the next.
+            let setup = Setup::new(&finger, held_out(own, n), false)?;
+            trials.push(bench.clone().trial_for(SLIP_UP_S, setup));
+        }
+        *score = Score::of(&trials);
+    }
+    let mut safe = Safe::default();
+    for n in 0..SAFE_LIFTS {
+        let setup = Setup::held(&finger, seed(own, 7, n))?;
+        let trial = bench.clone().trial_for(SLIP_UP_S, setup);
+        // One that slips all the same is none of these.
+        if trial.slip_up().is_none() {
+            safe.lifts += 1;
+            safe.said += u64::from(trial.verdicts().iter().any(|verdict| verdict.from_s > trial.lift_s));
         }
     }
-    let [score, equal] = trials.map(|trials| Score::of(&trials));
-    Ok(Other { ratio: finger.ratio(), score, equal })
+    let mut trials = Vec::new();
+    for n in 0..TRIALS_OF_OTHERS {
+        trials.push(bench.trial(Setup::new(&finger, held_out(own, n), false)?));
+    }
+    Ok(Other { ratio: finger.ratio(), score: Score::of(&trials), controls, safe })
 }
 
 fn lesson(all: u64, n: u64) -> u64 {

@@ -1,8 +1,12 @@
 //! A fingertip that teaches itself slip: the properties of `tenax learn` at small scale, on the host's logic.
 
+use tenax::learn::bench::Bench;
+use tenax::learn::finger::Finger;
 use tenax::learn::report::{Report, of_judges};
+use tenax::learn::trial::Setup;
 use tenax::learn::{self, Options, Outcome};
-use tenax::session::Board;
+use tenax::session::{self, Board};
+use tenax_hal_shim::detector::DetectorId;
 
 /// So few trials that a test may run them; the bars themselves are measured by `tenax check`.
 const FEW: Options = Options {
@@ -12,6 +16,7 @@ const FEW: Options = Options {
     lifts: 3,
     fingertips: 1,
     without_hum: false,
+    crackling: false,
     settings: Vec::new(),
 };
 
@@ -60,6 +65,8 @@ fn before_learning_it_says_nothing_and_afterwards_it_sees_micro_slip() {
             "worst_finger_lead_s",
             "missed",
             "false_per_hour",
+            "holding_hours",
+            "safe",
             "direction_wrong",
             "fingertips"
         ]
@@ -81,4 +88,22 @@ fn the_same_seed_gives_the_same_learning() {
         one.trials[0].outputs.iter().any(|outputs| outputs[0] == -128),
         "a slip is said with all there is"
     );
+}
+
+/// Both go through a lesson, from which the finger has learned by the slip down: `run` as any scene, `learn` as a trial.
+#[test]
+fn run_and_learn_score_the_same_scene_alike() {
+    const SEED: u64 = 11;
+    let finger = Finger::plain(SEED);
+    let (scene, _) = Setup::scene(&finger, SEED, true, &[]).unwrap();
+    let ran = session::scene(&scene, SEED, &Board::Host, &mut |_| ()).unwrap();
+    let by_run = ran.report.detectors.of_id(DetectorId::Hebbian).events.unwrap();
+    let by_learn = Bench::default().trial(Setup::new(&finger, SEED, true).unwrap()).card();
+
+    assert_eq!(by_run.slips, by_learn.slips, "seed {SEED}");
+    assert_eq!(by_run.latencies_ms, by_learn.latencies_ms);
+    assert!(by_run.slips.count >= 2 && by_run.slips.caught >= 1, "{by_run:?}");
+    // The control: another seed is another scene.
+    let other = Bench::default().trial(Setup::new(&finger, SEED + 1, true).unwrap()).card();
+    assert_ne!(other.latencies_ms, by_run.latencies_ms);
 }

@@ -48,6 +48,8 @@ pub struct TouchConfig {
     /// How long after a knock or a run of the motor it means nothing, in frames: what the envelopes still have of it, and
     /// the motor's dead time.
     pub loud_frames: u32,
+    /// How far ahead rising shear is looked at, ms.
+    pub ahead_ms: u16,
     /// From this duty on the motor runs fast, per mille. Closing more slowly is a way to take something, and to learn.
     pub loud_duty_permille: u16,
     /// When a teacher is believed.
@@ -128,6 +130,7 @@ impl Config {
             everywhere_frames: 0,
             loud_frames: 0,
             loud_duty_permille: 0,
+            ahead_ms: 0,
             teacher: TeacherConfig { fresh_ms: 0 },
             learning: LearningConfig::DEFAULT,
             rule: Rule::DEFAULT,

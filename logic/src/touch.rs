@@ -13,10 +13,16 @@
 //! Slip begins in one place of the contact, and is heard by whoever lies there. A knock, a swing and the motor are heard
 //! everywhere; so what is heard everywhere is slip only if it lasts.
 //!
+//! Shear foretells it: Ft/Fn that rises towards where the camera saw slip ([`shear`]). Where the films' own noise is above the
+//! threshold, it is the threshold ([`noise`]).
+//!
 //! The direction is asked of the gauges alone: "vibration information only helps to detect micro slips, but not to detect
 //! the direction" (Tada 2006, section I), and a slip down that was louder than the slip up would be an offset of o2.
 
+mod balance;
 mod hearing;
+mod noise;
+mod shear;
 
 use core::ops::Range;
 
@@ -29,7 +35,10 @@ use crate::hebbian::{
     Activations, FingertipNetwork, Normaliser, NormaliserConfig, Output, Sense, Situation, Teacher, snapshot,
 };
 use crate::strain::Gauges;
+use balance::Balance;
 use hearing::Hearing;
+use noise::Noise;
+use shear::Shear;
 
 /// All that was learned.
 pub type Learned = snapshot::Contents<RECEPTORS, NETWORK_OUTPUTS>;
@@ -70,6 +79,8 @@ pub struct Felt<'a> {
     pub gauges: &'a Gauges,
     /// The gauge that was read in this tick.
     pub gauge: usize,
+    /// Ft/Fn, per mille, if there is a new reading; None in it while there is no ratio.
+    pub ratio_permille: Option<Option<u16>>,
     /// Whether a knock rings, or the motor runs fast.
     pub loud: bool,
     /// Whether the finger is known to touch nothing.
@@ -86,31 +97,8 @@ const ONE: i64 = 1 << 26;
 /// More films than this hear what is everywhere.
 const SOMEWHERE_MAX: usize = 6;
 
-/// How many lessons of one code may be ahead of its opposite's: 2 s.
-const AHEAD_MAX: i16 = 2_000;
-
-/// Lessons of each code less those of its opposite.
-///
-/// Hebb's rule correlates: of what is felt all the time it learns whichever code it was taught longer, and every gauge
-/// that feels the grasp becomes an offset (`docs/hebbian.md`). Nobody can be asked to lower as long as they lift, and the
-/// reflex ends slips early, so a code that is too far ahead has to wait for its opposite.
-#[derive(Clone, Copy, Debug, Default)]
-struct Balance([i16; NETWORK_OUTPUTS]);
-
-impl Balance {
-    /// The codes that are not too far ahead, counted.
-    fn admit(&mut self, codes: Codes) -> [Option<Code>; NETWORK_OUTPUTS] {
-        let mut admitted = [None; NETWORK_OUTPUTS];
-        for ((ahead, slot), code) in self.0.iter_mut().zip(&mut admitted).zip(codes) {
-            let after = *ahead + code.sign() as i16;
-            if after.abs() <= AHEAD_MAX {
-                *ahead = after;
-                *slot = Some(code);
-            }
-        }
-        admitted
-    }
-}
+/// The slot in which a cycle of the films' part ends: nobody needs it for more.
+const CYCLE_ENDS: usize = 20;
 
 /// The network and all that it needs.
 #[derive(Clone, Debug)]
@@ -121,6 +109,8 @@ pub struct Touch {
     /// Of the gauges always, of the films while there are lessons.
     activations: Activations<RECEPTORS>,
     hearing: Hearing,
+    noise: Noise,
+    shear: Shear,
     outputs: [Output; NETWORK_OUTPUTS],
     /// The gauges' part of each output, since the last of them was read.
     by_gauges: [i64; NETWORK_OUTPUTS],
@@ -130,7 +120,10 @@ pub struct Touch {
     weights_changed: bool,
     since_loud_frames: u32,
     said_frames: u32,
+    /// Whether the films say so.
     slips: bool,
+    /// Whether films or shear do, on a finger that holds something.
+    any_slips: bool,
     lesson: Result<Codes, NoLesson>,
     odd: bool,
     balance: Balance,
@@ -146,6 +139,8 @@ impl Default for Touch {
             teacher: Teacher::default(),
             activations: Activations::default(),
             hearing: Hearing::default(),
+            noise: Noise::default(),
+            shear: Shear::default(),
             outputs: [Output::default(); NETWORK_OUTPUTS],
             by_gauges: [0; NETWORK_OUTPUTS],
             by_films: 0,
@@ -153,6 +148,7 @@ impl Default for Touch {
             since_loud_frames: 0,
             said_frames: 0,
             slips: false,
+            any_slips: false,
             lesson: Err(NoLesson::Absent),
             odd: false,
             balance: Balance::default(),
@@ -180,7 +176,16 @@ impl Touch {
         self.by_films = by_films;
         let [o1_by_gauges, o2_by_gauges] = self.by_gauges;
         self.outputs = [output(by_films + o1_by_gauges), output(o2_by_gauges)];
+        if let Some(ratio_permille) = felt.ratio_permille {
+            self.shear.feel(config.ahead_ms, ratio_permille);
+        }
         self.judge(config, felt, by_films);
+        self.noise.take(by_films);
+        if felt.gauge == CYCLE_ENDS {
+            let quiet = self.hearing.is_quiet_known() && self.since_loud_frames >= config.loud_frames;
+            self.noise.end_cycle(felt.unloaded && quiet);
+        }
+        self.any_slips = self.slips || (felt.situation.grasp && self.shear.says());
         self.learn(config, felt, learns);
     }
 
@@ -217,6 +222,8 @@ impl Touch {
         self.outputs = [Output::default(); NETWORK_OUTPUTS];
         self.said_frames = 0;
         self.slips = false;
+        self.any_slips = false;
+        self.shear.lose();
         self.pass();
     }
 
@@ -232,6 +239,8 @@ impl Touch {
         self.by_gauges = [0; NETWORK_OUTPUTS];
         self.weights_changed = true;
         self.hearing.outdate();
+        self.shear = Shear::default();
+        self.noise = Noise::default();
         self.balance = Balance::default();
         self.updates = 0;
     }
@@ -239,7 +248,7 @@ impl Touch {
     /// Whether touch alone says slip.
     #[must_use]
     pub const fn slips(&self) -> bool {
-        self.slips
+        self.any_slips
     }
 
     /// What touch alone says, relative motion and direction: 128 would be 1.
@@ -289,7 +298,7 @@ impl Touch {
     /// What was learned, to keep.
     #[must_use]
     pub fn learned(&self) -> Learned {
-        Learned::of(&self.normaliser, &self.network)
+        Learned::of(&self.normaliser, &self.network, self.shear.learned())
     }
 
     /// Takes up what was kept.
@@ -297,7 +306,10 @@ impl Touch {
     /// # Errors
     /// Says why the bytes are refused; then nothing has changed.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), snapshot::Damaged> {
-        (self.normaliser, self.network) = snapshot::restore(&NORMALISER, bytes)?;
+        let slips_at;
+        (self.normaliser, self.network, slips_at) = snapshot::restore(&NORMALISER, bytes)?;
+        self.shear.restore(slips_at);
+        self.noise = Noise::default();
         self.weights_changed = true;
         self.hearing.outdate();
         Ok(())
@@ -310,7 +322,8 @@ impl Touch {
         let threshold = i64::from(config.slip_permille) / if self.slips { 2 } else { 1 };
         let says = felt.situation.grasp
             && self.since_loud_frames >= config.loud_frames
-            && sum * 1_000 <= -threshold * ONE;
+            && sum * 1_000 <= -threshold * ONE
+            && sum <= -self.noise.floor() / if self.slips { 2 } else { 1 };
         if !says {
             self.said_frames = 0;
             self.slips = false;
@@ -334,6 +347,9 @@ impl Touch {
         self.lesson = self.teacher.lesson(&config.teacher, felt.situation);
         if let Ok(codes) = self.lesson {
             self.hearing.outdate();
+            if felt.ratio_permille.is_some() && codes[0] == Code::Minus {
+                self.shear.learn();
+            }
             if !felt_so {
                 self.feel_films();
             }

@@ -48,6 +48,8 @@ enum Subject {
     Array,
     /// What tells slip from rest in the force array: force sum, derivative, covariance, frequency, and their windows
     Features,
+    /// How soon the slip of a lift could be told, and from which sensors, beside what a camera sees
+    Onset,
     /// What a photoelastic head tells of normal force and slip: its curve, force followed, rates, where slip is seen
     Photoelastic,
 }
@@ -64,6 +66,11 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
                 None => workspace::root()?.join("../shared/data"),
             };
             vec![with_bar("sensors", |progress| chart::sensors::chart(&recordings, progress))?]
+        }
+        Subject::Onset => {
+            let (chart, measured) = with_bar("onset", |progress| chart::onset::chart(progress))?;
+            out::unless_closed(out::say!("{measured}"))?;
+            vec![chart]
         }
         Subject::Detectors => vec![detectors(args.scores.as_deref())?],
         Subject::Photoelastic => {

@@ -49,6 +49,9 @@ pub struct Args {
     /// Let the films hear no mains hum: the most that a canceller of it could bring
     #[arg(long)]
     without_hum: bool,
+    /// Let one film of the plain finger crackle, too, and compare what is learned with equal weights
+    #[arg(long)]
+    crackling: bool,
     /// A setting of the fingertips (docs/settings.md), on the host only; may be given more than once
     #[arg(long, value_name = "NAME=VALUE", requires = "host")]
     set: Vec<String>,
@@ -73,6 +76,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         lifts: args.lifts,
         fingertips: args.fingertips,
         without_hum: args.without_hum,
+        crackling: args.crackling,
         settings: args.set.iter().map(|text| setting(text)).collect::<anyhow::Result<_>>()?,
     };
     let counts = [

@@ -1,7 +1,7 @@
 //! A fingertip on the host that goes from one world to the next and keeps what it has learned.
 
 use anyhow::{Context, anyhow};
-use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, PVDF_COUNT, SCANS_PER_FRAME};
+use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, PVDF_COUNT, SCANS_PER_FRAME, SLOW_HZ};
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::frame::{Frame, Scan, scan_of_pins};
 use tenax_hal_shim::motor::MotorDrive;
@@ -16,6 +16,8 @@ use tenax_scene::World;
 use tenax_scene::plant::Plant;
 
 use super::chain::slow_frames;
+use super::control::Control;
+use super::crackle::crackle;
 use super::trial::{Setup, Trial};
 use crate::board::simulated::with_plan;
 
@@ -35,18 +37,31 @@ pub enum Judge {
 pub struct Bench {
     fingertip: Fingertip,
     frame: u32,
+    /// Whether one film crackles.
+    crackles: bool,
 }
 
 impl Default for Bench {
     fn default() -> Self {
-        Self { fingertip: Fingertip::trusting(), frame: 0 }
+        Self { fingertip: Fingertip::trusting(), frame: 0, crackles: false }
     }
 }
 
 impl Bench {
     /// Goes through a world to its end. `see` is shown every slow frame: its number in this world, what it tells, and what
     /// the network knows and feels after it.
-    pub fn run(&mut self, mut world: World, judge: Judge, see: &mut dyn FnMut(usize, &Slow, &Self)) -> World {
+    pub fn run(&mut self, world: World, judge: Judge, see: &mut dyn FnMut(usize, &Slow, &Self)) -> World {
+        self.run_for(f64::INFINITY, world, judge, see)
+    }
+
+    /// The same, for so long at most, s.
+    fn run_for(
+        &mut self,
+        for_s: f64,
+        mut world: World,
+        judge: Judge,
+        see: &mut dyn FnMut(usize, &Slow, &Self),
+    ) -> World {
         self.fingertip.act_on(match judge {
             Judge::Touch => DetectorSet::ALL,
             Judge::Vision => DetectorSet::only(DetectorId::Injected),
@@ -54,7 +69,8 @@ impl Bench {
         });
         let mut seen = 0;
         let mut drive = MotorDrive::Coast;
-        for _ in 0..slow_frames(&world) * usize::from(FRAMES_PER_SLOW_FRAME) {
+        let slow_frames = slow_frames(&world).min((for_s * f64::from(SLOW_HZ)) as usize);
+        for _ in 0..slow_frames * usize::from(FRAMES_PER_SLOW_FRAME) {
             let select = Frame::lost(self.frame).select();
             let mut scans = [Scan::default(); SCANS_PER_FRAME];
             let mut commands: Vec<Down> = Vec::new();
@@ -66,7 +82,10 @@ impl Bench {
                 // A refusal goes back to whoever sent it; there is no line here.
                 let _ = self.fingertip.command(command);
             }
-            let frame_in = Frame::from_scans(self.frame, &scans);
+            let mut frame_in = Frame::from_scans(self.frame, &scans);
+            if self.crackles {
+                crackle(&mut frame_in.pvdf, self.frame);
+            }
             self.frame = self.frame.wrapping_add(1);
             let told = match judge {
                 Judge::Touch | Judge::Oracle => None,
@@ -90,10 +109,23 @@ impl Bench {
 
     /// Goes through a trial.
     pub fn trial(&mut self, setup: Setup) -> Trial {
+        self.trial_for(f64::INFINITY, setup)
+    }
+
+    /// Goes through a trial until so long after the lift began, s.
+    pub fn trial_for(&mut self, for_s: f64, setup: Setup) -> Trial {
         let mut trial = Trial { lift_s: setup.lift_s, ..Trial::default() };
-        let world = self.run(setup.world, Judge::Touch, &mut |n, slow, _| trial.hear(n, slow));
+        let for_s = setup.lift_s + for_s;
+        let world = self.run_for(for_s, setup.world, Judge::Touch, &mut |n, slow, _| trial.hear(n, slow));
         trial.end(world.truth().clone());
         trial
+    }
+
+    /// The same with a film that crackles.
+    #[must_use]
+    pub const fn crackling(mut self) -> Self {
+        self.crackles = true;
+        self
     }
 
     /// A new fingertip with these settings.
@@ -109,24 +141,22 @@ impl Bench {
         Ok(bench)
     }
 
-    /// The same fingertip with equal weights in place of learned ones: each film's part of o1 is the mean of theirs, so that
-    /// their sum is the same and only the learning of which film to believe is gone. The control of what learning is worth.
+    /// The same fingertip as a control has it: something of what was learned is changed.
     ///
     /// # Errors
     /// None but of a bug: what was learned can be restored.
-    pub fn with_equal_weights(&self) -> anyhow::Result<Self> {
+    pub fn controlled(&self, control: Control) -> anyhow::Result<Self> {
         let mut bytes = [0; touch::SNAPSHOT_LENGTH];
         let learned = self.fingertip.learned();
         let kept = learned.write(&mut bytes).context("a snapshot of another length")?;
-        let (normaliser, network) =
+        let (normaliser, network, more) =
             snapshot::restore(&touch::NORMALISER, kept).map_err(|damaged| anyhow!("{damaged:?}"))?;
         let mut weights: [[Weight; RECEPTORS]; NETWORK_OUTPUTS] = network.weights();
-        let films = &mut weights[0][..PVDF_COUNT];
-        let sum: i64 = films.iter().map(|weight| i64::from(weight.into_bits())).sum();
-        films.fill(Weight::from_bits((sum / PVDF_COUNT as i64) as i32));
-        let equal = FingertipNetwork::from_weights(&weights);
+        let more = control.change(&mut weights[0][..PVDF_COUNT], more);
+        let changed = FingertipNetwork::from_weights(&weights);
         let mut bytes = [0; touch::SNAPSHOT_LENGTH];
-        let kept = snapshot::save(&normaliser, &equal, &mut bytes).context("a snapshot of another length")?;
+        let kept = snapshot::save(&normaliser, &changed, more, &mut bytes);
+        let kept = kept.context("a snapshot of another length")?;
         let mut other = self.clone();
         other.fingertip.restore(Kept::Network, kept);
         Ok(other)

@@ -2,8 +2,11 @@
 
 use std::fmt;
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
+use super::control::Control;
 use super::reflex::{JUDGES, Reflexed, Three};
 use super::trial::Trial;
 use super::{LESSONS, Other, Outcome};
@@ -66,14 +69,16 @@ impl Score {
         let mut score = Self { trials: trials.len() as u64, ..Self::default() };
         for trial in trials {
             score.false_alarms += u64::from(trial.false_alarm());
-            let Some([up, down]) = trial.both_slips() else {
+            let Some(up) = trial.slip_up() else {
                 score.missed += 1;
                 continue;
             };
             score.micro_s.push(up.micro_onset_s - trial.lift_s);
             score.macro_s.push(up.macro_onset_s - trial.lift_s);
-            score.direction_wrong +=
-                u64::from(trial.direction(&up) <= 0.0) + u64::from(trial.direction(&down) >= 0.0);
+            if let Some([up, down]) = trial.both_slips() {
+                score.direction_wrong +=
+                    u64::from(trial.direction(&up) <= 0.0) + u64::from(trial.direction(&down) >= 0.0);
+            }
             let vision_s = trial.vision_s();
             score.vision_s.extend(vision_s.map(|t_s| t_s - trial.lift_s));
             match trial.network_s() {
@@ -117,6 +122,10 @@ pub struct Report {
     pub missed: u64,
     /// False alarms in an hour of holding.
     pub false_per_hour: f64,
+    /// How long was held, h.
+    pub holding_hours: f64,
+    /// Lifts of all fingers with 1.5 to 3 times the needed force.
+    pub safe: Safe,
     /// Slips, up or down, of which o2 said the wrong direction.
     pub direction_wrong: u64,
     /// The same learning on fingers made by chance.
@@ -140,7 +149,7 @@ pub struct Fingertips {
 }
 
 /// Some of them.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Group {
     /// How many.
     pub count: usize,
@@ -152,6 +161,26 @@ pub struct Group {
     pub lead_s_equal_weights: f64,
     /// Trials whose slip was not seen, and with equal weights.
     pub missed: [u64; 2],
+    /// Lead, s, and trials whose slip was not seen, of each control.
+    pub controls: BTreeMap<&'static str, Controlled>,
+}
+
+/// What a control came to.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Controlled {
+    /// Mean lead of those trials in which it saw the slip, s.
+    pub lead_s: f64,
+    /// Trials whose slip it did not see.
+    pub missed: u64,
+}
+
+/// Lifts with more force than the object needs, in which every verdict is false.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Safe {
+    /// How many.
+    pub lifts: u64,
+    /// In which slip was said.
+    pub said: u64,
 }
 
 /// Sliding keeps so much of static friction at most in the fingers of the first group.
@@ -168,11 +197,20 @@ impl Group {
             count: others.len(),
             lead_s: mean(&|other| &other.score.lead_s),
             lead_s_no_delay: mean(&|other| &other.score.lead_no_delay_s),
-            lead_s_equal_weights: mean(&|other| &other.equal.lead_s),
+            lead_s_equal_weights: mean(&|other| &other.equal().lead_s),
             missed: [
                 others.iter().map(|other| other.score.missed).sum(),
-                others.iter().map(|other| other.equal.missed).sum(),
+                others.iter().map(|other| other.equal().missed).sum(),
             ],
+            controls: Control::ALL
+                .into_iter()
+                .enumerate()
+                .map(|(n, control)| {
+                    let lead_s = mean(&|other| &other.controls[n].lead_s);
+                    let missed = others.iter().map(|other| other.controls[n].missed).sum();
+                    (control.key(), Controlled { lead_s, missed })
+                })
+                .collect(),
         }
     }
 }
@@ -192,6 +230,8 @@ impl Report {
             worst_finger_lead_s: outcome.worst_lead_s(),
             missed: score.missed,
             false_per_hour: outcome.false_per_hour(),
+            holding_hours: outcome.holding.hours,
+            safe: outcome.safe(),
             direction_wrong: score.direction_wrong,
             fingertips: Fingertips {
                 count: outcome.others.len() as u64,
@@ -212,6 +252,15 @@ impl Outcome {
     #[must_use]
     pub fn false_per_hour(&self) -> f64 {
         if self.holding.hours > 0.0 { f64::from(self.holding.false_alarms) / self.holding.hours } else { 0.0 }
+    }
+
+    /// Lifts with more force than is needed.
+    #[must_use]
+    pub fn safe(&self) -> Safe {
+        self.others.iter().fold(Safe::default(), |all, other| Safe {
+            lifts: all.lifts + other.safe.lifts,
+            said: all.said + other.safe.said,
+        })
     }
 
     /// Whether every finger made by chance saw every slip and its direction.
@@ -285,6 +334,19 @@ impl fmt::Display for Text<'_> {
         line("lift, secured after", three(&outcome.lifts, "s", |run| run.secured_s))?;
         line("lift, slipped", three(&outcome.lifts, "mm", |run| run.distance_mm))?;
         line("pour, slipped", three(&outcome.pours, "mm", |run| run.distance_mm))?;
+        for (name, tried) in ["learned", "equal weights"].iter().zip(outcome.crackling.iter().flatten()) {
+            let (score, holding) = tried;
+            let lead = score.lead().mean;
+            line(
+                "one film crackles",
+                format!(
+                    "{name}: lead {lead:.3} s, {} missed, {} of {} trials false, {} false in {:.2} h",
+                    score.missed, score.false_alarms, score.trials, holding.false_alarms, holding.hours
+                ),
+            )?;
+        }
+        let safe = outcome.safe();
+        line("lifts that would hold", format!("slip said in {} of {}", safe.said, safe.lifts))?;
         for (what, slippery) in [("fingers, ratio to 0.75", true), ("fingers, ratio above", false)] {
             let group = outcome.group(slippery);
             let [missed, equal_missed] = group.missed;
@@ -295,6 +357,9 @@ impl fmt::Display for Text<'_> {
                     group.count, group.lead_s, group.lead_s_no_delay, group.lead_s_equal_weights
                 ),
             )?;
+            for (control, Controlled { lead_s, missed }) in &group.controls {
+                line("", format!("{control:<20} lead {lead_s:.3} s, {missed} missed"))?;
+            }
         }
         let sum = |of: fn(&Score) -> u64| outcome.others.iter().map(|other| of(&other.score)).sum::<u64>();
         let trials = sum(|score| score.trials);

@@ -9,9 +9,9 @@ use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::wire::Slow;
 use tenax_scene::sensor::camera::Seen;
 use tenax_scene::truth::Slip;
-use tenax_scene::{Seeds, Truth, World};
+use tenax_scene::{SceneFile, Seeds, Truth, World};
 
-use super::finger::Finger;
+use super::finger::{Change, Finger};
 use crate::report::fate;
 use crate::scorer::{Card, Doing, Outcome, Stretch, Verdict, outcome};
 
@@ -38,15 +38,56 @@ impl Setup {
     /// # Errors
     /// If the scene cannot be made.
     pub fn new(finger: &Finger, seed: u64, lesson: bool) -> anyhow::Result<Self> {
+        Self::changed(finger, seed, lesson, &[])
+    }
+
+    /// A lift with more force than the object needs, by chance; the fingers do not close further.
+    ///
+    /// # Errors
+    /// If the scene cannot be made.
+    pub fn held(finger: &Finger, seed: u64) -> anyhow::Result<Self> {
+        let more = ChaCha8Rng::seed_from_u64(seed).random_range(SAFE_FORCE);
+        let grip = [
+            ("command.grip.duty_permille", 300.0),
+            ("command.grip.for_s", finger.closing_s(more)),
+            ("command.more.duty_permille", 0.0),
+        ];
+        Self::changed(finger, seed, false, &grip)
+    }
+
+    /// The same with some numbers of its scene changed.
+    ///
+    /// # Errors
+    /// If the scene cannot be made.
+    pub fn changed(finger: &Finger, seed: u64, lesson: bool, more: &[Change]) -> anyhow::Result<Self> {
+        let (scene, lift_s) = Self::scene(finger, seed, lesson, more)?;
+        Ok(Self { world: World::seeded(&scene, Seeds { making: finger.making, noise: seed }), lift_s })
+    }
+
+    /// Its scene, and when the arm begins to lift, s.
+    ///
+    /// # Errors
+    /// If the scene cannot be made.
+    pub fn scene(
+        finger: &Finger,
+        seed: u64,
+        lesson: bool,
+        more: &[Change],
+    ) -> anyhow::Result<(SceneFile, f64)> {
         let lift_s = LIFT_S + ChaCha8Rng::seed_from_u64(seed).random_range(0.0..LATER_S);
-        let scene = finger.edited_scene(SCENE, seed, &[("move.0.at_s", lift_s)], |scene| {
+        let mut changes = vec![("move.0.at_s", lift_s)];
+        changes.extend_from_slice(more);
+        let scene = finger.edited_scene(SCENE, seed, &changes, |scene| {
             if let Some(camera) = scene.get_mut("camera").and_then(toml::Value::as_table_mut) {
                 camera.insert("teaches".to_owned(), lesson.into());
             }
         })?;
-        Ok(Self { world: World::seeded(&scene, Seeds { making: finger.making, noise: seed }), lift_s })
+        Ok((scene, lift_s))
     }
 }
+
+/// How much more than it needs an object is lifted with: what people (1.2 to 2) and those with a prosthesis do.
+const SAFE_FORCE: Range<f64> = 1.5..3.0;
 
 /// A trial that was run: what the fingertip said in every tick, and what was true.
 #[derive(Clone, Debug, Default)]
@@ -82,14 +123,22 @@ impl Trial {
         (tick as f64 + 1.0) / f64::from(FRAME_HZ)
     }
 
+    fn slips_since_lift(&self) -> impl DoubleEndedIterator<Item = &Slip> {
+        self.truth.slips.iter().filter(|slip| !slip.meant && slip.macro_onset_s > self.lift_s)
+    }
+
+    /// The slip up, if there was one.
+    #[must_use]
+    pub fn slip_up(&self) -> Option<Slip> {
+        self.slips_since_lift().next().copied()
+    }
+
     /// The slips that were not meant: up, then down.
     #[must_use]
     pub fn both_slips(&self) -> Option<[Slip; 2]> {
-        let mut slips =
-            self.truth.slips.iter().filter(|slip| !slip.meant && slip.macro_onset_s > self.lift_s);
+        let up = self.slip_up()?;
         // A long slip is the one that is meant here; a slide of a fraction of a millimetre before or after is part of it.
-        let up = *slips.next()?;
-        let down = *slips.rfind(|slip| slip.macro_onset_s > up.macro_onset_s)?;
+        let down = *self.slips_since_lift().rfind(|slip| slip.macro_onset_s > up.macro_onset_s)?;
         Some([up, down])
     }
 
@@ -112,7 +161,7 @@ impl Trial {
     /// When the network first said slip in the slip up, in time or late, s.
     #[must_use]
     pub fn network_s(&self) -> Option<f64> {
-        let [up, _] = self.both_slips()?;
+        let up = self.slip_up()?;
         let span =
             fate::spans(&self.truth).into_iter().find(|span| span.macro_onset_s == Some(up.macro_onset_s))?;
         match outcome(&span, up.macro_onset_s, &self.verdicts()) {

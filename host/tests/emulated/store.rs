@@ -111,7 +111,7 @@ fn what_the_network_learned_is_used_and_saved_again() {
         network.learn(&rule, &felt, &[Code::Minus, Code::Plus]);
     }
     let mut bytes = [0; tenax_logic::touch::SNAPSHOT_LENGTH];
-    let known = snapshot::save(&Normaliser::new(&tenax_logic::touch::NORMALISER), &network, &mut bytes);
+    let known = snapshot::save(&Normaliser::new(&tenax_logic::touch::NORMALISER), &network, 0, &mut bytes);
     let learned = network.weights().map(|row| row.map(|weight| weight.into_bits()));
     assert!(learned[0][23] < -1_000_000, "{learned:?}");
 

@@ -26,6 +26,11 @@ impl Detector for Touch {
                 envelopes: sensed.envelopes,
                 gauges: sensed.strain,
                 gauge: usize::from(sensed.slot),
+                ratio_permille: match sensed.forces {
+                    Some(forces) if sensed.forces_are_new => Some(forces.ratio_permille),
+                    Some(_) => None,
+                    None => Some(None),
+                },
                 loud: sensed.noisy,
                 unloaded: sensed.unloaded,
                 situation: Situation {

@@ -57,11 +57,11 @@ const CLOSE_ALONE: i32 = octaves(300);
 
 /// Readings for which an unproven contraction may move the hand: 92 ms.
 pub const UNPROVEN_READINGS: u16 = 22;
-/// One that may open it and that the other electrode hears too: 0.25 s, in which a muscle below the top proves itself.
-const HEARD_READINGS: u16 = 60;
-/// One that the other electrode hears well: 0.6 s. At the top of its range a contraction proves nothing; recordings have
-/// 0.55 s there, and the other electrode then at three times its rest.
-const HEARD_WELL_READINGS: u16 = 144;
+/// One that may open it and that the other electrode hears too: 0.4 s after it began or last fell back from a crest.
+const HEARD_READINGS: u16 = 96;
+/// One at the top of its range that the other electrode hears well: 0.6 s. It proves nothing there; recordings have 0.55 s,
+/// and the other electrode then at three times its rest.
+const CLIPPED_READINGS: u16 = 144;
 /// How far the other electrode stands out from rest when it hears the same contraction: by 23 %. A fault has one electrode.
 const HEARS_TOO: i32 = octaves(300);
 /// And when it hears it well: twice its rest. It then stands at 2.8 times what was calibrated at most; above, it contracts.
@@ -100,6 +100,10 @@ pub struct Electrode {
     pub level: Option<i32>,
     /// Whether what it hears has been proven to be a muscle.
     pub proven: bool,
+    /// Whether it is at the top of its range.
+    pub clipped: bool,
+    /// Whether it has just fallen back from a crest.
+    pub turned: bool,
     /// Whether it stands still: then it vetoes nothing.
     pub unmodulated: bool,
 }
@@ -225,11 +229,11 @@ impl Intent {
                 let levels = [electrodes[closing].level, electrodes[opening].level];
                 self.calibrated(&sites, levels, electrodes[closing].unmodulated);
                 let hears = |n: usize| levels[n].is_some_and(|level| level >= sites.rest[n] + HEARS_TOO);
-                let hears_well = levels[0].is_some_and(|level| {
-                    level >= sites.rest[0] + HEARS_WELL && level <= sites.open_beside + HEARS_AT_MOST
-                });
+                let hears_well =
+                    |level| level >= sites.rest[0] + HEARS_WELL && level <= sites.open_beside + HEARS_AT_MOST;
+                let clips_well = electrodes[opening].clipped && levels[0].is_some_and(hears_well);
                 match self.wish {
-                    Wish::Open if hears_well => (Wish::Open, opening, HEARD_WELL_READINGS),
+                    Wish::Open if clips_well => (Wish::Open, opening, CLIPPED_READINGS),
                     Wish::Open if hears(0) => (Wish::Open, opening, HEARD_READINGS),
                     Wish::Open => (Wish::Open, opening, UNPROVEN_READINGS),
                     // A weak flexor may take seconds to curve.
@@ -242,6 +246,9 @@ impl Intent {
                 (self.wish, usize::from(self.wish == Wish::Open), UNPROVEN_READINGS)
             }
         };
+        if most > UNPROVEN_READINGS && electrodes[mover].turned {
+            (self.moved, self.waits) = (0, 0);
+        }
         self.bound(wish, electrodes[mover].proven, most)
     }
 

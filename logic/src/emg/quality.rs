@@ -54,7 +54,7 @@ const BACK_FRAMES: u16 = 80;
 /// An envelope that begins is judged after so many slow frames, when the step response of a front end has settled
 /// (second order at 4 Hz: to 4 %): 225 ms.
 const PROOF_FRAMES: u16 = 18;
-/// Curving that proves a muscle: one part in so many of its level, 8 %.
+/// Curving that proves a muscle, twice: one part in so many of its level, 8 %.
 const PROOF_PART: i32 = 12;
 /// Slow frames without curving below the top after which a contraction has to prove itself again: 0.4 s. Recordings curve
 /// again within 225 ms.
@@ -148,6 +148,7 @@ pub struct Watch {
     foot_uv: i32,
     crest_uv: i32,
     climbing: u16,
+    turned: bool,
     at_top: u16,
     silent: u16,
     restless: u16,
@@ -179,6 +180,7 @@ impl Default for Watch {
             foot_uv: 0,
             crest_uv: 0,
             climbing: 0,
+            turned: false,
             at_top: 0,
             silent: 0,
             restless: 0,
@@ -316,8 +318,8 @@ impl Watch {
     }
 
     fn climb(&mut self, uv: i32) {
-        let turned = uv < self.crest_uv - self.crest_uv / 32 - STILL_UV;
-        if self.active_for == 0 || uv >= TOP_UV || turned {
+        self.turned = self.active_for > 0 && uv < self.crest_uv - self.crest_uv / 32 - STILL_UV;
+        if self.active_for == 0 || uv >= TOP_UV || self.turned {
             (self.crest_uv, self.climbing) = (uv, 0);
         } else {
             if self.climbing <= CREEP_FRAMES / 2 {
@@ -357,6 +359,18 @@ impl Watch {
     #[must_use]
     pub const fn is_proven(&self) -> bool {
         self.proven
+    }
+
+    /// Whether it is at the top of its range, where no contraction curves.
+    #[must_use]
+    pub const fn is_clipped(&self) -> bool {
+        self.at_top > 0
+    }
+
+    /// Whether it has just fallen back by 3 %, as no fault does that stands still or climbs.
+    #[must_use]
+    pub const fn has_turned(&self) -> bool {
+        self.turned
     }
 
     /// Whether it stands still, whatever its level: no muscle at work, which would veto another.

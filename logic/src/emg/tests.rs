@@ -94,13 +94,13 @@ fn a_crest_of_another_movement_does_not_stay_open() {
 
 /// The flexor has tone, which begins in the same moment: the two look like one contraction.
 #[test]
-fn an_extensor_that_creeps_beside_tone_opens_for_a_quarter_of_a_second() {
+fn an_extensor_that_creeps_beside_tone_opens_for_four_tenths_of_a_second() {
     for rate_mv_s in [800.0, 2_700.0, 10_000.0] {
         let mut emg = wearer();
         run(&mut emg, 1.0, rest);
         let verdicts = run(&mut emg, 5.0, |t| [alive(90.0, t), (50.0 + rate_mv_s * t).min(2_840.0)]);
         let opened = part(&verdicts, Wish::Open) * 5.0;
-        assert!((0.0..0.26).contains(&opened), "{rate_mv_s} mV/s: {opened} s");
+        assert!((0.0..0.41).contains(&opened), "{rate_mv_s} mV/s: {opened} s");
     }
 }
 

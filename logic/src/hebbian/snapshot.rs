@@ -4,6 +4,7 @@
 //! 0  version         1  inputs        2  outputs        3  0
 //! 4  maxima          u32 each, little-endian, raw units
 //!    weights         i32 Q27 each, little-endian, a row for each output
+//!    more            u32, little-endian: what belongs to them and is no weight
 //!    CRC-32          u32, little-endian, of everything before it (the wire's: ISO-HDLC)
 //! ```
 //!
@@ -15,7 +16,7 @@ use super::network::{Network, Weight};
 use crate::checksum::CRC;
 
 /// The version of the layout above. A snapshot of another is refused.
-pub const VERSION: u8 = 1;
+pub const VERSION: u8 = 2;
 
 const HEADER: usize = 4;
 const WORD: usize = 4;
@@ -41,7 +42,7 @@ pub enum Damaged {
 /// Bytes of a snapshot.
 #[must_use]
 pub const fn length(inputs: usize, outputs: usize) -> usize {
-    HEADER + WORD * (inputs + inputs * outputs + 1)
+    HEADER + WORD * (inputs + inputs * outputs + 2)
 }
 
 /// What a snapshot holds: small enough to be copied in a tick, so that the bytes can be made when there is more time.
@@ -49,13 +50,14 @@ pub const fn length(inputs: usize, outputs: usize) -> usize {
 pub struct Contents<const I: usize, const O: usize> {
     maxima: [u32; I],
     weights: [[Weight; I]; O],
+    more: u32,
 }
 
 impl<const I: usize, const O: usize> Contents<I, O> {
-    /// What there is to keep of a network and of the normaliser that its weights belong to.
+    /// What there is to keep of a network, of the normaliser that its weights belong to, and a word more.
     #[must_use]
-    pub fn of(normaliser: &Normaliser<I>, network: &Network<I, O>) -> Self {
-        Self { maxima: normaliser.maxima(), weights: network.weights() }
+    pub fn of(normaliser: &Normaliser<I>, network: &Network<I, O>, more: u32) -> Self {
+        Self { maxima: normaliser.maxima(), weights: network.weights(), more }
     }
 
     /// Writes the snapshot to the beginning of `buffer` and gives it. None if the buffer is shorter than [`length`].
@@ -68,7 +70,8 @@ impl<const I: usize, const O: usize> Contents<I, O> {
         let maxima = self.maxima.map(u32::to_le_bytes);
         let weights = self.weights.map(|row| row.map(|weight| weight.into_bits().to_le_bytes()));
         let (slots, _) = words.as_chunks_mut::<WORD>();
-        for (slot, word) in slots.iter_mut().zip(maxima.iter().chain(weights.as_flattened())) {
+        let more = [self.more.to_le_bytes()];
+        for (slot, word) in slots.iter_mut().zip(maxima.iter().chain(weights.as_flattened()).chain(&more)) {
             *slot = *word;
         }
         *crc = CRC.checksum(body).to_le_bytes();
@@ -80,16 +83,17 @@ impl<const I: usize, const O: usize> Contents<I, O> {
 pub fn save<'a, const I: usize, const O: usize>(
     normaliser: &Normaliser<I>,
     network: &Network<I, O>,
+    more: u32,
     buffer: &'a mut [u8],
 ) -> Option<&'a [u8]> {
-    Contents::of(normaliser, network).write(buffer)
+    Contents::of(normaliser, network, more).write(buffer)
 }
 
-/// What a snapshot holds, or why it is refused. The zeros of the receptors are not in it: they are taken anew.
+/// What a snapshot holds, the word more at its end, or why it is refused. The zeros of the receptors are not in it: they are taken anew.
 pub fn restore<const I: usize, const O: usize>(
     config: &NormaliserConfig<I>,
     snapshot: &[u8],
-) -> Result<(Normaliser<I>, Network<I, O>), Damaged> {
+) -> Result<(Normaliser<I>, Network<I, O>, u32), Damaged> {
     let (body, crc) = snapshot.split_last_chunk::<WORD>().ok_or(Damaged::Length)?;
     let (header, words) = body.split_first_chunk::<HEADER>().ok_or(Damaged::Length)?;
     if CRC.checksum(body) != u32::from_le_bytes(*crc) {
@@ -108,14 +112,16 @@ pub fn restore<const I: usize, const O: usize>(
     let mut maxima = [0; I];
     let mut weights = [[Weight::default(); I]; O];
     let (slots, _) = words.as_chunks::<WORD>();
-    let (maxima_slots, weight_slots) = slots.split_at(I);
+    let (maxima_slots, rest) = slots.split_at(I);
+    let (weight_slots, more_slots) = rest.split_at(I * O);
+    let more = more_slots.first().map_or(0, |slot| u32::from_le_bytes(*slot));
     for (largest, slot) in maxima.iter_mut().zip(maxima_slots) {
         *largest = u32::from_le_bytes(*slot);
     }
     for (weight, slot) in weights.as_flattened_mut().iter_mut().zip(weight_slots) {
         *weight = Weight::from_bits(i32::from_le_bytes(*slot));
     }
-    Ok((Normaliser::from_maxima(config, &maxima), Network::from_weights(&weights)))
+    Ok((Normaliser::from_maxima(config, &maxima), Network::from_weights(&weights), more))
 }
 
 #[cfg(test)]
@@ -143,7 +149,7 @@ mod tests {
             network.learn(&rule, &t, &[Code::Minus, Code::Plus]);
         }
         let mut bytes = [0; LENGTH];
-        assert_eq!(save(&normaliser, &network, &mut bytes).map(<[u8]>::len), Some(LENGTH));
+        assert_eq!(save(&normaliser, &network, 77, &mut bytes).map(<[u8]>::len), Some(LENGTH));
         (normaliser, network, bytes)
     }
 
@@ -156,12 +162,12 @@ mod tests {
     #[test]
     fn what_comes_back_gives_the_same_outputs() {
         let (normaliser, network, bytes) = learned();
-        let (normaliser_back, network_back) = restore::<3, 2>(&CONFIG, &bytes).unwrap();
+        let (normaliser_back, network_back, more) = restore::<3, 2>(&CONFIG, &bytes).unwrap();
         assert_eq!(normaliser_back.maxima(), normaliser.maxima());
         assert_eq!(network_back.weights(), network.weights());
         assert_ne!(network.weights(), Network::<3, 2>::default().weights());
         let mut again = [0; LENGTH];
-        assert_eq!(save(&normaliser_back, &network_back, &mut again), Some(&bytes[..]));
+        assert_eq!(save(&normaliser_back, &network_back, more, &mut again), Some(&bytes[..]));
     }
 
     #[test]
@@ -182,21 +188,21 @@ mod tests {
     #[test]
     fn a_whole_snapshot_of_something_else_is_refused_and_says_why() {
         let (normaliser, network, mut bytes) = learned();
-        bytes[0] = 2;
-        assert_eq!(restore::<3, 2>(&CONFIG, &resealed(bytes)).unwrap_err(), Damaged::Version(2));
+        bytes[0] = VERSION - 1;
+        assert_eq!(restore::<3, 2>(&CONFIG, &resealed(bytes)).unwrap_err(), Damaged::Version(VERSION - 1));
         bytes[0] = VERSION;
         bytes[1] = 4;
         let shape = Damaged::Shape { inputs: 4, outputs: 2 };
         assert_eq!(restore::<3, 2>(&CONFIG, &resealed(bytes)).unwrap_err(), shape);
-        assert_eq!(save(&normaliser, &network, &mut [0; LENGTH - 1]), None);
+        assert_eq!(save(&normaliser, &network, 77, &mut [0; LENGTH - 1]), None);
     }
 
     #[test]
     fn sealed_nonsense_is_brought_into_range() {
         let (.., mut bytes) = learned();
         bytes[4..LENGTH - WORD].fill(0xFF);
-        bytes[LENGTH - 2 * WORD..LENGTH - WORD].copy_from_slice(&i32::MIN.to_le_bytes());
-        let (normaliser, network) = restore::<3, 2>(&CONFIG, &resealed(bytes)).unwrap();
+        bytes[LENGTH - 3 * WORD..LENGTH - 2 * WORD].copy_from_slice(&i32::MIN.to_le_bytes());
+        let (normaliser, network, _) = restore::<3, 2>(&CONFIG, &resealed(bytes)).unwrap();
         assert_eq!(normaliser.maxima(), [CONFIG.ceiling; 3]);
         assert_eq!(network.weight(1, 2).map(Weight::into_bits), Some(-(1 << 30)));
     }

@@ -55,7 +55,7 @@ quantities! {
     /// The motor's dead time, ms.
     DeadTime: 0.0 to 200.0;
     /// A friction coefficient.
-    Mu: 0.05 to 1.5;
+    Mu: 0.05 to 3.0;
     /// A mass, kg.
     Kilograms: 0.0005 to 20.0;
     /// A mass that comes or goes, kg.
