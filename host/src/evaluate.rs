@@ -12,6 +12,7 @@ pub mod online;
 pub mod ran;
 pub mod real;
 pub mod report;
+pub mod roc;
 pub mod text;
 
 use rayon::prelude::*;

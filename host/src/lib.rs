@@ -6,6 +6,7 @@ pub mod budgets;
 pub mod chart;
 pub mod check;
 pub mod cli;
+pub mod crates;
 pub mod dataset;
 pub mod evaluate;
 pub mod image;

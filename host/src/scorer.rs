@@ -120,21 +120,53 @@ impl Alarms {
     }
 }
 
-/// What a detector made of recordings or scenes.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Card {
-    /// Macro slips that were not meant.
+/// Macro slips that were not meant, by what became of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Counts {
+    /// All of them.
     pub count: usize,
-    /// Caught.
+    /// Those that a detection began in between micro onset and 50 ms after macro onset.
     pub caught: usize,
-    /// Those of them before macro onset.
+    /// Those of them that it began in before macro onset.
     pub early: usize,
-    /// Detected too late.
+    /// Detected later.
     pub late: usize,
-    /// Nothing new was said; a verdict stood before.
+    /// Nothing began; a verdict stood before.
     pub said_before: usize,
     /// Nothing was said.
     pub missed: usize,
+}
+
+impl Counts {
+    fn take(&mut self, outcome: Outcome) {
+        self.count += 1;
+        match outcome {
+            Outcome::Caught(latency_s) => {
+                self.caught += 1;
+                self.early += usize::from(latency_s < 0.0);
+            }
+            Outcome::Late(_) => self.late += 1,
+            Outcome::SaidBefore => self.said_before += 1,
+            Outcome::Missed => self.missed += 1,
+        }
+    }
+
+    fn add(&mut self, other: Self) {
+        self.count += other.count;
+        self.caught += other.caught;
+        self.early += other.early;
+        self.late += other.late;
+        self.said_before += other.said_before;
+        self.missed += other.missed;
+    }
+}
+
+/// What a detector made of recordings or scenes.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Card {
+    /// Its slips.
+    #[serde(flatten)]
+    pub slips: Counts,
     /// Detection less macro onset of those caught, ms, in their order.
     #[serde(skip)]
     pub latencies_ms: Vec<f64>,
@@ -154,17 +186,11 @@ impl Card {
         let mut card = Self::default();
         for slip in slips.iter().filter(|slip| !slip.meant) {
             let Some(macro_onset_s) = slip.macro_onset_s else { continue };
-            card.count += 1;
-            match outcome(slip, macro_onset_s, verdicts) {
-                Outcome::Caught(latency_s) => {
-                    card.caught += 1;
-                    card.early += usize::from(latency_s < 0.0);
-                    card.latencies_ms.push(latency_s * 1e3);
-                    card.after_micro_ms.push((latency_s + macro_onset_s - slip.micro_onset_s) * 1e3);
-                }
-                Outcome::Late(_) => card.late += 1,
-                Outcome::SaidBefore => card.said_before += 1,
-                Outcome::Missed => card.missed += 1,
+            let outcome = outcome(slip, macro_onset_s, verdicts);
+            card.slips.take(outcome);
+            if let Outcome::Caught(latency_s) = outcome {
+                card.latencies_ms.push(latency_s * 1e3);
+                card.after_micro_ms.push((latency_s + macro_onset_s - slip.micro_onset_s) * 1e3);
             }
         }
         let alarms_s = false_alarms_s(slips, verdicts);
@@ -182,12 +208,7 @@ impl Card {
 
     /// Adds another recording's.
     pub fn add(&mut self, other: &Self) {
-        self.count += other.count;
-        self.caught += other.caught;
-        self.early += other.early;
-        self.late += other.late;
-        self.said_before += other.said_before;
-        self.missed += other.missed;
+        self.slips.add(other.slips);
         self.latencies_ms.extend(&other.latencies_ms);
         self.after_micro_ms.extend(&other.after_micro_ms);
         self.false_alarms.add(
@@ -203,7 +224,7 @@ impl Card {
     /// The part of the slips that was caught. None if there was none.
     #[must_use]
     pub fn caught_part(&self) -> Option<f64> {
-        (self.count > 0).then(|| self.caught as f64 / self.count as f64)
+        (self.slips.count > 0).then(|| self.slips.caught as f64 / self.slips.count as f64)
     }
 
     /// The latency that this part of those caught do not exceed, ms. None if none was caught.
@@ -275,8 +296,9 @@ mod tests {
     #[test]
     fn every_slip_is_one_of_four_and_every_other_detection_is_false() {
         let scored = card(&[(0.2, 0.3), (0.95, 1.05), (1.12, 1.2), (1.25, 1.28), (2.05, 2.06), (3.0, 3.1)]);
-        assert_eq!((scored.count, scored.caught, scored.early), (1, 1, 0));
-        assert_eq!(scored.count, scored.caught + scored.late + scored.said_before + scored.missed);
+        let slips = scored.slips;
+        assert_eq!((slips.count, slips.caught, slips.early), (1, 1, 0));
+        assert_eq!(slips.count, slips.caught + slips.late + slips.said_before + slips.missed);
         let alarms = scored.false_by[&Doing::Pour];
         assert_eq!((alarms.count, alarms.in_micro_slip), (4, 1));
         assert!((alarms.per_hour - 4_000.0).abs() < 1e-6 && scored.false_alarms == alarms);
@@ -287,12 +309,12 @@ mod tests {
         let meant = SlipSpan { meant: true, ..SLIP };
         let mut verdicts = [Verdict::new(1.12, 1.2), Verdict::new(3.0, 3.1)];
         let without = Card::of(&[meant], &verdicts, &whole());
-        assert_eq!((without.count, without.false_alarms.count), (0, 1));
+        assert_eq!((without.slips.count, without.false_alarms.count), (0, 1));
         verdicts[1].by_wearer = true;
         assert_eq!(Card::of(&[meant], &verdicts, &whole()).false_alarms.count, 0);
         // The control: what begins by a muscle catches nothing either.
         verdicts[0].by_wearer = true;
-        assert_eq!(Card::of(&[SLIP], &verdicts, &whole()).missed, 1);
+        assert_eq!(Card::of(&[SLIP], &verdicts, &whole()).slips.missed, 1);
     }
 
     #[test]
@@ -300,7 +322,8 @@ mod tests {
         let (one, other) = (card(&[(1.12, 1.2)]), card(&[(0.2, 0.3), (1.2, 1.25)]));
         let mut both = one;
         both.add(&other);
-        assert_eq!((both.count, both.caught, both.late, both.false_alarms.count), (2, 1, 1, 1));
+        let Counts { count, caught, late, .. } = both.slips;
+        assert_eq!((count, caught, late, both.false_alarms.count), (2, 1, 1, 1));
         assert!((both.false_alarms.hours - 0.002).abs() < 1e-12);
         assert_eq!(both.latency_ms(0.5).map(f64::round), Some(20.0));
         assert_eq!(both.caught_part(), Some(0.5));

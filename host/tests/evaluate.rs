@@ -2,11 +2,12 @@
 
 use tenax::dataset::session::Split;
 use tenax::dataset::{Dataset, Label, Plan};
-use tenax::evaluate::events::stretches;
+use tenax::evaluate::events::{card, stretches};
+use tenax::evaluate::network::Network;
 use tenax::evaluate::report::Report;
-use tenax::evaluate::{online, ran, test_split, verdicts};
+use tenax::evaluate::{online, ran, readings, test_split, verdicts};
 use tenax::labelled::{self, Part, Recording, Step, library};
-use tenax::scorer::{Card, Doing, SlipSpan};
+use tenax::scorer::{Card, Counts, Doing, SlipSpan, onsets};
 use tenax::session::{self, Board};
 use tenax_hal_shim::detector::DetectorId;
 use tenax_logic::array::ShippedDetector;
@@ -42,6 +43,7 @@ fn the_keys_are_those_of_the_issue_and_the_worst_comes_first() {
         keys,
         [
             "pour",
+            "roc",
             "real",
             "steps",
             "missed",
@@ -108,8 +110,33 @@ fn run_and_evaluate_say_the_same_of_the_same_scene() {
         // What is not believed of an empty hand is said all the same.
         assert_eq!(own.said, own.detections, "{scene}: the scene is none for this test");
         assert_eq!(own.events.as_ref(), Some(&evaluated), "{scene}");
-        println!("{scene}: {} of {} caught", evaluated.caught, evaluated.count);
+        // The third way: the same run as a recording of one's own, onsets and all, in a file.
+        let recorded = as_recording(scene, &ran.steps, &truth.slips);
+        let card = card(&recorded, &Network::shipped().judge(&readings(&recorded.steps)).1);
+        assert_eq!((card.slips, card.false_alarms.count), (evaluated.slips, evaluated.false_alarms.count));
+        assert_eq!(card.latencies_ms.len(), evaluated.latencies_ms.len());
+        let latencies = card.latencies_ms.iter().zip(&evaluated.latencies_ms);
+        assert!(latencies.into_iter().all(|(a, b)| (a - b).abs() < 1e-2), "{scene}");
+        let Counts { caught, count, .. } = evaluated.slips;
+        println!("{scene}: {caught} of {count} caught, {} false alarms", evaluated.false_alarms.count);
     }
+}
+
+/// A run as a person would hand it in: CSV, read through the recipe of the built-in data set.
+fn as_recording(scene: &str, steps: &[Step], slips: &[SlipSpan]) -> Recording {
+    let mut csv =
+        "split,session,material,recording,task,t_s,label,slips,a1,a2,a3,a4,a5,a6,a7,a8,a9,a10\n".to_owned();
+    let mut slips = slips.iter().peekable();
+    for (n, step) in steps.iter().enumerate() {
+        let t_s = ran::FIRST_S + n as f64 / 80.0;
+        let until_s = if n + 1 < steps.len() { t_s } else { f64::INFINITY };
+        let begun = std::iter::from_fn(|| slips.next_if(|slip| slip.micro_onset_s <= until_s));
+        let samples: Vec<String> = step.samples.iter().map(u16::to_string).collect();
+        let (label, onsets, samples) = (u8::from(step.slip), onsets::text(begun), samples.join(","));
+        csv += &format!("test,{scene},unknown,{scene},pour,{t_s:.4},{label},{onsets},{samples}\n");
+    }
+    let recipe = library::choose("array_dataset.csv".as_ref(), None).unwrap();
+    labelled::parse(csv.as_bytes(), &recipe, scene).unwrap().remove(0)
 }
 
 #[test]

@@ -78,7 +78,11 @@ fn run(args: &Args) -> anyhow::Result<()> {
     let (data, sequences, noise) = load(&args.dataset, &recipe, &features)?;
     let bar = bar();
     if args.compare {
-        let recordings = labelled::read(&args.dataset, &recipe)?;
+        let mut tests = Vec::new();
+        for path in &args.test {
+            tests.extend(labelled::read(path, &recipe)?);
+        }
+        let recordings = compare::with_parts(labelled::read(&args.dataset, &recipe)?, tests);
         let table = compare::compare(&recordings, &features, args.seed, &mut |part, what| {
             bar.set_message(what.to_owned());
             bar.set_position((1e3 * part) as u64);

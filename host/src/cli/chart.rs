@@ -24,7 +24,8 @@ pub struct Args {
     /// Where they are written: SVG, PNG and CSV
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
-    /// The detectors' scores [default: docs/figures/detectors.csv, which `tenax train` writes]
+    /// The detectors' scores [default: docs/figures/detectors.csv of the scenes and detectors-real.csv of a real array, which `tenax
+    /// train --compare` writes]
     #[arg(long, value_name = "CSV")]
     scores: Option<PathBuf>,
     /// Where the recordings are [default: shared/data beside the checkout]
@@ -43,6 +44,8 @@ enum Subject {
     Sensors,
     /// What detectors from normal force get wrong against the instructions that they take
     Detectors,
+    /// How the force array's network does against each quantity that sessions draw: where the method fails
+    Array,
     /// What tells slip from rest in the force array: force sum, derivative, covariance, frequency, and their windows
     Features,
     /// How soon the slip of a lift could be told, and from which sensors, beside what a camera sees
@@ -55,6 +58,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let folder = folder::made(&args.out)?;
     let charts = match args.subject {
         Subject::Scenes => with_bar("charts", |progress| chart::scenes(progress))?,
+        Subject::Array => vec![with_bar("array", |progress| chart::array::chart(progress))?],
         Subject::Features => vec![with_bar("features", |progress| chart::features::chart(progress))?],
         Subject::Sensors => {
             let recordings = match &args.recordings {
@@ -96,13 +100,27 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
 #[cfg(feature = "emulator")]
 fn detectors(scores: Option<&Path>) -> anyhow::Result<chart::Chart> {
     let root = workspace::root()?;
-    let scores = scores.map_or_else(|| root.join("docs/figures/detectors.csv"), Path::to_owned);
-    let table = fs::read_to_string(&scores)
-        .with_context(|| format!("cannot read the detectors' scores {}", scores.display()))?;
+    let figures = root.join("docs/figures");
+    let files = scores.map_or_else(
+        || {
+            vec![
+                ("pours of the scenes", figures.join("detectors.csv")),
+                ("a real array", figures.join("detectors-real.csv")),
+            ]
+        },
+        |own| vec![("scores", own.to_owned())],
+    );
+    let read = |(data, file): &(&'static str, PathBuf)| {
+        let table = fs::read_to_string(file)
+            .with_context(|| format!("cannot read the detectors' scores {}", file.display()))?;
+        anyhow::Ok((*data, table))
+    };
+    let tables: Vec<(&str, String)> = files.iter().map(read).collect::<Result<_, _>>()?;
+    let tables: Vec<(&str, &str)> = tables.iter().map(|(data, table)| (*data, table.as_str())).collect();
     let image = crate::image::build_kernels(&root)?;
     let costs = with_bar("detectors", |_| crate::board::emulated::kernels::costs(&image))?;
     let instructions = costs.into_iter().map(|cost| (cost.name, cost.most)).collect();
-    chart::detectors::chart(&table, &instructions)
+    chart::detectors::chart(&tables, &instructions)
 }
 
 #[cfg(not(feature = "emulator"))]

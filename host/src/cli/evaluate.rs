@@ -14,11 +14,14 @@ use super::workspace;
 use crate::dataset::session::{Sizes, Split, sessions};
 use crate::dataset::{Dataset, Label, Plan};
 use crate::evaluate::network::Network;
-use crate::evaluate::real::Real;
+use crate::evaluate::real::{Logits, Real};
 use crate::evaluate::report::Report;
+use crate::evaluate::roc::Roc;
 use crate::evaluate::text::Text;
 use crate::evaluate::{Verdicts, adapt, draws, failures, online, readings, test_split};
 use crate::labelled::{self, Recording, library};
+use crate::report::oracle::Control;
+use crate::scorer::Card;
 use crate::session::Board;
 
 const EXAMPLES: &str = "\
@@ -105,15 +108,16 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             if args.dataset.is_some() {
                 adapt::accept(&network, &recordings)?;
             }
-            let judge = |recording: &Recording| network.judge(&readings(&recording.steps)).1;
-            let said: Vec<Verdicts> =
-                with_bar("judging", |_| recordings.par_iter().map(judge).collect::<Vec<_>>());
+            let judge = |recording: &Recording| network.judge(&readings(&recording.steps));
+            let (logits, said): (Vec<Logits>, Vec<Verdicts>) =
+                with_bar("judging", |_| recordings.par_iter().map(judge).unzip());
             // The network that ships looks back over one frame, itself: there is no other to compare it with.
             let mut report = Report::new(&recordings, &said, &said);
+            report.roc = Roc::of(&recordings, &logits);
             if args.dataset.is_none() {
                 report.real = real(&network)?;
                 let drawn = sessions(args.seed, Sizes::of_train(args.sessions));
-                report.by_draw = draws::draws(&drawn, &recordings, &said);
+                report.by_draw = draws::draws(&drawn, &recordings, &said, &logits);
             }
             report
         }
@@ -199,22 +203,27 @@ fn online_tasks(args: &Args) -> anyhow::Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     }
     out::say!(
-        "task  material    kept      no reflex, constant grip   slid, mm (oracle)   peak, N (oracle, needed)"
+        "task  material    kept      slid, mm (oracle)   peak, N (oracle, needed)   kept by its controls: no reflex, constant grip; alone s1, s2, hebbian, mlp"
     )?;
     for row in online::rows(&tries) {
+        let by = |name: &str| row.kept_by.get(name).copied().unwrap_or_default();
         out::say!(
-            "{:<6}{:<12}{:>2} of {:<2}  {:>9}, {:<15}  {:>8.2} ({:>6.2})   {:>8.2} ({:>5.2}, {:>5.2})",
+            "{:<6}{:<12}{:>2} of {:<2}  {:>8.2} ({:>6.2})   {:>8.2} ({:>5.2}, {:>5.2})   {}, {}; {}, {}, {}, {}",
             row.task,
             row.material,
             row.kept,
             row.tries,
-            row.kept_without[0],
-            row.kept_without[1],
             row.distance_mm,
             row.oracle_distance_mm,
             row.peak_force_n,
             row.oracle_peak_force_n,
-            row.needed_force_n
+            row.needed_force_n,
+            by("no reflex"),
+            by("constant grip"),
+            by("s1 alone"),
+            by("s2 alone"),
+            by("hebbian alone"),
+            by("mlp alone")
         )?;
     }
     Ok(ExitCode::SUCCESS)
@@ -232,23 +241,36 @@ fn failing_scenes(args: &Args) -> anyhow::Result<ExitCode> {
     )?;
     let or_dash = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.2}"));
     for row in rows {
-        let [slips, caught, false_alarms] = row.slips;
+        let Card { slips, false_alarms, .. } = &row.events;
         out::say!(
             "{:<20}{:>9.2} %{:>8}{:>7}{:>9} of {:<3}{:>12}   {:<8}{:>9} ({:>6}){:>12} ({:>6}) {}",
             row.scene,
             100.0 * row.steps.accuracy,
             row.steps.missed,
             row.steps.false_steps,
-            caught,
-            slips,
-            false_alarms,
-            row.kept.map_or("-", |kept| if kept { "kept" } else { "DROPPED" }),
+            slips.caught,
+            slips.count,
+            false_alarms.count,
+            row.kept.map_or("-", |kept| if kept { "kept" } else { "LOST" }),
             or_dash(row.distance_mm[0]),
             or_dash(row.distance_mm[1]),
             or_dash(row.peak_force_n[0]),
             or_dash(row.peak_force_n[1]),
             row.faults.join("; ")
         )?;
+        let told = |own: &Control| {
+            let kept = if own.kept { "kept" } else { "LOST" };
+            format!(
+                "{} {kept} {:.2} mm {:.1} N",
+                own.name,
+                own.distance_mm,
+                own.peak_force_n.unwrap_or_default()
+            )
+        };
+        let controls: Vec<String> = row.controls.iter().map(told).collect();
+        if !controls.is_empty() {
+            out::say!("    controls: {}", controls.join("; "))?;
+        }
     }
     Ok(ExitCode::SUCCESS)
 }

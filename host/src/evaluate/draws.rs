@@ -3,6 +3,7 @@
 use serde::Serialize;
 use serde_json::Value;
 
+use super::real::{Logits, auc};
 use super::report::Steps;
 use super::{Verdicts, events};
 use crate::dataset::session::Session;
@@ -21,6 +22,8 @@ pub struct Part {
     pub from: f64,
     /// The greatest.
     pub to: f64,
+    /// Probability that a step of their pours that slips has a higher logit than one that does not: what no threshold changes.
+    pub auc: f64,
     /// Balanced accuracy of their pours' steps.
     pub balanced: f64,
     /// Part of their slips that was caught. Null if there was none.
@@ -36,7 +39,7 @@ pub struct Draw {
     pub quantity: String,
     /// From its lowest sessions to its highest.
     pub parts: Vec<Part>,
-    /// Greatest less least balanced accuracy of the parts: how much it matters.
+    /// Greatest less least area of the parts: how much it matters.
     pub matters: f64,
 }
 
@@ -59,24 +62,30 @@ fn quantities(session: &Session) -> Vec<(String, f64)> {
 
 /// Scores pours against every quantity, the one that matters most first. Sessions are those that the recordings are of.
 #[must_use]
-pub fn draws(sessions: &[Session], recordings: &[Recording], said: &[Verdicts]) -> Vec<Draw> {
-    let judged: Vec<(&Session, &Recording, &Verdicts)> = recordings
+pub fn draws(
+    sessions: &[Session],
+    recordings: &[Recording],
+    said: &[Verdicts],
+    logits: &[Logits],
+) -> Vec<Draw> {
+    let judged: Vec<Judged> = recordings
         .iter()
-        .zip(said)
+        .zip(said.iter().zip(logits))
         .filter(|(recording, _)| recording.doing == Doing::Pour)
-        .filter_map(|(recording, said)| {
-            Some((sessions.iter().find(|session| session.name == recording.session)?, recording, said))
+        .filter_map(|(recording, (said, logits))| {
+            let session = sessions.iter().find(|session| session.name == recording.session)?;
+            Some(Judged { session, recording, said, logits })
         })
         .collect();
-    let Some((first, ..)) = judged.first() else { return Vec::new() };
+    let Some(Judged { session: first, .. }) = judged.first() else { return Vec::new() };
     let mut all: Vec<Draw> = (0..quantities(first).len())
         .map(|n| {
-            let mut sorted: Vec<_> = judged.iter().map(|own| (quantities(own.0)[n].1, own)).collect();
+            let mut sorted: Vec<_> = judged.iter().map(|own| (quantities(own.session)[n].1, own)).collect();
             sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
             let size = sorted.len().div_ceil(PARTS).max(1);
             let parts: Vec<Part> = sorted.chunks(size).map(part).collect();
-            let balanced = || parts.iter().map(|part| part.balanced);
-            let matters = balanced().fold(0.0, f64::max) - balanced().fold(1.0, f64::min);
+            let areas = || parts.iter().map(|part| part.auc);
+            let matters = areas().fold(0.0, f64::max) - areas().fold(1.0, f64::min);
             Draw { quantity: quantities(first)[n].0.clone(), parts, matters }
         })
         .collect();
@@ -84,15 +93,26 @@ pub fn draws(sessions: &[Session], recordings: &[Recording], said: &[Verdicts]) 
     all
 }
 
-fn part(own: &[(f64, &(&Session, &Recording, &Verdicts))]) -> Part {
-    let (mut steps, mut card) = (Steps::default(), Card::default());
-    for (_, (_, recording, said)) in own {
+/// A pour, and what a network made of it.
+struct Judged<'a> {
+    session: &'a Session,
+    recording: &'a Recording,
+    said: &'a Verdicts,
+    logits: &'a Logits,
+}
+
+fn part(own: &[(f64, &Judged)]) -> Part {
+    let (mut steps, mut card, mut scored) = (Steps::default(), Card::default(), Vec::new());
+    for (_, Judged { recording, said, logits, .. }) in own {
         steps.take(&recording.steps, said);
         card.add(&events::card(recording, said));
+        let judged = recording.steps.iter().zip(*logits);
+        scored.extend(judged.filter_map(|(step, logit)| Some((f64::from((*logit)?), step.slip))));
     }
     Part {
         from: own.first().map_or(0.0, |own| own.0),
         to: own.last().map_or(0.0, |own| own.0),
+        auc: auc(&mut scored),
         balanced: steps.balanced,
         caught: card.caught_part(),
         false_per_hour: card.false_alarms.per_hour,

@@ -1,4 +1,4 @@
-//! Where the array's detector may fail: twelve scenes, each with its score and with what the hand did then.
+//! Where the array's detector may fail: twelve scenes, each with its score, with what the hand did then, and with its controls.
 
 use anyhow::Context;
 use rayon::prelude::*;
@@ -9,6 +9,7 @@ use super::events::stretches;
 use super::report::Steps;
 use super::{ran, verdicts};
 use crate::jobs::{Jobs, Told};
+use crate::report::oracle::Control;
 use crate::scorer::Card;
 use crate::session::{self, Board};
 
@@ -35,9 +36,7 @@ pub struct Row {
     pub scene: &'static str,
     /// What the detector alone said, step by step.
     pub steps: Steps,
-    /// Slips, those that it caught within 50 ms, and its false alarms.
-    pub slips: [usize; 3],
-    /// All event scores of it.
+    /// Event scores of it.
     pub events: Card,
     /// Whether the object stayed in the hand. Null where the hand strokes a surface.
     pub kept: Option<bool>,
@@ -47,6 +46,9 @@ pub struct Row {
     pub peak_force_n: [Option<f64>; 2],
     /// Sensors that the board reported as lost.
     pub faults: Vec<String>,
+    /// The same scene without the reflex, in a constant grip of the same mean force, with each detector alone. Empty where the hand
+    /// holds nothing.
+    pub controls: Vec<Control>,
 }
 
 /// Runs them all, on all cores, and scores what a `fresh` detector makes of what the board's converter read.
@@ -69,16 +71,19 @@ pub fn rows<D: FnMut(&Reading) -> bool>(
         let steps = ran.steps;
         let said = verdicts(fresh(), &steps);
         let report = outcome.report;
+        // As the controls count it: what stands on the table behind the hand is lost, too.
+        let kept = report.grip.needed_force_n.map(|_| Control::of(scene, &outcome.truth).kept);
+        let controls = kept.map(|_| session::controls(&file, seed, &outcome.truth)).unwrap_or_default();
         let card = Card::of(&outcome.truth.slips, &stretches(ran::FIRST_S, &said), &outcome.truth.doing);
         Ok(Row {
             scene,
             steps: Steps::of(&steps, &said),
-            slips: [card.count, card.caught, card.false_alarms.count],
             events: card,
-            kept: report.grip.needed_force_n.and(report.slip.dropped).map(|dropped| !dropped),
+            kept,
             distance_mm: [report.slip.distance_mm, report.oracle.distance_mm],
             peak_force_n: [report.grip.peak_force_n, report.oracle.peak_force_n],
             faults: report.faults.iter().map(|fault| fault.what.clone()).collect(),
+            controls,
         })
     };
     SCENES.par_iter().map(row).collect()

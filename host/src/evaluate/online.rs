@@ -1,6 +1,8 @@
 //! The paper's online tasks (Bamshad 2023, section 6): pick and place, and a grasp kept while balls are poured in, ten
 //! times each for four materials, with the whole fingertip closing the loop. The box has to be kept.
 
+use std::collections::BTreeMap;
+
 use anyhow::Context;
 use rand::{SeedableRng, rngs::ChaCha8Rng};
 use rayon::prelude::*;
@@ -10,6 +12,7 @@ use crate::dataset::material::SEEN;
 use crate::dataset::session::{Session, Sizes, sessions};
 use crate::dataset::story::Story;
 use crate::jobs::{Job, Jobs, Told};
+use crate::report::oracle::Control;
 use crate::session::{self, Board};
 
 /// Times that each task is tried with each material.
@@ -30,8 +33,8 @@ pub struct Try {
     pub kept: bool,
     /// How far it slid, mm.
     pub distance_mm: f64,
-    /// Whether it did without the reflex, and in a constant grip of the same mean force.
-    pub kept_without: [bool; 2],
+    /// The controls that kept it: without the reflex, in a constant grip of the same mean force, with each detector alone.
+    pub kept_by: Vec<String>,
     /// How far with an oracle, mm.
     pub oracle_distance_mm: f64,
     /// The greatest force of a finger, N.
@@ -53,8 +56,9 @@ pub struct Row {
     pub tries: usize,
     /// Those in which the box was kept.
     pub kept: usize,
-    /// The controls: those in which it was kept without the reflex, and in a constant grip of the same mean force.
-    pub kept_without: [usize; 2],
+    /// The tries in which each control kept it: without the reflex, in a constant grip of the same mean force, with each detector
+    /// alone.
+    pub kept_by: BTreeMap<String, usize>,
     /// Means over the tries: slid, the oracle's, mm; greatest force, the oracle's, needed, N.
     pub distance_mm: f64,
     /// See above.
@@ -90,15 +94,14 @@ fn attempt(task: Story, session: &Session, board: &Board, mut job: Job) -> anyho
     let mut told = |s: f64| job.at(s / scene.duration_s());
     let outcome = session::scene(&scene, session.seed, board, &mut told)?;
     let controls = session::controls(&scene, session.seed, &outcome.truth);
-    let kept_without = |name: &str| controls.iter().find(|own| own.name == name).is_some_and(|own| own.kept);
     let report = outcome.report;
     let known = "a scene knows what became of its object";
     Ok(Try {
         material: session.material,
         task: task.name(),
         seed: session.seed,
-        kept: !report.slip.dropped.context(known)?,
-        kept_without: ["no reflex", "constant grip"].map(kept_without),
+        kept: Control::of(task.name(), &outcome.truth).kept,
+        kept_by: controls.iter().filter(|own| own.kept).map(|own| own.name.clone()).collect(),
         distance_mm: report.slip.distance_mm.context(known)?,
         oracle_distance_mm: report.oracle.distance_mm.context(known)?,
         peak_force_n: report.grip.peak_force_n.context(known)?,
@@ -120,7 +123,10 @@ pub fn rows(tries: &[Try]) -> Vec<Row> {
             task,
             tries: own.len(),
             kept: own.iter().filter(|own| own.kept).count(),
-            kept_without: [0, 1].map(|n| own.iter().filter(|own| own.kept_without[n]).count()),
+            kept_by: own.iter().flat_map(|own| &own.kept_by).fold(BTreeMap::new(), |mut all, name| {
+                *all.entry(name.clone()).or_default() += 1;
+                all
+            }),
             distance_mm: mean(|own| own.distance_mm),
             oracle_distance_mm: mean(|own| own.oracle_distance_mm),
             peak_force_n: mean(|own| own.peak_force_n),

@@ -52,8 +52,8 @@ impl Real {
     }
 }
 
-/// Area under the ROC curve: the Mann-Whitney statistic, ties counting half.
-fn auc(scored: &mut [(f64, bool)]) -> f64 {
+/// Area under the ROC curve: the Mann-Whitney statistic, ties counting half. Sorts them by their score.
+pub(super) fn auc(scored: &mut [(f64, bool)]) -> f64 {
     scored.sort_by(|a, b| a.0.total_cmp(&b.0));
     let slips = scored.iter().filter(|scored| scored.1).count() as f64;
     let rest = scored.len() as f64 - slips;

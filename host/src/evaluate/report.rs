@@ -6,9 +6,10 @@ use serde::{Serialize, Serializer};
 
 use super::draws::Draw;
 use super::real::Real;
+use super::roc::Roc;
 use super::{Verdicts, events};
 use crate::labelled::{Recording, Step};
-use crate::scorer::{Alarms, Card, Doing};
+use crate::scorer::{Alarms, Card, Counts, Doing};
 
 /// Steps, counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -62,18 +63,9 @@ impl Steps {
 /// Slips, counted by [`crate::scorer`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct EventScores {
-    /// All macro slips.
-    pub count: usize,
-    /// Those that a detection began in between micro onset and 50 ms after macro onset.
-    pub caught: usize,
-    /// Those of them that it began in before macro onset.
-    pub early: usize,
-    /// Detected later.
-    pub late: usize,
-    /// Nothing began; a verdict stood before.
-    pub said_before: usize,
-    /// Nothing was said.
-    pub missed: usize,
+    /// What became of them.
+    #[serde(flatten)]
+    pub slips: Counts,
     /// Median time from macro onset to the detection, of those caught, ms: negative is early.
     pub latency_ms_p50: Option<f64>,
     /// The time that 95 % of those caught do not exceed, ms.
@@ -86,12 +78,7 @@ impl EventScores {
     fn of(card: &Card) -> Self {
         let after_micro = Card { latencies_ms: card.after_micro_ms.clone(), ..Card::default() };
         Self {
-            count: card.count,
-            caught: card.caught,
-            early: card.early,
-            late: card.late,
-            said_before: card.said_before,
-            missed: card.missed,
+            slips: card.slips,
             latency_ms_p50: card.latency_ms(0.50),
             latency_ms_p95: card.latency_ms(0.95),
             after_micro_ms_p50: after_micro.latency_ms(0.50),
@@ -161,6 +148,8 @@ impl Serialize for By {
 pub struct Report {
     /// Pours alone: the headline. Null if the data has none.
     pub pour: Option<Pour>,
+    /// What the network makes of pours at other thresholds. Null if that was not asked.
+    pub roc: Option<Roc>,
     /// Recordings of a real array. Null where they are not present.
     pub real: Option<Real>,
     /// Steps of all recordings.
@@ -206,6 +195,7 @@ impl Report {
         let Steps { steps, missed, false_steps, accuracy, balanced, prevalence, .. } = all;
         Self {
             pour: pour(&judged().filter(|(recording, _)| recording.doing == Doing::Pour).collect::<Vec<_>>()),
+            roc: None,
             real: None,
             steps,
             missed,
@@ -236,7 +226,9 @@ fn card<'a>(judged: impl Iterator<Item = (&'a Recording, &'a Verdicts)>) -> Card
     card
 }
 
-fn pour(judged: &[(&Recording, &Verdicts)]) -> Option<Pour> {
+/// Scores pours. None if there are none.
+#[must_use]
+pub fn pour(judged: &[(&Recording, &Verdicts)]) -> Option<Pour> {
     let mut all = Steps::default();
     for (recording, said) in judged {
         all.take(&recording.steps, said);
@@ -252,7 +244,7 @@ fn pour(judged: &[(&Recording, &Verdicts)]) -> Option<Pour> {
         missed_2800: per_2800(all.missed),
         false_2800: per_2800(all.false_steps),
         steps: all.steps,
-        slips: card.count,
+        slips: card.slips.count,
         by_material: By::of(
             judged.iter().map(|(recording, said)| (recording.material.as_str(), *recording, *said)),
         ),

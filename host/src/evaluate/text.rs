@@ -39,15 +39,34 @@ impl Display for Text<'_> {
             }
             rows(f, "  by material, the worst first", &pour.by_material)?;
         }
+        if let Some(roc) = &report.roc {
+            writeln!(
+                f,
+                "pours at other thresholds: AUC {:.3}, average precision {:.3}, best balanced {:.3}",
+                roc.auc, roc.average_precision, roc.best_balanced.balanced
+            )?;
+            for point in &roc.points {
+                writeln!(
+                    f,
+                    "  balanced {:.3}: {:>4.0} missed, {:>5.1} false in 2800; {:>5.1} % caught, {:>6.0} false alarms an hour; precision {:.2}",
+                    point.balanced,
+                    point.missed_2800,
+                    point.false_2800,
+                    100.0 * point.caught_50ms,
+                    point.false_per_hour,
+                    point.precision
+                )?;
+            }
+        }
         if !report.by_draw.is_empty() {
-            writeln!(f, "pours by what was drawn, a quarter of the sessions each: balanced (caught)")?;
+            writeln!(f, "pours by what was drawn, a quarter of the sessions each: AUC, balanced (caught)")?;
         }
         for draw in &report.by_draw {
             write!(f, "  {:<20}", draw.quantity)?;
             for part in &draw.parts {
                 let caught = part.caught.map_or("-".to_owned(), |part| format!("{:.0} %", 100.0 * part));
                 let span = format!("{} to {}", short(part.from), short(part.to));
-                write!(f, "{span:>17}: {:.3} ({caught:>5})", part.balanced)?;
+                write!(f, "{span:>17}: {:.2} {:.3} ({caught:>5})", part.auc, part.balanced)?;
             }
             writeln!(f)?;
         }
@@ -72,12 +91,12 @@ impl Display for Text<'_> {
             f,
             "  {:<20}{} of {} caught ({} early), {} late, {} said before, {} missed",
             "slips",
-            events.caught,
-            events.count,
-            events.early,
-            events.late,
-            events.said_before,
-            events.missed
+            events.slips.caught,
+            events.slips.count,
+            events.slips.early,
+            events.slips.late,
+            events.slips.said_before,
+            events.slips.missed
         )?;
         if let (Some(p50), Some(p95)) = (events.latency_ms_p50, events.latency_ms_p95) {
             write!(f, "; {p50:.1} ms after macro onset, 95 % of those caught within {p95:.1} ms")?;

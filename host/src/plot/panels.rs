@@ -95,11 +95,14 @@ fn in_force(name: &str, id: SettingId, subject: &Subject, (from_s, to_s): (f64, 
 
 /// When each detector said slip, or warned of it: a row for each, high while it did.
 fn detectors(subject: &Subject, span_s: (f64, f64)) -> Panel {
-    const COLOURS: [RGBColor; 4] = [colour::BLUE, colour::ORANGE, colour::PURPLE, colour::GREEN];
+    const COLOURS: [RGBColor; 5] =
+        [colour::BLUE, colour::ORANGE, colour::PURPLE, colour::GREEN, colour::VERMILLION];
     // Nothing is injected but by a person.
-    let all = DetectorId::ALL.into_iter().filter(|&id| id != DetectorId::Injected);
+    let all: Vec<DetectorId> = DetectorId::ALL.into_iter().filter(|&id| id != DetectorId::Injected).collect();
+    let count = all.len();
     let curve = |(row, id): (usize, DetectorId)| {
-        let low = row as f64;
+        // From top to bottom, as they are named beside it.
+        let low = (count - 1 - row) as f64;
         let (mut points, high) = (vec![(span_s.0, low)], low + 0.8);
         for verdict in subject.timeline.verdicts_said(id) {
             let (from_s, to_s) = (verdict.from_s.max(span_s.0), verdict.to_s.min(span_s.1));
@@ -114,8 +117,8 @@ fn detectors(subject: &Subject, span_s: (f64, f64)) -> Panel {
             points: thin(points, span_s),
         }
     };
-    let curves: Vec<Curve> = all.enumerate().map(curve).collect();
-    let rows = curves.len() as f64;
+    let curves: Vec<Curve> = all.into_iter().enumerate().map(curve).collect();
+    let rows = count as f64;
     Panel {
         label: "detector says".to_owned(),
         curves,

@@ -6,6 +6,7 @@
 #![no_std]
 #![no_main]
 
+mod crates;
 mod mailbox;
 mod parts;
 mod rivals;
@@ -41,6 +42,7 @@ fn main() -> ! {
         if orders.everything {
             parts.run(&reading);
             rivals.run(detector.features());
+            crates::run(&reading);
         }
     }
 }

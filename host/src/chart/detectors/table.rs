@@ -14,10 +14,12 @@ pub struct Row {
     pub classifier: String,
     /// `float`, `16` or `8`: its weights.
     pub precision: String,
-    /// Differences in the covariance and samples in the spectrum: `10/40`, `5/20` or `1/10`.
+    /// Differences in the covariance and samples in the spectrum: `10/40`, `5/20` or `1/10`; `40/40` costs what `10/40` does.
     pub window: String,
     /// Slow frames that it sees at once: 1 is none but the present.
     pub lookback: u32,
+    /// Mean of the part of slipping steps that it calls slip and the part of the others that it does not, 0 to 1.
+    pub balanced: f64,
     /// Part of all steps that it gets right, 0 to 1.
     pub accuracy: f64,
     /// Steps of slip that it missed.
@@ -36,19 +38,6 @@ fn yes<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<bool, D::Err
 }
 
 impl Row {
-    /// What tells it from its classifier's others.
-    pub fn variant(&self) -> String {
-        let mut variant =
-            if self.precision == "float" { "float".to_owned() } else { format!("{} bit", self.precision) };
-        if self.lookback > 1 {
-            variant += &format!(", look-back {}", self.lookback);
-        }
-        if self.window != "10/40" {
-            variant += &format!(", {}", self.window);
-        }
-        variant
-    }
-
     /// The kernels that it takes, and the one in them that it does not need.
     fn kernels(&self) -> (Vec<String>, Option<String>) {
         if self.shipped {
@@ -63,7 +52,8 @@ impl Row {
             other => other,
         };
         let kernels = vec![
-            format!("features_{}", self.window.replace('/', "_")),
+            // One difference in, one out, however long the window is.
+            format!("features_{}", self.window.replace("40/40", "10/40").replace('/', "_")),
             format!("{classifier}_{}_{}", self.precision, self.lookback),
         ];
         // The features' kernel makes all of them.
@@ -80,13 +70,6 @@ pub struct Measured {
     pub instructions: u64,
 }
 
-impl Measured {
-    /// Steps wrong, %.
-    pub fn wrong_percent(&self) -> f64 {
-        100.0 * (1.0 - self.row.accuracy)
-    }
-}
-
 /// Reads the table and adds up what each of its lines takes.
 pub fn read(table: &str, instructions: &BTreeMap<String, u64>) -> Result<Vec<Measured>> {
     let mut reader = csv::Reader::from_reader(table.as_bytes());
@@ -94,8 +77,12 @@ pub fn read(table: &str, instructions: &BTreeMap<String, u64>) -> Result<Vec<Mea
     for (n, row) in reader.deserialize().enumerate() {
         let line = n + 2;
         let row: Row = row.with_context(|| format!("line {line} of the detectors' table"))?;
-        let is_part = (0.0..=1.0).contains(&row.accuracy);
-        ensure!(is_part, "line {line}: the accuracy is a part of all steps, 0 to 1, not {}", row.accuracy);
+        for part in [row.balanced, row.accuracy] {
+            ensure!(
+                (0.0..=1.0).contains(&part),
+                "line {line}: an accuracy is a part of all steps, 0 to 1, not {part}"
+            );
+        }
         let cost = |kernel: &String| {
             instructions.get(kernel).copied().with_context(|| {
                 let known: Vec<&str> = instructions.keys().map(String::as_str).collect();
