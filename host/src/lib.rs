@@ -24,6 +24,7 @@ pub mod scorer;
 pub mod serve;
 pub mod session;
 pub mod settings;
+pub mod suggest;
 pub mod timeline;
 pub mod truth;
 pub mod vision;
