@@ -8,6 +8,7 @@ pub mod check;
 pub mod cli;
 pub mod dataset;
 pub mod evaluate;
+pub mod guide;
 pub mod image;
 pub mod input;
 pub mod jobs;
