@@ -18,12 +18,14 @@
 
 pub mod activations;
 mod arithmetic;
+pub mod gains;
 pub mod network;
 pub mod rule;
 pub mod snapshot;
 pub mod teacher;
 
 pub use activations::{Activation, Activations, Normaliser, NormaliserConfig, Sense};
+pub use gains::Gains;
 pub use network::{Network, Output, Weight};
 pub use rule::{Config, Config as LearningConfig, NotAllowed, Rule};
 pub use snapshot::Damaged;

@@ -41,6 +41,7 @@ pub mod gate;
 pub mod grip;
 pub mod health;
 pub mod hebbian;
+pub mod hum;
 pub mod journal;
 pub mod low_pass;
 pub mod mode;

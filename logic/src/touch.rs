@@ -15,10 +15,8 @@
 //!
 //! The direction is asked of the gauges alone: "vibration information only helps to detect micro slips, but not to detect
 //! the direction" (Tada 2006, section I), and a slip down that was louder than the slip up would be an offset of o2.
-//!
-//! What a film hears all the time, hum and noise, is none of the object's: its quiet level is taken off its envelope. It
-//! follows the envelope's median while the finger is known to be unloaded, and stands still in a grasp. A finger that was
-//! switched on in a grasp, by a reset for one, cannot tell hum from slip: its films are not heard until it lets go.
+
+mod hearing;
 
 use core::ops::Range;
 
@@ -31,14 +29,12 @@ use crate::hebbian::{
     Activations, FingertipNetwork, Normaliser, NormaliserConfig, Output, Sense, Situation, Teacher, snapshot,
 };
 use crate::strain::Gauges;
+use hearing::Hearing;
 
 /// All that was learned.
 pub type Learned = snapshot::Contents<RECEPTORS, NETWORK_OUTPUTS>;
 /// Bytes of a saved network.
 pub const SNAPSHOT_LENGTH: usize = snapshot::length(RECEPTORS, NETWORK_OUTPUTS);
-
-/// Fraction bits of a film's envelope (Q16) that are below what a film can tell; 4 are left, as a gauge's load has.
-const ENVELOPE_SHIFT: u32 = 12;
 
 /// How readings become activations. Both kinds are samples (14 bits) with 4 fraction bits.
 pub static NORMALISER: NormaliserConfig<RECEPTORS> = NormaliserConfig {
@@ -64,10 +60,6 @@ pub static NORMALISER: NormaliserConfig<RECEPTORS> = NormaliserConfig {
     ceiling: 1 << 17,
     average_shift: 8,
 };
-
-/// How far a quiet level goes after an envelope in a tick, 1/16 of a sample: 4 mV in 0.15 s. A step of one size, whatever
-/// the envelope's, makes it the median, which a knock does not move.
-const QUIET_STEP: i32 = 1;
 
 /// What the rest of the fingertip gives in a tick.
 #[derive(Clone, Copy, Debug)]
@@ -126,7 +118,9 @@ pub struct Touch {
     normaliser: Normaliser<RECEPTORS>,
     network: FingertipNetwork,
     teacher: Teacher,
+    /// Of the gauges always, of the films while there are lessons.
     activations: Activations<RECEPTORS>,
+    hearing: Hearing,
     outputs: [Output; NETWORK_OUTPUTS],
     /// The gauges' part of each output, since the last of them was read.
     by_gauges: [i64; NETWORK_OUTPUTS],
@@ -134,10 +128,6 @@ pub struct Touch {
     by_films: i64,
     /// Whether a weight has changed since.
     weights_changed: bool,
-    /// What each film hears of nothing, 1/16 of a sample.
-    quiet: [i32; PVDF_COUNT],
-    /// Whether the finger has been unloaded since the start.
-    quiet_known: bool,
     since_loud_frames: u32,
     said_frames: u32,
     slips: bool,
@@ -155,12 +145,11 @@ impl Default for Touch {
             network: FingertipNetwork::default(),
             teacher: Teacher::default(),
             activations: Activations::default(),
+            hearing: Hearing::default(),
             outputs: [Output::default(); NETWORK_OUTPUTS],
             by_gauges: [0; NETWORK_OUTPUTS],
             by_films: 0,
             weights_changed: false,
-            quiet: [0; PVDF_COUNT],
-            quiet_known: false,
             since_loud_frames: 0,
             said_frames: 0,
             slips: false,
@@ -175,17 +164,37 @@ impl Default for Touch {
 impl Touch {
     /// Takes what is felt in one tick, learns if there is a lesson, and says what it means.
     pub fn tick(&mut self, config: &TouchConfig, felt: &Felt<'_>) {
-        let heard = self.heard(felt);
-        self.normaliser.renew(&NORMALISER, 0, &heard, &mut self.activations);
+        let learns = self.lesson.is_ok();
+        if self.hearing.is_outdated() && !learns {
+            self.know_gains();
+        }
+        let mut by_films = self.hearing.hear(felt);
         if let Some(load) = felt.gauges.load(felt.gauge) {
             self.weigh(PVDF_COUNT + felt.gauge, load);
         }
-        let by_films = self.network.sum_of_parts(0, FILMS, &self.activations);
+        if learns {
+            // Weights change with every lesson.
+            self.feel_films();
+            by_films = self.network.sum_of_parts(0, FILMS, &self.activations);
+        }
         self.by_films = by_films;
         let [o1_by_gauges, o2_by_gauges] = self.by_gauges;
         self.outputs = [output(by_films + o1_by_gauges), output(o2_by_gauges)];
         self.judge(config, felt, by_films);
-        self.learn(config, felt, &heard);
+        self.learn(config, felt, learns);
+    }
+
+    /// The films' activations of now.
+    #[inline(never)]
+    fn feel_films(&mut self) {
+        self.normaliser.renew(&NORMALISER, 0, self.hearing.heard(), &mut self.activations);
+    }
+
+    /// The gains after the last lesson.
+    #[inline(never)]
+    fn know_gains(&mut self) {
+        let [to_o1, _] = self.network.weights();
+        self.hearing.renew(&to_o1, &self.normaliser.maxima());
     }
 
     /// Takes a new reading of one gauge into the gauges' part. While no weight has changed, no other gauge's has.
@@ -201,22 +210,6 @@ impl Touch {
         for ((sum, before), after) in self.by_gauges.iter_mut().zip(before).zip(after) {
             *sum += i64::from(after) - i64::from(before);
         }
-    }
-
-    /// What each film hears beyond its quiet level, 1/16 of a sample; nothing while that is not known.
-    fn heard(&mut self, felt: &Felt<'_>) -> [i32; PVDF_COUNT] {
-        self.quiet_known |= felt.unloaded;
-        if !self.quiet_known {
-            return [0; PVDF_COUNT];
-        }
-        let beyond: [i32; PVDF_COUNT] =
-            core::array::from_fn(|n| (felt.envelopes[n] >> ENVELOPE_SHIFT) - self.quiet[n]);
-        if felt.unloaded {
-            for (quiet, beyond) in self.quiet.iter_mut().zip(beyond) {
-                *quiet += beyond.signum() * QUIET_STEP;
-            }
-        }
-        beyond.map(|beyond| beyond.max(0))
     }
 
     /// A frame was lost: nothing is felt.
@@ -238,6 +231,7 @@ impl Touch {
         self.network = FingertipNetwork::default();
         self.by_gauges = [0; NETWORK_OUTPUTS];
         self.weights_changed = true;
+        self.hearing.outdate();
         self.balance = Balance::default();
         self.updates = 0;
     }
@@ -263,7 +257,7 @@ impl Touch {
     /// Whether it has seen the finger unloaded, so that it can tell hum from slip.
     #[must_use]
     pub const fn is_quiet_known(&self) -> bool {
-        self.quiet_known
+        self.hearing.is_quiet_known()
     }
 
     /// What it is learning, or why nothing.
@@ -280,10 +274,12 @@ impl Touch {
     /// Weights, activations and what goes on, for whoever asks.
     #[must_use]
     pub fn state(&self, frame: u32) -> NetworkState {
+        let mut activations = self.activations;
+        self.normaliser.renew(&NORMALISER, 0, self.hearing.heard(), &mut activations);
         NetworkState {
             frame,
             weights: self.network.weights().map(|row| row.map(|weight| weight.into_bits())),
-            activations: self.activations.as_bits().map(|bits| (bits >> 12) as i16),
+            activations: activations.as_bits().map(|bits| (bits >> 12) as i16),
             updates: self.updates,
             teacher_age_ms: self.teacher.age_ms(),
             no_lesson: self.lesson.err(),
@@ -303,6 +299,7 @@ impl Touch {
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), snapshot::Damaged> {
         (self.normaliser, self.network) = snapshot::restore(&NORMALISER, bytes)?;
         self.weights_changed = true;
+        self.hearing.outdate();
         Ok(())
     }
 
@@ -322,15 +319,24 @@ impl Touch {
         self.said_frames = self.said_frames.saturating_add(1);
         // Somewhere: at most so many films have half of the mean.
         let hears = |part: &i32| i64::from(*part) * 2 * PVDF_COUNT as i64 <= sum;
-        let parts = self.network.parts(0, FILMS, &self.activations);
-        let somewhere = parts.filter(hears).count() <= SOMEWHERE_MAX;
+        let count = if self.lesson.is_ok() {
+            self.network.parts(0, FILMS, &self.activations).filter(hears).count()
+        } else {
+            self.hearing.parts().filter(hears).count()
+        };
+        let somewhere = count <= SOMEWHERE_MAX;
         let long_enough = if somewhere { config.slip_frames } else { config.everywhere_frames };
         self.slips |= self.said_frames >= long_enough;
     }
 
-    fn learn(&mut self, config: &TouchConfig, felt: &Felt<'_>, heard: &[i32; PVDF_COUNT]) {
+    /// `felt_so` is whether the activations are those of now.
+    fn learn(&mut self, config: &TouchConfig, felt: &Felt<'_>, felt_so: bool) {
         self.lesson = self.teacher.lesson(&config.teacher, felt.situation);
         if let Ok(codes) = self.lesson {
+            self.hearing.outdate();
+            if !felt_so {
+                self.feel_films();
+            }
             if self.odd {
                 let codes = self.balance.admit(codes);
                 self.network.learn_some(&config.rule, &self.activations, &codes);
@@ -339,7 +345,7 @@ impl Touch {
             } else {
                 let mut readings = [0; RECEPTORS];
                 let (films, gauges) = readings.split_at_mut(PVDF_COUNT);
-                films.copy_from_slice(heard);
+                films.copy_from_slice(self.hearing.heard());
                 gauges.copy_from_slice(&felt.gauges.loads());
                 self.normaliser.observe(&NORMALISER, &readings);
             }

@@ -1,6 +1,6 @@
 //! S1: slip from the vibration of the PVDF films (Prosthesis, sections 4 and 5).
 //!
-//! Each film's sample goes through a high-pass (offset, drift and slow contact go), a low-pass, a rectifier (the sign of
+//! Each film's sample, less the mains' [`hum`](crate::hum), goes through a high-pass (offset, drift and slow contact go), a low-pass, a rectifier (the sign of
 //! a film means nothing: Tada 2006, section 2) and a second low-pass: the envelope of the slip band, 20 to 150 Hz. What
 //! the low-pass took away is rectified too, and the loudest film's goes through one more low-pass: the envelope above the
 //! band. The bands are those of real slip onsets, which have 83 to 94 % of their energy below 100 Hz and 1 to 3 % above
@@ -17,6 +17,7 @@ use tenax_hal_shim::channel::PVDF_COUNT;
 use tenax_hal_shim::wire::TickRecord;
 
 use crate::config::VibrationConfig;
+use crate::hum::{Mains, Turn, Weights};
 use crate::low_pass::LowPass;
 use crate::sliding::{Hand, Sliding};
 use crate::solo::Solo;
@@ -48,6 +49,7 @@ pub struct Film {
     offset: i32,
     band: i32,
     envelope: i32,
+    hum: Weights,
     primed: bool,
 }
 
@@ -76,8 +78,8 @@ impl Film {
 
     /// Takes a 14-bit sample of a film that was primed.
     #[inline]
-    pub fn process(&mut self, sample: u16) -> Heard {
-        let x = centred(sample);
+    pub fn process(&mut self, sample: u16, mains: Turn) -> Heard {
+        let x = centred(sample).wrapping_sub(self.hum.heard(mains));
         let ac = x - HIGH_PASS.process(&mut self.offset, x);
         let low = LOW_PASS.process(&mut self.band, ac);
         Heard { envelope: ENVELOPE.process(&mut self.envelope, low.abs()), above: (ac - low).abs() }
@@ -130,6 +132,7 @@ pub struct Vibration {
 #[derive(Clone, Debug, Default)]
 pub struct VibrationDetector {
     films: [Film; PVDF_COUNT],
+    mains: Mains,
     envelopes: [i32; PVDF_COUNT],
     /// Whether no film waits for its first sample.
     all_primed: bool,
@@ -156,15 +159,16 @@ impl VibrationDetector {
         samples: &[u16; PVDF_COUNT],
         trusts: Option<&[Trust; PVDF_COUNT]>,
     ) -> Vibration {
+        let mains = self.mains.turn();
         if self.solo.masked() != 0 {
             let trusts = self.with_masks(config, trusts);
-            let loudest = self.hear_each(samples, &trusts);
+            let loudest = self.hear_each(samples, &trusts, mains);
             return self.judge(config, loudest);
         }
         let loudest = match trusts {
-            None if self.all_primed => self.hear_all(samples),
-            None => self.hear_each(samples, &[Trust::Full; PVDF_COUNT]),
-            Some(trusts) => self.hear_each(samples, trusts),
+            None if self.all_primed => self.hear_all(samples, mains),
+            None => self.hear_each(samples, &[Trust::Full; PVDF_COUNT], mains),
+            Some(trusts) => self.hear_each(samples, trusts, mains),
         };
         self.judge(config, loudest)
     }
@@ -197,10 +201,10 @@ impl VibrationDetector {
 
     /// Every film at once, when all of them can be believed: the usual tick.
     #[inline]
-    fn hear_all(&mut self, samples: &[u16; PVDF_COUNT]) -> Heard {
+    fn hear_all(&mut self, samples: &[u16; PVDF_COUNT], mains: Turn) -> Heard {
         let mut loudest = Heard::default();
         for ((film, own), &sample) in self.films.iter_mut().zip(&mut self.envelopes).zip(samples) {
-            let heard = film.process(sample);
+            let heard = film.process(sample, mains);
             *own = heard.envelope;
             loudest.raise(heard);
         }
@@ -208,7 +212,7 @@ impl VibrationDetector {
     }
 
     #[inline(never)]
-    fn hear_each(&mut self, samples: &[u16; PVDF_COUNT], trusts: &[Trust; PVDF_COUNT]) -> Heard {
+    fn hear_each(&mut self, samples: &[u16; PVDF_COUNT], trusts: &[Trust; PVDF_COUNT], mains: Turn) -> Heard {
         let mut loudest = Heard::default();
         self.all_primed = true;
         for (((film, own), &sample), &trust) in
@@ -223,7 +227,7 @@ impl VibrationDetector {
                 continue;
             }
             film.prime(sample);
-            let heard = film.process(sample);
+            let heard = film.process(sample, mains);
             if trust == Trust::Full {
                 *own = heard.envelope;
                 loudest.raise(heard);
@@ -235,6 +239,10 @@ impl VibrationDetector {
     /// What all films said in this tick.
     fn judge(&mut self, config: &VibrationConfig, loudest: Heard) -> Vibration {
         let Heard { envelope, above } = loudest;
+        let asked = self.mains.asks().filter(|_| self.loud_frames == 0);
+        if let Some(film) = asked.and_then(|film| self.films.get_mut(film)) {
+            self.mains.adapt(&mut film.hum, film.band);
+        }
         let above = ENVELOPE.process(&mut self.above, above);
         let on = i32::from(config.s1) << Q;
         // Once on, half the threshold keeps it on: the envelope of one slip has dips.
@@ -318,7 +326,7 @@ mod tests {
         let (mut film, mut reference) = (Film::default(), Reference::default());
         samples.fold(0.0f64, |worst, sample| {
             film.prime(sample);
-            let fixed = film.process(sample);
+            let fixed = film.process(sample, Mains::default().turn());
             let (inside, above) = reference.process(sample);
             worst
                 .max((f64::from(fixed.envelope) / 65_536.0 - inside).abs())

@@ -17,6 +17,9 @@ const PLAIN_MU_D: f64 = 0.65 * PLAIN_MU_S;
 /// Its block: as heavy as needs the force of the scene file's.
 const PLAIN_KG: f64 = NEEDED_N * 2.0 * PLAIN_MU_D / GRAVITY_M_S2;
 
+/// How far the mains may be from its frequency, Hz: what EN 50160 allows 99.5 % of the year.
+const OFF_HZ: f64 = 0.5;
+
 /// A change of a number of a scene file: where (`contact.mu_s`, `move.0.at_s`), and to what.
 pub type Change = (&'static str, f64);
 
@@ -81,6 +84,7 @@ impl Finger {
                 ("strain.normal_mv_per_n", 60.0 * gauges),
                 ("strain.shear_mv_per_n", 120.0 * gauges),
                 ("strain.spread", decade(0.06, 0.6)),
+                ("pvdf.mains_hz", 50.0 + OFF_HZ * (2.0 * rng.random_range(0.0..1.0) - 1.0)),
             ],
         }
     }

@@ -56,6 +56,9 @@ const BACK_FRAMES: u16 = 80;
 const PROOF_FRAMES: u16 = 18;
 /// Curving that proves a muscle: one part in so many of its level, 8 %.
 const PROOF_PART: i32 = 12;
+/// Slow frames without curving below the top after which a contraction has to prove itself again: 0.4 s. Recordings curve
+/// again within 225 ms.
+const STRAIGHT_FRAMES: u8 = 32;
 /// How far a proven contraction has stood out from the learned rest, as a difference of levels: a factor of 3.5. The crests
 /// of a restless contact stay below.
 const PROOF_RISE: i32 = 1_843;
@@ -138,6 +141,9 @@ pub struct Watch {
     inactive_for: u8,
     tall: bool,
     proven: bool,
+    /// Slow frames since it last curved, and since it first did without a longer while between.
+    straight_for: u8,
+    curved_for: u8,
     /// Slow frames since it last turned, the highest point since, and the point half way to a verdict.
     foot_uv: i32,
     crest_uv: i32,
@@ -168,6 +174,8 @@ impl Default for Watch {
             inactive_for: 0,
             tall: false,
             proven: false,
+            straight_for: 0,
+            curved_for: 0,
             foot_uv: 0,
             crest_uv: 0,
             climbing: 0,
@@ -220,8 +228,8 @@ impl Watch {
         self.follow_activity(expected, level);
         let tall = expected.rest.is_none_or(|rest| level >= rest + PROOF_RISE);
         self.tall = self.active_for > 0 && (self.tall || tall);
-        let curves = curve_uv > uv.max(1) / PROOF_PART;
-        self.proven |= self.active_for >= PROOF_FRAMES && self.tall && curves && uv < TOP_UV;
+        let curves = curve_uv > uv.max(1) / PROOF_PART && uv.max(middle).max(far) < TOP_UV;
+        self.prove(curves);
         self.stand(uv);
         self.climb(uv);
         if uv >= TOP_UV {
@@ -283,6 +291,19 @@ impl Watch {
                 (self.active_for, self.inactive_for, self.proven) = (0, 0, false);
             }
         }
+    }
+
+    /// A working muscle curves again and again. One jump from a fault to another curves only for as long as it takes from
+    /// the first point of the curve to the last.
+    fn prove(&mut self, curves: bool) {
+        self.straight_for = if curves { 0 } else { self.straight_for.saturating_add(1) };
+        if self.active_for < PROOF_FRAMES || !self.tall || self.straight_for >= STRAIGHT_FRAMES {
+            (self.proven, self.curved_for) = (false, 0);
+            return;
+        }
+        self.curved_for = self.curved_for.saturating_add(u8::from(curves || self.curved_for > 0));
+        let again = usize::from(self.curved_for) > 2 * LAG + 1;
+        self.proven |= curves && again;
     }
 
     fn stand(&mut self, uv: i32) {
