@@ -5,10 +5,11 @@
 //! what was written is raised only after the bytes are there. A power cut leaves nothing.
 
 use core::mem::MaybeUninit;
+use core::num::NonZeroU32;
 use core::ptr::{addr_of, addr_of_mut, copy_nonoverlapping};
 use core::slice::from_raw_parts;
 
-use tenax_hal_shim::wire::{Answer, PIECE_MAX, Up};
+use tenax_hal_shim::wire::{Answer, PIECE_MAX, Up, WHY_MAX};
 use tenax_hal_shim::words::Fault;
 
 /// Bytes that are kept: three seconds of a hand at rest.
@@ -25,16 +26,20 @@ const FAULTS: [Fault; 5] = [
     Fault::TooManyRestarts,
 ];
 
-/// Words of the header: the seal; bytes written since the box was empty; the fault after which it stays as it is, or 0.
+/// Words of the header: the seal; bytes written since the box was empty; the fault after which it stays as it is, or 0; the
+/// length of why it ended.
 const SEALED: usize = 0;
 const WRITTEN: usize = 1;
 const FAULT: usize = 2;
+const WHY_LENGTH: usize = 3;
 
 /// Not initialised by the runtime, so that a reset leaves it.
 #[unsafe(link_section = ".uninit.black_box")]
-static mut HEADER: MaybeUninit<[u32; 3]> = MaybeUninit::uninit();
+static mut HEADER: MaybeUninit<[u32; 4]> = MaybeUninit::uninit();
 #[unsafe(link_section = ".uninit.black_box")]
 static mut BYTES: MaybeUninit<[u8; SIZE]> = MaybeUninit::uninit();
+#[unsafe(link_section = ".uninit.black_box")]
+static mut WHY: MaybeUninit<[u8; WHY_MAX]> = MaybeUninit::uninit();
 
 /// A run begins, `after` a fault or not. Asked once, before anything else is running. `was_off`: RAM holds nothing.
 pub fn start(after: Option<Fault>, was_off: bool) {
@@ -49,6 +54,47 @@ pub fn start(after: Option<Fault>, was_off: bool) {
     match FAULTS.iter().position(|fault| Some(*fault) == after) {
         Some(number) => set_header(FAULT, number as u32 + 1),
         None => empty(),
+    }
+}
+
+/// Takes down why the run ends: the last that it does, with all interrupts off. What does not fit is cut off.
+pub fn why(text: &[u8]) {
+    // The first fault of a row has its own.
+    if header(SEALED) != SEAL || header(FAULT) != 0 {
+        return;
+    }
+    let mut length = header(WHY_LENGTH) as usize;
+    for &byte in text {
+        if length < WHY_MAX {
+            // SAFETY: within it; nobody else is running.
+            unsafe { addr_of_mut!(WHY).cast::<u8>().add(length).write_volatile(byte) };
+            length += 1;
+        }
+    }
+    set_header(WHY_LENGTH, length as u32);
+}
+
+/// The same with a number below 100 000. Core's formatting has ways to panic, and takes flash.
+pub fn why_decimal(number: u32) {
+    const POWERS: [NonZeroU32; 5] = [power(10_000), power(1_000), power(100), power(10), power(1)];
+    let mut rest = number;
+    for power in POWERS {
+        let digit = rest / power;
+        rest -= digit * power.get();
+        if number >= power.get() {
+            why(&[b'0' + digit as u8]);
+        }
+    }
+}
+
+const fn power(of_ten: u32) -> NonZeroU32 {
+    NonZeroU32::new(of_ten).expect("not zero")
+}
+
+/// The same with an address.
+pub fn why_hex(address: u32) {
+    for nibble in (0..8).rev().map(|n| (address >> (4 * n)) as u8 & 0xF) {
+        why(&[nibble + if nibble < 10 { b'0' } else { b'a' - 10 }]);
     }
 }
 
@@ -102,10 +148,14 @@ pub fn read(answer: &mut Up) {
     // It has room for both.
     let _fits = last.bytes.extend_from_slice(one);
     let _fits = last.bytes.extend_from_slice(two);
+    let length = (header(WHY_LENGTH) as usize).min(WHY_MAX);
+    // SAFETY: so many were written; nobody writes any more.
+    let _fits = last.why.extend_from_slice(unsafe { from_raw_parts(addr_of!(WHY).cast::<u8>(), length) });
 }
 
 fn empty() {
     set_header(WRITTEN, 0);
+    set_header(WHY_LENGTH, 0);
     set_header(FAULT, 0);
 }
 

@@ -113,6 +113,15 @@ impl Control {
             mail::post(message);
         }
         let done = tenax_control_command(&mut self.device, command);
+        match command.message {
+            Down::Last(_) => self.last(command, done),
+            _ => mail::post(self.device.answer(command, done)),
+        }
+    }
+
+    /// Apart, for the other answers need not lie anywhere before they are posted: that is another copy.
+    #[inline(never)]
+    fn last(&mut self, command: &Received<Down>, done: Result<(), Refusal>) {
         let mut answer = self.device.answer(command, done);
         black_box::read(&mut answer);
         mail::post(answer);

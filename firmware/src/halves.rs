@@ -124,7 +124,7 @@ impl Handler<typelevel::DMA2_STREAM0> for OnHalf {
         let seen = pac::DMA2.isr(0).read();
         if seen.teif(STREAM) {
             // DMA could not reach the ring.
-            give_up(Mark::Panicked);
+            give_up(Mark::Panicked, "DMA could not reach its ring");
         }
         clear(seen);
         // Both at once if the interrupt was kept waiting for a frame.

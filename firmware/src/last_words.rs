@@ -13,7 +13,7 @@ use embassy_stm32::pac;
 use tenax_hal_shim::wire::ResetCause;
 use tenax_hal_shim::words::Fault;
 
-use crate::bridge;
+use crate::{black_box, bridge};
 
 /// Restarts in a row, each sooner than [`lived_well`] after the one before, after which the hand stays off: a hand that
 /// hangs as it begins to close would close a little further each time.
@@ -93,11 +93,12 @@ fn keep(place: usize, word: u32) {
     unsafe { addr_of_mut!(KEPT).cast::<u32>().add(place).write_volatile(word) }
 }
 
-/// The image can go on no longer: the bridge off, the mark left, a reset.
-pub fn give_up(mark: Mark) -> ! {
+/// The image can go on no longer, and this is why: the bridge off, the mark left, a reset.
+pub fn give_up(mark: Mark, why: &str) -> ! {
     cortex_m::interrupt::disable();
     bridge::off();
     keep(MARK, mark as u32);
+    black_box::why(why.as_bytes());
     SCB::sys_reset()
 }
 
@@ -106,7 +107,15 @@ fn on_panic(info: &PanicInfo) -> ! {
     cortex_m::interrupt::disable();
     bridge::off();
     defmt::error!("{}", defmt::Display2Format(info));
-    give_up(Mark::Panicked)
+    if let Some(place) = info.location() {
+        // The end of a path says most.
+        let path = place.file().as_bytes();
+        let from = path.iter().rposition(|&byte| byte == b'/').map_or(0, |at| at + 1);
+        black_box::why(path.get(from..).unwrap_or(path));
+        black_box::why(b":");
+        black_box::why_decimal(place.line());
+    }
+    give_up(Mark::Panicked, "")
 }
 
 /// A fault of the core: as a panic.
@@ -114,8 +123,12 @@ fn on_panic(info: &PanicInfo) -> ! {
 /// # Safety
 /// Called by the core only.
 #[exception]
-unsafe fn HardFault(_frame: &ExceptionFrame) -> ! {
-    give_up(Mark::Panicked)
+unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
+    cortex_m::interrupt::disable();
+    bridge::off();
+    black_box::why(b"hard fault at 0x");
+    black_box::why_hex(frame.pc());
+    give_up(Mark::Panicked, "")
 }
 
 /// The clock security system says that the crystal has stopped (RM0383, section 6.2.7): the chip runs on at 16 MHz, far too slow for
@@ -125,7 +138,7 @@ unsafe fn HardFault(_frame: &ExceptionFrame) -> ! {
 /// Called by the core only.
 #[exception]
 unsafe fn NonMaskableInt() -> ! {
-    give_up(Mark::CrystalLost)
+    give_up(Mark::CrystalLost, "")
 }
 
 /// An interrupt that nobody bound: as a panic.
@@ -134,5 +147,5 @@ unsafe fn NonMaskableInt() -> ! {
 /// Called by the core only.
 #[exception]
 unsafe fn DefaultHandler(_irq: i16) -> ! {
-    give_up(Mark::Panicked)
+    give_up(Mark::Panicked, "an interrupt that nobody bound")
 }

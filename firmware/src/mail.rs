@@ -4,6 +4,8 @@
 
 use core::cell::Cell;
 use core::future::poll_fn;
+use core::mem::{MaybeUninit, forget};
+use core::ptr::copy_nonoverlapping;
 use core::sync::atomic::{AtomicBool, AtomicU16, Ordering::Relaxed};
 use core::task::Poll;
 
@@ -36,6 +38,20 @@ impl<T, const N: usize> Mailbox<T, N> {
         // SAFETY: the closure does not come back here.
         unsafe { self.0.lock_mut(Deque::pop_front) }
     }
+
+    /// Takes the oldest out to a place of its own; false if there is none. For what is long: returned, it would be copied in
+    /// odd parts, at four times the instructions, with the interrupts off, and control would begin its frame 7 us later.
+    fn take_to(&self, place: &mut MaybeUninit<T>) -> bool {
+        // SAFETY: the closure does not come back here. Of the two copies one is forgotten.
+        unsafe {
+            self.0.lock_mut(|queue| {
+                let Some(front) = queue.front() else { return false };
+                copy_nonoverlapping(front, place.as_mut_ptr(), 1);
+                forget(queue.pop_front());
+                true
+            })
+        }
+    }
 }
 
 /// Messages on their way up. With everything on, eight come in a slow frame and take 11.7 of its 12.5 ms on the line; twenty events
@@ -66,9 +82,16 @@ pub fn post(message: Up) {
     UP_WAITING.wake();
 }
 
-/// The oldest message posted; waits for one.
-pub async fn next_message() -> Received<Up> {
-    wait_for(&UP_WAITING, || UP.take()).await
+/// Brings the oldest message posted to this place; waits for one.
+pub async fn next_message(place: &mut MaybeUninit<Received<Up>>) -> &Received<Up> {
+    poll_fn(|context| {
+        // Before it is asked: what comes in between wakes.
+        UP_WAITING.register(context.waker());
+        if UP.take_to(place) { Poll::Ready(()) } else { Poll::Pending }
+    })
+    .await;
+    // SAFETY: it was put there just now.
+    unsafe { place.assume_init_ref() }
 }
 
 /// Hands a command to control. Never waits: false if control has not taken the ones before, and no more than are earned

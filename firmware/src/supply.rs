@@ -41,7 +41,7 @@ pub fn watch() {
 /// The supply sags.
 #[interrupt]
 unsafe fn PVD() {
-    last_words::give_up(Mark::SupplySagged)
+    last_words::give_up(Mark::SupplySagged, "")
 }
 
 /// Sees to it that the brown-out reset is on. Only where somebody has just switched the hand on: it may take a second.

@@ -1,14 +1,20 @@
 //! The telemetry task: messages go up the serial line, as fast as it takes them.
 
+use core::mem::MaybeUninit;
+
 use embassy_futures::select::{Either, select};
 use embassy_stm32::mode::Async;
 use embassy_stm32::usart::UartTx;
 use embassy_time::{Duration, Instant, Ticker};
-use tenax_hal_shim::wire::{FRAME_MAX, Up, encode};
+use static_cell::ConstStaticCell;
+use tenax_hal_shim::wire::{FRAME_MAX, Received, Up, encode};
 
 use crate::{black_box, counts, mail};
 
 const COUNTERS_PERIOD: Duration = Duration::from_hz(10);
+
+/// The message that is being sent.
+static NEXT: ConstStaticCell<MaybeUninit<Received<Up>>> = ConstStaticCell::new(MaybeUninit::uninit());
 
 /// Sends what is posted, in its order, and posts the counters ten times a second.
 #[embassy_executor::task]
@@ -18,8 +24,9 @@ pub async fn telemetry(mut line: UartTx<'static, Async>) -> ! {
     let mut counters_due = Ticker::every(COUNTERS_PERIOD);
     let mut share = Share::new();
     let mut buffer = [0; FRAME_MAX];
+    let next = NEXT.take();
     loop {
-        let posted = match select(counters_due.next(), mail::next_message()).await {
+        let posted = match select(counters_due.next(), mail::next_message(next)).await {
             Either::First(()) => {
                 mail::post(Up::Counters(counts::counters(share.permille())));
                 continue;

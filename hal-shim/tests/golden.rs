@@ -156,6 +156,7 @@ fn answers() -> Vec<Answer> {
         Answer::About(about()),
         Answer::Last(Last {
             after: Some(Fault::PanicReset),
+            why: b"scan.rs:7".iter().copied().collect(),
             length: 49_000,
             from: 512,
             bytes: [1, 0, 2].into_iter().collect(),

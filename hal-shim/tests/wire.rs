@@ -10,7 +10,7 @@ use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{
     About, Answer, BAUD, BadFrame, Counters, DETECTORS_MAX, Down, FRAME_MAX, Identity, KEPT_MAX, Last,
     NetworkState, PIECE_MAX, Raw, Receiver, ResetCause, Restored, SETTINGS_MAX, SETTINGS_PER_ANSWER, Senses,
-    Setting, Slow, TickRecord, Up, encode,
+    Setting, Slow, TickRecord, Up, WHY_MAX, encode,
 };
 use tenax_hal_shim::words::{Code, DriveSource, Fault, GripMode, Kept, Line, NoLesson};
 
@@ -168,7 +168,8 @@ fn the_longest_message_fits_a_frame() {
     let about = About { identity, frames: u32::MAX, settings };
     assert!(encode(u16::MAX, &answer(Answer::About(about)), &mut buffer).is_some());
     let bytes = [u8::MAX; PIECE_MAX].into_iter().collect();
-    let last = Last { after: Some(Fault::TooManyRestarts), length: u16::MAX, from: u16::MAX, bytes };
+    let why = [u8::MAX; WHY_MAX].into_iter().collect();
+    let last = Last { after: Some(Fault::TooManyRestarts), why, length: u16::MAX, from: u16::MAX, bytes };
     assert!(encode(u16::MAX, &answer(Answer::Last(last)), &mut buffer).is_some());
     let restored = Restored::of(Kept::Network, &[0; KEPT_MAX]).unwrap();
     assert!(encode(u16::MAX, &Up::Restored(restored), &mut buffer).is_some());

@@ -164,6 +164,7 @@ fn keeper(mut kept: Vec<u8>) -> String {
                     let mut last = Last::nothing(from);
                     if let Some(rest) = kept.get(usize::from(from)..).filter(|rest| !rest.is_empty()) {
                         last.after = Some(Fault::PanicReset);
+                        last.why = b"scan.rs:7".iter().copied().collect();
                         last.length = kept.len() as u16;
                         last.bytes = rest.iter().copied().take(PIECE_MAX).collect();
                     } else {
@@ -193,7 +194,7 @@ fn the_seconds_before_a_fault_are_a_recording() {
     let (file, csv) = (path.to_str().unwrap(), folder.path().join("csv"));
     let args = ["record", "--last", "--port", &place, "--out", file];
     let (done, said) = tenax(&args);
-    assert!(done && said.contains("before ") && said.contains(" bytes, 2."), "{said}");
+    assert!(done && said.contains(" (scan.rs:7): ") && said.contains(" bytes, 2."), "{said}");
     let first = kept.iter().position(|&byte| byte == 0).unwrap() + 1;
     assert!(line_of(&path).unwrap() == kept[first..], "every whole message");
     let (again, said) = tenax(&args);

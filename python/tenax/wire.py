@@ -93,7 +93,7 @@ ANSWER = ("enum", "Answer", [
     ("Done", []), ("Refused", [("why", REFUSAL)]), ("Setting", [("id", "u8"), ("value", "i32")]),
     ("Settings", [("settings", ("vec", SETTING))]), ("Samples", [("samples", ("arr", CHANNELS, "u16"))]),
     ("Network", NETWORK), ("Nonce", [("nonce", "u32")]), ("About", ABOUT),
-    ("Last", [("after", ("opt", FAULT)), ("length", "u16"), ("from_", "u16"), ("bytes", ("vec", "u8"))]),
+    ("Last", [("after", ("opt", FAULT)), ("why", ("vec", "u8")), ("length", "u16"), ("from_", "u16"), ("bytes", ("vec", "u8"))]),
 ])
 DOWN = ("enum", "Down", [
     ("Ping", []), ("Drive", [("drive", DRIVE), ("hold_ms", "u16")]), ("Set", [("id", "u8"), ("value", "i32")]),

@@ -8,11 +8,16 @@ use crate::words::Fault;
 /// Bytes in one piece at most.
 pub const PIECE_MAX: usize = 256;
 
+/// Bytes of why it ended, at most.
+pub const WHY_MAX: usize = 48;
+
 /// A piece of what had gone up the line before the last run ended in a fault.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Last {
     /// The fault. None: nothing is kept.
     pub after: Option<Fault>,
+    /// Why, in ASCII: where in the source it panicked, where the core faulted. Empty: nobody could say.
+    pub why: Vec<u8, WHY_MAX>,
     /// Bytes that are kept, in all.
     pub length: u16,
     /// Where this piece begins in them.
@@ -25,6 +30,6 @@ impl Last {
     /// Nothing is kept.
     #[must_use]
     pub const fn nothing(from: u16) -> Self {
-        Self { after: None, length: 0, from, bytes: Vec::new() }
+        Self { after: None, why: Vec::new(), length: 0, from, bytes: Vec::new() }
     }
 }

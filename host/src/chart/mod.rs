@@ -1,8 +1,8 @@
 //! The charts of `tenax chart scenes`: where each way of stepping friction fails, and what it costs where it does not.
 //! Of `tenax chart sensors`: the scenes' sensors beside real ones. Of `tenax chart detectors`: what detectors from normal
-//! force get wrong against what they cost. Of `tenax chart array`: where the one that ships fails. Of `tenax chart features`: what
-//! tells slip from rest. Of `tenax chart photoelastic`: what a photoelastic head tells of force and slip. And of `tenax chart
-//! onset`: how soon the slip of a lift could be told.
+//! force get wrong against what they cost. Of `tenax chart array`: where the one that ships fails. Of `tenax chart
+//! features`: what tells slip from rest. Of `tenax chart photoelastic`: what a photoelastic head tells of force and slip.
+//! And of `tenax chart onset`: how soon the slip of a lift could be told.
 
 pub mod array;
 mod cost;

@@ -1,121 +1,100 @@
-//! `tenax calibrate`: a sensor's curve from known weights.
+//! `tenax calibrate`: a person is told step by step what to do at the hand, and what came of it.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+mod photoelastic;
+
 use std::process::ExitCode;
 
-use anyhow::{Context, bail, ensure};
-use clap::ValueEnum;
-use tenax_hal_shim::channel::{REFERENCE_MV, SAMPLE_MAX};
-use tenax_scene::Seeds;
-use tenax_scene::sensor::photoelastic::curve::{Day, Making};
-
-use super::folder;
-use super::out;
-use crate::chart;
-use crate::photoelastic::balance::{self, Calibration};
-use crate::plot::png;
+use super::{out, port};
+use crate::guide;
+use crate::link::{Client, Target};
 
 const EXAMPLES: &str = "\
 Examples:
+  tenax calibrate force --weights-n 1,2,5,10            each weight in its turn on the finger; prints how far each is off
+  tenax calibrate friction --strokes 3                  strokes over the surface that is to be held; S2 follows
+  tenax calibrate emg                                   rest, close, open: the wearer's muscles
   tenax calibrate photoelastic                          a scene's head on a scene's balance: the mean one
   tenax calibrate photoelastic --seed 3                 a head that came out otherwise
   tenax calibrate photoelastic --weights bench.csv      a real one: columns force_n and level_mv, from no load upwards
-  tenax monitor --port P --set head-dark-mv=388 ...     brings it to a board, which keeps it";
+Without a hand: `tenax run --host --serve` with a scene, and --port with the place that it names.";
 
-/// Calibrate a sensor from known weights.
+/// Calibrate a sensor, step by step.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// Which
-    #[arg(value_enum)]
-    sensor: Sensor,
-    /// A head drawn with this seed instead of the mean one
-    #[arg(long, conflicts_with = "weights")]
-    seed: Option<u64>,
-    /// What was read under known weights on a bench: columns `force_n` and `level_mv`
-    #[arg(long, value_name = "CSV")]
-    weights: Option<PathBuf>,
-    /// Where curve, residuals and settings are written
-    #[arg(long, value_name = "DIR", default_value = "out")]
-    out: PathBuf,
+    #[command(subcommand)]
+    what: What,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Sensor {
-    /// The photoelastic head
-    Photoelastic,
+#[derive(Debug, clap::Subcommand)]
+enum What {
+    /// The force sensor under known weights: zeroes it, and shows how far each reading is off
+    Force {
+        #[command(flatten)]
+        line: Line,
+        /// The weights in the order in which they are put on, N
+        #[arg(long, value_name = "N,N,...", value_delimiter = ',', default_values_t = [1.0, 2.0, 5.0, 10.0], value_parser = weight)]
+        weights_n: Vec<f64>,
+    },
+    /// The friction of a surface by strokes over it: measures mu_s, from which S2 follows
+    Friction {
+        #[command(flatten)]
+        line: Line,
+        /// How many strokes
+        #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=20))]
+        strokes: u32,
+    },
+    /// The wearer's muscles: three prompts of 5 s
+    Emg {
+        #[command(flatten)]
+        line: Line,
+    },
+    Photoelastic(photoelastic::Args),
+}
+
+#[derive(Debug, clap::Args)]
+struct Line {
+    /// Where the line is [default: the only board that is plugged in]
+    #[arg(long, value_name = "PORT")]
+    port: Option<Target>,
+}
+
+impl Line {
+    fn open(&self) -> anyhow::Result<Client> {
+        Client::open(&port::or_found(self.port.as_ref())?)
+    }
+}
+
+fn weight(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(weight) if (0.1..=60.0).contains(&weight) => Ok(weight),
+        Ok(_) => Err("a weight is from 0.1 to 60 N".to_owned()),
+        Err(_) => Err("write weights as 1,2,5 in N".to_owned()),
+    }
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    let Sensor::Photoelastic = args.sensor;
-    let folder = folder::made(&args.out)?;
-    let calibration = match &args.weights {
-        Some(path) => balance::fit(&read(path)?),
-        None => {
-            let seeds = Seeds::from(args.seed.unwrap_or(1));
-            let making = args.seed.map_or(Making::MEAN, |_| Making::drawn(seeds, 0.2));
-            balance::weigh(&making, &Day::FIRST, seeds)
+    let say: guide::Say<'_> = &mut |text| out::say!("{text}");
+    match &args.what {
+        What::Photoelastic(args) => return photoelastic::main(args),
+        What::Force { line, weights_n } => {
+            let calibration = guide::force::calibrate(&mut line.open()?, weights_n, say)?;
+            say(&format!("\n{}", calibration.text().trim_end()))?;
         }
-    };
-    let settings = settings(&calibration)?;
-    let chart = chart::photoelastic::residuals(&calibration)?;
-    let files = [
-        ("svg", chart.svg.as_bytes()),
-        ("png", &png::png(&chart.svg)?),
-        ("csv", chart.csv.as_bytes()),
-        ("settings", settings.as_bytes()),
-    ];
-    out::unless_closed(out::say!(
-        "{} weights, residuals {:.2} % of full scale at most",
-        calibration.weighed.len(),
-        calibration.worst_percent()
-    ))?;
-    out::unless_closed(out::print(format_args!("{settings}")))?;
-    for (extension, bytes) in files {
-        let path = folder.join(chart.name).with_extension(extension);
-        fs::write(&path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
-        out::unless_closed(out::say!("{}", path.display()))?;
+        What::Friction { line, strokes } => {
+            let measured = guide::friction::calibrate(&mut line.open()?, *strokes, say)?;
+            let [mu_s, s2] =
+                [measured.mu_s_permille, measured.s2_permille].map(|permille| f64::from(permille) / 1e3);
+            say(&format!(
+                "Static friction {mu_s:.3} on the scale of Ft/Fn; S2 is {s2:.3} from now on, and kept."
+            ))?;
+        }
+        What::Emg { line } => {
+            let apart = guide::emg::calibrate(&mut line.open()?, say)?;
+            say(&format!(
+                "Taken, and kept: rest, closing and opening are {apart:.1} deviations apart (3 are needed)."
+            ))?;
+        }
     }
     Ok(ExitCode::SUCCESS)
-}
-
-/// The settings that bring a calibration to a board, one a line.
-fn settings(calibration: &Calibration) -> anyhow::Result<String> {
-    let mut lines = String::new();
-    for (id, value) in calibration.settings() {
-        let row = id.row();
-        ensure!(row.range().contains(&value), "{} = {value} is outside {:?}", row.name, row.range());
-        lines.push_str(&format!("{}={value}\n", row.name));
-    }
-    Ok(lines)
-}
-
-/// Forces and levels (1/16 of a sample) of a bench.
-fn read(path: &Path) -> anyhow::Result<Vec<(f64, f64)>> {
-    let mut reader =
-        csv::Reader::from_path(path).with_context(|| format!("cannot read {}", path.display()))?;
-    let headers = reader.headers()?.clone();
-    let column = |name: &str| {
-        headers
-            .iter()
-            .position(|header| header == name)
-            .with_context(|| format!("{} has no column `{name}`", path.display()))
-    };
-    let (force, level) = (column("force_n")?, column("level_mv")?);
-    let mut levels = Vec::new();
-    for (n, row) in reader.records().enumerate() {
-        let row = row?;
-        let number = |column: usize| {
-            let text = row.get(column).unwrap_or_default().trim();
-            text.parse::<f64>()
-                .with_context(|| format!("{}, row {}: `{text}` is no number", path.display(), n + 2))
-        };
-        let q4_per_mv = 16.0 * f64::from(SAMPLE_MAX) / f64::from(REFERENCE_MV);
-        levels.push((number(force)?, number(level)? * q4_per_mv));
-    }
-    if levels.len() < 20 || levels.windows(2).any(|two| two[1].0 <= two[0].0) {
-        bail!("{}: at least 20 weights are needed, in rising order, the first without load", path.display());
-    }
-    Ok(levels)
 }

@@ -1,6 +1,6 @@
 //! `tenax config`: a board's settings.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
@@ -11,7 +11,9 @@ use tenax_hal_shim::wire::{Answer, Down, Refusal, SETTINGS_PER_ANSWER, Setting};
 
 use super::{out, port};
 use crate::link::{Client, Target};
+use crate::record::line_of;
 use crate::settings;
+use crate::suggest::{Suggestion, Suggestions};
 
 /// How long a board may take to answer.
 const ANSWER_WITHIN: Duration = Duration::from_secs(2);
@@ -25,6 +27,12 @@ pub struct Args {
     #[command(subcommand)]
     command: Command,
 }
+
+const SUGGEST_EXAMPLES: &str = "\
+Examples:
+  tenax record --seconds 60 --out hand.mcap      rest, then contract each muscle, then hold something and let it slip
+  tenax config suggest hand.mcap                 prints the commands that set what was found, and why
+  tenax config suggest hand.mcap --write         sets it";
 
 #[derive(Debug, Subcommand)]
 enum Command {
@@ -51,6 +59,15 @@ enum Command {
         /// As `export` writes it
         file: PathBuf,
     },
+    /// Thresholds from a recording of this board, each with its reason; with --write they are set
+    #[command(after_help = SUGGEST_EXAMPLES)]
+    Suggest {
+        /// A recording (MCAP) or a captured line: some seconds of quiet, of holding, of slip, of contractions
+        file: PathBuf,
+        /// Set them, too
+        #[arg(long)]
+        write: bool,
+    },
     /// Set settings back to their defaults
     Reset {
         /// Their names [default: all but line-trusted-flag]
@@ -61,8 +78,12 @@ enum Command {
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     // What is wrong with a file or a name is said before the board is asked.
     let wanted = wanted(&args.command)?;
+    if let Command::Suggest { file, write } = &args.command {
+        return suggest(file, write.then_some(args.port.as_ref()));
+    }
     let mut client = Client::open(&port::or_found(args.port.as_ref())?)?;
     match &args.command {
+        Command::Suggest { .. } => {}
         Command::List => out::print(format_args!("{}", list(&all(&mut client)?)))?,
         Command::Get { name } => {
             let answer = client.ask(&Down::Get(settings::named(name)? as u8), ANSWER_WITHIN)?;
@@ -91,7 +112,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
 fn wanted(command: &Command) -> anyhow::Result<Vec<Setting>> {
     let default = |id: SettingId| Setting { id: id as u8, value: id.row().default };
     match command {
-        Command::List | Command::Export { .. } => Ok(Vec::new()),
+        Command::List | Command::Export { .. } | Command::Suggest { .. } => Ok(Vec::new()),
         Command::Get { name } => settings::named(name).map(|_| Vec::new()),
         Command::Set { settings } => Ok(settings.clone()),
         Command::Import { file } => {
@@ -104,6 +125,24 @@ fn wanted(command: &Command) -> anyhow::Result<Vec<Setting>> {
         }
         Command::Reset { names } => names.iter().map(|name| settings::named(name).map(default)).collect(),
     }
+}
+
+/// What a recording says of thresholds; set over this line, if they are to be.
+fn suggest(file: &Path, write: Option<Option<&Target>>) -> anyhow::Result<ExitCode> {
+    let Suggestions { all, missing } = Suggestions::of(&line_of(file)?);
+    for Suggestion { id, value, why } in &all {
+        out::say!("tenax config set {}={value}    # {why}", id.row().name)?;
+    }
+    for why in missing {
+        out::say!("# {why}")?;
+    }
+    if let Some(port) = write {
+        let mut client = Client::open(&port::or_found(port)?)?;
+        for suggestion in &all {
+            set(&mut client, suggestion.setting())?;
+        }
+    }
+    Ok(if all.is_empty() { ExitCode::FAILURE } else { ExitCode::SUCCESS })
 }
 
 /// Every setting of the board.

@@ -98,8 +98,9 @@ fn last(client: &mut Client, path: &Path) -> anyhow::Result<ExitCode> {
         format!(", {:.2} s, from {from_s:.2} to {to_s:.2} s", to_s - from_s)
     });
     out::note!(
-        "before {}: {} bytes{span}, written to {}",
+        "before {}{}: {} bytes{span}, written to {}",
         in_words(&kept.after),
+        if kept.why.is_empty() { String::new() } else { format!(" ({})", kept.why) },
         kept.line.len(),
         path.display()
     );

@@ -16,6 +16,8 @@ const PIECE_WITHIN: Duration = Duration::from_secs(2);
 pub struct LastSeconds {
     /// What ended the run.
     pub after: Fault,
+    /// Why, as far as the image could say; else empty.
+    pub why: String,
     /// The line's bytes, frame by frame. They begin with a whole one.
     pub line: Vec<u8>,
 }
@@ -42,7 +44,8 @@ impl LastSeconds {
             );
             line.extend(&piece.bytes);
             if line.len() >= usize::from(piece.length) {
-                return Ok(Some(Self { after, line: whole(line) }));
+                let why = String::from_utf8_lossy(&piece.why).into_owned();
+                return Ok(Some(Self { after, why, line: whole(line) }));
             }
         }
     }

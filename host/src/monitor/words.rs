@@ -113,9 +113,10 @@ fn last_words(f: &mut fmt::Formatter<'_>, last: &Last) -> fmt::Result {
         None => f.write_str("nothing is kept of a run before"),
         Some(fault) => write!(
             f,
-            "{} bytes are kept of the seconds before {}: `tenax record --last` fetches them",
+            "{} bytes are kept of the seconds before {} ({}): `tenax record --last` fetches them",
             last.length,
-            in_words(fault)
+            in_words(fault),
+            String::from_utf8_lossy(&last.why)
         ),
     }
 }

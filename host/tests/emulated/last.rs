@@ -66,6 +66,7 @@ fn the_seconds_before_a_hang_and_before_a_panic_are_there_at_the_next_start() {
     // The box is full: what is older was written over.
     let (hung, rest) = pieces.split_at(192);
     assert!(hung.iter().all(|piece| (piece.after, piece.length) == (Some(Fault::WatchdogReset), 48 * 1024)));
+    assert!(hung.iter().all(|piece| piece.why.is_empty()), "who hangs says nothing");
     let bytes: Vec<u8> = hung.iter().flat_map(|piece| piece.bytes.iter().copied()).collect();
     assert_eq!(bytes.len(), 48 * 1024);
     let seconds = lasted_s(&run, 1, &bytes);
@@ -80,6 +81,7 @@ fn the_seconds_before_a_hang_and_before_a_panic_are_there_at_the_next_start() {
     let bytes: Vec<u8> = panicked[..whole].iter().flat_map(|piece| piece.bytes.iter().copied()).collect();
     assert!(panicked[..whole].iter().all(|piece| piece.after == Some(Fault::PanicReset)));
     assert_eq!(bytes.len(), length);
+    assert!(panicked[..whole].iter().all(|piece| piece.why == b"DMA could not reach its ring"[..]));
     let seconds = lasted_s(&run, 2, &bytes);
     assert!((1.0..1.3).contains(&seconds), "{seconds} s since it was let go");
     assert!(panicked[whole..].iter().all(|piece| piece.after.is_none()), "who asks from its end on has it");

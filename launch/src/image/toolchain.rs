@@ -13,10 +13,11 @@ use super::{TARGET, debian, output};
 use crate::jobs::Desk;
 
 /// What Cargo sets for the processes it runs, or a person for the build of the tool: none of it is meant for the image.
-const NOT_FOR_THE_IMAGE: [&str; 10] = [
+const NOT_FOR_THE_IMAGE: [&str; 11] = [
     "CARGO",
     "CARGO_BUILD_TARGET",
     "CARGO_ENCODED_RUSTFLAGS",
+    "CARGO_INCREMENTAL",
     "CARGO_MANIFEST_DIR",
     "CARGO_TARGET_DIR",
     "RUSTC",

@@ -1,0 +1,133 @@
+//! `tenax calibrate` on served scenes, in which weights are put on, surfaces are stroked and muscles contract at known
+//! instants: nobody presses a key.
+#![cfg(unix)]
+
+#[path = "common/serving.rs"]
+mod serving;
+
+use std::process::{Command, Output};
+use std::thread;
+
+use tenax::link::{Client, Target};
+use tenax_hal_shim::wire::Up;
+
+use self::serving::Serving;
+
+const HEAD: &str = "name = \"bench\"
+title = \"A bench\"
+from = \"a test\"
+slip_floor_mm_s = 1.0
+line_trusted = true
+";
+
+/// A probe that is pressed on a surface with these forces, N, each from an instant on for so long, s; and drawn over it.
+fn bench(duration_s: f64, presses: &[(f64, f64, f64)], sweeps: &[(f64, f64)]) -> String {
+    let mut text = format!(
+        "{HEAD}duration_s = {duration_s}\n[contact]\nmu_s = 0.5\nmu_d = 0.4\npad_length_mm = 18\npitch_mm = 1.2\n\
+         [robot]\nprobe_kg = 0.2\nstiffness_n_per_mm = 0.5\ndamping = 0.7\nramp_ms = 80\n"
+    );
+    for (at_s, for_s, load_n) in presses {
+        text += &format!("[[press]]\nat_s = {at_s}\nfor_s = {for_s}\nload_n = {load_n}\n");
+    }
+    for (at_s, for_s) in sweeps {
+        text += &format!("[[sweep]]\nat_s = {at_s}\nfor_s = {for_s}\nspeed_mm_s = 20\n");
+    }
+    text
+}
+
+fn calibrate(place: &str, args: &[&str]) -> (bool, String, String) {
+    let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_tenax"))
+        .arg("calibrate")
+        .args(args)
+        .args(["--port", place])
+        .output()
+        .unwrap();
+    let [out, error] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+    (status.success(), out, error)
+}
+
+/// Waits for an instant of the scene's own time.
+fn until(place: &str, t_s: f64) {
+    let mut client = Client::open(&place.parse::<Target>().unwrap()).unwrap();
+    loop {
+        let heard = client.next_message().unwrap();
+        if let Some(Up::Slow(slow)) = heard.map(|heard| heard.received.message)
+            && f64::from(slow.frame) / 2_000.0 >= t_s
+        {
+            return;
+        }
+    }
+}
+
+fn known_weights_show_how_far_the_force_sensor_is_off() {
+    let presses = [(6.0, 2.5, 2.0), (9.5, 2.5, 5.0), (13.0, 2.5, 10.0)];
+    let mut served = Serving::start(&bench(17.0, &presses, &[]), &[]);
+    let place = served.places[0].clone();
+    // The control, at the same time: somebody who puts on a sixth less than they say.
+    let wrong = thread::spawn(move || calibrate(&place, &["force", "--weights-n", "2.4,6,12"]));
+    let (done, out, error) = calibrate(&served.places[0], &["force", "--weights-n", "2,5,10"]);
+    println!("{out}{error}");
+    assert!(done && out.contains("Zeroed.") && out.contains("put on 5 N (510 g)"), "{out}{error}");
+    assert!(out.contains("within 5 %: nothing to do"), "{out}");
+    let worst = out.split("off that line by ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
+    assert!(worst.parse::<f64>().unwrap() < 5.0, "{out}");
+    let (done, out, error) = wrong.join().unwrap();
+    assert!(done && out.contains("change the amplifier") && out.contains("reads 0.8"), "{out}{error}");
+    served.kill();
+}
+
+fn strokes_measure_friction_and_set_s2() {
+    let strokes = [5.0, 7.5, 10.0];
+    let presses = strokes.map(|at_s| (at_s, 1.8, 2.0));
+    let sweeps = strokes.map(|at_s| (at_s + 0.5, 1.0));
+    let mut served = Serving::start(&bench(15.0, &presses, &sweeps), &[]);
+    let (done, out, error) = calibrate(&served.places[0], &["friction", "--strokes", "3"]);
+    println!("{out}{error}");
+    // 0.5 on the board's scale of ratios, r / sqrt(1 + r^2), is 0.447; S2 is 0.8 of it.
+    let number = |after: &str| -> f64 {
+        let rest = out.split(after).nth(1).unwrap_or_else(|| panic!("{out}{error}"));
+        rest.split(' ').next().unwrap().parse().unwrap()
+    };
+    assert!(done && out.contains("3 of 3"), "{out}{error}");
+    assert!((number("Static friction ") - 0.447).abs() < 0.03, "{out}");
+    assert!((number("S2 is ") - 0.358).abs() < 0.03, "{out}");
+    served.kill();
+}
+
+fn the_wearers_muscles_are_calibrated_as_the_board_asks() {
+    // Of a hand that holds nothing. The prompts come at 1.3, 6.3 and 11.3 s or a little later.
+    let scene = format!(
+        "{HEAD}duration_s = 18\n[contact]\nmu_s = 0.5\nmu_d = 0.4\npad_length_mm = 18\npitch_mm = 1.0\n\
+         [object]\nmass_kg = 0.3\nwidth_mm = 60\nstiffness_n_per_mm = 3.0\n[table]\nmat_n_per_mm = 2.0\ndamping = 0.7\n\
+         [gripper]\nspeed_mm_s = 120\nforce_n = 140\ndead_time_ms = 30\nrange_mm = 100\nopening_mm = 90\n\
+         [[muscle]]\nat_s = 6.6\nfor_s = 4.7\nintent = \"close\"\nlevel_mv = 700\n\
+         [[muscle]]\nat_s = 11.7\nfor_s = 5.2\nintent = \"open\"\nlevel_mv = 900\n"
+    );
+    let mut served = Serving::start(&scene, &[]);
+    until(&served.places[0], 1.0);
+    let (done, out, error) = calibrate(&served.places[0], &["emg"]);
+    println!("{out}{error}");
+    assert!(
+        done && out.contains("1 of 3") && out.contains("3 of 3") && out.contains("Taken, and kept"),
+        "{out}{error}"
+    );
+    served.kill();
+}
+
+/// All at once: each waits for its scene nearly all the time.
+#[test]
+fn a_person_who_does_what_is_said_calibrates_the_hand() {
+    thread::scope(|scope| {
+        scope.spawn(known_weights_show_how_far_the_force_sensor_is_off);
+        scope.spawn(strokes_measure_friction_and_set_s2);
+        scope.spawn(the_wearers_muscles_are_calibrated_as_the_board_asks);
+    });
+}
+
+#[test]
+fn the_help_says_how() {
+    let (done, out, _) = calibrate("nowhere", &["--help"]);
+    assert!(done && out.contains("tenax calibrate force --weights-n 1,2,5,10"), "{out}");
+    let (done, _, error) = calibrate("nowhere", &["force", "--weights-n", "500"]);
+    assert!(!done && error.contains("0.1 to 60 N"), "{error}");
+}
