@@ -9,7 +9,9 @@ use tenax_hal_shim::schedule::{Job, select_of_slot, slot_of};
 use tenax_hal_shim::wire::{Down, FRAMES_PER_RAW, Received, Refusal};
 use tenax_logic::device::Device;
 use tenax_logic::fingertip::Fingertip;
+use tenax_logic::stream::SENSES_SLOT;
 
+use crate::black_box;
 use crate::bridge::Bridge;
 use crate::button::Button;
 use crate::counts;
@@ -57,9 +59,7 @@ impl Control {
         self.switches.show(select_of_slot((next % u32::from(FRAMES_PER_SLOW_FRAME)) as u8));
 
         self.device.button(self.button.is_down());
-        // A tick in which frames may be sent, or that ends a slow frame, has no room for a command and its answer as well,
-        // streamed or not.
-        if !usize::from(frame.slot()).is_multiple_of(FRAMES_PER_RAW) && !frame.ends_slow_frame() {
+        if has_room_for_command(frame) {
             self.take_command();
         }
         let drive = tenax_control_tick(self.device.fingertip_mut(), frame);
@@ -113,8 +113,17 @@ impl Control {
             mail::post(message);
         }
         let done = tenax_control_command(&mut self.device, command);
-        mail::post(self.device.answer(command, done));
+        let mut answer = self.device.answer(command, done);
+        black_box::read(&mut answer);
+        mail::post(answer);
     }
+}
+
+/// A tick in which frames or readings may be sent, or that ends a slow frame, has no room for a command and its answer as well,
+/// streamed or not.
+fn has_room_for_command(frame: &Frame) -> bool {
+    let slot = frame.slot();
+    !usize::from(slot).is_multiple_of(FRAMES_PER_RAW) && slot != SENSES_SLOT && !frame.ends_slow_frame()
 }
 
 /// One tick of the logic. Not inlined, so that the emulated board can count its instructions by this name.

@@ -38,9 +38,9 @@ impl<T, const N: usize> Mailbox<T, N> {
     }
 }
 
-/// Messages on their way up. A slow frame comes every 12.5 ms and takes 2 ms on the line, so this holds a burst of
-/// events and an answer or two; what does not fit is dropped.
-static UP: Mailbox<Received<Up>, 16> = Mailbox::new();
+/// Messages on their way up. With everything on, eight come in a slow frame and take 11.7 of its 12.5 ms on the line; twenty events
+/// may come with them at once, and an answer that takes 4 ms. What does not fit is dropped.
+static UP: Mailbox<Received<Up>, 32> = Mailbox::new();
 /// Telemetry, while it waits for one.
 static UP_WAITING: AtomicWaker = AtomicWaker::new();
 /// Number of the next message.

@@ -6,7 +6,7 @@
 //! |---|---|---|---|
 //! | `bridge::off` in a panic or fault | the faulting context | all interrupts off | the motor stays driven |
 //! | scan's DMA, its deadline, time driver | their interrupts | 1 | a deadline is noticed late: a lost frame stays unnoticed |
-//! | [`control`]: frame, logic, bridge, watchdog | executor in interrupt SPI5 | 2 | switches step late, ticks run late |
+//! | [`control`]: frame, logic, bridge, watchdog | executor in interrupt I2C3_ER | 2 | switches step late, ticks run late |
 //! | the serial line's interrupts | USART2, DMA1 | 6 | below control or control jitters by them |
 //! | [`telemetry`], [`commands`] | thread executor | none | messages are dropped and counted, control goes on |
 //! | [`store`]: a word of flash after every fourth tick | thread executor | none | the core stalls in a tick |
@@ -17,8 +17,10 @@
 #![no_std]
 #![no_main]
 
+mod black_box;
 mod bridge;
 mod button;
+mod chip;
 mod clock;
 mod commands;
 mod control;
@@ -58,11 +60,11 @@ bind_interrupts!(struct Irqs {
     USART2 => usart::InterruptHandler<peripherals::USART2>;
 });
 
-/// Runs control, above the thread executor. SPI5 itself is not used.
+/// Runs control, above the thread executor. I2C3 itself is not used; every chip of the family has its interrupt.
 static URGENT: InterruptExecutor = InterruptExecutor::new();
 
 #[interrupt]
-unsafe fn SPI5() {
+unsafe fn I2C3_ER() {
     // SAFETY: this is that interrupt, and it is enabled by `start` only.
     unsafe { URGENT.on_interrupt() }
 }
@@ -79,6 +81,7 @@ static CONTROL: StaticCell<control::Control> = StaticCell::new();
 async fn main(spawner: Spawner) {
     let last_words::Start { after, cause, stay_off } = last_words::start();
     let switched_on = cause == ResetCause::PowerOn;
+    black_box::start(after, switched_on);
     let crystal = clock::has_crystal();
     let mut config = clock::config(crystal);
     config.dma_interrupt_priority = Priority::P6;
@@ -101,7 +104,7 @@ async fn main(spawner: Spawner) {
     clock::accelerate_flash();
     interrupt::DMA2_STREAM0.set_priority(Priority::P1);
     interrupt::TIM5.set_priority(Priority::P1);
-    interrupt::SPI5.set_priority(Priority::P2);
+    interrupt::I2C3_ER.set_priority(Priority::P2);
     interrupt::USART2.set_priority(Priority::P6);
     defmt::info!("tenax: started, after {}", after.is_some());
 
@@ -157,6 +160,6 @@ async fn main(spawner: Spawner) {
         }
     });
     spawner.spawn(store::store(flash, log).expect("one store task"));
-    let urgent = URGENT.start(interrupt::SPI5);
+    let urgent = URGENT.start(interrupt::I2C3_ER);
     urgent.spawn(control::control(scan, control).expect("one control task"));
 }

@@ -20,6 +20,7 @@ use embassy_stm32::timer::low_level::{MasterMode, RoundTo, Timer as HardwareTime
 use tenax_hal_shim::channel::{FRAME_HZ, SCAN, SCAN_HZ, SCAN_LEN};
 use tenax_hal_shim::frame::Frame;
 
+use crate::chip::ADC_COMMON;
 use crate::counts;
 use crate::deadline::{Deadline, Micros};
 use crate::halves::{Halves, RING_LEN};
@@ -149,7 +150,7 @@ impl Scan {
 fn reset() {
     pac::RCC.apb2rstr().modify(|w| w.set_adcrst(true));
     pac::RCC.apb2rstr().modify(|w| w.set_adcrst(false));
-    pac::ADC1_COMMON.ccr().modify(|w| w.set_adcpre(Adcpre::DIV4));
+    ADC_COMMON.ccr().modify(|w| w.set_adcpre(Adcpre::DIV4));
     pac::ADC1.cr2().modify(|w| w.set_adon(true));
 }
 

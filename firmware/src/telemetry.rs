@@ -6,7 +6,7 @@ use embassy_stm32::usart::UartTx;
 use embassy_time::{Duration, Instant, Ticker};
 use tenax_hal_shim::wire::{FRAME_MAX, Up, encode};
 
-use crate::{counts, mail};
+use crate::{black_box, counts, mail};
 
 const COUNTERS_PERIOD: Duration = Duration::from_hz(10);
 
@@ -29,6 +29,7 @@ pub async fn telemetry(mut line: UartTx<'static, Async>) -> ! {
         match encode(posted.sequence, &posted.message, &mut buffer) {
             // An error of the line shows as a gap in the numbers at its other end.
             Some(frame) => {
+                black_box::write(&posted.message, frame);
                 if line.write(frame).await.is_err() {
                     counts::TELEMETRY_DROPPED.add_one();
                 }

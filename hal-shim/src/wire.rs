@@ -21,6 +21,7 @@ mod about;
 mod answer;
 mod down;
 mod framing;
+mod last;
 mod raw;
 mod samples;
 mod senses;
@@ -32,6 +33,7 @@ pub use self::about::{About, Identity, KEPT_MAX, ResetCause, Restored, SETTINGS_
 pub use self::answer::{Answer, Refusal, SETTINGS_PER_ANSWER, Setting};
 pub use self::down::{DRIVE_HOLD_MAX_MS, Down};
 pub use self::framing::{BadFrame, Received, Receiver, encode};
+pub use self::last::{Last, PIECE_MAX};
 pub use self::raw::{FRAMES_PER_RAW, Raw};
 pub use self::samples::SamplesSum;
 pub use self::senses::Senses;

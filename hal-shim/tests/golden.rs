@@ -15,7 +15,7 @@ use tenax_hal_shim::detector::{DetectorHealth, DetectorId, DetectorSet, Directio
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{
-    About, Answer, Counters, Down, Event, EventKind, FRAME_MAX, Forces, Identity, NetworkState, Raw,
+    About, Answer, Counters, Down, Event, EventKind, FRAME_MAX, Forces, Identity, Last, NetworkState, Raw,
     Receiver, Refusal, ResetCause, Restored, Senses, Setting, Slow, TickRecord, Up, VERSION, encode,
 };
 use tenax_hal_shim::words::{
@@ -62,6 +62,7 @@ fn down() -> Vec<Down> {
         }),
         Down::About,
         Down::Stream { raw: true, senses: true, hold_s: 300 },
+        Down::Last(512),
     ]
 }
 
@@ -153,6 +154,12 @@ fn answers() -> Vec<Answer> {
         Answer::Network(network),
         Answer::Nonce(0xDEAD_BEEF),
         Answer::About(about()),
+        Answer::Last(Last {
+            after: Some(Fault::PanicReset),
+            length: 49_000,
+            from: 512,
+            bytes: [1, 0, 2].into_iter().collect(),
+        }),
     ]
 }
 

@@ -8,11 +8,11 @@ use tenax_hal_shim::detector::{DetectorHealth, DetectorId, DetectorSet, Directio
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{
-    About, Answer, BAUD, BadFrame, Counters, DETECTORS_MAX, Down, FRAME_MAX, Identity, KEPT_MAX,
-    NetworkState, Raw, Receiver, ResetCause, Restored, SETTINGS_MAX, SETTINGS_PER_ANSWER, Senses, Setting,
-    Slow, TickRecord, Up, encode,
+    About, Answer, BAUD, BadFrame, Counters, DETECTORS_MAX, Down, FRAME_MAX, Identity, KEPT_MAX, Last,
+    NetworkState, PIECE_MAX, Raw, Receiver, ResetCause, Restored, SETTINGS_MAX, SETTINGS_PER_ANSWER, Senses,
+    Setting, Slow, TickRecord, Up, encode,
 };
-use tenax_hal_shim::words::{Code, DriveSource, GripMode, Kept, Line, NoLesson};
+use tenax_hal_shim::words::{Code, DriveSource, Fault, GripMode, Kept, Line, NoLesson};
 
 fn down() -> impl Strategy<Value = Down> {
     prop_oneof![
@@ -167,6 +167,9 @@ fn the_longest_message_fits_a_frame() {
     let identity = Identity { build: u64::MAX, chip: [u32::MAX; 3], reset: ResetCause::Other };
     let about = About { identity, frames: u32::MAX, settings };
     assert!(encode(u16::MAX, &answer(Answer::About(about)), &mut buffer).is_some());
+    let bytes = [u8::MAX; PIECE_MAX].into_iter().collect();
+    let last = Last { after: Some(Fault::TooManyRestarts), length: u16::MAX, from: u16::MAX, bytes };
+    assert!(encode(u16::MAX, &answer(Answer::Last(last)), &mut buffer).is_some());
     let restored = Restored::of(Kept::Network, &[0; KEPT_MAX]).unwrap();
     assert!(encode(u16::MAX, &Up::Restored(restored), &mut buffer).is_some());
     let senses = Senses { frame: u32::MAX, samples: [u16::MAX; COUNT], films: [u16::MAX; PVDF_COUNT] };

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use tenax_launch::image::Binary;
-pub use tenax_launch::image::{TARGET, clippy};
+pub use tenax_launch::image::{TARGET, clippy, port};
 
 /// Builds the image of the workspace at `root`, fetching what it takes, and gives its ELF file.
 ///

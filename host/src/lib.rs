@@ -25,6 +25,7 @@ pub mod serve;
 pub mod session;
 pub mod settings;
 pub mod timeline;
+pub mod truth;
 pub mod vision;
 pub mod web;
 pub mod wiring;

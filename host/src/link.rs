@@ -5,11 +5,13 @@
 mod client;
 mod encoder;
 mod inbox;
+mod last;
 mod outbox;
 mod target;
 
 pub use client::{Client, is_silence};
 pub use encoder::Encoder;
 pub use inbox::{Counts, Heard, Inbox};
+pub use last::LastSeconds;
 pub use outbox::Outbox;
 pub use target::{Line, Target};

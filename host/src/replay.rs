@@ -22,6 +22,7 @@ pub mod calibrate;
 pub mod facts;
 pub mod filter;
 pub mod library;
+pub mod meaning;
 pub mod plant;
 pub mod recipe;
 pub mod recording;

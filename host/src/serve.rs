@@ -24,6 +24,7 @@ use self::client::Ends;
 use self::framer::Framer;
 use self::hub::Hub;
 use crate::board::Recorder;
+use crate::truth::Truth;
 
 pub use self::live::{Live, Served};
 
@@ -41,6 +42,8 @@ pub struct Options {
     pub at: Option<PathBuf>,
     /// On this TCP port of 127.0.0.1; 0 is any that is free.
     pub tcp: Option<u16>,
+    /// What really happens in the scene, on this TCP port of 127.0.0.1; 0 is any that is free.
+    pub truth: Option<u16>,
 }
 
 /// How a run's line is used.
@@ -80,6 +83,7 @@ pub struct Server {
     hub: Arc<Hub>,
     framer: Framer,
     places: Vec<String>,
+    truth: Option<(String, Arc<Hub>)>,
     doors: Vec<JoinHandle<()>>,
 }
 
@@ -110,7 +114,16 @@ impl Server {
             places.push(tcp.place()?);
             doors.push(thread::spawn(move || tcp.serve(&ends)));
         }
-        Ok((Self { hub, framer: Framer::default(), places, doors }, Live::new(bytes, behind)))
+        let truth = options.truth.map(|port| truth_at(port, &mut doors)).transpose()?;
+        let teller = Teller(truth.as_ref().map(|(_, hub)| Arc::clone(hub)));
+        let live = Live::new(bytes, behind, teller);
+        Ok((Self { hub, framer: Framer::default(), places, truth, doors }, live))
+    }
+
+    /// Where what really happens is told, as `tenax monitor --truth` takes it.
+    #[must_use]
+    pub fn truth_place(&self) -> Option<&str> {
+        self.truth.as_ref().map(|(place, _)| place.as_str())
     }
 
     /// Where it serves, as `tenax monitor --port` takes it.
@@ -127,11 +140,45 @@ impl Server {
             thread::sleep(Duration::from_millis(5));
         }
         self.hub.close();
+        if let Some((_, truth)) = &self.truth {
+            truth.no_more();
+            truth.close();
+        }
         for door in self.doors {
             // A door that panicked has said so.
             let _ = door.join();
         }
         self.hub.tally()
+    }
+}
+
+/// A port on which what really happens is told, and who hears it. What is sent to it goes nowhere.
+fn truth_at(port: u16, doors: &mut Vec<JoinHandle<()>>) -> anyhow::Result<(String, Arc<Hub>)> {
+    let (down, _nowhere) = sync_channel(1);
+    let hub = Arc::new(Hub::default());
+    let ends = Ends { hub: Arc::clone(&hub), down };
+    let tcp = tcp::Tcp::new(port)?;
+    let place = tcp.place()?;
+    doors.push(thread::spawn(move || tcp.serve(&ends)));
+    Ok((place, hub))
+}
+
+/// Tells what really happens, to whoever listens.
+#[derive(Clone, Default)]
+pub struct Teller(Option<Arc<Hub>>);
+
+impl Teller {
+    /// Whether anybody could listen.
+    #[must_use]
+    pub const fn is_served(&self) -> bool {
+        self.0.is_some()
+    }
+
+    /// What is true at one instant.
+    pub fn tell(&self, truth: &Truth) {
+        if let (Some(hub), Ok(text)) = (&self.0, serde_json::to_string(truth)) {
+            hub.publish(format!("{text}\n").as_bytes());
+        }
     }
 }
 

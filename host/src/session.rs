@@ -171,7 +171,8 @@ pub fn scene_served(
     let span_s = (0.0, seconds_of(frames_in(file.duration_s())));
     let world = World::new(file, seed);
     let calibrated = world.calibrated().as_ref().map(model_of).transpose()?;
-    let plant = line.of(Drawn::new(world, span_s));
+    let teller = line.live.as_ref().map(|live| live.teller.clone()).unwrap_or_default();
+    let plant = line.of(Drawn::telling(world, span_s, teller));
     let mut witness = Witness::new(0.0, span_s, calibrated.as_ref());
     let (run, Served { mut plant, .. }) = board.record(plant, &mut (&mut witness, recorder), progress)?;
     plant.draw();

@@ -17,8 +17,8 @@ use anyhow::Context;
 use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{Down, Setting};
 
-use crate::link::Target;
-use crate::monitor::source;
+use self::json::After;
+use crate::monitor::source::{self, Places};
 use crate::monitor::view::View;
 
 const PAGE: &str = include_str!("web/page.html");
@@ -43,11 +43,11 @@ pub struct Web {
 }
 
 impl Web {
-    /// Watches the board at `target`, for a page on this port of 127.0.0.1; 0: any that is free.
+    /// Watches a board, for a page on this port of 127.0.0.1; 0: any that is free.
     ///
     /// # Errors
     /// If the port cannot be had.
-    pub fn new(target: &Target, control: bool, port: u16) -> anyhow::Result<Self> {
+    pub fn new(places: &Places, control: bool, port: u16) -> anyhow::Result<Self> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).with_context(|| {
             format!("cannot serve a page on port {port}: choose another, or 0 for any that is free")
         })?;
@@ -55,15 +55,17 @@ impl Web {
         let (commands, waiting) = channel();
         let (sender, news) = channel();
         let view = Arc::new(Mutex::new(View::default()));
-        let place = target.clone();
-        thread::spawn(move || source::watch(&place, &waiting, &sender));
+        source::start(places, waiting, sender);
         let taken = Arc::clone(&view);
         thread::spawn(move || {
             for news in news {
                 taken.lock().unwrap_or_else(PoisonError::into_inner).take(news);
             }
         });
-        Ok(Self { listener, shared: Shared { view, commands, place: target.to_string(), control, port } })
+        Ok(Self {
+            listener,
+            shared: Shared { view, commands, place: places.line.to_string(), control, port },
+        })
     }
 
     /// Where the page is.
@@ -179,16 +181,19 @@ fn events(mut stream: &TcpStream, shared: &Shared) -> io::Result<()> {
         stream,
         "HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\nCache-Control: no-store\r\nConnection: close\r\n\r\n"
     )?;
-    let (mut after_s, mut log) = (f64::MIN, 0);
+    let mut after = After::NOTHING;
     loop {
         let text = {
             let view = shared.view.lock().unwrap_or_else(PoisonError::into_inner);
-            // A board that started anew counts from 0 again.
-            if view.t_s() < after_s {
-                after_s = f64::MIN;
+            let all = After::all(&view);
+            if all.points_s < after.points_s {
+                after.points_s = f64::MIN;
             }
-            let event = json::event(&view, &shared.place, after_s, log);
-            (after_s, log) = (view.t_s(), view.said());
+            if all.truth_s < after.truth_s {
+                after.truth_s = f64::MIN;
+            }
+            let event = json::event(&view, &shared.place, &after);
+            after = all;
             event.to_string()
         };
         write!(stream, "data: {text}\n\n")?;

@@ -9,6 +9,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use tenax::replay::calibrate::calibrate;
+use tenax::replay::meaning::Motion;
 use tenax::replay::{Recording, ReplayPlant, library};
 use tenax::session::{self, Board};
 use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ, MYO_EXTENSOR, MYO_FLEXOR, MYO_SELECT, SCANS_PER_FRAME};
@@ -362,7 +363,9 @@ fn a_replayed_fist_never_opens_the_hand_and_rest_never_moves_it() {
                     &mut (),
                     &mut |_| {},
                 );
-                let wearer = outcome.expect("a shared recording is good").report.wearer;
+                let report = outcome.expect("a shared recording is good").report;
+                let (wearer, replay) = (report.wearer, report.replay.expect("it is a replay"));
+                let meant = replay.meant.expect("the recipe says what it means");
                 println!(
                     "  {prefix}{name:16} {}: closing {:5.2} s, opening {:5.2} s, longest open {:4.0} ms, close {:4.0} ms",
                     if calibrated.is_some() { "calibrated" } else { "not       " },
@@ -372,10 +375,10 @@ fn a_replayed_fist_never_opens_the_hand_and_rest_never_moves_it() {
                     wearer.longest_close_ms
                 );
                 assert_eq!(wearer.faults, 0, "{name}: each is a muscle");
-                assert!(name == "handextension1" || wearer.longest_open_ms <= 50.0, "{name}");
-                if name == "rest1" || name == "handextension1" {
-                    assert_eq!(wearer.longest_close_ms, 0.0, "{name}");
-                }
+                assert!(meant.wrong_ms <= 50.0, "{name}: {meant:?}");
+                assert!(meant.wrong_ms == 0.0 || !meant.never.contains(&Motion::Close), "{name}: {meant:?}");
+                let wanted_s = meant.wanted_s.filter(|_| calibrated.is_some());
+                assert!(wanted_s.is_none_or(|wanted_s| wanted_s > 4.0), "{name}: {meant:?}");
             }
         }
     }

@@ -1,14 +1,18 @@
 //! Recordings: what is in them is what was on the line, and decides the same once more.
 
+use std::io::{Read, Write};
+use std::net::TcpListener;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::{Command, Output, Stdio};
+use std::thread;
 
 use tenax::board::Recorder;
 use tenax::record::replay::Recorded;
 use tenax::record::{Recording, line_of};
 use tenax::serve::Use;
 use tenax::session::{Board, load_scene};
-use tenax_hal_shim::wire::{Raw, Up};
+use tenax_hal_shim::wire::{Answer, Down, FRAME_MAX, Last, PIECE_MAX, Raw, Receiver, Up, encode};
+use tenax_hal_shim::words::Fault;
 use tenax_scene::World;
 
 const SCENE: &str = "pick-up-reflex";
@@ -144,4 +148,59 @@ fn the_public_reader_finds_the_numbers_of_the_csv() {
     let compared: u32 = String::from_utf8(read.stdout).unwrap().trim().parse().unwrap();
     println!("{compared} values compared");
     assert!(compared > 250_000, "{compared}");
+}
+
+/// A stand-in for a board that has kept these bytes: where it is. It serves two clients, one after the other.
+fn keeper(mut kept: Vec<u8>) -> String {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let place = format!("tcp:{}", listener.local_addr().unwrap());
+    thread::spawn(move || {
+        for mut stream in listener.incoming().flatten().take(2) {
+            let (mut receiver, mut bytes) = (Receiver::new(), [0; 256]);
+            while let Ok(count @ 1..) = stream.read(&mut bytes) {
+                for command in bytes[..count].iter().filter_map(|&byte| receiver.push::<Down>(byte)).flatten()
+                {
+                    let Down::Last(from) = command.message else { continue };
+                    let mut last = Last::nothing(from);
+                    if let Some(rest) = kept.get(usize::from(from)..).filter(|rest| !rest.is_empty()) {
+                        last.after = Some(Fault::PanicReset);
+                        last.length = kept.len() as u16;
+                        last.bytes = rest.iter().copied().take(PIECE_MAX).collect();
+                    } else {
+                        kept.clear();
+                    }
+                    let up = Up::Answer { of: command.sequence, frame: 0, answer: Answer::Last(last) };
+                    stream.write_all(encode(0, &up, &mut [0; FRAME_MAX]).unwrap()).unwrap();
+                }
+            }
+        }
+    });
+    place
+}
+
+#[test]
+fn the_seconds_before_a_fault_are_a_recording() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = record(&folder.path().join("scene.mcap"), false);
+    // From the middle of a message on, as a box is that was written round.
+    let kept = line[line.len() - 40_003..].to_vec();
+    let (place, path) = (keeper(kept.clone()), folder.path().join("fault.mcap"));
+    let tenax = |args: &[&str]| {
+        let Output { status, stderr, .. } =
+            Command::new(env!("CARGO_BIN_EXE_tenax")).args(args).output().unwrap();
+        (status.success(), String::from_utf8(stderr).unwrap())
+    };
+    let (file, csv) = (path.to_str().unwrap(), folder.path().join("csv"));
+    let args = ["record", "--last", "--port", &place, "--out", file];
+    let (done, said) = tenax(&args);
+    assert!(done && said.contains("before ") && said.contains(" bytes, 2."), "{said}");
+    let first = kept.iter().position(|&byte| byte == 0).unwrap() + 1;
+    assert!(line_of(&path).unwrap() == kept[first..], "every whole message");
+    let (again, said) = tenax(&args);
+    assert!(!again && said.contains("the board keeps nothing"), "{said}");
+
+    assert!(tenax(&["play", file, "--csv", csv.to_str().unwrap()]).0);
+    assert!(std::fs::read_to_string(csv.join("state.csv")).unwrap().lines().count() > 160);
+    let (drawn, said) = tenax(&["plot", file]);
+    assert!(drawn && path.with_extension("png").exists(), "{said}");
 }

@@ -39,6 +39,7 @@ const REPLAY_KEYS: &str = "
     replay.force.s2_first_s replay.force.s2_before_peak_ms replay.force.s1_first_s replay.force.s1_before_peak_ms
     replay.muscle.onset_s replay.muscle.noticed_s replay.muscle.onset_delay_ms replay.muscle.active_part
     replay.muscle.reflex_while_active
+    replay.meant.wants replay.meant.never replay.meant.wanted_s replay.meant.wrong_ms
 ";
 
 fn leaves(value: &Value, path: &str, into: &mut Vec<String>) {
@@ -132,7 +133,8 @@ fn the_controls_of_a_scene_are_worse_than_the_reflex() {
 #[test]
 fn a_replays_keys_are_stable() {
     let recipe = "title = ''\ndescription = ''\n[force]\nnormal = 'n'\nshear_x = 's'\n\
-                  [[map]]\ncolumn = 'm'\nchannels = ['myo_flexor']\ngain = 1.0\n";
+                  [[map]]\ncolumn = 'm'\nchannels = ['myo_flexor']\ngain = 1.0\n\
+                  [[meaning]]\nnamed = '*'\nwants = 'rest'\nnever = ['open']\n";
     let report = played("t,n,s,m\n0,1,0,0\n0.5,1,0,0\n", Some(recipe));
     assert_eq!(found(&report), expected(REPLAY_KEYS));
 }

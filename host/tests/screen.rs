@@ -10,6 +10,7 @@ use tenax::monitor::screen::{Edit, Shown, draw};
 use tenax::monitor::source::News;
 use tenax::monitor::view::View;
 use tenax::session::{Board, load_scene};
+use tenax::truth::Truth;
 use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{Answer, BadFrame, Down, Refusal};
 use tenax_scene::World;
@@ -56,6 +57,8 @@ fn what_matters_is_on_the_screen_at_80_by_24_and_at_200_by_60() {
             "s1 ",
             "hebbian",
             "mlp",
+            "injected ",
+            "photoela ",
             "flexor ",
             "extensor ",
             "motor ",
@@ -110,4 +113,26 @@ fn a_terminal_of_any_size_is_drawn_on() {
             picture(&view, &Shown { edit, ..Shown::default() }, width, height);
         }
     }
+}
+
+#[test]
+fn the_truth_of_a_scene_stands_beside_what_the_board_says() {
+    let mut view = heard("rig", 1.0);
+    let shown = Shown::default();
+    assert!(!picture(&view, &shown, 80, 24).contains("the scene:"), "a real board has none");
+    let truth = Truth {
+        t_s: 1.0,
+        slide_mm_s: 3.21,
+        stuck_part: 0.4,
+        grip_n: 12.04,
+        needed_n: 10.9,
+        slips: 2,
+        slipped_mm: 1.25,
+        dropped: false,
+    };
+    view.take(News::Truth(truth));
+    let line = " the scene: micro slip 3.2 mm/s; grip 12.0 N, needs 10.9 N; kept, 2 slips, 1.2 mm";
+    assert!(picture(&view, &shown, 90, 24).contains(line), "{}", picture(&view, &shown, 90, 24));
+    view.take(News::Truth(Truth { stuck_part: 0.0, dropped: true, ..truth }));
+    assert!(picture(&view, &shown, 90, 24).contains("slides 3.2 mm/s; grip 12.0 N, needs 10.9 N; DROPPED"));
 }

@@ -44,6 +44,7 @@ fn drawn_scenes_are_seen_as_they_are() {
     let number = |value: &Value| value.as_f64().unwrap_or_else(|| panic!("no number in {report}"));
     assert!(number(&report["marker_px_rms"]) <= 0.1, "{report}");
     assert!(number(&report["force_deg_rms"]) <= 5.0, "{report}");
+    assert!(number(&report["angle_deg_rms"]) <= 2.0, "{report}");
     assert!(number(&report["slip"]["recall"]) >= 0.8, "{report}");
     assert!(number(&report["slip"]["false_rate"]) <= 0.1, "{report}");
     assert!(number(&report["object_seen"]) >= 0.95, "{report}");

@@ -65,6 +65,16 @@ pub fn clippy(root: &Path) -> Result<()> {
     jobs::run(vec![Job { name: "image", done: "linted", run: Box::new(run) }])
 }
 
+/// Compiles the image's package for another chip, named as the package's features are: what a port takes is in the sources.
+///
+/// # Errors
+/// Says what to install, or what the compiler said.
+pub fn port(root: &Path, chip: &str) -> Result<()> {
+    let more = ["--bin", PACKAGE, "--no-default-features", "--features", chip];
+    let run = move |desk: &Desk| run(root, "check", &more, desk);
+    jobs::run(vec![Job { name: "image", done: "compiled for another chip", run: Box::new(run) }])
+}
+
 fn run(root: &Path, verb: &str, more: &[&str], desk: &Desk) -> Result<()> {
     desk.state("looking for its compiler");
     let toolchain = Toolchain::find(root, desk)?;

@@ -33,7 +33,8 @@ impl Allowance {
 
     /// Whether this command, now that it is decoded, is taken.
     pub fn affords(&mut self, command: &Down) -> bool {
-        !matches!(command, Down::Samples | Down::Network | Down::Settings(_)) || self.spend(LONG_ANSWER - 1)
+        !matches!(command, Down::Samples | Down::Network | Down::Settings(_) | Down::Last(_))
+            || self.spend(LONG_ANSWER - 1)
     }
 
     const fn spend(&mut self, cost: u32) -> bool {

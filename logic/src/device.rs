@@ -25,7 +25,7 @@ use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::setting::SettingId;
-use tenax_hal_shim::wire::{About, Answer, Down, Identity, Received, Refusal, Senses, Setting, Up};
+use tenax_hal_shim::wire::{About, Answer, Down, Identity, Last, Received, Refusal, Senses, Setting, Up};
 use tenax_hal_shim::words::{Fault, Kept, Line};
 
 use crate::fingertip::Fingertip;
@@ -189,6 +189,8 @@ impl Device {
             (Ok(()), Down::Samples) => Answer::Samples(self.samples.in_order()),
             (Ok(()), Down::Hello) => Answer::Nonce(self.session.offer()),
             (Ok(()), Down::About) => Answer::About(self.about()),
+            // Whoever has a memory that outlives a reset puts into it what it holds.
+            (Ok(()), Down::Last(from)) => Answer::Last(Last::nothing(from)),
             (Ok(()), Down::Network) => Answer::Network(self.fingertip.network()),
             (Ok(()), _) => Answer::Done,
         };

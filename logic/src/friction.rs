@@ -6,8 +6,9 @@
 
 use crate::config::FrictionConfig;
 
-/// Part of S2 below which the warning ends, per mille.
-const OFF_PERMILLE: u32 = 900;
+/// Part of S2 below which the warning ends, per mille: beyond the ratio's noise, and not so far that a load which falls
+/// again is answered once more.
+const OFF_PERMILLE: u32 = 960;
 /// A ratio that has fallen below this part of its peak, per mille, has slid.
 const FALL_PERMILLE: u32 = 850;
 /// The smallest ratio that is taken for a peak, per mille: noise at the touch is not friction.
@@ -95,7 +96,7 @@ mod tests {
     #[test]
     fn it_warns_above_s2_with_hysteresis_and_never_without_a_load() {
         let mut detector = FrictionDetector::default();
-        let seen = [Some(300), Some(301), Some(280), Some(270), Some(280), None, Some(900), None]
+        let seen = [Some(300), Some(301), Some(289), Some(288), Some(289), None, Some(900), None]
             .map(|ratio| detector.process(&CONFIG, ratio));
         assert_eq!(seen, [false, true, true, false, false, false, true, false]);
     }

@@ -56,6 +56,6 @@ pub mod sliding;
 pub mod solo;
 pub mod store;
 pub mod strain;
-mod stream;
+pub mod stream;
 pub mod touch;
 pub mod vibration;

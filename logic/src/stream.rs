@@ -11,7 +11,7 @@ const _: () = assert!((FRAMES_PER_SLOW_FRAME as usize).is_multiple_of(FRAMES_PER
 const EVER: u32 = u32::MAX;
 
 /// The slot whose tick sends the readings: nothing long is decided or sent in it.
-const SENSES_SLOT: u8 = 2;
+pub const SENSES_SLOT: u8 = 2;
 
 /// What is asked for, and what has gathered.
 #[derive(Clone, Debug, Default)]

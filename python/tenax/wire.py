@@ -93,6 +93,7 @@ ANSWER = ("enum", "Answer", [
     ("Done", []), ("Refused", [("why", REFUSAL)]), ("Setting", [("id", "u8"), ("value", "i32")]),
     ("Settings", [("settings", ("vec", SETTING))]), ("Samples", [("samples", ("arr", CHANNELS, "u16"))]),
     ("Network", NETWORK), ("Nonce", [("nonce", "u32")]), ("About", ABOUT),
+    ("Last", [("after", ("opt", FAULT)), ("length", "u16"), ("from_", "u16"), ("bytes", ("vec", "u8"))]),
 ])
 DOWN = ("enum", "Down", [
     ("Ping", []), ("Drive", [("drive", DRIVE), ("hold_ms", "u16")]), ("Set", [("id", "u8"), ("value", "i32")]),
@@ -100,6 +101,7 @@ DOWN = ("enum", "Down", [
     ("Network", []), ("Forget", []), ("Save", []), ("Get", [("id", "u8")]), ("Settings", [("from_", "u8")]), ("Hello", []),
     ("Open", [("nonce", "u32")]), ("CalibrateEmg", []), ("About", []),
     ("Stream", [("raw", "bool"), ("senses", "bool"), ("hold_s", "u16")]), ("End", []), ("View", CAMERA_VIEW),
+    ("Last", [("from_", "u16")]),
 ])
 UP = ("enum", "Up", [
     ("Hello", [("frame_hz", "u16"), ("after", ("opt", FAULT))]),

@@ -1,12 +1,11 @@
 //! A set of pixels, one bit each: growing and shrinking it are shifts of whole words.
 
+mod pieces;
+
 use crate::frame::{HEIGHT, PIXELS, Point, WIDTH};
 
 /// Words of a row.
 pub const WORDS: usize = WIDTH / 64;
-
-/// Pieces that [`Mask::keep_large`] tells apart.
-pub const PIECES_MAX: usize = 48;
 
 /// A set of pixels.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -118,6 +117,26 @@ impl Mask {
         self.invert();
     }
 
+    /// Keeps and adds the pixels of which at least five of the nine around them, their own included, are in it: single pixels
+    /// go, and so do gaps of one. Outside of the picture counts as outside.
+    pub fn majority(&mut self) {
+        let mut above = ([0; WORDS], [0; WORDS]);
+        let mut here = three(&self.rows[0]);
+        for y in 0..HEIGHT {
+            let below = self.rows.get(y + 1).map_or(([0; WORDS], [0; WORDS]), three);
+            for word in 0..WORDS {
+                // Each row's count is 0 to 3: a bit of one and a bit of two.
+                let (ones, carry) = full_adder(above.0[word], here.0[word], below.0[word]);
+                let (twos, fours) = full_adder(above.1[word], here.1[word], below.1[word]);
+                let (twos, more) = (twos ^ carry, twos & carry);
+                // 4 and something, 8 or 9.
+                let (fours, eights) = (fours ^ more, fours & more);
+                self.rows[y][word] = eights | fours & (ones | twos);
+            }
+            (above, here) = (here, below);
+        }
+    }
+
     /// Keeps one row of `keep`.
     pub fn thin(&mut self, keep: usize) {
         let gone = self.rows.iter_mut().enumerate().filter(|(y, _)| y % keep != 0);
@@ -166,78 +185,6 @@ impl Mask {
         }
         outside.invert();
         *self = outside;
-    }
-
-    /// Keeps its connected pieces that are at least `percent` of the largest; of more than [`PIECES_MAX`] the first ones.
-    pub fn keep_large(&mut self, percent: u32) {
-        let mut rest = self.clone();
-        let mut largest = 0;
-        let mut starts = [(0, 0, 0); PIECES_MAX];
-        let mut count = 0;
-        while count < PIECES_MAX {
-            let Some((start, piece)) = rest.take_piece() else { break };
-            let area = piece.count();
-            largest = largest.max(area);
-            starts[count] = (start.0, start.1, area);
-            count += 1;
-        }
-        if count < 2 {
-            return;
-        }
-        let mut rest = core::mem::take(self);
-        for &(_, _, area) in &starts[..count] {
-            // Pieces come in the same order again.
-            let Some((_, piece)) = rest.take_piece() else { break };
-            if 100 * area >= percent * largest {
-                self.unite(&piece);
-            }
-        }
-    }
-
-    /// Takes the piece out that holds the first pixel: the row and word where it begins, and the piece.
-    fn take_piece(&mut self) -> Option<((usize, usize), Self)> {
-        let (y, word) = (0..HEIGHT)
-            .find_map(|y| self.rows[y].iter().position(|&word| word != 0).map(|word| (y, word)))?;
-        let mut piece = Self::EMPTY;
-        let mut seed = [0; WORDS];
-        seed[word] = self.rows[y][word] & self.rows[y][word].wrapping_neg();
-        piece.rows[y] = flood(&seed, &self.rows[y]);
-        // Rows between which it may still grow.
-        let (mut top, mut bottom) = (y, y);
-        let mut grown = true;
-        while grown {
-            grown = false;
-            while bottom + 1 < HEIGHT && piece.grow(bottom, bottom + 1, self) {
-                (bottom, grown) = (bottom + 1, true);
-            }
-            for from in top..bottom {
-                grown |= piece.grow(from, from + 1, self);
-            }
-            for from in (top + 1..=bottom).rev() {
-                grown |= piece.grow(from, from - 1, self);
-            }
-            while top > 0 && piece.grow(top, top - 1, self) {
-                (top, grown) = (top - 1, true);
-            }
-        }
-        for (row, taken) in self.rows.iter_mut().zip(&piece.rows) {
-            row.iter_mut().zip(taken).for_each(|(word, taken)| *word &= !taken);
-        }
-        Some(((y, word), piece))
-    }
-
-    /// Grows from a row into the next as far as `within` goes. Returns whether it did.
-    fn grow(&mut self, from: usize, to: usize, within: &Self) -> bool {
-        let (mut seed, mut new) = (self.rows[to], 0);
-        for (word, seed) in seed.iter_mut().enumerate() {
-            let reached = self.rows[from][word] & within.rows[to][word];
-            new |= reached & !*seed;
-            *seed |= reached;
-        }
-        if new != 0 {
-            self.rows[to] = flood(&seed, &within.rows[to]);
-        }
-        new != 0
     }
 
     /// Calls `each` with every pixel's place in a plane.
@@ -299,6 +246,22 @@ fn wider(row: &[u64; WORDS]) -> [u64; WORDS] {
         wide[word] |= row[word] << 1 | row[word] >> 1 | from_left | from_right;
     }
     wide
+}
+
+/// How many of each pixel and its neighbours to the left and right are set: the bits of one and of two.
+fn three(row: &[u64; WORDS]) -> ([u64; WORDS], [u64; WORDS]) {
+    let (mut ones, mut twos) = ([0; WORDS], [0; WORDS]);
+    for word in 0..WORDS {
+        let left = row[word] << 1 | if word > 0 { row[word - 1] >> 63 } else { 0 };
+        let right = row[word] >> 1 | if word + 1 < WORDS { row[word + 1] << 63 } else { 0 };
+        (ones[word], twos[word]) = full_adder(left, row[word], right);
+    }
+    (ones, twos)
+}
+
+/// The sum of three bits, 64 times: bit of one, bit of two.
+const fn full_adder(a: u64, b: u64, c: u64) -> (u64, u64) {
+    (a ^ b ^ c, a & b | c & (a ^ b))
 }
 
 /// The runs of `free` that hold a pixel of `seed`. An addition carries from the seed to the end of its run.

@@ -5,7 +5,9 @@
 //! away from the object's are those that it now hides. Either alone is not enough: a person who walks by behind the skin
 //! differs from the scene, and a wall has the colours of a card.
 
+mod axis;
 pub mod colour;
+mod cut;
 mod ghost;
 mod hand;
 mod model;
@@ -14,7 +16,7 @@ mod scene;
 
 use alloc::boxed::Box;
 
-use crate::frame::{Frame, PIXELS, Plane, plane};
+use crate::frame::{Frame, PIXELS, Plane, WIDTH, plane};
 use crate::mask::{Mask, Moments};
 use crate::rectify::Rectifier;
 
@@ -29,14 +31,25 @@ const DOUBT_FRAMES: u32 = 32;
 const DOUBT_FRAMES_EMPTY: u32 = 4;
 /// Every so many pixels of the scene stand for all of it: a prime, so that no column is taken again and again.
 const SAMPLE: usize = 13;
+/// Half the width of what is no part of a larger object, px: a spot of the background that leans on it.
+const SPUR_PX: usize = 5;
+/// How far a held object moves from one frame to the next at most, px.
+const LEAP_PX: usize = 3;
 /// Pieces of an object that are smaller than this part of the largest are noise, per cent.
 const PIECES_PERCENT: u32 = 25;
+/// How far apart they are at most, px: what is further away is a spot of the background.
+const APART_PX: usize = 32;
 /// Moving pixels below which an object is still.
 const STILL_PX: u32 = 150;
 /// Frames after which what looks like a ghost is one.
-const GHOST_FRAMES: u32 = 5;
+const GHOST_FRAMES: u32 = 2;
 /// How far from moving pixels others belong to what moves, px.
 const INSIDE_PX: usize = 10;
+
+/// How far around a moving pixel others may be of the same object, px.
+const MOVES_PX: usize = 4;
+/// How far around an object what differs from the scene may be more of it, px.
+const CLOSE_PX: usize = 16;
 
 /// Numbers that a person may choose.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,12 +78,14 @@ impl Default for Config {
 pub struct Sighting {
     /// How it lies.
     pub moments: Moments,
+    /// The direction of its long axis, radians from -pi/2 to pi/2, from x towards y (down): by its long rims if it has such.
+    pub angle_rad: f32,
     /// Part of the picture that it covers.
     pub area: f32,
     /// Moving pixels on it.
     pub slip_px: u32,
-    /// Whether it reaches the picture's border, beyond which nobody knows how it goes on: its middle and its angle are those
-    /// of the part that is seen.
+    /// Whether it goes on beyond the picture's border, where nobody knows how: its middle and its angle are those of the part
+    /// that is seen.
     pub cut: bool,
 }
 
@@ -159,19 +174,31 @@ impl<M: Movement> Tracker<M> {
         }
         self.scene.follow_light(grey, &self.near);
         self.scene.differs(frame, &mut self.bytes);
-        let mut differs = core::mem::take(&mut self.object);
+        let mut differs = Mask::EMPTY;
         differs.pack(&self.bytes);
         if learn {
             self.learn(frame, &differs);
         }
         let apart = differs.clone();
         self.project(frame, &mut differs);
-        // Noise goes (erosion 2), and what the markers cut out is closed (dilation 7, and back).
+        // Specks and lines of a pixel go, then noise (erosion 2), and what the markers cut out is closed (dilation 7, and back).
+        differs.majority();
         differs.erode(2);
         differs.dilate(7);
         differs.fill_holes();
         differs.erode(5);
+        differs.cut_spurs(SPUR_PX);
+        if !learn && self.seen {
+            // What is held goes nowhere in a leap: what is new beside it is the background's.
+            self.object.dilate(LEAP_PX);
+            differs.intersect(&self.object);
+        }
         differs.keep_large(PIECES_PERCENT);
+        // While the hand is open the object moves, and what does not may be a ghost.
+        let mut moves = self.moving.clone();
+        moves.intersect(&differs);
+        let by = if learn && moves.count() >= STILL_PX { moves } else { differs.clone() };
+        differs.keep_together(&by, APART_PX);
         self.object = differs;
         self.near.clone_from(&self.object);
         // A hand that has closed took the object from somebody's.
@@ -190,20 +217,23 @@ impl<M: Movement> Tracker<M> {
         self.slip.clone_from(&self.object);
         self.slip.intersect(&self.moving);
         self.slip.subtract(skin);
-        let slip_px = self.slip.count();
+        let slip_px = moments.map_or(0, |moments| spread_count(&self.slip, &moments));
         let ghost = learn && self.seen && slip_px < STILL_PX && ghost::is_one(&self.object, skin, grey);
         self.ghosts = if ghost { self.ghosts + 1 } else { 0 };
         if self.ghosts >= GHOST_FRAMES {
             self.lay_ghost(frame);
             return None;
         }
-        let flat = self.lens.as_ref().filter(|_| self.seen).and_then(|lens| lens.moments(&self.object));
-        moments.map(|moments| Sighting {
-            moments: flat.unwrap_or(moments),
-            area: part(moments.area),
-            slip_px,
-            cut: touches_border(&self.object),
-        })
+        let area = part(moments?.area);
+        let lens = self.lens.as_ref();
+        let moments = lens.and_then(|lens| lens.moments(&self.object)).or(moments)?;
+        let angle_rad = axis::angle_rad(&self.object, &moments, lens);
+        // A marker hides what is behind it.
+        let mut unknown = apart;
+        unknown.unite(skin);
+        unknown.unite(&self.object);
+        let cut = cut::is_cut(&self.object, learn.then_some(&unknown));
+        Some(Sighting { moments, angle_rad, area, slip_px, cut })
     }
 
     /// Takes what is seen now for the scene, and forgets the object.
@@ -267,7 +297,14 @@ impl<M: Movement> Tracker<M> {
         let mut hidden = self.near.clone();
         let doubt = if self.seen { DOUBT_FRAMES } else { DOUBT_FRAMES_EMPTY };
         if !self.frames.is_multiple_of(doubt) {
-            hidden.unite(differs);
+            // What stands still far from an object is the scene, changed.
+            let mut doubtful = self.moving.clone();
+            doubtful.dilate(MOVES_PX);
+            let mut close = self.near.clone();
+            close.dilate(CLOSE_PX);
+            doubtful.unite(&close);
+            doubtful.intersect(differs);
+            hidden.unite(&doubtful);
         }
         hidden.dilate(3);
         hidden.unpack(&mut self.held);
@@ -275,9 +312,15 @@ impl<M: Movement> Tracker<M> {
     }
 }
 
-/// Whether a part of it is at the border of the picture.
-fn touches_border(mask: &Mask) -> bool {
-    let rows = mask.rows();
-    let ends = rows[0].iter().chain(&rows[rows.len() - 1]).any(|&word| word != 0);
-    ends || rows.iter().any(|row| row[0] & 1 != 0 || row[row.len() - 1] >> 63 != 0)
+/// How many pixels of `slip` there are, at most four times as many as on one half of the object: what slips does so at both
+/// ends, and a spot of the moving background beside it at one.
+fn spread_count(slip: &Mask, object: &Moments) -> u32 {
+    let (sin, cos) = (libm::sinf(object.angle_rad()), libm::cosf(object.angle_rad()));
+    let (mut here, mut there) = (0u32, 0u32);
+    slip.for_each(|at| {
+        let (dx, dy) = ((at % WIDTH) as f32 - object.middle.x, (at / WIDTH) as f32 - object.middle.y);
+        let ahead = dx * cos + dy * sin > 0.0;
+        (here, there) = (here + u32::from(ahead), there + u32::from(!ahead));
+    });
+    (here + there).min(4 * here.min(there))
 }

@@ -51,6 +51,14 @@ impl Rectifier {
         Point { x: MIDDLE.x + (seen.x - MIDDLE.x) * scale, y: MIDDLE.y + (seen.y - MIDDLE.y) * scale }
     }
 
+    /// Where a pixel of the picture is in the flat world, px.
+    #[inline]
+    #[must_use]
+    pub fn place(&self, at: usize) -> Point {
+        let (x, y, _) = self.places[at];
+        Point { x: MIDDLE.x + x, y: MIDDLE.y + y }
+    }
+
     /// How a set of pixels lies in the flat world. None of an empty set.
     #[must_use]
     pub fn moments(&self, mask: &Mask) -> Option<Moments> {

@@ -3,7 +3,7 @@
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-use super::{About, NetworkState, samples};
+use super::{About, Last, NetworkState, samples};
 use crate::channel::COUNT;
 
 /// Why a command was not carried out.
@@ -67,4 +67,6 @@ pub enum Answer {
     Nonce(u32),
     /// To [`Down::About`](super::Down::About).
     About(About),
+    /// To [`Down::Last`](super::Down::Last).
+    Last(Last),
 }

@@ -72,6 +72,9 @@ pub enum Down {
     End,
     /// What the camera behind the skin saw. 30 to 63 times a second.
     View(CameraView),
+    /// Answer with an [`Answer::Last`](super::Answer::Last): what the board had said before its last run ended in a fault, from
+    /// this byte on. It is kept until somebody asks from its end on, who has read it all; then the board keeps what it says now.
+    Last(u16),
 }
 
 impl Down {
@@ -89,6 +92,7 @@ impl Down {
                 | Self::Open { .. }
                 | Self::About
                 | Self::Stream { .. }
+                | Self::Last(_)
         )
     }
 }

@@ -8,10 +8,15 @@ use crate::budgets::Budgets;
 use crate::image;
 use crate::image::panics;
 
+/// The chip besides the board's for which the image is compiled, to show what a port takes.
+const PORT: &str = "stm32f446re";
+
 pub fn main() -> anyhow::Result<ExitCode> {
     let root = workspace::root()?;
     image::clippy(&root)?;
     out::say!("image: no warnings")?;
+    image::port(&root, PORT)?;
+    out::say!("image: compiles for {PORT}, too")?;
     let elf = image::build(&root)?;
     let control = panics::check(&elf)?;
     out::say!(

@@ -12,6 +12,7 @@ use tenax_hal_shim::wire::{Down, SETTINGS_PER_ANSWER, Setting};
 use super::{out, port};
 use crate::link::{Client, Target};
 use crate::monitor::app;
+use crate::monitor::source::Places;
 use crate::web::Web;
 use crate::{monitor, settings};
 
@@ -34,6 +35,9 @@ pub struct Args {
     /// Instead of the screen, a page in the browser, on this port of 127.0.0.1; 0: any that is free
     #[arg(long, value_name = "HTTP_PORT", num_args = 0..=1, default_missing_value = "7780", conflicts_with = "plain")]
     web: Option<u16>,
+    /// Beside what the board says, show what really happens in its scene: where `tenax run --serve-truth` tells it
+    #[arg(long, value_name = "tcp:HOST:PORT", conflicts_with = "plain")]
+    truth: Option<Target>,
     /// Let the screen's keys change something: settings, zero, calibration, the teacher
     #[arg(long, conflicts_with = "plain")]
     control: bool,
@@ -92,8 +96,9 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         Some(file) => Target::File(file.clone()),
         None => port::or_found(args.port.as_ref())?,
     };
+    let places = Places { line: target.clone(), truth: args.truth.clone() };
     if let Some(port) = args.web {
-        let web = Web::new(&target, args.control, port)?;
+        let web = Web::new(&places, args.control, port)?;
         out::note!("open {} in a browser of this machine; Ctrl-C ends it", web.place());
         web.serve();
         return Ok(ExitCode::SUCCESS);
@@ -102,7 +107,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         !args.send.is_empty() || !args.set.is_empty() || !args.get.is_empty() || args.settings || args.teach;
     let plain = args.plain || told || !io::stdout().is_terminal() || matches!(target, Target::File(_));
     if !plain {
-        app::show(&target, args.control)?;
+        app::show(&places, args.control)?;
         return Ok(ExitCode::SUCCESS);
     }
     let mut client = Client::open(&target)?;

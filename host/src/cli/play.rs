@@ -48,7 +48,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         );
     }
     let (mut server, _nobody) =
-        Server::start(&Options { pty: args.serve, at: None, tcp: args.serve_tcp }, |_| {})?;
+        Server::start(&Options { pty: args.serve, tcp: args.serve_tcp, ..Options::default() }, |_| {})?;
     for place in server.places() {
         out::note!("serving on {place}");
     }

@@ -59,6 +59,10 @@ pub struct Args {
     /// Run at real time and serve the line on this TCP port of 127.0.0.1; 0: any that is free
     #[arg(long, value_name = "PORT")]
     serve_tcp: Option<u16>,
+    /// Beside the line, tell what really happens in the scene on this TCP port of 127.0.0.1, for `tenax monitor --truth`: a
+    /// line of JSON 50 times a second; 0: any that is free
+    #[arg(long, value_name = "PORT", conflicts_with = "replay")]
+    serve_truth: Option<u16>,
     /// Record the line, every frame included, so that `run --replay FILE.mcap` can decide everything once more
     #[arg(long, value_name = "FILE.mcap")]
     record: Option<PathBuf>,
@@ -128,15 +132,23 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
 
 /// Begins to serve, if that is asked for, and says where.
 fn served(args: &Args) -> anyhow::Result<Option<(Server, serve::Live)>> {
-    if !args.serve && args.serve_tcp.is_none() {
+    if !args.serve && args.serve_tcp.is_none() && args.serve_truth.is_none() {
         return Ok(None);
     }
-    let options = serve::Options { pty: args.serve, at: args.serve_at.clone(), tcp: args.serve_tcp };
+    let options = serve::Options {
+        pty: args.serve,
+        at: args.serve_at.clone(),
+        tcp: args.serve_tcp,
+        truth: args.serve_truth,
+    };
     let (server, live) = Server::start(&options, |part| {
         out::note!("the board is slower than real time: it runs, and is served, at {part:.2} of it");
     })?;
     for place in server.places() {
         out::note!("serving on {place}");
+    }
+    if let Some(place) = server.truth_place() {
+        out::note!("telling what really happens on {place}");
     }
     Ok(Some((server, live)))
 }

@@ -13,11 +13,12 @@ use super::symbols::TICK;
 /// What every panic ends in.
 const PANIC: &str = "rust_begin_unwind";
 /// The interrupts of a frame: DMA has filled it, or it did not come in time; and the executor of control.
-const INTERRUPTS: [&str; 3] = ["DMA2_STREAM0", "TIM2", "SPI5"];
+const INTERRUPTS: [&str; 3] = ["DMA2_STREAM0", "TIM2", "I2C3_ER"];
 /// What an interrupt calls through a task's waker, and a task when it registers one.
 const WAKER: &str = "embassy_executor3raw5waker";
 /// Names of functions that may call through a pointer: there it is a waker, or the executor that polls a task.
-const MAY_CALL_POINTERS: [&str; 5] = ["DMA2_STREAM0", "TIM2", "SPI5", "tenax_firmware", "embassy_executor"];
+const MAY_CALL_POINTERS: [&str; 5] =
+    ["DMA2_STREAM0", "TIM2", "I2C3_ER", "tenax_firmware", "embassy_executor"];
 
 /// What was found about control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -155,7 +156,7 @@ mod tests {
         let shape: [(&str, &[usize], usize); 8] = [
             ("DMA2_STREAM0", &[], 1),
             ("TIM2", &[], 1),
-            ("SPI5", &[], 1),
+            ("I2C3_ER", &[], 1),
             ("_ZN16embassy_executor3raw4poll", &[4], 1),
             ("tenax_control_tick", &[7], 0),
             ("_ZN16embassy_executor3raw5waker4wake", &[], 0),

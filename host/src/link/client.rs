@@ -182,7 +182,7 @@ impl Client {
 
 /// Whether a command's answer takes a good part of the line, so that the board counts it as several.
 const fn has_long_answer(command: &Down) -> bool {
-    matches!(command, Down::Samples | Down::Network | Down::Settings(_) | Down::About)
+    matches!(command, Down::Samples | Down::Network | Down::Settings(_) | Down::About | Down::Last(_))
 }
 
 /// Whether a read failed only because nothing has come yet.

@@ -91,6 +91,24 @@ mod tests {
     }
 
     #[test]
+    fn ten_minutes_of_numbers_come_round_five_times_and_any_shorter_gap_is_counted() {
+        let mut inbox = Inbox::default();
+        let mut hear = |number: u32| {
+            frame(number as u16).into_iter().for_each(|byte| _ = inbox.push(byte));
+            inbox.counts().missed
+        };
+        // 572 messages a second.
+        assert_eq!((0..343_200).map(&mut hear).last(), Some(0));
+        // A gap over a wrap, and the longest one that is told.
+        let wrap = 6 * 65_536;
+        (343_200..wrap - 10).for_each(|number| _ = hear(number));
+        assert_eq!(hear(wrap + 1_000), 1_010);
+        assert_eq!(hear(wrap + 1_001 + 65_535), 1_010 + 65_535);
+        // What the page says of a longer one.
+        assert_eq!(hear(wrap + 1_001 + 65_535 + 65_537 + 7), 1_010 + 65_535 + 7);
+    }
+
+    #[test]
     fn garbage_is_skipped_and_the_next_message_is_heard() {
         let mut torn = frame(0);
         torn[3] ^= 0x40;

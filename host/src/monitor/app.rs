@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 use std::sync::mpsc::{Sender, channel};
-use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::Context;
@@ -12,25 +11,23 @@ use tenax_hal_shim::wire::{Down, Setting};
 use tenax_hal_shim::words::Code;
 
 use super::screen::{self, Edit, Shown};
-use super::source::{self, News};
+use super::source::{self, News, Places};
 use super::view::View;
-use crate::link::Target;
 use crate::record::Recording;
 
 const PICTURE_EVERY: Duration = Duration::from_millis(50);
 /// Age of a picture that a key stands for, ms.
 const PICTURE_AGE_MS: u16 = 33;
 
-/// Shows the board at `target` until somebody quits. `control` lets keys change something.
+/// Shows a board until somebody quits. `control` lets keys change something.
 ///
 /// # Errors
 /// If the terminal cannot be drawn on, or a recording cannot be written.
-pub fn show(target: &Target, control: bool) -> anyhow::Result<()> {
+pub fn show(places: &Places, control: bool) -> anyhow::Result<()> {
     let (commands, waiting) = channel();
     let (sender, news) = channel();
-    let place = target.clone();
-    thread::spawn(move || source::watch(&place, &waiting, &sender));
-    let shown = Shown { place: target.to_string(), control, ..Shown::default() };
+    source::start(places, waiting, sender);
+    let shown = Shown { place: places.line.to_string(), control, ..Shown::default() };
     let mut app = App { view: View::default(), shown, commands, recording: None, marks: 0, over: false };
     let mut terminal = ratatui::try_init().context("this is no terminal: use --plain")?;
     let ended = app.run(&mut terminal, &mut || news.try_recv().ok());

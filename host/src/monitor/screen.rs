@@ -9,9 +9,11 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Modifier, Style};
 use ratatui::text::{Line as Text, Span};
 use ratatui::widgets::Paragraph;
+use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::words::Line;
 
 use super::view::View;
+use crate::truth::Truth;
 
 pub use self::settings::Edit;
 
@@ -35,17 +37,21 @@ pub struct Shown {
 
 /// Draws everything.
 pub fn draw(frame: &mut Frame<'_>, view: &View, shown: &Shown) {
-    let [head, body, keys] =
-        Layout::vertical([Constraint::Length(1), Constraint::Min(0), Constraint::Length(1)])
+    let scene = Constraint::Length(u16::from(!view.truth.is_empty()));
+    let [head, truth, body, keys] =
+        Layout::vertical([Constraint::Length(1), scene, Constraint::Min(0), Constraint::Length(1)])
             .areas(frame.area());
     frame.render_widget(Paragraph::new(title(view, shown)), head);
+    if let Some(now) = view.truth.back() {
+        frame.render_widget(Paragraph::new(true_words(now)).style(Style::new().fg(Color::Green)), truth);
+    }
     frame.render_widget(Paragraph::new(help(shown)).style(Style::new().fg(Color::DarkGray)), keys);
     let tall = frame.area().height >= TALL;
     let [left, right] =
-        Layout::horizontal([Constraint::Percentage(52), Constraint::Percentage(48)]).areas(body);
+        Layout::horizontal([Constraint::Percentage(51), Constraint::Percentage(49)]).areas(body);
     draw_left(frame, left, view, tall);
     let [detectors, muscles, line, log] = Layout::vertical([
-        Constraint::Length(7),
+        Constraint::Length(2 + DetectorId::COUNT as u16),
         Constraint::Length(4),
         Constraint::Length(6),
         Constraint::Min(3),
@@ -102,6 +108,16 @@ fn title<'a>(view: &View, shown: &'a Shown) -> Text<'a> {
         spans.push(Span::styled(" PAUSED ", strong.fg(Color::Black).bg(Color::Yellow)));
     }
     Text::from(spans)
+}
+
+/// What really happens in a scene.
+fn true_words(truth: &Truth) -> String {
+    let fate = if truth.dropped { "DROPPED" } else { "kept" };
+    let Truth { slide_mm_s, grip_n, needed_n, slips, slipped_mm, .. } = truth;
+    format!(
+        " the scene: {} {slide_mm_s:.1} mm/s; grip {grip_n:.1} N, needs {needed_n:.1} N; {fate}, {slips} slips, {slipped_mm:.1} mm",
+        truth.contact()
+    )
 }
 
 fn help(shown: &Shown) -> &'static str {

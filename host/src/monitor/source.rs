@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use tenax_hal_shim::wire::{Answer, BadFrame, Down};
 
 use crate::link::{Client, Counts, Heard, Target};
+use crate::truth::{self, Truth};
 
 /// How long a board may take to answer.
 const ANSWER_WITHIN: Duration = Duration::from_secs(2);
@@ -25,8 +26,29 @@ pub enum News {
     Gone(String),
     /// A message, or a frame that is none; what has been counted; and when it came.
     Frame(Result<Heard, BadFrame>, Counts, Instant),
+    /// What really happens in the scene.
+    Truth(Truth),
     /// What was asked, and the answer.
     Answered(Down, Result<Answer, String>),
+}
+
+/// What is watched.
+#[derive(Clone, Debug)]
+pub struct Places {
+    /// The board's line.
+    pub line: Target,
+    /// Where what really happens is told, if that is known.
+    pub truth: Option<Target>,
+}
+
+/// Watches all of it on threads of their own, which end when nobody listens any more.
+pub fn start(places: &Places, commands: Receiver<Down>, news: Sender<News>) {
+    if let Some(target) = places.truth.clone() {
+        let news = news.clone();
+        thread::spawn(move || truth::watch(&target, &news));
+    }
+    let target = places.line.clone();
+    thread::spawn(move || watch(&target, &commands, &news));
 }
 
 /// Watches a line until nobody listens any more.
@@ -57,6 +79,8 @@ fn attend(mut client: Client, commands: &Receiver<Down>, news: &Sender<News>) ->
     if client.can_send() {
         // They only read, and an older image answers what it knows.
         let _asked = client.send(&Down::About);
+        // Whether its last run ended in a fault.
+        let _asked = client.send(&Down::Last(0));
     }
     loop {
         if client.can_send() && streamed.is_none_or(|at| at.elapsed() >= STREAM_EVERY) {

@@ -14,6 +14,7 @@ use tenax_hal_shim::words::Fault;
 use super::source::News;
 use super::words::{Words, why};
 use crate::link::{Counts, Heard};
+use crate::truth::Truth;
 
 /// Slow frames whose readings are drawn: ten seconds.
 pub const HISTORY: usize = 800;
@@ -75,6 +76,8 @@ pub struct View {
     pub log: VecDeque<String>,
     /// What was counted on the line.
     pub counts: Counts,
+    /// What really happens, if there is a scene that tells, the oldest first.
+    pub truth: VecDeque<Truth>,
     /// Messages of another version were heard.
     pub other_version: Option<String>,
     said: u64,
@@ -103,6 +106,16 @@ impl View {
                     Ok(heard) => self.hear(heard, at),
                     Err(bad) => self.skip(bad),
                 }
+            }
+            News::Truth(truth) => {
+                // A scene that was started anew begins at 0 again.
+                if self.truth.back().is_some_and(|last| last.t_s > truth.t_s) {
+                    self.truth.clear();
+                }
+                if self.truth.len() == HISTORY {
+                    self.truth.pop_front();
+                }
+                self.truth.push_back(truth);
             }
             News::Answered(command, answer) => self.answered(&command, answer),
         }
@@ -157,6 +170,9 @@ impl View {
             Up::Senses(senses) => self.senses = Some(senses.clone()),
             Up::Counters(counters) => self.counters = Some(*counters),
             Up::About(about) => self.about(about.clone()),
+            Up::Answer { answer: Answer::Last(last), .. } if last.after.is_some() && last.from == 0 => {
+                self.say(Words(&received.message).to_string());
+            }
             Up::Answer { answer, .. } => self.learn(answer),
             Up::Hello { .. } => {
                 self.faults.clear();

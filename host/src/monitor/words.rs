@@ -7,8 +7,8 @@ use tenax_hal_shim::detector::{DetectorHealth, DetectorId, DetectorSet};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{
-    About, Answer, BadFrame, Event, EventKind, Identity, NetworkState, Raw, Refusal, Restored, Setting, Slow,
-    TickRecord, Up, VERSION,
+    About, Answer, BadFrame, Event, EventKind, Identity, Last, NetworkState, Raw, Refusal, Restored, Setting,
+    Slow, TickRecord, Up, VERSION,
 };
 use tenax_hal_shim::words::{Calibration, Line};
 
@@ -103,7 +103,20 @@ fn answer_words(f: &mut fmt::Formatter<'_>, of: u16, frame: u32, answer: &Answer
         }
         Answer::Network(network) => network_words(f, network),
         Answer::About(about) => about_words(f, about),
+        Answer::Last(last) => last_words(f, last),
         Answer::Nonce(nonce) => write!(f, "a session opens with {nonce:#010x}"),
+    }
+}
+
+fn last_words(f: &mut fmt::Formatter<'_>, last: &Last) -> fmt::Result {
+    match &last.after {
+        None => f.write_str("nothing is kept of a run before"),
+        Some(fault) => write!(
+            f,
+            "{} bytes are kept of the seconds before {}: `tenax record --last` fetches them",
+            last.length,
+            in_words(fault)
+        ),
     }
 }
 

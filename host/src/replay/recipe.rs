@@ -10,6 +10,8 @@ use tenax_hal_shim::channel;
 use thiserror::Error;
 use toml::Spanned;
 
+use super::meaning::Meaning;
+
 /// What is wrong with a recipe, and where.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("{file}:{line}: {what}")]
@@ -47,6 +49,9 @@ pub struct Recipe {
     /// What is assumed of signals that the recording lacks.
     #[serde(default)]
     pub hold: Hold,
+    /// What recordings mean for the hand.
+    #[serde(default)]
+    pub meaning: Vec<Meaning>,
 }
 
 /// A column and the front end that brings it to pins. The stages act in the order of the fields.
@@ -197,6 +202,12 @@ impl Recipe {
         self.applies_to.iter().any(matches)
     }
 
+    /// What a recording of this name means for the hand.
+    #[must_use]
+    pub fn meaning_of(&self, file_name: &str) -> Option<&Meaning> {
+        self.meaning.iter().find(|meaning| meaning.is_for(file_name))
+    }
+
     /// Whether anything listens to this column.
     #[must_use]
     pub fn uses(&self, column: &str) -> bool {
@@ -214,7 +225,8 @@ impl Recipe {
     }
 
     fn check(&self) -> Result<(), (Range<usize>, String)> {
-        for pattern in &self.applies_to {
+        let named = self.meaning.iter().map(|meaning| &meaning.named);
+        for pattern in self.applies_to.iter().chain(named) {
             glob::Pattern::new(pattern.get_ref()).map_err(|error| {
                 (pattern.span(), format!("`{}` is no pattern: {error}", pattern.get_ref()))
             })?;

@@ -1,6 +1,7 @@
 //! What only a recording has to tell: its own peak and onset beside the fingertip's detections.
 
 use std::ops::RangeInclusive;
+use std::path::Path;
 
 use serde::Serialize;
 use tenax_hal_shim::detector::DetectorId;
@@ -10,6 +11,7 @@ use super::wearer::Wearer;
 use crate::board::Recorder;
 use crate::replay::facts::{Crest, crest, muscle_onset_s};
 use crate::replay::library::Named;
+use crate::replay::meaning::{Meaning, Motion};
 use crate::replay::{Recipe, Recording};
 use crate::timeline::{Timeline, frame_end_s};
 
@@ -36,6 +38,41 @@ pub struct Replay {
     pub force: Option<Force>,
     /// Myoelectric recordings: the muscle and when the gate noticed.
     pub muscle: Option<Muscle>,
+    /// What the hand did against what the recording means. Null where the recipe does not say.
+    pub meant: Option<Meant>,
+}
+
+/// What a recording means for the hand, and what the muscles made it do.
+#[derive(Clone, Debug, Serialize)]
+pub struct Meant {
+    /// What the wearer wants of it.
+    pub wants: Motion,
+    /// What it must not do.
+    pub never: Vec<Motion>,
+    /// For how long it did what the wearer wants, s. Null where they want it to rest.
+    pub wanted_s: Option<f64>,
+    /// The longest time for which it did what it must not, ms.
+    pub wrong_ms: f64,
+}
+
+impl Meant {
+    fn new(meaning: &Meaning, wearer: &Wearer) -> Self {
+        let longest_ms = |motion: &Motion| match motion {
+            Motion::Rest => 0.0,
+            Motion::Close => wearer.longest_close_ms,
+            Motion::Open => wearer.longest_open_ms,
+        };
+        Self {
+            wants: meaning.wants,
+            never: meaning.never.clone(),
+            wanted_s: match meaning.wants {
+                Motion::Rest => None,
+                Motion::Close => Some(wearer.closing_s),
+                Motion::Open => Some(wearer.opening_s),
+            },
+            wrong_ms: meaning.never.iter().map(longest_ms).fold(0.0, f64::max),
+        }
+    }
 }
 
 /// A force recording's crest of Ft/Fn, where sticking ends, and the detectors before it.
@@ -131,6 +168,9 @@ impl Replay {
                 }
                 _ => None,
             },
+            meant: recipe
+                .and_then(|recipe| recipe.meaning_of(file_name(recording)))
+                .map(|meaning| Meant::new(meaning, wearer)),
         })
     }
 }
@@ -162,6 +202,10 @@ impl Muscle {
             reflex_while_active: wearer.reflex_while_active,
         }
     }
+}
+
+fn file_name(recording: &Recording) -> &str {
+    Path::new(recording.file()).file_name().and_then(|name| name.to_str()).unwrap_or_default()
 }
 
 fn assumed(recipe: &Recipe) -> Vec<String> {

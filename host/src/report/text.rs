@@ -4,7 +4,7 @@ use std::fmt::{self, Display};
 
 use tenax_hal_shim::detector::DetectorId;
 
-use super::replay::{Force, Muscle, Replay};
+use super::replay::{Force, Meant, Muscle, Replay};
 use super::scores::Detector;
 use super::{CYCLES_PER_INSTRUCTION, Report};
 
@@ -216,7 +216,23 @@ fn replay(f: &mut fmt::Formatter<'_>, replay: &Replay) -> fmt::Result {
     if let Some(muscle) = &replay.muscle {
         activity(f, muscle)?;
     }
+    if let Some(meant) = &replay.meant {
+        meaning(f, meant)?;
+    }
     Ok(())
+}
+
+fn meaning(f: &mut fmt::Formatter<'_>, meant: &Meant) -> fmt::Result {
+    let never: Vec<&str> = meant.never.iter().map(|motion| motion.name()).collect();
+    let did = meant.wanted_s.map_or(String::new(), |wanted_s| format!("it did for {wanted_s:.2} s; "));
+    line!(
+        f,
+        "meant",
+        "the hand shall {} and never {}: {did}wrong for {:.0} at most",
+        meant.wants.name(),
+        never.join(" or "),
+        Or(Some(meant.wrong_ms), "ms")
+    )
 }
 
 fn crest(f: &mut fmt::Formatter<'_>, force: &Force) -> fmt::Result {

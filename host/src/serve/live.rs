@@ -9,6 +9,8 @@ use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{BAUD, Down};
 use tenax_scene::plant::{Calibrated, Pins, Plant};
 
+use super::Teller;
+
 /// A lag that is made up for; a greater one is not, or a board that was stopped would run fast afterwards.
 const LAG_MAX: Duration = Duration::from_millis(100);
 /// How long a board is watched before it is said that it is slow. The first time does not count: the emulated one
@@ -27,11 +29,13 @@ pub struct Live {
     /// What the real line could have carried by now and did not, in bytes times [`SCAN_HZ`]: below 0 it is busy.
     room: i64,
     pace: Pace,
+    /// Tells what really happens.
+    pub teller: Teller,
 }
 
 impl Live {
-    pub(super) fn new(down: Receiver<Vec<u8>>, behind: fn(f64)) -> Self {
-        Self { down, room: 0, pace: Pace::new(behind) }
+    pub(super) fn new(down: Receiver<Vec<u8>>, behind: fn(f64), teller: Teller) -> Self {
+        Self { down, room: 0, pace: Pace::new(behind), teller }
     }
 
     /// One scan's worth of bytes, a whole frame at a time, at the real line's rate on average.
@@ -161,7 +165,7 @@ mod tests {
     fn clients_bytes_come_down_no_faster_than_on_the_real_line() {
         let (down, bytes) = sync_channel(1_000);
         (0..1_000).for_each(|_| down.send(vec![7; 100]).unwrap());
-        let mut live = Live::new(bytes, |_| {});
+        let mut live = Live::new(bytes, |_| {}, Teller::default());
         let second: usize = (0..SCAN_HZ).map(|_| live.bytes().len()).sum();
         assert!((92_000..92_400).contains(&second), "{second}");
     }
@@ -169,7 +173,7 @@ mod tests {
     #[test]
     fn a_second_takes_a_second_and_a_stop_is_not_made_up_for() {
         let (_down, bytes) = sync_channel(1);
-        let mut pace = Live::new(bytes, |_| {}).pace;
+        let mut pace = Live::new(bytes, |_| {}, Teller::default()).pace;
         let run = |pace: &mut Pace, scans: u32| {
             let began = Instant::now();
             (0..scans).for_each(|_| pace.wait());

@@ -11,7 +11,9 @@ use crate::board::Recorder;
 use crate::plot::sketch::{Needs, Sketch};
 use crate::report::reflex::Added;
 use crate::report::wearer::Judge;
+use crate::serve::Teller;
 use crate::timeline::Timeline;
+use crate::truth::{self, Truth};
 
 /// What a report and a figure are made from, gathered while the run goes.
 pub(super) struct Witness {
@@ -50,15 +52,31 @@ impl Recorder for Witness {
 pub(super) struct Drawn {
     pub(super) world: World,
     pub(super) needs: Needs,
+    teller: Teller,
+    rows: u32,
 }
 
 impl Drawn {
     pub(super) fn new(world: World, span_s: (f64, f64)) -> Self {
-        Self { world, needs: Needs::new(span_s) }
+        Self::telling(world, span_s, Teller::default())
+    }
+
+    /// One whose truth is told while it goes.
+    pub(super) fn telling(world: World, span_s: (f64, f64), teller: Teller) -> Self {
+        Self { world, needs: Needs::new(span_s), teller, rows: 0 }
     }
 
     pub(super) fn draw(&mut self) {
-        self.world.take_trace().for_each(|row| self.needs.push(&row));
+        let mut newest = None;
+        for row in self.world.take_trace() {
+            self.needs.push(&row);
+            newest = Some(row);
+        }
+        let Some(row) = newest.filter(|_| self.teller.is_served()) else { return };
+        self.rows += 1;
+        if self.rows.is_multiple_of(truth::ROWS) {
+            self.teller.tell(&Truth::of(&self.world, &row));
+        }
     }
 }
 

@@ -166,7 +166,7 @@ impl Tables {
                 seen.area,
                 seen.moments.middle.x,
                 seen.moments.middle.y,
-                seen.moments.angle_rad(),
+                seen.angle_rad,
                 u8::from(seen.cut),
                 seen.slip_px
             )?,

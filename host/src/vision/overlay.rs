@@ -59,7 +59,7 @@ pub fn png(frame: &Frame, camera: &Camera, summary: &Summary) -> Result<Vec<u8>>
     if let Some(sighting) = summary.object {
         // The long axis, in the right half.
         let (x, y) = place(sighting.moments.middle.x + WIDTH as f32, sighting.moments.middle.y);
-        let (sin, cos) = sighting.moments.angle_rad().sin_cos();
+        let (sin, cos) = sighting.angle_rad.sin_cos();
         let long = 60.0 * sighting.moments.eccentricity() * scale;
         line(&mut canvas, (x - long * cos, y - long * sin), (x + long * cos, y + long * sin), YELLOW);
         stroke(&mut canvas, PathBuilder::from_circle(x, y, 4.0), YELLOW, 2.0);

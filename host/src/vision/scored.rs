@@ -230,7 +230,7 @@ fn judge(
     }
     if let Some(object) = summary.object {
         if truth.whole && truth.gripped && !object.cut {
-            let off = f64::from(object.moments.angle_rad()) - truth.state.angle_rad;
+            let off = f64::from(object.angle_rad) - truth.state.angle_rad;
             scores.angle_deg.add(wrapped(off, std::f64::consts::PI).to_degrees());
         }
         if truth.in_view && !truth.whole {

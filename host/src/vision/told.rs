@@ -32,8 +32,7 @@ pub fn view(camera: &Camera, summary: &Summary, gains: Gains, age_ms: u16) -> Op
         if summary.slips() {
             view.moving_e4 = (u64::from(object.slip_px) * 10_000 / PIXELS as u64) as u16;
         }
-        view.angle_ddeg =
-            (!object.cut).then(|| (object.moments.angle_rad().to_degrees() * 10.0).round() as i16);
+        view.angle_ddeg = (!object.cut).then(|| (object.angle_rad.to_degrees() * 10.0).round() as i16);
     }
     let markers = camera.markers().map_or(&[][..], |markers| markers);
     // A skin may have more markers than a view has room for: then every second, third, ... of them tells.

@@ -9,15 +9,40 @@ use crate::monitor::view::View;
 /// Lines of the log in one event at most.
 const LINES_MAX: usize = 50;
 
-/// What is new: points after an instant, lines after so many, and the state.
-pub fn event(view: &View, place: &str, after_s: f64, after_lines: u64) -> Value {
+/// What a page has been told already.
+#[derive(Clone, Copy, Debug)]
+pub struct After {
+    /// Points up to this instant, s.
+    pub points_s: f64,
+    /// What was true up to this one.
+    pub truth_s: f64,
+    /// Lines of the log.
+    pub lines: u64,
+}
+
+impl After {
+    /// Nothing.
+    pub const NOTHING: Self = Self { points_s: f64::MIN, truth_s: f64::MIN, lines: 0 };
+
+    /// All that there is. A board or a scene that started anew counts from 0 again.
+    pub fn all(view: &View) -> Self {
+        Self {
+            points_s: view.t_s(),
+            truth_s: view.truth.back().map_or(f64::MIN, |truth| truth.t_s),
+            lines: view.said(),
+        }
+    }
+}
+
+/// What is new, and the state.
+pub fn event(view: &View, place: &str, after: &After) -> Value {
     let points: Vec<Value> = view
         .history
         .iter()
-        .filter(|point| point.t_s > after_s)
+        .filter(|point| point.t_s > after.points_s)
         .map(|point| json!([point.t_s, point.vibration_mv, point.ratio, point.s2, point.load_n]))
         .collect();
-    let new = usize::try_from(view.said() - after_lines.min(view.said())).unwrap_or(LINES_MAX).min(LINES_MAX);
+    let new = usize::try_from(view.said() - after.lines.min(view.said())).unwrap_or(LINES_MAX).min(LINES_MAX);
     let log: Vec<&str> =
         view.log.iter().skip(view.log.len().saturating_sub(new)).map(|line| line.trim_start()).collect();
     let slow = view.slow.as_ref();
@@ -37,7 +62,15 @@ pub fn event(view: &View, place: &str, after_s: f64, after_lines: u64) -> Value 
             })
         })
         .collect();
+    let truths: Vec<Value> = view
+        .truth
+        .iter()
+        .filter(|truth| truth.t_s > after.truth_s)
+        .map(|truth| json!([truth.t_s, truth.slide_mm_s, truth.needed_n, truth.grip_n]))
+        .collect();
     json!({
+        "truth": view.truth.back().map(|truth| json!({ "now": truth, "contact": truth.contact() })),
+        "truths": truths,
         "place": place,
         "gone": view.gone,
         "other_version": view.other_version,

@@ -19,6 +19,15 @@ pub struct Serving {
 impl Serving {
     /// Serves a scene file's text at one place more than `more` asks for.
     pub fn start(scene: &str, more: &[&str]) -> Self {
+        Self::at(scene, more, 1 + more.len())
+    }
+
+    /// Serves it on TCP, and tells the truth at a second place.
+    pub fn start_telling(scene: &str) -> Self {
+        Self::at(scene, &["--serve-truth", "0"], 2)
+    }
+
+    fn at(scene: &str, more: &[&str], places: usize) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("served.toml");
         std::fs::write(&path, scene).unwrap();
@@ -36,9 +45,10 @@ impl Serving {
         let place = |_| {
             let mut line = String::new();
             said.read_line(&mut line).unwrap();
-            line.trim_end().strip_prefix("serving on ").unwrap_or_else(|| panic!("{line}")).to_owned()
+            let place = line.trim_end().split_once(" on ").unwrap_or_else(|| panic!("{line}")).1;
+            place.to_owned()
         };
-        let places = (0..=more.len()).map(place).collect();
+        let places = (0..places).map(place).collect();
         Self { run, said, places, folder }
     }
 
@@ -46,6 +56,12 @@ impl Serving {
     pub fn trusting() -> Self {
         let rig = include_str!("../../../scenes/rig.toml");
         Self::start(&rig.replacen("\n[contact]", "\nline_trusted = true\n\n[contact]", 1), &[])
+    }
+
+    /// Ends the run now.
+    pub fn kill(&mut self) {
+        self.run.kill().unwrap();
+        self.run.wait().unwrap();
     }
 
     /// Waits for the run's end; what else it said.

@@ -6,6 +6,7 @@ mod behaviours;
 mod converter;
 mod faults;
 mod head;
+mod last;
 mod link;
 #[path = "../../../host-tests/src/onsets.rs"]
 mod onsets;

@@ -15,6 +15,10 @@ const SCORES: [(i32, u16); 3] = [(300, 5), (100, 3), (30, 1)];
 /// A cell feels another force than before if it has changed by this, mN, or by a quarter of what it was.
 const CHANGE_MN: i32 = 60;
 
+/// The skin as a whole is pulled at if all markers together are sheared by so much more than at first, mN: three times what
+/// noise of 10 mN a marker and their steps come to. A light object's pull is too small for any one of them.
+const PULL_MN: i32 = 250;
+
 /// What is felt in one tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Felt<'a> {
@@ -77,6 +81,19 @@ impl Skin {
                 Some(known.map(score).sum())
             }
         }
+    }
+
+    /// Whether the markers together feel a pull that they did not feel at first.
+    #[must_use]
+    pub fn is_pulled(&self, felt: &Felt<'_>) -> bool {
+        let (Self::Markers { normal_mn: normals, shear_mn: shears }, Some(view)) = (self, felt.view) else {
+            return false;
+        };
+        let sheared = |n: usize| {
+            normals[n].and(normal_mn(view, n))?;
+            Some(i32::from(shear_mn(view, n)) - i32::from(shears[n]))
+        };
+        (0..MARKERS).filter_map(sheared).sum::<i32>().abs() > PULL_MN
     }
 
     /// How many cells feel another force than at first (section II-C). None while the skin of the beginning gives no
@@ -206,5 +223,9 @@ mod tests {
         assert_eq!(skin.changed(&felt(Some(&pulled), &none)), Some(MARKERS as u16));
         let lost = CameraView { normal: [UNTRACKED; MARKERS], ..pulled };
         assert_eq!(skin.changed(&felt(Some(&lost), &none)), Some(0));
+        assert!(!skin.is_pulled(&felt(Some(&lost), &none)));
+        let gently = view(20, 1);
+        assert_eq!(skin.changed(&felt(Some(&gently), &none)), Some(0), "too little for each");
+        assert!(skin.is_pulled(&felt(Some(&gently), &none)) && !skin.is_pulled(&felt(Some(&before), &none)));
     }
 }

@@ -24,6 +24,7 @@ pub struct HandOver {
     skin: Skin,
     /// Cells that feel another force, when they were last looked at.
     changed: u16,
+    pulled: bool,
     waited: u32,
     changed_for: u32,
     slips_for: u32,
@@ -36,7 +37,15 @@ impl HandOver {
         if felt.grip == Grip::Unknown {
             return None;
         }
-        Some(Self { skin: Skin::now(felt)?, changed: 0, waited: 0, changed_for: 0, slips_for: 0, opened: 0 })
+        Some(Self {
+            skin: Skin::now(felt)?,
+            changed: 0,
+            pulled: false,
+            waited: 0,
+            changed_for: 0,
+            slips_for: 0,
+            opened: 0,
+        })
     }
 
     pub fn step(&mut self, config: &BehaviourConfig, felt: &Felt<'_>) -> Course {
@@ -54,9 +63,10 @@ impl HandOver {
         if felt.skin_is_new() {
             let Some(changed) = self.skin.changed(felt) else { return Course::Ends(Ending::SensorLost) };
             self.changed = changed;
+            self.pulled = self.skin.is_pulled(felt);
         }
         let changed = self.changed;
-        let slips = felt.is_slipping(config.moving_e4, false) && changed > 0;
+        let slips = felt.is_slipping(config.moving_e4, false) && (changed > 0 || self.pulled);
         self.waited = self.waited.saturating_add(1);
         self.changed_for = if changed > config.changed_cells { self.changed_for + 1 } else { 0 };
         self.slips_for = if slips { self.slips_for + 1 } else { 0 };

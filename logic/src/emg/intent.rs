@@ -57,8 +57,16 @@ const CLOSE_ALONE: i32 = octaves(300);
 
 /// Readings for which an unproven contraction may move the hand: 92 ms.
 pub const UNPROVEN_READINGS: u16 = 22;
+/// One that may open it and that the other electrode hears too: 0.4 s after it began or last fell back from a crest.
+const HEARD_READINGS: u16 = 96;
+/// One at the top of its range that the other electrode hears well: 0.6 s. It proves nothing there; recordings have 0.55 s,
+/// and the other electrode then at three times its rest.
+const CLIPPED_READINGS: u16 = 144;
 /// How far the other electrode stands out from rest when it hears the same contraction: by 23 %. A fault has one electrode.
 const HEARS_TOO: i32 = octaves(300);
+/// And when it hears it well: twice its rest. It then stands at 2.8 times what was calibrated at most; above, it contracts.
+const HEARS_WELL: i32 = octaves(1_000);
+const HEARS_AT_MOST: i32 = octaves(1_500);
 
 /// Without calibration: an electrode below this is inactive, uV; what silences the reflex. A millivolt below the 160 that
 /// count as activity, since readings and levels are rounded.
@@ -92,6 +100,10 @@ pub struct Electrode {
     pub level: Option<i32>,
     /// Whether what it hears has been proven to be a muscle.
     pub proven: bool,
+    /// Whether it is at the top of its range.
+    pub clipped: bool,
+    /// Whether it has just fallen back from a crest.
+    pub turned: bool,
     /// Whether it stands still: then it vetoes nothing.
     pub unmodulated: bool,
 }
@@ -101,8 +113,9 @@ pub struct Electrode {
 struct Sites {
     /// Index of the closing electrode.
     closing: usize,
-    /// Of the opening contraction at its site.
+    /// Of the opening contraction at its site, and at the other.
     open: i32,
+    open_beside: i32,
     /// Of the closing one at its own.
     close: i32,
     close_begins: i32,
@@ -142,6 +155,7 @@ impl Sites {
         Self {
             closing,
             open: open[1],
+            open_beside: open[0],
             close: close[0],
             close_begins,
             close_ends: above_rest(0, close[0], END_PERMILLE, END_LEAST).min(close_begins - octaves(100)),
@@ -177,8 +191,9 @@ pub struct Intent {
     /// Readings since opening began, and since it ended.
     open_for: u16,
     since_open: u16,
-    /// Readings for which an unproven contraction has moved the hand.
-    unproven: u16,
+    /// Readings for which an unproven contraction has moved the hand, and of rest that are still to come.
+    moved: u16,
+    waits: u16,
     strength_permille: u16,
 }
 
@@ -208,43 +223,57 @@ impl Intent {
 
     /// Takes both electrodes, flexor first: what the wearer wants.
     pub fn take(&mut self, electrodes: &[Electrode; 2]) -> Wish {
-        let (wish, mover, other_hears) = match self.sites {
+        let (wish, mover, most) = match self.sites {
             Some(sites) => {
                 let [closing, opening] = if sites.closing == 0 { [0, 1] } else { [1, 0] };
                 let levels = [electrodes[closing].level, electrodes[opening].level];
                 self.calibrated(&sites, levels, electrodes[closing].unmodulated);
                 let hears = |n: usize| levels[n].is_some_and(|level| level >= sites.rest[n] + HEARS_TOO);
+                let hears_well =
+                    |level| level >= sites.rest[0] + HEARS_WELL && level <= sites.open_beside + HEARS_AT_MOST;
+                let clips_well = electrodes[opening].clipped && levels[0].is_some_and(hears_well);
                 match self.wish {
-                    Wish::Open => (Wish::Open, opening, hears(0)),
-                    wish => (wish, closing, hears(1)),
+                    Wish::Open if clips_well => (Wish::Open, opening, CLIPPED_READINGS),
+                    Wish::Open if hears(0) => (Wish::Open, opening, HEARD_READINGS),
+                    Wish::Open => (Wish::Open, opening, UNPROVEN_READINGS),
+                    // A weak flexor may take seconds to curve.
+                    wish if hears(1) => (wish, closing, u16::MAX),
+                    wish => (wish, closing, UNPROVEN_READINGS),
                 }
             }
             None => {
                 self.uncalibrated([electrodes[0].level, electrodes[1].level]);
-                (self.wish, usize::from(self.wish == Wish::Open), false)
+                (self.wish, usize::from(self.wish == Wish::Open), UNPROVEN_READINGS)
             }
         };
-        self.bound(wish, electrodes[mover].proven || other_hears)
+        if most > UNPROVEN_READINGS && electrodes[mover].turned {
+            (self.moved, self.waits) = (0, 0);
+        }
+        self.bound(wish, electrodes[mover].proven, most)
     }
 
-    /// Lets an unproven contraction move the hand for a while only. A pause does not begin a new while.
-    fn bound(&mut self, wish: Wish, proven: bool) -> Wish {
+    /// Lets an unproven contraction move the hand for `most` readings. A pause does not begin a new while.
+    fn bound(&mut self, wish: Wish, proven: bool, most: u16) -> Wish {
         if proven {
-            self.unproven = 0;
+            (self.moved, self.waits) = (0, 0);
             return wish;
         }
         if wish == Wish::Rest {
-            self.unproven = self.unproven.saturating_sub(1);
+            self.waits = self.waits.saturating_sub(1);
+            if self.waits == 0 {
+                self.moved = self.moved.saturating_sub(1);
+            }
             return wish;
         }
-        if self.unproven >= UNPROVEN_READINGS {
+        if most == u16::MAX {
+            return wish;
+        }
+        if self.moved >= most {
+            // What follows a pause has to wait for three times as long as this took.
+            self.waits = self.waits.max(3 * UNPROVEN_READINGS);
             return Wish::Rest;
         }
-        self.unproven += 1;
-        // The last one: what follows a pause has to wait as long as it has been.
-        if self.unproven == UNPROVEN_READINGS {
-            self.unproven = 4 * UNPROVEN_READINGS;
-        }
+        self.moved += 1;
         wish
     }
 

@@ -103,6 +103,8 @@ impl Emg {
         self.electrodes[n] = Electrode {
             level,
             proven: self.watches[n].is_proven(),
+            clipped: self.watches[n].is_clipped(),
+            turned: self.watches[n].has_turned(),
             unmodulated: self.watches[n].is_unmodulated(),
         };
         // Silence does not wait for the other half of the pair.

@@ -54,8 +54,11 @@ const BACK_FRAMES: u16 = 80;
 /// An envelope that begins is judged after so many slow frames, when the step response of a front end has settled
 /// (second order at 4 Hz: to 4 %): 225 ms.
 const PROOF_FRAMES: u16 = 18;
-/// Curving that proves a muscle: one part in so many of its level, 8 %.
+/// Curving that proves a muscle, twice: one part in so many of its level, 8 %.
 const PROOF_PART: i32 = 12;
+/// Slow frames without curving below the top after which a contraction has to prove itself again: 0.4 s. Recordings curve
+/// again within 225 ms.
+const STRAIGHT_FRAMES: u8 = 32;
 /// How far a proven contraction has stood out from the learned rest, as a difference of levels: a factor of 3.5. The crests
 /// of a restless contact stay below.
 const PROOF_RISE: i32 = 1_843;
@@ -138,10 +141,14 @@ pub struct Watch {
     inactive_for: u8,
     tall: bool,
     proven: bool,
+    /// Slow frames since it last curved, and since it first did without a longer while between.
+    straight_for: u8,
+    curved_for: u8,
     /// Slow frames since it last turned, the highest point since, and the point half way to a verdict.
     foot_uv: i32,
     crest_uv: i32,
     climbing: u16,
+    turned: bool,
     at_top: u16,
     silent: u16,
     restless: u16,
@@ -168,9 +175,12 @@ impl Default for Watch {
             inactive_for: 0,
             tall: false,
             proven: false,
+            straight_for: 0,
+            curved_for: 0,
             foot_uv: 0,
             crest_uv: 0,
             climbing: 0,
+            turned: false,
             at_top: 0,
             silent: 0,
             restless: 0,
@@ -220,8 +230,8 @@ impl Watch {
         self.follow_activity(expected, level);
         let tall = expected.rest.is_none_or(|rest| level >= rest + PROOF_RISE);
         self.tall = self.active_for > 0 && (self.tall || tall);
-        let curves = curve_uv > uv.max(1) / PROOF_PART;
-        self.proven |= self.active_for >= PROOF_FRAMES && self.tall && curves && uv < TOP_UV;
+        let curves = curve_uv > uv.max(1) / PROOF_PART && uv.max(middle).max(far) < TOP_UV;
+        self.prove(curves);
         self.stand(uv);
         self.climb(uv);
         if uv >= TOP_UV {
@@ -285,6 +295,19 @@ impl Watch {
         }
     }
 
+    /// A working muscle curves again and again. One jump from a fault to another curves only for as long as it takes from
+    /// the first point of the curve to the last.
+    fn prove(&mut self, curves: bool) {
+        self.straight_for = if curves { 0 } else { self.straight_for.saturating_add(1) };
+        if self.active_for < PROOF_FRAMES || !self.tall || self.straight_for >= STRAIGHT_FRAMES {
+            (self.proven, self.curved_for) = (false, 0);
+            return;
+        }
+        self.curved_for = self.curved_for.saturating_add(u8::from(curves || self.curved_for > 0));
+        let again = usize::from(self.curved_for) > 2 * LAG + 1;
+        self.proven |= curves && again;
+    }
+
     fn stand(&mut self, uv: i32) {
         if (uv - self.anchor_uv).abs() > self.anchor_uv / 100 + STILL_UV {
             (self.anchor_uv, self.flat) = (uv, 0);
@@ -295,8 +318,8 @@ impl Watch {
     }
 
     fn climb(&mut self, uv: i32) {
-        let turned = uv < self.crest_uv - self.crest_uv / 32 - STILL_UV;
-        if self.active_for == 0 || uv >= TOP_UV || turned {
+        self.turned = self.active_for > 0 && uv < self.crest_uv - self.crest_uv / 32 - STILL_UV;
+        if self.active_for == 0 || uv >= TOP_UV || self.turned {
             (self.crest_uv, self.climbing) = (uv, 0);
         } else {
             if self.climbing <= CREEP_FRAMES / 2 {
@@ -336,6 +359,18 @@ impl Watch {
     #[must_use]
     pub const fn is_proven(&self) -> bool {
         self.proven
+    }
+
+    /// Whether it is at the top of its range, where no contraction curves.
+    #[must_use]
+    pub const fn is_clipped(&self) -> bool {
+        self.at_top > 0
+    }
+
+    /// Whether it has just fallen back by 3 %, as no fault does that stands still or climbs.
+    #[must_use]
+    pub const fn has_turned(&self) -> bool {
+        self.turned
     }
 
     /// Whether it stands still, whatever its level: no muscle at work, which would veto another.

@@ -92,6 +92,27 @@ fn a_crest_of_another_movement_does_not_stay_open() {
     assert!(part(&crest, Wish::Open) * 1_000.0 < 90.0, "{}", part(&crest, Wish::Open));
 }
 
+/// The flexor has tone, which begins in the same moment: the two look like one contraction.
+#[test]
+fn an_extensor_that_creeps_beside_tone_opens_for_four_tenths_of_a_second() {
+    for rate_mv_s in [800.0, 2_700.0, 10_000.0] {
+        let mut emg = wearer();
+        run(&mut emg, 1.0, rest);
+        let verdicts = run(&mut emg, 5.0, |t| [alive(90.0, t), (50.0 + rate_mv_s * t).min(2_840.0)]);
+        let opened = part(&verdicts, Wish::Open) * 5.0;
+        assert!((0.0..0.41).contains(&opened), "{rate_mv_s} mV/s: {opened} s");
+    }
+}
+
+#[test]
+fn a_clipped_extension_that_the_flexor_hears_opens_while_it_lasts() {
+    let mut emg = wearer();
+    run(&mut emg, 1.0, rest);
+    let clipped =
+        run(&mut emg, 0.55, |t| [alive(60.0 + 1_400.0 * t.min(0.1), t), (20_000.0 * t).min(2_900.0)]);
+    assert!(part(&clipped, Wish::Open) > 0.75, "{}", part(&clipped, Wish::Open));
+}
+
 #[test]
 fn a_weaker_extension_opens_if_it_lasts() {
     let mut emg = wearer();

@@ -30,7 +30,8 @@ impl Fingertip {
             | Down::Hello
             | Down::Open { .. }
             | Down::About
-            | Down::Stream { .. } => Ok(()),
+            | Down::Stream { .. }
+            | Down::Last(_) => Ok(()),
             Down::Drive { hold_ms, .. } if hold_ms > DRIVE_HOLD_MAX_MS => {
                 Err(Refusal::OutOfRange { min: 0, max: DRIVE_HOLD_MAX_MS.into() })
             }

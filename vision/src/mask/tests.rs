@@ -68,6 +68,42 @@ fn small_pieces_go_and_large_ones_stay() {
 }
 
 #[test]
+fn what_is_near_stays_with_a_piece_and_what_is_far_goes() {
+    let mut chain = rectangle(10, 10, 60, 60);
+    chain.unite(&rectangle(80, 20, 100, 40));
+    chain.unite(&rectangle(120, 20, 140, 230));
+    let near = chain.clone();
+    chain.unite(&rectangle(200, 20, 220, 40));
+    let far = rectangle(200, 20, 220, 40);
+    let (all, mut by_far) = (chain.clone(), chain.clone());
+    chain.keep_together(&all, 25);
+    assert_eq!(chain, near);
+    by_far.keep_together(&far, 25);
+    assert_eq!(by_far, far);
+}
+
+#[test]
+fn a_pixel_is_what_most_of_its_neighbours_are() {
+    let mut mask = Mask::EMPTY;
+    let mut state = 1u32;
+    for at in 0..PIXELS {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        if state >> 31 != 0 {
+            mask.insert(at % WIDTH, at / WIDTH);
+        }
+    }
+    let before = mask.clone();
+    mask.majority();
+    for (x, y) in (0..WIDTH).flat_map(|x| (0..HEIGHT).map(move |y| (x, y))) {
+        let rows = y.saturating_sub(1)..(y + 2).min(HEIGHT);
+        let columns = x.saturating_sub(1)..(x + 2).min(WIDTH);
+        let near = rows.flat_map(|y| columns.clone().map(move |x| (x, y)));
+        let count = near.filter(|&(x, y)| before.contains(x, y)).count();
+        assert_eq!(mask.contains(x, y), count >= 5, "{x} {y}: {count}");
+    }
+}
+
+#[test]
 fn packing_is_the_bytes() {
     let bytes: Vec<u8> = (0..PIXELS).map(|at| (at * at % 7 == 2) as u8).collect();
     let mut mask = Mask::EMPTY;

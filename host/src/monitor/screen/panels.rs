@@ -28,7 +28,7 @@ pub fn detectors(frame: &mut Frame<'_>, area: Rect, view: &View) {
         let fate = &view.fates[id as usize];
         Row::new(
             [
-                Span::raw(format!("{:<8}", id.name())),
+                Span::raw(format!("{:<8.8} ", id.name())),
                 evidence(fate),
                 mark(fate.said, now, "says ", Color::Yellow),
             ]
@@ -40,7 +40,7 @@ pub fn detectors(frame: &mut Frame<'_>, area: Rect, view: &View) {
         )
     });
     let widths = [
-        Constraint::Length(8),
+        Constraint::Length(9),
         Constraint::Length(10),
         Constraint::Length(5),
         Constraint::Length(8),

@@ -58,6 +58,21 @@ fn a_contraction_proves_itself_and_a_step_of_the_front_end_does_not() {
 }
 
 #[test]
+fn a_jump_from_a_fault_to_another_proves_nothing() {
+    let jump = |t: f64| if t < 0.24 { 500.0 } else { 1_400.0 };
+    (1..60).for_each(|n| assert!(!watch(f64::from(n) / 80.0, jump).is_proven(), "{n} slow frames"));
+}
+
+#[test]
+fn what_is_proven_must_prove_itself_again_once_it_no_longer_curves() {
+    let mut watch = watch(1.0, muscle);
+    assert!(watch.is_proven());
+    let level = muscle(1.0);
+    go_on(&mut watch, 1.0, 0.6, |t| level + 1_000.0 * (t - 1.0));
+    assert!(!watch.is_proven(), "a straight line is no muscle");
+}
+
+#[test]
 fn a_lost_sensor_comes_back_once_it_has_been_good_for_a_second() {
     let mut watch = watch(1.0, |_| 400.0);
     go_on(&mut watch, 1.0, 0.95, |_| 50.0);

@@ -1,0 +1,121 @@
+//! What went up the line in the last seconds, in RAM that a reset leaves as it is: after a fault it stays until somebody
+//! has fetched it.
+//!
+//! Telemetry writes it, in its own time; nothing on a tick's way does. What a reset cuts short has a wrong CRC, and the count of
+//! what was written is raised only after the bytes are there. A power cut leaves nothing.
+
+use core::mem::MaybeUninit;
+use core::ptr::{addr_of, addr_of_mut, copy_nonoverlapping};
+use core::slice::from_raw_parts;
+
+use tenax_hal_shim::wire::{Answer, PIECE_MAX, Up};
+use tenax_hal_shim::words::Fault;
+
+/// Bytes that are kept: three seconds of a hand at rest.
+const SIZE: usize = 48 * 1024;
+const _: () = assert!(SIZE <= u16::MAX as usize);
+/// The header is this image's, not what RAM held when it was switched on.
+const SEAL: u32 = 0x7E4A_B0C5;
+/// What can end a run, by its number less one in the header.
+const FAULTS: [Fault; 5] = [
+    Fault::PanicReset,
+    Fault::WatchdogReset,
+    Fault::SupplySagged,
+    Fault::CrystalLost,
+    Fault::TooManyRestarts,
+];
+
+/// Words of the header: the seal; bytes written since the box was empty; the fault after which it stays as it is, or 0.
+const SEALED: usize = 0;
+const WRITTEN: usize = 1;
+const FAULT: usize = 2;
+
+/// Not initialised by the runtime, so that a reset leaves it.
+#[unsafe(link_section = ".uninit.black_box")]
+static mut HEADER: MaybeUninit<[u32; 3]> = MaybeUninit::uninit();
+#[unsafe(link_section = ".uninit.black_box")]
+static mut BYTES: MaybeUninit<[u8; SIZE]> = MaybeUninit::uninit();
+
+/// A run begins, `after` a fault or not. Asked once, before anything else is running. `was_off`: RAM holds nothing.
+pub fn start(after: Option<Fault>, was_off: bool) {
+    if was_off || header(SEALED) != SEAL {
+        empty();
+        set_header(SEALED, SEAL);
+    }
+    if header(FAULT) != 0 {
+        // The first fault of a row is the one to look at.
+        return;
+    }
+    match FAULTS.iter().position(|fault| Some(*fault) == after) {
+        Some(number) => set_header(FAULT, number as u32 + 1),
+        None => empty(),
+    }
+}
+
+/// Telemetry sends a message as this frame.
+pub fn write(message: &Up, frame: &[u8]) {
+    // Frames as they were sampled would leave room for a third of a second, and answers are told to whoever asked.
+    if header(FAULT) != 0 || matches!(message, Up::Raw(_) | Up::Answer { .. }) || frame.len() > SIZE {
+        return;
+    }
+    let written = header(WRITTEN);
+    let at = written as usize % SIZE;
+    let first = frame.len().min(SIZE - at);
+    let bytes = addr_of_mut!(BYTES).cast::<u8>();
+    // SAFETY: `at + first` and what is left are within the box, as is checked above. While it stands open nobody but this
+    // task gets at the bytes: `read` looks at a closed one only, and opens it only when it has been closed before, when
+    // this has returned above.
+    unsafe {
+        copy_nonoverlapping(frame.as_ptr(), bytes.add(at), first);
+        copy_nonoverlapping(frame.as_ptr().add(first), bytes, frame.len() - first);
+    }
+    set_header(WRITTEN, next(written, frame.len()));
+}
+
+/// Bytes written after `more`, which go round in the box: their number stays one of a box that is full.
+fn next(written: u32, more: usize) -> u32 {
+    let next = written.wrapping_add(more as u32);
+    if next >= 2 * SIZE as u32 { next - SIZE as u32 } else { next }
+}
+
+/// Puts what is kept into the answer to who asked for it. Who asks from the end on has read it all: the box is open again.
+pub fn read(answer: &mut Up) {
+    let Up::Answer { answer: Answer::Last(last), .. } = answer else { return };
+    let after = (header(FAULT) as usize).checked_sub(1).and_then(|number| FAULTS.get(number));
+    let Some(&after) = after else { return };
+    let written = header(WRITTEN) as usize;
+    let length = written.min(SIZE);
+    let from = usize::from(last.from);
+    if from >= length {
+        empty();
+        return;
+    }
+    last.after = Some(after);
+    last.length = length as u16;
+    let at = (written - length + from) % SIZE;
+    let count = (length - from).min(PIECE_MAX);
+    let first = count.min(SIZE - at);
+    let bytes = addr_of!(BYTES).cast::<u8>();
+    // SAFETY: `at + first` and what is left are within the box, and were written, for at least `length` bytes were; nobody
+    // writes while it is closed.
+    let (one, two) = unsafe { (from_raw_parts(bytes.add(at), first), from_raw_parts(bytes, count - first)) };
+    // It has room for both.
+    let _fits = last.bytes.extend_from_slice(one);
+    let _fits = last.bytes.extend_from_slice(two);
+}
+
+fn empty() {
+    set_header(WRITTEN, 0);
+    set_header(FAULT, 0);
+}
+
+fn header(word: usize) -> u32 {
+    // SAFETY: an aligned word in it, and any bits are a u32.
+    unsafe { addr_of!(HEADER).cast::<u32>().add(word).read_volatile() }
+}
+
+fn set_header(word: usize, value: u32) {
+    // SAFETY: an aligned word in it, written whole. Two never write at once: telemetry only while the box is open, control
+    // only while it is closed.
+    unsafe { addr_of_mut!(HEADER).cast::<u32>().add(word).write_volatile(value) }
+}

@@ -1,0 +1,81 @@
+//! What a board keeps of the seconds before its last run ended in a fault: fetched piece by piece.
+
+use std::time::Duration;
+
+use anyhow::{bail, ensure};
+use tenax_hal_shim::wire::{Answer, Down, Up};
+use tenax_hal_shim::words::Fault;
+
+use super::{Client, Inbox};
+
+/// How long the board may take for a piece.
+const PIECE_WITHIN: Duration = Duration::from_secs(2);
+
+/// What had gone up a line before a fault.
+#[derive(Clone, Debug)]
+pub struct LastSeconds {
+    /// What ended the run.
+    pub after: Fault,
+    /// The line's bytes, frame by frame. They begin with a whole one.
+    pub line: Vec<u8>,
+}
+
+impl LastSeconds {
+    /// Fetches it. None: the board keeps nothing.
+    ///
+    /// # Errors
+    /// If the board does not answer, or answers something else.
+    pub fn fetch(client: &mut Client) -> anyhow::Result<Option<Self>> {
+        let mut line = Vec::new();
+        loop {
+            let answer = client.ask(&Down::Last(line.len() as u16), PIECE_WITHIN)?;
+            let Answer::Last(piece) = answer else { bail!("the board answers {answer:?}") };
+            let Some(after) = piece.after else {
+                ensure!(line.is_empty(), "somebody else has fetched it in the meantime");
+                return Ok(None);
+            };
+            ensure!(
+                usize::from(piece.from) == line.len() && !piece.bytes.is_empty(),
+                "the board gives piece {} of {} bytes",
+                piece.from,
+                piece.length
+            );
+            line.extend(&piece.bytes);
+            if line.len() >= usize::from(piece.length) {
+                return Ok(Some(Self { after, line: whole(line) }));
+            }
+        }
+    }
+
+    /// Tells the board that it is in safe hands: it keeps what it says from now on.
+    ///
+    /// # Errors
+    /// If the board does not answer.
+    pub fn let_go(client: &mut Client) -> anyhow::Result<()> {
+        client.ask(&Down::Last(u16::MAX), PIECE_WITHIN).map(drop)
+    }
+
+    /// From and to, frames of the board's time.
+    #[must_use]
+    pub fn span(&self) -> Option<(u32, u32)> {
+        let mut inbox = Inbox::default();
+        let heard = self.line.iter().filter_map(|&byte| inbox.push(byte)).flatten();
+        let mut frames = heard.filter_map(|heard| match heard.received.message {
+            Up::Slow(slow) => Some(slow.frame),
+            _ => None,
+        });
+        let first = frames.next()?;
+        Some((first, frames.last().unwrap_or(first)))
+    }
+}
+
+/// Without what is left of a frame whose beginning was written over.
+fn whole(mut line: Vec<u8>) -> Vec<u8> {
+    let mut inbox = Inbox::default();
+    if let Some(end) = line.iter().position(|&byte| byte == 0)
+        && line[..=end].iter().filter_map(|&byte| inbox.push(byte)).flatten().next().is_none()
+    {
+        line.drain(..=end);
+    }
+    line
+}

@@ -1,0 +1,48 @@
+//! What a movement means for the hand, by the recording's name: what a replay is held against.
+
+use serde::{Deserialize, Serialize};
+use toml::Spanned;
+
+/// What the hand does, or must not do.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Motion {
+    /// It stays as it is.
+    Rest,
+    /// It closes.
+    Close,
+    /// It opens.
+    Open,
+}
+
+impl Motion {
+    /// What reports call it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Rest => "rest",
+            Self::Close => "close",
+            Self::Open => "open",
+        }
+    }
+}
+
+/// A row of a recipe: recordings of this name mean this.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Meaning {
+    /// Names of the recordings; `*` and `?` match as in a shell. The first row that matches counts.
+    pub named: Spanned<String>,
+    /// What the wearer wants of the hand.
+    pub wants: Motion,
+    /// What the hand must not do meanwhile.
+    pub never: Vec<Motion>,
+}
+
+impl Meaning {
+    /// Whether it is for recordings of this name.
+    #[must_use]
+    pub fn is_for(&self, file_name: &str) -> bool {
+        glob::Pattern::new(self.named.get_ref()).is_ok_and(|pattern| pattern.matches(file_name))
+    }
+}

@@ -1,0 +1,121 @@
+//! `tenax monitor --web` in a real browser: what a person sees of a scene that runs, and does with it.
+#![cfg(unix)]
+
+#[path = "common/browser.rs"]
+mod browser;
+#[path = "common/serving.rs"]
+mod serving;
+
+use std::io::{BufRead, BufReader};
+use std::process::{Child, Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use tenax_hal_shim::setting::SettingId;
+
+use self::browser::Page;
+use self::serving::Serving;
+
+const WITHIN: Duration = Duration::from_secs(40);
+
+/// `tenax monitor --web`, and where its page is.
+struct Web(Child, String);
+
+impl Web {
+    fn watching(place: &str, truth: &str) -> Self {
+        let mut monitor = Command::new(env!("CARGO_BIN_EXE_tenax"))
+            .args(["monitor", "--web", "0", "--control", "--port", place, "--truth", truth])
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut said = String::new();
+        BufReader::new(monitor.stderr.take().unwrap()).read_line(&mut said).unwrap();
+        let url =
+            said.split(' ').find(|word| word.starts_with("http://")).unwrap_or_else(|| panic!("{said}"));
+        Self(monitor, url.to_owned())
+    }
+}
+
+impl Drop for Web {
+    fn drop(&mut self) {
+        let _gone = self.0.kill();
+        let _gone = self.0.wait();
+    }
+}
+
+fn until(page: &mut Page, condition: &str) {
+    let began = Instant::now();
+    // What the page has not loaded yet is not so.
+    let asked = format!("(() => {{ try {{ return {condition} }} catch {{ return false }} }})()");
+    while page.value(&asked) != true {
+        assert!(began.elapsed() < WITHIN, "never: {condition}\n{}", page.value("document.body.innerText"));
+        thread::sleep(Duration::from_millis(50));
+    }
+}
+
+/// Points of a plot in this colour, red, green and blue.
+fn points(page: &mut Page, plot: &str, [r, g, b]: [u8; 3]) -> u64 {
+    let count = format!(
+        "(() => {{ const c = document.getElementById('{plot}'), d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; \
+         let n = 0; for (let i = 0; i < d.length; i += 4) \
+         if (Math.abs(d[i] - {r}) + Math.abs(d[i + 1] - {g}) + Math.abs(d[i + 2] - {b}) < 90) n++; return n; }})()"
+    );
+    page.value(&count).as_u64().unwrap()
+}
+
+#[test]
+fn a_person_sees_the_board_beside_the_truth_zooms_pauses_and_sets_a_setting() {
+    // The glass is grasped within a second, and with that the consent of who switched the board on is over.
+    let glass = include_str!("../../scenes/glass.toml");
+    let glass = glass.replacen("\n[contact]", "\nline_trusted = true\n\n[contact]", 1);
+    let mut served = Serving::start_telling(&glass);
+    let web = Web::watching(&served.places[0], &served.places[1]);
+    let Some(mut page) = Page::open(&web.1) else { return served.kill() };
+
+    until(&mut page, "at('mode').textContent !== '-' && points.length > 40");
+    let settings = format!("document.querySelectorAll('#settings tr').length === {}", SettingId::ALL.len());
+    until(&mut page, &settings);
+    let first = page.value("document.querySelector('#settings tr').innerText");
+    assert!(first.as_str().unwrap().contains("mV, 20 to 250, default 100"), "{first}");
+    assert_eq!(page.value("document.querySelectorAll('#detectors tr').length"), 6);
+
+    page.value(
+        "(() => { const input = document.querySelector('#settings input'); input.value = 120; \
+         input.dispatchEvent(new Event('change')); return true; })()",
+    );
+    until(&mut page, "at('log').textContent.includes('set s1-mv = 120') && last.s1_mv === 120");
+
+    // What is drawn is of now: traces of the board, and of the truth in its own colour.
+    until(
+        &mut page,
+        "!at('scene').hidden && last.truth.now.needed_n > 0 && at('truth').textContent.includes('kept')",
+    );
+    until(&mut page, "points[points.length - 1][0] > 8");
+    for plot in ["vibration", "ratio", "load"] {
+        assert!(points(&mut page, plot, [0x6c, 0xc7, 0xe0]) > 300, "{plot} is drawn");
+    }
+    assert!(points(&mut page, "load", [0x63, 0xc1, 0x78]) > 100, "the needed force");
+    assert!(points(&mut page, "ratio", [0xd8, 0x57, 0x4a]) > 300, "the threshold");
+    let apart = page.value("Math.abs(last.truth.now.t_s - last.t_s)").as_f64().unwrap();
+    assert!(apart < 0.5, "truth and board are {apart} s apart");
+
+    page.value("at('vibration').dispatchEvent(new WheelEvent('wheel', { deltaY: -1, cancelable: true }))");
+    assert_eq!(page.value("span"), 8);
+    until(&mut page, "last.rates !== null");
+    let rates = page.value("last.rates");
+    assert!((1_500.0..2_500.0).contains(&rates[0].as_f64().unwrap()), "{rates}");
+    if let Ok(path) = std::env::var("TENAX_PICTURE") {
+        std::fs::write(path, page.picture()).unwrap();
+    }
+
+    page.value("at('pause').click()");
+    let paused = page.value("at('time').textContent");
+    thread::sleep(Duration::from_millis(400));
+    assert_eq!(page.value("at('time').textContent"), paused);
+    page.value("at('pause').click()");
+    until(&mut page, &format!("at('time').textContent !== {paused}"));
+
+    served.kill();
+    until(&mut page, "at('gone').textContent.includes('no line, trying again')");
+    assert!(page.errors.is_empty(), "{:?}", page.errors);
+}

@@ -1,0 +1,227 @@
+//! The direction of an object's long axis from its two long rims.
+//!
+//! Second moments turn when a corner is missing that has the background's colours, or when a spot of the background is taken for
+//! the object. A straight rim does not turn: most of it is where it should be. Each rim is a row of points, the outermost
+//! pixels of slices across the axis, and the line is the one that most of them lie on.
+
+use crate::frame::{PIXELS, Point, WIDTH};
+use crate::mask::{Mask, Moments};
+use crate::rectify::Rectifier;
+
+/// Below this eccentricity an object has no long rims.
+const ECCENTRICITY_MIN: f32 = 0.3;
+/// How long a slice is along the axis, px.
+const SLICE_PX: f32 = 2.0;
+/// Slices, from the middle half of them to each side.
+const SLICES: usize = 256;
+/// Slices without which there is no rim.
+const SLICES_MIN: usize = 16;
+/// A part of the slices at each end belongs to the short rims: one of so many.
+const END: usize = 12;
+/// How far from the line a point of the rim may be, px.
+const NEAR_PX: f32 = 2.5;
+/// Share of the slices that must lie on a line for it to be a rim.
+const SHARE_MIN: f32 = 0.25;
+/// How far a rim may be off the moments' direction, radians.
+const OFF_MAX: f32 = 0.5;
+/// Times that the slices are cut anew, across the axis that was found.
+const ROUNDS: usize = 3;
+/// Steps of the reweighted least squares.
+const STEPS: usize = 6;
+
+/// A rim's points: how far along the axis, how far across.
+struct Rim {
+    points: [(f32, f32); SLICES],
+    count: usize,
+}
+
+/// A line: its slope, and how well that is known.
+#[derive(Clone, Copy)]
+struct Line {
+    slope: f32,
+    weight: f32,
+}
+
+/// The direction of the long axis, radians from -pi/2 to pi/2, from x towards y (down): that of the long rims if there are such,
+/// else that of `moments`. Behind a lens it is that of the flat world, as the moments are.
+#[must_use]
+pub fn angle_rad(object: &Mask, moments: &Moments, lens: Option<&Rectifier>) -> f32 {
+    let coarse = moments.angle_rad();
+    if moments.eccentricity() < ECCENTRICITY_MIN {
+        return coarse;
+    }
+    let mut angle = coarse;
+    for _ in 0..ROUNDS {
+        let Some(slope) = slope_of(object, moments.middle, angle, lens) else { return coarse };
+        angle += libm::atanf(slope);
+    }
+    if (angle - coarse).abs() > OFF_MAX {
+        return coarse;
+    }
+    let half = core::f32::consts::FRAC_PI_2;
+    match angle {
+        _ if angle > half => angle - 2.0 * half,
+        _ if angle < -half => angle + 2.0 * half,
+        _ => angle,
+    }
+}
+
+/// By how much both rims lean from the direction `angle`. None without rims.
+fn slope_of(object: &Mask, middle: Point, angle: f32, lens: Option<&Rectifier>) -> Option<f32> {
+    let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));
+    let (mut low, mut high) = ([f32::INFINITY; SLICES], [f32::NEG_INFINITY; SLICES]);
+    object.for_each(|at| {
+        let place = lens.map_or_else(|| place(at), |lens| lens.place(at));
+        let (dx, dy) = (place.x - middle.x, place.y - middle.y);
+        let (along, across) = (dx * cos + dy * sin, dy * cos - dx * sin);
+        let slice = along / SLICE_PX + SLICES as f32 / 2.0;
+        if (0.0..SLICES as f32).contains(&slice) {
+            let slice = slice as usize;
+            (low[slice], high[slice]) = (low[slice].min(across), high[slice].max(across));
+        }
+    });
+    let (low, high) = (Rim::of(&low)?.line(), Rim::of(&high)?.line());
+    match (low, high) {
+        (Some(low), Some(high)) => {
+            // The straighter rim says more.
+            let (a, b) = (low.weight * low.weight, high.weight * high.weight);
+            Some((low.slope * a + high.slope * b) / (a + b))
+        }
+        (low, high) => low.or(high).map(|line| line.slope),
+    }
+}
+
+fn place(at: usize) -> Point {
+    debug_assert!(at < PIXELS);
+    Point { x: (at % WIDTH) as f32, y: (at / WIDTH) as f32 }
+}
+
+impl Rim {
+    /// The points between the ends. None of an object that is too short.
+    fn of(outermost: &[f32; SLICES]) -> Option<Self> {
+        let is_there = |across: &f32| across.is_finite();
+        let first = outermost.iter().position(is_there)?;
+        let last = outermost.iter().rposition(is_there)?;
+        let end = (last - first) / END;
+        let mut rim = Self { points: [(0.0, 0.0); SLICES], count: 0 };
+        let inner = outermost.iter().enumerate().take(last.saturating_sub(end)).skip(first + end);
+        for (slice, &across) in inner.filter(|(_, across)| is_there(across)) {
+            rim.points[rim.count] = ((slice as f32 - SLICES as f32 / 2.0) * SLICE_PX, across);
+            rim.count += 1;
+        }
+        (rim.count >= SLICES_MIN).then_some(rim)
+    }
+
+    /// The line that most of the points lie on, None if they lie on none.
+    fn line(&self) -> Option<Line> {
+        let points = &self.points[..self.count];
+        let mut slope = self.coarse_slope();
+        let mut offsets = [0.0; SLICES];
+        offsets.iter_mut().zip(points).for_each(|(offset, (x, y))| *offset = y - slope * x);
+        let mut offset = median(&mut offsets[..self.count]);
+        let (mut weight, mut near) = (0.0, 0);
+        for _ in 0..STEPS {
+            let (mut w, mut wx, mut wy, mut wxx, mut wxy) = (0.0, 0.0, 0.0, 0.0, 0.0);
+            near = 0;
+            for &(x, y) in points {
+                let off = (y - offset - slope * x) / NEAR_PX;
+                if off.abs() < 1.0 {
+                    // Tukey's weight: full on the line, none far from it.
+                    let own = (1.0 - off * off) * (1.0 - off * off);
+                    (w, wx, wy) = (w + own, wx + own * x, wy + own * y);
+                    (wxx, wxy) = (wxx + own * x * x, wxy + own * x * y);
+                    near += 1;
+                }
+            }
+            let det = w * wxx - wx * wx;
+            if det <= 1.0 {
+                return None;
+            }
+            slope = (w * wxy - wx * wy) / det;
+            offset = (wy - slope * wx) / w;
+            weight = det / w;
+        }
+        (near as f32 >= SHARE_MIN * points.len() as f32).then_some(Line { slope, weight })
+    }
+
+    /// The median slope between points that are far apart.
+    fn coarse_slope(&self) -> f32 {
+        let mut slopes = [0.0; 2 * SLICES];
+        let mut count = 0;
+        for reach in [self.count / 3, self.count / 2, 2 * self.count / 3] {
+            for (&(ax, ay), &(bx, by)) in self.points.iter().zip(&self.points[reach..self.count]) {
+                slopes[count] = (by - ay) / (bx - ax);
+                count += 1;
+            }
+        }
+        median(&mut slopes[..count])
+    }
+}
+
+/// The middle one of some values, which it sorts in part.
+fn median(values: &mut [f32]) -> f32 {
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f32::total_cmp).1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bar(angle: f32, half: (f32, f32), more: impl Fn(f32, f32, bool) -> bool) -> Mask {
+        let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));
+        let mut mask = Mask::EMPTY;
+        for at in 0..PIXELS {
+            let (dx, dy) = ((at % WIDTH) as f32 - 160.0, (at / WIDTH) as f32 - 120.0);
+            let (along, across) = (dx * cos + dy * sin, dy * cos - dx * sin);
+            if more(along, across, along.abs() < half.0 && across.abs() < half.1) {
+                mask.insert(at % WIDTH, at / WIDTH);
+            }
+        }
+        mask
+    }
+
+    /// Degrees off: by the rims, and by the moments.
+    fn off(angle: f32, mask: &Mask) -> (f32, f32) {
+        let moments = mask.moments().unwrap();
+        let wrapped = |off: f32| off - core::f32::consts::PI * libm::roundf(off / core::f32::consts::PI);
+        (
+            wrapped(angle_rad(mask, &moments, None) - angle).to_degrees().abs(),
+            wrapped(moments.angle_rad() - angle).to_degrees().abs(),
+        )
+    }
+
+    #[test]
+    fn a_bar_lies_as_it_lies_at_every_angle() {
+        for angle in [-1.57, -1.2, -0.4, 0.0, 0.3, 0.8, 1.5] {
+            let (rims, _) = off(angle, &bar(angle, (80.0, 20.0), |_, _, inside| inside));
+            // A rim along the columns may have one step of a pixel, in its middle.
+            assert!(rims < 0.7, "{angle}: {rims}");
+        }
+    }
+
+    #[test]
+    fn missing_corners_and_a_spot_of_the_background_do_not_turn_it() {
+        let spoilt = |along: f32, across: f32, inside: bool| {
+            let corner = along > 45.0 && across > 0.0 || along < -60.0 && across < -8.0;
+            let spot = (-50.0..-25.0).contains(&along) && (0.0..38.0).contains(&across);
+            inside && !corner || spot
+        };
+        for angle in [-1.3, -0.5, 0.2, 1.0] {
+            let (rims, moments) = off(angle, &bar(angle, (80.0, 20.0), spoilt));
+            assert!(rims < 1.0, "{angle}: {rims}");
+            assert!(moments > 4.0, "the control, {angle}: {moments}");
+        }
+    }
+
+    #[test]
+    fn a_cone_has_the_direction_between_its_rims_and_a_disc_that_of_its_moments() {
+        let cone = bar(0.4, (80.0, 40.0), |along, across, _| {
+            along.abs() < 80.0 && across.abs() < 20.0 + 0.12 * along
+        });
+        assert!(off(0.4, &cone).0 < 0.7, "{:?}", off(0.4, &cone));
+        let disc = bar(0.0, (0.0, 0.0), |along, across, _| along * along + across * across < 2_500.0);
+        let moments = disc.moments().unwrap();
+        assert_eq!(angle_rad(&disc, &moments, None), moments.angle_rad());
+    }
+}

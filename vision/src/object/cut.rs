@@ -1,0 +1,55 @@
+//! Whether an object goes on beyond the picture's border, where nobody knows how.
+//!
+//! It does if it reaches the border. While its colours are still being learned it does also if only what differs from the scene
+//! leads on from it to the border: its end has colours that are not known yet.
+
+use crate::frame::HEIGHT;
+use crate::mask::{Mask, WORDS};
+
+/// How far from the border an object may end for what differs there to be its end, px.
+const REACH_PX: usize = 24;
+
+/// Whether `object` is cut by the border. `unknown` is what differs from the scene and may be more of it, if anything.
+pub fn is_cut(object: &Mask, unknown: Option<&Mask>) -> bool {
+    if comes_within(1, object) {
+        return true;
+    }
+    let Some(unknown) = unknown.filter(|_| comes_within(REACH_PX, object)) else { return false };
+    let mut grown = object.clone();
+    for _ in 0..REACH_PX {
+        grown.dilate(1);
+        grown.intersect(unknown);
+        if comes_within(1, &grown) {
+            return true;
+        }
+    }
+    false
+}
+
+/// Whether a part of it is this near to the border, px below 64.
+fn comes_within(px: usize, mask: &Mask) -> bool {
+    let rows = mask.rows();
+    let ends = rows[..px].iter().chain(&rows[HEIGHT - px..]).flatten().any(|&word| word != 0);
+    let (left, right) = ((1 << px) - 1, u64::MAX << (64 - px));
+    ends || rows.iter().any(|row| row[0] & left != 0 || row[WORDS - 1] & right != 0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn block(columns: core::ops::Range<usize>, rows: core::ops::Range<usize>) -> Mask {
+        let mut mask = Mask::EMPTY;
+        rows.for_each(|y| columns.clone().for_each(|x| mask.insert(x, y)));
+        mask
+    }
+
+    #[test]
+    fn what_leads_on_to_the_border_is_cut_and_what_a_hand_holds_is_not() {
+        let object = block(15..100, 100..140);
+        assert!(!is_cut(&object, None) && !is_cut(&object, Some(&object)));
+        assert!(is_cut(&object, Some(&block(0..100, 100..140))), "its end has other colours");
+        assert!(is_cut(&block(0..100, 100..140), None));
+        assert!(!is_cut(&block(40..100, 100..140), Some(&block(0..100, 100..140))), "a hand holds it");
+    }
+}
