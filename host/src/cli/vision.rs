@@ -222,7 +222,7 @@ fn calibrated(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
     if !args.leave_out.is_empty() && out_of_it.is_empty() {
         bail!("no load of {} has one of the masses to leave out", args.loads.display());
     }
-    let loads = calibrate::fit(&learned)?;
+    let loads = skin.fit(&learned)?;
     let mut scores = vec![("learned", calibrate::score(&loads, &learned))];
     let mut tried = out_of_it;
     if let Some(table) = &args.try_loads {
