@@ -89,7 +89,7 @@ settings! {
     /// Normal force above which the reflex closes no further
     4 ForceCeiling "force-ceiling-mn" "mN" [3_000, 60_000] = 40_000;
     /// Hebbian: how far below 0 the PVDF part of o1 means slip
-    5 HebbianSlip "hebbian-slip-permille" ("network-slip-permille") "per mille" [10, 1_000] = 30;
+    5 HebbianSlip "hebbian-slip-permille" ("network-slip-permille") "per mille" [10, 1_000] = 100;
     /// Vibration above the slip band that a knock has at least
     6 KnockLevel "knock-level-mv" "mV" [10, 300] = 20;
     /// A vibration with more than this part of its envelope above the slip band is a knock

@@ -2,6 +2,7 @@
 //! `tenax-vision`, to a report, tables and overlays.
 
 pub mod calibrate;
+pub mod feed;
 pub mod film;
 pub mod overlay;
 pub mod scored;

@@ -60,6 +60,18 @@ fn what_is_soft_is_held_against_a_pull_and_a_swing() {
     }
 }
 
+/// Twenty times what the cup weighs comes in, and the hand follows.
+#[test]
+fn water_is_poured_into_a_cup_that_stays_where_it_is() {
+    // The control: neither behaviour nor reflex, but for what steady sliding says.
+    let nobody = "[[command]]\nat_s = 0.1\nkind = \"set-s1-mv\"\nvalue = 1500\n\
+        [[command]]\nat_s = 0.12\nkind = \"set-s2-permille\"\nvalue = 1500\n\
+        [[command]]\nat_s = 4.2\nkind = \"end\"\n";
+    let (ours, theirs) = (unharmed("fill-cup"), fates("fill-cup", nobody));
+    println!("slid {:.2} mm, the control {:.2} mm", slid_mm(&ours), slid_mm(&theirs));
+    assert!(slid_mm(&ours) < 0.2 * slid_mm(&theirs), "{} mm of {}", slid_mm(&ours), slid_mm(&theirs));
+}
+
 #[test]
 fn a_pull_takes_the_object_and_without_one_it_stays() {
     for name in ["hand-over-can", "hand-over-card"] {

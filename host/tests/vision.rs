@@ -62,7 +62,7 @@ fn real_loads_are_weighed_by_a_mass_that_was_left_out() {
     // The heavy half of the loads from the light half and two weights without shear: four times beyond what it has learned.
     let heavy = vision(&["calibrate", "--loads", loads, "--leave-out", "584", "--report", "json"]);
     for axis in ["x_rms_n", "z_rms_n"] {
-        assert!(number(&heavy["tried"][axis]) <= 0.7, "{heavy}");
+        assert!(number(&heavy["tried"][axis]) <= 0.55, "{heavy}");
     }
     assert!(number(&heavy["tried"]["normal_rms_share"]) <= 0.25, "{heavy}");
 }

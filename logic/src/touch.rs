@@ -121,9 +121,9 @@ pub struct Touch {
     since_loud_frames: u32,
     said_frames: u32,
     /// Whether the films say so.
-    slips: bool,
+    films_say: bool,
     /// Whether films or shear do, on a finger that holds something.
-    any_slips: bool,
+    slips: bool,
     lesson: Result<Codes, NoLesson>,
     odd: bool,
     balance: Balance,
@@ -147,8 +147,8 @@ impl Default for Touch {
             weights_changed: false,
             since_loud_frames: 0,
             said_frames: 0,
+            films_say: false,
             slips: false,
-            any_slips: false,
             lesson: Err(NoLesson::Absent),
             odd: false,
             balance: Balance::default(),
@@ -185,7 +185,7 @@ impl Touch {
             let quiet = self.hearing.is_quiet_known() && self.since_loud_frames >= config.loud_frames;
             self.noise.end_cycle(felt.unloaded && quiet);
         }
-        self.any_slips = self.slips || (felt.situation.grasp && self.shear.says());
+        self.slips = self.films_say || (felt.situation.grasp && self.shear.says());
         self.learn(config, felt, learns);
     }
 
@@ -221,8 +221,8 @@ impl Touch {
     pub fn lose(&mut self) {
         self.outputs = [Output::default(); NETWORK_OUTPUTS];
         self.said_frames = 0;
+        self.films_say = false;
         self.slips = false;
-        self.any_slips = false;
         self.shear.lose();
         self.pass();
     }
@@ -248,7 +248,7 @@ impl Touch {
     /// Whether touch alone says slip.
     #[must_use]
     pub const fn slips(&self) -> bool {
-        self.any_slips
+        self.slips
     }
 
     /// What touch alone says, relative motion and direction: 128 would be 1.
@@ -319,14 +319,14 @@ impl Touch {
     fn judge(&mut self, config: &TouchConfig, felt: &Felt<'_>, sum: i64) {
         self.since_loud_frames = if felt.loud { 0 } else { self.since_loud_frames.saturating_add(1) };
         // Once said, half of it keeps it said: one slip has dips.
-        let threshold = i64::from(config.slip_permille) / if self.slips { 2 } else { 1 };
+        let threshold = i64::from(config.slip_permille) / if self.films_say { 2 } else { 1 };
         let says = felt.situation.grasp
             && self.since_loud_frames >= config.loud_frames
             && sum * 1_000 <= -threshold * ONE
-            && sum <= -self.noise.floor() / if self.slips { 2 } else { 1 };
+            && sum <= -self.noise.floor() / if self.films_say { 2 } else { 1 };
         if !says {
             self.said_frames = 0;
-            self.slips = false;
+            self.films_say = false;
             return;
         }
         self.said_frames = self.said_frames.saturating_add(1);
@@ -339,7 +339,7 @@ impl Touch {
         };
         let somewhere = count <= SOMEWHERE_MAX;
         let long_enough = if somewhere { config.slip_frames } else { config.everywhere_frames };
-        self.slips |= self.said_frames >= long_enough;
+        self.films_say |= self.said_frames >= long_enough;
     }
 
     /// `felt_so` is whether the activations are those of now.

@@ -50,6 +50,7 @@ pub const fn builtin() -> &'static [(&'static str, &'static str)] {
         "hand-over-can",
         "hand-over-card",
         "turn-pen",
+        "fill-cup",
         "array-saturated",
         "array-opening",
         "can",

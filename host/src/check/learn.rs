@@ -11,9 +11,9 @@ const LEAD_S: f64 = 0.16;
 /// vision needs 0.1 s less than on the 0.47 of before (Tada 2006: 0.3).
 const SECURED_S: f64 = 0.15;
 /// False alarms in an hour of holding that are kept below, with knocks of every kind. The aim is one in three hours.
-const FALSE_PER_HOUR: f64 = 5.0;
-/// The part of the trials of fingers made by chance whose slip may be missed: some have micro slip that drowns in their noise.
-const MISSED_PART: f64 = 0.2;
+const FALSE_PER_HOUR: f64 = 2.0;
+/// The part of the trials of fingers made by chance whose slip may be missed: shear foretells what drowns in the films' noise.
+const MISSED_PART: f64 = 0.02;
 /// The part of vision's slip in the pour that may be left.
 const POUR_PART: f64 = 0.5;
 

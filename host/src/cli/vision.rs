@@ -3,20 +3,28 @@
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
 
 use anyhow::{Context, bail};
-use tenax_hal_shim::wire::Down;
+use tenax_hal_shim::behaviour::Behaviour;
+use tenax_hal_shim::wire::{Answer, Down, Event, EventKind, Up};
+use tenax_vision::quality::Blind;
 
 use super::folder;
 use super::format::Format;
 use super::out;
 use crate::link::{Client, Outbox, Target};
 use crate::vision::calibrate::{self, Skin};
-use crate::vision::film::{self, Plan};
+use crate::vision::feed::Fault;
+use crate::vision::film::{self, Plan, Told};
 use crate::vision::source::Source;
 use crate::vision::told::Gains;
 use crate::vision::{scored, told};
+
+/// The load from which on a hand holds something, mN.
+const HOLDS_MN: i32 = 200;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -26,6 +34,10 @@ Examples:
                                                        markers.csv, object.csv and overlays of a video
   tenax vision --device /dev/video0 --port /dev/ttyACM0
                                                        a board's behaviours feel with a camera; --teach: it learns slip from it
+  tenax vision --device /dev/video0 --port /dev/ttyACM0 --begin hold
+                                                       and it holds with it
+  tenax vision --drawn --port tcp:127.0.0.1:7777 --fault lost
+                                                       the same with a drawn camera, which is lost from 4 s to 6 s
   tenax vision calibrate --loads loads.csv --leave-out 584
                                                        force from marker moves, tried on a mass that was left out
   tenax vision calibrate --loads loads.csv --try-loads others.csv";
@@ -45,6 +57,12 @@ pub struct Args {
     /// A camera of Video4Linux, such as /dev/video0
     #[arg(long, value_name = "DEVICE", group = "source")]
     device: Option<PathBuf>,
+    /// The camera of a drawn scene, of `--seed`
+    #[arg(long, group = "source")]
+    drawn: bool,
+    /// What is wrong with the drawn camera from 4 s to 6 s
+    #[arg(long, value_enum, value_name = "FAULT", requires = "drawn")]
+    fault: Option<Fault>,
     /// Pictures a second, where the source does not say it [default: 30]
     #[arg(long, value_name = "HZ", requires = "source")]
     rate_hz: Option<f64>,
@@ -57,9 +75,13 @@ pub struct Args {
     /// Send a board what the camera sees, for its behaviours: a port, or tcp:HOST:PORT
     #[arg(long, value_name = "PORT", requires = "source")]
     port: Option<Target>,
+    /// Begin this behaviour once the camera sees the skin: gentle-grasp, hold, hand-over, or turn:DEGREES. A line has one sender:
+    /// what the camera's program does not begin, nobody else can while it sends
+    #[arg(long, value_name = "WHAT", requires = "port", value_parser = behaviour)]
+    begin: Option<Behaviour>,
     /// Send the teacher's words, too; without --port print them for `tenax monitor --teach`, one line a picture, and nothing
     /// else
-    #[arg(long, requires = "source", conflicts_with = "report")]
+    #[arg(long, requires = "source")]
     teach: bool,
     /// Normal force that a marker's move stands for, for the board, mN a px
     #[arg(long, value_name = "MN", default_value_t = 100.0, requires = "port")]
@@ -109,32 +131,67 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         (Some(file), ..) => Source::Video(file.clone()),
         (_, Some(folder), _) => Source::Folder(folder.clone()),
         (.., Some(device)) => Source::Device(device.clone()),
+        _ if args.drawn => Source::Drawn { seed: args.seed, rate_hz: args.rate_hz.unwrap_or(30.0) as u32 },
         _ => return drawn(args),
     };
     if args.rate_hz.is_some_and(|rate| !(rate > 0.0 && rate.is_finite())) {
         bail!("--rate-hz must be above 0");
     }
+    if args.drawn && args.rate_hz.is_some_and(|rate| !(1.0..=60.0).contains(&rate) || rate.fract() != 0.0) {
+        bail!("a drawn camera takes 1 to 60 pictures a second, a whole number");
+    }
+    if args.teach && args.port.is_none() && matches!(args.report, Format::Json) {
+        bail!("--teach without --port prints the teacher's words and no report");
+    }
     let folder = args.out.as_deref().map(folder::made).transpose()?;
-    let plan = Plan { source, rate_hz: args.rate_hz, folder, overlay_every: args.overlay_every };
-    let mut line = args.port.as_ref().map(connect).transpose()?;
+    let mut plan = Plan {
+        source,
+        rate_hz: args.rate_hz,
+        folder,
+        overlay_every: args.overlay_every,
+        live: args.port.is_some() || args.device.is_some(),
+        fault: args.fault,
+        holds: None,
+    };
+    let feed = plan.open()?;
+    let mut board = args.port.as_ref().map(Board::open).transpose()?;
+    plan.holds = board.as_ref().map(|board| board.holds.clone());
     let gains = Gains { normal_mn: args.normal_mn_per_px, shear_mn: args.shear_mn_per_px };
-    let report = film::follow(&plan, |camera, summary| {
-        match &mut line {
-            Some(line) => {
-                let view = told::view(camera, summary, gains, 0).map(Down::View);
-                let words = told::teach(summary, 0).filter(|_| args.teach);
-                for command in view.into_iter().chain(words) {
-                    line.send(&command).context("cannot write to the line")?;
+    let (mut was_blind, mut begin) = (None, args.begin);
+    let report = film::follow(&plan, feed, |told| {
+        let blind = match told {
+            Told::Silence(blind) => Some(blind),
+            Told::Picture(camera, summary, age_ms) => {
+                let words = told::teach(summary, age_ms).filter(|_| args.teach);
+                match &mut board {
+                    Some(board) => {
+                        let view = told::view(camera, summary, gains, age_ms).map(Down::View);
+                        let begins = begin.take_if(|_| view.is_some() && summary.forces.is_some());
+                        for command in view.into_iter().chain(words).chain(begins.map(Down::Begin)) {
+                            board.line.send(&command).context("cannot write to the line")?;
+                        }
+                    }
+                    None if words.is_some() => {
+                        out::say!("{}", told::teaching(summary, age_ms).unwrap_or_default())?;
+                    }
+                    None => {}
                 }
+                summary.blind
             }
-            None => {
-                if let Some(words) = told::teaching(summary, 0).filter(|_| args.teach) {
-                    out::say!("{words}")?;
-                }
+        };
+        if blind.map(name) != was_blind.map(name) {
+            match blind {
+                Some(blind) => out::note!("tenax: the camera is {}; nothing is told", name(blind)),
+                None => out::note!("tenax: the camera sees again"),
             }
+            was_blind = blind;
         }
         Ok(())
     })?;
+    if let Some(board) = board {
+        let (done, refused) = board.answers();
+        out::note!("tenax: the board took {done} messages of the camera and refused {refused}");
+    }
     if args.teach && args.port.is_none() {
         return Ok(ExitCode::SUCCESS);
     }
@@ -149,27 +206,100 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
                 report.longest_jump_px
             )?;
             out::say!(
-                "an object in {:.1} % of the pictures, slip in {:.1} %; blind: {} late, {} frozen, {} covered",
+                "an object in {:.1} % of the pictures, slip in {:.1} %; blind: {} late, {} frozen, {} covered, lost {} times",
                 100.0 * report.object_share,
                 100.0 * report.slip_share,
                 report.blind.late,
                 report.blind.frozen,
-                report.blind.covered
+                report.blind.covered,
+                report.blind.lost
             )?;
         }
     }
     Ok(ExitCode::SUCCESS)
 }
 
-/// A board that listens. What it says is read and thrown away, so that its line does not fill.
-fn connect(target: &Target) -> anyhow::Result<Outbox<Box<dyn Write + Send>>> {
-    let mut client = Client::open(target)?;
-    if !client.open_session(Duration::from_secs(1))? {
-        out::note!("tenax: the board offered no session; it will not listen to the camera");
+fn behaviour(text: &str) -> Result<Behaviour, String> {
+    match text.split_once(':') {
+        None => match text {
+            "gentle-grasp" => Ok(Behaviour::GentleGrasp),
+            "hold" => Ok(Behaviour::Hold),
+            "hand-over" => Ok(Behaviour::HandOver),
+            _ => Err("gentle-grasp, hold, hand-over or turn:DEGREES".to_owned()),
+        },
+        Some(("turn", degrees)) => match degrees.parse::<f64>() {
+            Ok(degrees) if degrees.abs() <= 90.0 => {
+                Ok(Behaviour::Turn { by_ddeg: (10.0 * degrees).round() as i16 })
+            }
+            _ => Err("a turn is by -90 to 90 degrees".to_owned()),
+        },
+        Some(_) => Err("gentle-grasp, hold, hand-over or turn:DEGREES".to_owned()),
     }
-    let outbox = client.take_outbox().context("a captured line cannot be told anything")?;
-    std::thread::spawn(move || while client.next_frame().is_ok() {});
-    Ok(outbox)
+}
+
+/// What a person reads of a camera that is not believed.
+const fn name(blind: Blind) -> &'static str {
+    match blind {
+        Blind::Lost(_) => "lost",
+        Blind::Late(_) => "late",
+        Blind::Frozen(_) => "frozen",
+        Blind::Covered => "covered",
+    }
+}
+
+/// A board that listens.
+struct Board {
+    line: Outbox<Box<dyn Write + Send>>,
+    /// Whether its hand holds something.
+    holds: Arc<AtomicBool>,
+    /// Commands that it carried out, and that it refused.
+    answers: Arc<[AtomicUsize; 2]>,
+}
+
+impl Board {
+    /// What the board says is read as it comes, so that its line does not fill.
+    fn open(target: &Target) -> anyhow::Result<Self> {
+        let mut client = Client::open(target)?;
+        if !client.open_session(Duration::from_secs(1))? {
+            out::note!("tenax: the board offered no session; it will not listen to the camera");
+        }
+        let line = client.take_outbox().context("a captured line cannot be told anything")?;
+        let holds = Arc::new(AtomicBool::new(false));
+        let answers = Arc::new([AtomicUsize::new(0), AtomicUsize::new(0)]);
+        let (told, counts) = (holds.clone(), answers.clone());
+        std::thread::spawn(move || {
+            let mut was_open = false;
+            while let Ok(frame) = client.next_frame() {
+                let Some(Ok(heard)) = frame else { continue };
+                match heard.received.message {
+                    Up::Slow(slow) => {
+                        let held = slow.forces.is_some_and(|forces| forces.load_mn > HOLDS_MN);
+                        was_open |= slow.forces.is_some() && !held;
+                        // What was held before anybody looked has to be learned in the hand.
+                        told.store(held && was_open, Ordering::Relaxed);
+                    }
+                    Up::Event(Event { kind: EventKind::Behaviour(what, ending), .. }) => match ending {
+                        None => out::note!("tenax: the board begins: {}", what.name()),
+                        Some(ending) => {
+                            out::note!("tenax: the board ends: {}: {}", what.name(), ending.name())
+                        }
+                    },
+                    Up::Answer { answer, .. } => {
+                        let refused = matches!(answer, Answer::Refused(_));
+                        counts[usize::from(refused)].fetch_add(1, Ordering::Relaxed);
+                    }
+                    _ => (),
+                }
+            }
+        });
+        Ok(Self { line, holds, answers })
+    }
+
+    fn answers(&self) -> (usize, usize) {
+        // The last ones are under way.
+        std::thread::sleep(Duration::from_millis(100));
+        (self.answers[0].load(Ordering::Relaxed), self.answers[1].load(Ordering::Relaxed))
+    }
 }
 
 fn drawn(args: &Args) -> anyhow::Result<ExitCode> {
@@ -222,7 +352,7 @@ fn calibrated(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
     if !args.leave_out.is_empty() && out_of_it.is_empty() {
         bail!("no load of {} has one of the masses to leave out", args.loads.display());
     }
-    let loads = calibrate::fit(&learned)?;
+    let loads = skin.fit(&learned)?;
     let mut scores = vec![("learned", calibrate::score(&loads, &learned))];
     let mut tried = out_of_it;
     if let Some(table) = &args.try_loads {

@@ -8,18 +8,27 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
+use tenax_vision::force::MIDDLE;
 use tenax_vision::frame::{FRAME_BYTES, Frame, plane};
 use tenax_vision::loads::{Features, Loads, NORMAL_FEATURES, SHEAR_FEATURES};
-use tenax_vision::markers::{Calibration, Markers};
+use tenax_vision::markers::{Calibration, Marker, Markers};
 
 use super::source::Source;
 
-/// Ridge of the shear's weights, px^2: chosen by leaving out one load after the other.
-const SHEAR_RIDGE: f64 = 30.0;
+/// Ridge of the shear's weights, px^2.
+const SHEAR_RIDGE: f64 = 1.0;
+/// How freely each marker's weight may differ from what a plane through all of them says. Both were chosen by leaving out loads,
+/// and all loads of a mass: what is learned under light loads then holds under heavy ones.
+const FREE: f64 = 0.1;
 /// Ridge of the normal force's.
 const NORMAL_RIDGE: f64 = 0.5;
 /// Normal force above which its relative error counts, N.
 const NORMAL_MIN_N: f64 = 3.0;
+
+/// Terms of the shear that all markers have together.
+const SMOOTH: usize = 3;
+/// A weight of each of the shear's features.
+type OfEach = [f64; SHEAR_FEATURES];
 
 /// A row of the table.
 #[derive(Clone, Debug, Deserialize)]
@@ -39,6 +48,21 @@ pub struct Sample {
     /// Force: x, into the skin, z; N.
     pub force_n: [f64; 3],
     features: Features,
+}
+
+impl Sample {
+    /// How far the markers are spread about their mean move, px rms.
+    #[must_use]
+    pub fn spread_px(&self) -> f64 {
+        self.features.normal[0].into()
+    }
+
+    /// The force that a calibration makes of it: x, into the skin, z; N.
+    #[must_use]
+    pub fn estimate_n(&self, loads: &Loads) -> [f64; 3] {
+        let force = loads.newtons(&self.features);
+        [force.x, force.normal, force.y].map(f64::from)
+    }
 }
 
 /// How a calibration does on samples.
@@ -151,37 +175,90 @@ impl Skin {
     }
 }
 
-/// Weights that bring the samples' features nearest to their forces; light loads count more, for errors are relative.
-///
-/// # Errors
-/// If there are no samples.
-pub fn fit(samples: &[Sample]) -> Result<Loads> {
-    if samples.is_empty() {
-        bail!("no loads to calibrate on");
+impl Skin {
+    /// What shear along x, and along y, is in a skin that is alike to the left and to the right: how far the markers move that
+    /// way in the middle, how that changes along the finger, and how they move aside. Weights of the features.
+    fn smooth(&self) -> [[OfEach; SMOOTH]; 2] {
+        let place = |marker: &Marker| {
+            let at = marker.rest.at;
+            vec![1.0, f64::from(at.x - MIDDLE.x) / 100.0, f64::from(at.y - MIDDLE.y) / 100.0]
+        };
+        let places: Vec<_> = self.markers.iter().map(place).collect();
+        let mut terms = [[[0.0; SHEAR_FEATURES]; SMOOTH]; 2];
+        for number in 0..places.len() {
+            let mut only = vec![0.0; places.len()];
+            only[number] = 1.0;
+            // What this marker's move adds to the plane: its middle, its slopes to the right and down.
+            let [middle, right, down] = ridge(&places, &only, 1e-3)[..] else { continue };
+            for (own, axis) in terms.iter_mut().zip(0..) {
+                let (along, aside) = (3 * number + axis, 3 * number + 1 - axis);
+                (own[0][along], own[1][along], own[2][aside]) = (middle, down, right);
+            }
+        }
+        terms
     }
-    let weight = |sample: &Sample| {
-        1.0 / (0.5 + 0.1 * sample.force_n.iter().map(|force| force * force).sum::<f64>().sqrt())
-    };
-    let rows = |of: &dyn Fn(&Sample) -> Vec<f64>| -> Vec<Vec<f64>> {
-        samples.iter().map(|sample| of(sample).iter().map(|value| value * weight(sample)).collect()).collect()
-    };
-    let shear = rows(&|sample| sample.features.shear.map(f64::from).to_vec());
-    let normal = rows(&|sample| sample.features.normal.map(f64::from).to_vec());
-    let target = |axis: usize| -> Vec<f64> {
-        samples.iter().map(|sample| sample.force_n[axis] * weight(sample)).collect()
-    };
-    let x = ridge(&shear, &target(0), SHEAR_RIDGE);
-    // The picture's y goes down, which is against z.
-    let y = ridge(&shear, &target(2), SHEAR_RIDGE);
-    let into = ridge(&normal, &target(1), NORMAL_RIDGE);
-    let mut loads = Loads { shear: [[0.0; 2]; SHEAR_FEATURES], normal: [0.0; NORMAL_FEATURES] };
-    for (slot, (x, y)) in loads.shear.iter_mut().zip(x.iter().zip(&y)) {
-        *slot = [*x as f32, *y as f32];
+
+    /// Weights that bring the samples' features nearest to their forces; light loads count more, for errors are relative.
+    ///
+    /// # Errors
+    /// If there are no samples.
+    pub fn fit(&self, samples: &[Sample]) -> Result<Loads> {
+        if samples.is_empty() {
+            bail!("no loads to calibrate on");
+        }
+        let mut loads = Loads { shear: [[0.0; 2]; SHEAR_FEATURES], normal: [0.0; NORMAL_FEATURES] };
+        // The picture's y goes down, which is against z.
+        for (axis, (terms, of)) in self.smooth().iter().zip([0, 2]).enumerate() {
+            let row = |sample: &Sample| -> Vec<f64> {
+                let own = sample.features.shear.map(f64::from);
+                let smooth = terms.iter().map(|term| term.iter().zip(own).map(|(a, b)| a * b).sum());
+                smooth.chain(own.map(|value| FREE * value)).collect()
+            };
+            let weights = unshrunk(samples, of, SHEAR_RIDGE, row);
+            let (smooth, free) = weights.split_at(SMOOTH);
+            for (feature, slot) in loads.shear.iter_mut().enumerate() {
+                let common: f64 = terms.iter().zip(smooth).map(|(term, weight)| term[feature] * weight).sum();
+                slot[axis] = (common + FREE * free[feature]) as f32;
+            }
+        }
+        let normal =
+            weighted(samples, 1, NORMAL_RIDGE, |sample| sample.features.normal.map(f64::from).to_vec());
+        loads.normal.iter_mut().zip(normal).for_each(|(slot, value)| *slot = value as f32);
+        Ok(loads)
     }
-    for (slot, value) in loads.normal.iter_mut().zip(into) {
-        *slot = value as f32;
+}
+
+/// How much a sample counts.
+fn weight(sample: &Sample) -> f64 {
+    1.0 / (0.5 + 0.1 * sample.force_n.iter().map(|force| force * force).sum::<f64>().sqrt())
+}
+
+/// A ridge regression of the samples' force along an axis.
+fn weighted(samples: &[Sample], axis: usize, by: f64, row: impl Fn(&Sample) -> Vec<f64>) -> Vec<f64> {
+    let rows: Vec<Vec<f64>> = samples
+        .iter()
+        .map(|sample| row(sample).iter().map(|value| value * weight(sample)).collect())
+        .collect();
+    let targets: Vec<f64> = samples.iter().map(|sample| sample.force_n[axis] * weight(sample)).collect();
+    ridge(&rows, &targets, by)
+}
+
+/// The same, made so much larger that what it tells of the samples is as large as their forces. A regression tells less: the loads are
+/// known, and what scatters are the moves, since a block is never set down twice alike. Under heavier loads than it has learned
+/// that would be missing.
+fn unshrunk(samples: &[Sample], axis: usize, by: f64, row: impl Fn(&Sample) -> Vec<f64>) -> Vec<f64> {
+    let mut weights = weighted(samples, axis, by, &row);
+    let (mut told, mut known) = (0.0, 0.0);
+    for sample in samples {
+        let squared = weight(sample) * weight(sample);
+        let force_n: f64 = row(sample).iter().zip(&weights).map(|(value, weight)| value * weight).sum();
+        told += squared * force_n * sample.force_n[axis];
+        known += squared * sample.force_n[axis] * sample.force_n[axis];
     }
-    Ok(loads)
+    if told > 0.0 {
+        weights.iter_mut().for_each(|weight| *weight *= known / told);
+    }
+    weights
 }
 
 /// Ridge regression by the normal equations and Cholesky's factors.

@@ -3,15 +3,19 @@
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 use serde::Serialize;
-use tenax_vision::frame::{FRAME_BYTES, Frame};
+use tenax_vision::frame::Frame;
 use tenax_vision::object::Config;
 use tenax_vision::quality::Blind;
+use tenax_vision::rectify::Rectifier;
 use tenax_vision::{Camera, Summary};
 
+use super::feed::{Fault, Feed, Next};
 use super::overlay;
 use super::source::Source;
 
@@ -26,6 +30,12 @@ pub struct Plan {
     pub folder: Option<PathBuf>,
     /// An overlay of every so many pictures; 0: none.
     pub overlay_every: usize,
+    /// Whether they come as a camera's do and not as fast as they are decoded.
+    pub live: bool,
+    /// What is wrong with a drawn camera for two seconds.
+    pub fault: Option<Fault>,
+    /// Whether a hand holds something, where somebody knows: from then on the object's colours are known.
+    pub holds: Option<Arc<AtomicBool>>,
 }
 
 /// What became of them.
@@ -52,6 +62,8 @@ pub struct Report {
 /// How often a camera was blind, pictures.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Blindness {
+    /// None came for too long: times.
+    pub lost: usize,
     /// The picture was too old.
     pub late: usize,
     /// The same one came again and again.
@@ -60,26 +72,60 @@ pub struct Blindness {
     pub covered: usize,
 }
 
+/// What whoever is told hears.
+#[derive(Debug)]
+pub enum Told<'a> {
+    /// A picture, and its age, ms.
+    Picture(&'a Camera, &'a Summary, u16),
+    /// Why the camera has nothing to say while no picture comes.
+    Silence(Blind),
+}
+
+impl Plan {
+    /// Pictures a second.
+    fn rate_hz(&self) -> f64 {
+        self.rate_hz.or_else(|| self.source.rate_hz()).unwrap_or(30.0)
+    }
+
+    /// Opens the source.
+    ///
+    /// # Errors
+    /// If it is not there.
+    pub fn open(&self) -> Result<Feed> {
+        Feed::open(&self.source, self.rate_hz(), self.fault, self.live)
+    }
+}
+
 /// Follows all of a source's pictures; `told` hears of each.
 ///
 /// # Errors
 /// If pictures cannot be read, or results not written.
-pub fn follow(plan: &Plan, mut told: impl FnMut(&Camera, &Summary) -> Result<()>) -> Result<Report> {
-    let mut pictures = plan.source.open()?;
-    let rate_hz = plan.rate_hz.or_else(|| plan.source.rate_hz()).unwrap_or(30.0);
+pub fn follow(plan: &Plan, mut feed: Feed, mut told: impl FnMut(Told<'_>) -> Result<()>) -> Result<Report> {
     let mut tables = plan.folder.as_deref().map(Tables::create).transpose()?;
     let mut camera = Camera::new(Config::default());
-    let mut planes: Box<[u8; FRAME_BYTES]> =
-        vec![0; FRAME_BYTES].try_into().ok().context("a picture's size")?;
+    if let Some(focal_px) = plan.source.focal_px() {
+        camera.rectify(Rectifier::new(focal_px));
+    }
     let mut report = Report::default();
     let mut worked = Duration::ZERO;
     let (mut updates, mut failed, mut objects, mut slips) = (0, 0, 0, 0);
     let mut last = Vec::new();
-    while pictures.next(&mut planes)? {
+    loop {
+        let (planes, taken_ms, now_ms) = match feed.take()? {
+            Next::Picture(planes, taken_ms, now_ms) => (planes, taken_ms, now_ms),
+            Next::Silence(now_ms) => {
+                if let Some(blind) = camera.silence(now_ms) {
+                    report.blind.lost += 1;
+                    told(Told::Silence(blind))?;
+                }
+                continue;
+            }
+            Next::End => break,
+        };
         let frame = Frame::from_gbrp(&planes[..]).context("a picture's size")?;
-        let now_ms = (report.frames as f64 * 1e3 / rate_hz) as u32;
+        let learn = plan.holds.as_ref().is_none_or(|holds| !holds.load(Ordering::Relaxed));
         let start = Instant::now();
-        let summary = camera.picture(&frame, true, now_ms, now_ms);
+        let summary = camera.picture(&frame, learn, taken_ms, now_ms);
         worked += start.elapsed();
         if let Some(markers) = camera.markers() {
             last.resize(markers.len(), None);
@@ -107,7 +153,8 @@ pub fn follow(plan: &Plan, mut told: impl FnMut(&Camera, &Summary) -> Result<()>
                 tables.overlay(&overlay::png(&frame, &camera, &summary)?, report.frames)?;
             }
         }
-        told(&camera, &summary)?;
+        let age_ms = now_ms.saturating_sub(taken_ms).try_into().unwrap_or(u16::MAX);
+        told(Told::Picture(&camera, &summary, age_ms))?;
         report.frames += 1;
     }
     let share = |part: usize, all: usize| part as f64 / all.max(1) as f64;

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdout, Command, Stdio};
 
 use anyhow::{Context, Result, bail};
+use tenax_scene::picture::{Options, Session};
 use tenax_vision::frame::{FRAME_BYTES, HEIGHT, WIDTH};
 
 /// Where pictures come from.
@@ -18,11 +19,27 @@ pub enum Source {
     Device(PathBuf),
     /// Pictures, one after the other.
     Pictures(Vec<PathBuf>),
+    /// A drawn scene.
+    Drawn {
+        /// What draws it.
+        seed: u64,
+        /// Pictures a second.
+        rate_hz: u32,
+    },
 }
 
 /// Pictures of 320 x 240, planes green, blue, red.
 #[derive(Debug)]
-pub struct Pictures {
+pub enum Pictures {
+    /// What `ffmpeg` decodes.
+    Decoded(Decoded),
+    /// What is drawn.
+    Drawn(Box<Session>),
+}
+
+/// What `ffmpeg` decodes.
+#[derive(Debug)]
+pub struct Decoded {
     ffmpeg: Child,
     planes: ChildStdout,
     /// The list that ffmpeg reads while it runs.
@@ -50,6 +67,9 @@ impl Source {
                 command.args(["-f", "v4l2", "-video_size", &format!("{WIDTH}x{HEIGHT}"), "-i"]).arg(path);
                 path.display().to_string()
             }
+            &Self::Drawn { seed, rate_hz } => {
+                return Ok(Pictures::Drawn(Box::new(session(seed, rate_hz))));
+            }
             Self::Folder(folder) => return Self::Pictures(pictures_of(folder)?).open(),
             Self::Pictures(paths) => {
                 list = Some(list_of(paths)?);
@@ -67,13 +87,24 @@ impl Source {
             _ => anyhow::Error::from(error).context("cannot start ffmpeg"),
         })?;
         let planes = ffmpeg.stdout.take().context("ffmpeg has no output")?;
-        Ok(Pictures { ffmpeg, planes, _list: list, what })
+        Ok(Pictures::Decoded(Decoded { ffmpeg, planes, _list: list, what }))
+    }
+
+    /// The lens, where it is known: its focal length, px.
+    #[must_use]
+    pub fn focal_px(&self) -> Option<f32> {
+        let &Self::Drawn { seed, rate_hz } = self else { return None };
+        Some(session(seed, rate_hz).lens().focal_px as f32)
     }
 
     /// Pictures a second that a video says it has.
     #[must_use]
     pub fn rate_hz(&self) -> Option<f64> {
-        let Self::Video(path) = self else { return None };
+        let path = match self {
+            Self::Video(path) => path,
+            Self::Drawn { rate_hz, .. } => return Some(f64::from(*rate_hz)),
+            _ => return None,
+        };
         let probe = [
             "-v",
             "error",
@@ -98,12 +129,16 @@ impl Pictures {
     /// # Errors
     /// If `ffmpeg` could not decode it.
     pub fn next(&mut self, planes: &mut [u8; FRAME_BYTES]) -> Result<bool> {
-        match self.planes.read_exact(planes) {
+        let decoded = match self {
+            Self::Decoded(decoded) => decoded,
+            Self::Drawn(session) => return Ok(session.picture(&mut planes[..]).is_some()),
+        };
+        match decoded.planes.read_exact(planes) {
             Ok(()) => Ok(true),
             Err(error) if error.kind() == ErrorKind::UnexpectedEof => {
-                let ended = self.ffmpeg.wait().context("ffmpeg does not end")?;
+                let ended = decoded.ffmpeg.wait().context("ffmpeg does not end")?;
                 if !ended.success() {
-                    bail!("ffmpeg cannot decode {}", self.what);
+                    bail!("ffmpeg cannot decode {}", decoded.what);
                 }
                 Ok(false)
             }
@@ -112,12 +147,16 @@ impl Pictures {
     }
 }
 
-impl Drop for Pictures {
+impl Drop for Decoded {
     fn drop(&mut self) {
         // Whoever stops reading early wants no more of it.
         let _ = self.ffmpeg.kill();
         let _ = self.ffmpeg.wait();
     }
+}
+
+fn session(seed: u64, rate_hz: u32) -> Session {
+    Session::new(Options { seed, rate_hz: rate_hz.into(), fisheye: true })
 }
 
 fn there(path: &Path) -> Result<()> {

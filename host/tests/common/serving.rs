@@ -1,9 +1,10 @@
 //! A scene that the tool serves, as a person starts it.
 #![allow(dead_code, reason = "each test file uses its own part of this one")]
 
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, ChildStderr, Command, Stdio};
 
+use serde_json::Value;
 use tempfile::TempDir;
 
 /// `tenax run --host --serve-tcp 0`, and where it serves.
@@ -66,7 +67,18 @@ impl Serving {
 
     /// Waits for the run's end; what else it said.
     pub fn end(mut self) -> Vec<String> {
-        let rest = self.said.lines().map(Result::unwrap).collect();
+        self.wait()
+    }
+
+    /// Waits for the run's end; its report.
+    pub fn report(mut self) -> Value {
+        self.wait();
+        let path = self.folder.path().join("served.json");
+        serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+    }
+
+    fn wait(&mut self) -> Vec<String> {
+        let rest = self.said.by_ref().lines().map(Result::unwrap).collect();
         assert!(self.run.wait().unwrap().success());
         rest
     }

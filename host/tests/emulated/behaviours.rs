@@ -9,6 +9,22 @@ use tenax_scene::World;
 
 use crate::image;
 
+/// Every behaviour's scene.
+const SCENES: [&str; 11] = [
+    "gentle-can",
+    "gentle-card",
+    "push-gentle",
+    "push-hold",
+    "hold-marshmallow",
+    "hold-toy",
+    "hold-crane",
+    "hand-over-can",
+    "hand-over-card",
+    "turn-pen",
+    "fill-cup",
+];
+
+/// Runs a scene on the image: every tick as on the host.
 fn runs(name: &str) {
     let file = session::load_scene(name).expect("a scene");
     let world = World::new(&file, 1);
@@ -21,7 +37,9 @@ fn runs(name: &str) {
     };
     assert!(run.events.iter().any(|event| ended(&event)), "{name}: a behaviour did what it was asked for");
     let truth = world.truth();
-    assert!(!truth.dropped && !truth.left_behind && truth.dent_mm == 0.0, "{name}");
+    // The push in a gentle grasp is a control: its object may be lost.
+    assert!(name == "push-gentle" || !truth.dropped && !truth.left_behind, "{name}");
+    assert_eq!(truth.dent_mm, 0.0, "{name}");
 }
 
 #[test]
@@ -32,4 +50,18 @@ fn a_can_is_handed_over() {
 #[test]
 fn a_pen_is_turned() {
     runs("turn-pen");
+}
+
+/// The others take minutes: `TENAX_BEHAVIOURS=all cargo test ... --test emulated behaviours`.
+#[test]
+fn every_behaviour_of_the_image_is_that_of_the_host() {
+    if std::env::var_os("TENAX_BEHAVIOURS").is_none() {
+        println!("skipped, TENAX_BEHAVIOURS=all runs {} scenes", SCENES.len());
+        return;
+    }
+    for name in SCENES {
+        let began = std::time::Instant::now();
+        runs(name);
+        println!("{name}: as on the host, {:.0} s", began.elapsed().as_secs_f64());
+    }
 }
