@@ -1,18 +1,21 @@
 //! The charts of `tenax chart scenes`: where each way of stepping friction fails, and what it costs where it does not.
 //! Of `tenax chart sensors`: the scenes' sensors beside real ones. Of `tenax chart detectors`: what detectors from normal
-//! force get wrong against what they cost. Of `tenax chart features`: what tells slip from rest. And of `tenax chart
-//! photoelastic`: what a photoelastic head tells of force and slip.
+//! force get wrong against what they cost. Of `tenax chart features`: what tells slip from rest. Of `tenax chart
+//! photoelastic`: what a photoelastic head tells of force and slip. And of `tenax chart vision`: what finding an object costs, and how
+//! known loads are told.
 
 mod cost;
 pub mod detectors;
 pub(crate) mod draw;
 pub mod features;
 mod growth;
+pub mod loads;
 mod map;
 mod patch;
 pub mod photoelastic;
 pub mod sensors;
 pub(crate) mod sheet;
+pub mod vision;
 
 use plotters::style::RGBColor;
 use tenax_scene::stepping::SHIPPED_S;

@@ -47,6 +47,8 @@ enum Subject {
     Features,
     /// What a photoelastic head tells of normal force and slip: its curve, force followed, rates, where slip is seen
     Photoelastic,
+    /// What a camera behind the skin tells, on recordings: ways to find the object, speed against accuracy; known loads
+    Vision,
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
@@ -55,11 +57,16 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         Subject::Scenes => with_bar("charts", |progress| chart::scenes(progress))?,
         Subject::Features => vec![with_bar("features", |progress| chart::features::chart(progress))?],
         Subject::Sensors => {
-            let recordings = match &args.recordings {
-                Some(folder) => folder.clone(),
-                None => workspace::root()?.join("../shared/data"),
-            };
+            let recordings = recordings(args)?;
             vec![with_bar("sensors", |progress| chart::sensors::chart(&recordings, progress))?]
+        }
+        Subject::Vision => {
+            let folder = recordings(args)?.join("fingervision");
+            let video = folder.join("skin_video_54fps.m4v");
+            vec![
+                with_bar("loads", |progress| chart::loads::chart(&folder.join("loads.csv"), progress))?,
+                with_bar("choices", |progress| chart::vision::choices(&video, progress))?,
+            ]
         }
         Subject::Detectors => vec![detectors(args.scores.as_deref())?],
         Subject::Photoelastic => {
@@ -84,6 +91,13 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         }
     }
     Ok(ExitCode::SUCCESS)
+}
+
+fn recordings(args: &Args) -> anyhow::Result<PathBuf> {
+    match &args.recordings {
+        Some(folder) => Ok(folder.clone()),
+        None => Ok(workspace::root()?.join("../shared/data")),
+    }
 }
 
 #[cfg(feature = "emulator")]
