@@ -17,7 +17,7 @@
 //!
 //! # Wear
 //! A record takes its payload and [`OVERHEAD_WORDS`](record::OVERHEAD_WORDS) words. Of 128 KiB sectors at least half is
-//! filled between two erases, so the network's 78 words are saved 207 times for one erase, settings (4 words and one
+//! filled between two erases, so the network's 79 words are saved 204 times for one erase, settings (4 words and one
 //! for each that is not at its default, 33 at most) 490 times or more. The chip's 10 000 erases
 //! of each of two sectors (DS10314, flash memory endurance) are 4.1 million saves of the network: eight years of one a
 //! minute, day and night.

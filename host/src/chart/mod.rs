@@ -2,7 +2,8 @@
 //! Of `tenax chart sensors`: the scenes' sensors beside real ones. Of `tenax chart detectors`: what detectors from normal
 //! force get wrong against what they cost. Of `tenax chart array`: where the one that ships fails. Of `tenax chart
 //! features`: what tells slip from rest. Of `tenax chart photoelastic`: what a photoelastic head tells of force and slip.
-//! And of `tenax chart onset`: how soon the slip of a lift could be told.
+//! Of `tenax chart onset`: how soon the slip of a lift could be told. And of `tenax chart vision`: what finding an object
+//! costs, and how known loads are told.
 
 pub mod array;
 mod cost;
@@ -10,12 +11,14 @@ pub mod detectors;
 pub(crate) mod draw;
 pub mod features;
 mod growth;
+pub mod loads;
 mod map;
 pub mod onset;
 mod patch;
 pub mod photoelastic;
 pub mod sensors;
 pub(crate) mod sheet;
+pub mod vision;
 
 use plotters::style::RGBColor;
 use tenax_scene::stepping::SHIPPED_S;

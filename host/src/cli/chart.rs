@@ -52,6 +52,8 @@ enum Subject {
     Onset,
     /// What a photoelastic head tells of normal force and slip: its curve, force followed, rates, where slip is seen
     Photoelastic,
+    /// What a camera behind the skin tells, on recordings: ways to find the object, speed against accuracy; known loads
+    Vision,
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
@@ -61,16 +63,21 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         Subject::Array => vec![with_bar("array", |progress| chart::array::chart(progress))?],
         Subject::Features => vec![with_bar("features", |progress| chart::features::chart(progress))?],
         Subject::Sensors => {
-            let recordings = match &args.recordings {
-                Some(folder) => folder.clone(),
-                None => workspace::root()?.join("../shared/data"),
-            };
+            let recordings = recordings(args)?;
             vec![with_bar("sensors", |progress| chart::sensors::chart(&recordings, progress))?]
         }
         Subject::Onset => {
             let (chart, measured) = with_bar("onset", |progress| chart::onset::chart(progress))?;
             out::unless_closed(out::say!("{measured}"))?;
             vec![chart]
+        }
+        Subject::Vision => {
+            let folder = recordings(args)?.join("fingervision");
+            let video = folder.join("skin_video_54fps.m4v");
+            vec![
+                with_bar("loads", |progress| chart::loads::chart(&folder.join("loads.csv"), progress))?,
+                with_bar("choices", |progress| chart::vision::choices(&video, progress))?,
+            ]
         }
         Subject::Detectors => vec![detectors(args.scores.as_deref())?],
         Subject::Photoelastic => {
@@ -95,6 +102,13 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         }
     }
     Ok(ExitCode::SUCCESS)
+}
+
+fn recordings(args: &Args) -> anyhow::Result<PathBuf> {
+    match &args.recordings {
+        Some(folder) => Ok(folder.clone()),
+        None => Ok(workspace::root()?.join("../shared/data")),
+    }
 }
 
 #[cfg(feature = "emulator")]
