@@ -14,6 +14,9 @@ const SLIPPERY: f64 = 0.75;
 /// What is asked of the two groups, s, with the camera's delay and without.
 const ASKED_S: [[f64; 2]; 2] = [[0.30, 0.24], [0.15, 0.15]];
 
+/// Whether a finger is in a group.
+type IsIn = fn(&Bound) -> bool;
+
 /// What it measures.
 #[derive(Clone, Debug)]
 pub struct Measured(Vec<Bound>);
@@ -24,7 +27,7 @@ impl std::fmt::Display for Measured {
             f,
             "lead over the camera, s: mean of the fingers, and of the worst one; in brackets over a camera without delay"
         )?;
-        let groups: [(&str, fn(&Bound) -> bool); 3] = [
+        let groups: [(&str, IsIn); 3] = [
             ("plain fingers", |bound| bound.finger[1] == 0),
             ("ratio to 0.75", |bound| bound.finger[1] > 0 && bound.ratio <= SLIPPERY),
             ("ratio above", |bound| bound.finger[1] > 0 && bound.ratio > SLIPPERY),
