@@ -180,6 +180,8 @@ settings! {
     71 HeadForce8 "head-force-8-mn" "mN" [1, 30_000] = 6_000;
     /// Hebbian: how far ahead rising shear is looked at: slip is near if Ft/Fn will by then be where the camera saw slip
     72 HebbianAhead "hebbian-ahead-ms" "ms" [0, 250] = 75;
+    /// The mains, whose hum is taken off the PVDF films, is at 60 Hz (1), not at 50 (0)
+    73 Mains60Hz "mains-60-hz-flag" "flag" [0, 1] = 0;
 }
 
 impl SettingId {

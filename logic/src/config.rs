@@ -23,6 +23,8 @@ pub struct VibrationConfig {
     pub knock_permille: u16,
     /// A knock is over after this long, in frames; what lasts longer is slip whatever it sounds like.
     pub knock_frames: u32,
+    /// Whether the mains is at 60 Hz, not 50.
+    pub mains_60_hz: bool,
 }
 
 /// Thresholds of the friction detector.
@@ -122,7 +124,13 @@ pub struct Config {
 impl Config {
     /// Numbers without a meaning yet: [`default`](Self::default) sets every one of them from its row.
     const BLANK: Self = Self {
-        vibration: VibrationConfig { s1: 0, knock_level: 0, knock_permille: 0, knock_frames: 0 },
+        vibration: VibrationConfig {
+            s1: 0,
+            knock_level: 0,
+            knock_permille: 0,
+            knock_frames: 0,
+            mains_60_hz: false,
+        },
         friction: FrictionConfig { s2_permille: 0, s2_of_mu_s_permille: 0, loaded_mn: 0 },
         touch: TouchConfig {
             slip_permille: 0,

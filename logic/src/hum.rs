@@ -27,8 +27,10 @@ const RATE: i32 = 4;
 /// `2 pi / fs` in Q32: what a Hz more turns the oscillator further in a tick.
 const PER_HZ: f64 = 2.0 * core::f64::consts::PI / FRAME_HZ as f64 * 4_294_967_296.0;
 /// The mains, Hz, and how far from it the oscillator may be.
-const NOMINAL_HZ: f64 = 50.0;
+const NOMINAL_HZ: [f64; 2] = [50.0, 60.0];
 const OFF_HZ: f64 = 1.0;
+/// The oscillator's slowest and fastest step at either mains.
+const WITHIN: [[i32; 2]; 2] = [within(NOMINAL_HZ[0]), within(NOMINAL_HZ[1])];
 /// How far a vote moves the frequency: 0.25 Hz in a second of votes that agree.
 const VOTE: i32 = (0.25 * EVERY as f64 / FRAME_HZ as f64 * PER_HZ) as i32;
 
@@ -67,7 +69,7 @@ pub struct Mains {
 
 impl Default for Mains {
     fn default() -> Self {
-        Self { now: Turn { cosine: AMPLITUDE, sine: 0 }, step: step(NOMINAL_HZ), ticks: 0 }
+        Self { now: Turn { cosine: AMPLITUDE, sine: 0 }, step: step(NOMINAL_HZ[0]), ticks: 0 }
     }
 }
 
@@ -75,6 +77,10 @@ impl Default for Mains {
 const fn step(hz: f64) -> i32 {
     let x = 2.0 * core::f64::consts::PI * hz / FRAME_HZ as f64;
     ((x - x * x * x / 24.0) * 4_294_967_296.0) as i32
+}
+
+const fn within(hz: f64) -> [i32; 2] {
+    [step(hz - OFF_HZ), step(hz + OFF_HZ)]
 }
 
 /// The upper word of a product: one instruction.
@@ -111,14 +117,13 @@ impl Mains {
 
     /// A film's band hears so much that its weights do not explain, Q16 samples.
     #[inline]
-    pub fn adapt(&mut self, film: &mut Weights, error: i32) {
-        const SLOWEST: i32 = step(NOMINAL_HZ - OFF_HZ);
-        const FASTEST: i32 = step(NOMINAL_HZ + OFF_HZ);
+    pub fn adapt(&mut self, mains_60_hz: bool, film: &mut Weights, error: i32) {
+        let [slowest, fastest] = WITHIN[usize::from(mains_60_hz)];
         let error = error.clamp(-ERROR_MAX, ERROR_MAX);
         let (by_cosine, by_sine) = (high(error, self.now.cosine), high(error, self.now.sine));
         // Which way the weights turn: back, if the mains is ahead of the oscillator.
         let ahead = high(film.sine, by_cosine << 8) - high(film.cosine, by_sine << 8);
-        self.step = (self.step + VOTE * ahead.signum()).clamp(SLOWEST, FASTEST);
+        self.step = (self.step + VOTE * ahead.signum()).max(slowest).min(fastest);
         film.cosine = (film.cosine + RATE * by_cosine).clamp(-WEIGHT_MAX, WEIGHT_MAX);
         film.sine = (film.sine + RATE * by_sine).clamp(-WEIGHT_MAX, WEIGHT_MAX);
     }

@@ -241,7 +241,7 @@ impl VibrationDetector {
         let Heard { envelope, above } = loudest;
         let asked = self.mains.asks().filter(|_| self.loud_frames == 0);
         if let Some(film) = asked.and_then(|film| self.films.get_mut(film)) {
-            self.mains.adapt(&mut film.hum, film.band);
+            self.mains.adapt(config.mains_60_hz, &mut film.hum, film.band);
         }
         let above = ENVELOPE.process(&mut self.above, above);
         let on = i32::from(config.s1) << Q;

@@ -4,7 +4,7 @@ use core::f64::consts::TAU;
 use std::vec::Vec;
 
 use super::*;
-use crate::config::Config;
+use crate::config::{Config, VibrationConfig};
 use crate::vibration::VibrationDetector;
 
 /// One in 16 of a sample, as the sum of four dithered codes is fine.
@@ -14,7 +14,10 @@ fn sample(x: f64, noise: u32) -> u16 {
 
 /// Envelopes of all films, samples, once a tick, of what `heard` gives at each instant, s.
 fn envelopes(for_s: f64, heard: impl Fn(f64) -> f64) -> Vec<f64> {
-    let config = Config::default().vibration;
+    envelopes_of(&Config::default().vibration, for_s, heard)
+}
+
+fn envelopes_of(config: &VibrationConfig, for_s: f64, heard: impl Fn(f64) -> f64) -> Vec<f64> {
     let mut detector = VibrationDetector::default();
     let mut noise = 1_u32;
     (0..(for_s * f64::from(FRAME_HZ)) as u32)
@@ -25,7 +28,7 @@ fn envelopes(for_s: f64, heard: impl Fn(f64) -> f64) -> Vec<f64> {
                 // Each film as loud as it lies.
                 sample(heard(t_s) * (0.4 + 0.1 * film as f64), noise >> 8)
             });
-            detector.hear(&config, &samples, None);
+            detector.hear(config, &samples, None);
             detector.envelopes().iter().map(|&e| f64::from(e) / 65_536.0).sum::<f64>() / PVDF_COUNT as f64
         })
         .collect()
@@ -46,6 +49,19 @@ fn hum_goes_also_where_the_mains_is_half_a_hertz_off() {
     for hz in [49.5, 49.8, 50.0, 50.2, 50.5] {
         let left = left(|t_s| 30.0 * (TAU * hz * t_s + 1.0).sin());
         assert!(left < 0.08, "{hz} Hz: {left}");
+    }
+}
+
+/// And stays where nobody has said that the mains is at 60 Hz.
+#[test]
+fn hum_of_60_hz_goes_where_the_mains_is_said_to_be_that() {
+    for (mains_60_hz, most) in [(true, 0.08), (false, 1.1)] {
+        let config = VibrationConfig { mains_60_hz, ..Config::default().vibration };
+        for hz in [59.5, 60.0, 60.5] {
+            let all = envelopes_of(&config, 9.0, |t_s| 30.0 * (TAU * hz * t_s + 1.0).sin());
+            let left = mean(&all[14_000..]) / mean(&all[60..120]);
+            assert!(left < most && (mains_60_hz || left > 0.5), "{hz} Hz, {mains_60_hz}: {left}");
+        }
     }
 }
 
@@ -106,7 +122,7 @@ fn no_error_makes_a_weight_leave_its_range() {
     for n in 0..1_000_000_u32 {
         let now = hum.turn();
         hum.asks();
-        hum.adapt(&mut film, if now.cosine > 0 { i32::MAX } else { i32::MIN });
+        hum.adapt(false, &mut film, if now.cosine > 0 { i32::MAX } else { i32::MIN });
         assert!(film.heard(now).abs() < 1 << 29, "{n}");
     }
 }
