@@ -112,6 +112,12 @@ fn a_warning_adds_no_more_than_it_asks_for() {
     assert!(all > 5 && most <= 1.15, "{all} answers, {most:.2} times what they ask for at most");
 }
 
+/// Whether the reflex has answered slip before this frame.
+fn closes_before(outcome: &Outcome, frame: u32) -> bool {
+    let slips = |kind: &EventKind| matches!(kind, EventKind::Mode { to: GripMode::Slip, .. });
+    outcome.run.events.iter().any(|event| event.frame < frame && slips(&event.kind))
+}
+
 #[test]
 fn a_load_that_comes_at_once_is_kept_and_slides_no_further_than_without_s2() {
     let calm = text("arm-swing").split("[[swing]]").next().expect("its beginning");
@@ -120,13 +126,19 @@ fn a_load_that_comes_at_once_is_kept_and_slides_no_further_than_without_s2() {
     for seed in seeds(4) {
         for add_kg in [0.4, 0.5, 0.6, 0.7] {
             let loaded = format!("{calm}\n[[fill]]\nat_s = 10.0\nfor_s = 0.05\nadd_kg = {add_kg}\n");
-            let [with, without] = [loaded.clone(), loaded + deaf].map(|scene| {
-                let report = run(&scene, seed).0.report;
+            let [(with, _), (without, closed_before)] = [loaded.clone(), loaded + deaf].map(|scene| {
+                let outcome = run(&scene, seed).0;
+                let report = &outcome.report;
                 assert_eq!(report.object.kept, Some(true), "seed {seed}, {add_kg} kg: {:?}", report.reflex);
-                report.slip.distance_mm.expect("a scene knows how far it slid")
+                let slid_mm = report.slip.distance_mm.expect("a scene knows how far it slid");
+                (slid_mm, closes_before(&outcome, 10 * FRAME_HZ))
             });
             println!("seed {seed}, {add_kg} kg: slid {with:.1} mm, without S2 {without:.1}");
-            assert!(with <= 1.5 * without, "seed {seed}, {add_kg} kg: {with} mm, without S2 {without}");
+            // Without S2 some slip as they are lifted, and are held firmly when the load comes: no control.
+            assert!(
+                closed_before || with <= 1.5 * without,
+                "seed {seed}, {add_kg} kg: {with} mm, without S2 {without}"
+            );
         }
     }
 }
