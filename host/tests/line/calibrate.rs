@@ -1,9 +1,5 @@
 //! `tenax calibrate` on served scenes, in which weights are put on, surfaces are stroked and muscles contract at known
 //! instants: nobody presses a key.
-#![cfg(unix)]
-
-#[path = "common/serving.rs"]
-mod serving;
 
 use std::process::{Command, Output};
 use std::thread;
@@ -11,7 +7,7 @@ use std::thread;
 use tenax::link::{Client, Target};
 use tenax_hal_shim::wire::Up;
 
-use self::serving::Serving;
+use crate::serving::Serving;
 
 const HEAD: &str = "name = \"bench\"
 title = \"A bench\"
