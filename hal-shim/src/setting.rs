@@ -178,7 +178,7 @@ settings! {
     70 HeadForce7 "head-force-7-mn" "mN" [1, 30_000] = 4_706;
     /// Photoelastic calibration: force at half a turn, where the voltage is back at its first value
     71 HeadForce8 "head-force-8-mn" "mN" [1, 30_000] = 6_000;
-    /// Hebbian: how far ahead rising shear is looked at: slip is near if Ft/Fn will by then be where the camera saw slip
+    /// Hebbian: how far ahead rising shear is looked at: it warns if Ft/Fn will by then be where the camera saw slip; 0: it never does
     72 HebbianAhead "hebbian-ahead-ms" "ms" [0, 250] = 75;
     /// The mains, whose hum is taken off the PVDF films, is at 60 Hz (1), not at 50 (0)
     73 Mains60Hz "mains-60-hz-flag" "flag" [0, 1] = 0;
