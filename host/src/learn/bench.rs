@@ -18,7 +18,7 @@ use tenax_scene::plant::Plant;
 use super::chain::slow_frames;
 use super::control::Control;
 use super::crackle::crackle;
-use super::trial::{Setup, Trial};
+use super::trial::{Setup, Trial, by_network};
 use crate::board::simulated::with_plan;
 
 /// Who says that the object slips, for the reflex to answer.
@@ -37,13 +37,15 @@ pub enum Judge {
 pub struct Bench {
     fingertip: Fingertip,
     frame: u32,
+    /// What the network said in the ticks of the last slow frame.
+    said: Vec<Said>,
     /// Whether one film crackles.
     crackles: bool,
 }
 
 impl Default for Bench {
     fn default() -> Self {
-        Self { fingertip: Fingertip::trusting(), frame: 0, crackles: false }
+        Self { fingertip: Fingertip::trusting(), frame: 0, said: Vec::new(), crackles: false }
     }
 }
 
@@ -98,9 +100,11 @@ impl Bench {
             if judge == Judge::Oracle {
                 drive = with_plan(drive, self.fingertip.wearer_active(), world.planned());
             }
+            self.said.push(by_network([self.fingertip.slip(), self.fingertip.incipient()]));
             if let Some(slow) = self.fingertip.take_slow() {
                 see(seen, &slow, self);
                 seen += 1;
+                self.said.clear();
             }
             while self.fingertip.next_event().is_some() {}
         }
@@ -116,7 +120,9 @@ impl Bench {
     pub fn trial_for(&mut self, for_s: f64, setup: Setup) -> Trial {
         let mut trial = Trial { lift_s: setup.lift_s, ..Trial::default() };
         let for_s = setup.lift_s + for_s;
-        let world = self.run_for(for_s, setup.world, Judge::Touch, &mut |n, slow, _| trial.hear(n, slow));
+        let world = self.run_for(for_s, setup.world, Judge::Touch, &mut |n, slow, bench| {
+            trial.hear(n, slow, &bench.said);
+        });
         trial.end(world.truth().clone());
         trial
     }
@@ -141,18 +147,21 @@ impl Bench {
         Ok(bench)
     }
 
-    /// The same fingertip as a control has it: something of what was learned is changed.
+    /// The same fingertip as a control has it: something of what was learned is changed; nothing, if there is none. Either way it is
+    /// switched off and on in between.
     ///
     /// # Errors
     /// None but of a bug: what was learned can be restored.
-    pub fn controlled(&self, control: Control) -> anyhow::Result<Self> {
+    pub fn controlled(&self, control: Option<Control>) -> anyhow::Result<Self> {
         let mut bytes = [0; touch::SNAPSHOT_LENGTH];
         let learned = self.fingertip.learned();
         let kept = learned.write(&mut bytes).context("a snapshot of another length")?;
         let (normaliser, network, more) =
             snapshot::restore(&touch::NORMALISER, kept).map_err(|damaged| anyhow!("{damaged:?}"))?;
         let mut weights: [[Weight; RECEPTORS]; NETWORK_OUTPUTS] = network.weights();
-        let more = control.change(&mut weights[0][..PVDF_COUNT], more);
+        let films = &mut weights[0][..PVDF_COUNT];
+        let maxima = &normaliser.maxima()[..PVDF_COUNT];
+        let more = control.map_or(more, |control| control.change(films, maxima, more));
         let changed = FingertipNetwork::from_weights(&weights);
         let mut bytes = [0; touch::SNAPSHOT_LENGTH];
         let kept = snapshot::save(&normaliser, &changed, more, &mut bytes);
@@ -160,6 +169,12 @@ impl Bench {
         let mut other = self.clone();
         other.fingertip.restore(Kept::Network, kept);
         Ok(other)
+    }
+
+    /// What the network said in the ticks of the last slow frame.
+    #[must_use]
+    pub fn said(&self) -> &[Said] {
+        &self.said
     }
 
     /// Weights and activations.
