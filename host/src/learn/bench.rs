@@ -6,11 +6,11 @@ use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::frame::{Frame, Scan, scan_of_pins};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Down, NETWORK_OUTPUTS, NetworkState, RECEPTORS, Setting, Slow};
-use tenax_hal_shim::words::Kept;
+use tenax_hal_shim::words;
 use tenax_logic::detectors::Said;
 use tenax_logic::fingertip::Fingertip;
 use tenax_logic::hebbian::network::Weight;
-use tenax_logic::hebbian::{FingertipNetwork, snapshot};
+use tenax_logic::hebbian::{FingertipNetwork, Normaliser, snapshot};
 use tenax_logic::touch;
 use tenax_scene::World;
 use tenax_scene::plant::Plant;
@@ -18,6 +18,7 @@ use tenax_scene::plant::Plant;
 use super::chain::slow_frames;
 use super::control::Control;
 use super::crackle::crackle;
+use super::report::Spread;
 use super::trial::{Setup, Trial, by_network};
 use crate::board::simulated::with_plan;
 
@@ -31,6 +32,9 @@ pub enum Judge {
     /// The world, which plans the least force that holds: the same gripper cannot do better.
     Oracle,
 }
+
+/// What a fingertip has learned: maxima, weights, the ratio of slip.
+type Kept = (Normaliser<RECEPTORS>, [[Weight; RECEPTORS]; NETWORK_OUTPUTS], u32);
 
 /// The fingertip. Its line is trusted: a camera teaches over it.
 #[derive(Clone, Debug)]
@@ -147,18 +151,38 @@ impl Bench {
         Ok(bench)
     }
 
+    /// What it has learned: maxima, weights, the ratio of slip.
+    fn kept(&self) -> anyhow::Result<Kept> {
+        let mut bytes = [0; touch::SNAPSHOT_LENGTH];
+        let learned = self.fingertip.learned();
+        let kept = learned.write(&mut bytes).context("a snapshot of another length")?;
+        let (normaliser, network, more) =
+            snapshot::restore(&touch::NORMALISER, kept).map_err(|damaged| anyhow!("{damaged:?}"))?;
+        Ok((normaliser, network.weights(), more))
+    }
+
+    /// How unlike the films are, standard deviation over mean: their maxima, and their weights of o1.
+    ///
+    /// # Errors
+    /// None but of a bug: what was learned can be restored.
+    pub fn films_apart(&self) -> anyhow::Result<[f64; 2]> {
+        let (normaliser, weights, _) = self.kept()?;
+        let apart = |values: Vec<f64>| {
+            let Spread { mean, sd, .. } = Spread::of(&values);
+            if mean == 0.0 { 0.0 } else { sd / mean.abs() }
+        };
+        let maxima = normaliser.maxima()[..PVDF_COUNT].iter().copied().map(f64::from).collect();
+        let weights = weights[0][..PVDF_COUNT].iter().map(|weight| f64::from(weight.into_bits())).collect();
+        Ok([apart(maxima), apart(weights)])
+    }
+
     /// The same fingertip as a control has it: something of what was learned is changed; nothing, if there is none. Either way it is
     /// switched off and on in between.
     ///
     /// # Errors
     /// None but of a bug: what was learned can be restored.
     pub fn controlled(&self, control: Option<Control>) -> anyhow::Result<Self> {
-        let mut bytes = [0; touch::SNAPSHOT_LENGTH];
-        let learned = self.fingertip.learned();
-        let kept = learned.write(&mut bytes).context("a snapshot of another length")?;
-        let (normaliser, network, more) =
-            snapshot::restore(&touch::NORMALISER, kept).map_err(|damaged| anyhow!("{damaged:?}"))?;
-        let mut weights: [[Weight; RECEPTORS]; NETWORK_OUTPUTS] = network.weights();
+        let (normaliser, mut weights, more) = self.kept()?;
         let films = &mut weights[0][..PVDF_COUNT];
         let maxima = &normaliser.maxima()[..PVDF_COUNT];
         let more = control.map_or(more, |control| control.change(films, maxima, more));
@@ -167,7 +191,7 @@ impl Bench {
         let kept = snapshot::save(&normaliser, &changed, more, &mut bytes);
         let kept = kept.context("a snapshot of another length")?;
         let mut other = self.clone();
-        other.fingertip.restore(Kept::Network, kept);
+        other.fingertip.restore(words::Kept::Network, kept);
         Ok(other)
     }
 
