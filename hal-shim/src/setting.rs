@@ -101,7 +101,7 @@ settings! {
     /// Normal force from which the finger counts as loaded
     10 Loaded "loaded-mn" "mN" [300, 2_000] = 600;
     /// Hebbian: how long o1 must mean slip if only some PVDF channels show it
-    11 HebbianTime "hebbian-ms" "ms" [1, 100] = 5;
+    11 HebbianTime "hebbian-ms" "ms" [1, 100] = 15;
     /// Hebbian: how long if all PVDF channels show it, longer than a knock
     12 HebbianEverywhere "hebbian-everywhere-ms" "ms" [1, 500] = 40;
     /// Hebbian: how long after a knock or a fast run of the motor it is not evaluated
