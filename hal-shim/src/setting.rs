@@ -101,7 +101,7 @@ settings! {
     /// Normal force from which the finger counts as loaded
     10 Loaded "loaded-mn" "mN" [300, 2_000] = 600;
     /// Hebbian: how long o1 must mean slip if only some PVDF channels show it
-    11 HebbianTime "hebbian-ms" "ms" [1, 100] = 5;
+    11 HebbianTime "hebbian-ms" "ms" [1, 100] = 15;
     /// Hebbian: how long if all PVDF channels show it, longer than a knock
     12 HebbianEverywhere "hebbian-everywhere-ms" "ms" [1, 500] = 40;
     /// Hebbian: how long after a knock or a fast run of the motor it is not evaluated
@@ -178,7 +178,7 @@ settings! {
     70 HeadForce7 "head-force-7-mn" "mN" [1, 30_000] = 4_706;
     /// Photoelastic calibration: force at half a turn, where the voltage is back at its first value
     71 HeadForce8 "head-force-8-mn" "mN" [1, 30_000] = 6_000;
-    /// Hebbian: how far ahead rising shear is looked at: slip is near if Ft/Fn will by then be where the camera saw slip
+    /// Hebbian: how far ahead rising shear is looked at: it warns if Ft/Fn will by then be where the camera saw slip; 0: it never does
     72 HebbianAhead "hebbian-ahead-ms" "ms" [0, 250] = 75;
     /// The mains, whose hum is taken off the PVDF films, is at 60 Hz (1), not at 50 (0)
     73 Mains60Hz "mains-60-hz-flag" "flag" [0, 1] = 0;

@@ -18,6 +18,7 @@ pub mod holding;
 pub mod observer;
 pub mod reflex;
 pub mod report;
+pub mod text;
 pub mod trial;
 
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -26,6 +27,7 @@ use rayon::prelude::*;
 use tenax_hal_shim::wire::Setting;
 
 use crate::board::agreement::Agreement;
+use crate::scorer::Verdict;
 use crate::session::Board;
 use bench::Bench;
 use control::Control;
@@ -33,7 +35,7 @@ use finger::Finger;
 use holding::Holding;
 use reflex::Three;
 use report::{Safe, Score};
-use trial::{Setup, Trial};
+use trial::{Setup, Trial, Word};
 
 /// Trials of a lesson (Tada 2006, section III-C).
 pub const LESSONS: u64 = 7;
@@ -57,6 +59,8 @@ pub struct Options {
     pub lifts: u64,
     /// Fingers made by chance.
     pub fingertips: u64,
+    /// Whether their controls are tried, too.
+    pub controls: bool,
     /// Whether the films hear no mains hum: the most that a canceller of it could bring.
     pub without_hum: bool,
     /// Whether one film of the plain finger is made to crackle, too.
@@ -77,9 +81,11 @@ impl Default for Options {
         Self {
             seed: 1,
             trials: 50,
-            minutes: 60,
+            // 3.1 h: at most one false alarm in three hours is asked for.
+            minutes: 200,
             lifts: 20,
             fingertips: 20,
+            controls: true,
             without_hum: false,
             crackling: false,
             settings: Vec::new(),
@@ -135,7 +141,7 @@ pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Resu
     let loudest = silent.outputs.iter().flatten().map(|output| output.unsigned_abs()).max();
 
     let (learned, lessons, felt) = lessons_on_host(&finger, options, progress)?;
-    let equal = learned.controlled(Control::EqualWeights)?;
+    let equal = learned.controlled(Some(Control::EqualWeights))?;
     let equal = Score::of(&trials_on_host(&finger, equal, options, progress)?);
     let (trials, agreement) = match board {
         Board::Host => (trials_on_host(&finger, learned.clone(), options, progress)?, None),
@@ -233,8 +239,8 @@ fn on_board(
     let chain = chain::Chain::new(setups);
     let all_s = tenax_scene::plant::Plant::duration_s(&chain);
     let (run, chain) = board.run(chain, &mut |s| progress("on the emulated board", s / all_s))?;
-    let agreement = Agreement::of(&run);
-    Ok((chain.trials(&run).split_off(LESSONS as usize), agreement))
+    let (agreement, host) = Agreement::with_host(&run);
+    Ok((chain.trials(&run, &host).split_off(LESSONS as usize), agreement))
 }
 
 /// A finger made by chance.
@@ -244,21 +250,15 @@ pub struct Other {
     pub ratio: f64,
     /// Its held-out trials.
     pub score: Score,
+    /// The same, each from what the lessons left and until the slip up: as the controls are tried.
+    pub apart: Score,
     /// The same of each control, in the order of [`Control::ALL`].
     pub controls: [Score; Control::ALL.len()],
     /// Lifts with more force than the object needs.
     pub safe: Safe,
+    /// How unlike its films are, standard deviation over mean: their maxima, and what it has learned of each, its weight.
+    pub films_apart: [f64; 2],
 }
-
-impl Other {
-    /// The control of what learning which film to believe is worth.
-    #[must_use]
-    pub const fn equal(&self) -> &Score {
-        &self.controls[Control::EqualWeights as usize]
-    }
-}
-
-const _: () = assert!(Control::ALL[0] as usize == 0 && Control::EqualWeights as usize == 0);
 
 /// The same lessons, and some held-out trials.
 fn other(options: &Options, n: u64) -> anyhow::Result<Other> {
@@ -268,17 +268,21 @@ fn other(options: &Options, n: u64) -> anyhow::Result<Other> {
     for n in 0..LESSONS {
         bench.trial(Setup::new(&finger, lesson(own, n), true)?);
     }
-    let mut controls: [Score; Control::ALL.len()] = Default::default();
-    for (score, control) in controls.iter_mut().zip(Control::ALL) {
-        let bench = bench.controlled(control)?;
+    let apart = |bench: &Bench| -> anyhow::Result<Score> {
         let mut trials = Vec::new();
         for n in 0..TRIALS_OF_OTHERS {
             // Each from the end of the lessons: a trial that is cut short is no beginning for the next.
             let setup = Setup::new(&finger, held_out(own, n), false)?;
             trials.push(bench.clone().trial_for(SLIP_UP_S, setup));
         }
-        *score = Score::of(&trials);
+        Ok(Score::of(&trials))
+    };
+    let mut controls: [Score; Control::ALL.len()] = Default::default();
+    for (score, control) in controls.iter_mut().zip(Control::ALL).filter(|_| options.controls) {
+        *score = apart(&bench.controlled(Some(control))?)?;
     }
+    let learned_apart = if options.controls { apart(&bench.controlled(None)?)? } else { Score::default() };
+    let films_apart = bench.films_apart()?;
     let mut safe = Safe::default();
     for n in 0..SAFE_LIFTS {
         let setup = Setup::held(&finger, seed(own, 7, n))?;
@@ -286,14 +290,18 @@ fn other(options: &Options, n: u64) -> anyhow::Result<Other> {
         // One that slips all the same is none of these.
         if trial.slip_up().is_none() {
             safe.lifts += 1;
-            safe.said += u64::from(trial.verdicts().iter().any(|verdict| verdict.from_s > trial.lift_s));
+            let said =
+                |word| trial.verdicts(word).iter().any(|verdict: &Verdict| verdict.from_s > trial.lift_s);
+            safe.said += u64::from(said(Word::Any));
+            safe.slip += u64::from(said(Word::Slip));
         }
     }
     let mut trials = Vec::new();
     for n in 0..TRIALS_OF_OTHERS {
         trials.push(bench.trial(Setup::new(&finger, held_out(own, n), false)?));
     }
-    Ok(Other { ratio: finger.ratio(), score: Score::of(&trials), controls, safe })
+    let score = Score::of(&trials);
+    Ok(Other { ratio: finger.ratio(), score, apart: learned_apart, controls, safe, films_apart })
 }
 
 fn lesson(all: u64, n: u64) -> u64 {

@@ -50,7 +50,7 @@ pub struct TouchConfig {
     /// How long after a knock or a run of the motor it means nothing, in frames: what the envelopes still have of it, and
     /// the motor's dead time.
     pub loud_frames: u32,
-    /// How far ahead rising shear is looked at, ms.
+    /// How far ahead rising shear is looked at, ms; 0: it never warns.
     pub ahead_ms: u16,
     /// From this duty on the motor runs fast, per mille. Closing more slowly is a way to take something, and to learn.
     pub loud_duty_permille: u16,

@@ -62,6 +62,8 @@ pub struct Sensed<'a> {
     pub noisy: bool,
     /// The reflex or the wearer moves the hand.
     pub moves: bool,
+    /// A muscle is active, its hold time included.
+    pub wearer: bool,
 }
 
 /// What a detector says: the object slips, or is about to.

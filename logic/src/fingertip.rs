@@ -203,6 +203,18 @@ impl Fingertip {
         self.senses.envelopes().map(|envelope| u16::try_from(envelope >> Q).unwrap_or(u16::MAX))
     }
 
+    /// The detectors that say slip, whoever listens.
+    #[must_use]
+    pub const fn slip(&self) -> DetectorSet {
+        self.detectors.slip()
+    }
+
+    /// The detectors that warn of it. The line tells both in one.
+    #[must_use]
+    pub const fn incipient(&self) -> DetectorSet {
+        self.detectors.incipient()
+    }
+
     /// What the reflex is doing.
     #[must_use]
     pub const fn mode(&self) -> GripMode {
@@ -265,6 +277,7 @@ impl Fingertip {
             grasp: matches!(self.senses.grip(&self.config), Grip::Holds(_)),
             noisy: vibration.knock || duty >= self.config.touch.loud_duty_permille,
             moves: mode::closes(self.mode) || self.mode == GripMode::Settle || self.senses.gate.is_active(),
+            wearer: self.senses.gate.is_active(),
         };
         self.detectors.step(&self.config, &sensed);
     }

@@ -1,5 +1,5 @@
 //! Touch that learns: the films' envelopes and the gauges' loads go into the Hebbian network (Tada 2006), a camera
-//! teaches it over the serial line, and what it says alone is one more way to feel slip.
+//! teaches it over the serial line, and what it says alone is one more way to feel slip, and to be warned of it.
 //!
 //! Every tick has an output; lessons are given at 1 kHz, in every other tick, and the maxima rise in the ticks between,
 //! so that no tick does both. Learning and using go on at once: what the network says never holds the teacher's own
@@ -13,7 +13,7 @@
 //! Slip begins in one place of the contact, and is heard by whoever lies there. A knock, a swing and the motor are heard
 //! everywhere; so what is heard everywhere is slip only if it lasts.
 //!
-//! Shear foretells it: Ft/Fn that rises towards where the camera saw slip ([`shear`]). Where the films' own noise is above the
+//! Shear foretells it: Ft/Fn that rises towards where the camera saw slip ([`shear`]) is a warning, and no slip. Where the films' own noise is above the
 //! threshold, it is the threshold ([`noise`]).
 //!
 //! The direction is asked of the gauges alone: "vibration information only helps to detect micro slips, but not to detect
@@ -39,6 +39,7 @@ use balance::Balance;
 use hearing::Hearing;
 use noise::Noise;
 use shear::Shear;
+pub use shear::Sheared;
 
 /// All that was learned.
 pub type Learned = snapshot::Contents<RECEPTORS, NETWORK_OUTPUTS>;
@@ -79,12 +80,14 @@ pub struct Felt<'a> {
     pub gauges: &'a Gauges,
     /// The gauge that was read in this tick.
     pub gauge: usize,
-    /// Ft/Fn, per mille, if there is a new reading; None in it while there is no ratio.
-    pub ratio_permille: Option<Option<u16>>,
+    /// Shear and load, if there is a new reading; None in it while there is no ratio.
+    pub sheared: Option<Option<Sheared>>,
     /// Whether a knock rings, or the motor runs fast.
     pub loud: bool,
     /// Whether the finger is known to touch nothing.
     pub unloaded: bool,
+    /// Whether a muscle is active.
+    pub wearer: bool,
     /// Whether the finger holds something, and whether anything else than the object is felt.
     pub situation: Situation,
 }
@@ -120,10 +123,10 @@ pub struct Touch {
     weights_changed: bool,
     since_loud_frames: u32,
     said_frames: u32,
-    /// Whether the films say so.
+    /// Whether the films say slip.
     films_say: bool,
-    /// Whether films or shear do, on a finger that holds something.
-    slips: bool,
+    /// Whether shear warns of it, on a finger that holds something.
+    warns: bool,
     lesson: Result<Codes, NoLesson>,
     odd: bool,
     balance: Balance,
@@ -148,7 +151,7 @@ impl Default for Touch {
             since_loud_frames: 0,
             said_frames: 0,
             films_say: false,
-            slips: false,
+            warns: false,
             lesson: Err(NoLesson::Absent),
             odd: false,
             balance: Balance::default(),
@@ -176,8 +179,8 @@ impl Touch {
         self.by_films = by_films;
         let [o1_by_gauges, o2_by_gauges] = self.by_gauges;
         self.outputs = [output(by_films + o1_by_gauges), output(o2_by_gauges)];
-        if let Some(ratio_permille) = felt.ratio_permille {
-            self.shear.feel(config.ahead_ms, ratio_permille);
+        if let Some(sheared) = felt.sheared {
+            self.shear.feel(config.ahead_ms, sheared);
         }
         self.judge(config, felt, by_films);
         self.noise.take(by_films);
@@ -185,7 +188,10 @@ impl Touch {
             let quiet = self.hearing.is_quiet_known() && self.since_loud_frames >= config.loud_frames;
             self.noise.end_cycle(felt.unloaded && quiet);
         }
-        self.slips = self.films_say || (felt.situation.grasp && self.shear.says());
+        if self.films_say || felt.unloaded || felt.wearer {
+            self.shear.renew();
+        }
+        self.warns = felt.situation.grasp && self.shear.warns();
         self.learn(config, felt, learns);
     }
 
@@ -222,7 +228,7 @@ impl Touch {
         self.outputs = [Output::default(); NETWORK_OUTPUTS];
         self.said_frames = 0;
         self.films_say = false;
-        self.slips = false;
+        self.warns = false;
         self.shear.lose();
         self.pass();
     }
@@ -245,10 +251,16 @@ impl Touch {
         self.updates = 0;
     }
 
-    /// Whether touch alone says slip.
+    /// Whether touch alone says slip: the films hear it.
     #[must_use]
     pub const fn slips(&self) -> bool {
-        self.slips
+        self.films_say
+    }
+
+    /// Whether it warns of slip: shear foretells it.
+    #[must_use]
+    pub const fn warns(&self) -> bool {
+        self.warns
     }
 
     /// What touch alone says, relative motion and direction: 128 would be 1.
@@ -347,7 +359,7 @@ impl Touch {
         self.lesson = self.teacher.lesson(&config.teacher, felt.situation);
         if let Ok(codes) = self.lesson {
             self.hearing.outdate();
-            if felt.ratio_permille.is_some() && codes[0] == Code::Minus {
+            if felt.sheared.is_some() && codes[0] == Code::Minus {
                 self.shear.learn();
             }
             if !felt_so {

@@ -40,6 +40,7 @@ impl Sensing {
             grasp: matches!(senses.grip(&self.config), Grip::Holds(_)),
             noisy: senses.vibration.knock,
             moves: false,
+            wearer: false,
         }
     }
 }

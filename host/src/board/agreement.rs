@@ -4,6 +4,7 @@
 use std::fmt;
 
 use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, SCANS_PER_FRAME};
+use tenax_hal_shim::detector::DetectorSet;
 use tenax_hal_shim::frame::{Frame, Scan};
 use tenax_hal_shim::wire::{Answer, Down, Event, EventKind, Received, Slow, Up};
 use tenax_hal_shim::words::Consent;
@@ -22,6 +23,8 @@ pub struct Said {
     pub events: Vec<Event>,
     /// The answer to each command.
     pub answers: Vec<Answer>,
+    /// The detectors that say slip, and those that warn of it, tick for tick: the line tells both in one.
+    pub slip_and_warning: Vec<[DetectorSet; 2]>,
 }
 
 impl Said {
@@ -64,6 +67,8 @@ pub fn host_says(
         device
             .button(pressed.iter().any(|at| (at - at.min(&(DEBOUNCE_FRAMES - 1))..=*at).contains(&sequence)));
         device.tick(&Frame::from_scans(sequence, scans));
+        let fingertip = device.fingertip();
+        said.slip_and_warning.push([fingertip.slip(), fingertip.incipient()]);
         std::iter::from_fn(|| device.next_message()).for_each(|message| said.take(message));
     }
     said
@@ -90,21 +95,26 @@ impl Agreement {
     /// Of a run and the host's logic. The run must have lost no frame and not restarted.
     #[must_use]
     pub fn of(run: &Run) -> Self {
-        Self {
+        Self::with_host(run).0
+    }
+
+    /// The same, and what the host's logic said.
+    #[must_use]
+    pub fn with_host(run: &Run) -> (Self, Said) {
+        let host = host_says(
+            &run.scans,
+            device(run.trusts_line, run.calibrated.as_ref()),
+            &presses(&run.events),
+            &run.taken,
+        );
+        let agreement = Self {
             slows: run.slows.len(),
             events: run.events.len(),
             commands: run.taken.len(),
             networks: run.networks().count(),
-            difference: difference(
-                run,
-                &host_says(
-                    &run.scans,
-                    device(run.trusts_line, run.calibrated.as_ref()),
-                    &presses(&run.events),
-                    &run.taken,
-                ),
-            ),
-        }
+            difference: difference(run, &host),
+        };
+        (agreement, host)
     }
 
     /// Whether nothing differs.

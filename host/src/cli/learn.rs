@@ -15,7 +15,8 @@ use super::out;
 use super::progress::Progress;
 use super::workspace;
 use crate::board::agreement::Agreement;
-use crate::learn::report::{Report, Text};
+use crate::learn::report::Report;
+use crate::learn::text::Text;
 use crate::learn::{self, Options, Outcome, figures};
 use crate::plot::png;
 use crate::session::Board;
@@ -75,6 +76,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         minutes: args.minutes,
         lifts: args.lifts,
         fingertips: args.fingertips,
+        controls: true,
         without_hum: args.without_hum,
         crackling: args.crackling,
         settings: args.set.iter().map(|text| setting(text)).collect::<anyhow::Result<_>>()?,

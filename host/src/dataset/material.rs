@@ -51,6 +51,8 @@ pub struct Contact {
     pub knock_mn_per_mv: Ends,
     /// What the gear's teeth press on it, as a part of the load.
     pub motor_part: Ends,
+    /// How much of the load a shear as large as it moves to the pad's end: a stiff finger's pads hardly tilt, a soft one's lose half.
+    pub tilt: Ends,
 }
 
 const DECADES: Contact = Contact {
@@ -62,6 +64,7 @@ const DECADES: Contact = Contact {
     noise_mv: [0.2, 2.0],
     knock_mn_per_mv: [0.3, 3.0],
     motor_part: [0.001, 0.01],
+    tilt: [0.08, 0.8],
 };
 
 /// The four that a detector may learn from.
@@ -131,6 +134,7 @@ pub const HELD_OUT: Material = Material {
         noise_mv: [2.2, 3.0],
         knock_mn_per_mv: [3.2, 4.0],
         motor_part: [0.011, 0.015],
+        tilt: [0.85, 0.95],
     },
 };
 
@@ -139,7 +143,7 @@ mod tests {
     use super::*;
 
     /// Every range of a material.
-    fn ranges(material: &Material) -> [Ends; 14] {
+    fn ranges(material: &Material) -> [Ends; 15] {
         let Material { mu_s, mu_ratio, mu_per_decade, pitch_mm, uneven, stiffness_n_per_mm, contact, .. } =
             *material;
         let Contact {
@@ -151,6 +155,7 @@ mod tests {
             noise_mv,
             knock_mn_per_mv,
             motor_part,
+            tilt,
         } = contact;
         [
             mu_s,
@@ -167,6 +172,7 @@ mod tests {
             noise_mv,
             knock_mn_per_mv,
             motor_part,
+            tilt,
         ]
     }
 

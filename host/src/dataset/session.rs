@@ -41,7 +41,7 @@ pub struct Sizes {
 }
 
 impl Sizes {
-    /// The default: what the network that ships learned from.
+    /// The default. The network that ships learned from four times as many.
     pub const DEFAULT_TRAIN: usize = 24;
 
     /// In proportion to those to learn from.
@@ -98,6 +98,8 @@ pub struct Session {
     pub knock_mn_per_mv: f64,
     /// What the gear's teeth press on it, as a part of the load.
     pub motor_part: f64,
+    /// How much of the load a shear as large as it moves to the pad's end.
+    pub tilt: f64,
 }
 
 impl Session {
@@ -129,6 +131,8 @@ impl Session {
             noise_mv: drawn(contact.noise_mv),
             knock_mn_per_mv: drawn(contact.knock_mn_per_mv),
             motor_part: drawn(contact.motor_part),
+            // Last, so that what was drawn before it is what it was.
+            tilt: drawn(contact.tilt),
             name,
             split,
             material: material.name,

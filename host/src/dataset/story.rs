@@ -73,6 +73,7 @@ impl Story {
             ("array", "rim_part", session.rim_part),
             ("array", "knock_mn_per_mv", session.knock_mn_per_mv),
             ("array", "motor_part", session.motor_part),
+            ("array", "tilt", session.tilt),
             ("array", "place_mm", session.place_mm),
             ("array", "mv_per_n", session.mv_per_n),
             ("array", "spread", session.spread),

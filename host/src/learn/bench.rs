@@ -6,11 +6,11 @@ use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::frame::{Frame, Scan, scan_of_pins};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Down, NETWORK_OUTPUTS, NetworkState, RECEPTORS, Setting, Slow};
-use tenax_hal_shim::words::Kept;
+use tenax_hal_shim::words;
 use tenax_logic::detectors::Said;
 use tenax_logic::fingertip::Fingertip;
 use tenax_logic::hebbian::network::Weight;
-use tenax_logic::hebbian::{FingertipNetwork, snapshot};
+use tenax_logic::hebbian::{FingertipNetwork, Normaliser, snapshot};
 use tenax_logic::touch;
 use tenax_scene::World;
 use tenax_scene::plant::Plant;
@@ -18,7 +18,8 @@ use tenax_scene::plant::Plant;
 use super::chain::slow_frames;
 use super::control::Control;
 use super::crackle::crackle;
-use super::trial::{Setup, Trial};
+use super::report::Spread;
+use super::trial::{Setup, Trial, by_network};
 use crate::board::simulated::with_plan;
 
 /// Who says that the object slips, for the reflex to answer.
@@ -32,18 +33,23 @@ pub enum Judge {
     Oracle,
 }
 
+/// What a fingertip has learned: maxima, weights, the ratio of slip.
+type Kept = (Normaliser<RECEPTORS>, [[Weight; RECEPTORS]; NETWORK_OUTPUTS], u32);
+
 /// The fingertip. Its line is trusted: a camera teaches over it.
 #[derive(Clone, Debug)]
 pub struct Bench {
     fingertip: Fingertip,
     frame: u32,
+    /// What the network said in the ticks of the last slow frame.
+    said: Vec<Said>,
     /// Whether one film crackles.
     crackles: bool,
 }
 
 impl Default for Bench {
     fn default() -> Self {
-        Self { fingertip: Fingertip::trusting(), frame: 0, crackles: false }
+        Self { fingertip: Fingertip::trusting(), frame: 0, said: Vec::new(), crackles: false }
     }
 }
 
@@ -98,9 +104,11 @@ impl Bench {
             if judge == Judge::Oracle {
                 drive = with_plan(drive, self.fingertip.wearer_active(), world.planned());
             }
+            self.said.push(by_network([self.fingertip.slip(), self.fingertip.incipient()]));
             if let Some(slow) = self.fingertip.take_slow() {
                 see(seen, &slow, self);
                 seen += 1;
+                self.said.clear();
             }
             while self.fingertip.next_event().is_some() {}
         }
@@ -116,7 +124,9 @@ impl Bench {
     pub fn trial_for(&mut self, for_s: f64, setup: Setup) -> Trial {
         let mut trial = Trial { lift_s: setup.lift_s, ..Trial::default() };
         let for_s = setup.lift_s + for_s;
-        let world = self.run_for(for_s, setup.world, Judge::Touch, &mut |n, slow, _| trial.hear(n, slow));
+        let world = self.run_for(for_s, setup.world, Judge::Touch, &mut |n, slow, bench| {
+            trial.hear(n, slow, &bench.said);
+        });
         trial.end(world.truth().clone());
         trial
     }
@@ -141,25 +151,54 @@ impl Bench {
         Ok(bench)
     }
 
-    /// The same fingertip as a control has it: something of what was learned is changed.
-    ///
-    /// # Errors
-    /// None but of a bug: what was learned can be restored.
-    pub fn controlled(&self, control: Control) -> anyhow::Result<Self> {
+    /// What it has learned: maxima, weights, the ratio of slip.
+    fn kept(&self) -> anyhow::Result<Kept> {
         let mut bytes = [0; touch::SNAPSHOT_LENGTH];
         let learned = self.fingertip.learned();
         let kept = learned.write(&mut bytes).context("a snapshot of another length")?;
         let (normaliser, network, more) =
             snapshot::restore(&touch::NORMALISER, kept).map_err(|damaged| anyhow!("{damaged:?}"))?;
-        let mut weights: [[Weight; RECEPTORS]; NETWORK_OUTPUTS] = network.weights();
-        let more = control.change(&mut weights[0][..PVDF_COUNT], more);
+        Ok((normaliser, network.weights(), more))
+    }
+
+    /// How unlike the films are, standard deviation over mean: their maxima, and their weights of o1.
+    ///
+    /// # Errors
+    /// None but of a bug: what was learned can be restored.
+    pub fn films_apart(&self) -> anyhow::Result<[f64; 2]> {
+        let (normaliser, weights, _) = self.kept()?;
+        let apart = |values: Vec<f64>| {
+            let Spread { mean, sd, .. } = Spread::of(&values);
+            if mean == 0.0 { 0.0 } else { sd / mean.abs() }
+        };
+        let maxima = normaliser.maxima()[..PVDF_COUNT].iter().copied().map(f64::from).collect();
+        let weights = weights[0][..PVDF_COUNT].iter().map(|weight| f64::from(weight.into_bits())).collect();
+        Ok([apart(maxima), apart(weights)])
+    }
+
+    /// The same fingertip as a control has it: something of what was learned is changed; nothing, if there is none. Either way it is
+    /// switched off and on in between.
+    ///
+    /// # Errors
+    /// None but of a bug: what was learned can be restored.
+    pub fn controlled(&self, control: Option<Control>) -> anyhow::Result<Self> {
+        let (normaliser, mut weights, more) = self.kept()?;
+        let films = &mut weights[0][..PVDF_COUNT];
+        let maxima = &normaliser.maxima()[..PVDF_COUNT];
+        let more = control.map_or(more, |control| control.change(films, maxima, more));
         let changed = FingertipNetwork::from_weights(&weights);
         let mut bytes = [0; touch::SNAPSHOT_LENGTH];
         let kept = snapshot::save(&normaliser, &changed, more, &mut bytes);
         let kept = kept.context("a snapshot of another length")?;
         let mut other = self.clone();
-        other.fingertip.restore(Kept::Network, kept);
+        other.fingertip.restore(words::Kept::Network, kept);
         Ok(other)
+    }
+
+    /// What the network said in the ticks of the last slow frame.
+    #[must_use]
+    pub fn said(&self) -> &[Said] {
+        &self.said
     }
 
     /// Weights and activations.

@@ -7,8 +7,9 @@ use tenax_hal_shim::wire::Down;
 use tenax_scene::World;
 use tenax_scene::plant::{Calibrated, Pins, Plant};
 
-use super::trial::{Setup, Trial};
+use super::trial::{Setup, Trial, by_network};
 use crate::board::Run;
+use crate::board::agreement::Said;
 
 const SLOW_FRAME_SCANS: usize = FRAMES_PER_SLOW_FRAME as usize * SCANS_PER_FRAME;
 
@@ -33,9 +34,10 @@ impl Chain {
         Self { setups, now: 0, left }
     }
 
-    /// What a board said in each, and what was true.
+    /// What a board said in each, and what was true. `host` is what the host's logic said to the same codes: it tells slip from a
+    /// warning, which the line does not, and is the board's own where the two agree.
     #[must_use]
-    pub fn trials(self, run: &Run) -> Vec<Trial> {
+    pub fn trials(self, run: &Run, host: &Said) -> Vec<Trial> {
         let mut slows = run.slows.iter().peekable();
         let mut begins = 0;
         let trial = |setup: Setup| {
@@ -43,7 +45,10 @@ impl Chain {
             let mut trial = Trial { lift_s: setup.lift_s, ..Trial::default() };
             let place = |frame: u32| frame as usize / usize::from(FRAMES_PER_SLOW_FRAME);
             while let Some(slow) = slows.next_if(|slow| place(slow.frame) < ends) {
-                trial.hear(place(slow.frame) - begins, slow);
+                let first = place(slow.frame) * usize::from(FRAMES_PER_SLOW_FRAME);
+                let ticks = host.slip_and_warning.iter().skip(first).take(slow.ticks.len());
+                let said: Vec<_> = ticks.map(|&sets| by_network(sets)).collect();
+                trial.hear(place(slow.frame) - begins, slow, &said);
             }
             trial.end(setup.world.truth().clone());
             begins = ends;

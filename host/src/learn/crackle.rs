@@ -46,7 +46,7 @@ pub fn compare(options: &Options) -> anyhow::Result<[Tried; 2]> {
     for n in 0..LESSONS {
         learned.trial(Setup::new(&finger, lesson(options.seed, n), true)?);
     }
-    let equal = learned.controlled(Control::EqualWeights)?;
+    let equal = learned.controlled(Some(Control::EqualWeights))?;
     let tried = |mut bench: Bench| -> anyhow::Result<Tried> {
         let holding = holding::hold(&finger, &bench, MINUTES, seed(options.seed, 8, 0), &|| ())?;
         let mut trials = Vec::new();

@@ -7,7 +7,8 @@ use tenax_scene::plant::Plant;
 
 use super::bench::{Bench, Judge};
 use super::reflex::Three;
-use super::trial::{Setup, Trial};
+use super::report::Words;
+use super::trial::{Setup, Trial, Word};
 use super::{LESSONS, Outcome};
 use crate::chart::{draw as sheets, sheet};
 use crate::plot::draw;
@@ -31,7 +32,7 @@ impl Felt {
         let mut trial = Trial { lift_s: setup.lift_s, ..Trial::default() };
         let mut felt = Self { duration_s: setup.world.duration_s(), ..Self::default() };
         let world = bench.run(setup.world, Judge::Touch, &mut |n, slow, bench| {
-            trial.hear(n, slow);
+            trial.hear(n, slow, bench.said());
             let t_s = Trial::time_s((n + 1) * usize::from(FRAMES_PER_SLOW_FRAME));
             let activations = bench.network().activations.map(|t| f64::from(t) / f64::from(1 << 14));
             felt.receptors.push((t_s, activations));
@@ -131,11 +132,11 @@ fn outputs(trial: &Trial) -> Figure {
         let codes = trial.truth.camera.iter();
         steps(codes.map(|seen| (seen.arrives_s, f64::from([seen.v1, seen.v2][n]))))
     };
-    let verdict = trial
-        .slips
-        .iter()
-        .enumerate()
-        .map(|(tick, &slips)| (Trial::time_s(tick), f64::from(u8::from(slips))));
+    let verdict = |word: Word| {
+        let ticks = trial.said.iter().enumerate();
+        let said = ticks.map(|(tick, &said)| (Trial::time_s(tick), f64::from(u8::from(word.is_in(said)))));
+        thin(said, span_s)
+    };
     let both = |label: &str, n: usize, v: &str, o: &str| {
         panel(
             label,
@@ -157,7 +158,14 @@ fn outputs(trial: &Trial) -> Figure {
         panels: vec![
             both("-1: slips", 0, "vision, v1", "network, o1"),
             both("1: up, -1: down", 1, "vision, v2", "network, o2"),
-            panel("slip", (0.0, 1.0), vec![curve("verdict", colour::VERMILLION, thin(verdict, span_s))]),
+            panel(
+                "said",
+                (0.0, 1.0),
+                vec![
+                    curve("slip", colour::VERMILLION, verdict(Word::Slip)),
+                    curve("warning", colour::PURPLE, verdict(Word::Warning)),
+                ],
+            ),
         ],
     }
 }
@@ -209,8 +217,11 @@ fn beginning(trial: &Trial) -> sheet::Panel {
         ));
         all.push(series("all of it slides", colour::PURPLE, sheet::Mark::Dashes, upright(up.macro_onset_s)));
     }
-    if let Some(t_s) = trial.network_s() {
-        all.push(series("slip said", colour::VERMILLION, sheet::Mark::Rings, vec![(since(t_s), 0.0)]));
+    for (name, colour, word) in
+        [("slip said", colour::VERMILLION, Word::Slip), ("first word", colour::GREY, Word::Any)]
+    {
+        let said = trial.said_s(word).map(|t_s| (since(t_s), 0.0));
+        all.push(series(name, colour, sheet::Mark::Rings, said.into_iter().collect()));
     }
     let x = sheet::Axis::even("time from the beginning of the lift, s", 0.0, 0.8);
     plain("7 (c): o1 and v1 as the slip begins", x, sheet::Axis::even("o1, v1", -1.2, 1.2), all)
@@ -220,12 +231,18 @@ fn beginning(trial: &Trial) -> sheet::Panel {
 fn firsts(outcome: &Outcome) -> sheet::Panel {
     let score = &outcome.score;
     let dots = |name: &str, colour, mark, times: &[f64]| {
-        let points = times.iter().enumerate().map(|(n, &t_s)| (n as f64 + 1.0, t_s)).collect();
+        let points = times.iter().enumerate().map(|(n, &t_s)| (n as f64 + 1.0, t_s));
+        let points = points.filter(|(_, t_s)| t_s.is_finite()).collect();
         series(name, colour, mark, points)
+    };
+    // A trial in which it was not said has no dot.
+    let said_s = |words: &Words| -> Vec<f64> {
+        words.said_s.iter().map(|said_s| said_s.unwrap_or(f64::NAN)).collect()
     };
     let x = sheet::Axis::even("trial", 0.0, score.trials as f64 + 1.0);
     let all = vec![
-        dots("network", colour::BLUE, sheet::Mark::Dots, &score.network_s),
+        dots("first word", colour::BLUE, sheet::Mark::Dots, &said_s(&score.first)),
+        dots("slip said", colour::VERMILLION, sheet::Mark::Rings, &said_s(&score.slip)),
         dots("vision", colour::ORANGE, sheet::Mark::Dots, &score.vision_s),
         dots("first place lets go", colour::GREEN, sheet::Mark::Dashes, &score.micro_s),
         dots("all of it slides", colour::PURPLE, sheet::Mark::Dashes, &score.macro_s),

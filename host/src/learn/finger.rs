@@ -51,8 +51,8 @@ impl Finger {
     }
 
     /// One made by chance: friction, mass, texture, the contact's size, the skin, how loud micro slip is, hum and noise of its
-    /// films, the gains of its receptors and how unlike they are. What nobody has measured is drawn over a decade, evenly over
-    /// its logarithm; friction has the ends of `dataset::material`, sliding keeps 0.6 to 0.95 of it. What is left out is as in
+    /// films, the gains of its receptors and how unlike they are; each film's own gain, and its own noise. What nobody has measured
+    /// is drawn over a decade, evenly over its logarithm; friction has the ends of `dataset::material`, sliding keeps 0.6 to 0.95 of it. What is left out is as in
     /// the scene files.
     #[must_use]
     pub fn random(seed: u64) -> Self {
@@ -77,6 +77,7 @@ impl Finger {
                 ("contact.skin_ms", decade(1.0, 5.0)),
                 ("pvdf.gain", 20.0 * films),
                 ("pvdf.spread", decade(0.06, 0.6)),
+                ("pvdf.film_decades", 1.0),
                 // The recorded onset gives 37 to 61 mV for a shear that nobody measured: 0.1 to 1 N.
                 ("pvdf.release_mv_per_n", decade(60.0, 600.0)),
                 ("pvdf.mains_mv", decade(0.1, 1.0)),

@@ -1,5 +1,7 @@
 //! Holding: minutes in which nothing slips, and much else happens.
 
+use std::ops::Add;
+
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
@@ -7,9 +9,9 @@ use tenax_scene::{SceneFile, Seeds, World};
 
 use super::bench::{Bench, Judge};
 use super::finger::{Finger, edited};
-use super::trial::Trial;
+use super::trial::{Trial, Word};
 use crate::report::fate;
-use crate::scorer::false_alarms_s;
+use crate::scorer::{Card, Doing, Stretch};
 
 const SCENE: &str = "hold";
 /// The block is in the air and the hand still, s.
@@ -24,10 +26,46 @@ const RUNS: u32 = 2;
 pub struct Holding {
     /// How long nothing slipped, h.
     pub hours: f64,
-    /// How often slip was said.
-    pub false_alarms: u32,
+    /// False alarms of slip, or of a warning.
+    pub any: False,
+    /// Of slip.
+    pub slip: False,
+    /// Of a warning.
+    pub warning: False,
     /// Slips that were true: none is meant here.
     pub slips: u32,
+}
+
+/// False alarms of one kind of word.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct False {
+    /// How many.
+    pub count: u32,
+    /// Those of them in micro slip that came to nothing: right about the contact, wrong about the object.
+    pub in_micro_slip: u32,
+}
+
+impl False {
+    fn of(word: Word, trial: &Trial, held: Stretch) -> Self {
+        let alarms = Card::of(&fate::spans(&trial.truth), &trial.verdicts(word), &[held]).false_alarms;
+        Self { count: alarms.count as u32, in_micro_slip: alarms.in_micro_slip as u32 }
+    }
+}
+
+impl Add for False {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { count: self.count + other.count, in_micro_slip: self.in_micro_slip + other.in_micro_slip }
+    }
+}
+
+impl Holding {
+    /// So many in an hour of it.
+    #[must_use]
+    pub fn per_hour(&self, alarms: False) -> f64 {
+        if self.hours > 0.0 { f64::from(alarms.count) / self.hours } else { 0.0 }
+    }
 }
 
 /// So many minutes with this fingertip, each by itself. `done` is told when one is over.
@@ -49,7 +87,9 @@ pub fn hold(
     all.try_reduce(Holding::default, |a, b| {
         Ok(Holding {
             hours: a.hours + b.hours,
-            false_alarms: a.false_alarms + b.false_alarms,
+            any: a.any + b.any,
+            slip: a.slip + b.slip,
+            warning: a.warning + b.warning,
             slips: a.slips + b.slips,
         })
     })
@@ -60,13 +100,16 @@ fn one(finger: &Finger, learned: &Bench, seed: u64) -> anyhow::Result<Holding> {
     let mut bench = learned.clone();
     let mut trial = Trial::default();
     let world = World::seeded(&scene, Seeds { making: finger.making, noise: seed });
-    let world = bench.run(world, Judge::Touch, &mut |n, slow, _| trial.hear(n, slow));
+    let world = bench.run(world, Judge::Touch, &mut |n, slow, bench| trial.hear(n, slow, bench.said()));
     trial.end(world.truth().clone());
-    let alarms_s = false_alarms_s(&fate::spans(&trial.truth), &trial.verdicts());
+    let held = Stretch { from_s: FROM_S, to_s: scene.duration_s(), doing: Doing::Hold };
+    let false_of = |word| False::of(word, &trial, held);
     let slips = &trial.truth.slips;
     Ok(Holding {
         hours: (scene.duration_s() - FROM_S) / 3_600.0,
-        false_alarms: alarms_s.iter().filter(|&&t_s| t_s > FROM_S).count() as u32,
+        any: false_of(Word::Any),
+        slip: false_of(Word::Slip),
+        warning: false_of(Word::Warning),
         slips: slips.iter().filter(|slip| slip.macro_onset_s > FROM_S).count() as u32,
     })
 }

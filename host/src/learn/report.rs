@@ -1,15 +1,13 @@
 //! What a fingertip's learning is worth, in figures: for programs the keys of [`Report`], for people all of it.
 
-use std::fmt;
-
 use std::collections::BTreeMap;
 
 use serde::Serialize;
 
 use super::control::Control;
 use super::reflex::{JUDGES, Reflexed, Three};
-use super::trial::Trial;
-use super::{LESSONS, Other, Outcome};
+use super::trial::{Trial, Word};
+use super::{Other, Outcome};
 
 /// Mean, standard deviation and least of a sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -37,29 +35,65 @@ impl Spread {
     }
 }
 
+/// What was said in held-out trials, of one kind of word.
+#[derive(Clone, Debug, Default)]
+pub struct Words {
+    /// First said in each trial that slipped, s after the lift began. None where it was not.
+    pub said_s: Vec<Option<f64>>,
+    /// How much earlier than the camera, of each trial in which both spoke.
+    pub lead_s: Vec<f64>,
+    /// The same over a camera without delay.
+    pub lead_no_delay_s: Vec<f64>,
+    /// Trials whose slip was not said.
+    pub missed: u64,
+    /// Trials in which it was said where nothing slipped.
+    pub false_alarms: u64,
+}
+
+impl Words {
+    fn take(&mut self, word: Word, trial: &Trial) {
+        self.false_alarms += u64::from(trial.false_alarm(word));
+        let said_s = trial.said_s(word);
+        self.missed += u64::from(said_s.is_none());
+        if trial.slip_up().is_some() {
+            self.said_s.push(said_s.map(|t_s| t_s - trial.lift_s));
+        }
+        let lead = |seen_s: Option<f64>| seen_s.zip(said_s).map(|(seen_s, said_s)| seen_s - said_s);
+        self.lead_s.extend(lead(trial.vision_s()));
+        self.lead_no_delay_s.extend(lead(trial.vision_without_delay_s()));
+    }
+
+    /// Of the leads.
+    #[must_use]
+    pub fn lead(&self) -> Spread {
+        Spread::of(&self.lead_s)
+    }
+
+    /// How much earlier than `other` in the same trials, s, of those in which both spoke.
+    #[must_use]
+    pub fn sooner_s(&self, other: &Self) -> Vec<f64> {
+        let both = self.said_s.iter().zip(&other.said_s);
+        both.filter_map(|(own, other)| Some((*other)? - (*own)?)).collect()
+    }
+}
+
 /// Held-out trials, scored.
 #[derive(Clone, Debug, Default)]
 pub struct Score {
     /// How many.
     pub trials: u64,
-    /// First said by the network, s after the lift began.
-    pub network_s: Vec<f64>,
-    /// First said by the camera, likewise.
+    /// First said by the camera, s after the lift began.
     pub vision_s: Vec<f64>,
     /// When the first place let go, likewise.
     pub micro_s: Vec<f64>,
     /// When all of it slid, likewise.
     pub macro_s: Vec<f64>,
-    /// How much earlier the network was.
-    pub lead_s: Vec<f64>,
-    /// The same over a camera without delay.
-    pub lead_no_delay_s: Vec<f64>,
-    /// Trials whose slip the network did not see.
-    pub missed: u64,
+    /// The network's first word, slip or a warning of it.
+    pub first: Words,
+    /// Its word of slip, which the films alone give.
+    pub slip: Words,
     /// Slips, up or down, of which o2 said the wrong direction.
     pub direction_wrong: u64,
-    /// Trials in which slip was said where nothing slipped.
-    pub false_alarms: u64,
 }
 
 impl Score {
@@ -68,36 +102,18 @@ impl Score {
     pub fn of(trials: &[Trial]) -> Self {
         let mut score = Self { trials: trials.len() as u64, ..Self::default() };
         for trial in trials {
-            score.false_alarms += u64::from(trial.false_alarm());
-            let Some(up) = trial.slip_up() else {
-                score.missed += 1;
-                continue;
-            };
+            score.first.take(Word::Any, trial);
+            score.slip.take(Word::Slip, trial);
+            let Some(up) = trial.slip_up() else { continue };
             score.micro_s.push(up.micro_onset_s - trial.lift_s);
             score.macro_s.push(up.macro_onset_s - trial.lift_s);
             if let Some([up, down]) = trial.both_slips() {
                 score.direction_wrong +=
                     u64::from(trial.direction(&up) <= 0.0) + u64::from(trial.direction(&down) >= 0.0);
             }
-            let vision_s = trial.vision_s();
-            score.vision_s.extend(vision_s.map(|t_s| t_s - trial.lift_s));
-            match trial.network_s() {
-                Some(network_s) => {
-                    score.network_s.push(network_s - trial.lift_s);
-                    score.lead_s.extend(vision_s.map(|vision_s| vision_s - network_s));
-                    let without_s = trial.vision_without_delay_s();
-                    score.lead_no_delay_s.extend(without_s.map(|vision_s| vision_s - network_s));
-                }
-                None => score.missed += 1,
-            }
+            score.vision_s.extend(trial.vision_s().map(|t_s| t_s - trial.lift_s));
         }
         score
-    }
-
-    /// Of the leads.
-    #[must_use]
-    pub fn lead(&self) -> Spread {
-        Spread::of(&self.lead_s)
     }
 }
 
@@ -106,22 +122,26 @@ impl Score {
 pub struct Report {
     /// Held-out trials.
     pub trials: u64,
-    /// First said by the network, s after the lift began, mean.
+    /// The network's first word, slip or a warning of it, s after the lift began, mean.
     pub network_first_s_mean: f64,
     /// First said by the camera's codes, likewise.
     pub vision_first_s_mean: f64,
-    /// How much earlier the network was, s.
+    /// How much earlier the network's first word was, s: slip, or a warning of it.
     pub lead_s: Spread,
     /// The same over a camera without delay.
     pub lead_s_no_delay: Spread,
     /// The same as `lead_s` with equal weights in place of learned ones.
     pub lead_s_equal_weights: Spread,
-    /// The mean lead of the worst finger made by chance, s: of those trials in which it saw the slip. Null if there is none.
+    /// The mean of `lead_s` of the worst finger made by chance: of those trials in which it said a word. Null if there is none.
     pub worst_finger_lead_s: Option<f64>,
-    /// Trials whose slip the network did not see.
+    /// Trials in whose slip the network said neither.
     pub missed: u64,
-    /// False alarms in an hour of holding.
+    /// False alarms in an hour of holding, of either.
     pub false_per_hour: f64,
+    /// Slip alone, which the films give.
+    pub slip: Slip,
+    /// Warnings alone, which shear gives.
+    pub warning: Warning,
     /// How long was held, h.
     pub holding_hours: f64,
     /// Lifts of all fingers with 1.5 to 3 times the needed force.
@@ -132,15 +152,48 @@ pub struct Report {
     pub fingertips: Fingertips,
 }
 
+/// What was said of slip, warnings left out.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Slip {
+    /// How much earlier than the camera, s, of those trials in which it was said.
+    pub lead_s: Spread,
+    /// The same over a camera without delay.
+    pub lead_s_no_delay: Spread,
+    /// Trials in whose slip it was not said.
+    pub missed: u64,
+    /// False alarms in an hour of holding.
+    pub false_per_hour: f64,
+    /// The same trials with equal weights.
+    pub equal_weights: Against,
+}
+
+/// A control beside what was learned, of slip.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Against {
+    /// Its lead, s.
+    pub lead_s: f64,
+    /// Trials in whose slip it did not say it.
+    pub missed: u64,
+    /// How much earlier what was learned says it, s, of the trials in which both do.
+    pub learned_sooner_s: f64,
+}
+
+/// Warnings.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Warning {
+    /// False alarms in an hour of holding.
+    pub false_per_hour: f64,
+}
+
 /// Fingers made by chance.
 #[derive(Clone, Debug, Serialize)]
 pub struct Fingertips {
     /// How many.
     pub count: u64,
-    /// The mean lead of the worst of them, s. Null if one of them missed a slip or told a direction wrongly, or there are
+    /// The mean lead of the worst of them, s. Null if one of them said neither in a slip or told a direction wrongly, or there are
     /// none.
     pub worst_lead_s: Option<f64>,
-    /// Trials of theirs whose slip was not seen, and all of them.
+    /// Trials of theirs in whose slip neither was said, and all of them.
     pub missed: [u64; 2],
     /// Where sliding keeps at most 0.75 of static friction.
     pub slippery: Group,
@@ -153,25 +206,33 @@ pub struct Fingertips {
 pub struct Group {
     /// How many.
     pub count: usize,
-    /// Mean lead, s.
+    /// Mean lead of the first word, slip or a warning of it, s.
     pub lead_s: f64,
     /// The same over a camera without delay.
     pub lead_s_no_delay: f64,
     /// The same as `lead_s` with equal weights.
     pub lead_s_equal_weights: f64,
-    /// Trials whose slip was not seen, and with equal weights.
+    /// Trials in whose slip neither was said, and with equal weights.
     pub missed: [u64; 2],
-    /// Lead, s, and trials whose slip was not seen, of each control.
+    /// Slip alone: mean lead, s.
+    pub slip_lead_s: f64,
+    /// The same over a camera without delay.
+    pub slip_lead_s_no_delay: f64,
+    /// Trials in whose slip it was not said.
+    pub slip_missed: u64,
+    /// Each control.
     pub controls: BTreeMap<&'static str, Controlled>,
 }
 
 /// What a control came to.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Controlled {
-    /// Mean lead of those trials in which it saw the slip, s.
+    /// Mean lead of the first word, s, of those trials in which there was one.
     pub lead_s: f64,
-    /// Trials whose slip it did not see.
+    /// Trials in whose slip neither was said.
     pub missed: u64,
+    /// Slip alone.
+    pub slip: Against,
 }
 
 /// Lifts with more force than the object needs, in which every verdict is false.
@@ -179,8 +240,10 @@ pub struct Controlled {
 pub struct Safe {
     /// How many.
     pub lifts: u64,
-    /// In which slip was said.
+    /// In which slip was said, or warned of.
     pub said: u64,
+    /// In which slip was said.
+    pub slip: u64,
 }
 
 /// Sliding keeps so much of static friction at most in the fingers of the first group.
@@ -189,27 +252,33 @@ const SLIPPERY: f64 = 0.75;
 impl Group {
     fn of<'a>(others: impl Iterator<Item = &'a Other>) -> Self {
         let others: Vec<&Other> = others.collect();
-        let mean = |of: &dyn Fn(&Other) -> &Vec<f64>| {
-            let all: Vec<f64> = others.iter().flat_map(|other| of(other).iter().copied()).collect();
-            Spread::of(&all).mean
+        let mean = |of: &dyn Fn(&Other) -> Vec<f64>| {
+            Spread::of(&others.iter().flat_map(|other| of(other)).collect::<Vec<_>>()).mean
         };
+        let sum = |of: &dyn Fn(&Other) -> u64| others.iter().map(|other| of(other)).sum();
+        let controlled = |n: usize| Controlled {
+            lead_s: mean(&|other| other.controls[n].first.lead_s.clone()),
+            missed: sum(&|other| other.controls[n].first.missed),
+            slip: Against {
+                lead_s: mean(&|other| other.controls[n].slip.lead_s.clone()),
+                missed: sum(&|other| other.controls[n].slip.missed),
+                learned_sooner_s: mean(&|other| other.apart.slip.sooner_s(&other.controls[n].slip)),
+            },
+        };
+        let equal = controlled(Control::EqualWeights as usize);
         Self {
             count: others.len(),
-            lead_s: mean(&|other| &other.score.lead_s),
-            lead_s_no_delay: mean(&|other| &other.score.lead_no_delay_s),
-            lead_s_equal_weights: mean(&|other| &other.equal().lead_s),
-            missed: [
-                others.iter().map(|other| other.score.missed).sum(),
-                others.iter().map(|other| other.equal().missed).sum(),
-            ],
+            lead_s: mean(&|other| other.score.first.lead_s.clone()),
+            lead_s_no_delay: mean(&|other| other.score.first.lead_no_delay_s.clone()),
+            lead_s_equal_weights: equal.lead_s,
+            missed: [sum(&|other| other.score.first.missed), equal.missed],
+            slip_lead_s: mean(&|other| other.score.slip.lead_s.clone()),
+            slip_lead_s_no_delay: mean(&|other| other.score.slip.lead_no_delay_s.clone()),
+            slip_missed: sum(&|other| other.score.slip.missed),
             controls: Control::ALL
                 .into_iter()
                 .enumerate()
-                .map(|(n, control)| {
-                    let lead_s = mean(&|other| &other.controls[n].lead_s);
-                    let missed = others.iter().map(|other| other.controls[n].missed).sum();
-                    (control.key(), Controlled { lead_s, missed })
-                })
+                .map(|(n, control)| (control.key(), controlled(n)))
                 .collect(),
         }
     }
@@ -219,17 +288,30 @@ impl Report {
     /// Of an outcome.
     #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
-        let score = &outcome.score;
+        let (score, equal) = (&outcome.score, &outcome.equal);
+        let holding = &outcome.holding;
         Self {
             trials: score.trials,
-            network_first_s_mean: Spread::of(&score.network_s).mean,
+            network_first_s_mean: said_s(&score.first).mean,
             vision_first_s_mean: Spread::of(&score.vision_s).mean,
-            lead_s: score.lead(),
-            lead_s_no_delay: Spread::of(&score.lead_no_delay_s),
-            lead_s_equal_weights: outcome.equal.lead(),
+            lead_s: score.first.lead(),
+            lead_s_no_delay: Spread::of(&score.first.lead_no_delay_s),
+            lead_s_equal_weights: equal.first.lead(),
             worst_finger_lead_s: outcome.worst_lead_s(),
-            missed: score.missed,
-            false_per_hour: outcome.false_per_hour(),
+            missed: score.first.missed,
+            false_per_hour: holding.per_hour(holding.any),
+            slip: Slip {
+                lead_s: score.slip.lead(),
+                lead_s_no_delay: Spread::of(&score.slip.lead_no_delay_s),
+                missed: score.slip.missed,
+                false_per_hour: holding.per_hour(holding.slip),
+                equal_weights: Against {
+                    lead_s: equal.slip.lead().mean,
+                    missed: equal.slip.missed,
+                    learned_sooner_s: Spread::of(&score.slip.sooner_s(&equal.slip)).mean,
+                },
+            },
+            warning: Warning { false_per_hour: holding.per_hour(holding.warning) },
             holding_hours: outcome.holding.hours,
             safe: outcome.safe(),
             direction_wrong: score.direction_wrong,
@@ -237,7 +319,7 @@ impl Report {
                 count: outcome.others.len() as u64,
                 worst_lead_s: outcome.others_work().then(|| outcome.worst_lead_s()).flatten(),
                 missed: [
-                    outcome.others.iter().map(|other| other.score.missed).sum(),
+                    outcome.others.iter().map(|other| other.score.first.missed).sum(),
                     outcome.others.iter().map(|other| other.score.trials).sum(),
                 ],
                 slippery: outcome.group(true),
@@ -248,32 +330,27 @@ impl Report {
 }
 
 impl Outcome {
-    /// False alarms in an hour of holding.
-    #[must_use]
-    pub fn false_per_hour(&self) -> f64 {
-        if self.holding.hours > 0.0 { f64::from(self.holding.false_alarms) / self.holding.hours } else { 0.0 }
-    }
-
     /// Lifts with more force than is needed.
     #[must_use]
     pub fn safe(&self) -> Safe {
         self.others.iter().fold(Safe::default(), |all, other| Safe {
             lifts: all.lifts + other.safe.lifts,
             said: all.said + other.safe.said,
+            slip: all.slip + other.safe.slip,
         })
     }
 
-    /// Whether every finger made by chance saw every slip and its direction.
+    /// Whether every finger made by chance said slip, or warned, in every slip, and told its direction.
     #[must_use]
     pub fn others_work(&self) -> bool {
-        self.others.iter().all(|other| other.score.missed == 0 && other.score.direction_wrong == 0)
+        self.others.iter().all(|other| other.score.first.missed == 0 && other.score.direction_wrong == 0)
     }
 
     /// The mean lead of the worst finger made by chance, s.
     #[must_use]
     pub fn worst_lead_s(&self) -> Option<f64> {
-        let seen = self.others.iter().filter(|other| !other.score.lead_s.is_empty());
-        seen.map(|other| other.score.lead().mean).min_by(f64::total_cmp)
+        let seen = self.others.iter().filter(|other| !other.score.first.lead_s.is_empty());
+        seen.map(|other| other.score.first.lead().mean).min_by(f64::total_cmp)
     }
 
     /// The fingers made by chance whose sliding keeps at most 0.75 of static friction, or the others.
@@ -283,6 +360,11 @@ impl Outcome {
     }
 }
 
+/// When a word was said, s from the beginning of the lift.
+pub(super) fn said_s(words: &Words) -> Spread {
+    Spread::of(&words.said_s.iter().copied().flatten().collect::<Vec<_>>())
+}
+
 /// A figure of each judge's runs, in the order of [`JUDGES`].
 #[must_use]
 pub fn of_judges(runs: &[Three], figure: impl Fn(&Reflexed) -> f64) -> [Spread; 3] {
@@ -290,89 +372,3 @@ pub fn of_judges(runs: &[Three], figure: impl Fn(&Reflexed) -> f64) -> [Spread; 
 }
 
 const _: () = assert!(JUDGES.len() == 3);
-
-/// For people.
-#[derive(Clone, Copy, Debug)]
-pub struct Text<'a>(pub &'a Outcome);
-
-impl fmt::Display for Text<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let outcome = self.0;
-        let (score, options) = (&outcome.score, &outcome.options);
-        let mut line = |what: &str, figure: String| writeln!(f, "  {what:<26}{figure}");
-        let seconds = |spread: Spread| format!("{:.3} s, sd {:.3}", spread.mean, spread.sd);
-        line("learned", format!("{LESSONS} trials, seed {}, {} board", options.seed, outcome.board))?;
-        if let Some(agreement) = &outcome.agreement {
-            line("image and host's logic", agreement.to_string())?;
-        }
-        line("before", format!("largest output {} of 128", outcome.untaught))?;
-        line("held-out trials", format!("{}, {} missed", score.trials, score.missed))?;
-        line("first said by touch", seconds(Spread::of(&score.network_s)))?;
-        line("first said by vision", seconds(Spread::of(&score.vision_s)))?;
-        line("first place let go", seconds(Spread::of(&score.micro_s)))?;
-        line("all of it slid", seconds(Spread::of(&score.macro_s)))?;
-        let lead = score.lead();
-        line("touch is earlier by", format!("{}, worst {:.3}", seconds(lead), lead.min))?;
-        line("over a camera at once", seconds(Spread::of(&score.lead_no_delay_s)))?;
-        line(
-            "with equal weights",
-            format!("{}, {} missed", seconds(outcome.equal.lead()), outcome.equal.missed),
-        )?;
-        line("direction wrong", format!("{} of {} slips", score.direction_wrong, 2 * score.trials))?;
-        line("false in the trials", format!("{} of {}", score.false_alarms, score.trials))?;
-        line(
-            "false while holding",
-            format!("{} in {:.2} h", outcome.holding.false_alarms, outcome.holding.hours),
-        )?;
-        let three = |runs: &[Three], unit: &str, figure: fn(&Reflexed) -> f64| {
-            let [touch, vision, oracle] = of_judges(runs, figure);
-            format!(
-                "touch {:.3} {unit} (sd {:.3}), vision {:.3} (sd {:.3}), oracle {:.3} (sd {:.3})",
-                touch.mean, touch.sd, vision.mean, vision.sd, oracle.mean, oracle.sd
-            )
-        };
-        line("lift, secured after", three(&outcome.lifts, "s", |run| run.secured_s))?;
-        line("lift, slipped", three(&outcome.lifts, "mm", |run| run.distance_mm))?;
-        line("pour, slipped", three(&outcome.pours, "mm", |run| run.distance_mm))?;
-        for (name, tried) in ["learned", "equal weights"].iter().zip(outcome.crackling.iter().flatten()) {
-            let (score, holding) = tried;
-            let lead = score.lead().mean;
-            line(
-                "one film crackles",
-                format!(
-                    "{name}: lead {lead:.3} s, {} missed, {} of {} trials false, {} false in {:.2} h",
-                    score.missed, score.false_alarms, score.trials, holding.false_alarms, holding.hours
-                ),
-            )?;
-        }
-        let safe = outcome.safe();
-        line("lifts that would hold", format!("slip said in {} of {}", safe.said, safe.lifts))?;
-        for (what, slippery) in [("fingers, ratio to 0.75", true), ("fingers, ratio above", false)] {
-            let group = outcome.group(slippery);
-            let [missed, equal_missed] = group.missed;
-            line(
-                what,
-                format!(
-                    "{}: lead {:.3} s, {:.3} over a camera at once, {missed} missed; equal weights {:.3} s, {equal_missed} missed",
-                    group.count, group.lead_s, group.lead_s_no_delay, group.lead_s_equal_weights
-                ),
-            )?;
-            for (control, Controlled { lead_s, missed }) in &group.controls {
-                line("", format!("{control:<20} lead {lead_s:.3} s, {missed} missed"))?;
-            }
-        }
-        let sum = |of: fn(&Score) -> u64| outcome.others.iter().map(|other| of(&other.score)).sum::<u64>();
-        let trials = sum(|score| score.trials);
-        line(
-            "other fingers",
-            format!(
-                "{}: {} of {trials} trials missed, {} directions wrong, {} trials with a false alarm, worst mean lead {}",
-                outcome.others.len(),
-                sum(|score| score.missed),
-                sum(|score| score.direction_wrong),
-                sum(|score| score.false_alarms),
-                outcome.worst_lead_s().map_or("-".to_owned(), |s| format!("{s:.3} s")),
-            ),
-        )
-    }
-}

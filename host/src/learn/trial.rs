@@ -5,8 +5,9 @@ use std::ops::Range;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use tenax_hal_shim::channel::{FRAME_HZ, FRAMES_PER_SLOW_FRAME};
-use tenax_hal_shim::detector::DetectorId;
+use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::wire::Slow;
+use tenax_logic::detectors::Said;
 use tenax_scene::sensor::camera::Seen;
 use tenax_scene::truth::Slip;
 use tenax_scene::{SceneFile, Seeds, Truth, World};
@@ -89,6 +90,35 @@ impl Setup {
 /// How much more than it needs an object is lifted with: what people (1.2 to 2) and those with a prosthesis do.
 const SAFE_FORCE: Range<f64> = 1.5..3.0;
 
+/// Which words of the network's are listened to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Word {
+    /// Slip or a warning of it, whichever comes first.
+    Any,
+    /// Slip: the films hear it.
+    Slip,
+    /// A warning: shear foretells it.
+    Warning,
+}
+
+impl Word {
+    /// Whether this is said.
+    #[must_use]
+    pub const fn is_in(self, said: Said) -> bool {
+        match self {
+            Self::Any => said.slip || said.incipient,
+            Self::Slip => said.slip,
+            Self::Warning => said.incipient,
+        }
+    }
+}
+
+/// What the network said in a tick, of the detectors that say slip and of those that warn.
+#[must_use]
+pub const fn by_network([slip, warning]: [DetectorSet; 2]) -> Said {
+    Said { slip: slip.contains(DetectorId::Hebbian), incipient: warning.contains(DetectorId::Hebbian) }
+}
+
 /// A trial that was run: what the fingertip said in every tick, and what was true.
 #[derive(Clone, Debug, Default)]
 pub struct Trial {
@@ -96,20 +126,20 @@ pub struct Trial {
     pub lift_s: f64,
     /// What the network said in each tick, from the first.
     pub outputs: Vec<[i8; 2]>,
-    /// Whether that meant slip.
-    pub slips: Vec<bool>,
+    /// Whether that meant slip, and whether it was warned of.
+    pub said: Vec<Said>,
     /// What was true, and what the camera said.
     pub truth: Truth,
 }
 
 impl Trial {
-    /// Takes what the nth slow frame of the trial tells. One that is missing says nothing.
-    pub fn hear(&mut self, n: usize, slow: &Slow) {
+    /// Takes what the nth slow frame of the trial tells, and what was said in its ticks. One that is missing says nothing.
+    pub fn hear(&mut self, n: usize, slow: &Slow, said: &[Said]) {
         let ticks = usize::from(FRAMES_PER_SLOW_FRAME);
         self.outputs.resize(n * ticks, [0; 2]);
-        self.slips.resize(n * ticks, false);
+        self.said.resize(n * ticks, Said::NOTHING);
         self.outputs.extend(slow.ticks.iter().map(|tick| tick.outputs));
-        self.slips.extend(slow.ticks.iter().map(|tick| tick.said.contains(DetectorId::Hebbian)));
+        self.said.extend(said);
     }
 
     /// It is over; this was true.
@@ -142,12 +172,12 @@ impl Trial {
         Some([up, down])
     }
 
-    /// The stretches in which the network said slip.
+    /// The stretches in which the network said this.
     #[must_use]
-    pub fn verdicts(&self) -> Vec<Verdict> {
+    pub fn verdicts(&self, word: Word) -> Vec<Verdict> {
         let mut all: Vec<Verdict> = Vec::new();
         let mut before = false;
-        for (tick, &now) in self.slips.iter().enumerate() {
+        for (tick, now) in self.said.iter().map(|&said| word.is_in(said)).enumerate() {
             match (before, now, all.last_mut()) {
                 (false, true, _) => all.push(Verdict::new(Self::time_s(tick), f64::INFINITY)),
                 (true, false, Some(last)) => last.to_s = Self::time_s(tick),
@@ -158,13 +188,13 @@ impl Trial {
         all
     }
 
-    /// When the network first said slip in the slip up, in time or late, s.
+    /// When the network first said this in the slip up, in time or late, s.
     #[must_use]
-    pub fn network_s(&self) -> Option<f64> {
+    pub fn said_s(&self, word: Word) -> Option<f64> {
         let up = self.slip_up()?;
         let span =
             fate::spans(&self.truth).into_iter().find(|span| span.macro_onset_s == Some(up.macro_onset_s))?;
-        match outcome(&span, up.macro_onset_s, &self.verdicts()) {
+        match outcome(&span, up.macro_onset_s, &self.verdicts(word)) {
             Outcome::Caught(latency_s) | Outcome::Late(latency_s) => Some(up.macro_onset_s + latency_s),
             Outcome::SaidBefore | Outcome::Missed => None,
         }
@@ -172,11 +202,11 @@ impl Trial {
 
     /// The event scores of the trial, from its beginning to the end of the slip down. What rubs afterwards stands on the table.
     #[must_use]
-    pub fn card(&self) -> Card {
+    pub fn card(&self, word: Word) -> Card {
         let Some([_, down]) = self.both_slips() else { return Card::default() };
-        let to_s = down.end_s.unwrap_or(f64::INFINITY).min(Self::time_s(self.slips.len()));
+        let to_s = down.end_s.unwrap_or(f64::INFINITY).min(Self::time_s(self.said.len()));
         let whole = Stretch { from_s: 0.0, to_s, doing: Doing::Move };
-        Card::of(&fate::spans(&self.truth), &self.verdicts(), &[whole])
+        Card::of(&fate::spans(&self.truth), &self.verdicts(word), &[whole])
     }
 
     /// When the camera's first v1 = -1 after that came over the line, s.
@@ -210,9 +240,9 @@ impl Trial {
         said.iter().map(|outputs| f64::from(outputs[1])).sum::<f64>() / (128.0 * said.len().max(1) as f64)
     }
 
-    /// Whether slip was said where none was.
+    /// Whether this was said where nothing slipped.
     #[must_use]
-    pub fn false_alarm(&self) -> bool {
-        self.card().false_alarms.count > 0
+    pub fn false_alarm(&self, word: Word) -> bool {
+        self.card(word).false_alarms.count > 0
     }
 }

@@ -1,11 +1,11 @@
-//! The Hebbian network as a detector.
+//! The Hebbian network as a detector: what the films hear is slip, what shear foretells is a warning.
 
 use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
 
 use super::{Description, Detector, Said, Sensed, confidence};
 use crate::config::TouchConfig;
 use crate::hebbian::Situation;
-use crate::touch::{Felt, Touch};
+use crate::touch::{Felt, Sheared, Touch};
 
 /// From this part of its range on, the second output tells a direction, of 128.
 const DIRECTION_FROM: i8 = 16;
@@ -26,26 +26,31 @@ impl Detector for Touch {
                 envelopes: sensed.envelopes,
                 gauges: sensed.strain,
                 gauge: usize::from(sensed.slot),
-                ratio_permille: match sensed.forces {
-                    Some(forces) if sensed.forces_are_new => Some(forces.ratio_permille),
+                sheared: match sensed.forces {
+                    Some(forces) if sensed.forces_are_new => Some(
+                        forces
+                            .ratio_permille
+                            .map(|ratio_permille| Sheared { ratio_permille, load_mn: forces.load_mn }),
+                    ),
                     Some(_) => None,
                     None => Some(None),
                 },
                 loud: sensed.noisy,
                 unloaded: sensed.unloaded,
+                wearer: sensed.wearer,
                 situation: Situation {
                     grasp: sensed.grasp,
                     disturbed: knock || sensed.moves || !sensed.vibration_known,
                 },
             },
         );
-        Some(Said::slip(self.slips()))
+        Some(Said { slip: self.slips(), incipient: self.warns() })
     }
 
     fn describe(&self, config: &TouchConfig) -> Description {
         let raw = self.by_films_permille();
         let [_, o2] = self.outputs();
-        let direction = match (self.slips(), o2) {
+        let direction = match (self.slips() || self.warns(), o2) {
             (true, o2) if o2 <= -DIRECTION_FROM => Direction::Down,
             (true, o2) if o2 >= DIRECTION_FROM => Direction::Up,
             _ => Direction::Unknown,

@@ -2,10 +2,14 @@
 //!
 //! Ft/Fn rises for as long as an object is lifted or filled, whether it will be held or not, and falls to sliding friction when it
 //! slips. The camera says when: the mean ratio of its lessons of slip is the friction of this finger on what it holds. From then on
-//! a ratio that will have come close to it within the time that the setting looks ahead, as fast as it rises now, means slip.
+//! a ratio that will have come close to it within the time that the setting looks ahead, as fast as it rises now, warns of slip.
 //!
 //! How far to look ahead is a choice (`docs/hebbian.md`): the films hear the first places let go; shear only foretells it, and
-//! does so in every lift that would have held by a little.
+//! does so in every lift that would have held by a little. 0 is not at all.
+//!
+//! What was learned on something slippery would warn for ever of something rough. So in one grasp it asks for half as much force
+//! again as when it first warned, and then is silent until something is known: the films have heard slip, the camera has seen it,
+//! a muscle was active, or the finger touched nothing.
 
 /// The part of the learned ratio that is close, per mille.
 const CLOSE_PERMILLE: i32 = 850;
@@ -17,12 +21,23 @@ const SPAN: usize = 2;
 const READING_US: i32 = 12_500;
 /// Readings in a row that have to agree.
 const AGREEING: u8 = 2;
+/// What it may ask for in a grasp, as a part of the load at which it first warned: half as much again, as steady sliding may.
+const GROWTH_PART: i32 = 2;
 /// The learned ratio follows the lessons over `2^FOLLOWS` readings, 0.4 s.
 const FOLLOWS: u32 = 5;
 /// The smallest ratio that is taken for friction, per mille, as S2's stroke does.
 const LEAST_PERMILLE: i32 = 100;
 /// Fraction bits of the learned ratio.
 const FRACTION: u32 = 8;
+
+/// What the force sensor reads.
+#[derive(Clone, Copy, Debug)]
+pub struct Sheared {
+    /// Ft/Fn, per mille.
+    pub ratio_permille: u16,
+    /// The load, mN.
+    pub load_mn: i32,
+}
 
 /// What was learned, and what is felt.
 #[derive(Clone, Debug, Default)]
@@ -33,27 +48,40 @@ pub(super) struct Shear {
     before: [Option<u16>; SPAN],
     agreeing: u8,
     says: bool,
+    /// The load when it first warned in this grasp, mN.
+    warned_at_mn: Option<i32>,
 }
 
 impl Shear {
-    /// Takes a new ratio, per mille, None while there is none, and how far to look ahead.
+    /// Takes a new reading, None while there is no ratio, and how far to look ahead: 0 is not at all.
     #[inline(never)]
-    pub(super) fn feel(&mut self, ahead_ms: u16, ratio_permille: Option<u16>) {
+    pub(super) fn feel(&mut self, ahead_ms: u16, reading: Option<Sheared>) {
         let [newer, oldest] = self.before;
-        self.before = [ratio_permille, newer];
-        let Some(ratio) = ratio_permille.map(i32::from) else {
+        self.before = [reading.map(|reading| reading.ratio_permille), newer];
+        let Some(Sheared { ratio_permille, load_mn }) = reading.filter(|_| ahead_ms > 0) else {
             self.agreeing = 0;
             self.says = false;
             return;
         };
+        let ratio = i32::from(ratio_permille);
         let risen = oldest.map_or(0, |oldest| (ratio - i32::from(oldest)).max(0));
         // A ratio is below 2^16 and the look ahead below 2^8 ms, so the product is below 2^31 in ms.
         let ahead = risen * i32::from(ahead_ms) / (SPAN as i32 * READING_US / 1_000);
         let limit = (self.slips_at >> FRACTION) * if self.says { FAR_PERMILLE } else { CLOSE_PERMILLE };
+        let in_vain = self.warned_at_mn.is_some_and(|at_mn| load_mn > at_mn + at_mn / GROWTH_PART);
         let close = self.slips_at >> FRACTION >= LEAST_PERMILLE
-            && i64::from(ratio + ahead) * 1_000 >= i64::from(limit);
+            && i64::from(ratio + ahead) * 1_000 >= i64::from(limit)
+            && !in_vain;
         self.agreeing = if close { self.agreeing.saturating_add(1) } else { 0 };
         self.says = close && (self.says || self.agreeing >= AGREEING);
+        if self.says && self.warned_at_mn.is_none() {
+            self.warned_at_mn = Some(load_mn);
+        }
+    }
+
+    /// Something is known of slip, or another grasp begins: it may ask for force anew.
+    pub(super) const fn renew(&mut self) {
+        self.warned_at_mn = None;
     }
 
     /// The camera says that it slips: the newest ratio is that of slip.
@@ -62,17 +90,18 @@ impl Shear {
             let ratio = i32::from(ratio) << FRACTION;
             let off = ratio - self.slips_at;
             self.slips_at = if self.slips_at == 0 { ratio } else { self.slips_at + (off >> FOLLOWS) };
+            self.renew();
         }
     }
 
     /// Whether slip is near.
-    pub(super) const fn says(&self) -> bool {
+    pub(super) const fn warns(&self) -> bool {
         self.says
     }
 
-    /// No reading of now.
+    /// No reading of now. It is the same grasp.
     pub(super) fn lose(&mut self) {
-        *self = Self { slips_at: self.slips_at, ..Self::default() };
+        *self = Self { slips_at: self.slips_at, warned_at_mn: self.warned_at_mn, ..Self::default() };
     }
 
     /// Ft/Fn of slip, per mille with [`FRACTION`] bits; 0 before a lesson.
@@ -90,40 +119,84 @@ impl Shear {
 mod tests {
     use super::*;
 
+    /// A reading under this load.
+    const fn reading(ratio_permille: u16, load_mn: i32) -> Option<Sheared> {
+        Some(Sheared { ratio_permille, load_mn })
+    }
+
     /// One that has learned that it slips at this ratio.
     fn taught(permille: u16) -> Shear {
         let mut shear = Shear::default();
-        shear.feel(0, Some(permille));
+        shear.feel(0, reading(permille, 2_000));
         shear.learn();
         shear.lose();
         shear
     }
 
-    /// The reading at which it says slip, of a ratio that rises by so much a reading.
-    fn says_at(mut shear: Shear, ahead_ms: u16, rise: u16) -> Option<u16> {
+    /// The reading at which it warns, of a ratio that rises by so much a reading.
+    fn warns_at(mut shear: Shear, ahead_ms: u16, rise: u16) -> Option<u16> {
         (0..600 / rise).map(|n| n * rise).find(|&ratio| {
-            shear.feel(ahead_ms, Some(ratio));
-            shear.says()
+            shear.feel(ahead_ms, reading(ratio, 2_000));
+            shear.warns()
         })
     }
 
     #[test]
     fn before_a_lesson_it_says_nothing() {
-        assert_eq!(says_at(Shear::default(), 200, 10), None);
+        assert_eq!(warns_at(Shear::default(), 200, 10), None);
     }
 
     #[test]
     fn what_is_no_friction_is_not_believed() {
-        assert_eq!(says_at(taught(LEAST_PERMILLE as u16 - 1), 50, 10), None);
-        assert!(says_at(taught(LEAST_PERMILLE as u16), 50, 10).is_some());
+        assert_eq!(warns_at(taught(LEAST_PERMILLE as u16 - 1), 50, 10), None);
+        assert!(warns_at(taught(LEAST_PERMILLE as u16), 50, 10).is_some());
     }
 
     #[test]
     fn it_looks_ahead_as_far_as_it_is_told() {
         // 10 in 12.5 ms: 50 ms ahead is 40 more; the second reading in a row that says so counts.
-        assert_eq!(says_at(taught(500), 0, 10), Some(440));
-        assert_eq!(says_at(taught(500), 50, 10), Some(400));
-        assert_eq!(says_at(taught(500), 100, 10), Some(360));
+        assert_eq!(warns_at(taught(500), 1, 10), Some(440));
+        assert_eq!(warns_at(taught(500), 50, 10), Some(400));
+        assert_eq!(warns_at(taught(500), 100, 10), Some(360));
+    }
+
+    #[test]
+    fn not_looking_ahead_is_no_warning_and_learns_all_the_same() {
+        let mut shear = taught(500);
+        assert_eq!(warns_at(shear.clone(), 0, 10), None);
+        assert_eq!(shear.learned() >> FRACTION, 500);
+        for _ in 0..2 {
+            shear.feel(1, reading(600, 2_000));
+        }
+        assert!(shear.warns());
+        shear.feel(0, reading(600, 2_000));
+        assert!(!shear.warns());
+    }
+
+    #[test]
+    fn it_asks_for_half_as_much_force_again_until_something_is_known() {
+        let mut shear = taught(200);
+        let mut warns = |load_mn: i32| {
+            (0..AGREEING).for_each(|_| shear.feel(75, reading(400, load_mn)));
+            (shear.warns(), shear.clone())
+        };
+        for (load_mn, expected) in [(2_000, true), (2_900, true), (3_001, false), (9_000, false)] {
+            assert_eq!(warns(load_mn).0, expected, "{load_mn} mN");
+        }
+        let (_, spent) = warns(3_001);
+        // A lost frame and a ratio that is not known for a while are the same grasp.
+        for same in [Shear::lose, |shear: &mut Shear| shear.feel(75, None)] {
+            let mut shear = spent.clone();
+            same(&mut shear);
+            (0..AGREEING).for_each(|_| shear.feel(75, reading(400, 3_001)));
+            assert!(!shear.warns());
+        }
+        let mut lesson = spent.clone();
+        lesson.learn();
+        for mut shear in [lesson, Shear { warned_at_mn: None, ..spent }] {
+            (0..AGREEING).for_each(|_| shear.feel(75, reading(400, 3_001)));
+            assert!(shear.warns());
+        }
     }
 
     #[test]
@@ -131,8 +204,8 @@ mod tests {
         let mut shear = taught(500);
         for n in 0..400_u16 {
             // Risen to two thirds of it, with the noise of a reading.
-            shear.feel(50, Some((n * 10).min(330) + n % 3));
-            assert!(!shear.says(), "{n}");
+            shear.feel(50, reading((n * 10).min(330) + n % 3, 2_000));
+            assert!(!shear.warns(), "{n}");
         }
     }
 
@@ -140,7 +213,7 @@ mod tests {
     fn the_learned_ratio_is_the_mean_of_the_lessons_and_survives() {
         let mut shear = Shear::default();
         for n in 0..400_u16 {
-            shear.feel(0, Some(400 + (n % 5) * 10));
+            shear.feel(0, reading(400 + (n % 5) * 10, 2_000));
             shear.learn();
         }
         assert!((418..=422).contains(&(shear.learned() >> FRACTION)), "{}", shear.learned());

@@ -52,6 +52,8 @@ impl Default for Pvdf {
             gain: Gain::of(20.0),
             // Recordings: two films of one fingertip differ by 1.7 times (37 and 61 mV peak to peak at slip onset).
             spread: Part::of(0.3),
+            // `tenax learn` draws a decade for fingers made by chance.
+            film_decades: Part::of(0.0),
             // Recordings: after the bump of 25 ms the film is back within another 10 ms.
             high_pass_hz: Hertz::of(16.0),
             skin_ms: Milliseconds::of(3.5),

@@ -32,6 +32,8 @@ pub(crate) struct Films {
     pitch_m: f64,
     films: [Film; PVDF_COUNT],
     gains: [f64; PVDF_COUNT],
+    /// Each film's noise over the mean one's.
+    noises: [f64; PVDF_COUNT],
     skin: [LowPasses<PVDF_COUNT>; 2],
     amplifiers: LowPasses<PVDF_COUNT>,
     noise: Noise,
@@ -66,12 +68,17 @@ impl Films {
         for film in &mut films {
             film.place = Place::random(&mut making);
         }
+        // Drawn last: a scene without it has the films that it ever had.
+        let mut about_1 = || libm::pow(10.0, parameters.film_decades.get() * making.between(-0.5, 0.5));
+        gains.iter_mut().for_each(|gain| *gain *= about_1());
+        let noises = std::array::from_fn(|_| about_1());
         Self {
             parameters: parameters.clone(),
             knocks: knocks.to_vec(),
             pitch_m: pitch_mm / 1e3,
             films,
             gains,
+            noises,
             skin: [LowPasses::new(skin); 2],
             amplifiers: LowPasses::new([amplifier; PVDF_COUNT]),
             noise: Noise::new(seeds.noise, Source::Film),
@@ -137,7 +144,8 @@ impl Films {
         let draws: [f64; PVDF_COUNT] = self.noise.normals();
         let gain = p.gain.get();
         std::array::from_fn(|n| {
-            let film_mv = self.gains[n] * (films_mv[n] + everywhere_mv) + noise_mv * draws[n];
+            let film_mv =
+                self.gains[n] * (films_mv[n] + everywhere_mv) + self.noises[n] * noise_mv * draws[n];
             front_end_v(f64::from(PVDF_REST_MV) + gain * film_mv)
         })
     }
@@ -171,4 +179,36 @@ pub(super) fn ring_mv(knock: &Knock, t_s: f64, phase: f64) -> f64 {
     let decay_s = knock.decay_ms.get() / 1e3;
     let ring = libm::sin(TAU * (knock.ring_hz.get() * since_s + phase));
     knock.peak_mv.get() * libm::exp(-since_s / decay_s) * ring
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::file::quantity::Part;
+
+    fn made(film_decades: f64, making: u64) -> Films {
+        let parameters = Pvdf { film_decades: Part::of(film_decades), ..Pvdf::default() };
+        Films::new(&parameters, &[], 1.0, Seeds { making, noise: 1 })
+    }
+
+    #[test]
+    fn gains_and_noises_are_drawn_over_the_decade_and_nothing_else_is() {
+        let (mut widest, mut together) = (0.0_f64, 0.0);
+        for seed in 0..50 {
+            let (alike, drawn) = (made(0.0, seed), made(1.0, seed));
+            assert_eq!(alike.noises, [1.0; PVDF_COUNT], "seed {seed}");
+            let apart: [f64; PVDF_COUNT] =
+                std::array::from_fn(|n| libm::log10(drawn.gains[n] / alike.gains[n]));
+            let noisy = drawn.noises.map(libm::log10);
+            assert!(apart.iter().chain(&noisy).all(|decades| decades.abs() <= 0.5), "seed {seed}");
+            let ends = apart.iter().fold([0.0_f64; 2], |[low, high], &at| [low.min(at), high.max(at)]);
+            widest = widest.max(ends[1] - ends[0]);
+            together += apart.iter().zip(&noisy).map(|(gain, noise)| gain * noise).sum::<f64>();
+            let phases = |films: &Films| films.films.map(|film| film.phase);
+            assert_eq!(phases(&alike), phases(&drawn), "seed {seed}");
+        }
+        assert!(widest > 0.9, "{widest} decades");
+        // A loud film is no noisier than another: 600 products of variance 1/144 have a sum with a deviation of 2.0.
+        assert!(together.abs() < 8.0, "{together}");
+    }
 }

@@ -15,6 +15,8 @@ pub struct Pvdf {
     pub gain: Gain,
     /// How much louder or quieter than the mean one film may be: 0.4 is from 0.6 to 1.4.
     pub spread: Part,
+    /// Decades over which a film's gain is drawn, beside that, and by itself its noise: both evenly over their logarithm.
+    pub film_decades: Part,
     /// Corner of the charge amplifier's high-pass.
     pub high_pass_hz: Hertz,
     /// Mean time in which the skin passes a deformation on to a film; deeper films take up to 1.5 times as long.
