@@ -88,7 +88,7 @@ mod tests {
         let steps: Vec<Step> =
             (0..4_800).map(|n| Step { samples: [0; 10], slip: (1_000..1_100).contains(&n) }).collect();
         let of = |n: usize| match n {
-            1_000..1_100 if n % 2 == 0 => 900,
+            1_000..1_100 if n.is_multiple_of(2) => 900,
             1_000..1_100 => 600,
             _ if n % 100 == 50 => 700,
             _ => 100,
