@@ -261,6 +261,7 @@ impl Fingertip {
             MotorDrive::Coast => 0,
         };
         let vibration = self.senses.vibration;
+        let wearer = self.senses.gate.is_active();
         let sensed = Sensed {
             frame: frame.sequence,
             slot: frame.slot(),
@@ -276,8 +277,8 @@ impl Fingertip {
             unloaded: self.senses.is_unloaded(&self.config),
             grasp: matches!(self.senses.grip(&self.config), Grip::Holds(_)),
             noisy: vibration.knock || duty >= self.config.touch.loud_duty_permille,
-            moves: mode::closes(self.mode) || self.mode == GripMode::Settle || self.senses.gate.is_active(),
-            wearer: self.senses.gate.is_active(),
+            moves: mode::closes(self.mode) || self.mode == GripMode::Settle || wearer,
+            wearer,
         };
         self.detectors.step(&self.config, &sensed);
     }

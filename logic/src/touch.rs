@@ -27,7 +27,8 @@ mod shear;
 use core::ops::Range;
 
 use tenax_hal_shim::channel::PVDF_COUNT;
-use tenax_hal_shim::wire::{NETWORK_OUTPUTS, NetworkState, RECEPTORS};
+use tenax_hal_shim::schedule::{Job, slot_of};
+use tenax_hal_shim::wire::{Forces, NETWORK_OUTPUTS, NetworkState, RECEPTORS};
 use tenax_hal_shim::words::{Code, Codes, NoLesson};
 
 use crate::config::TouchConfig;
@@ -39,7 +40,6 @@ use balance::Balance;
 use hearing::Hearing;
 use noise::Noise;
 use shear::Shear;
-pub use shear::Sheared;
 
 /// All that was learned.
 pub type Learned = snapshot::Contents<RECEPTORS, NETWORK_OUTPUTS>;
@@ -80,14 +80,10 @@ pub struct Felt<'a> {
     pub gauges: &'a Gauges,
     /// The gauge that was read in this tick.
     pub gauge: usize,
-    /// Shear and load, if there is a new reading; None in it while there is no ratio.
-    pub sheared: Option<Option<Sheared>>,
     /// Whether a knock rings, or the motor runs fast.
     pub loud: bool,
     /// Whether the finger is known to touch nothing.
     pub unloaded: bool,
-    /// Whether a muscle is active.
-    pub wearer: bool,
     /// Whether the finger holds something, and whether anything else than the object is felt.
     pub situation: Situation,
 }
@@ -100,6 +96,8 @@ const ONE: i64 = 1 << 26;
 /// More films than this hear what is everywhere.
 const SOMEWHERE_MAX: usize = 6;
 
+/// The slot in which shear is judged: the tick after the forces are there, which has more room than theirs.
+pub const SHEAR_IS_JUDGED: u8 = slot_of(Job::Forces) + 1;
 /// The slot in which a cycle of the films' part ends: nobody needs it for more.
 const CYCLE_ENDS: usize = 20;
 
@@ -179,20 +177,24 @@ impl Touch {
         self.by_films = by_films;
         let [o1_by_gauges, o2_by_gauges] = self.by_gauges;
         self.outputs = [output(by_films + o1_by_gauges), output(o2_by_gauges)];
-        if let Some(sheared) = felt.sheared {
-            self.shear.feel(config.ahead_ms, sheared);
-        }
         self.judge(config, felt, by_films);
         self.noise.take(by_films);
         if felt.gauge == CYCLE_ENDS {
             let quiet = self.hearing.is_quiet_known() && self.since_loud_frames >= config.loud_frames;
             self.noise.end_cycle(felt.unloaded && quiet);
         }
-        if self.films_say || felt.unloaded || felt.wearer {
+        self.learn(config, felt, learns);
+    }
+
+    /// Takes forces, None while there is no number: once a cycle, in slot [`SHEAR_IS_JUDGED`], before its tick. `grasp`: the finger
+    /// holds something; `anew`: it touches nothing, or a muscle is active.
+    #[inline(never)]
+    pub fn foretell(&mut self, config: &TouchConfig, forces: Option<&Forces>, grasp: bool, anew: bool) {
+        if anew {
             self.shear.renew();
         }
-        self.warns = felt.situation.grasp && self.shear.warns();
-        self.learn(config, felt, learns);
+        self.shear.feel(config.ahead_ms, forces);
+        self.warns = grasp && self.shear.warns();
     }
 
     /// The films' activations of now.
@@ -351,7 +353,10 @@ impl Touch {
         };
         let somewhere = count <= SOMEWHERE_MAX;
         let long_enough = if somewhere { config.slip_frames } else { config.everywhere_frames };
-        self.films_say |= self.said_frames >= long_enough;
+        if self.said_frames >= long_enough {
+            self.films_say = true;
+            self.shear.renew();
+        }
     }
 
     /// `felt_so` is whether the activations are those of now.
@@ -359,7 +364,7 @@ impl Touch {
         self.lesson = self.teacher.lesson(&config.teacher, felt.situation);
         if let Ok(codes) = self.lesson {
             self.hearing.outdate();
-            if felt.sheared.is_some() && codes[0] == Code::Minus {
+            if felt.gauge == usize::from(SHEAR_IS_JUDGED) && codes[0] == Code::Minus {
                 self.shear.learn();
             }
             if !felt_so {

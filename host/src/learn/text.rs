@@ -109,10 +109,7 @@ impl fmt::Display for Text<'_> {
         let apart = |n: usize| {
             Spread::of(&outcome.others.iter().map(|other| other.films_apart[n]).collect::<Vec<_>>()).mean
         };
-        line(
-            "films unlike, sd over mean",
-            format!("maxima {:.2}, learned weights {:.2}", apart(0), apart(1)),
-        )?;
+        line("films unlike, sd/mean", format!("maxima {:.2}, learned weights {:.2}", apart(0), apart(1)))?;
         let sum = |of: fn(&Score) -> u64| outcome.others.iter().map(|other| of(&other.score)).sum::<u64>();
         let trials = sum(|score| score.trials);
         line(

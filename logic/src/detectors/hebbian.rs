@@ -5,7 +5,7 @@ use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
 use super::{Description, Detector, Said, Sensed, confidence};
 use crate::config::TouchConfig;
 use crate::hebbian::Situation;
-use crate::touch::{Felt, Sheared, Touch};
+use crate::touch::{Felt, SHEAR_IS_JUDGED, Touch};
 
 /// From this part of its range on, the second output tells a direction, of 128.
 const DIRECTION_FROM: i8 = 16;
@@ -19,6 +19,9 @@ impl Detector for Touch {
             self.lose();
             return Some(Said::NOTHING);
         }
+        if sensed.slot == SHEAR_IS_JUDGED {
+            self.foretell(config, sensed.forces, sensed.grasp, sensed.unloaded || sensed.wearer);
+        }
         let knock = sensed.vibration.knock;
         self.tick(
             config,
@@ -26,18 +29,8 @@ impl Detector for Touch {
                 envelopes: sensed.envelopes,
                 gauges: sensed.strain,
                 gauge: usize::from(sensed.slot),
-                sheared: match sensed.forces {
-                    Some(forces) if sensed.forces_are_new => Some(
-                        forces
-                            .ratio_permille
-                            .map(|ratio_permille| Sheared { ratio_permille, load_mn: forces.load_mn }),
-                    ),
-                    Some(_) => None,
-                    None => Some(None),
-                },
                 loud: sensed.noisy,
                 unloaded: sensed.unloaded,
-                wearer: sensed.wearer,
                 situation: Situation {
                     grasp: sensed.grasp,
                     disturbed: knock || sensed.moves || !sensed.vibration_known,
@@ -50,7 +43,7 @@ impl Detector for Touch {
     fn describe(&self, config: &TouchConfig) -> Description {
         let raw = self.by_films_permille();
         let [_, o2] = self.outputs();
-        let direction = match (self.slips() || self.warns(), o2) {
+        let direction = match (self.slips() | self.warns(), o2) {
             (true, o2) if o2 <= -DIRECTION_FROM => Direction::Down,
             (true, o2) if o2 >= DIRECTION_FROM => Direction::Up,
             _ => Direction::Unknown,

@@ -11,6 +11,8 @@
 //! again as when it first warned, and then is silent until something is known: the films have heard slip, the camera has seen it,
 //! a muscle was active, or the finger touched nothing.
 
+use tenax_hal_shim::wire::Forces;
+
 /// The part of the learned ratio that is close, per mille.
 const CLOSE_PERMILLE: i32 = 850;
 /// The part of it below which it is no more.
@@ -30,15 +32,6 @@ const LEAST_PERMILLE: i32 = 100;
 /// Fraction bits of the learned ratio.
 const FRACTION: u32 = 8;
 
-/// What the force sensor reads.
-#[derive(Clone, Copy, Debug)]
-pub struct Sheared {
-    /// Ft/Fn, per mille.
-    pub ratio_permille: u16,
-    /// The load, mN.
-    pub load_mn: i32,
-}
-
 /// What was learned, and what is felt.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Shear {
@@ -55,10 +48,12 @@ pub(super) struct Shear {
 impl Shear {
     /// Takes a new reading, None while there is no ratio, and how far to look ahead: 0 is not at all.
     #[inline(never)]
-    pub(super) fn feel(&mut self, ahead_ms: u16, reading: Option<Sheared>) {
+    pub(super) fn feel(&mut self, ahead_ms: u16, forces: Option<&Forces>) {
         let [newer, oldest] = self.before;
-        self.before = [reading.map(|reading| reading.ratio_permille), newer];
-        let Some(Sheared { ratio_permille, load_mn }) = reading.filter(|_| ahead_ms > 0) else {
+        let load_mn = forces.map_or(0, |forces| forces.load_mn);
+        let ratio_permille = forces.and_then(|forces| forces.ratio_permille);
+        self.before = [ratio_permille, newer];
+        let Some(ratio_permille) = ratio_permille.filter(|_| ahead_ms > 0) else {
             self.agreeing = 0;
             self.says = false;
             return;
@@ -120,14 +115,14 @@ mod tests {
     use super::*;
 
     /// A reading under this load.
-    const fn reading(ratio_permille: u16, load_mn: i32) -> Option<Sheared> {
-        Some(Sheared { ratio_permille, load_mn })
+    const fn reading(ratio_permille: u16, load_mn: i32) -> Forces {
+        Forces { fn_mn: load_mn, fx_mn: 0, fy_mn: 0, ft_mn: 0, load_mn, ratio_permille: Some(ratio_permille) }
     }
 
     /// One that has learned that it slips at this ratio.
     fn taught(permille: u16) -> Shear {
         let mut shear = Shear::default();
-        shear.feel(0, reading(permille, 2_000));
+        shear.feel(0, Some(&reading(permille, 2_000)));
         shear.learn();
         shear.lose();
         shear
@@ -136,7 +131,7 @@ mod tests {
     /// The reading at which it warns, of a ratio that rises by so much a reading.
     fn warns_at(mut shear: Shear, ahead_ms: u16, rise: u16) -> Option<u16> {
         (0..600 / rise).map(|n| n * rise).find(|&ratio| {
-            shear.feel(ahead_ms, reading(ratio, 2_000));
+            shear.feel(ahead_ms, Some(&reading(ratio, 2_000)));
             shear.warns()
         })
     }
@@ -166,10 +161,10 @@ mod tests {
         assert_eq!(warns_at(shear.clone(), 0, 10), None);
         assert_eq!(shear.learned() >> FRACTION, 500);
         for _ in 0..2 {
-            shear.feel(1, reading(600, 2_000));
+            shear.feel(1, Some(&reading(600, 2_000)));
         }
         assert!(shear.warns());
-        shear.feel(0, reading(600, 2_000));
+        shear.feel(0, Some(&reading(600, 2_000)));
         assert!(!shear.warns());
     }
 
@@ -177,7 +172,7 @@ mod tests {
     fn it_asks_for_half_as_much_force_again_until_something_is_known() {
         let mut shear = taught(200);
         let mut warns = |load_mn: i32| {
-            (0..AGREEING).for_each(|_| shear.feel(75, reading(400, load_mn)));
+            (0..AGREEING).for_each(|_| shear.feel(75, Some(&reading(400, load_mn))));
             (shear.warns(), shear.clone())
         };
         for (load_mn, expected) in [(2_000, true), (2_900, true), (3_001, false), (9_000, false)] {
@@ -188,13 +183,13 @@ mod tests {
         for same in [Shear::lose, |shear: &mut Shear| shear.feel(75, None)] {
             let mut shear = spent.clone();
             same(&mut shear);
-            (0..AGREEING).for_each(|_| shear.feel(75, reading(400, 3_001)));
+            (0..AGREEING).for_each(|_| shear.feel(75, Some(&reading(400, 3_001))));
             assert!(!shear.warns());
         }
         let mut lesson = spent.clone();
         lesson.learn();
         for mut shear in [lesson, Shear { warned_at_mn: None, ..spent }] {
-            (0..AGREEING).for_each(|_| shear.feel(75, reading(400, 3_001)));
+            (0..AGREEING).for_each(|_| shear.feel(75, Some(&reading(400, 3_001))));
             assert!(shear.warns());
         }
     }
@@ -204,7 +199,7 @@ mod tests {
         let mut shear = taught(500);
         for n in 0..400_u16 {
             // Risen to two thirds of it, with the noise of a reading.
-            shear.feel(50, reading((n * 10).min(330) + n % 3, 2_000));
+            shear.feel(50, Some(&reading((n * 10).min(330) + n % 3, 2_000)));
             assert!(!shear.warns(), "{n}");
         }
     }
@@ -213,7 +208,7 @@ mod tests {
     fn the_learned_ratio_is_the_mean_of_the_lessons_and_survives() {
         let mut shear = Shear::default();
         for n in 0..400_u16 {
-            shear.feel(0, reading(400 + (n % 5) * 10, 2_000));
+            shear.feel(0, Some(&reading(400 + (n % 5) * 10, 2_000)));
             shear.learn();
         }
         assert!((418..=422).contains(&(shear.learned() >> FRACTION)), "{}", shear.learned());
