@@ -52,7 +52,7 @@ pub async fn store(mut flash: Flash, mut log: Log) -> ! {
         let saved = save(&mut flash, &mut log, &record).await;
         let frame = counts::last_frame();
         let fault = |fault| Up::Event(Event { frame, kind: EventKind::Fault(fault) });
-        mail::post(match saved {
+        mail::post_beside_control(match saved {
             Ok(()) => Up::Saved { frame, kept },
             Err(Refused::Full) => fault(Fault::StoreFull(kept)),
             Err(Refused::Failed | Refused::Length) => fault(Fault::StoreFailed(kept)),

@@ -28,7 +28,7 @@ pub async fn telemetry(mut line: UartTx<'static, Async>) -> ! {
     loop {
         let posted = match select(counters_due.next(), mail::next_message(next)).await {
             Either::First(()) => {
-                mail::post(Up::Counters(counts::counters(share.permille())));
+                mail::post_beside_control(Up::Counters(counts::counters(share.permille())));
                 continue;
             }
             Either::Second(posted) => posted,

@@ -1,6 +1,8 @@
 //! No legal combination of settings crushes, opens or deafens: every pair at its ends, on a hand whose line is not
 //! trusted (the ranges of `hal-shim/src/setting.rs`).
 
+use std::num::NonZero;
+
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::words::Kept;
@@ -97,11 +99,21 @@ fn squeezed_n(settings: &[(SettingId, i32)]) -> f64 {
     fn_n
 }
 
+/// Checks each of them, on all cores: it takes half a minute on one.
+fn on_all_cores<T: Sync>(items: &[T], check: impl Fn(&T) + Sync) {
+    let cores = std::thread::available_parallelism().map_or(1, NonZero::get);
+    std::thread::scope(|scope| {
+        for part in items.chunks(items.len().div_ceil(cores)) {
+            scope.spawn(|| part.iter().for_each(&check));
+        }
+    });
+}
+
 #[test]
 fn every_pair_at_its_ends_rests_answers_slip_and_opens() {
     let pairs = pairs();
     println!("{} combinations", pairs.len());
-    pairs.iter().for_each(|pair| check(pair));
+    on_all_cores(&pairs, |pair| check(pair));
 }
 
 /// The control: without anything set, the reflex does close until the ceiling.
@@ -113,7 +125,8 @@ fn the_defaults_close_up_to_the_ceiling() {
 
 #[test]
 fn every_setting_at_its_ends_stops_at_the_ceiling() {
-    for id in SettingId::ALL.into_iter().filter(|id| *id != SettingId::LineTrusted) {
+    let all: Vec<_> = SettingId::ALL.into_iter().filter(|id| *id != SettingId::LineTrusted).collect();
+    on_all_cores(&all, |&id| {
         for value in [id.row().min, id.row().max] {
             for ceiling in [3_000, 10_000] {
                 let ceiling_n = f64::from(ceiling) / 1e3;
@@ -124,5 +137,5 @@ fn every_setting_at_its_ends_stops_at_the_ceiling() {
                 assert!(n < ceiling_n + STOP_N, "{settings:?}: {n} N");
             }
         }
-    }
+    });
 }

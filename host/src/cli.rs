@@ -79,7 +79,7 @@ enum Command {
     Evaluate(evaluate::Args),
     /// Train the force array's slip detector from labelled recordings
     Train(train::Args),
-    /// Calibrate a sensor from known weights
+    /// Calibrate a sensor or the wearer's muscles, step by step
     Calibrate(calibrate::Args),
     /// Draw the charts behind a page of docs/
     Chart(chart::Args),

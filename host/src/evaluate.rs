@@ -5,6 +5,7 @@ pub mod adapt;
 #[cfg(feature = "emulator")]
 pub mod core;
 pub mod draws;
+pub mod edges;
 pub mod events;
 pub mod failures;
 pub mod network;

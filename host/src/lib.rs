@@ -19,6 +19,7 @@ pub mod link;
 pub mod monitor;
 pub mod photoelastic;
 pub mod plot;
+pub mod recipe;
 pub mod record;
 pub mod replay;
 pub mod report;

@@ -3,7 +3,7 @@
 //! Sliding moves load from element to element while the whole stays the same. So what each element's force does from one
 //! slow frame to the next is compared with what every other's does ([`covariance`], equations 1 to 4), and the force of
 //! all of them is looked at by frequency ([`spectrum`]): the paper's 76 numbers. How soon an element's force forgets
-//! ([`structure`]) tells how fast something slides. Together they are 100 [`Features`] ([`preprocess`]), on which a small
+//! ([`structure`]) tells how fast something slides. Together they are 112 [`Features`] ([`preprocess`]), on which a small
 //! network ([`network`]) says whether the object slips, and [`detector`] says it without flicker.
 //!
 //! | step | exact on every machine because | range |

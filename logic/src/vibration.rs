@@ -1,105 +1,28 @@
 //! S1: slip from the vibration of the PVDF films (Prosthesis, sections 4 and 5).
 //!
-//! Each film's sample, less the mains' [`hum`](crate::hum), goes through a high-pass (offset, drift and slow contact go), a low-pass, a rectifier (the sign of
-//! a film means nothing: Tada 2006, section 2) and a second low-pass: the envelope of the slip band, 20 to 150 Hz. What
-//! the low-pass took away is rectified too, and the loudest film's goes through one more low-pass: the envelope above the
-//! band. The bands are those of real slip onsets, which have 83 to 94 % of their energy below 100 Hz and 1 to 3 % above
-//! 200 Hz.
+//! Of each film its conditioning (`film`) gives the envelope of the slip band, 20 to 150 Hz, and the size of what is above it.
+//! The loudest film's of the latter goes through one more low-pass: the envelope above the band. The bands are those of real
+//! slip onsets, which have 83 to 94 % of their energy below 100 Hz and 1 to 3 % above 200 Hz.
 //!
 //! A knock is as loud as slip or louder, but rings above the band, and is over soon. So S1 needs a loud band, and a
 //! quieter sound above it, or a sound that stays.
-//!
-//! Fixed point: samples (14 bits, offset binary) are taken around mid-scale and shifted to Q16, 2^16 a sample. The
-//! filters ([`LowPass`]) keep 32 bits: what that rounds away is at most 0.0006 of a sample of any envelope, below 0.001, which
-//! is the bound of the tests against `f64`.
+
+mod film;
 
 use tenax_hal_shim::channel::PVDF_COUNT;
 use tenax_hal_shim::wire::TickRecord;
 
+pub(crate) use self::film::Q;
+use self::film::{ENVELOPE, Film, Heard};
 use crate::config::VibrationConfig;
-use crate::hum::{Mains, Turn, Weights};
-use crate::low_pass::LowPass;
+use crate::hum::{Mains, Turn};
 use crate::sliding::{Hand, Sliding};
 use crate::solo::Solo;
-
-/// Lower edge of the slip band, Hz.
-pub const BAND_LOW_HZ: u32 = 20;
-/// Upper edge of the slip band, Hz.
-pub const BAND_HIGH_HZ: u32 = 150;
-/// Time constant of the envelope, us.
-pub const ENVELOPE_US: u32 = 8_000;
 
 /// A loud vibration that has rung for this long is a knock's, in frames: what slides rings for a tick now and then.
 const KNOCK_RINGS: u32 = 12;
 /// A peak of the envelope is forgotten over `2^PEAK_SHIFT` frames, 0.13 s.
 const PEAK_SHIFT: u32 = 8;
-
-/// Fraction bits of a conditioned sample.
-pub(crate) const Q: u32 = 16;
-/// The sample in the middle of the converter's range.
-const MIDDLE: i32 = 1 << 13;
-
-static HIGH_PASS: LowPass = LowPass::of(BAND_LOW_HZ as f64);
-static LOW_PASS: LowPass = LowPass::of(BAND_HIGH_HZ as f64);
-static ENVELOPE: LowPass = LowPass::of(1e6 / (2.0 * core::f64::consts::PI * ENVELOPE_US as f64));
-
-/// The state of one film's conditioning.
-#[derive(Clone, Debug, Default)]
-pub struct Film {
-    offset: i32,
-    band: i32,
-    envelope: i32,
-    hum: Weights,
-    primed: bool,
-}
-
-/// What one film says, Q16 samples.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Heard {
-    /// Envelope in the slip band.
-    pub envelope: i32,
-    /// Size of the vibration above it.
-    pub above: i32,
-}
-
-impl Film {
-    /// Its envelope, or what it would be if the film were believed, Q16 samples.
-    const fn level(&self) -> i32 {
-        self.envelope
-    }
-
-    /// Takes its first sample as the offset, so that being switched on is no vibration; later ones change nothing.
-    pub fn prime(&mut self, sample: u16) {
-        if !self.primed {
-            self.offset = centred(sample);
-            self.primed = true;
-        }
-    }
-
-    /// Takes a 14-bit sample of a film that was primed.
-    #[inline]
-    pub fn process(&mut self, sample: u16, mains: Turn) -> Heard {
-        let x = centred(sample).wrapping_sub(self.hum.heard(mains));
-        let ac = x - HIGH_PASS.process(&mut self.offset, x);
-        let low = LOW_PASS.process(&mut self.band, ac);
-        Heard { envelope: ENVELOPE.process(&mut self.envelope, low.abs()), above: (ac - low).abs() }
-    }
-}
-
-impl Heard {
-    /// The louder of the two, each of its parts by itself.
-    #[inline]
-    fn raise(&mut self, other: Self) {
-        self.envelope = self.envelope.max(other.envelope);
-        self.above = self.above.max(other.above);
-    }
-}
-
-/// A 14-bit sample around mid-scale, Q16.
-#[inline]
-const fn centred(sample: u16) -> i32 {
-    (sample as i32 - MIDDLE) << Q
-}
 
 /// How far a film's sample can be believed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -241,7 +164,7 @@ impl VibrationDetector {
         let Heard { envelope, above } = loudest;
         let asked = self.mains.asks().filter(|_| self.loud_frames == 0);
         if let Some(film) = asked.and_then(|film| self.films.get_mut(film)) {
-            self.mains.adapt(config.mains_60_hz, &mut film.hum, film.band);
+            film.adapt(&mut self.mains, config.mains_60_hz);
         }
         let above = ENVELOPE.process(&mut self.above, above);
         let on = i32::from(config.s1) << Q;
@@ -296,56 +219,6 @@ mod tests {
     use core::f64::consts::PI;
     use std::vec::Vec;
     use tenax_hal_shim::channel::{FRAME_HZ, SAMPLE_MAX};
-
-    /// The same conditioning in `f64`, from the same transfer function (bilinear, unwarped gain k).
-    #[derive(Default)]
-    struct Reference([f64; 3], bool);
-
-    impl Reference {
-        fn low_pass(state: &mut f64, hz: f64, x: f64) -> f64 {
-            let d = (x - *state) * PI * hz / f64::from(FRAME_HZ);
-            let y = *state + d;
-            *state = y + d;
-            y
-        }
-
-        fn process(&mut self, sample: u16) -> (f64, f64) {
-            let x = f64::from(sample) - f64::from(MIDDLE);
-            if !self.1 {
-                self.0[0] = x;
-                self.1 = true;
-            }
-            let ac = x - Self::low_pass(&mut self.0[0], 20.0, x);
-            let low = Self::low_pass(&mut self.0[1], 150.0, ac);
-            let envelope_hz = 1e6 / (2.0 * PI * 8_000.0);
-            (Self::low_pass(&mut self.0[2], envelope_hz, low.abs()), (ac - low).abs())
-        }
-    }
-
-    fn worst_error(samples: impl Iterator<Item = u16>) -> f64 {
-        let (mut film, mut reference) = (Film::default(), Reference::default());
-        samples.fold(0.0f64, |worst, sample| {
-            film.prime(sample);
-            let fixed = film.process(sample, Mains::default().turn());
-            let (inside, above) = reference.process(sample);
-            worst
-                .max((f64::from(fixed.envelope) / 65_536.0 - inside).abs())
-                .max((f64::from(fixed.above) / 65_536.0 - above).abs())
-        })
-    }
-
-    #[test]
-    fn conditioning_is_within_a_thousandth_of_a_sample_of_f64() {
-        for hz in [1.0, 20.0, 60.0, 150.0, 400.0, 990.0] {
-            let tone = (0..20_000).map(|n| {
-                (8_192.0 + 8_000.0 * (2.0 * PI * hz * f64::from(n) / f64::from(FRAME_HZ)).sin()) as u16
-            });
-            assert!(worst_error(tone) < 0.001, "{hz} Hz");
-        }
-        let extremes = (0..20_000).map(|n| if n / 7 % 2 == 0 { 0 } else { SAMPLE_MAX });
-        assert!(worst_error(extremes) < 0.001);
-        assert!(worst_error((0..20_000).map(|n| if n < 9 { 0 } else { SAMPLE_MAX })) < 0.001);
-    }
 
     fn tick(detector: &mut VibrationDetector, sample: u16, trust: Trust) -> Vibration {
         detector.hear(&Config::default().vibration, &[sample; PVDF_COUNT], Some(&[trust; PVDF_COUNT]))

@@ -52,55 +52,67 @@ pub enum Calibrated {
 }
 
 /// A world (a scene) or a recording, seen from the board, one scan at a time.
+///
+/// One that is put around another names it as `within`, and says itself only what is different.
 pub trait Plant: Send {
+    /// The plant that this one is put around, if it is.
+    fn within(&self) -> Option<&dyn Plant> {
+        None
+    }
+
+    /// The same, to go on with.
+    fn within_mut(&mut self) -> Option<&mut dyn Plant> {
+        None
+    }
+
     /// Goes on by one scan period (125 us) under `drive` and gives the voltages at the pins at its end.
     fn scan(&mut self, drive: MotorDrive) -> &Pins;
 
     /// Commands that somebody sends over the serial line at this instant.
     fn commands(&mut self) -> Vec<Down> {
-        Vec::new()
+        self.within_mut().map_or_else(Vec::new, Plant::commands)
     }
 
     /// Bytes that somebody sends down the serial line at this instant, whatever they are.
     fn line_bytes(&mut self) -> Vec<u8> {
-        Vec::new()
+        self.within_mut().map_or_else(Vec::new, Plant::line_bytes)
     }
 
     /// Whether the board trusts whoever sends them (the setting `line-trusted-flag`, kept in its flash from before).
     fn trusts_line(&self) -> bool {
-        false
+        self.within().is_some_and(Plant::trusts_line)
     }
 
     /// Whether the board streams its frames from the start (the setting `stream-at-start-flag`, kept in its flash from before).
     fn streams_at_start(&self) -> bool {
-        false
+        self.within().is_some_and(Plant::streams_at_start)
     }
 
     /// Whether somebody holds the board's button down at this instant.
     fn button(&self) -> bool {
-        false
+        self.within().is_some_and(Plant::button)
     }
 
     /// How an oracle drives the motor for the next frame: it knows friction, load, force, what slides, and what the motor was
     /// told before, and closes to the least force that holds. None where nothing has to be closed.
     fn planned(&self) -> Option<MotorDrive> {
-        None
+        self.within()?.planned()
     }
 
     /// How the motor has to be driven for the next frame so that each finger comes to press what it touches with `target_n`, and
     /// no more. None if it will anyway.
-    fn closing_to(&self, _target_n: f64) -> Option<MotorDrive> {
-        None
+    fn closing_to(&self, target_n: f64) -> Option<MotorDrive> {
+        self.within()?.closing_to(target_n)
     }
 
     /// Whether the object moves relative to the finger at this instant.
     fn slipping(&self) -> bool {
-        false
+        self.within().is_some_and(Plant::slipping)
     }
 
     /// The wearer to whom the board was calibrated before the start, if to any.
     fn calibrated(&self) -> Option<Calibrated> {
-        None
+        self.within()?.calibrated()
     }
 
     /// How long it lasts, s.
@@ -110,6 +122,88 @@ pub trait Plant: Send {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Says everything that a plant may say.
+    struct Outspoken(Pins);
+
+    impl Plant for Outspoken {
+        fn scan(&mut self, _drive: MotorDrive) -> &Pins {
+            &self.0
+        }
+
+        fn commands(&mut self) -> Vec<Down> {
+            vec![Down::Ping]
+        }
+
+        fn line_bytes(&mut self) -> Vec<u8> {
+            vec![7]
+        }
+
+        fn trusts_line(&self) -> bool {
+            true
+        }
+
+        fn streams_at_start(&self) -> bool {
+            true
+        }
+
+        fn button(&self) -> bool {
+            true
+        }
+
+        fn planned(&self) -> Option<MotorDrive> {
+            Some(MotorDrive::Coast)
+        }
+
+        fn closing_to(&self, _target_n: f64) -> Option<MotorDrive> {
+            Some(MotorDrive::Coast)
+        }
+
+        fn slipping(&self) -> bool {
+            true
+        }
+
+        fn calibrated(&self) -> Option<Calibrated> {
+            Some(Calibrated::Words([3; 10]))
+        }
+
+        fn duration_s(&self) -> f64 {
+            1.0
+        }
+    }
+
+    /// Says nothing by itself.
+    struct Around<P>(P);
+
+    impl<P: Plant> Plant for Around<P> {
+        fn within(&self) -> Option<&dyn Plant> {
+            Some(&self.0)
+        }
+
+        fn within_mut(&mut self) -> Option<&mut dyn Plant> {
+            Some(&mut self.0)
+        }
+
+        fn scan(&mut self, drive: MotorDrive) -> &Pins {
+            self.0.scan(drive)
+        }
+
+        fn duration_s(&self) -> f64 {
+            self.0.duration_s()
+        }
+    }
+
+    #[test]
+    fn what_a_plant_around_another_does_not_say_the_other_says() {
+        let said = |plant: &mut dyn Plant| {
+            let flags = [plant.trusts_line(), plant.streams_at_start(), plant.button(), plant.slipping()];
+            let down = (plant.commands(), plant.line_bytes());
+            (flags, down, plant.planned(), plant.closing_to(1.0), plant.calibrated())
+        };
+        let mut around = Around(Around(Outspoken(Pins::default())));
+        assert_eq!(said(&mut around), said(&mut Outspoken(Pins::default())));
+        assert!(around.button() && around.calibrated().is_some(), "what it says is not what nobody says");
+    }
 
     #[test]
     fn codes_are_rounded_down_and_clipped() {

@@ -1,7 +1,7 @@
 """How much the drawn array signals tell, whatever it costs: float models on far more features than the firmware has room for.
 
     python3 -m venv /tmp/bound && /tmp/bound/bin/pip install -r train/bound/requirements.txt
-    cargo tenax dataset
+    cargo tenax dataset --sessions 96
     /tmp/bound/bin/python train/bound/bound.py out/array_dataset.csv
 
 Learns from the training part, scores pours of the validation part, and never looks at the test part. A few minutes a core.
@@ -80,7 +80,7 @@ def quiet(x, window=16, leak=1 / 400):
 
 
 def firmware(x):
-    """The firmware's hundred: covariance, spectrum, structure functions."""
+    """The firmware's 112: covariance, spectrum, structure functions."""
     changes = change(x, 1)
     covariance = trailing(changes[:, UPPER[0]] * changes[:, UPPER[1]], 10)
     columns = [np.sign(covariance) * np.log2(1 + np.abs(covariance) / 128)]
@@ -94,7 +94,7 @@ def firmware(x):
 def structure(x):
     """Its structure functions alone."""
     columns = []
-    for lag in (1, 2, 4, 8):
+    for lag in (1, 2, 4, 8, 16, 32):
         changes = change(x, lag)
         energy = 10 * ((changes - changes.mean(1, keepdims=True)) ** 2).sum(1, keepdims=True)
         for begin, end in ((0, 1), (1, 2), (2, 4), (4, 8), (8, 16), (16, 32)):
@@ -128,7 +128,7 @@ def rich(x):
         for window in (4, 8, 16):
             columns.append(delayed(size(trailing(energy, window).mean(1, keepdims=True) / window), window))
     load = x.sum(1, keepdims=True)
-    above = load - load[:20].mean() + 200
+    above = np.maximum(load - load[:20].mean() + 200, 50)
     return np.hstack(columns + [load, (x @ ALONG)[:, None] / above])
 
 
@@ -204,7 +204,7 @@ def main():
     )
     both = lambda x: np.hstack([rich(x), raw(x)])
     for name, features, model in (
-        ("the firmware's 100, 32-16", firmware, net(32, 16)),
+        ("the firmware's 112, 32-16", firmware, net(32, 16)),
         ("its structure functions alone, 32-16", structure, net(32, 16)),
         ("all that was thought of, 32-16", rich, net(32, 16)),
         ("the same, 128-64", rich, wide),

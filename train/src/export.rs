@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use tenax::evaluate::edges::Edges;
 use tenax::evaluate::network::Saved;
 use tenax_logic::array::{COVARIANCE_WINDOW, FEATURES, SPECTRUM_WINDOW};
 
@@ -12,11 +13,11 @@ use crate::quantise::Quantised;
 
 /// The source of a module with one `pub static MODEL`.
 #[must_use]
-pub fn rust(quantised: &Quantised, recipe: &Recipe, choice: &Choice, about: &str) -> String {
+pub fn rust(quantised: &Quantised, recipe: &Recipe, choice: &Choice, edges: Edges, about: &str) -> String {
     let back = choice.candidate.look_back;
     let (slope, intercept) = choice.calibration;
     let per_nat = quantised.per_logit / slope;
-    let on_permille = permille(choice);
+    let Edges { on_permille, off_permille } = edges;
     // The calibration's intercept is part of the bias: a logit of 0 is even odds.
     let last_bias = f64::from(quantised.last_bias) + intercept * per_nat;
     let frames: Vec<String> = (0..back)
@@ -71,7 +72,7 @@ pub static MODEL: Model<{H1}, {back}, {H2}{windows}> = Model {{
     judgement: Judgement {{
         logit_per_nat: {per_nat:.0},
         on_permille: {on_permille},
-        off_permille: {on_permille},
+        off_permille: {off_permille},
         on_frames: 1,
         off_frames: 1,
     }},
@@ -90,7 +91,7 @@ pub static MODEL: Model<{H1}, {back}, {H2}{windows}> = Model {{
     text
 }
 
-/// The network as `tenax evaluate --network` reads it.
+/// The network as `tenax evaluate --network` reads it, with the choice's threshold for both edges.
 #[must_use]
 pub fn saved(
     quantised: &Quantised,
@@ -113,7 +114,7 @@ pub fn saved(
         second: (quantised.second.clone(), quantised.second_bias.clone(), quantised.second_shift),
         last: (quantised.last.clone(), last_bias.round() as i32),
         logit_per_nat: per_nat.round() as i32,
-        on_permille: permille(choice),
+        edges: Edges { on_permille: permille(choice), off_permille: permille(choice) },
         noise_samples,
     }
 }

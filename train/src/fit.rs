@@ -80,16 +80,21 @@ pub fn fit(
     progress: &mut dyn FnMut(f64),
 ) -> anyhow::Result<Trained> {
     let folds = folds(sequences)?;
-    let mut best: Option<Choice> = None;
+    let learn: Vec<usize> = (0..sequences.len()).filter(|&n| may_learn(&sequences[n])).collect();
+    // With parts given, what is judged has learned all that there is to learn from: it need not learn it again.
+    let whole = folds.len() == 1 && folds[0].learn == learn;
+    let mut best: Option<(Choice, Option<Network>)> = None;
     let mut tried = Vec::new();
     let pieces = (candidates.len() * folds.len() + 1) as f64;
     for (place, &candidate) in candidates.iter().enumerate() {
         // Of each number of passes, what every fold's network says of the sessions it has not seen.
         let mut judged = vec![Vec::<Judged>::new(); candidate.epochs + 1];
+        let mut networks = vec![None; candidate.epochs + 1];
         for (n, fold) in folds.iter().enumerate() {
             let unseen = Table::of(judged_by(sequences, &fold.judge, aim));
             run(sequences, &fold.learn, candidate, candidate.epochs, aim, seed, &mut |passes, network| {
                 judged[passes].push(judge(network, &unseen));
+                networks[passes] = whole.then(|| network.clone());
                 let done = (place * folds.len() + n) as f64 + passes as f64 / candidate.epochs.max(1) as f64;
                 progress(done / pieces);
             })?;
@@ -103,16 +108,16 @@ pub fn fit(
         }
         let Some(own) = own else { continue };
         tried.push((candidate, own.passes, own.unseen));
-        if best.is_none_or(|best| own.unseen > best.unseen) {
-            best = Some(own);
+        if best.as_ref().is_none_or(|(best, _)| own.unseen > best.unseen) {
+            best = Some((own, networks.swap_remove(own.passes)));
         }
     }
-    let Some(choice) = best else { bail!("no candidate to choose from") };
-    let learn: Vec<usize> = (0..sequences.len()).filter(|&n| may_learn(&sequences[n])).collect();
-    let mut network = None;
-    run(sequences, &learn, choice.candidate, choice.passes, aim, seed, &mut |_, now| {
-        network = Some(now.clone())
-    })?;
+    let Some((choice, mut network)) = best else { bail!("no candidate to choose from") };
+    if network.is_none() {
+        run(sequences, &learn, choice.candidate, choice.passes, aim, seed, &mut |_, now| {
+            network = Some(now.clone())
+        })?;
+    }
     progress(1.0);
     let Some(network) = network else { bail!("nothing was learned") };
     Ok(Trained { network, choice, tried })

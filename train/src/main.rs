@@ -8,9 +8,11 @@ use std::process::ExitCode;
 use anyhow::{Context, ensure};
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use tenax::evaluate::adapt::noise_samples;
+use tenax::evaluate::adapt;
+use tenax::evaluate::edges::{self, Chosen};
+use tenax::evaluate::network::{Network, Saved};
 use tenax::labelled::recipe::ArrayRecipe;
-use tenax::labelled::{self, Part, library};
+use tenax::labelled::{self, Part, Recording, library};
 use tenax::scorer::Doing;
 use tenax_train::compare;
 use tenax_train::export;
@@ -75,7 +77,8 @@ fn main() -> ExitCode {
 fn run(args: &Args) -> anyhow::Result<()> {
     let recipe = library::choose(&args.dataset, args.recipe.as_deref())?;
     let features = Recipe { paper_only: args.paper_only, ..features_of(&recipe) };
-    let (data, sequences, noise) = load(&args.dataset, &recipe, &features)?;
+    let Loaded { data, sequences, noise_samples, pours: recorded_pours } =
+        load(&args.dataset, &recipe, &features, args.open_test)?;
     let bar = bar();
     if args.compare {
         let mut tests = Vec::new();
@@ -107,13 +110,18 @@ fn run(args: &Args) -> anyhow::Result<()> {
     let pours: Vec<Sequence> = pours.cloned().collect();
     let mut test_data = None;
     for path in &args.test {
-        let (data, more, _) = load(path, &recipe, &features)?;
-        tests.extend(more);
-        test_data = Some(data);
+        let more = load(path, &recipe, &features, true)?;
+        tests.extend(more.sequences);
+        test_data = Some(more.data);
     }
     let learned: Vec<&Sequence> =
         sequences.iter().filter(|s| matches!(s.part, None | Some(Part::Train))).collect();
     let quantised = Quantised::of(&trained.network, &Table::of(learned.iter().copied()), 8);
+    let mut saved = export::saved(&quantised, &features, &trained.choice, &data.sha256, noise_samples);
+    let chosen = choose_edges(&saved, &recorded_pours)?;
+    if let Some(Chosen { edges, .. }) = chosen {
+        saved.edges = edges;
+    }
     let report = Report {
         seed: args.seed,
         data,
@@ -121,6 +129,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
         features,
         choice: trained.choice,
         threshold_permille: export::permille(&trained.choice),
+        edges: chosen,
         sizes: compare::sizes(trained.choice.candidate.look_back),
         validation: test_quantised(&trained, &quantised, &pours)?,
         float: test(&trained, &tests),
@@ -134,8 +143,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
         "Learned from `{}` (SHA-256 {}), seed {}; docs/model-card.md has its scores.",
         report.data.file, report.data.sha256, report.seed
     );
-    let rust = export::rust(&quantised, &features, &trained.choice, &about);
-    let saved = export::saved(&quantised, &features, &trained.choice, &report.data.sha256, noise);
+    let rust = export::rust(&quantised, &features, &trained.choice, saved.edges, &about);
     let json = serde_json::to_vec_pretty(&report)?;
     match args.report {
         Format::Text => print!("{}", report.card()),
@@ -173,15 +181,22 @@ fn features_of(recipe: &ArrayRecipe) -> Recipe {
     }
 }
 
-/// A file, its sequences, and the least and the greatest noise of those to learn from.
-fn load(
-    path: &Path,
-    recipe: &ArrayRecipe,
-    features: &Recipe,
-) -> anyhow::Result<(Data, Vec<Sequence>, [f64; 2])> {
+/// A file.
+struct Loaded {
+    data: Data,
+    sequences: Vec<Sequence>,
+    /// The least and the greatest noise of the recordings to learn from.
+    noise_samples: [f64; 2],
+    /// The pours of the validation part, as they were recorded.
+    pours: Vec<Recording>,
+}
+
+/// Reads a file; with `test`, its test part, too.
+fn load(path: &Path, recipe: &ArrayRecipe, features: &Recipe, test: bool) -> anyhow::Result<Loaded> {
     let name = path.display().to_string();
     let bytes = fs::read(path).with_context(|| format!("{name}: cannot be read"))?;
-    let recordings = labelled::parse(bytes.as_slice(), recipe, &name)?;
+    let mut recordings = labelled::parse(bytes.as_slice(), recipe, &name)?;
+    recordings.retain(|own| test || own.part != Some(Part::Test));
     let sequences: Vec<Sequence> =
         recordings.iter().map(|recording| features::sequence(recording, features)).collect();
     ensure!(
@@ -193,11 +208,23 @@ fn load(
     let may_learn = recordings
         .iter()
         .filter(|own| matches!(own.part, None | Some(Part::Train)) && own.doing != Doing::Disturb);
-    let noise = may_learn.map(|own| noise_samples(&own.steps));
-    let noise = noise.fold([f64::INFINITY, 0.0], |[low, high], own| [low.min(own), own.max(high)]);
+    let noise = may_learn.map(|own| adapt::noise_samples(&own.steps));
+    let noise_samples = noise.fold([f64::INFINITY, 0.0], |[low, high], own| [low.min(own), own.max(high)]);
     let file = path.file_name().map_or(name.clone(), |file| file.to_string_lossy().into_owned());
     let learned = sequences.iter().filter(|s| matches!(s.part, None | Some(Part::Train)));
-    Ok((Data::of(&file, &bytes, learned), sequences, noise))
+    let data = Data::of(&file, &bytes, learned);
+    recordings.retain(|own| own.part == Some(Part::Validation) && own.doing == Doing::Pour);
+    Ok(Loaded { data, sequences, noise_samples, pours: recordings })
+}
+
+/// The edges that serve the validation's pours best. None if there are no pours, or a window that only training knows.
+fn choose_edges(saved: &Saved, pours: &[Recording]) -> anyhow::Result<Option<Chosen>> {
+    if pours.is_empty() || !Network::WINDOWS.contains(&saved.window) {
+        return Ok(None);
+    }
+    let network = Network::of(saved)?;
+    let judged: Vec<_> = pours.iter().map(|own| (own, network.confidences(&own.steps))).collect();
+    Ok(edges::choose(&judged))
 }
 
 fn test(trained: &Trained, tests: &[Sequence]) -> Option<Test> {

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use serde::Serialize;
+use tenax::evaluate::edges::{Chosen, FALSE_2800_MAX, FALSE_PER_HOUR_MAX};
+use tenax_logic::array::structure::STRUCTURES;
 
 use crate::features::{Recipe, Sequence};
 use crate::fit::Choice;
@@ -116,6 +118,8 @@ pub struct Report {
     pub choice: Choice,
     /// The threshold as a confidence, per mille.
     pub threshold_permille: u16,
+    /// The edges of the verdict that is exported, if there were pours to choose them by.
+    pub edges: Option<Chosen>,
     /// Sizes of the layers.
     pub sizes: String,
     /// Scores on the pours of the validation part, which everything was chosen by, of the network that is exported.
@@ -165,7 +169,7 @@ impl Report {
         let _ = writeln!(
             text,
             "| features | 55 covariances (lag {lag}, window {window}, knee {covariance_knee}), 21 spectral bins (window \
-             {spectrum}, knee {spectrum_knee}), 24 structure functions (knee {structure_knee}) |"
+             {spectrum}, knee {spectrum_knee}), {STRUCTURES} structure functions (knee {structure_knee}) |"
         );
         let _ = writeln!(text, "| network | {}, 8-bit weights, 16-bit activations |", self.sizes);
         let _ = writeln!(
@@ -194,6 +198,23 @@ impl Report {
                 text,
                 "\nIn 2800 steps {:.0} missed and {:.0} false.\n",
                 validation.missed_per_2800, validation.false_per_2800
+            );
+        }
+        if let Some(Chosen { edges, pour }) = &self.edges {
+            let _ = writeln!(
+                text,
+                "**Shipped**: slip begins at a confidence of {} and is over below {} per mille, the best balanced accuracy in \
+                 these pours at no more than {FALSE_PER_HOUR_MAX} false alarms an hour and {FALSE_2800_MAX} false \
+                 steps in 2800: {:.3}, {:.0} missed and {:.0} false in \
+                 2800, {:.0} % of {} slips caught within 50 ms, {:.0} false alarms an hour.\n",
+                edges.on_permille,
+                edges.off_permille,
+                pour.balanced,
+                pour.missed_2800,
+                pour.false_2800,
+                100.0 * pour.caught_50ms.unwrap_or_default(),
+                pour.slips,
+                pour.false_per_hour
             );
         }
         if let (Some(float), Some(quantised)) = (&self.float, &self.quantised) {

@@ -66,6 +66,32 @@ impl Mask {
         self.rows[y][x / 64] >> (x % 64) & 1 != 0
     }
 
+    /// The pixels whose place is inside a polygon of these corners, px.
+    #[must_use]
+    pub fn of_outline(corners: &[(f32, f32)]) -> Self {
+        let mut mask = Self::EMPTY;
+        for (x, y) in (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (x, y))) {
+            let (px, py) = (x as f32, y as f32);
+            let sides = corners.iter().zip(corners.iter().cycle().skip(1));
+            let crossings = sides.filter(|((ax, ay), (bx, by))| {
+                (*ay > py) != (*by > py) && px < (bx - ax) * (py - ay) / (by - ay) + ax
+            });
+            if crossings.count() % 2 == 1 {
+                mask.insert(x, y);
+            }
+        }
+        mask
+    }
+
+    /// How well two sets agree: pixels in both, for each that is in one of them, 0 to 1.
+    #[must_use]
+    pub fn overlap(&self, other: &Self) -> f32 {
+        let words = || self.rows.iter().flatten().zip(other.rows.iter().flatten());
+        let both: u32 = words().map(|(own, other)| (own & other).count_ones()).sum();
+        let either: u32 = words().map(|(own, other)| (own | other).count_ones()).sum();
+        both as f32 / either.max(1) as f32
+    }
+
     /// How many pixels are in it.
     #[must_use]
     pub fn count(&self) -> u32 {

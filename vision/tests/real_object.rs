@@ -6,7 +6,6 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use common::{for_each_frame, plane, recording};
-use tenax_vision::frame::{HEIGHT, WIDTH};
 use tenax_vision::mask::Mask;
 use tenax_vision::object::{Config, Mixture, Movement, Running, Tracker};
 
@@ -20,31 +19,6 @@ fn outlines() -> BTreeMap<usize, Vec<(f32, f32)>> {
         rows.map(|line| line.split(',').map(|field| field.parse().expect("a number")).collect::<Vec<f32>>());
     rows.map(|row| (row[0] as usize, row[1..].chunks(2).map(|corner| (corner[0], corner[1])).collect()))
         .collect()
-}
-
-/// The pixels whose middle is inside a polygon.
-fn inside(corners: &[(f32, f32)]) -> Mask {
-    let mut mask = Mask::EMPTY;
-    for y in 0..HEIGHT {
-        for x in 0..WIDTH {
-            let (px, py) = (x as f32, y as f32);
-            let sides = corners.iter().zip(corners.iter().cycle().skip(1));
-            let crossings = sides.filter(|((ax, ay), (bx, by))| {
-                (*ay > py) != (*by > py) && px < (bx - ax) * (py - ay) / (by - ay) + ax
-            });
-            if crossings.count() % 2 == 1 {
-                mask.insert(x, y);
-            }
-        }
-    }
-    mask
-}
-
-fn intersection_over_union(a: &Mask, b: &Mask) -> f32 {
-    let (mut both, mut either) = (a.clone(), a.clone());
-    both.intersect(b);
-    either.unite(b);
-    both.count() as f32 / either.count().max(1) as f32
 }
 
 /// Follows the object through the video. None if there is no video.
@@ -68,7 +42,7 @@ fn follow(name: &str, movement: impl Movement) -> Option<(f32, f32, f32)> {
             slips += usize::from(sighting.is_some_and(|sighting| sighting.slip_px > 100));
         }
         if let Some(outline) = outlines.get(&number) {
-            overlaps.push((number, intersection_over_union(tracker.object(), &inside(outline))));
+            overlaps.push((number, tracker.object().overlap(&Mask::of_outline(outline))));
         }
     });
     if !seen {

@@ -5,7 +5,7 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use tenax_hal_shim::channel::SAMPLE_MAX;
 use tenax_logic::array::covariance::SlidingCovariance;
-use tenax_logic::array::structure::WINDOWS;
+use tenax_logic::array::structure::{FULL_AFTER, WINDOWS};
 use tenax_logic::array::{
     COVARIANCES, ELEMENTS, FEATURES, Features, PAPER_FEATURES, Preprocessor, PreprocessorConfig, Reading,
     SPECTRUM_WINDOW,
@@ -167,7 +167,7 @@ proptest! {
     #[test]
     fn what_was_long_ago_leaves_no_trace(
         past in readings(100..300),
-        frames in prop::collection::vec(alive(), SPECTRUM_WINDOW + 1..60),
+        frames in prop::collection::vec(alive(), FULL_AFTER + 1..90),
     ) {
         let mut old: Preprocessor = Preprocessor::default();
         // Whole turns, so that both count phases from the same frame: the rounding of a bin's parts knows about it.

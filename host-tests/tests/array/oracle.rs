@@ -43,6 +43,10 @@ pub fn structures(readings: &[[u16; ELEMENTS]]) -> [[i64; WINDOWS]; LAGS.len()] 
     let windows = [0..1, 1..2, 2..4, 4..8, 8..16, 16..32];
     let of = |lag: usize, ago: usize| -> i64 {
         let now = readings.len() - 1 - ago;
+        // There is nothing yet to differ from.
+        if now < lag {
+            return 0;
+        }
         let change = |n: usize| {
             (f64::from(readings[now][n]) - f64::from(readings[now - lag][n])).clamp(-1_024.0, 1_024.0)
         };

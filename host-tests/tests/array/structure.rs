@@ -5,7 +5,7 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use tenax_hal_shim::channel::SAMPLE_MAX;
 use tenax_logic::array::past::Past;
-use tenax_logic::array::structure::{CHANGE_MAX, LAGS, READY_AFTER, Structure, WINDOWS};
+use tenax_logic::array::structure::{CHANGE_MAX, FULL_AFTER, LAGS, READY_AFTER, Structure, WINDOWS};
 use tenax_logic::array::{ELEMENTS, Reading};
 
 use crate::oracle::structures;
@@ -55,7 +55,7 @@ proptest! {
     #[test]
     fn an_element_that_is_gone_leaves_nothing_of_it(
         frames in readings(60..100),
-        after in prop::collection::vec(alive(), READY_AFTER + 1..60),
+        after in prop::collection::vec(alive(), FULL_AFTER + 1..90),
         dead in 0..ELEMENTS,
     ) {
         let without = |frame: &[u16; ELEMENTS]| -> Reading {
@@ -148,8 +148,8 @@ fn where_they_stop_rising_tells_the_speed_and_gain_does_not_matter() {
     };
     for gain in [40.0, 120.0] {
         for kept in [0.3, 0.6, 0.9] {
-            // Of an exponential memory: (1 - k^8) / (1 - k).
-            let exact = (1.0 - f64::powi(kept, 8)) / (1.0 - kept);
+            // Of an exponential memory: (1 - k^lag) / (1 - k).
+            let exact = (1.0 - f64::powi(kept, LAGS[LAGS.len() - 1] as i32)) / (1.0 - kept);
             let found = ratio(kept, gain);
             assert!((found / exact - 1.0).abs() < 0.1, "memory {kept}, gain {gain}: {found} for {exact}");
         }

@@ -16,7 +16,7 @@ mod world;
 
 use std::num::NonZeroU64;
 use std::path::Path;
-use std::sync::mpsc;
+use std::sync::{Arc, Mutex, PoisonError, mpsc};
 use std::time::Instant;
 
 use anyhow::{Context, Result, anyhow};
@@ -154,10 +154,25 @@ pub fn record<P: Plant + 'static>(
     recorder: &mut dyn Recorder,
     progress: &mut dyn FnMut(f64),
 ) -> Result<(Summary, P)> {
+    let provision = Provision::of(&plant)?;
+    let frames = frames_in(plant.duration_s());
+    let plant = Arc::new(Mutex::new(plant));
+    let summary = closed_loop(image, plant.clone(), (provision, frames), options, recorder, progress)?;
+    let plant = Arc::into_inner(plant).context("the emulator still has the plant")?;
+    Ok((summary, plant.into_inner().unwrap_or_else(PoisonError::into_inner)))
+}
+
+/// The same for every plant, or the emulator would be compiled once for each.
+fn closed_loop(
+    image: &Path,
+    plant: Arc<Mutex<dyn Plant>>,
+    (mut provision, frames): (Provision, u32),
+    options: &Options,
+    recorder: &mut dyn Recorder,
+    progress: &mut dyn FnMut(f64),
+) -> Result<Summary> {
     let began = Instant::now();
     let symbols = Symbols::read(image)?;
-    let frames = frames_in(plant.duration_s());
-    let mut provision = Provision::of(&plant)?;
     // What somebody else wants in the flash is not mixed with a calibration.
     if options.flash.is_some() {
         provision.calibrated = None;
@@ -199,7 +214,7 @@ pub fn record<P: Plant + 'static>(
     // What the last scans led to had time to come up the line; what came after them was no part of the run.
     let mut taken = world.commands.taken(&heard.answers);
     taken.retain(|(before, _)| *before < frames);
-    let summary = Summary {
+    Ok(Summary {
         virtual_s: scanned as f64 / f64::from(SCAN_HZ),
         wall_s: began.elapsed().as_secs_f64(),
         trusts_line: provision.trusts_line,
@@ -209,17 +224,16 @@ pub fn record<P: Plant + 'static>(
         flash: world.flash.done,
         calibrated: provision.calibrated,
         ..heard
-    };
-    Ok((summary, world.plant))
+    })
 }
 
-fn execute<P: Plant + 'static>(
+fn execute(
     images: &[Image],
     models: Models,
     rate: NonZeroU64,
     watched: [u64; 3],
-    world: World<P>,
-) -> Result<Finished<Nucleo, World<P>>> {
+    world: World,
+) -> Result<Finished<Nucleo, World>> {
     let board = Nucleo::new(models, rate, Line::default())?;
     let mut session = Session::new(Box::new(board), 0, VirtualNanos(1))?;
     for address in watched {

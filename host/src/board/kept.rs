@@ -48,7 +48,7 @@ impl Provision {
     ///
     /// # Errors
     /// If there can be no such wearer.
-    pub fn of(plant: &impl Plant) -> anyhow::Result<Self> {
+    pub fn of(plant: &dyn Plant) -> anyhow::Result<Self> {
         Ok(Self {
             trusts_line: plant.trusts_line(),
             streams_at_start: plant.streams_at_start(),

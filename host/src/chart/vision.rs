@@ -6,7 +6,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use tenax_vision::frame::{Frame, HEIGHT, Plane, WIDTH, plane};
+use tenax_vision::frame::{Frame, Plane, plane};
 use tenax_vision::mask::Mask;
 use tenax_vision::object::{Config, Mixture, Movement, Running, Tracker};
 
@@ -42,10 +42,7 @@ impl Choice {
         self.times_s.push(start.elapsed().as_secs_f64());
         self.empty_false += u32::from(is_empty && seen.is_some());
         if let Some(outline) = outline {
-            let (mut both, mut either) = (outline.clone(), outline.clone());
-            both.intersect(self.tracker.object());
-            either.unite(self.tracker.object());
-            self.overlaps.push(f64::from(both.count()) / f64::from(either.count().max(1)));
+            self.overlaps.push(self.tracker.object().overlap(outline).into());
         }
     }
 
@@ -162,22 +159,7 @@ fn outlines() -> Result<BTreeMap<usize, Mask>> {
     let parsed = OUTLINES.lines().filter(|line| !line.starts_with('#')).map(|line| {
         let fields = line.split(',').map(str::parse::<f32>).collect::<std::result::Result<Vec<_>, _>>()?;
         let corners: Vec<_> = fields[1..].chunks_exact(2).map(|corner| (corner[0], corner[1])).collect();
-        Ok((fields[0] as usize, inside(&corners)))
+        Ok((fields[0] as usize, Mask::of_outline(&corners)))
     });
     parsed.collect()
-}
-
-fn inside(corners: &[(f32, f32)]) -> Mask {
-    let mut mask = Mask::EMPTY;
-    for (x, y) in (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (x, y))) {
-        let (px, py) = (x as f32, y as f32);
-        let sides = corners.iter().zip(corners.iter().cycle().skip(1));
-        let crossings = sides.filter(|((ax, ay), (bx, by))| {
-            (*ay > py) != (*by > py) && px < (bx - ax) * (py - ay) / (by - ay) + ax
-        });
-        if crossings.count() % 2 == 1 {
-            mask.insert(x, y);
-        }
-    }
-    mask
 }

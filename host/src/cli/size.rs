@@ -79,7 +79,7 @@ pub fn lines(root: &Path, report: &Report) -> anyhow::Result<Vec<Line>> {
         ),
         of_array("array covariance", "covariance", budgets.array_covariance_instructions),
         of_array("array spectrum", "spectrum", budgets.array_spectrum_instructions),
-        of_array("100-32-16-1", "mlp_structure_8_1", budgets.array_network_instructions),
+        of_array("112-32-16-1", "mlp_structure_8_1", budgets.array_network_instructions),
         of_array("array, all of it", "slow_frame", budgets.array_slow_frame_instructions),
     ])
 }

@@ -15,11 +15,14 @@ pub struct Args {
     extra: Vec<String>,
 }
 
+/// What is tested in a debug build.
+const DEBUG: [&str; 6] = ["logic", "hal-shim", "scene", "vision", "launch", "host-tests"];
+
 /// Tests of all that is not the tool, with the checks of a debug build: in the logic's arithmetic an overflow is an error.
 pub fn logic() -> Command {
     let mut command = Command::new("cargo");
     command.arg("test");
-    for package in ["logic", "hal-shim", "scene", "launch", "host-tests"] {
+    for package in DEBUG {
         command.args(["--package", &format!("tenax-{package}")]);
     }
     command
@@ -49,4 +52,21 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         passed &= workspace::run(command.args(&args.extra))?;
     }
     Ok(if passed { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_member_of_the_workspace_is_tested() {
+        let manifest = std::fs::read_to_string(workspace::root().unwrap().join("Cargo.toml")).unwrap();
+        let manifest: toml::Table = manifest.parse().unwrap();
+        let members = manifest["workspace"]["members"].as_array().unwrap();
+        // The image is tested on the emulated board, by the tool's tests.
+        let elsewhere = ["host", "train", "firmware"];
+        for member in members.iter().filter_map(|member| member.as_str()) {
+            assert!(DEBUG.contains(&member) || elsewhere.contains(&member), "{member}");
+        }
+    }
 }

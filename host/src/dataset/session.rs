@@ -41,7 +41,7 @@ pub struct Sizes {
 }
 
 impl Sizes {
-    /// The default: what the network that ships learned from.
+    /// The default. The network that ships learned from four times as many.
     pub const DEFAULT_TRAIN: usize = 24;
 
     /// In proportion to those to learn from.

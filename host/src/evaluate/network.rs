@@ -5,12 +5,15 @@ use std::path::Path;
 use anyhow::{Context, anyhow, bail, ensure};
 use serde::{Deserialize, Serialize};
 use tenax_hal_shim::channel::{REFERENCE_MV, SAMPLE_MAX};
+use tenax_logic::array::detector::logistic_permille;
 use tenax_logic::array::{
     ArrayDetector, FEATURES, Judgement, Layer, Mlp, Model, PreprocessorConfig, Reading, shipped,
 };
 
+use super::edges::{Confidences, Edges};
 use super::real::Logits;
 use crate::dataset::material::SEEN;
+use crate::labelled::Step;
 
 /// The file in a folder of `tenax train`.
 pub const FILE: &str = "network.json";
@@ -40,8 +43,9 @@ pub struct Saved {
     pub last: (Vec<i16>, i32),
     /// How much a logit has to grow for the odds of slip to grow e-fold.
     pub logit_per_nat: i32,
-    /// Confidence from which it is slip, per mille.
-    pub on_permille: u16,
+    /// Confidence at which slip begins, and below which it is over.
+    #[serde(flatten)]
+    pub edges: Edges,
     /// The least and the greatest [noise](super::adapt::noise_samples) of the recordings that it learned from, samples.
     pub noise_samples: [f64; 2],
 }
@@ -62,6 +66,9 @@ pub struct Network {
 }
 
 impl Network {
+    /// Differences in a covariance that can be judged.
+    pub const WINDOWS: [usize; 2] = [10, 40];
+
     /// The one that ships.
     #[must_use]
     pub fn shipped() -> Self {
@@ -100,6 +107,17 @@ impl Network {
             other => bail!("it has a covariance of {other} differences; 10 and 40 can be judged"),
         };
         Ok(Self { windows, noise_samples: saved.noise_samples })
+    }
+
+    /// How confident it is in each step of one recording.
+    #[must_use]
+    pub fn confidences(&self, steps: &[Step]) -> Confidences {
+        let per_nat = match &self.windows {
+            Windows::Ten(model) => model.judgement.logit_per_nat,
+            Windows::Forty(model) => model.judgement.logit_per_nat,
+        };
+        let (logits, _) = self.judge(&super::readings(steps));
+        logits.into_iter().map(|logit| logit.map(|logit| logistic_permille(logit, per_nat))).collect()
     }
 
     /// The logit of each reading of one recording, and whether it says slip.
@@ -144,8 +162,8 @@ impl Saved {
             .map_err(too_large)?,
             judgement: Judgement {
                 logit_per_nat: self.logit_per_nat,
-                on_permille: self.on_permille,
-                off_permille: self.on_permille,
+                on_permille: self.edges.on_permille,
+                off_permille: self.edges.off_permille,
                 on_frames: 1,
                 off_frames: 1,
             },

@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use tenax_hal_shim::channel::SLOW_HZ;
+use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::Down;
 
 use super::{Say, ask, forces, wait_for};
@@ -20,6 +21,10 @@ const BETWEEN: (f64, f64) = (0.5, 2.0);
 const OFF_PART: f64 = 0.1;
 /// How long a person may take.
 const PATIENCE: Duration = Duration::from_secs(120);
+/// A gain that is further from 1 is worth changing something.
+const GAIN_OFF: f64 = 0.05;
+/// The settings that are compared with what the sensor reads as a force.
+const COMPARED: [SettingId; 2] = [SettingId::ForceCeiling, SettingId::Loaded];
 /// Standard gravity, m/s^2.
 const GRAVITY: f64 = 9.806_65;
 
@@ -67,14 +72,30 @@ impl Calibration {
         let gain = self.gain();
         let worst = self.residuals().map(|(_, _, off)| off.abs()).fold(0.0, f64::max);
         text += &format!("the board reads {gain:.3} N for 1 N; off that line by {worst:.1} % at most\n");
-        text += if worst > 10.0 {
-            "the line is not straight: another sensor, another resistor beside it, or a weight off its middle\n"
-        } else if (gain - 1.0).abs() > 0.05 {
-            "change the amplifier by the inverse of that; until then the settings in mN are that much off\n"
+        text += &if worst > 10.0 {
+            "the line is not straight: another sensor, another resistor beside it, or a weight off its middle\n".into()
+        } else if (gain - 1.0).abs() > GAIN_OFF {
+            format!(
+                "change the amplifier by the inverse of that. Until then every force that the board shows is that much off, and\n\
+                 \u{20} tenax config set{}\n\
+                 has the hand do at these forces what the defaults say\n",
+                self.settings()
+            )
         } else {
-            "within 5 %: nothing to do. The zero is kept on the board\n"
+            String::from("within 5 %: nothing to do. The zero is kept on the board\n")
         };
         text
+    }
+
+    /// The settings that the reflex compares a load with, as if the sensor read right. Not a gain on the board: a wrong one would move
+    /// the ceiling far more than a setting of it may.
+    fn settings(&self) -> String {
+        let scaled = COMPARED.map(|id| {
+            let row = id.row();
+            let value = (f64::from(row.default) * self.gain()).round() as i32;
+            format!(" {}={}", row.name, value.clamp(row.min, row.max))
+        });
+        scaled.concat()
     }
 }
 
@@ -136,6 +157,10 @@ mod tests {
         assert!((straight.gain() - 1.2).abs() < 1e-9);
         assert!(straight.residuals().all(|(_, error, off)| (error - 20.0).abs() < 1e-6 && off.abs() < 1e-6));
         assert!(straight.text().contains("change the amplifier"), "{}", straight.text());
+        let told = straight.text();
+        assert!(told.contains("\n  tenax config set force-ceiling-mn=48000 loaded-mn=720\n"), "{told}");
+        // At most what a setting may be: an earlier ceiling is the safe side.
+        assert!(of(|n| 1.8 * n).text().contains("force-ceiling-mn=60000 "));
         assert!(of(|n| n * n.sqrt()).text().contains("not straight"));
         assert!(of(|n| 1.01 * n).text().contains("nothing to do"));
     }

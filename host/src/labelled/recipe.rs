@@ -9,7 +9,7 @@ use serde::Deserialize;
 use tenax_hal_shim::channel::ARRAY_COUNT;
 use toml::Spanned;
 
-use crate::replay::recipe::RecipeError;
+use crate::recipe::{self, RecipeError};
 
 /// A recipe, checked.
 #[derive(Clone, Debug, Deserialize)]
@@ -109,10 +109,7 @@ impl ArrayRecipe {
     /// # Errors
     /// If it cannot be read or is wrong; says in which line and what is allowed.
     pub fn read(path: &Path) -> anyhow::Result<Self> {
-        let file = path.display().to_string();
-        let text =
-            crate::input::text(path).map_err(|error| anyhow::anyhow!("{file}: cannot be read: {error}"))?;
-        Ok(Self::parse(&text, &file)?)
+        recipe::read(path, Self::parse)
     }
 
     /// Reads and checks a recipe; `file` is what errors call it.
@@ -120,32 +117,17 @@ impl ArrayRecipe {
     /// # Errors
     /// Says in which line and what is allowed.
     pub fn parse(text: &str, file: &str) -> Result<Self, RecipeError> {
-        let at = |span: Range<usize>, what: String| RecipeError {
-            file: file.to_owned(),
-            line: text.bytes().take(span.start).filter(|&byte| byte == b'\n').count() + 1,
-            what,
-        };
-        let recipe: Self = toml::from_str(text)
-            .map_err(|error| at(error.span().unwrap_or(0..0), error.message().trim().replace('\n', "; ")))?;
-        recipe.check().map_err(|(span, what)| at(span, what))?;
-        Ok(recipe)
+        recipe::parse(text, file, Self::check)
     }
 
     /// Whether it is for files of this name.
     #[must_use]
     pub fn is_for(&self, file_name: &str) -> bool {
-        let matches = |pattern: &Spanned<String>| {
-            glob::Pattern::new(pattern.get_ref()).is_ok_and(|pattern| pattern.matches(file_name))
-        };
-        self.applies_to.iter().any(matches)
+        recipe::matches(&self.applies_to, file_name)
     }
 
     fn check(&self) -> Result<(), (Range<usize>, String)> {
-        for pattern in &self.applies_to {
-            glob::Pattern::new(pattern.get_ref()).map_err(|error| {
-                (pattern.span(), format!("`{}` is no pattern: {error}", pattern.get_ref()))
-            })?;
-        }
+        recipe::check_patterns(&self.applies_to)?;
         self.array.check()?;
         self.labels.check()?;
         for (name, frames) in [("lag", &self.features.lag), ("window", &self.features.window)] {

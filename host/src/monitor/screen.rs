@@ -67,7 +67,8 @@ pub fn draw(frame: &mut Frame<'_>, view: &View, shown: &Shown) {
 }
 
 fn draw_left(frame: &mut Frame<'_>, area: Rect, view: &View, tall: bool) {
-    let readings = if tall { Constraint::Length(14) } else { Constraint::Length(0) };
+    let readings =
+        if tall { Constraint::Length(panels::senses_height(area.width)) } else { Constraint::Length(0) };
     let third = Constraint::Ratio(1, 3);
     let [charts, senses] = Layout::vertical([Constraint::Min(0), readings]).areas(area);
     let [vibration, ratio, load] = Layout::vertical([third; 3]).areas(charts);

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use anyhow::{Context, bail};
 
-use super::recipe::RecipeError;
 use super::{Recipe, Recording};
+use crate::recipe::RecipeError;
 
 /// Name and text of every recipe in `recipes/`. A test holds this list against the folder.
 pub const BUILTIN: [(&str, &str); 4] = [

@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
+use crate::recipe;
+
 /// What the hand does, or must not do.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -43,6 +45,6 @@ impl Meaning {
     /// Whether it is for recordings of this name.
     #[must_use]
     pub fn is_for(&self, file_name: &str) -> bool {
-        glob::Pattern::new(self.named.get_ref()).is_ok_and(|pattern| pattern.matches(file_name))
+        recipe::matches([&self.named], file_name)
     }
 }

@@ -7,22 +7,10 @@ use std::path::Path;
 
 use serde::Deserialize;
 use tenax_hal_shim::channel;
-use thiserror::Error;
 use toml::Spanned;
 
 use super::meaning::Meaning;
-
-/// What is wrong with a recipe, and where.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("{file}:{line}: {what}")]
-pub struct RecipeError {
-    /// The recipe.
-    pub file: String,
-    /// Line in it, from 1.
-    pub line: usize,
-    /// What, and what is allowed.
-    pub what: String,
-}
+use crate::recipe::{self, RecipeError};
 
 /// A recipe, checked.
 #[derive(Clone, Debug, Deserialize)]
@@ -174,32 +162,18 @@ fn default_clip_v() -> Spanned<[f64; 2]> {
 impl Recipe {
     /// Reads a recipe file.
     pub fn read(path: &Path) -> anyhow::Result<Self> {
-        let file = path.display().to_string();
-        let text =
-            crate::input::text(path).map_err(|error| anyhow::anyhow!("{file}: cannot be read: {error}"))?;
-        Ok(Self::parse(&text, &file)?)
+        recipe::read(path, Self::parse)
     }
 
     /// Reads and checks a recipe; `file` is what errors call it.
     pub fn parse(text: &str, file: &str) -> Result<Self, RecipeError> {
-        let at = |span: Range<usize>, what: String| RecipeError {
-            file: file.to_owned(),
-            line: text.bytes().take(span.start).filter(|&byte| byte == b'\n').count() + 1,
-            what,
-        };
-        let recipe: Self = toml::from_str(text)
-            .map_err(|error| at(error.span().unwrap_or(0..0), error.message().trim().replace('\n', "; ")))?;
-        recipe.check().map_err(|(span, what)| at(span, what))?;
-        Ok(recipe)
+        recipe::parse(text, file, Self::check)
     }
 
     /// Whether it is for recordings of this name.
     #[must_use]
     pub fn is_for(&self, file_name: &str) -> bool {
-        let matches = |pattern: &Spanned<String>| {
-            glob::Pattern::new(pattern.get_ref()).is_ok_and(|pattern| pattern.matches(file_name))
-        };
-        self.applies_to.iter().any(matches)
+        recipe::matches(&self.applies_to, file_name)
     }
 
     /// What a recording of this name means for the hand.
@@ -226,11 +200,7 @@ impl Recipe {
 
     fn check(&self) -> Result<(), (Range<usize>, String)> {
         let named = self.meaning.iter().map(|meaning| &meaning.named);
-        for pattern in self.applies_to.iter().chain(named) {
-            glob::Pattern::new(pattern.get_ref()).map_err(|error| {
-                (pattern.span(), format!("`{}` is no pattern: {error}", pattern.get_ref()))
-            })?;
-        }
+        recipe::check_patterns(self.applies_to.iter().chain(named))?;
         within(&self.lead_in_s, "lead_in_s", 0.0, 60.0)?;
         within(&self.lead_out_s, "lead_out_s", 0.0, 60.0)?;
         if self.map.is_empty() && self.force.is_none() {

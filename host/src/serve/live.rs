@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 
 use tenax_hal_shim::channel::SCAN_HZ;
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{BAUD, Down};
-use tenax_scene::plant::{Calibrated, Pins, Plant};
+use tenax_hal_shim::wire::BAUD;
+use tenax_scene::plant::{Pins, Plant};
 
 use super::Teller;
 
@@ -112,15 +112,19 @@ pub struct Served<P> {
 }
 
 impl<P: Plant> Plant for Served<P> {
+    fn within(&self) -> Option<&dyn Plant> {
+        Some(&self.plant)
+    }
+
+    fn within_mut(&mut self) -> Option<&mut dyn Plant> {
+        Some(&mut self.plant)
+    }
+
     fn scan(&mut self, drive: MotorDrive) -> &Pins {
         if let Some(live) = &mut self.live {
             live.pace.wait();
         }
         self.plant.scan(drive)
-    }
-
-    fn commands(&mut self) -> Vec<Down> {
-        self.plant.commands()
     }
 
     fn line_bytes(&mut self) -> Vec<u8> {
@@ -133,22 +137,6 @@ impl<P: Plant> Plant for Served<P> {
 
     fn streams_at_start(&self) -> bool {
         self.streams_at_start || self.plant.streams_at_start()
-    }
-
-    fn trusts_line(&self) -> bool {
-        self.plant.trusts_line()
-    }
-
-    fn button(&self) -> bool {
-        self.plant.button()
-    }
-
-    fn slipping(&self) -> bool {
-        self.plant.slipping()
-    }
-
-    fn calibrated(&self) -> Option<Calibrated> {
-        self.plant.calibrated()
     }
 
     fn duration_s(&self) -> f64 {

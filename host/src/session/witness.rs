@@ -2,10 +2,10 @@
 
 use tenax_hal_shim::frame::Scan;
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{Down, Slow};
+use tenax_hal_shim::wire::Slow;
 use tenax_logic::emg::model::EmgModel;
 use tenax_scene::World;
-use tenax_scene::plant::{Calibrated, Pins, Plant};
+use tenax_scene::plant::{Pins, Plant};
 
 use crate::board::Recorder;
 use crate::plot::sketch::{Needs, Sketch};
@@ -81,37 +81,17 @@ impl Drawn {
 }
 
 impl Plant for Drawn {
+    fn within(&self) -> Option<&dyn Plant> {
+        Some(&self.world)
+    }
+
+    fn within_mut(&mut self) -> Option<&mut dyn Plant> {
+        Some(&mut self.world)
+    }
+
     fn scan(&mut self, drive: MotorDrive) -> &Pins {
         self.draw();
         self.world.scan(drive)
-    }
-
-    fn commands(&mut self) -> Vec<Down> {
-        self.world.commands()
-    }
-
-    fn trusts_line(&self) -> bool {
-        self.world.trusts_line()
-    }
-
-    fn button(&self) -> bool {
-        self.world.button()
-    }
-
-    fn planned(&self) -> Option<MotorDrive> {
-        self.world.planned()
-    }
-
-    fn closing_to(&self, target_n: f64) -> Option<MotorDrive> {
-        self.world.closing_to(target_n)
-    }
-
-    fn slipping(&self) -> bool {
-        self.world.slipping()
-    }
-
-    fn calibrated(&self) -> Option<Calibrated> {
-        self.world.calibrated()
     }
 
     fn duration_s(&self) -> f64 {

@@ -3,6 +3,7 @@
 use tenax::board::agreement::host_says;
 use tenax::board::emulated::{Mishap, Options};
 use tenax::board::kept::device;
+use tenax_hal_shim::channel::SCAN_HZ;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{Answer, Down, EventKind};
 use tenax_hal_shim::words::Fault;
@@ -73,6 +74,22 @@ fn a_panic_stops_a_driven_motor_at_once_and_the_next_start_says_so() {
     assert!(drives(&run, 0.55, 0.6).iter().all(|now| *now == drive), "it was driven before");
     // DMA stumbles over the next code.
     assert!(drives(&run, 0.601, 1.0).iter().all(|now| *now == MotorDrive::Coast));
+}
+
+/// Whichever of a frame's four scans DMA loses its ring in: each start lasts a scan longer than the one before.
+#[test]
+fn dma_that_cannot_reach_its_ring_is_a_panic_in_every_scan_of_a_frame() {
+    let scan_s = 1.0 / f64::from(SCAN_HZ);
+    let mut at_s = 0.0;
+    let mishaps = (0..5).map(|n| {
+        at_s += 0.2 + f64::from(n) * scan_s;
+        (at_s, Mishap::DmaFails)
+    });
+    let options = Options { mishaps: mishaps.collect(), ..Options::default() };
+    let run = run(Rest::new(Swing::new(1.3)), &options);
+    let mut starts = vec![None];
+    starts.extend([Some(Fault::PanicReset); 5]);
+    assert_eq!(run.starts, starts);
 }
 
 #[test]

@@ -150,20 +150,20 @@ fn the_hosts_board_says_on_its_line_what_the_image_says() {
 struct Typed(Swing, Vec<u8>);
 
 impl Plant for Typed {
+    fn within(&self) -> Option<&dyn Plant> {
+        Some(&self.0)
+    }
+
+    fn within_mut(&mut self) -> Option<&mut dyn Plant> {
+        Some(&mut self.0)
+    }
+
     fn scan(&mut self, drive: MotorDrive) -> &Pins {
         self.0.scan(drive)
     }
 
-    fn commands(&mut self) -> Vec<Down> {
-        self.0.commands()
-    }
-
     fn line_bytes(&mut self) -> Vec<u8> {
         if self.0.t_s() < 0.2 { Vec::new() } else { std::mem::take(&mut self.1) }
-    }
-
-    fn trusts_line(&self) -> bool {
-        self.0.trusts_line()
     }
 
     fn duration_s(&self) -> f64 {

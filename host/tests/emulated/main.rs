@@ -115,21 +115,17 @@ impl Rest {
 }
 
 impl Plant for Rest {
+    fn within(&self) -> Option<&dyn Plant> {
+        Some(&self.0)
+    }
+
+    fn within_mut(&mut self) -> Option<&mut dyn Plant> {
+        Some(&mut self.0)
+    }
+
     fn scan(&mut self, drive: MotorDrive) -> &Pins {
         self.0.scan(drive);
         &self.1
-    }
-
-    fn commands(&mut self) -> Vec<Down> {
-        self.0.commands()
-    }
-
-    fn trusts_line(&self) -> bool {
-        self.0.trusts_line()
-    }
-
-    fn button(&self) -> bool {
-        self.0.button()
     }
 
     fn duration_s(&self) -> f64 {
@@ -141,21 +137,17 @@ impl Plant for Rest {
 struct Loaded(Rest);
 
 impl Plant for Loaded {
+    fn within(&self) -> Option<&dyn Plant> {
+        Some(&self.0)
+    }
+
+    fn within_mut(&mut self) -> Option<&mut dyn Plant> {
+        Some(&mut self.0)
+    }
+
     fn scan(&mut self, drive: MotorDrive) -> &Pins {
         self.0.1.0[FSR..FSR + FSR_COUNT].fill(1.2);
         self.0.scan(drive)
-    }
-
-    fn commands(&mut self) -> Vec<Down> {
-        self.0.commands()
-    }
-
-    fn trusts_line(&self) -> bool {
-        self.0.trusts_line()
-    }
-
-    fn button(&self) -> bool {
-        self.0.button()
     }
 
     fn duration_s(&self) -> f64 {

@@ -11,7 +11,7 @@ use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{BAUD, Down, FRAMES_PER_RAW, Up};
 use tenax_scene::World;
-use tenax_scene::plant::{Calibrated, Pins, Plant};
+use tenax_scene::plant::{Pins, Plant};
 
 use crate::{Swing, run};
 
@@ -36,6 +36,14 @@ impl<P: Plant> Asked<P> {
 }
 
 impl<P: Plant> Plant for Asked<P> {
+    fn within(&self) -> Option<&dyn Plant> {
+        Some(&self.plant)
+    }
+
+    fn within_mut(&mut self) -> Option<&mut dyn Plant> {
+        Some(&mut self.plant)
+    }
+
     fn scan(&mut self, drive: MotorDrive) -> &Pins {
         self.scans += 1;
         self.plant.scan(drive)
@@ -58,14 +66,6 @@ impl<P: Plant> Plant for Asked<P> {
 
     fn streams_at_start(&self) -> bool {
         self.streams
-    }
-
-    fn trusts_line(&self) -> bool {
-        self.plant.trusts_line()
-    }
-
-    fn calibrated(&self) -> Option<Calibrated> {
-        self.plant.calibrated()
     }
 
     fn duration_s(&self) -> f64 {

@@ -9,9 +9,9 @@ use super::network::{LookBack, Mlp};
 use super::preprocess::{Features, Preprocessor, PreprocessorConfig};
 use super::{COVARIANCE_WINDOW, FEATURES, Reading, SPECTRUM_WINDOW};
 
-/// Shares of a slow frame's work, one a tick: covariance with its features, and spectrum; structure functions, and the
-/// other features; either half of the first layer; the rest of the network and the verdict. A tick that did all would
-/// last into the next frame.
+/// Shares of a slow frame's work, one a tick: covariance with its features, and spectrum; the spectrum's features, and structure
+/// functions of short lags; the others, and a quarter of the first layer; half of it; the rest of the network and the verdict.
+/// About as much each: a tick that did all would last into the next frame.
 pub const SHARES: usize = ARRAY_SHARES as usize;
 const VERDICT_SHARE: usize = SHARES - 1;
 const _: () = assert!(VERDICT_SHARE == 4);
@@ -89,7 +89,7 @@ pub struct ArrayDetector<
     unjudged: u16,
     /// Whether there are features that were not judged yet.
     felt: bool,
-    /// What the first layer makes of them: half of it in one share, half in the next.
+    /// What the first layer makes of them, some of it in each of the last three shares.
     seen: [i16; H1],
     logit: Option<i32>,
     verdict: ArrayVerdict,
@@ -128,10 +128,16 @@ impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const
     pub fn work(&mut self, share: usize, reading: &Reading) -> Option<ArrayVerdict> {
         match share {
             0 => self.preprocessor.take(reading),
-            1 => self.felt = self.preprocessor.finish().is_some(),
-            2 => self.see(0..H1 / 2),
-            3 => self.see(H1 / 2..H1),
-            VERDICT_SHARE => return Some(self.decide()),
+            1 => self.preprocessor.hear(),
+            2 => {
+                self.felt = self.preprocessor.finish().is_some();
+                self.see(0..H1 / 4);
+            }
+            3 => self.see(H1 / 4..H1 * 3 / 4),
+            VERDICT_SHARE => {
+                self.see(H1 * 3 / 4..H1);
+                return Some(self.decide());
+            }
             _ => {}
         }
         None

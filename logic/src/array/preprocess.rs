@@ -5,10 +5,10 @@ use super::logarithm::Knee;
 use super::past::{LAG_MAX, Past};
 use super::spectrum::SlidingSpectrum;
 use super::structure::{self, Structure, WINDOWS};
-use super::{BINS, COVARIANCE_WINDOW, COVARIANCES, FEATURES, Reading, SPECTRUM_WINDOW};
+use super::{COVARIANCE_WINDOW, COVARIANCES, FEATURES, PAPER_FEATURES, Reading, SPECTRUM_WINDOW};
 
 /// What the network sees of one slow frame: 55 covariances, row by row of the upper triangle, then 21 spectral bins, then
-/// 24 sums of structure functions, lag by lag, the newest window first, one of them as its quiet level.
+/// 36 sums of structure functions, lag by lag, the newest window first, one of them as its quiet level.
 ///
 /// Each is a logarithm, Q9 ([`logarithm`](super::logarithm)): `sign(c) log2(1 + |c| / knee)` of a covariance,
 /// `log2(1 + p / knee)` of a bin's power, `log2(1 + s / (knee frames))` of a sum over so many frames. 512 is one doubling.
@@ -102,10 +102,11 @@ impl<const N: usize, const M: usize> Preprocessor<N, M> {
     /// Takes one slow frame. None until the windows are full, and while too many elements have no reading.
     pub fn push(&mut self, reading: &Reading) -> Option<&Features> {
         self.take(reading);
+        self.hear();
         self.finish()
     }
 
-    /// The first half of [`push`](Self::push): equations 1 to 4 with their features, and the transform.
+    /// The first third of [`push`](Self::push): equations 1 to 4 with their features, and the transform.
     pub fn take(&mut self, reading: &Reading) {
         let arrival = self.past.push(reading);
         if arrival.gone.contains(&true) {
@@ -127,17 +128,24 @@ impl<const N: usize, const M: usize> Preprocessor<N, M> {
         }
     }
 
-    /// The second half: the structure functions, and the other features. Once for each [`take`](Self::take).
+    /// The second third: the spectrum's features, and the structure functions of the shorter lags. Once for each
+    /// [`take`](Self::take).
+    pub fn hear(&mut self) {
+        self.structure.push_short(&self.past);
+        if self.ready {
+            for (feature, power) in self.features[COVARIANCES..].iter_mut().zip(self.spectrum.powers()) {
+                *feature = self.spectrum_knee.of(power);
+            }
+        }
+    }
+
+    /// The last: those of the longer lags, and the features of all of them. Once for each [`hear`](Self::hear).
     pub fn finish(&mut self) -> Option<&Features> {
-        self.structure.push(&self.past);
+        self.structure.push_long(&self.past);
         if !self.ready {
             return None;
         }
-        let (bins, structures) = self.features[COVARIANCES..].split_at_mut(BINS);
-        for (feature, power) in bins.iter_mut().zip(self.spectrum.powers()) {
-            *feature = self.spectrum_knee.of(power);
-        }
-        self.structure.compress(&self.structure_knees, structures);
+        self.structure.compress(&self.structure_knees, &mut self.features[PAPER_FEATURES..]);
         Some(&self.features)
     }
 

@@ -14,12 +14,16 @@
 //! What all elements do together, a knock or the motor, is taken off: `n sum(q^2) - (sum q)^2` of the `n` changes `q` is `n`
 //! times their squares about their mean, and an integer. (Ours; the paper has no such thing.)
 
+use core::ops::Range;
+
 use super::ELEMENTS;
 use super::logarithm::Knee;
 use super::past::{Changes, Past};
 
-/// Slow frames that a change is over.
-pub const LAGS: [usize; 4] = [1, 2, 4, 8];
+/// Slow frames that a change is over. The two longest see slow sliding, whose contacts take 0.2 to 0.4 s to be new ones.
+pub const LAGS: [usize; 6] = [1, 2, 4, 8, 16, 32];
+/// How many of them are short.
+const SHORT: usize = 4;
 /// Windows of each lag.
 pub const WINDOWS: usize = 6;
 /// Where they begin and end, slow frames ago: the newest change, the one before, then octaves.
@@ -29,8 +33,11 @@ const FRAMES: usize = EDGES[WINDOWS];
 pub const STRUCTURES: usize = LAGS.len() * WINDOWS;
 /// The quiet level rises by a part 2^-8 in each slow frame: to twice itself in 2.2 s.
 const QUIET_SHIFT: u32 = 8;
+/// Readings until all windows of the four shorter lags are full. Half a second of silence is enough to ask of a hand that has
+/// just been switched on: the longer lags' windows hold what there is, and 0 before.
+pub const READY_AFTER: usize = FRAMES + LAGS[SHORT - 1];
 /// Readings until all windows are full.
-pub const READY_AFTER: usize = FRAMES + LAGS[LAGS.len() - 1];
+pub const FULL_AFTER: usize = FRAMES + LAGS[LAGS.len() - 1];
 
 /// A change counts as this at most, samples: 1 N of one element within 0.1 s. Sixteen sums of ten squares of it, times
 /// ten, fit in a `u32`.
@@ -68,8 +75,31 @@ impl Default for Structure {
 impl Structure {
     /// Takes the newest changes.
     pub fn push(&mut self, past: &Past) {
+        self.push_short(past);
+        self.push_long(past);
+    }
+
+    /// Takes those over the four shorter lags: the first half of [`push`](Self::push).
+    pub fn push_short(&mut self, past: &Past) {
         self.newest = (self.newest + FRAMES - 1) % FRAMES;
-        for ((energies, sums), lag) in self.energies.iter_mut().zip(&mut self.sums).zip(LAGS) {
+        self.push_lags(past, 0..SHORT);
+        // The first change is to a reading that there was not.
+        if self.pushed <= FRAMES {
+            self.pushed += 1;
+        } else {
+            let [[.., level], ..] = self.sums;
+            self.quiet = level.min(self.quiet.saturating_add((self.quiet >> QUIET_SHIFT) + 1));
+        }
+    }
+
+    /// Takes those over the longer ones: the second half.
+    pub fn push_long(&mut self, past: &Past) {
+        self.push_lags(past, SHORT..LAGS.len());
+    }
+
+    fn push_lags(&mut self, past: &Past, which: Range<usize>) {
+        let of = self.energies.iter_mut().zip(&mut self.sums).zip(LAGS);
+        for ((energies, sums), lag) in of.skip(which.start).take(which.len()) {
             let changed = apart(&past.changes(lag));
             let mut entering = changed;
             // What leaves a window enters the one behind it.
@@ -81,13 +111,6 @@ impl Structure {
             if let Some(oldest) = energies.get_mut(self.newest) {
                 *oldest = changed;
             }
-        }
-        // The first change is to a reading that there was not.
-        if self.pushed <= FRAMES {
-            self.pushed += 1;
-        } else {
-            let [[.., level], ..] = self.sums;
-            self.quiet = level.min(self.quiet.saturating_add((self.quiet >> QUIET_SHIFT) + 1));
         }
     }
 

@@ -129,3 +129,17 @@ fn moments_are_those_of_a_rectangle() {
     assert!((slanted.moments().unwrap().angle_rad() + core::f32::consts::FRAC_PI_4).abs() < 1e-4);
     assert!(Mask::EMPTY.moments().is_none());
 }
+
+#[test]
+fn an_outline_is_its_pixels_and_overlap_is_the_share_of_what_is_in_either() {
+    // A notch makes it a polygon that is not convex.
+    let corners = [(9.5, 9.5), (19.5, 9.5), (19.5, 29.5), (14.5, 19.5), (9.5, 29.5)];
+    let outlined = Mask::of_outline(&corners);
+    assert!(outlined.contains(10, 10) && outlined.contains(19, 10) && outlined.contains(10, 26));
+    assert!(!outlined.contains(20, 10) && !outlined.contains(15, 25) && !outlined.contains(10, 30));
+    let square = Mask::of_outline(&[(9.5, 9.5), (19.5, 9.5), (19.5, 19.5), (9.5, 19.5)]);
+    assert_eq!(square, rectangle(10, 10, 20, 20));
+    assert_eq!(square.overlap(&rectangle(15, 10, 25, 20)), 50.0 / 150.0);
+    assert_eq!((square.overlap(&square), square.overlap(&Mask::EMPTY)), (1.0, 0.0));
+    assert_eq!(Mask::EMPTY.overlap(&Mask::EMPTY), 0.0);
+}

@@ -1,6 +1,6 @@
 //! Classifiers that could be shipped instead, at the sizes of `docs/figures/detectors.csv`: a kernel's name is
 //! `classifier_precision_lookback`, with which the chart finds it. Those of the paper see its 76 numbers, those called
-//! `structure` all 100. Their weights are nobody's; their work is real.
+//! `structure` all 112. Their weights are nobody's; their work is real.
 
 mod float;
 mod wide;

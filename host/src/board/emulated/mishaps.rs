@@ -12,6 +12,11 @@ use super::flash::FlashArray;
 use super::nucleo::Nucleo;
 use super::part::Part;
 
+/// DMA2's flags of its streams 0 to 3, and where a written one clears them.
+const DMA2_LISR: u64 = 0x4002_6400;
+const DMA2_LIFCR: u64 = 0x4002_6408;
+/// The flag that stream 0 has come to its end.
+const TCIF0: u64 = 1 << 5;
 /// DMA2 stream 0's configuration: bit 0 switches it on.
 const DMA2_S0CR: u64 = 0x4002_6410;
 /// DMA2 stream 0's address in memory.
@@ -46,7 +51,11 @@ impl Mishaps {
                     stop_stream(mcu, now);
                 }
                 Mishap::DmaFails => {
+                    let ended = flags(mcu, now) & TCIF0;
                     let control = stop_stream(mcu, now);
+                    // That it was stopped for this is no end: the driver would read a frame that is not whole, and send the stream
+                    // back to its ring before it has stumbled.
+                    set(mcu, now, DMA2_LIFCR, TCIF0 & !ended);
                     set(mcu, now, DMA2_S0M0AR, NOWHERE);
                     set(mcu, now, DMA2_S0CR, control);
                 }
@@ -67,6 +76,10 @@ fn stop_stream(mcu: &mut Part, now: VirtualNanos) -> u64 {
     let control = mcu.peek(now, DMA2_S0CR, Width::W32).unwrap_or(0);
     set(mcu, now, DMA2_S0CR, control & !1);
     control
+}
+
+fn flags(mcu: &mut Part, now: VirtualNanos) -> u64 {
+    mcu.peek(now, DMA2_LISR, Width::W32).unwrap_or(0)
 }
 
 fn set(mcu: &mut Part, now: VirtualNanos, address: u64, value: u64) {

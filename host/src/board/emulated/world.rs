@@ -3,6 +3,7 @@
 
 use std::ops::Range;
 use std::sync::mpsc::Sender;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use rigless::emulator::{Driver, Host, Settled, Stop};
 use rigless::session::Session;
@@ -44,9 +45,9 @@ pub struct Stretch {
 }
 
 /// The world, and what goes out of it.
-pub struct World<P> {
-    /// The plant.
-    pub plant: P,
+pub struct World {
+    /// The plant. Nobody else looks at it while the run lasts.
+    plant: Arc<Mutex<dyn Plant>>,
     /// What the ticks took, once the run is over.
     pub tick_cost: Option<TickCost>,
     /// How deep the stack was, once the run is over, bytes.
@@ -79,10 +80,10 @@ pub struct World<P> {
     pub reports: Option<Sender<Stretch>>,
 }
 
-impl<P: Plant> World<P> {
+impl World {
     /// A world that has not begun.
     pub fn new(
-        plant: P,
+        plant: Arc<Mutex<dyn Plant>>,
         frames: u32,
         mishaps: Mishaps,
         cost: CostMeter,
@@ -124,28 +125,29 @@ impl<P: Plant> World<P> {
         host: &mut dyn Host,
         pulse: bool,
     ) -> Option<()> {
+        let mut plant = self.plant.lock().unwrap_or_else(PoisonError::into_inner);
         let mut wires = Wires::new(&mut session.board_mut().mcu, stop.at);
         if self.scanned < self.scans {
             let Ok(drive) = wires.motor() else {
                 self.broken = Some(Broken::BothSides { at_s: seconds(stop.at) });
                 return None;
             };
-            let pins = self.plant.scan(drive).codes();
+            let pins = plant.scan(drive).codes();
             self.codes = scan_of_pins(&pins, wires.select());
-            self.stretch.scans.push((self.codes, drive, self.plant.slipping()));
+            self.stretch.scans.push((self.codes, drive, plant.slipping()));
             self.scanned += 1;
         } else {
             self.drained += 1;
         }
         wires.put(&self.codes);
-        wires.button(self.plant.button());
+        wires.button(plant.button());
         if pulse {
             wires.trigger();
         }
         let scan = self.scanned;
         if let Some(line) = session.board_mut().mcu.line(stop.at) {
             let opening = line.offered.take().map(|nonce| Down::Open { nonce });
-            for command in opening.into_iter().chain(self.plant.commands()) {
+            for command in opening.into_iter().chain(plant.commands()) {
                 if command == Down::Hello {
                     line.listener = Some(Inbox::default());
                 }
@@ -153,13 +155,14 @@ impl<P: Plant> World<P> {
                 line.down.extend(frame);
                 self.commands.send(Received { sequence: number, message: command });
             }
-            for byte in self.plant.line_bytes() {
+            for byte in plant.line_bytes() {
                 line.down.push_back(byte);
                 if let Some(Ok(command)) = self.sent.push::<Down>(byte) {
                     self.commands.send(command);
                 }
             }
         }
+        drop(plant);
         self.mishaps.happen(scan, session, stop.at, &mut self.flash, host);
         if scan.is_multiple_of(REPORT_SCANS) {
             self.report(session, stop.at);
@@ -187,7 +190,7 @@ impl<P: Plant> World<P> {
     }
 }
 
-impl<P: Plant> Driver<Nucleo> for World<P> {
+impl Driver<Nucleo> for World {
     fn on_settled(&mut self, session: &mut Session<Nucleo>, host: &mut dyn Host, settled: Settled) {
         match settled {
             Settled::Hit(hit) if hit.address == self.command_entry => {

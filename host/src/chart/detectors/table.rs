@@ -10,7 +10,7 @@ use serde::Deserialize;
 pub struct Row {
     /// On the paper's features `mlp` (76-32-16-1), `queue` (the same on queued features, 380-32-16-1), `logistic`, `svm`
     /// (linear), `lstm`, `lstm-autoencoder` (16 cells over ten frames); with structure functions `mlp-structure`
-    /// (100-32-16-1).
+    /// (112-32-16-1).
     pub classifier: String,
     /// `float`, `16` or `8`: its weights.
     pub precision: String,

@@ -4,7 +4,7 @@ use ratatui::Frame;
 use ratatui::layout::{Constraint, Rect};
 use ratatui::style::{Color, Modifier, Style};
 use ratatui::text::{Line as Text, Span};
-use ratatui::widgets::{Block, Paragraph, Row, Table};
+use ratatui::widgets::{Block, Paragraph, Row, Table, Wrap};
 use tenax_hal_shim::channel::{
     ARRAY, ARRAY_COUNT, CHANNELS, FRAME_HZ, FSR, FSR_COUNT, MOTOR_CURRENT, PVDF_COUNT, STRAIN, STRAIN_COUNT,
     mv_from_sample,
@@ -140,22 +140,34 @@ pub fn log(frame: &mut Frame<'_>, area: Rect, view: &View) {
     frame.render_widget(Paragraph::new(lines).block(block("what happened")), area);
 }
 
+/// Columns of a reading in mV, with the space behind it.
+const READING: usize = 5;
+
+/// Lines that every sensor's reading takes in a panel of this width.
+pub fn senses_height(width: u16) -> u16 {
+    let on_a_line = ((usize::from(width).saturating_sub(2) + 1) / READING).max(1);
+    let counts = [PVDF_COUNT, PVDF_COUNT, STRAIN_COUNT, FSR_COUNT, ARRAY_COUNT];
+    let lines: usize = counts.iter().map(|count| 1 + count.div_ceil(on_a_line)).sum();
+    // The two that have names of their own, and the border.
+    lines as u16 + 3
+}
+
 /// Every sensor's reading.
 pub fn senses(frame: &mut Frame<'_>, area: Rect, view: &View) {
     let Some(senses) = &view.senses else {
         return frame.render_widget(Paragraph::new("not heard yet").block(block("sensors")), area);
     };
-    let mv = |range: std::ops::Range<usize>| {
-        let all: Vec<String> = range.map(|n| format!("{:5}", mv_from_sample(senses.samples[n]))).collect();
-        all.join("")
+    let in_mv = |samples: &[u16]| {
+        let all: Vec<String> =
+            samples.iter().map(|&sample| format!("{:1$}", mv_from_sample(sample), READING - 1)).collect();
+        all.join(" ")
     };
-    let envelopes: Vec<String> =
-        senses.films.iter().map(|&film| format!("{:5}", mv_from_sample(film))).collect();
+    let mv = |range: std::ops::Range<usize>| in_mv(&senses.samples[range]);
     let last = |n: usize| format!("{} {} mV", CHANNELS[n].name, mv_from_sample(senses.samples[n]));
     let name = |words: &'static str| Text::styled(words, Style::new().fg(Color::DarkGray));
     let lines = vec![
         name("films: envelope, mV"),
-        Text::from(envelopes.join("")),
+        Text::from(in_mv(&senses.films)),
         name("films: sample, mV"),
         Text::from(mv(0..PVDF_COUNT)),
         name("strain gauges, mV"),
@@ -166,5 +178,7 @@ pub fn senses(frame: &mut Frame<'_>, area: Rect, view: &View) {
         Text::from(mv(ARRAY..ARRAY + ARRAY_COUNT)),
         Text::from(format!("{}, {}", last(MOTOR_CURRENT - 1), last(MOTOR_CURRENT))),
     ];
-    frame.render_widget(Paragraph::new(lines).block(block("sensors")), area);
+    // A reading that is cut off at the border would be another one.
+    let readings = Paragraph::new(lines).wrap(Wrap { trim: false });
+    frame.render_widget(readings.block(block("sensors")), area);
 }

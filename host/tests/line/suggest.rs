@@ -1,8 +1,4 @@
 //! Thresholds suggested from recordings of scenes in which it is known what they should be.
-#![cfg(unix)]
-
-#[path = "common/serving.rs"]
-mod serving;
 
 use std::process::{Command, Output};
 
@@ -14,7 +10,7 @@ use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{EventKind, TickRecord};
 use tenax_scene::{SceneFile, World};
 
-use self::serving::Serving;
+use crate::serving::Serving;
 
 fn scene(name: &str, more: &str) -> (Run, World) {
     let text =

@@ -1,14 +1,10 @@
 //! `tenax config` against a served board: every setting is set, read back, exported, imported and reset.
-#![cfg(unix)]
-
-#[path = "common/serving.rs"]
-mod serving;
 
 use std::process::{Command, Output};
 
 use tenax_hal_shim::setting::SettingId;
 
-use self::serving::Serving;
+use crate::serving::Serving;
 
 fn config(place: &str, args: &[&str]) -> (bool, String, String) {
     let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_tenax"))

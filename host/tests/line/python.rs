@@ -1,13 +1,9 @@
 //! The Python package reads a served board: the proof that `docs/protocol.md` is enough.
-#![cfg(unix)]
-
-#[path = "common/serving.rs"]
-mod serving;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use self::serving::Serving;
+use crate::serving::Serving;
 
 fn package() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().join("python")

@@ -1,5 +1,4 @@
 //! A scene that the tool serves, as a person starts it.
-#![allow(dead_code, reason = "each test file uses its own part of this one")]
 
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, ChildStderr, Command, Stdio};

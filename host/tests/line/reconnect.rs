@@ -1,6 +1,5 @@
 //! What a monitor's screen makes of a board that goes away and comes back, of garbage and of another version: on real
 //! pseudo-terminals and sockets, drawn as a person sees it.
-#![cfg(unix)]
 
 use std::io::Write;
 use std::net::{TcpListener, TcpStream};

@@ -1,10 +1,4 @@
 //! `tenax monitor --web` in a real browser: what a person sees of a scene that runs, and does with it.
-#![cfg(unix)]
-
-#[path = "common/browser.rs"]
-mod browser;
-#[path = "common/serving.rs"]
-mod serving;
 
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
@@ -13,8 +7,8 @@ use std::time::{Duration, Instant};
 
 use tenax_hal_shim::setting::SettingId;
 
-use self::browser::Page;
-use self::serving::Serving;
+use crate::browser::Page;
+use crate::serving::Serving;
 
 const WITHIN: Duration = Duration::from_secs(40);
 
@@ -66,7 +60,7 @@ fn points(page: &mut Page, plot: &str, [r, g, b]: [u8; 3]) -> u64 {
 #[test]
 fn a_person_sees_the_board_beside_the_truth_zooms_pauses_and_sets_a_setting() {
     // The glass is grasped within a second, and with that the consent of who switched the board on is over.
-    let glass = include_str!("../../scenes/glass.toml");
+    let glass = include_str!("../../../scenes/glass.toml");
     let glass = glass.replacen("\n[contact]", "\nline_trusted = true\n\n[contact]", 1);
     let mut served = Serving::start_telling(&glass);
     let web = Web::watching(&served.places[0], &served.places[1]);

@@ -1,9 +1,5 @@
 //! `tenax calibrate` on served scenes, in which weights are put on, surfaces are stroked and muscles contract at known
 //! instants: nobody presses a key.
-#![cfg(unix)]
-
-#[path = "common/serving.rs"]
-mod serving;
 
 use std::process::{Command, Output};
 use std::thread;
@@ -11,7 +7,7 @@ use std::thread;
 use tenax::link::{Client, Target};
 use tenax_hal_shim::wire::Up;
 
-use self::serving::Serving;
+use crate::serving::Serving;
 
 const HEAD: &str = "name = \"bench\"
 title = \"A bench\"
@@ -46,6 +42,12 @@ fn calibrate(place: &str, args: &[&str]) -> (bool, String, String) {
     (status.success(), out, error)
 }
 
+/// The number that follows these words.
+fn number(text: &str, after: &str) -> f64 {
+    let rest = text.split(after).nth(1).unwrap_or_else(|| panic!("no '{after}': {text}"));
+    rest.split_whitespace().next().unwrap().parse().unwrap()
+}
+
 /// Waits for an instant of the scene's own time.
 fn until(place: &str, t_s: f64) {
     let mut client = Client::open(&place.parse::<Target>().unwrap()).unwrap();
@@ -61,7 +63,7 @@ fn until(place: &str, t_s: f64) {
 
 fn known_weights_show_how_far_the_force_sensor_is_off() {
     let presses = [(6.0, 2.5, 2.0), (9.5, 2.5, 5.0), (13.0, 2.5, 10.0)];
-    let mut served = Serving::start(&bench(17.0, &presses, &[]), &[]);
+    let mut served = Serving::start(&bench(25.0, &presses, &[]), &[]);
     let place = served.places[0].clone();
     // The control, at the same time: somebody who puts on a sixth less than they say.
     let wrong = thread::spawn(move || calibrate(&place, &["force", "--weights-n", "2.4,6,12"]));
@@ -69,10 +71,23 @@ fn known_weights_show_how_far_the_force_sensor_is_off() {
     println!("{out}{error}");
     assert!(done && out.contains("Zeroed.") && out.contains("put on 5 N (510 g)"), "{out}{error}");
     assert!(out.contains("within 5 %: nothing to do"), "{out}");
-    let worst = out.split("off that line by ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
-    assert!(worst.parse::<f64>().unwrap() < 5.0, "{out}");
+    assert!(number(&out, "off that line by ") < 5.0, "{out}");
     let (done, out, error) = wrong.join().unwrap();
     assert!(done && out.contains("change the amplifier") && out.contains("reads 0.8"), "{out}{error}");
+    // What it proposes is a command that the board takes.
+    let proposed = out.lines().find_map(|line| line.trim().strip_prefix("tenax config ")).expect("a command");
+    println!("{proposed}");
+    let gain = number(&out, "the board reads ");
+    assert!((0.78..0.87).contains(&gain), "{out}");
+    assert!((number(proposed, "force-ceiling-mn=") - 40_000.0 * gain).abs() < 30.0, "{proposed}");
+    assert!((number(proposed, "loaded-mn=") - 600.0 * gain).abs() < 1.0, "{proposed}");
+    let set = Command::new(env!("CARGO_BIN_EXE_tenax"))
+        .arg("config")
+        .args(proposed.split(' '))
+        .args(["--port", &served.places[0]])
+        .output()
+        .unwrap();
+    assert!(set.status.success(), "{set:?}");
     served.kill();
 }
 
@@ -84,13 +99,9 @@ fn strokes_measure_friction_and_set_s2() {
     let (done, out, error) = calibrate(&served.places[0], &["friction", "--strokes", "3"]);
     println!("{out}{error}");
     // 0.5 on the board's scale of ratios, r / sqrt(1 + r^2), is 0.447; S2 is 0.8 of it.
-    let number = |after: &str| -> f64 {
-        let rest = out.split(after).nth(1).unwrap_or_else(|| panic!("{out}{error}"));
-        rest.split(' ').next().unwrap().parse().unwrap()
-    };
     assert!(done && out.contains("3 of 3"), "{out}{error}");
-    assert!((number("Static friction ") - 0.447).abs() < 0.03, "{out}");
-    assert!((number("S2 is ") - 0.358).abs() < 0.03, "{out}");
+    assert!((number(&out, "Static friction ") - 0.447).abs() < 0.03, "{out}");
+    assert!((number(&out, "S2 is ") - 0.358).abs() < 0.03, "{out}");
     served.kill();
 }
 

@@ -1,5 +1,4 @@
 //! The monitor on a real serial line (a pty pair), with garbage on it, and unplugged.
-#![cfg(unix)]
 
 use std::io::Write;
 use std::thread;

@@ -11,8 +11,9 @@ use tenax::monitor::source::News;
 use tenax::monitor::view::View;
 use tenax::session::{Board, load_scene};
 use tenax::truth::Truth;
+use tenax_hal_shim::channel::{MYO_EXTENSOR, MYO_FLEXOR, PVDF_COUNT, mv_from_sample, sample_from_mv};
 use tenax_hal_shim::setting::SettingId;
-use tenax_hal_shim::wire::{Answer, BadFrame, Down, Refusal};
+use tenax_hal_shim::wire::{Answer, BadFrame, Down, Refusal, Senses};
 use tenax_scene::World;
 
 /// A view that has heard a scene's line.
@@ -74,6 +75,23 @@ fn what_matters_is_on_the_screen_at_80_by_24_and_at_200_by_60() {
             picture.contains('⠤') || picture.chars().any(|c| ('\u{2801}'..='\u{28ff}').contains(&c)),
             "a trace"
         );
+    }
+}
+
+/// A reading of 1645 mV that shows as 164 is worse than none.
+#[test]
+fn no_reading_is_cut_off_at_the_border() {
+    let mut view = heard("rig", 1.0);
+    let samples = std::array::from_fn(|n| sample_from_mv(1_000 + 50 * n as u32));
+    view.senses = Some(Senses { frame: 0, samples, films: [sample_from_mv(1_000); PVDF_COUNT] });
+    for width in [80, 100, 119, 120, 160] {
+        let picture = picture(&view, &Shown::default(), width, 60);
+        let words: Vec<&str> = picture.split([' ', '\n', '│']).collect();
+        for sample in samples {
+            let reading = mv_from_sample(sample).to_string();
+            let is_muscle = samples[MYO_FLEXOR..=MYO_EXTENSOR].contains(&sample);
+            assert!(is_muscle || words.contains(&&*reading), "{reading} mV at {width}\n{picture}");
+        }
     }
 }
 

@@ -1,8 +1,4 @@
 //! A running board's line, served: settings are set and read back, nothing is missed, and nobody can hold up the run.
-#![cfg(unix)]
-
-#[path = "common/serving.rs"]
-mod serving;
 
 use std::collections::HashSet;
 use std::fs;
@@ -20,7 +16,7 @@ use tenax_hal_shim::wire::{Answer, Down, Refusal, Setting, Up};
 use tenax_hal_shim::words::Line;
 use tenax_scene::plant::{Pins, Plant};
 
-use self::serving::Serving;
+use crate::serving::Serving;
 
 const WITHIN: Duration = Duration::from_secs(5);
 
@@ -180,7 +176,7 @@ fn the_second_client_of_a_pty_hears_nothing_old() {
 #[test]
 fn the_monitor_sets_a_setting_of_a_scene_that_runs() {
     let tenax = || Command::new(env!("CARGO_BIN_EXE_tenax"));
-    let served = Serving::start(include_str!("../../scenes/rig.toml"), &["--serve"]);
+    let served = Serving::start(include_str!("../../../scenes/rig.toml"), &["--serve"]);
     let places = served.places.clone();
     assert!(places[0].starts_with("/dev/") && places[1].starts_with("tcp:127.0.0.1:"), "{places:?}");
     let monitors: Vec<_> = places

@@ -1,9 +1,5 @@
 //! A camera's program and a board that is served, two processes as a person starts them: what the camera sees arrives, a behaviour
 //! acts on it, the network learns from it, and when the camera fails the hand holds by its own senses.
-#![cfg(unix)]
-
-#[path = "common/serving.rs"]
-mod serving;
 
 use std::process::{Command, Stdio};
 use std::thread;
@@ -15,7 +11,7 @@ use tenax_hal_shim::behaviour::Behaviour;
 use tenax_hal_shim::wire::{Slow, Up};
 use tenax_hal_shim::words::{Code, DriveSource};
 
-use self::serving::Serving;
+use crate::serving::Serving;
 
 /// A can that a robot's hand takes, and whose line is trusted. No camera is in it: the one that is tried comes down the line.
 const SCENE: &str = "
