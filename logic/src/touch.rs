@@ -186,8 +186,7 @@ impl Touch {
         self.learn(config, felt, learns);
     }
 
-    /// Takes forces, None while there is no number: once a cycle, in slot [`SHEAR_IS_JUDGED`], before its tick. `grasp`: the finger
-    /// holds something; `anew`: it touches nothing, or a muscle is active.
+    /// Takes forces, None without a number, in slot [`SHEAR_IS_JUDGED`], before its tick. `anew`: nothing is touched, or a muscle is active.
     #[inline(never)]
     pub fn foretell(&mut self, config: &TouchConfig, forces: Option<&Forces>, grasp: bool, anew: bool) {
         if anew {
