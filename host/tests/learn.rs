@@ -53,11 +53,9 @@ fn before_learning_it_says_nothing_and_afterwards_it_sees_micro_slip() {
     assert_eq!(films.first.said_s, films.slip.said_s, "shear is silent");
     assert_ne!(other.apart.first.said_s, other.apart.slip.said_s, "the control: shear is heard");
 
-    // This finger's films hear the outer places let go when the hand is swung: right about the contact, wrong about the block. Until
-    // what shear foretells was a warning, a whole pulse as the block was lifted had held it by a fifth harder, and none let go.
+    // Nothing is said of a block that is held, swung and carried.
     let holding = outcome.holding;
-    assert_eq!(holding.warning, False::default(), "{holding:?}");
-    assert!(holding.slip.count == holding.slip.in_micro_slip && holding.slip.count <= 1, "{holding:?}");
+    assert_eq!((holding.warning, holding.slip), (False::default(), False::default()), "{holding:?}");
     assert!(holding.hours > 0.03);
 
     let [touch_s, vision_s, oracle_s] =
