@@ -8,13 +8,13 @@ mod commands;
 mod consent;
 mod heard;
 mod link;
+mod told;
 
-use tenax_hal_shim::channel::PVDF_COUNT;
 use tenax_hal_shim::detector::DetectorSet;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::setting::SettingId;
-use tenax_hal_shim::wire::{Event, EventKind, NetworkState, Slow, TickRecord};
+use tenax_hal_shim::wire::{EventKind, Slow, TickRecord};
 use tenax_hal_shim::words::{Cause, DriveSource, Fault, GripMode, Kept, Line};
 
 use self::behave::Eye;
@@ -32,7 +32,6 @@ use crate::senses::Senses;
 use crate::store::keeper::{Keeper, Now};
 use crate::store::payload;
 use crate::store::record::Record;
-use crate::vibration::Q;
 
 /// Consent is looked for in this slot of each step: the array's heaviest share is in another.
 const CONSENT_SLOT: u32 = 0;
@@ -161,82 +160,6 @@ impl Fingertip {
     /// The reflex acts on these detectors alone from now on: for a scene's controls and its oracle.
     pub const fn act_on(&mut self, detectors: DetectorSet) {
         self.acting = Acting(detectors);
-    }
-
-    /// Every number that can be chosen, as it is in force.
-    #[must_use]
-    pub const fn config(&self) -> &Config {
-        &self.config
-    }
-
-    /// The slow frame that the last tick ended, if it ended one.
-    pub fn take_slow(&mut self) -> Option<Slow> {
-        self.slow.take()
-    }
-
-    /// Whether the last tick ended a slow frame that was not taken yet.
-    #[must_use]
-    pub const fn has_slow(&self) -> bool {
-        self.slow.is_some()
-    }
-
-    /// Whether something happened that was not taken yet.
-    #[must_use]
-    pub fn has_event(&self) -> bool {
-        self.journal.has_event()
-    }
-
-    /// The oldest thing that happened and has not been taken yet.
-    pub fn next_event(&mut self) -> Option<Event> {
-        self.journal.next_event()
-    }
-
-    /// Sequence number of the last frame taken.
-    #[must_use]
-    pub const fn frame(&self) -> u32 {
-        self.journal.frame()
-    }
-
-    /// The vibration envelope of each film, in samples.
-    #[must_use]
-    pub fn films(&self) -> [u16; PVDF_COUNT] {
-        self.senses.envelopes().map(|envelope| u16::try_from(envelope >> Q).unwrap_or(u16::MAX))
-    }
-
-    /// The detectors that say slip, whoever listens.
-    #[must_use]
-    pub const fn slip(&self) -> DetectorSet {
-        self.detectors.slip()
-    }
-
-    /// The detectors that warn of it. The line tells both in one.
-    #[must_use]
-    pub const fn incipient(&self) -> DetectorSet {
-        self.detectors.incipient()
-    }
-
-    /// What the reflex is doing.
-    #[must_use]
-    pub const fn mode(&self) -> GripMode {
-        self.mode
-    }
-
-    /// Whether a myosensor is active, its hold time included.
-    #[must_use]
-    pub const fn wearer_active(&self) -> bool {
-        self.senses.gate.is_active()
-    }
-
-    /// What the Hebbian network has learned, with the maxima that its weights belong to.
-    #[must_use]
-    pub fn learned(&self) -> crate::touch::Learned {
-        self.detectors.hebbian.learned()
-    }
-
-    /// What the network knows and feels.
-    #[must_use]
-    pub fn network(&self) -> NetworkState {
-        self.detectors.hebbian.state(self.journal.frame())
     }
 
     /// Nobody moves the hand and nobody teaches.
