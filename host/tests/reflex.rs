@@ -57,7 +57,9 @@ fn what_is_no_slip_is_answered_once_in_84_runs_at_most() {
             let answered = reflex.without_slip.expect("a scene knows when it slipped");
             assert!(answered <= 1, "{name}, seed {seed}: {reflex:?}");
             if answered > 0 {
-                println!("{name}, seed {seed}: {reflex:?}");
+                let acted = [DetectorId::S1, DetectorId::S2, DetectorId::Mlp]
+                    .map(|id| (id, outcome.report.detectors.of_id(id).acted));
+                println!("{name}, seed {seed}: {reflex:?}, {acted:?}");
             }
             (runs, without) = (runs + 1, without + answered);
         }

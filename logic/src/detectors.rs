@@ -19,7 +19,7 @@ use crate::array::{MLP_DECIDES, Reading};
 use crate::config::Config;
 use crate::friction::FrictionDetector;
 use crate::photoelastic::Head;
-use crate::plausibility::Plausibility;
+use crate::plausibility::{Disturbance, Plausibility};
 use crate::strain::Gauges;
 use crate::touch::Touch;
 use crate::vibration::Vibration;
@@ -193,6 +193,8 @@ struct Record {
     ignored: DetectorSet,
     decided_at: [u32; DetectorId::COUNT],
     guards: [Plausibility; DetectorId::COUNT],
+    /// Of the array's verdict.
+    disturbance: Disturbance,
 }
 
 impl Record {
@@ -208,6 +210,14 @@ impl Record {
         let guard = &mut self.guards[id as usize];
         guard.take(sensed.unloaded, says, tolerated);
         self.ignored = self.ignored.with(id, guard.is_ignored());
+    }
+
+    #[inline(always)]
+    fn guard_array(&mut self, sensed: &Sensed<'_>) {
+        let id = DetectorId::Mlp;
+        self.guard(id, MlpDetector::IMPLAUSIBLE_AFTER, sensed);
+        self.disturbance.take(sensed.vibration.knock, self.slip.contains(id));
+        self.ignored = self.ignored.with(id, self.ignored.contains(id) || self.disturbance.explains_it());
     }
 }
 
@@ -231,7 +241,7 @@ impl Detectors {
         // The MLP decides once a cycle, and an implausible verdict is not believed for a single tick. The others are guarded in a
         // slot with room.
         match sensed.slot {
-            MLP_DECIDES => self.record.guard(DetectorId::Mlp, MlpDetector::IMPLAUSIBLE_AFTER, sensed),
+            MLP_DECIDES => self.record.guard_array(sensed),
             OTHERS_GUARDED => self.guard_others(config, sensed),
             _ => {}
         }
@@ -245,6 +255,12 @@ impl Detectors {
                 self.record.guard(id, tolerated, sensed);
             }
         });
+    }
+
+    /// The reflex tightens because of a warning: nothing was said to slip.
+    #[inline(never)]
+    pub const fn tightened(&mut self) {
+        self.record.disturbance.begin();
     }
 
     /// The detectors that say slip.

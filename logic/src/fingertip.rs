@@ -297,6 +297,9 @@ impl Fingertip {
     fn change(&mut self, to: GripMode, cause: Cause) {
         let from = core::mem::replace(&mut self.mode, to);
         self.reflex.enter(to);
+        if to == GripMode::Incipient {
+            self.detectors.tightened();
+        }
         self.journal.mode(from, to, cause);
     }
 

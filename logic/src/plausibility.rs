@@ -1,13 +1,19 @@
-//! Plausibility: a detector that reports slip while nothing is held is ignored.
+//! Plausibility: a detector that reports slip while nothing is held is ignored, and so is what the array begins to say as the hand
+//! tightens on a warning or a knock rings.
 //!
 //! A detector knows the noise that it was made with. With more of it, from a bad supply, a motor's cable or a broken film,
 //! it takes noise for slip, and the reflex would answer with pulse after pulse up to the force ceiling: nothing that is
 //! held ever stops it. What it reports while the finger is known to touch nothing is certainly wrong.
+//!
+//! A hand that closes moves load between the array's elements as what slides does, and its network has learned from hands that
+//! closed because something slid; a knock shakes them. So a verdict of its that begins while the hand tightens although nothing was
+//! said to slip or while a knock rings, or as long after as its longest change looks back, is no reason to close further ([`Disturbance`]); one that stood before is.
 
 use tenax_hal_shim::channel::SLOW_HZ;
 
 use crate::array::SPECTRUM_WINDOW;
 use crate::array::past::LAG_MAX;
+use crate::array::structure::LAGS;
 
 /// Slow frames after which an empty hand's windows hold nothing any more of what was held or dropped before: the longest,
 /// twice, for the verdict's own hold.
@@ -44,6 +50,38 @@ impl Plausibility {
     }
 }
 
+/// Slow frames after either in which no verdict of the array is believed that begins.
+const MOVED_FOR: u8 = LAGS[LAGS.len() - 1] as u8;
+
+/// Whether something else than slip explains the array's verdict.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Disturbance {
+    /// Slow frames since it was disturbed, as many as matter.
+    still: u8,
+    says: bool,
+    began_still: bool,
+}
+
+impl Disturbance {
+    /// It is disturbed, between slow frames.
+    pub const fn begin(&mut self) {
+        self.still = 0;
+    }
+
+    /// Takes a slow frame: whether the array is disturbed, and whether it says slip.
+    pub fn take(&mut self, disturbed: bool, says: bool) {
+        self.still = if disturbed { 0 } else { self.still.saturating_add(1).min(MOVED_FOR) };
+        self.says = says;
+        self.began_still = says && (self.began_still || self.still >= MOVED_FOR);
+    }
+
+    /// Whether what is said now may be the disturbance.
+    #[must_use]
+    pub const fn explains_it(&self) -> bool {
+        self.says && !self.began_still
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -64,6 +102,25 @@ mod tests {
         assert!(after(&mut guard, 1, true, true), "it has spoken again");
         assert!(after(&mut guard, SILENT_FOR - 1, true, false));
         assert!(!after(&mut guard, 1, true, false));
+    }
+
+    #[test]
+    fn what_begins_as_it_is_disturbed_is_the_disturbance_and_what_stood_before_is_not() {
+        let mut disturbance = Disturbance::default();
+        (0..MOVED_FOR).for_each(|_| disturbance.take(false, false));
+        disturbance.take(false, true);
+        assert!(!disturbance.explains_it());
+        disturbance.take(true, true);
+        assert!(!disturbance.explains_it(), "it stood before");
+        disturbance.take(true, false);
+        disturbance.take(true, true);
+        assert!(disturbance.explains_it(), "it began anew");
+        for _ in 1..MOVED_FOR {
+            disturbance.take(false, true);
+            assert!(disturbance.explains_it());
+        }
+        disturbance.take(false, true);
+        assert!(!disturbance.explains_it(), "it has outlasted what it looks back on");
     }
 
     #[test]
