@@ -257,7 +257,7 @@ impl Detectors {
         });
     }
 
-    /// The reflex tightens because of a warning: nothing was said to slip.
+    /// The reflex tightens because S2 warns: nothing was said to slip.
     #[inline(never)]
     pub const fn tightened(&mut self) {
         self.record.disturbance.begin();

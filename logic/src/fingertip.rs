@@ -10,7 +10,7 @@ mod heard;
 mod link;
 mod told;
 
-use tenax_hal_shim::detector::DetectorSet;
+use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::setting::SettingId;
@@ -297,7 +297,7 @@ impl Fingertip {
     fn change(&mut self, to: GripMode, cause: Cause) {
         let from = core::mem::replace(&mut self.mode, to);
         self.reflex.enter(to);
-        if to == GripMode::Incipient {
+        if matches!(cause, Cause::Incipient(DetectorId::S2)) {
             self.detectors.tightened();
         }
         self.journal.mode(from, to, cause);

@@ -1,13 +1,14 @@
 //! Plausibility: a detector that reports slip while nothing is held is ignored, and so is what the array begins to say as the hand
-//! tightens on a warning or a knock rings.
+//! tightens on a warning of S2 or a knock rings.
 //!
 //! A detector knows the noise that it was made with. With more of it, from a bad supply, a motor's cable or a broken film,
 //! it takes noise for slip, and the reflex would answer with pulse after pulse up to the force ceiling: nothing that is
 //! held ever stops it. What it reports while the finger is known to touch nothing is certainly wrong.
 //!
 //! A hand that closes moves load between the array's elements as what slides does, and its network has learned from hands that
-//! closed because something slid; a knock shakes them. So a verdict of its that begins while the hand tightens although nothing was
-//! said to slip or while a knock rings, or as long after as its longest change looks back, is no reason to close further ([`Disturbance`]); one that stood before is.
+//! closed because something slid; a knock shakes them. So a verdict of its that begins while the hand tightens on S2's warning or
+//! while a knock rings, or as long after as its longest change looks back, is no reason to close further ([`Disturbance`]); one
+//! that stood before is. What shear foretells by a learned friction is not among them: slip follows that warning.
 
 use tenax_hal_shim::channel::SLOW_HZ;
 
