@@ -82,6 +82,12 @@ impl MotorBridge for Bridge {
 /// held low.
 pub fn off() {
     pac::TIM1.bdtr().modify(|w| w.set_moe(false));
+    hold_low();
+}
+
+/// Both pins low, from the first instants of a start on: they float after a reset, and the clock may be waited for.
+pub fn hold_low() {
+    pac::RCC.ahb1enr().modify(|w| w.set_gpioaen(true));
     for pin in [8, 9] {
         pac::GPIOA.bsrr().write(|w| w.set_br(pin, true));
         pac::GPIOA.moder().modify(|w| w.set_moder(pin, Moder::OUTPUT));

@@ -13,9 +13,10 @@ use embassy_stm32::pac::{self, dma::regs::Ndtr};
 use embassy_stm32::peripherals::DMA2_CH0;
 use tenax_hal_shim::channel::{SCAN_LEN, SCANS_PER_FRAME};
 use tenax_hal_shim::frame::{Frame, PAIRS};
+use tenax_logic::restart::Mark;
 
 use crate::deadline::WAITING;
-use crate::last_words::{Mark, give_up};
+use crate::last_words::give_up;
 
 /// Words of one half.
 const HALF: usize = PAIRS * SCANS_PER_FRAME;

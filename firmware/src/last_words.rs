@@ -10,26 +10,13 @@ use core::ptr::{addr_of, addr_of_mut};
 use cortex_m::peripheral::SCB;
 use cortex_m_rt::{ExceptionFrame, exception};
 use embassy_stm32::pac;
-use tenax_hal_shim::wire::ResetCause;
-use tenax_hal_shim::words::Fault;
+use tenax_logic::restart::{self, Flags, Mark, Start};
 
 use crate::{black_box, bridge};
 
-/// Restarts in a row, each sooner than [`lived_well`] after the one before, after which the hand stays off: a hand that
-/// hangs as it begins to close would close a little further each time.
-const RESTARTS_MAX: u32 = 5;
-
-/// Why the image ended. Any other value is what RAM held at power-on.
-#[derive(Clone, Copy)]
-#[repr(u32)]
-pub enum Mark {
-    /// A panic or a fault of the core.
-    Panicked = 0x7E4A_C0DE,
-    /// The supply fell below what the chip needs.
-    SupplySagged = 0x7E4A_BA77,
-    /// The crystal stopped.
-    CrystalLost = 0x7E4A_C10C,
-}
+/// Why the image ended, as words in RAM. Any other value is what RAM held at power-on.
+const MARKS: [(Mark, u32); 3] =
+    [(Mark::Panicked, 0x7E4A_C0DE), (Mark::SupplySagged, 0x7E4A_BA77), (Mark::CrystalLost, 0x7E4A_C10C)];
 
 /// What a reset does not clear: not initialised by the runtime.
 #[unsafe(link_section = ".uninit.mark")]
@@ -38,44 +25,23 @@ static mut KEPT: MaybeUninit<[u32; 2]> = MaybeUninit::uninit();
 const MARK: usize = 0;
 const RESTARTS: usize = 1;
 
-/// How this run began.
-pub struct Start {
-    /// Why the last run ended, if not by switching off.
-    pub after: Option<Fault>,
-    /// Why the chip started.
-    pub cause: ResetCause,
-    /// It has restarted too often: nothing is to move any more.
-    pub stay_off: bool,
-}
-
 /// How this run began. Asked once, before anything else is set up: it forgets the answer.
 pub fn start() -> Start {
     let csr = pac::RCC.csr().read();
     pac::RCC.csr().modify(|w| w.set_rmvf(true));
-    let mark = kept(MARK);
-    keep(MARK, 0);
-    let left = |own: Mark| csr.sftrstf() && mark == own as u32;
-    let (cause, after) = if csr.porrstf() {
-        (ResetCause::PowerOn, None)
-    } else if csr.wdgrstf() {
-        (ResetCause::Watchdog, Some(Fault::WatchdogReset))
-    } else if left(Mark::Panicked) {
-        (ResetCause::Panic, Some(Fault::PanicReset))
-    } else if left(Mark::SupplySagged) {
-        (ResetCause::Software, Some(Fault::SupplySagged))
-    } else if left(Mark::CrystalLost) {
-        (ResetCause::Software, Some(Fault::CrystalLost))
-    } else if csr.sftrstf() {
-        (ResetCause::Software, None)
-    } else if csr.padrstf() {
-        (ResetCause::Pin, None)
-    } else {
-        (ResetCause::Other, None)
+    let flags = Flags {
+        power_on: csr.porrstf(),
+        brown_out: csr.borrstf(),
+        watchdog: csr.wdgrstf(),
+        software: csr.sftrstf(),
+        pin: csr.padrstf(),
     };
-    let restarts = if after.is_some() { kept(RESTARTS).saturating_add(1) } else { 0 };
-    keep(RESTARTS, restarts);
-    let stay_off = restarts > RESTARTS_MAX;
-    Start { after: if stay_off { Some(Fault::TooManyRestarts) } else { after }, cause, stay_off }
+    let word = kept(MARK);
+    keep(MARK, 0);
+    let mark = MARKS.iter().find(|(_, own)| *own == word).map(|(mark, _)| *mark);
+    let start = restart::judge(flags, mark, kept(RESTARTS));
+    keep(RESTARTS, start.restarts);
+    start
 }
 
 /// The image has run for a while: what comes now is another story.
@@ -97,7 +63,9 @@ fn keep(place: usize, word: u32) {
 pub fn give_up(mark: Mark, why: &str) -> ! {
     cortex_m::interrupt::disable();
     bridge::off();
-    keep(MARK, mark as u32);
+    if let Some((_, word)) = MARKS.iter().find(|(own, _)| *own == mark) {
+        keep(MARK, *word);
+    }
     black_box::why(why.as_bytes());
     SCB::sys_reset()
 }

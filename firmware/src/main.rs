@@ -37,19 +37,23 @@ mod supply;
 mod switches;
 mod telemetry;
 
+use cortex_m::peripheral::SCB;
 use defmt_rtt as _;
 use embassy_executor::{InterruptExecutor, Spawner};
 use embassy_stm32::adc::AdcChannel;
+use embassy_stm32::gpio::Pull;
 use embassy_stm32::interrupt;
 use embassy_stm32::interrupt::{InterruptExt, Priority};
 use embassy_stm32::usart::{self, Uart};
 use embassy_stm32::wdg::IndependentWatchdog;
 use embassy_stm32::{bind_interrupts, dma, peripherals};
+use embassy_time::Timer;
 use static_cell::{ConstStaticCell, StaticCell};
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::wire::{BAUD, ResetCause, Up};
 use tenax_hal_shim::words::Fault;
 use tenax_logic::device::Device;
+use tenax_logic::restart::Start;
 use tenax_logic::store::Erase;
 
 bind_interrupts!(struct Irqs {
@@ -79,8 +83,13 @@ static CONTROL: StaticCell<control::Control> = StaticCell::new();
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
-    let last_words::Start { after, cause, stay_off } = last_words::start();
+    // Before the clocks are waited for: until then the pins float.
+    bridge::hold_low();
+    let Start { after, cause, stay_off, .. } = last_words::start();
     let switched_on = cause == ResetCause::PowerOn;
+    if cause == ResetCause::Other && after.is_some() {
+        black_box::why(b"brown-out");
+    }
     black_box::start(after, switched_on);
     let crystal = clock::has_crystal();
     let mut config = clock::config(crystal);
@@ -88,7 +97,7 @@ async fn main(spawner: Spawner) {
     let p = embassy_stm32::init(config);
     // Before anything that could take time: from here on both sides are held low.
     let bridge = bridge::Bridge::new(p.TIM1, p.PA8, p.PA9);
-    supply::watch();
+    let supplied = supply::watch();
     if crystal {
         clock::watch_crystal();
     }
@@ -98,7 +107,6 @@ async fn main(spawner: Spawner) {
     // While nothing moves yet: switched on, this may erase a sector, and then the core stands still for a second or two. After
     // a reset something may be held, and the wearer must be able to let go of it.
     let mut flash = flash::Flash::new(p.FLASH);
-    let switched_on = cause == ResetCause::PowerOn;
     let erase = if switched_on { Erase::Allowed } else { Erase::Postponed };
     let (log, found) = tenax_logic::store::open(&mut flash, erase);
     clock::accelerate_flash();
@@ -132,13 +140,23 @@ async fn main(spawner: Spawner) {
 
     let mut line = usart::Config::default();
     line.baudrate = BAUD;
+    // Nobody may be at the other end.
+    line.rx_pull = Pull::Up;
     let uart = Uart::new(p.USART2, p.PA3, p.PA2, p.DMA1_CH6, p.DMA1_CH5, Irqs, line)
         .expect("921 600 baud divides 50 MHz");
     let (up, down) = uart.split();
 
     // The first of all messages: a hello that comes after others would look like a second start.
+    let after = if supplied { after } else { Some(Fault::SupplySagged) };
     mail::post(Up::Hello { frame_hz: FRAME_HZ as u16, after });
     spawner.spawn(telemetry::telemetry(up).expect("one telemetry task"));
+    if !supplied {
+        // It is told why, and starts anew when there is enough to drive a motor with.
+        while supply::is_low() {
+            Timer::after_millis(10).await;
+        }
+        SCB::sys_reset();
+    }
     if stay_off {
         // Neither control nor what feeds the watchdog: the bridge stays as it is, off.
         core::future::pending::<()>().await;

@@ -1,41 +1,59 @@
 //! The supply: while it sags, the bridge is off.
 //!
-//! Two guards of the chip. The voltage detector (RM0383, section 5.2.2) says that the supply falls below 2.9 V: the bridge goes
-//! off and the chip is reset while code still runs as it should. The brown-out reset holds the chip from 2.7 V on; its level
-//! is an option byte, which a chip from the factory has off, and which is programmed once.
+//! Two guards of the chip (DS10314, embedded reset and power control block; typical figures). The voltage detector at level 6
+//! (RM0383, section 5.2.3) says that the supply falls below 2.93 V: the bridge goes off and the chip is reset while code still
+//! runs as it should. Level 7 would be 3.03 V falling and 3.14 V rising: a dip of 0.25 V that harms nothing would let go of the
+//! motor, and a rail of 3.1 V would never start. The brown-out reset at level 3 holds the chip from 2.83 V on; its level is an
+//! option byte, which a chip from the factory has off, and which is programmed once.
 
 use embassy_stm32::interrupt;
 use embassy_stm32::interrupt::{InterruptExt, Priority};
 use embassy_stm32::pac::{EXTI, FLASH, PWR, RCC};
 use embassy_time::{Duration, Instant};
 
-use crate::last_words::{self, Mark};
+use tenax_logic::restart::Mark;
 
-/// PLS: 2.9 V, the highest threshold (DS10314, embedded reset and power control).
-const THRESHOLD_2_9_V: u8 = 7;
+use crate::last_words;
+
+/// PLS: 2.93 V falling, 3.03 V rising.
+const LEVEL_6: u8 = 6;
+/// How long a supply may take to rise. A battery behind a regulator is there within some ms.
+const RISE: Duration = Duration::from_secs(1);
 /// The line of the voltage detector's output among the external interrupts (RM0383, section 10.2.5).
 const LINE: usize = 16;
-/// BOR_LEV: reset below 2.7 V (level 3), and off.
-const BROWN_OUT_2_7_V: u8 = 0;
+/// BOR_LEV: reset below 2.83 V.
+const BROWN_OUT_LEVEL_3: u8 = 0;
 /// RM0383, section 3.6.2.
 const OPTION_KEYS: [u32; 2] = [0x0819_2A3B, 0x4C5D_6E7F];
 /// Longer than the option bytes take (DS10314, flash memory programming).
 const PATIENCE: Duration = Duration::from_secs(4);
 
-/// Waits until the supply is there, and watches it from then on. Nothing moves meanwhile.
-pub fn watch() {
+/// Waits for the supply, and watches it from then on. Nothing moves meanwhile. False: it is too low, and nothing watches it.
+#[must_use]
+pub fn watch() -> bool {
     RCC.apb1enr().modify(|w| w.set_pwren(true));
     PWR.cr1().modify(|w| {
-        w.set_pls(THRESHOLD_2_9_V);
+        w.set_pls(LEVEL_6);
         w.set_pvde(true);
     });
-    while PWR.csr1().read().pvdo() {}
+    let deadline = Instant::now() + RISE;
+    while is_low() {
+        if Instant::now() >= deadline {
+            return false;
+        }
+    }
     EXTI.rtsr(0).modify(|w| w.set_line(LINE, true));
     EXTI.pr(0).write(|w| w.set_line(LINE, true));
     EXTI.imr(0).modify(|w| w.set_line(LINE, true));
     interrupt::PVD.set_priority(Priority::P0);
     // SAFETY: its handler touches nothing that anybody else uses.
     unsafe { interrupt::PVD.enable() };
+    true
+}
+
+/// Whether the supply is below the level.
+pub fn is_low() -> bool {
+    PWR.csr1().read().pvdo()
 }
 
 /// The supply sags.
@@ -46,13 +64,13 @@ unsafe fn PVD() {
 
 /// Sees to it that the brown-out reset is on. Only where somebody has just switched the hand on: it may take a second.
 pub fn hold_in_reset_when_too_low() {
-    if FLASH.optcr().read().bor_lev() == BROWN_OUT_2_7_V {
+    if FLASH.optcr().read().bor_lev() == BROWN_OUT_LEVEL_3 {
         return;
     }
     for key in OPTION_KEYS {
         FLASH.optkeyr().write_value(key);
     }
-    FLASH.optcr().modify(|w| w.set_bor_lev(BROWN_OUT_2_7_V));
+    FLASH.optcr().modify(|w| w.set_bor_lev(BROWN_OUT_LEVEL_3));
     FLASH.optcr().modify(|w| w.set_optstrt(true));
     let deadline = Instant::now() + PATIENCE;
     while FLASH.sr().read().bsy() && Instant::now() < deadline {}

@@ -1,11 +1,12 @@
 //! Behaviours: what the hand can be asked to do above the reflex (FingerVision 2017, section II), and what a camera behind
 //! a clear skin tells them.
 
+use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
 /// What the hand is asked to do. It goes on until it ends by itself, by [`Down::End`](crate::wire::Down::End), or because
 /// the wearer's muscles take over.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Behaviour {
     /// Somebody strokes the finger over a surface to measure its friction: slip is expected and answered by nothing.
     Stroke,
@@ -37,7 +38,7 @@ impl Behaviour {
 }
 
 /// How a behaviour ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Ending {
     /// It did what it was asked for.
     Done,
@@ -87,7 +88,7 @@ pub const NORMAL_STEP_MN: i32 = 10;
 pub const SHEAR_STEP_MN: i32 = 20;
 
 /// What the camera behind the skin saw in one picture (FingerVision 2017, sections III and IV).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct CameraView {
     /// Age of the picture when this is sent, ms.
     pub age_ms: u16,

@@ -16,6 +16,12 @@ pub const FRAME_HZ: u32 = SCAN_HZ / SCANS_PER_FRAME as u32;
 pub const FRAMES_PER_SLOW_FRAME: u8 = 25;
 /// Rate of slow frames, Hz: the rate of each switched signal.
 pub const SLOW_HZ: u32 = FRAME_HZ / FRAMES_PER_SLOW_FRAME as u32;
+/// Frames in this many milliseconds.
+#[must_use]
+pub const fn frames(ms: u32) -> u32 {
+    ms * FRAME_HZ / 1_000
+}
+
 /// Inputs of one analogue switch (CD74HC4067).
 pub const SWITCH_INPUTS: u8 = 16;
 

@@ -3,10 +3,11 @@
 //! Three things are kept apart. A detector **says** slip: its own verdict, whoever listens. It is **believed** unless the
 //! plausibility guard ignores it. It is **acted** on while the reflex closes because of it.
 
+use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
 /// A detector. Its number is its bit in a [`DetectorSet`]; new ones are added at the end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 #[repr(u8)]
 pub enum DetectorId {
     /// S1: vibration of the PVDF film (Prosthesis, section 5).
@@ -17,7 +18,7 @@ pub enum DetectorId {
     Hebbian,
     /// The multilayer perceptron on normal forces (Bamshad 2023).
     Mlp,
-    /// Evidence from outside: the oracle of a scene.
+    /// Evidence from outside: somebody who knows whether it slips.
     Injected,
     /// The flicker of a photoelastic head (Dubey 2006).
     Photoelastic,
@@ -58,7 +59,7 @@ impl DetectorId {
 }
 
 /// A set of detectors.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct DetectorSet(u8);
 
 impl DetectorSet {
@@ -135,7 +136,7 @@ impl DetectorSet {
 }
 
 /// Where to an object slips, if the detector can tell.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Direction {
     /// The detector cannot tell.
     #[default]
@@ -147,7 +148,7 @@ pub enum Direction {
 }
 
 /// Whether a detector has something to judge by.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum DetectorHealth {
     /// Not yet: its windows fill, or it has not seen the finger unloaded.
     #[default]
@@ -159,7 +160,7 @@ pub enum DetectorHealth {
 }
 
 /// What a detector concluded when it last decided.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Evidence {
     /// The object slips.
     pub slip: bool,

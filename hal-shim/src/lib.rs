@@ -2,7 +2,7 @@
 //!
 //! What crosses it, in the order in which data goes: [`channel`] says which signal is on which pin, [`schedule`] in which
 //! slot it is read, [`frame`] is what a board hands to the logic every 0.5 ms, [`motor`] is what the logic hands back.
-//! [`detector`] and [`setting`] list the detectors and the settings; [`words`] are the states and faults that both sides and
+//! [`detector`] lists the detectors; [`words`] are the states and faults that both sides and
 //! a person watching call by the same names. [`wire`] is how all of it travels over the serial line, and [`flash`] is where
 //! a board keeps what must outlive a power cut. Nothing here decides anything.
 #![no_std]
@@ -19,6 +19,5 @@ pub mod frame;
 pub mod front_end;
 pub mod motor;
 pub mod schedule;
-pub mod setting;
 pub mod wire;
 pub mod words;

@@ -1,9 +1,10 @@
 //! What the logic hands back: how to drive the motor that closes and opens the hand.
 
+use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
 /// Part of the full supply on the motor, 0 to 1000 per mille.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, Schema)]
 #[serde(from = "u16", into = "u16")]
 pub struct Duty(u16);
 
@@ -37,7 +38,7 @@ impl From<Duty> for u16 {
 }
 
 /// How the motor is driven for the next 0.5 ms.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum MotorDrive {
     /// Not driven. The gear does not run backwards, so the hand keeps what it holds.
     #[default]

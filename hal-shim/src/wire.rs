@@ -2,14 +2,14 @@
 //!
 //! A frame is `COBS(postcard(version, sequence, message) ++ CRC-32)` and a zero byte. The version and the sequence number
 //! come first, so that a receiver of another version can say so, and a receiver that missed frames can count them.
-//! Variants are only ever added at the end. `tests/golden.txt` holds the bytes of one of each: if those change, the
-//! version must.
+//! Variants are only ever added at the end. The types are the one source: [`SCHEMA`], the bytes that are held, the tables of
+//! `docs/protocol.md` and Python's decoder follow from them, and a byte that changes asks for a new [`VERSION`]
+//! (`tests/golden.rs`).
 //!
 //! ```
-//! use tenax_hal_shim::setting::SettingId;
 //! use tenax_hal_shim::wire::{Down, FRAME_MAX, Receiver, Setting, encode};
 //!
-//! let command = Down::Set(Setting { id: SettingId::S1 as u8, value: 120 });
+//! let command = Down::Set(Setting { id: 1, value: 120 });
 //! let mut buffer = [0; FRAME_MAX];
 //! let frame = encode(7, &command, &mut buffer).expect("a frame has room for every message");
 //! let mut receiver = Receiver::new();
@@ -29,6 +29,8 @@ mod slow;
 mod tick;
 mod up;
 
+use postcard_schema::key::Key;
+
 pub use self::about::{About, Identity, KEPT_MAX, ResetCause, Restored, SETTINGS_MAX};
 pub use self::answer::{Answer, Refusal, SETTINGS_PER_ANSWER, Setting};
 pub use self::down::{DRIVE_HOLD_MAX_MS, Down};
@@ -42,7 +44,10 @@ pub use self::tick::TickRecord;
 pub use self::up::{Counters, Event, EventKind, Up};
 
 /// The version of every message below. A receiver refuses frames of another.
-pub const VERSION: u8 = 3;
+pub const VERSION: u8 = 4;
+/// What the messages are made of, as one number: both directions' names, order and types. A board and a tool of one version whose
+/// numbers differ were built from different sources.
+pub const SCHEMA: u64 = u64::from_le_bytes(Key::for_path::<(Up, Down)>("tenax").to_bytes());
 /// The serial line's rate, baud, 8N1.
 pub const BAUD: u32 = 921_600;
 /// The longest frame, bytes, the final zero included: what a sender's and a receiver's buffer must hold.

@@ -6,12 +6,13 @@ mod spoken;
 
 use core::cmp::Ordering;
 
+use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
 use crate::detector::DetectorId;
 
 /// What the grip reflex is doing (Prosthesis, figure 9).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum GripMode {
     /// Something that the reflex cannot do without is missing (at boot: not yet seen). It commands nothing; the wearer
     /// still drives the hand.
@@ -31,7 +32,7 @@ pub enum GripMode {
 }
 
 /// Why the mode changed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Cause {
     /// Every sensor that the reflex needs gives readings.
     SensorsReady,
@@ -52,7 +53,7 @@ pub enum Cause {
 }
 
 /// Why a sensor gives no number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Reason {
     /// Below its live zero: a cut wire, a lost supply.
     Dead,
@@ -75,7 +76,7 @@ pub enum Reason {
 }
 
 /// What the fingertip can no longer do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Capability {
     /// Feel vibration: S1.
     Vibration,
@@ -86,7 +87,7 @@ pub enum Capability {
 }
 
 /// Who drives the motor in a tick.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum DriveSource {
     /// Nobody: the motor is not driven.
     #[default]
@@ -102,7 +103,7 @@ pub enum DriveSource {
 }
 
 /// What went wrong.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Fault {
     /// A sensor gives no number any more.
     SensorLost {
@@ -154,7 +155,7 @@ pub enum Fault {
 }
 
 /// What a teacher says about one output of the network (Tada 2006, equations 1 and 2).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Code {
     /// v1: object and hand move against each other, it slips. v2: the hand moves down.
     Minus,
@@ -191,7 +192,7 @@ impl Code {
 pub type Codes = [Code; 2];
 
 /// Why the network has nothing to learn at the moment.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum NoLesson {
     /// No teacher, or it has said less than it takes to believe it.
     Absent,
@@ -203,12 +204,12 @@ pub enum NoLesson {
     NothingMoves,
     /// Nothing is held.
     NoGrasp,
-    /// The receptors feel something else: the reflex or the wearer moves the hand, or something knocks at it.
+    /// The receptors feel something else: the reflex or the wearer moves the hand, or something strikes it.
     Disturbed,
 }
 
 /// How somebody at the hand consents to what the serial line may do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Consent {
     /// Switched on with a finger that is known to hold nothing.
     PowerUp,
@@ -219,7 +220,7 @@ pub enum Consent {
 }
 
 /// What the serial line may do at the moment.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Line {
     /// Read.
     #[default]
@@ -234,7 +235,7 @@ pub enum Line {
 }
 
 /// What outlives a power cut.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Kept {
     /// What the network learned.
     Network,
@@ -252,7 +253,7 @@ impl Kept {
 }
 
 /// What the wearer is asked to do during the calibration of the myosensors.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Prompt {
     /// Relax.
     Rest,
@@ -275,7 +276,7 @@ impl Prompt {
 }
 
 /// Why a calibration of the myosensors was not taken.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum CalibrationRefusal {
     /// An envelope wandered while the wearer should rest: a contraction, a loose electrode, interference.
     RestNotQuiet,
@@ -325,7 +326,7 @@ impl core::fmt::Display for CalibrationRefusal {
 }
 
 /// How the calibration of the myosensors goes on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Calibration {
     /// The wearer shall do this for the next 5 s.
     Asks(Prompt),

@@ -165,7 +165,7 @@ fn the_longest_message_fits_a_frame() {
     assert!(encode(u16::MAX, &answer(Answer::Settings(settings)), &mut buffer).is_some());
     let settings = [Setting { id: u8::MAX, value: i32::MIN }; SETTINGS_MAX].into_iter().collect();
     let identity = Identity { build: u64::MAX, chip: [u32::MAX; 3], reset: ResetCause::Other };
-    let about = About { identity, frames: u32::MAX, settings };
+    let about = About { identity, schema: u64::MAX, frames: u32::MAX, settings };
     assert!(encode(u16::MAX, &answer(Answer::About(about)), &mut buffer).is_some());
     let bytes = [u8::MAX; PIECE_MAX].into_iter().collect();
     let why = [u8::MAX; WHY_MAX].into_iter().collect();

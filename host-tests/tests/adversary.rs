@@ -12,10 +12,10 @@ use tenax_hal_shim::channel::{
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::front_end::MYO_REST_MV;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
-use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{Down, Setting};
 use tenax_hal_shim::words::{DriveSource, Kept};
 use tenax_host_tests::{Bench, calibrated};
+use tenax_logic::setting::SettingId;
 
 /// Two slow frames.
 const OPEN_WITHIN_FRAMES: u32 = 50;
@@ -60,7 +60,7 @@ struct Adversary {
 }
 
 fn set(id: SettingId, value: i32) -> Down {
-    Down::Set(Setting { id: id as u8, value })
+    Down::Set(Setting { id: id.number(), value })
 }
 
 impl Adversary {
@@ -172,7 +172,7 @@ impl Adversary {
         let accepted = self.bench.fingertip.command(&command).is_ok();
         self.no_wearer = self.bench.fingertip.config().no_wearer;
         // A bench whose line is not trusted any more would only hear refusals from then on.
-        if matches!(command, Down::Set(Setting { id, value: 0 }) if id == SettingId::LineTrusted as u8) {
+        if matches!(command, Down::Set(Setting { id, value: 0 }) if id == SettingId::LineTrusted.number()) {
             self.restart(step);
         }
         if let (true, Down::Drive { drive, hold_ms }) = (accepted, command) {

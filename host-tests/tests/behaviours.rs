@@ -4,10 +4,10 @@ use tenax_hal_shim::behaviour::{Behaviour, CameraView, Ending, MARKERS};
 use tenax_hal_shim::channel::{ARRAY, ARRAY_COUNT, FSR, PVDF};
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{Down, EventKind, Refusal, Setting};
 use tenax_hal_shim::words::DriveSource;
 use tenax_host_tests::Bench;
+use tenax_logic::setting::SettingId;
 
 fn view(moving_e4: u16, normal: u8, shear: i8) -> Down {
     Down::View(CameraView {
@@ -182,7 +182,7 @@ fn what_opens_needs_consent_as_long_as_it_lasts() {
         bench.run(200);
         begin(&mut bench, Behaviour::HandOver);
         if revoked {
-            let revoke = Down::Set(Setting { id: SettingId::LineTrusted as u8, value: 0 });
+            let revoke = Down::Set(Setting { id: SettingId::LineTrusted.number(), value: 0 });
             bench.fingertip.command(&revoke).expect("a trusted line may give it back");
         }
         // What consent there was at power-up is over long before.
@@ -268,7 +268,7 @@ fn a_turn_in_which_nothing_slips_gives_up_before_the_object_falls() {
 fn a_row_of_hand_overs_silences_the_reflex_as_long_as_the_consent() {
     let mut bench = Bench::holding(14);
     bench.press(300.0);
-    let distrust = Down::Set(Setting { id: SettingId::LineTrusted as u8, value: 0 });
+    let distrust = Down::Set(Setting { id: SettingId::LineTrusted.number(), value: 0 });
     bench.run(600);
     bench.fingertip.command(&distrust).expect("a trusted line may give it back");
     let mut silent = 0;

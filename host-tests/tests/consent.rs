@@ -2,19 +2,19 @@
 
 use tenax_hal_shim::behaviour::Behaviour;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
-use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{Answer, Down, EventKind, Received, Refusal, Setting, Up};
 use tenax_hal_shim::words::{Code, Consent, DriveSource, GripMode, Line};
 use tenax_host_tests::Bench;
 use tenax_logic::device::Device;
 use tenax_logic::fingertip::Fingertip;
+use tenax_logic::setting::SettingId;
 
 const OPEN: Down = Down::Drive { drive: MotorDrive::Open(Duty::FULL), hold_ms: 250 };
 const CLOSE: Down = Down::Drive { drive: MotorDrive::Close(Duty::FULL), hold_ms: 250 };
 const COAST: Down = Down::Drive { drive: MotorDrive::Coast, hold_ms: 250 };
 
 fn set(id: SettingId, value: i32) -> Down {
-    Down::Set(Setting { id: id as u8, value })
+    Down::Set(Setting { id: id.number(), value })
 }
 
 fn all_that_change() -> Vec<Down> {

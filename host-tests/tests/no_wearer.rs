@@ -3,16 +3,16 @@
 
 use tenax_hal_shim::channel::{MYO_EXTENSOR, MYO_FLEXOR};
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{Down, EventKind, Refusal, Setting};
 use tenax_hal_shim::words::{DriveSource, GripMode, Kept};
 use tenax_host_tests::Bench;
 use tenax_logic::config::Config;
 use tenax_logic::fingertip::Fingertip;
+use tenax_logic::setting::SettingId;
 use tenax_logic::store::payload;
 
 fn set(value: i32) -> Down {
-    Down::Set(Setting { id: SettingId::NoWearer as u8, value })
+    Down::Set(Setting { id: SettingId::NoWearer.number(), value })
 }
 
 /// A board that was told so before it was last switched off, or was not; its myosensors are not fitted.

@@ -9,12 +9,12 @@ use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::front_end::MYO_REST_MV;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
-use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{DRIVE_HOLD_MAX_MS, Down, EventKind, Setting};
 use tenax_hal_shim::words::{Cause, Code, DriveSource};
 use tenax_host_tests::Bench;
 use tenax_host_tests::teaching::SLIP_MV;
 use tenax_logic::config::Config;
+use tenax_logic::setting::SettingId;
 
 const STEPS: u32 = 1_000_000;
 
@@ -60,7 +60,7 @@ fn disturb(bench: &mut Bench, rng: &mut ChaCha8Rng) {
 }
 
 fn set(id: SettingId, value: i32) -> Down {
-    Down::Set(Setting { id: id as u8, value })
+    Down::Set(Setting { id: id.number(), value })
 }
 
 fn random_command(rng: &mut ChaCha8Rng) -> Down {

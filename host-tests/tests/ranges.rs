@@ -1,14 +1,14 @@
 //! No legal combination of settings crushes, opens or deafens: every pair at its ends, on a hand whose line is not
-//! trusted (the ranges of `hal-shim/src/setting.rs`).
+//! trusted (the ranges of the rows in `logic/src/*/settings.rs`).
 
 use std::num::NonZero;
 
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::words::Kept;
 use tenax_host_tests::{Bench, wearer};
 use tenax_logic::config::Config;
 use tenax_logic::fingertip::Fingertip;
+use tenax_logic::setting::SettingId;
 use tenax_logic::store::payload;
 
 /// Fn that a frame of full closing adds on a stiff object, N: 25 mm/s of a finger against 1 N/mm.
@@ -133,7 +133,7 @@ fn every_setting_at_its_ends_stops_at_the_ceiling() {
                 let settings = [(SettingId::ForceCeiling, ceiling), (id, value)];
                 let settings = if id == SettingId::ForceCeiling { &settings[..1] } else { &settings[..] };
                 let n = squeezed_n(settings);
-                // The sensor's Fn is not the physical one: see `tenax_logic::forces`. What is compared is what stops it.
+                // The sensor's Fn is not the physical one: see `tenax_logic::force::sensor`. What is compared is what stops it.
                 assert!(n < ceiling_n + STOP_N, "{settings:?}: {n} N");
             }
         }

@@ -3,11 +3,11 @@
 
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{Down, EventKind, Setting};
 use tenax_hal_shim::words::Cause;
 use tenax_host_tests::Bench;
 use tenax_host_tests::teaching::{SLIP_MV, SLIPS_UP};
+use tenax_logic::setting::SettingId;
 
 /// What is held, N.
 const LOAD_N: f64 = 4.0;
@@ -37,7 +37,7 @@ fn taught_on_something_slippery(seed: u64) -> Bench {
 }
 
 fn looking_ahead(mut bench: Bench, ms: i32) -> Bench {
-    let id = SettingId::HebbianAhead as u8;
+    let id = SettingId::HebbianAhead.number();
     bench.fingertip.command(&Down::Set(Setting { id, value: ms })).expect("in its range");
     bench
 }

@@ -3,10 +3,10 @@
 use tenax_hal_shim::channel::PVDF;
 use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{Down, EventKind, Setting};
 use tenax_hal_shim::words::{Cause, DriveSource, GripMode};
 use tenax_host_tests::Bench;
+use tenax_logic::setting::SettingId;
 
 /// What rubs, mV: a quarter of S1.
 const RUBS_MV: f64 = 35.0;
@@ -77,7 +77,7 @@ fn closing_that_does_not_help_ends_at_half_as_much_again() {
 fn with_s1_at_its_highest_a_loud_slip_is_a_warning_still() {
     let mut bench = Bench::holding(65);
     let highest = SettingId::S1.row().max;
-    bench.fingertip.command(&Down::Set(Setting { id: SettingId::S1 as u8, value: highest })).unwrap();
+    bench.fingertip.command(&Down::Set(Setting { id: SettingId::S1.number(), value: highest })).unwrap();
     bench.run(2_000);
     bench.vibration_mv = 300.0;
     bench.run(1_000);

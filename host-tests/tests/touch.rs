@@ -104,7 +104,7 @@ fn nothing_is_learned_from_a_disturbed_hand_a_late_picture_or_an_empty_one() {
     bench.run(400);
     let updates = before(&bench);
     for _ in 0..20 {
-        let late = Config::default().touch.teacher.fresh_ms + 1;
+        let late = Config::default().hebbian.teacher.fresh_ms + 1;
         bench.fingertip.command(&Down::Teach { codes: SLIPS_UP, age_ms: late }).unwrap();
         bench.run(PICTURE_FRAMES);
     }

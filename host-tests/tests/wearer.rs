@@ -13,17 +13,17 @@ use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::front_end::MYO_REST_MV;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
-use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{Down, Setting};
 use tenax_hal_shim::words::{Cause, DriveSource, GripMode};
 use tenax_host_tests::Bench;
 use tenax_logic::config::Config;
+use tenax_logic::setting::SettingId;
 
 /// Two slow frames.
 const OPEN_WITHIN_FRAMES: u32 = 50;
 
 fn set(id: SettingId, value: i32) -> Down {
-    Down::Set(Setting { id: id as u8, value })
+    Down::Set(Setting { id: id.number(), value })
 }
 
 fn said(bench: &Bench, id: DetectorId) -> bool {

@@ -11,6 +11,8 @@ pub mod wearer;
 
 use std::fmt::{self, Display};
 
+use tenax_bench::bars::Goal;
+
 /// Whether a promise holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
@@ -43,6 +45,16 @@ impl Bar {
             figure: figure.into(),
             verdict: if holds { Verdict::Pass } else { Verdict::Fail },
         }
+    }
+
+    /// What is held of a goal that is not reached yet (`bars.toml`), its value and what it was measured by.
+    pub fn short_of(goal: &Goal, value: f64, figure: impl Display) -> Self {
+        let reached = if goal.reached(value) { "the goal is reached" } else { "short of the goal" };
+        Self::new(
+            format!("{}: held {}, goal {}", goal.what, goal.held, goal.goal),
+            format!("{value:.3}, {reached}; {figure}"),
+            goal.holds(value),
+        )
     }
 
     /// A figure that is told and not judged, such as a wall clock's.

@@ -3,35 +3,26 @@
 mod calibrate;
 mod chart;
 mod check;
-mod config;
 mod dataset;
 mod evaluate;
-mod flash;
 mod folder;
 mod format;
 mod learn;
 mod line_file;
 mod lint_image;
-mod monitor;
-mod out;
-mod play;
 mod plot;
-mod port;
 mod progress;
-mod record;
 mod run;
 mod scenes;
-mod settings;
 mod size;
 mod test;
 mod train;
 mod vision;
-mod wiring;
-mod workspace;
 
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use tenax_serial::cli::{config, exit, flash, monitor, out, play, record, settings, wiring, workspace};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -55,7 +46,7 @@ Examples:
 
 /// Runs, replays, watches and charts the Tenax fingertip.
 #[derive(Debug, Parser)]
-#[command(name = "tenax", version, after_help = EXAMPLES)]
+#[command(name = "tenax", bin_name = "tenax", version, after_help = EXAMPLES)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -110,7 +101,7 @@ enum Command {
 /// Runs the command line. 0: done. 1: something measured is not as promised. 2: it could not be run.
 #[must_use]
 pub fn main() -> ExitCode {
-    let done = match Cli::parse().command {
+    exit(match Cli::parse().command {
         Command::Run(args) => run::main(&args),
         Command::Learn(args) => learn::main(&args),
         Command::Scenes => scenes::main(),
@@ -132,16 +123,7 @@ pub fn main() -> ExitCode {
         Command::LintImage => lint_image::main(),
         Command::Wiring => wiring::main(),
         Command::Settings => settings::main(),
-    };
-    match done {
-        Ok(code) => code,
-        // Whoever read our output has read enough.
-        Err(error) if error.is::<out::Closed>() => ExitCode::SUCCESS,
-        Err(error) => {
-            out::note!("error: {error:#}");
-            ExitCode::from(2)
-        }
-    }
+    })
 }
 
 #[cfg(test)]

@@ -1,35 +1,11 @@
-//! The `tenax` tool: runs a scene or a recording on a board, reports, draws, and watches a real board's line.
+//! The whole `tenax` tool: the command line that joins serial tools, bench and studies, and the promises that it checks.
+//!
+//! Here lives a file for each command that is not the serial tools' alone, and a file for each promise of `tenax check`.
+//! A command reads its arguments, calls one of the crates below, and prints what they give; it works nothing out.
+//! What a command of the serial tools takes is defined in `tenax-serial` and used from there.
+//! Nothing depends on this crate; what a test or a study wants of it belongs below.
+//! Its binary is `tenax-host` in the target folder, where `tenax` is the serial tools'; `cargo tenax` starts the one that it takes.
 #![forbid(unsafe_code)]
 
-pub mod board;
-pub mod budgets;
-pub mod chart;
 pub mod check;
 pub mod cli;
-pub mod crates;
-pub mod dataset;
-pub mod evaluate;
-pub mod guide;
-pub mod image;
-pub mod input;
-pub mod jobs;
-pub mod labelled;
-pub mod learn;
-pub mod link;
-pub mod monitor;
-pub mod photoelastic;
-pub mod plot;
-pub mod recipe;
-pub mod record;
-pub mod replay;
-pub mod report;
-pub mod scorer;
-pub mod serve;
-pub mod session;
-pub mod settings;
-pub mod suggest;
-pub mod timeline;
-pub mod truth;
-pub mod vision;
-pub mod web;
-pub mod wiring;

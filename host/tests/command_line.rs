@@ -4,7 +4,7 @@ use std::io::Read;
 use std::process::{Command, Output, Stdio};
 
 fn tenax(args: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_tenax"));
+    let mut command = Command::new(env!("CARGO_BIN_EXE_tenax-host"));
     command.args(args).stdin(Stdio::null());
     command
 }

@@ -38,7 +38,7 @@ fn every_file_that_a_page_links_to_is_there() {
 
 #[test]
 fn every_command_that_a_page_names_is_one() {
-    let help = Command::new(env!("CARGO_BIN_EXE_tenax")).arg("--help").output().unwrap().stdout;
+    let help = Command::new(env!("CARGO_BIN_EXE_tenax-host")).arg("--help").output().unwrap().stdout;
     let help = String::from_utf8(help).unwrap();
     let commands = help.split("Commands:").nth(1).unwrap().split("Options:").next().unwrap();
     let commands: BTreeSet<&str> =
@@ -52,7 +52,19 @@ fn every_command_that_a_page_names_is_one() {
 
 #[test]
 fn every_test_that_a_page_names_is_one() {
-    let packages = ["hal-shim", "logic", "scene", "host", "host-tests", "launch", "train", "vision"];
+    let packages = [
+        "hal-shim",
+        "logic",
+        "scene",
+        "serial",
+        "bench",
+        "studies",
+        "host",
+        "host-tests",
+        "launch",
+        "train",
+        "vision",
+    ];
     for (page, text) in pages() {
         let lines = text.lines().filter(|line| line.contains("cargo test"));
         for name in lines.flat_map(|line| names(line, "--test ")) {

@@ -5,11 +5,13 @@ mod toolchain;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::SystemTime;
 
 use anyhow::{Context, Result, ensure};
 
 use self::toolchain::Toolchain;
 use crate::cargo;
+use crate::fresh::Program;
 use crate::jobs::{self, Desk, Job};
 
 /// What the image is compiled for: Cortex-M4F, hard float.
@@ -44,16 +46,31 @@ impl Binary {
 /// Says what to install, or what the compiler said.
 pub fn build(root: &Path, binary: Binary) -> Result<PathBuf> {
     jobs::run(vec![job(root, &[binary])])?;
-    let elf = target_dir(root).join(TARGET).join(PROFILE).join(binary.name());
+    let elf = program(root, binary).file;
     ensure!(elf.exists(), "the build succeeded, but there is no {}", elf.display());
     Ok(elf)
+}
+
+/// Its program. How it is built is in the sources, but for what [`Toolchain`] finds.
+fn program(root: &Path, binary: Binary) -> Program<'_> {
+    let file = target_dir(root).join(TARGET).join(PROFILE).join(binary.name());
+    Program { root, file, how: binary.name().to_owned() }
 }
 
 /// The same, beside other jobs.
 #[must_use]
 pub fn job<'a>(root: &'a Path, binaries: &[Binary]) -> Job<'a> {
     let bins: Vec<_> = binaries.iter().flat_map(|binary| ["--bin", binary.name()]).collect();
-    Job { name: "image", done: "built", run: Box::new(move |desk| run(root, "build", &bins, desk)) }
+    let programs: Vec<_> = binaries.iter().map(|&binary| program(root, binary)).collect();
+    let run = move |desk: &Desk| {
+        if programs.iter().all(Program::is_fresh) {
+            return Ok(());
+        }
+        let begun = SystemTime::now();
+        run(root, "build", &bins, desk)?;
+        programs.iter().try_for_each(|program| program.built(begun))
+    };
+    Job { name: "image", done: "built", run: Box::new(run) }
 }
 
 /// Lints the image's package with the toolchain that builds it; a warning is an error.

@@ -5,6 +5,7 @@
 #![forbid(unsafe_code)]
 
 mod cargo;
+pub mod fresh;
 pub mod image;
 pub mod jobs;
 pub mod status;

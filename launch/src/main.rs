@@ -5,7 +5,8 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::{Context, Result};
-use tenax_launch::{image, jobs, tool};
+use tenax_launch::tool::{self, Tool};
+use tenax_launch::{image, jobs};
 
 fn main() -> ExitCode {
     launch().unwrap_or_else(|error| {
@@ -17,11 +18,12 @@ fn main() -> ExitCode {
 fn launch() -> Result<ExitCode> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().context("the package is in the workspace")?;
     let arguments: Vec<_> = std::env::args_os().skip(1).collect();
-    let mut builds = vec![tool::job(root)];
+    let tool = Tool::of(root, &arguments)?;
+    let mut builds = vec![tool.job(root)];
     let binaries = tool::image_of(&arguments);
     if !binaries.is_empty() {
         builds.push(image::job(root, binaries));
     }
     jobs::run(builds)?;
-    tool::become_it(&arguments)
+    tool.become_it(root, &arguments)
 }

@@ -4,30 +4,113 @@ use std::env::consts::EXE_SUFFIX;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
+use std::time::SystemTime;
 
 use anyhow::{Context, Result, ensure};
 
 use crate::cargo;
+use crate::fresh::Program;
 use crate::image::Binary;
 use crate::jobs::Job;
 
-/// How the tool is built: wherever it is, so that it is built once.
+/// How the whole tool is built: wherever it is, so that it is built once.
 ///
 /// rigless asks for rustc 1.98 and builds on 1.95: see docs/tools.md.
 pub const BUILD: [&str; 6] =
     ["--release", "--ignore-rust-version", "--package", "tenax", "--features", "tenax/emulator"];
+/// How the serial tools alone are built.
+const BUILD_SERIAL: [&str; 3] = ["--release", "--package", "tenax-serial"];
 
-/// Builds the tool of the workspace at `root` into the target folder that this program is in.
-#[must_use]
-pub fn job(root: &Path) -> Job<'_> {
-    let run = move |desk: &_| {
-        let mut cargo = Command::new("cargo");
-        cargo.arg("build").args(BUILD).arg("--target-dir").arg(target()?).current_dir(root);
-        // If a person has set it, the target folder is already the one of that target.
-        cargo.env_remove("CARGO_BUILD_TARGET");
-        cargo::run(&mut cargo, desk)
-    };
-    Job { name: "tool", done: "built", run: Box::new(run) }
+/// What runs a command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tool {
+    /// All of it.
+    Whole,
+    /// The serial tools, which take no emulator and no plots: built in a minute and a half, the whole tool in minutes.
+    Serial,
+}
+
+impl Tool {
+    /// The smaller one that has this command, or the whole if only that is built.
+    ///
+    /// # Errors
+    /// If this program is not in a target folder.
+    pub fn of(root: &Path, arguments: &[OsString]) -> Result<Self> {
+        let [whole, serial] = [Self::Whole, Self::Serial];
+        let is_small = is_serial(arguments)
+            && (serial.program(root, &target()?).is_fresh() || !whole.program(root, &target()?).is_fresh());
+        Ok(if is_small { serial } else { whole })
+    }
+
+    const fn build(self) -> &'static [&'static str] {
+        match self {
+            Self::Whole => &BUILD,
+            Self::Serial => &BUILD_SERIAL,
+        }
+    }
+
+    /// Its program in a target folder.
+    #[must_use]
+    pub fn program<'a>(self, root: &'a Path, target: &Path) -> Program<'a> {
+        let name = match self {
+            Self::Whole => "tenax-host",
+            Self::Serial => "tenax",
+        };
+        let file = target.join("release").join(format!("{name}{EXE_SUFFIX}"));
+        Program { root, file, how: self.build().join(" ") }
+    }
+
+    /// Builds it from the workspace at `root` into the target folder that this program is in, if it is not built.
+    #[must_use]
+    pub fn job(self, root: &Path) -> Job<'_> {
+        let run = move |desk: &_| {
+            let target = target()?;
+            let program = self.program(root, &target);
+            if program.is_fresh() {
+                return Ok(());
+            }
+            let begun = SystemTime::now();
+            let mut cargo = Command::new("cargo");
+            cargo.arg("build").args(self.build()).arg("--target-dir").arg(target).current_dir(root);
+            // If a person has set it, the target folder is already the one of that target.
+            cargo.env_remove("CARGO_BUILD_TARGET");
+            cargo::run(&mut cargo, desk)?;
+            program.built(begun)
+        };
+        Job { name: "tool", done: "built", run: Box::new(run) }
+    }
+
+    /// Starts it; where the system can, this process becomes it.
+    ///
+    /// # Errors
+    /// If it is not there or does not start.
+    pub fn become_it(self, root: &Path, arguments: &[OsString]) -> Result<ExitCode> {
+        let path = self.program(root, &target()?).file;
+        ensure!(path.exists(), "the build succeeded, but there is no {}", path.display());
+        let mut tool = Command::new(&path);
+        tool.args(arguments);
+        #[cfg(unix)]
+        {
+            use std::os::unix::process::CommandExt;
+            Err(tool.exec()).with_context(|| format!("cannot start {}", path.display()))
+        }
+        #[cfg(not(unix))]
+        {
+            let status = tool.status().with_context(|| format!("cannot start {}", path.display()))?;
+            let code = status.code().and_then(|code| u8::try_from(code).ok());
+            Ok(ExitCode::from(code.unwrap_or(2)))
+        }
+    }
+}
+
+/// Whether the serial tools have this command. Their `calibrate` has no photoelastic head on a balance, and does not list it.
+fn is_serial(arguments: &[OsString]) -> bool {
+    let mut words = arguments.iter().map(|argument| argument.to_str());
+    match words.next().flatten() {
+        Some("calibrate") => matches!(words.next().flatten(), Some("emg" | "force" | "friction")),
+        Some("config" | "flash" | "monitor" | "play" | "record" | "settings" | "wiring") => true,
+        _ => false,
+    }
 }
 
 /// What the tool will ask for when it is called with these arguments. If this is wrong, the tool builds it itself.
@@ -43,34 +126,7 @@ pub fn image_of(arguments: &[OsString]) -> &'static [Binary] {
     }
 }
 
-/// Starts the tool beside this program in the target folder; where the system can, this process becomes it.
-///
-/// # Errors
-/// If it is not there or does not start.
-pub fn become_it(arguments: &[OsString]) -> Result<ExitCode> {
-    let path = path()?;
-    let mut tool = Command::new(&path);
-    tool.args(arguments);
-    #[cfg(unix)]
-    {
-        use std::os::unix::process::CommandExt;
-        Err(tool.exec()).with_context(|| format!("cannot start {}", path.display()))
-    }
-    #[cfg(not(unix))]
-    {
-        let status = tool.status().with_context(|| format!("cannot start {}", path.display()))?;
-        let code = status.code().and_then(|code| u8::try_from(code).ok());
-        Ok(ExitCode::from(code.unwrap_or(2)))
-    }
-}
-
-fn path() -> Result<PathBuf> {
-    let path = target()?.join("release").join(format!("tenax{EXE_SUFFIX}"));
-    ensure!(path.exists(), "the build succeeded, but there is no {}", path.display());
-    Ok(path)
-}
-
-/// Wherever Cargo was told to put it: this program is its `debug/tenax-launch`, and the tool its `release/tenax`.
+/// Wherever Cargo was told to put it: this program is its `launch/tenax-launch`, and the tool its `release/tenax-host`.
 fn target() -> Result<PathBuf> {
     let own = std::env::current_exe().context("cannot tell where this program is")?;
     let target = own.ancestors().nth(2).context("this program is not in a target folder")?;
@@ -83,6 +139,19 @@ mod tests {
 
     fn image(arguments: &str) -> &'static [Binary] {
         image_of(&arguments.split(' ').map(OsString::from).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn the_serial_tools_run_what_they_have() {
+        let serial = |line: &str| is_serial(&line.split(' ').map(OsString::from).collect::<Vec<_>>());
+        for own in
+            ["monitor", "monitor --port tcp:a:1", "calibrate force --weights-n 1", "wiring", "play a.mcap"]
+        {
+            assert!(serial(own), "{own}");
+        }
+        for whole in ["run", "plot a.mcap", "calibrate photoelastic", "calibrate --help", "--help", ""] {
+            assert!(!serial(whole), "{whole}");
+        }
     }
 
     #[test]

@@ -14,7 +14,7 @@
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::words::{Consent, Line};
 
-use crate::config::frames;
+use tenax_hal_shim::channel::frames;
 
 /// Frames from one look to the next, a fifth of a cycle: whoever consents takes longer than that.
 pub const STEP_FRAMES: u32 = 5;

@@ -13,6 +13,7 @@ mod gentle_grasp;
 mod hand_over;
 mod hold;
 mod movement;
+pub mod settings;
 mod turn;
 
 use tenax_hal_shim::behaviour::{Behaviour, Ending};
@@ -24,29 +25,11 @@ use self::hand_over::HandOver;
 use self::hold::Hold;
 use self::movement::Movement;
 use self::turn::Turn;
-use crate::config::frames;
 use crate::grip::Grip;
+use tenax_hal_shim::channel::frames;
 
+pub use self::settings::BehaviourConfig;
 pub use felt::{Felt, Skin};
-
-/// What a behaviour may be told.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct BehaviourConfig {
-    /// Duty of its movements, per mille.
-    pub duty_permille: u16,
-    /// Length of a small movement, in frames.
-    pub movement_frames: u32,
-    /// How long it waits after one for what it does to show, in frames (section II-D: 0.1 s).
-    pub wait_frames: u32,
-    /// The sum of the scores beyond which an object is held gently (section II-A).
-    pub gentle_score: u16,
-    /// So many cells of the skin must feel another force for a hand-over (section II-C).
-    pub changed_cells: u16,
-    /// Moving points that are slip, in 1/10,000 of the picture.
-    pub moving_e4: u16,
-    /// How far ahead of what is seen a turn is foreseen, in frames; 0: not at all, as in the paper.
-    pub turn_lead_frames: u32,
-}
 
 /// What a behaviour asks for in one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -2,12 +2,7 @@
 //!
 //! `docs/adding-a-detector.md` says what one more takes.
 
-mod hebbian;
 mod injected;
-mod mlp;
-mod photoelastic;
-mod s1;
-mod s2;
 
 use heapless::Vec;
 use tenax_hal_shim::channel::PVDF_COUNT;
@@ -15,19 +10,17 @@ use tenax_hal_shim::detector::{DetectorHealth, DetectorId, DetectorSet, Directio
 use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::wire::{DETECTORS_MAX, Forces};
 
-use crate::array::{MLP_DECIDES, Reading};
+use crate::array::{MLP_DECIDES, MlpDetector, Reading};
 use crate::config::Config;
-use crate::friction::FrictionDetector;
-use crate::photoelastic::Head;
+use crate::force::FrictionDetector;
+use crate::hebbian::HebbianDetector;
+use crate::photoelastic::{Head, PhotoelasticDetector};
 use crate::plausibility::{Disturbance, Plausibility};
 use crate::strain::Gauges;
-use crate::touch::Touch;
 use crate::vibration::Vibration;
+use crate::vibration::detector::S1;
 
 pub use injected::Injected;
-pub use mlp::MlpDetector;
-pub use photoelastic::PhotoelasticDetector;
-pub use s1::S1;
 
 /// What was sensed in one frame, conditioned: what every detector judges by.
 #[derive(Clone, Copy, Debug)]
@@ -58,7 +51,7 @@ pub struct Sensed<'a> {
     pub unloaded: bool,
     /// The finger holds something.
     pub grasp: bool,
-    /// The motor runs fast, or a knock rings: vibration that is not the object's.
+    /// The motor runs fast, or an impact rings: vibration that is not the object's.
     pub noisy: bool,
     /// The reflex or the wearer moves the hand.
     pub moves: bool,
@@ -105,7 +98,7 @@ pub struct Description {
 /// use tenax_hal_shim::detector::DetectorId;
 /// use tenax_logic::detectors::{Description, Detector, Said, Sensed};
 ///
-/// /// Says slip while a knock rings.
+/// /// Says slip while an impact rings.
 /// struct Toy;
 ///
 /// impl Detector for Toy {
@@ -114,7 +107,7 @@ pub struct Description {
 ///     type Config = ();
 ///
 ///     fn step(&mut self, _config: &(), sensed: &Sensed<'_>) -> Option<Said> {
-///         Some(Said::slip(sensed.vibration.knock))
+///         Some(Said::slip(sensed.vibration.impact))
 ///     }
 ///
 ///     fn describe(&self, _config: &()) -> Description {
@@ -152,7 +145,7 @@ macro_rules! for_each_detector {
             $body;
         }
         {
-            let ($detector, $own) = (&mut $self.hebbian, &$config.touch);
+            let ($detector, $own) = (&mut $self.hebbian, &$config.hebbian);
             $body;
         }
         {
@@ -177,7 +170,7 @@ pub struct Detectors {
     /// S2, which a stroke measures.
     pub s2: FrictionDetector,
     /// The Hebbian network, which a teacher teaches.
-    pub hebbian: Touch,
+    pub hebbian: HebbianDetector,
     mlp: MlpDetector,
     /// Evidence from outside.
     pub injected: Injected,
@@ -199,7 +192,7 @@ struct Record {
 
 impl Record {
     #[inline(always)]
-    fn take(&mut self, id: DetectorId, said: Said, frame: u32) {
+    fn note(&mut self, id: DetectorId, said: Said, frame: u32) {
         self.slip = self.slip.with(id, said.slip);
         self.incipient = self.incipient.with(id, said.incipient);
         self.decided_at[id as usize] = frame;
@@ -208,7 +201,7 @@ impl Record {
     fn guard(&mut self, id: DetectorId, tolerated: u16, sensed: &Sensed<'_>) {
         let says = self.slip.or(self.incipient).contains(id);
         let guard = &mut self.guards[id as usize];
-        guard.take(sensed.unloaded, says, tolerated);
+        guard.step(sensed.unloaded, says, tolerated);
         self.ignored = self.ignored.with(id, guard.is_ignored());
     }
 
@@ -216,7 +209,7 @@ impl Record {
     fn guard_array(&mut self, sensed: &Sensed<'_>) {
         let id = DetectorId::Mlp;
         self.guard(id, MlpDetector::IMPLAUSIBLE_AFTER, sensed);
-        self.disturbance.take(sensed.vibration.knock, self.slip.contains(id));
+        self.disturbance.step(sensed.vibration.impact, self.slip.contains(id));
         self.ignored = self.ignored.with(id, self.ignored.contains(id) || self.disturbance.explains_it());
     }
 }
@@ -235,7 +228,7 @@ impl Detectors {
     pub fn step(&mut self, config: &Config, sensed: &Sensed<'_>) {
         for_each_detector!(self, config, |detector, own| {
             if let Some(said) = detector.step(own, sensed) {
-                self.record.take(id_of(detector), said, sensed.frame);
+                self.record.note(id_of(detector), said, sensed.frame);
             }
         });
         // The MLP decides once a cycle, and an implausible verdict is not believed for a single tick. The others are guarded in a
@@ -311,7 +304,7 @@ impl Detectors {
 const _: () = assert!(DetectorId::COUNT <= DETECTORS_MAX);
 
 /// How sure a threshold is: 500 per mille at it, 0 at nothing, 1000 at twice it.
-fn confidence(value: i32, threshold: i32) -> u16 {
+pub(crate) fn confidence(value: i32, threshold: i32) -> u16 {
     // Nothing is above 2^22, and 32 bits are divided by one instruction.
     let value = value.clamp(0, 1 << 22).unsigned_abs();
     let permille = value * 500 / threshold.max(1).unsigned_abs();

@@ -19,13 +19,15 @@
 //! }
 //! ```
 
+use crate::setting::SettingId;
 use heapless::Vec;
 use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::{Job, slot_of};
-use tenax_hal_shim::setting::SettingId;
-use tenax_hal_shim::wire::{About, Answer, Down, Identity, Last, Received, Refusal, Senses, Setting, Up};
+use tenax_hal_shim::wire::{
+    About, Answer, Down, Identity, Last, Received, Refusal, SCHEMA, Senses, Setting, Up,
+};
 use tenax_hal_shim::words::{Fault, Kept, Line};
 
 use crate::fingertip::Fingertip;
@@ -106,7 +108,7 @@ impl Device {
         let mut settings = Vec::new();
         let all = SettingId::ALL.into_iter().map(|id| self.setting(id));
         all.take_while(|setting| settings.push(*setting).is_ok()).for_each(drop);
-        About { identity: self.identity, frames: self.stream.next(), settings }
+        About { identity: self.identity, schema: SCHEMA, frames: self.stream.next(), settings }
     }
 
     /// Reports something that went wrong outside.
@@ -133,8 +135,8 @@ impl Device {
 
     /// What a frame read, for whoever asks, and what is thought about once a slow frame. Part of [`tick`](Self::tick).
     pub fn sampled(&mut self, frame: &Frame) {
-        self.samples.take(frame);
-        self.stream.take(frame);
+        self.samples.record(frame);
+        self.stream.record(frame);
         // After the motor has been driven, so that nothing waits for it.
         if frame.slot() == slot_of(Job::Save) {
             self.fingertip.think();
@@ -177,7 +179,7 @@ impl Device {
             (Ok(()), Down::Set(Setting { id, .. }) | Down::Get(id)) => SettingId::from_number(id)
                 .map_or(Answer::Refused(Refusal::UnknownSetting), |id| Answer::Setting(self.setting(id))),
             (Ok(()), Down::Settings(from)) => {
-                let asked = SettingId::ALL.into_iter().filter(|id| *id as u8 >= from);
+                let asked = SettingId::ALL.into_iter().filter(|id| id.number() >= from);
                 // As many as an answer has room for.
                 let mut settings = Vec::new();
                 asked
@@ -204,7 +206,7 @@ impl Device {
     }
 
     fn setting(&self, id: SettingId) -> Setting {
-        Setting { id: id as u8, value: self.fingertip.config().get(id) }
+        Setting { id: id.number(), value: self.fingertip.config().get(id) }
     }
 
     /// Whether there is a message that was not taken yet.

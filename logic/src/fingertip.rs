@@ -6,25 +6,25 @@
 mod behave;
 mod commands;
 mod consent;
-mod heard;
 mod link;
 mod told;
+mod verdicts;
 
+use crate::setting::SettingId;
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{EventKind, Slow, TickRecord};
 use tenax_hal_shim::words::{Cause, DriveSource, Fault, GripMode, Kept, Line};
 
 use self::behave::Eye;
-use self::heard::{Acting, Heard};
 use self::link::Link;
+use self::verdicts::{Acting, Verdicts};
 use crate::arbiter::{Wishes, arbitrate};
 use crate::arming::{Arming, STEP_FRAMES};
 use crate::behaviours::Running;
 use crate::config::Config;
-use crate::detectors::{Detectors, Said, Sensed};
+use crate::detectors::{Detectors, Said};
 use crate::grip::{Grip, Reflex};
 use crate::journal::Journal;
 use crate::mode;
@@ -157,7 +157,7 @@ impl Fingertip {
         self.detectors.injected.inject(said);
     }
 
-    /// The reflex acts on these detectors alone from now on: for a scene's controls and its oracle.
+    /// The reflex acts on these detectors alone from now on: for a scene's controls and its bound.
     pub const fn act_on(&mut self, detectors: DetectorSet) {
         self.acting = Acting(detectors);
     }
@@ -175,7 +175,7 @@ impl Fingertip {
     fn sense(&mut self, frame: &Frame) {
         self.journal.begin(frame);
         if frame.valid {
-            self.senses.take(&self.config, frame, &mut self.journal);
+            self.senses.process(&self.config, frame, &mut self.journal);
         } else {
             self.senses.lose(&self.config, frame, &mut self.journal);
         }
@@ -183,26 +183,8 @@ impl Fingertip {
             MotorDrive::Close(duty) | MotorDrive::Open(duty) => duty.as_per_mille(),
             MotorDrive::Coast => 0,
         };
-        let vibration = self.senses.vibration;
-        let wearer = self.senses.gate.is_active();
-        let sensed = Sensed {
-            frame: frame.sequence,
-            slot: frame.slot(),
-            valid: frame.valid,
-            vibration,
-            envelopes: self.senses.envelopes(),
-            vibration_known: self.senses.hears(),
-            strain: self.senses.gauges(),
-            forces: self.senses.forces.as_ref(),
-            forces_are_new: self.senses.forces_are_new,
-            taxels: self.senses.taxels(),
-            head: self.senses.head(),
-            unloaded: self.senses.is_unloaded(&self.config),
-            grasp: matches!(self.senses.grip(&self.config), Grip::Holds(_)),
-            noisy: vibration.knock || duty >= self.config.touch.loud_duty_permille,
-            moves: mode::closes(self.mode) || self.mode == GripMode::Settle || wearer,
-            wearer,
-        };
+        let moves = mode::closes(self.mode) || self.mode == GripMode::Settle;
+        let sensed = self.senses.sensed(&self.config, frame, duty, moves);
         self.detectors.step(&self.config, &sensed);
     }
 
@@ -219,10 +201,10 @@ impl Fingertip {
             let striking = matches!(self.mode, GripMode::Slip | GripMode::Settle);
             self.senses.driven(self.drive, striking, STEP_FRAMES);
         }
-        let heard = Heard::of(&self.detectors, self.acting);
-        let behaviour = self.behave(heard);
+        let verdicts = Verdicts::of(&self.detectors, self.acting.but(self.config.detectors_off));
+        let behaviour = self.behave(verdicts);
         let grip = self.senses.grip(&self.config);
-        self.step_mode(heard, grip);
+        self.step_mode(verdicts, grip);
         let wishes = Wishes {
             wearer_active: self.senses.gate.is_active(),
             wearer: self.senses.gate.wish(&self.config.gate),
@@ -242,11 +224,11 @@ impl Fingertip {
             TickRecord {
                 vibration: self.senses.vibration.level,
                 outputs: self.detectors.hebbian.outputs(),
-                said: heard.said,
-                believed: heard.slip.or(heard.incipient),
+                said: verdicts.said,
+                believed: verdicts.slip.or(verdicts.incipient),
                 acted: match (self.mode, source) {
-                    (GripMode::Slip, DriveSource::Reflex) => heard.slip,
-                    (GripMode::Incipient, DriveSource::Reflex) => heard.incipient,
+                    (GripMode::Slip, DriveSource::Reflex) => verdicts.slip,
+                    (GripMode::Incipient, DriveSource::Reflex) => verdicts.incipient,
                     _ => DetectorSet::NONE,
                 },
                 drive,
@@ -260,20 +242,20 @@ impl Fingertip {
     }
 
     /// The flow chart, asked from the top in every tick.
-    fn step_mode(&mut self, heard: Heard, grip: Grip) {
+    fn step_mode(&mut self, verdicts: Verdicts, grip: Grip) {
         let config = self.config.grip;
         let answered = self.behaviour.as_ref().is_some_and(Running::answers_slip);
         let taken_over = self.senses.gate.is_active() || self.link_drive().is_some() || answered;
         self.cause(if self.senses.ready(&self.config) { Cause::SensorsReady } else { Cause::SensorsLost });
         self.cause(if taken_over { Cause::TakenOver } else { Cause::Released });
         let may_close = self.reflex.may_close(&config, grip);
-        let slips = !heard.slip.is_empty();
-        if may_close && let Some(id) = heard.slip.first() {
+        let slips = !verdicts.slip.is_empty();
+        if may_close && let Some(id) = verdicts.slip.first() {
             self.cause(Cause::Slip(id));
         }
         if may_close
             && self.reflex.may_tighten(&config)
-            && let Some(id) = heard.incipient.first()
+            && let Some(id) = verdicts.incipient.first()
         {
             self.cause(Cause::Incipient(id));
         }

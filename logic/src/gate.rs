@@ -6,9 +6,9 @@
 
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 
-use crate::config::GateConfig;
 use crate::emg::Verdict;
 use crate::emg::intent::Wish;
+use crate::emg::settings::GateConfig;
 
 /// Both muscles.
 #[derive(Clone, Copy, Debug, Default)]

@@ -5,10 +5,12 @@
 //! again. No pulse begins on a finger that is known to hold nothing or to press as hard as it may; without a known
 //! force, the pulses share a small budget that only the wearer can renew.
 
+pub mod settings;
+
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::words::GripMode;
 
-use crate::config::GripConfig;
+use self::settings::GripConfig;
 
 /// What the reflex knows about force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,16 +4,16 @@
 //!
 //! | step | modules |
 //! |---|---|
-//! | which readings can be used | [`health`]; [`films`] and [`solo`] for PVDF channels |
-//! | what they mean | [`vibration`], [`fsr`], [`forces`], [`friction`], [`strain`], [`elements`] and [`mod@array`], [`emg`] and [`gate`] |
+//! | which readings can be used | [`health`] |
+//! | one sense each: readings, what they mean, its detector | [`vibration`], [`force`], [`strain`], [`mod@array`], [`hebbian`], [`photoelastic`]; [`emg`] and [`gate`] of the wearer |
 //! | a frame through all of them | [`senses`] |
-//! | whether the object slips | [`detectors`], the list of them; [`hebbian`] and [`touch`] learn; [`plausibility`] guards |
+//! | whether the object slips | [`detectors`], the list of them; [`plausibility`] guards |
 //! | what to do | [`mode`] and [`grip`], the reflex; [`behaviours`] above it; [`arbiter`] |
 //! | the whole | [`fingertip`]; [`journal`] is what it reports |
 //! | a fingertip on a line | [`device`]: frames and commands in, drives and messages out. Begin there |
 //! | whose commands it carries out | [`session`], [`arming`] |
 //!
-//! [`config`] and [`settings`] hold every number that can be chosen, and [`store`] keeps what must outlive a power cut.
+//! [`config`] and [`setting`] hold every number that can be chosen, and [`store`] keeps what must outlive a power cut.
 #![no_std]
 // One measured kernel is excepted, `array::dual`; nothing else may be.
 #![deny(unsafe_code)]
@@ -30,32 +30,25 @@ mod checksum;
 pub mod config;
 pub mod detectors;
 pub mod device;
-pub mod elements;
 pub mod emg;
-pub mod films;
 pub mod fingertip;
-pub mod forces;
-pub mod friction;
-pub mod fsr;
+pub mod force;
 pub mod gate;
 pub mod grip;
 pub mod health;
 pub mod hebbian;
-pub mod hum;
 pub mod journal;
 pub mod low_pass;
 pub mod mode;
 pub mod muscles;
 pub mod photoelastic;
 pub mod plausibility;
+pub mod restart;
 mod samples;
 pub mod senses;
 pub mod session;
-pub mod settings;
-pub mod sliding;
-pub mod solo;
+pub mod setting;
 pub mod store;
 pub mod strain;
 pub mod stream;
-pub mod touch;
 pub mod vibration;

@@ -1,13 +1,13 @@
 //! Plausibility: a detector that reports slip while nothing is held is ignored, and so is what the array begins to say as the hand
-//! tightens on a warning of S2 or a knock rings.
+//! tightens on a warning of S2 or an impact rings.
 //!
 //! A detector knows the noise that it was made with. With more of it, from a bad supply, a motor's cable or a broken film,
 //! it takes noise for slip, and the reflex would answer with pulse after pulse up to the force ceiling: nothing that is
 //! held ever stops it. What it reports while the finger is known to touch nothing is certainly wrong.
 //!
 //! A hand that closes moves load between the array's elements as what slides does, and its network has learned from hands that
-//! closed because something slid; a knock shakes them. So a verdict of its that begins while the hand tightens on S2's warning or
-//! while a knock rings, or as long after as its longest change looks back, is no reason to close further ([`Disturbance`]); one
+//! closed because something slid; an impact shakes them. So a verdict of its that begins while the hand tightens on S2's warning or
+//! while an impact rings, or as long after as its longest change looks back, is no reason to close further ([`Disturbance`]); one
 //! that stood before is. What shear foretells by a learned friction is not among them: slip follows that warning.
 
 use tenax_hal_shim::channel::SLOW_HZ;
@@ -34,7 +34,7 @@ pub struct Plausibility {
 impl Plausibility {
     /// Takes a slow frame: whether the finger is known to touch nothing, and whether the detector reports slip all the same.
     /// A report of up to `tolerated` slow frames in a row is forgiven.
-    pub fn take(&mut self, unloaded: bool, says: bool, tolerated: u16) {
+    pub fn step(&mut self, unloaded: bool, says: bool, tolerated: u16) {
         self.empty = if unloaded { self.empty.saturating_add(1) } else { 0 };
         if self.empty <= EMPTY_AFTER {
             return;
@@ -70,7 +70,7 @@ impl Disturbance {
     }
 
     /// Takes a slow frame: whether the array is disturbed, and whether it says slip.
-    pub fn take(&mut self, disturbed: bool, says: bool) {
+    pub fn step(&mut self, disturbed: bool, says: bool) {
         self.still = if disturbed { 0 } else { self.still.saturating_add(1).min(MOVED_FOR) };
         self.says = says;
         self.began_still = says && (self.began_still || self.still >= MOVED_FOR);
@@ -88,7 +88,7 @@ mod tests {
     use super::*;
 
     fn after(guard: &mut Plausibility, frames: u16, unloaded: bool, says: bool) -> bool {
-        (0..frames).for_each(|_| guard.take(unloaded, says, 0));
+        (0..frames).for_each(|_| guard.step(unloaded, says, 0));
         guard.is_ignored()
     }
 
@@ -108,19 +108,19 @@ mod tests {
     #[test]
     fn what_begins_as_it_is_disturbed_is_the_disturbance_and_what_stood_before_is_not() {
         let mut disturbance = Disturbance::default();
-        (0..MOVED_FOR).for_each(|_| disturbance.take(false, false));
-        disturbance.take(false, true);
+        (0..MOVED_FOR).for_each(|_| disturbance.step(false, false));
+        disturbance.step(false, true);
         assert!(!disturbance.explains_it());
-        disturbance.take(true, true);
+        disturbance.step(true, true);
         assert!(!disturbance.explains_it(), "it stood before");
-        disturbance.take(true, false);
-        disturbance.take(true, true);
+        disturbance.step(true, false);
+        disturbance.step(true, true);
         assert!(disturbance.explains_it(), "it began anew");
         for _ in 1..MOVED_FOR {
-            disturbance.take(false, true);
+            disturbance.step(false, true);
             assert!(disturbance.explains_it());
         }
-        disturbance.take(false, true);
+        disturbance.step(false, true);
         assert!(!disturbance.explains_it(), "it has outlasted what it looks back on");
     }
 
@@ -129,10 +129,10 @@ mod tests {
         let mut guard = Plausibility::default();
         after(&mut guard, EMPTY_AFTER, true, false);
         for _ in 0..16 {
-            guard.take(true, true, 16);
+            guard.step(true, true, 16);
         }
         assert!(!guard.is_ignored());
-        guard.take(true, true, 16);
+        guard.step(true, true, 16);
         assert!(guard.is_ignored());
     }
 }

@@ -14,7 +14,7 @@ pub struct LastSamples {
 
 impl LastSamples {
     /// Takes in what a frame read.
-    pub fn take(&mut self, frame: &Frame) {
+    pub fn record(&mut self, frame: &Frame) {
         if !frame.valid {
             return;
         }

@@ -14,10 +14,10 @@ use tenax_hal_shim::wire::Forces;
 use tenax_hal_shim::words::{Capability, Fault, Reason};
 
 use crate::array::Reading;
-use crate::config::{Config, frames};
-use crate::elements::Elements;
-use crate::films::Films;
-use crate::forces::ForceSensor;
+use crate::array::taxels::Taxels;
+use crate::config::Config;
+use crate::detectors::Sensed;
+use crate::force::ForceSensor;
 use crate::gate::Gate;
 use crate::grip::Grip;
 use crate::health::{Change, Limits, SensorHealth};
@@ -25,9 +25,11 @@ use crate::journal::Journal;
 use crate::muscles::Muscles;
 use crate::photoelastic::Head;
 use crate::photoelastic::track::Hints;
-use crate::sliding::Hand;
 use crate::strain::Gauges;
+use crate::vibration::quality::PvdfQuality;
+use crate::vibration::sliding::Hand;
 use crate::vibration::{Trust, Vibration, VibrationDetector};
+use tenax_hal_shim::channel::frames;
 
 /// How long the filters and the switches are given after the start, in frames.
 const WARM_UP_FRAMES: u32 = frames(200);
@@ -49,7 +51,7 @@ static FSR_LIMITS: Limits = Limits::of(&CHANNELS[FSR], SLOW_HZ);
 /// What the fingertip knows.
 #[derive(Clone, Debug, Default)]
 pub struct Senses {
-    films: Films,
+    films: PvdfQuality,
     fsr: [SensorHealth; FSR_COUNT],
     muscles: Muscles,
     fsr_readings: [Option<u16>; FSR_COUNT],
@@ -59,12 +61,10 @@ pub struct Senses {
     force_sensor: ForceSensor,
     detector: VibrationDetector,
     gauges: Gauges,
-    elements: Elements,
+    taxels: Taxels,
     /// In the place of the last film, if it is fitted.
     head: Head,
     head_is_fitted: bool,
-    /// 1 while the motor closes, -1 while it opens.
-    drive: i8,
     frames_seen: u32,
     /// Frames in which the hand was opened since it was last closed.
     open_frames: u32,
@@ -87,13 +87,13 @@ pub struct Senses {
 
 impl Senses {
     /// Takes a frame that came in whole.
-    pub fn take(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
+    pub fn process(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
         if self.frames_lost > 0 {
             journal.fault(Fault::FramesLost { count: self.frames_lost });
             self.frames_lost = 0;
         }
         self.frames_seen = self.frames_seen.saturating_add(1);
-        self.listen(config, frame, journal);
+        self.condition_vibration(config, frame, journal);
         self.forces_are_new = false;
         let slot = &SCHEDULE[usize::from(frame.slot())];
         if let Some(channel) = slot.switch_a {
@@ -129,15 +129,36 @@ impl Senses {
         self.capabilities(journal);
     }
 
+    /// What the detectors judge by in a frame that was taken or lost. `duty_permille` is what drives the motor, `moves` whether the reflex
+    /// moves the hand or lets it settle.
+    #[inline(always)]
+    #[must_use]
+    pub fn sensed(&self, config: &Config, frame: &Frame, duty_permille: u16, moves: bool) -> Sensed<'_> {
+        let (vibration, wearer) = (self.vibration, self.gate.is_active());
+        Sensed {
+            frame: frame.sequence,
+            slot: frame.slot(),
+            valid: frame.valid,
+            vibration,
+            envelopes: self.envelopes(),
+            vibration_known: self.hears(),
+            strain: self.gauges(),
+            forces: self.forces.as_ref(),
+            forces_are_new: self.forces_are_new,
+            taxels: self.taxels(),
+            head: self.head(),
+            unloaded: self.is_unloaded(config),
+            grasp: matches!(self.grip(config), Grip::Holds(_)),
+            noisy: vibration.impact || duty_permille >= config.hebbian.loud_duty_permille,
+            moves: moves || wearer,
+            wearer,
+        }
+    }
+
     /// How the motor was driven in the last so many frames: what has been opened for a while, and not closed since, holds
     /// nothing. `striking`: the reflex answers slip, or lets the object settle after it, and the hand itself is loud.
     pub const fn driven(&mut self, drive: MotorDrive, striking: bool, frames: u32) {
         self.striking = striking;
-        self.drive = match drive {
-            MotorDrive::Open(_) => -1,
-            MotorDrive::Close(_) => 1,
-            MotorDrive::Coast => 0,
-        };
         match drive {
             MotorDrive::Open(_) => self.open_frames = self.open_frames.saturating_add(frames),
             MotorDrive::Close(_) => self.open_frames = 0,
@@ -192,7 +213,7 @@ impl Senses {
     /// The last readings of the normal-force array.
     #[must_use]
     pub const fn taxels(&self) -> &Reading {
-        self.elements.reading()
+        self.taxels.reading()
     }
 
     /// The photoelastic head. While its place is a film's it has heard nothing.
@@ -233,22 +254,28 @@ impl Senses {
     }
 
     #[inline(always)]
-    fn listen(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
+    fn condition_vibration(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
         if config.head.fitted | self.head_is_fitted {
-            self.look(config, frame, journal);
+            self.condition_head(config, frame, journal);
         } else {
-            self.hear(config, &frame.pvdf, PVDF_COUNT, journal);
+            self.condition_pvdf(config, &frame.pvdf, PVDF_COUNT, journal);
         }
     }
 
     /// Takes the samples of the films, which are the first so many.
     #[inline(always)]
-    fn hear(&mut self, config: &Config, pvdf: &[u16; PVDF_COUNT], films: usize, journal: &mut Journal) {
-        let trusts = self.films.take(pvdf, |film, change| report(journal, PVDF + film, Some(change)));
+    fn condition_pvdf(
+        &mut self,
+        config: &Config,
+        pvdf: &[u16; PVDF_COUNT],
+        films: usize,
+        journal: &mut Journal,
+    ) {
+        let trusts = self.films.check(pvdf, |film, change| report(journal, PVDF + film, Some(change)));
         self.films_usable =
             trusts.is_none_or(|trusts| trusts[..films].iter().any(|&trust| trust != Trust::None));
         let masked = self.vibration.masked;
-        self.vibration = self.detector.hear(&config.vibration, pvdf, trusts.as_ref());
+        self.vibration = self.detector.process(&config.vibration, pvdf, trusts.as_ref());
         if self.vibration.masked != masked {
             self.mask(masked ^ self.vibration.masked, journal);
         }
@@ -270,7 +297,7 @@ impl Senses {
     /// The films' part is compiled twice, here and for twelve films, which then cost nothing more. Most hands have no head.
     #[cold]
     #[inline(never)]
-    fn look(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
+    fn condition_head(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
         let is_fitted = Role::of(HEAD, config.head.fitted) == Role::Photoelastic;
         if self.head_is_fitted != is_fitted {
             // A head takes a film's place, or gives it back: neither has heard the jump.
@@ -282,18 +309,18 @@ impl Senses {
         if is_fitted {
             let silent = SAMPLE_MAX / 2 + (frame.sequence & 1) as u16;
             let sample = core::mem::replace(&mut pvdf[HEAD - PVDF], silent);
-            let change = self.head.take(&config.head, sample);
+            let change = self.head.process(&config.head, sample);
             report(journal, HEAD, change);
         }
         let films = if is_fitted { HEAD - PVDF } else { PVDF_COUNT };
-        self.hear(config, &pvdf, films, journal);
+        self.condition_pvdf(config, &pvdf, films, journal);
     }
 
     /// The head's force, once a cycle, after the quadrants' if they give one.
     #[inline(never)]
     fn track(&mut self, config: &Config) {
         let force_mn = self.forces.filter(|_| !self.pressed).map(|forces| forces.load_mn);
-        let hints = Hints { unloaded: self.open_frames >= OPEN_FRAMES, force_mn, drive: self.drive };
+        let hints = Hints { unloaded: self.open_frames >= OPEN_FRAMES, force_mn };
         self.head.cycle(&config.head, hints);
         if self.forces.is_none() {
             self.forces = self.head.stand_in();
@@ -315,7 +342,7 @@ impl Senses {
             self.quadrant(config, quadrant, sample, journal);
         } else if let Some(gauge) = channel.checked_sub(STRAIN) {
             let unloaded = self.is_unloaded(config);
-            let change = self.gauges.take(gauge, sample, unloaded);
+            let change = self.gauges.read(gauge, sample, unloaded);
             report(journal, channel, change);
         }
     }
@@ -323,7 +350,7 @@ impl Senses {
     fn on_switch_b(&mut self, channel: usize, sample: u16, journal: &mut Journal) {
         match channel {
             ARRAY..MYO_FLEXOR => {
-                let change = self.elements.take(channel - ARRAY, sample);
+                let change = self.taxels.read(channel - ARRAY, sample);
                 report(journal, channel, change);
             }
             MYO_FLEXOR..=MYO_EXTENSOR => self.muscle(channel - MYO_FLEXOR, sample, journal),
@@ -342,7 +369,7 @@ impl Senses {
                     self.forces = None;
                 }
             }
-            ARRAY..MYO_FLEXOR => self.elements.lose(channel - ARRAY),
+            ARRAY..MYO_FLEXOR => self.taxels.lose(channel - ARRAY),
             MYO_FLEXOR..=MYO_EXTENSOR => {
                 let muscle = channel - MYO_FLEXOR;
                 if self.muscles.miss(muscle, journal) {

@@ -39,14 +39,14 @@ impl Default for Gauges {
 
 impl Gauges {
     /// Takes a reading of one gauge (14 bits). `unloaded`: the finger is known to touch nothing.
-    pub fn take(&mut self, gauge: usize, sample: u16, unloaded: bool) -> Option<Change> {
+    pub fn read(&mut self, gauge: usize, sample: u16, unloaded: bool) -> Option<Change> {
         let gauge = self.0.get_mut(gauge)?;
         let (reading, change) = if gauge.health.is_plain(&LIMITS, sample) {
             (Ok(sample), None)
         } else {
             gauge.health.take(&LIMITS, sample)
         };
-        gauge.take(reading, unloaded);
+        gauge.set(reading, unloaded);
         change
     }
 
@@ -72,7 +72,7 @@ impl Gauges {
 }
 
 impl Gauge {
-    fn take(&mut self, reading: Result<u16, Reason>, unloaded: bool) {
+    fn set(&mut self, reading: Result<u16, Reason>, unloaded: bool) {
         // 14 bits, 4 and 6: nothing here leaves 32.
         self.load = reading.map_or(0, |sample| (i32::from(sample) << Q) - (self.zero >> FOLLOW_SHIFT));
         if unloaded {
@@ -92,9 +92,9 @@ mod tests {
     #[test]
     fn an_offset_is_gone_after_some_seconds_without_load_and_load_is_not() {
         let mut gauges = Gauges::default();
-        (0..80 * 6).for_each(|n| _ = gauges.take(3, noisy(1_700, n), true));
+        (0..80 * 6).for_each(|n| _ = gauges.read(3, noisy(1_700, n), true));
         assert!(gauges.loads()[3].abs() <= (1 << Q) * 2, "{:?}", gauges.loads());
-        (0..80 * 60).for_each(|n| _ = gauges.take(3, noisy(1_900, n), false));
+        (0..80 * 60).for_each(|n| _ = gauges.read(3, noisy(1_900, n), false));
         let load = gauges.loads()[3] >> Q;
         assert!((990..=996).contains(&load), "{load} samples for 200 mV");
         gauges.zero();
@@ -104,11 +104,11 @@ mod tests {
     #[test]
     fn a_gauge_without_a_number_carries_no_load_and_loses_no_zero() {
         let mut gauges = Gauges::default();
-        let change = (0..80).find_map(|_| gauges.take(0, 0, true));
+        let change = (0..80).find_map(|_| gauges.read(0, 0, true));
         assert_eq!(change, Some(Change::Lost(Reason::Dead)));
         assert_eq!(gauges.loads()[0], 0);
-        (0..81).for_each(|n| _ = gauges.take(0, noisy(1_650, n), false));
+        (0..81).for_each(|n| _ = gauges.read(0, noisy(1_650, n), false));
         assert!(gauges.loads()[0].abs() <= 1 << Q);
-        assert_eq!(gauges.take(STRAIN_COUNT, 0, true), None);
+        assert_eq!(gauges.read(STRAIN_COUNT, 0, true), None);
     }
 }

@@ -48,7 +48,7 @@ impl Stream {
     }
 
     /// A frame had its tick.
-    pub fn take(&mut self, frame: &Frame) {
+    pub fn record(&mut self, frame: &Frame) {
         self.next = frame.sequence.wrapping_add(1);
         if self.left > 0 || self.is_whole {
             self.gather(frame);
@@ -111,7 +111,7 @@ mod tests {
 
     fn firsts(stream: &mut Stream, frames: core::ops::Range<u32>) -> Vec<u32> {
         let step = |sequence| {
-            stream.take(&Frame::lost(sequence));
+            stream.record(&Frame::lost(sequence));
             stream.take_raw().map(|raw| raw.first)
         };
         frames.filter_map(step).collect()

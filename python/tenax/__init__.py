@@ -185,7 +185,7 @@ class Board:
     def ask(self, *command, within=2.0):
         """Sends a command and returns its answer. Messages that come before it are lost to the iterator."""
         answer = self._ask(*command, within=within)
-        if answer.kind == "Refused" and answer.why.kind in ("NoSession", "Replayed"):
+        if answer.kind == "Refused" and answer.refusal.kind in ("NoSession", "Replayed"):
             # What changes something needs a session.
             self._ask("Open", self._ask("Hello", within=within).nonce, within=within)
             answer = self._ask(*command, within=within)

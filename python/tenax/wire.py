@@ -1,130 +1,26 @@
-"""The messages of the serial line, as docs/protocol.md has them: types, and a decoder that goes through them.
+"""The messages of the serial line, and a decoder that goes through them.
 
-A type is a name ("u32"), or a tuple: ("opt", T), ("vec", T), ("arr", n, T), ("struct", NAME, [(field, T), ...]),
-("enum", NAME, [(variant, [(field, T), ...]), ...]).
+The types are the board's own (wire.json, out of the firmware's sources). A type is a name ("u32", "Forces"), or a list: ["opt", T],
+["vec", T], ["arr", n, T], ["tuple", [T, ...]].
 """
 
+import json
+import pathlib
 import zlib
 from types import SimpleNamespace
 
-VERSION = 3
+_WIRE = json.loads((pathlib.Path(__file__).parent / "wire.json").read_text())
+VERSION = _WIRE["version"]
+SCHEMA = int(_WIRE["schema"], 16)
+TYPES = _WIRE["types"]
+# A message of each kind: its direction, its name, its frame.
+GOLDEN = [(direction, name, bytes.fromhex(data)) for direction, name, data in _WIRE["golden"]]
 BAUD = 921_600
 FRAME_HZ = 2_000
-FILMS = 12
-CHANNELS = 42
 
 
 class Garbled(Exception):
     """A frame that is no message of this version."""
-
-
-def _unit(name, *variants):
-    return ("enum", name, [(variant, []) for variant in variants])
-
-
-MODE = _unit("GripMode", "Standby", "Wearer", "Watch", "Slip", "Incipient", "Settle")
-DETECTOR = _unit("DetectorId", "S1", "S2", "Hebbian", "Mlp", "Injected", "Photoelastic")
-DIRECTION = _unit("Direction", "Unknown", "Down", "Up")
-HEALTH = _unit("DetectorHealth", "Starting", "Working", "Blind")
-REASON = _unit("Reason", "Dead", "Saturated", "Stuck", "Noisy", "NoContact", "Hum", "Creep", "Flat", "Endless")
-CAPABILITY = _unit("Capability", "Vibration", "Force", "WearerIntent")
-KEPT = _unit("Kept", "Network", "Zero", "Settings", "Emg")
-CODE = _unit("Code", "Minus", "Zero", "Plus")
-NO_LESSON = _unit("NoLesson", "Absent", "Late", "Contradicting", "NothingMoves", "NoGrasp", "Disturbed")
-CONSENT = _unit("Consent", "PowerUp", "Muscles", "Button")
-PROMPT = _unit("Prompt", "Rest", "Close", "Open")
-CALIBRATION_REFUSAL = _unit(
-    "CalibrationRefusal", "RestNotQuiet", "NoClosing", "NoOpening", "SameDirection", "Overlap", "NotAMuscle",
-    "Saturated", "SensorLost", "Damaged", "Loaded",
-)
-RESET = _unit("ResetCause", "PowerOn", "Pin", "Software", "Panic", "Watchdog", "Other")
-CAUSE = ("enum", "Cause", [
-    ("SensorsReady", []), ("SensorsLost", []), ("TakenOver", []), ("Released", []), ("Slip", [("detector", DETECTOR)]),
-    ("Incipient", [("detector", DETECTOR)]), ("PulseOver", []), ("Settled", []),
-])
-FAULT = ("enum", "Fault", [
-    ("SensorLost", [("channel", "u8"), ("reason", REASON)]), ("SensorBack", [("channel", "u8")]),
-    ("CapabilityLost", [("capability", CAPABILITY)]), ("CapabilityBack", [("capability", CAPABILITY)]),
-    ("FramesLost", [("count", "u32")]), ("WatchdogReset", []), ("PanicReset", []), ("PressedAtBoot", [("channel", "u8")]),
-    ("RecordDamaged", [("kept", KEPT)]), ("StoreFull", [("kept", KEPT)]), ("StoreFailed", [("kept", KEPT)]),
-    ("SupplySagged", []), ("CrystalLost", []), ("TooManyRestarts", []), ("NeverUnloaded", []),
-])
-LINE = ("enum", "Line", [("Reading", []), ("Armed", [("left_s", "u8")]), ("Trusted", [])])
-CALIBRATION = ("enum", "Calibration", [
-    ("Asks", [("prompt", PROMPT)]), ("Done", [("separation_permille", "i32")]), ("Refused", [("why", CALIBRATION_REFUSAL)]),
-])
-DRIVE = ("enum", "MotorDrive", [("Coast", []), ("Close", [("permille", "u16")]), ("Open", [("permille", "u16")])])
-BEHAVIOUR = ("enum", "Behaviour", [
-    ("Stroke", []), ("GentleGrasp", []), ("Hold", []), ("HandOver", []), ("Turn", [("by_ddeg", "i16")]),
-])
-ENDING = _unit("Ending", "Done", "Stopped", "TakenOver", "SensorLost", "TooLong", "Ceiling", "Dropped", "NoSlip", "NotArmed")
-CAMERA_VIEW = [
-    ("age_ms", "u16"), ("moving_e4", "u16"), ("angle_ddeg", ("opt", "i16")), ("normal", ("arr", 24, "u8")),
-    ("shear", ("arr", 24, "i8")),
-]
-EVENT = ("enum", "EventKind", [
-    ("Mode", [("from_", MODE), ("to", MODE), ("cause", CAUSE)]), ("Fault", [("fault", FAULT)]),
-    ("Stroke", [("mu_s_permille", "u16"), ("s2_permille", "u16")]), ("EventsLost", [("count", "u16")]),
-    ("Armed", [("by", CONSENT)]), ("Disarmed", []), ("LineTrusted", [("trusted", "bool")]),
-    ("Calibration", [("calibration", CALIBRATION)]), ("NoWearer", [("alone", "bool")]),
-    ("Behaviour", [("behaviour", BEHAVIOUR), ("ending", ("opt", ENDING))]),
-])
-FORCES = ("struct", "Forces", [
-    ("fn_mn", "i32"), ("load_mn", "i32"), ("fx_mn", "i32"), ("fy_mn", "i32"), ("ft_mn", "i32"),
-    ("ratio_permille", ("opt", "u16")),
-])
-EVIDENCE = ("struct", "Evidence", [
-    ("detector", DETECTOR), ("slip", "bool"), ("incipient", "bool"), ("confidence_permille", "u16"),
-    ("direction", DIRECTION), ("decided_at", "u32"), ("health", HEALTH), ("raw", "i32"),
-])
-SETTING = ("struct", "Setting", [("id", "u8"), ("value", "i32")])
-ABOUT = [
-    ("build", "u64"), ("chip", ("arr", 3, "u32")), ("reset", RESET), ("frames", "u32"), ("settings", ("vec", SETTING)),
-]
-NETWORK = [
-    ("frame", "u32"), ("weights", ("arr", 2, ("arr", 24, "i32"))), ("activations", ("arr", 24, "i16")),
-    ("updates", "u32"), ("teacher_age_ms", ("opt", "u16")), ("no_lesson", ("opt", NO_LESSON)),
-]
-REFUSAL = ("enum", "Refusal", [
-    ("OutOfRange", [("min", "i32"), ("max", "i32")]), ("Loaded", []), ("SensorLost", []), ("WearerActive", []),
-    ("UnknownSetting", []), ("NotArmed", []), ("NoSession", []), ("Replayed", []), ("HeldTooLong", []),
-])
-ANSWER = ("enum", "Answer", [
-    ("Done", []), ("Refused", [("why", REFUSAL)]), ("Setting", [("id", "u8"), ("value", "i32")]),
-    ("Settings", [("settings", ("vec", SETTING))]), ("Samples", [("samples", ("arr", CHANNELS, "u16"))]),
-    ("Network", NETWORK), ("Nonce", [("nonce", "u32")]), ("About", ABOUT),
-    ("Last", [("after", ("opt", FAULT)), ("why", ("vec", "u8")), ("length", "u16"), ("from_", "u16"), ("bytes", ("vec", "u8"))]),
-])
-DOWN = ("enum", "Down", [
-    ("Ping", []), ("Drive", [("drive", DRIVE), ("hold_ms", "u16")]), ("Set", [("id", "u8"), ("value", "i32")]),
-    ("Begin", [("behaviour", BEHAVIOUR)]), ("Zero", []), ("Samples", []), ("Teach", [("codes", ("arr", 2, CODE)), ("age_ms", "u16")]),
-    ("Network", []), ("Forget", []), ("Save", []), ("Get", [("id", "u8")]), ("Settings", [("from_", "u8")]), ("Hello", []),
-    ("Open", [("nonce", "u32")]), ("CalibrateEmg", []), ("About", []),
-    ("Stream", [("raw", "bool"), ("senses", "bool"), ("hold_s", "u16")]), ("End", []), ("View", CAMERA_VIEW),
-    ("Last", [("from_", "u16")]),
-])
-UP = ("enum", "Up", [
-    ("Hello", [("frame_hz", "u16"), ("after", ("opt", FAULT))]),
-    ("Slow", [
-        ("frame", "u32"), ("ticks", ("arr", 25, "tick")), ("mode", MODE), ("forces", ("opt", FORCES)),
-        ("s2_permille", "u16"), ("flexor_mv", ("opt", "i16")), ("extensor_mv", ("opt", "i16")), ("wearer_active", "bool"),
-        ("lesson", ("opt", ("arr", 2, CODE))), ("evidence", ("vec", EVIDENCE)), ("samples_sum", "u32"), ("line", LINE),
-        ("behaviour", ("opt", BEHAVIOUR)),
-    ]),
-    ("Event", [("frame", "u32"), ("event", EVENT)]),
-    ("Counters", [
-        ("frames", "u32"), ("frames_lost", "u32"), ("overruns", "u32"), ("ticks", "u32"), ("ticks_late", "u32"),
-        ("telemetry_dropped", "u32"), ("bad_frames", "u32"), ("commands_skipped", "u32"), ("control_us_max", "u32"),
-        ("control_permille", "u16"),
-    ]),
-    ("Answer", [("of", "u16"), ("frame", "u32"), ("answer", ANSWER)]),
-    ("Saved", [("frame", "u32"), ("kept", KEPT)]),
-    ("About", ABOUT),
-    ("Restored", [("kept", KEPT), ("payload", ("vec", "u8"))]),
-    ("Raw", [("first", "u32"), ("frames", ("arr", 5, "frame"))]),
-    ("Senses", [("frame", "u32"), ("samples", ("arr", CHANNELS, "u16")), ("films", ("arr", FILMS, "u16"))]),
-    ("Taken", [("before", "u32"), ("of", "u16"), ("command", DOWN)]),
-])
 
 
 class Reader:
@@ -155,20 +51,23 @@ class Reader:
 
     def value(self, kind):
         if isinstance(kind, str):
-            return getattr(self, "_" + kind)()
+            return self._named(TYPES[kind]) if kind in TYPES else getattr(self, "_" + kind)()
         if kind[0] == "opt":
             return self.value(kind[1]) if self._bool() else None
         if kind[0] == "arr":
             return [self.value(kind[2]) for _ in range(kind[1])]
         if kind[0] == "vec":
             return [self.value(kind[1]) for _ in range(self.varint())]
-        if kind[0] == "struct":
-            return SimpleNamespace(**{name: self.value(own) for name, own in kind[2]})
-        number = self.varint()
-        if number >= len(kind[2]):
-            raise Garbled(f"{kind[1]} has no variant {number}")
-        variant, fields = kind[2][number]
-        if not fields and all(not others for _, others in kind[2]):
+        return tuple(self.value(own) for own in kind[1])
+
+    def _named(self, of):
+        if "struct" in of:
+            return SimpleNamespace(**{name: self.value(own) for name, own in of["struct"]})
+        number, variants = self.varint(), of["enum"]
+        if number >= len(variants):
+            raise Garbled(f"there is no variant {number}")
+        variant, fields = variants[number]
+        if not fields and all(not others for _, others in variants):
             return variant
         return SimpleNamespace(kind=variant, **{name: self.value(own) for name, own in fields})
 
@@ -238,7 +137,7 @@ def cobs(data):
     return bytes(out) + b"\0"
 
 
-def decode(frame, kind=UP):
+def decode(frame, kind="Up"):
     """The number and the message of a frame without its final zero."""
     data = uncobs(frame)
     if len(data) < 6:
@@ -267,20 +166,27 @@ def _varint(value):
 def _write(kind, value):
     if kind in ("u8", "bool"):
         return bytes([int(value)])
+    if kind == "i8":
+        return bytes([value & 0xFF])
     if kind in ("u16", "u32", "u64"):
         return _varint(value)
     if kind in ("i16", "i32"):
         return _varint(value << 1 if value >= 0 else (-value << 1) - 1)
+    if kind[0] == "opt":
+        return b"\0" if value is None else b"\1" + _write(kind[1], value)
     if kind[0] == "arr":
         return b"".join(_write(kind[2], own) for own in value)
-    # An enum: the name of a variant, or a tuple that begins with it.
+    variants = TYPES[kind]["enum"]
+    if isinstance(value, SimpleNamespace):
+        # As it was read.
+        value = (value.kind, *(own for name, own in vars(value).items() if name != "kind"))
+    # Else the name of a variant, or a tuple that begins with it.
     name, *values = value if isinstance(value, tuple) else (value,)
-    number = [variant for variant, _ in kind[2]].index(name)
-    fields = kind[2][number][1]
-    return _varint(number) + b"".join(_write(own, given) for (_, own), given in zip(fields, values))
+    number = [variant for variant, _ in variants].index(name)
+    return _varint(number) + b"".join(_write(own, given) for (_, own), given in zip(variants[number][1], values))
 
 
 def encode(sequence, *command):
     """A command as a frame: encode(7, "Set", 1, 120)."""
-    body = bytes([VERSION]) + _varint(sequence) + _write(DOWN, command)
+    body = bytes([VERSION]) + _varint(sequence) + _write("Down", command)
     return cobs(body + zlib.crc32(body).to_bytes(4, "little"))

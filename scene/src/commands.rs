@@ -68,7 +68,7 @@ fn expand(command: &Command) -> Vec<(f64, Down)> {
         CommandKind::Set(id) => {
             // A file without it was refused.
             let value = command.value.as_ref().map_or(id.row().default, |value| *value.get_ref());
-            once(Down::Set(Setting { id: id as u8, value }))
+            once(Down::Set(Setting { id: id.number(), value }))
         }
     }
 }
@@ -89,7 +89,7 @@ fn held(at_s: f64, command: &Command, drive: MotorDrive) -> Vec<(f64, Down)> {
 mod tests {
     use super::*;
     use crate::SceneFile;
-    use tenax_hal_shim::setting::SettingId;
+    use tenax_logic::setting::SettingId;
 
     #[test]
     fn a_held_key_is_repeated_and_let_go_in_time() {
@@ -119,7 +119,7 @@ mod tests {
         assert!(scene.trusts_line(), "a script is a laboratory's");
         let mut script = Script::new(&scene.command, true);
         assert_eq!(script.take(0.499), []);
-        assert_eq!(script.take(0.5), [Down::Set(Setting { id: SettingId::S2 as u8, value: 400 })]);
+        assert_eq!(script.take(0.5), [Down::Set(Setting { id: SettingId::S2.number(), value: 400 })]);
         let drive = MotorDrive::Close(Duty::per_mille(300));
         assert_eq!(script.take(1.0), [Down::Drive { drive, hold_ms: 250 }]);
         assert_eq!(script.take(1.25).len(), 2);

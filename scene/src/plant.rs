@@ -93,8 +93,8 @@ pub trait Plant: Send {
         self.within().is_some_and(Plant::button)
     }
 
-    /// How an oracle drives the motor for the next frame: it knows friction, load, force, what slides, and what the motor was
-    /// told before, and closes to the least force that holds. None where nothing has to be closed.
+    /// How the bound drives the motor for the next frame: it closes as its plan of the whole scene says, and stops what slides. None
+    /// where nothing has to be closed, or nothing is planned.
     fn planned(&self) -> Option<MotorDrive> {
         self.within()?.planned()
     }

@@ -57,6 +57,8 @@ pub(crate) enum Source {
     HeadDay,
     /// Its noise.
     Head,
+    /// What the camera behind the skin tells wrongly.
+    SkinMistakes,
 }
 
 /// A source's stream of numbers.

@@ -57,8 +57,12 @@ pub struct Truth {
     pub carried_ns: f64,
     /// See above.
     pub carried_s: f64,
+    /// What it pressed beyond the need meanwhile: its integral, N s.
+    pub beyond_need_ns: f64,
     /// The greatest grip force that was ever needed while the hand carried the object, N.
     pub needed_grip_n: f64,
+    /// The least margin while the hand carried the object, and the last, N: the shear that a finger could still carry.
+    pub margin_n: Option<[f64; 2]>,
     /// The wearer's wishes, one after the other.
     pub phases: Vec<Phase>,
     /// When each myosensor's pin was over its threshold.
@@ -111,6 +115,8 @@ pub(crate) struct State {
     pub(crate) carried: bool,
     pub(crate) dropped: bool,
     pub(crate) needed_n: f64,
+    /// What each finger could still carry, N.
+    pub(crate) margin_n: f64,
     pub(crate) mass_kg: f64,
     pub(crate) position_mm: f64,
     pub(crate) hand_mm: f64,
@@ -146,6 +152,10 @@ impl Truth {
         if state.needed_n > 0.0 {
             self.carried_ns += touch.normal_n * STEP_S;
             self.carried_s += STEP_S;
+            self.beyond_need_ns += (touch.normal_n - state.needed_n).max(0.0) * STEP_S;
+            let least_n =
+                self.margin_n.map_or(state.margin_n, |[least_n, _]: [f64; 2]| least_n.min(state.margin_n));
+            self.margin_n = Some([least_n, state.margin_n]);
         }
         if step.trace {
             self.trace.push(Row {
@@ -159,6 +169,7 @@ impl Truth {
                 stuck_part: touch.stuck_part,
                 pitch_rad: state.pitch_rad,
                 needed_n: state.needed_n,
+                margin_n: state.margin_n,
             });
         }
     }

@@ -6,6 +6,7 @@ use tenax_hal_shim::channel::{
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::Down;
 
+use crate::bound::Plan;
 use crate::commands::Script;
 use crate::file::SceneFile;
 use crate::file::sections::Arm;
@@ -59,6 +60,7 @@ pub struct World {
     converter: Converter,
     script: Script,
     trusts_line: bool,
+    plan: Option<Plan>,
     pins: Pins,
     truth: Truth,
 }
@@ -102,7 +104,7 @@ impl World {
             gripper: Gripper::new(&scene.gripper),
             task,
             touch: Touch::default(),
-            films: Films::new(&scene.pvdf, &scene.knock, scene.contact.pitch_mm.get(), seeds),
+            films: Films::new(&scene.pvdf, (&scene.knock, &scene.hum), scene.contact.pitch_mm.get(), seeds),
             head: scene.photoelastic.as_ref().map(|head| Head::new(head, &scene.knock, seeds)),
             quadrants: Quadrants::new(&scene.fsr),
             envelopes: Envelopes::new(&scene.myo, &scene.electrode_lift, scene.pvdf.mains_hz.get(), seed),
@@ -119,9 +121,17 @@ impl World {
             converter: Converter::new(seed),
             script: Script::new(&scene.command, scene.trusts_line()),
             trusts_line: scene.trusts_line(),
+            plan: None,
             pins: Pins::default(),
             truth: Truth::default(),
         }
+    }
+
+    /// The same with a plan to grip by ([`Plant::planned`]).
+    #[must_use]
+    pub fn planning(mut self, plan: Option<Plan>) -> Self {
+        self.plan = plan;
+        self
     }
 
     /// What really happened so far.
@@ -184,14 +194,14 @@ impl World {
                 let grip_n = grasp
                     .between_the_fingers()
                     .map_or(0.0, |(width_mm, stiffness)| self.gripper.grip_n(width_mm, stiffness));
-                let felt_part = if *arm == Arm::Person { grasp.table_part() } else { 0.0 };
-                hand.step(t_s, felt_part);
+                hand.step(t_s, arm.felt(grasp.table_part()));
                 self.touch = grasp.step(t_s, hand, grip_n);
                 let carried = grasp.is_held();
                 State {
                     carried: carried || *arm == Arm::Robot,
                     dropped: grasp.is_dropped(),
                     needed_n: if carried { grasp.needed_n() } else { 0.0 },
+                    margin_n: if carried { grasp.margin_n(self.touch.normal_n) } else { 0.0 },
                     mass_kg: grasp.mass_kg(),
                     position_mm: grasp.height_m(hand) * 1e3,
                     hand_mm: hand.height_m() * 1e3,
@@ -208,6 +218,7 @@ impl World {
                     carried: true,
                     dropped: false,
                     needed_n: 0.0,
+                    margin_n: 0.0,
                     mass_kg: 0.0,
                     // The surface lies still; the probe is the hand.
                     position_mm: stroke.probe_m() * 1e3,
@@ -284,8 +295,8 @@ impl Plant for World {
     }
 
     fn planned(&self) -> Option<MotorDrive> {
-        let Task::Grasp { grasp, .. } = &self.task else { return None };
-        self.closing_to(grasp.plan_n())
+        let (Some(plan), Task::Grasp { grasp, .. }) = (&self.plan, &self.task) else { return None };
+        self.closing_to(plan.target_n(self.now_s(), grasp.stops_n()))
     }
 
     fn closing_to(&self, target_n: f64) -> Option<MotorDrive> {

@@ -24,14 +24,36 @@ fn every_scene_parses_and_is_called_as_its_file() {
 #[test]
 fn every_number_in_every_scene_says_where_it_is_from_at_least_once() {
     // A key that is only ever an instant, a duration or a name explains itself; every other has a comment in its file.
-    let explains_itself =
-        ["at_s", "for_s", "until_s", "name", "title", "from", "channel", "kind", "intent", "reason"];
-    for (name, text) in builtin() {
-        for line in text.lines().filter(|line| line.contains('=') && !line.starts_with('#')) {
-            let key = line.split('=').next().unwrap_or_default().trim();
-            let commented = |line: &str| line.starts_with(&format!("{key} ")) && line.contains('#');
-            let of_a_file = explains_itself.contains(&key) || key == "duration_s";
-            assert!(of_a_file || text.lines().any(commented), "{name}: `{key}` has no source");
+    let explains_itself = [
+        "at_s",
+        "for_s",
+        "until_s",
+        "name",
+        "base",
+        "without",
+        "title",
+        "from",
+        "channel",
+        "kind",
+        "intent",
+        "reason",
+        "duration_s",
+    ];
+    for (name, text) in builtin().iter().chain(builtin::parts()) {
+        let lines: Vec<&str> = text.lines().filter(|line| !line.trim_start().starts_with('#')).collect();
+        // `key = value`, or several of them in braces; or the key of a list of such lines, which has none of its own.
+        let keys = |line: &str| {
+            let code = line.split('#').next().unwrap_or_default().trim_end();
+            let words = |part: &str| part.rsplit(['{', ',']).next().unwrap_or_default().trim().to_owned();
+            let found: Vec<String> = code.split(" = ").map(words).collect();
+            let values = usize::from(code.contains(" = "));
+            let list = code.ends_with('[');
+            if list { Vec::new() } else { found[..values * (found.len() - 1)].to_vec() }
+        };
+        for key in lines.iter().flat_map(|line| keys(line)) {
+            let commented = |line: &&str| line.contains('#') && keys(line).contains(&key);
+            let explained = explains_itself.contains(&key.as_str()) || lines.iter().any(commented);
+            assert!(explained, "{name}: `{key}` has no source");
         }
     }
 }

@@ -1,10 +1,11 @@
 //! Each bound of [`bounds`] is where it says: 0.9 of it is stable, 1.1 fails, and as fast as predicted.
 
+use tenax_scene::bounds;
 use tenax_scene::physics::friction::Friction;
 use tenax_scene::stepping::problem::{Incline, Problem, ShakenHold, error, problems};
 use tenax_scene::stepping::{
     Body, Bristle, ExplicitEuler, Exponential, Implicit, Load, LuGre, Method, Moreau, RungeKutta4, SHIPPED_S,
-    State, bounds, methods, run,
+    State, methods, run,
 };
 
 const LUGRE: LuGre = LuGre::SHARP;

@@ -5,7 +5,7 @@
     /tmp/bound/bin/python train/bound/bound.py out/array_dataset.csv
 
 Learns from the training part, scores pours of the validation part, and never looks at the test part. A few minutes a core.
-Caught and false alarms are counted as host/src/scorer.rs defines them; the verdict is taken to fall as the step is read.
+Caught and false alarms are counted as bench/src/scorer.rs defines them; the verdict is taken to fall as the step is read.
 """
 
 import csv

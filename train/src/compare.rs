@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use anyhow::ensure;
-use tenax::labelled::{Part, Recording};
-use tenax::scorer::Doing;
+use tenax_bench::labelled::{Part, Recording};
+use tenax_bench::scorer::Doing;
 use tenax_logic::array::FEATURES;
 
 use crate::features::{Recipe, Sequence, sequence};

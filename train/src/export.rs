@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use tenax::evaluate::edges::Edges;
-use tenax::evaluate::network::Saved;
+use tenax_bench::array::edges::Edges;
+use tenax_bench::array::network::Saved;
 use tenax_logic::array::{COVARIANCE_WINDOW, FEATURES, SPECTRUM_WINDOW};
 
 use crate::features::Recipe;

@@ -1,7 +1,7 @@
 //! What the network sees of a recording: the firmware's own integers.
 
-use tenax::labelled::{Part, Recording};
-use tenax::scorer::Doing;
+use tenax_bench::labelled::{Part, Recording};
+use tenax_bench::scorer::Doing;
 use tenax_logic::array::logarithm::Knee;
 use tenax_logic::array::past::Past;
 use tenax_logic::array::spectrum::SlidingSpectrum;

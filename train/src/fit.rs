@@ -2,8 +2,8 @@
 
 use anyhow::{bail, ensure};
 use serde::Serialize;
-use tenax::labelled::Part;
-use tenax::scorer::Doing;
+use tenax_bench::labelled::Part;
+use tenax_bench::scorer::Doing;
 
 use crate::features::Sequence;
 use crate::linear::{Linear, logistic};

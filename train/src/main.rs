@@ -8,12 +8,12 @@ use std::process::ExitCode;
 use anyhow::{Context, ensure};
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use tenax::evaluate::adapt;
-use tenax::evaluate::edges::{self, Chosen};
-use tenax::evaluate::network::{Network, Saved};
-use tenax::labelled::recipe::ArrayRecipe;
-use tenax::labelled::{self, Part, Recording, library};
-use tenax::scorer::Doing;
+use tenax_bench::array::adapt;
+use tenax_bench::array::edges::{self, Chosen};
+use tenax_bench::array::network::{Network, Saved};
+use tenax_bench::labelled::recipe::ArrayRecipe;
+use tenax_bench::labelled::{self, Part, Recording, library};
+use tenax_bench::scorer::Doing;
 use tenax_train::compare;
 use tenax_train::export;
 use tenax_train::features::{self, Recipe, Sequence};
@@ -151,7 +151,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
     }
     let files = [
         ("network.rs", rust.into_bytes()),
-        (tenax::evaluate::network::FILE, serde_json::to_vec(&saved)?),
+        (tenax_bench::array::network::FILE, serde_json::to_vec(&saved)?),
         ("model-card.md", report.card().into_bytes()),
         ("report.json", json),
     ];

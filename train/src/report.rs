@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use serde::Serialize;
-use tenax::evaluate::edges::{Chosen, FALSE_2800_MAX, FALSE_PER_HOUR_MAX};
+use tenax_bench::array::edges::{Chosen, FALSE_2800_MAX, FALSE_PER_HOUR_MAX};
 use tenax_logic::array::structure::STRUCTURES;
 
 use crate::features::{Recipe, Sequence};

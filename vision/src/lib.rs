@@ -18,6 +18,7 @@ pub mod motion;
 pub mod object;
 pub mod quality;
 pub mod rectify;
+pub mod skin;
 
 pub use camera::{Camera, Summary};
 pub use frame::{Frame, Plane, Point};

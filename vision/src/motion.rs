@@ -1,55 +1,121 @@
-//! How an object moves from one picture to the next: one move for all of its pixels, by least squares on the brightness
+//! How an object moves from one picture to the next: one rigid move for all of its pixels, by least squares on the brightness
 //! (Lucas and Kanade 1981), without looking for points.
+//!
+//! The light may change meanwhile, so a common gain is a fourth unknown. Pixels that the move does not explain (a spot of the
+//! background, a reflection) count less and less in each round.
 
-use crate::frame::{HEIGHT, Plane, WIDTH};
+use crate::frame::{HEIGHT, Plane, Point, WIDTH};
 use crate::mask::Mask;
 
 /// A move, px a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Flow {
-    /// To the right.
+    /// To the right, of the place that it is asked for.
     pub x: f32,
     /// Down.
     pub y: f32,
+    /// Turn from x towards y, in the way of a place [`ARM_PX`] away.
+    pub turn: f32,
 }
 
+/// How far away from the middle a turn is measured, px.
+pub const ARM_PX: f32 = 60.0;
 /// Slope below which a pixel is noise, grey levels over two pixels.
 const SLOPE_MIN: i32 = 8;
 /// Pixels with a slope that are needed.
 const PIXELS_MIN: u32 = 60;
+/// Rounds of the fit.
+const ROUNDS: usize = 3;
+/// A change that is not explained and is less than this counts as the rest does, grey levels.
+const NOISE: f32 = 4.0;
+/// Unknowns: right, down, turn, gain.
+const UNKNOWNS: usize = 4;
+/// How much farther than the skin around it, as its markers tell, what sticks to the skin may move: the contact moves most.
+const CARRIED_MAX: f32 = 1.5;
+/// A pivot below this part of its diagonal says that the unknowns cannot be told apart.
+const PIVOT_MIN: f32 = 0.02;
 
-/// The move that best explains how the pixels of `object` changed. None if they are too plain for that. Right for moves of a
-/// pixel or two; larger ones come out too small, with the right sign.
-#[must_use]
-pub fn flow(before: &Plane, now: &Plane, object: &Mask) -> Option<Flow> {
-    let (mut xx, mut xy, mut yy, mut xt, mut yt) = (0i64, 0i64, 0i64, 0i64, 0i64);
-    let mut count = 0;
-    object.for_each(|at| {
-        let (x, y) = (at % WIDTH, at / WIDTH);
-        if x == 0 || y == 0 || x == WIDTH - 1 || y == HEIGHT - 1 {
-            return;
-        }
-        let level = |plane: &Plane, at: usize| i32::from(plane[at]);
-        // The slope of both pictures: of one alone it would be off by half the move.
-        let slope = |after: usize, first: usize| {
-            (level(now, after) - level(now, first) + level(before, after) - level(before, first)) / 2
-        };
-        let (gx, gy) = (slope(at + 1, at - 1), slope(at + WIDTH, at - WIDTH));
-        if gx.abs() + gy.abs() < SLOPE_MIN {
-            return;
-        }
-        let change = level(now, at) - level(before, at);
-        count += 1;
-        (xx, xy, yy) = (xx + i64::from(gx * gx), xy + i64::from(gx * gy), yy + i64::from(gy * gy));
-        (xt, yt) = (xt - i64::from(gx * change), yt - i64::from(gy * change));
-    });
-    let (xx, xy, yy, xt, yt) = (xx as f32, xy as f32, yy as f32, xt as f32, yt as f32);
-    let det = xx * yy - xy * xy;
-    if count < PIXELS_MIN || det < 0.02 * xx * yy {
-        return None;
+impl Flow {
+    /// How fast what moves so slips on skin that moves as `skin` says, px: what the skin cannot have carried it.
+    #[must_use]
+    pub fn slip_on(self, skin: Self) -> f32 {
+        let size = skin.x * skin.x + skin.y * skin.y;
+        let along = self.x * skin.x + self.y * skin.y;
+        let carried = if size > 0.0 { (along / size).clamp(1.0, CARRIED_MAX) } else { 0.0 };
+        libm::hypotf(self.x - carried * skin.x, self.y - carried * skin.y) + (self.turn - skin.turn).abs()
     }
-    // Slopes are over two pixels.
-    Some(Flow { x: 2.0 * (xt * yy - yt * xy) / det, y: 2.0 * (yt * xx - xt * xy) / det })
+}
+
+/// The move that best explains how the pixels of `object` changed, about `middle`. None if they are too plain for that. Right for
+/// moves of a pixel or two; larger ones come out too small, with the right sign.
+#[must_use]
+pub fn flow(before: &Plane, now: &Plane, object: &Mask, middle: Point) -> Option<Flow> {
+    let mut found = [0.0; UNKNOWNS];
+    for round in 0..ROUNDS {
+        let (mut a, mut b) = ([[0.0; UNKNOWNS]; UNKNOWNS], [0.0; UNKNOWNS]);
+        let mut count = 0;
+        object.for_each(|at| {
+            let (x, y) = (at % WIDTH, at / WIDTH);
+            if x == 0 || y == 0 || x == WIDTH - 1 || y == HEIGHT - 1 {
+                return;
+            }
+            let sum = |at: usize| i32::from(now[at]) + i32::from(before[at]);
+            // The slope of both pictures: of one alone it would be off by half the move. Over two pixels, of two pictures.
+            let (gx, gy) = (sum(at + 1) - sum(at - 1), sum(at + WIDTH) - sum(at - WIDTH));
+            if gx.abs() + gy.abs() < 2 * SLOPE_MIN {
+                return;
+            }
+            count += 1;
+            let (gx, gy) = (gx as f32 / 4.0, gy as f32 / 4.0);
+            let (dx, dy) = ((x as f32 - middle.x) / ARM_PX, (y as f32 - middle.y) / ARM_PX);
+            let row = [-gx, -gy, gx * dy - gy * dx, sum(at) as f32 / 512.0];
+            let change = f32::from(now[at]) - f32::from(before[at]);
+            let weight = if round == 0 {
+                1.0
+            } else {
+                let off = (change - dot(&row, &found)) / NOISE;
+                1.0 / (1.0 + off * off)
+            };
+            for i in 0..UNKNOWNS {
+                let own = weight * row[i];
+                (0..=i).for_each(|j| a[i][j] += own * row[j]);
+                b[i] += own * change;
+            }
+        });
+        if count < PIXELS_MIN {
+            return None;
+        }
+        found = solve(a, b)?;
+    }
+    let [x, y, turn, _] = found;
+    Some(Flow { x, y, turn })
+}
+
+fn dot(a: &[f32; UNKNOWNS], b: &[f32; UNKNOWNS]) -> f32 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Solves the normal equations by Cholesky's factors. None if the unknowns cannot be told apart.
+fn solve(mut a: [[f32; UNKNOWNS]; UNKNOWNS], mut b: [f32; UNKNOWNS]) -> Option<[f32; UNKNOWNS]> {
+    for i in 0..UNKNOWNS {
+        for j in 0..=i {
+            let dot: f32 = (0..j).map(|k| a[i][k] * a[j][k]).sum();
+            let left = a[i][j] - dot;
+            if i == j {
+                if left <= PIVOT_MIN * a[i][i] {
+                    return None;
+                }
+                a[i][i] = libm::sqrtf(left);
+            } else {
+                a[i][j] = left / a[j][j];
+            }
+        }
+        b[i] = (b[i] - (0..i).map(|k| a[i][k] * b[k]).sum::<f32>()) / a[i][i];
+    }
+    for i in (0..UNKNOWNS).rev() {
+        b[i] = (b[i] - (i + 1..UNKNOWNS).map(|k| a[k][i] * b[k]).sum::<f32>()) / a[i][i];
+    }
+    Some(b)
 }
 
 #[cfg(test)]
@@ -57,10 +123,16 @@ mod tests {
     use super::*;
     use crate::frame::plane;
 
-    fn draw(x: f32, y: f32, into: &mut Plane) {
+    const MIDDLE: Point = Point { x: 150.0, y: 110.0 };
+
+    /// A pattern that has moved and turned, in another light.
+    fn draw(moved: Flow, gain: f32, into: &mut Plane) {
+        let (sin, cos) = (libm::sinf(moved.turn / ARM_PX), libm::cosf(moved.turn / ARM_PX));
         for (at, level) in into.iter_mut().enumerate() {
-            let (px, py) = ((at % WIDTH) as f32 - x, (at / WIDTH) as f32 - y);
-            *level = (128.0 + 50.0 * libm::sinf(px / 5.0) + 50.0 * libm::cosf(py / 6.0)) as u8;
+            let (dx, dy) =
+                ((at % WIDTH) as f32 - MIDDLE.x - moved.x, (at / WIDTH) as f32 - MIDDLE.y - moved.y);
+            let (px, py) = (dx * cos + dy * sin, dy * cos - dx * sin);
+            *level = (gain * (128.0 + 50.0 * libm::sinf(px / 5.0) + 50.0 * libm::cosf(py / 6.0))) as u8;
         }
     }
 
@@ -69,12 +141,43 @@ mod tests {
         let (mut before, mut now) = (plane(), plane());
         let mut object = Mask::EMPTY;
         (60..180).for_each(|y| (80..240).for_each(|x| object.insert(x, y)));
-        draw(0.0, 0.0, &mut before);
-        assert_eq!(flow(&plane(), &plane(), &object), None);
-        for (x, y) in [(0.0, 0.0), (0.5, -0.3), (-1.0, 1.5), (0.0, 2.0)] {
-            draw(x, y, &mut now);
-            let found = flow(&before, &now, &object).unwrap();
-            assert!((found.x - x).abs() < 0.1 && (found.y - y).abs() < 0.15, "{x} {y}: {found:?}");
+        draw(Flow::default(), 1.0, &mut before);
+        assert_eq!(flow(&plane(), &plane(), &object, MIDDLE), None);
+        for (x, y, turn) in
+            [(0.0, 0.0, 0.0), (0.5, -0.3, 0.0), (-1.0, 1.5, 0.4), (0.0, 2.0, -1.0), (0.0, 0.0, 0.2)]
+        {
+            for gain in [1.0, 1.02, 0.98] {
+                draw(Flow { x, y, turn }, gain, &mut now);
+                let found = flow(&before, &now, &object, MIDDLE).unwrap();
+                let off = found.slip_on(Flow { x, y, turn });
+                assert!(off < 0.15, "{x} {y} {turn} {gain}: {found:?}");
+            }
         }
+    }
+
+    #[test]
+    fn what_the_skin_carries_does_not_slip() {
+        let skin = Flow { x: 0.6, y: -0.3, turn: 0.0 };
+        let carried = |part: f32| Flow { x: part * skin.x, y: part * skin.y, turn: 0.0 }.slip_on(skin);
+        assert!(carried(1.0) < 1e-6 && carried(1.4) < 1e-6);
+        assert!(carried(2.0) > 0.3 && carried(0.0) > 0.6 && carried(-1.0) > 1.3);
+        assert!(Flow { x: 0.6, y: 0.3, turn: 0.0 }.slip_on(skin) > 0.25, "across it");
+        assert!(Flow { turn: 0.5, ..skin }.slip_on(skin) >= 0.5, "a turn");
+        assert_eq!(Flow::default().slip_on(Flow::default()), 0.0);
+    }
+
+    #[test]
+    fn a_spot_of_what_lies_behind_does_not_move_it() {
+        let (mut before, mut now, mut other) = (plane(), plane(), plane());
+        let mut object = Mask::EMPTY;
+        (60..180).for_each(|y| (80..240).for_each(|x| object.insert(x, y)));
+        draw(Flow::default(), 1.0, &mut before);
+        now.copy_from_slice(&before[..]);
+        draw(Flow { x: 2.0, y: -1.5, turn: 0.0 }, 1.0, &mut other);
+        for y in 60..90 {
+            now[y * WIDTH + 80..y * WIDTH + 150].copy_from_slice(&other[y * WIDTH + 80..y * WIDTH + 150]);
+        }
+        let found = flow(&before, &now, &object, MIDDLE).unwrap();
+        assert!(found.slip_on(Flow::default()) < 0.1, "{found:?}");
     }
 }

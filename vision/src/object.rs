@@ -42,7 +42,9 @@ const APART_PX: usize = 32;
 /// Moving pixels below which an object is still.
 const STILL_PX: u32 = 150;
 /// Frames after which what looks like a ghost is one.
-const GHOST_FRAMES: u32 = 2;
+const GHOST_FRAMES: u32 = 3;
+/// Frames in which what comes in front of the scene counts as moving.
+const ARRIVED_FRAMES: u32 = 4;
 /// How far from moving pixels others belong to what moves, px.
 const INSIDE_PX: usize = 10;
 
@@ -101,6 +103,8 @@ pub struct Tracker<M> {
     /// The object and the hand that brings it.
     near: Mask,
     moving: Mask,
+    /// What differed from the scene a few frames ago.
+    apart: Mask,
     slip: Mask,
     bytes: Box<Plane>,
     held: Box<Plane>,
@@ -124,6 +128,7 @@ impl<M: Movement> Tracker<M> {
             object: Mask::EMPTY,
             near: Mask::EMPTY,
             moving: Mask::EMPTY,
+            apart: Mask::EMPTY,
             slip: Mask::EMPTY,
             bytes: plane(),
             held: plane(),
@@ -179,6 +184,9 @@ impl<M: Movement> Tracker<M> {
         if learn {
             self.learn(frame, &differs);
         }
+        if self.frames.is_multiple_of(ARRIVED_FRAMES) {
+            self.apart.clone_from(&differs);
+        }
         let apart = differs.clone();
         self.project(frame, &mut differs);
         // Specks and lines of a pixel go, then noise (erosion 2), and what the markers cut out is closed (dilation 7, and back).
@@ -203,11 +211,14 @@ impl<M: Movement> Tracker<M> {
         self.near.clone_from(&self.object);
         // A hand that has closed took the object from somebody's.
         if learn && self.config.skip_hand {
-            hand::leave_out(&mut self.object, frame, self.scene.mean_colour());
+            let least = (self.config.area_min * PIXELS as f32) as u32;
+            hand::leave_out(&mut self.object, frame, self.scene.mean_colour(), least);
         }
 
         let part = |pixels: u32| pixels as f32 / PIXELS as f32;
-        let moments = self.object.moments().filter(|moments| part(moments.area) >= self.config.area_min);
+        // What was an object a moment ago is one still, if half as much of it is seen.
+        let area_min = if self.seen { self.config.area_min / 2.0 } else { self.config.area_min };
+        let moments = self.object.moments().filter(|moments| part(moments.area) >= area_min);
         self.seen = moments.is_some();
         if !self.seen {
             self.object = Mask::EMPTY;
@@ -218,7 +229,8 @@ impl<M: Movement> Tracker<M> {
         self.slip.intersect(&self.moving);
         self.slip.subtract(skin);
         let slip_px = moments.map_or(0, |moments| spread_count(&self.slip, &moments));
-        let ghost = learn && self.seen && slip_px < STILL_PX && ghost::is_one(&self.object, skin, grey);
+        let ghost =
+            learn && self.seen && slip_px < STILL_PX && ghost::is_one(&self.object, skin, frame, &self.scene);
         self.ghosts = if ghost { self.ghosts + 1 } else { 0 };
         if self.ghosts >= GHOST_FRAMES {
             self.lay_ghost(frame);
@@ -248,7 +260,10 @@ impl<M: Movement> Tracker<M> {
 
     /// Learns the colours of what moves and is not the scene.
     fn learn(&mut self, frame: &Frame, differs: &Mask) {
-        let mut new = self.moving.clone();
+        // What has come in front of the scene moves, too, though it be as bright as the scene.
+        let mut new = self.apart.clone();
+        new.invert();
+        new.unite(&self.moving);
         new.intersect(differs);
         new.erode(1);
         if (new.count() as f32) < self.config.learn_min * PIXELS as f32 {

@@ -1,21 +1,19 @@
 //! Who the board is, and what it began with.
 
 use heapless::Vec;
+use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
 use super::Setting;
-use crate::setting::SettingId;
 use crate::words::Kept;
 
 /// Settings that a message has room for.
 pub const SETTINGS_MAX: usize = 64;
-// Whoever adds the next one finds out here, and not when the board starts.
-const _: () = assert!(SettingId::ALL.len() <= SETTINGS_MAX);
 /// Bytes of what was kept, at most.
 pub const KEPT_MAX: usize = 320;
 
 /// Why the chip started.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum ResetCause {
     /// It was switched on, or the supply came back.
     #[default]
@@ -33,7 +31,7 @@ pub enum ResetCause {
 }
 
 /// The chip and the image, as they were when it started.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Identity {
     /// The first bytes of the image's build identifier, which the linker makes from its contents. 0: the host's own build.
     pub build: u64,
@@ -44,10 +42,12 @@ pub struct Identity {
 }
 
 /// Who the board is.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct About {
     /// Chip and image.
     pub identity: Identity,
+    /// The [`SCHEMA`](super::SCHEMA) that its messages follow.
+    pub schema: u64,
     /// Frames since the start.
     pub frames: u32,
     /// Every setting.
@@ -55,7 +55,7 @@ pub struct About {
 }
 
 /// Something that had outlived a power cut and was taken up at this start, as it lies in flash.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Restored {
     /// What.
     pub kept: Kept,

@@ -1,13 +1,14 @@
 //! What commands are answered with.
 
 use heapless::Vec;
+use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
 use super::{About, Last, NetworkState, samples};
 use crate::channel::COUNT;
 
 /// Why a command was not carried out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Refusal {
     /// The value is outside this range.
     OutOfRange {
@@ -34,8 +35,8 @@ pub enum Refusal {
     HeldTooLong,
 }
 
-/// A setting's number (see [`SettingId`](crate::setting::SettingId)) and its value, in its unit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// A setting's number (`tenax_logic::setting::SettingId`) and its value, in its unit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Setting {
     /// Its number.
     pub id: u8,
@@ -47,7 +48,7 @@ pub struct Setting {
 pub const SETTINGS_PER_ANSWER: usize = 16;
 
 /// What a command is answered with.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 #[allow(clippy::large_enum_variant, reason = "there is no heap to put the large one on")]
 pub enum Answer {
     /// It was carried out.

@@ -1,5 +1,6 @@
 //! To the board: commands.
 
+use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
 use super::Setting;
@@ -11,7 +12,7 @@ use crate::words::Codes;
 pub const DRIVE_HOLD_MAX_MS: u16 = 250;
 
 /// To the board.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Down {
     /// Answer with [`Answer::Done`](super::Answer::Done).
     Ping,

@@ -1,6 +1,7 @@
 //! What the board had said before a fault: it survives the reset, and is fetched piece by piece.
 
 use heapless::Vec;
+use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
 use crate::words::Fault;
@@ -12,7 +13,7 @@ pub const PIECE_MAX: usize = 256;
 pub const WHY_MAX: usize = 48;
 
 /// A piece of what had gone up the line before the last run ended in a fault.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Last {
     /// The fault. None: nothing is kept.
     pub after: Option<Fault>,

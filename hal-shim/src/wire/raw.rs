@@ -7,6 +7,8 @@
 //! | 0 to 20 | the twelve films, 14 bits each, the first in the lowest bits; four take seven bytes, little-endian |
 //! | 21 to 24 | little-endian: switch A (bits 13..0), switch B (bits 27..14), bit 28: the frame is valid |
 
+use postcard_schema::Schema;
+use postcard_schema::schema::NamedType;
 use serde::{Deserialize, Serialize};
 
 use crate::channel::PVDF_COUNT;
@@ -21,12 +23,26 @@ const BITS: u32 = 14;
 const MASK: u16 = (1 << BITS) - 1;
 const VALID: u32 = 1 << 28;
 
+/// A frame's bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+struct Packed([u8; BYTES]);
+
+impl Default for Packed {
+    fn default() -> Self {
+        Self([0; BYTES])
+    }
+}
+
+impl Schema for Packed {
+    const SCHEMA: &'static NamedType = &NamedType { name: "frame", ty: <[u8; BYTES]>::SCHEMA.ty };
+}
+
 /// Some frames, one after the other.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Raw {
     /// Sequence number of the first.
     pub first: u32,
-    packed: [[u8; BYTES]; FRAMES_PER_RAW],
+    frames: [Packed; FRAMES_PER_RAW],
 }
 
 impl Raw {
@@ -34,13 +50,13 @@ impl Raw {
     pub fn put(&mut self, frame: &Frame) {
         let place = frame.sequence as usize % FRAMES_PER_RAW;
         self.first = frame.sequence.wrapping_sub(place as u32);
-        self.packed[place] = pack(frame);
+        self.frames[place] = Packed(pack(frame));
     }
 
     /// The frames.
     #[must_use]
     pub fn frames(&self) -> [Frame; FRAMES_PER_RAW] {
-        core::array::from_fn(|place| unpack(self.first.wrapping_add(place as u32), &self.packed[place]))
+        core::array::from_fn(|place| unpack(self.first.wrapping_add(place as u32), &self.frames[place].0))
     }
 }
 

@@ -1,12 +1,13 @@
 //! What every sensor reads, 80 times a second, for whoever asks: see [`Down::Stream`](super::Down::Stream).
 
+use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
 use super::samples;
 use crate::channel::{COUNT, PVDF_COUNT};
 
 /// The readings at an instant.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Senses {
     /// Sequence number of the last frame in it.
     pub frame: u32,

@@ -1,6 +1,7 @@
 //! What goes up 80 times a second: everything that a slow frame (12.5 ms) decided; and what the network knows.
 
 use heapless::Vec;
+use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
 use super::TickRecord;
@@ -15,9 +16,9 @@ pub const RECEPTORS: usize = PVDF_COUNT + STRAIN_COUNT;
 pub const NETWORK_OUTPUTS: usize = 2;
 
 /// The force sensor's readings of a slow frame (Prosthesis, section 4).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Forces {
-    /// The paper's Fn, mN: see `tenax_logic::forces` for what it is not.
+    /// The paper's Fn, mN: see `tenax_logic::force::sensor` for what it is not.
     pub fn_mn: i32,
     /// The load, mN: the sum of the quadrants. What is decided by a force is decided by this.
     pub load_mn: i32,
@@ -35,7 +36,7 @@ pub struct Forces {
 pub const DETECTORS_MAX: usize = 8;
 
 /// Everything a slow frame (12.5 ms) decided.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Slow {
     /// Sequence number of its last frame.
     pub frame: u32,
@@ -66,7 +67,7 @@ pub struct Slow {
 }
 
 /// What the network knows and feels (Tada 2006, equations 3 to 6).
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct NetworkState {
     /// Sequence number of the last frame in it.
     pub frame: u32,

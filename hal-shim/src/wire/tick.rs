@@ -12,6 +12,8 @@
 
 use core::fmt;
 
+use postcard_schema::Schema;
+use postcard_schema::schema::NamedType;
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::ser::SerializeTuple;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -93,6 +95,11 @@ impl TickRecord {
             source,
         })
     }
+}
+
+/// For programs that read it: its bytes are the table's above.
+impl Schema for TickRecord {
+    const SCHEMA: &'static NamedType = &NamedType { name: "tick", ty: <[u8; BYTES_MAX]>::SCHEMA.ty };
 }
 
 impl Serialize for TickRecord {

@@ -1,5 +1,6 @@
 //! From the board: what it counts, what happens once, and the list of all messages.
 
+use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
 use super::{About, Answer, Down, Raw, Restored, Senses, Slow};
@@ -7,7 +8,7 @@ use crate::behaviour::{Behaviour, Ending};
 use crate::words::{Calibration, Cause, Consent, Fault, GripMode, Kept};
 
 /// What the board counted since it was switched on.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Counters {
     /// Frames taken.
     pub frames: u32,
@@ -33,7 +34,7 @@ pub struct Counters {
 }
 
 /// Something that happened once.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Event {
     /// Sequence number of the frame in which it happened.
     pub frame: u32,
@@ -42,7 +43,7 @@ pub struct Event {
 }
 
 /// What can happen once.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum EventKind {
     /// The mode changed.
     Mode {
@@ -81,7 +82,7 @@ pub enum EventKind {
 }
 
 /// From the board.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 #[allow(clippy::large_enum_variant, reason = "there is no heap to put the large one on")]
 pub enum Up {
     /// The board has started.

@@ -5,7 +5,6 @@ use tenax_hal_shim::wire::Down;
 use tenax_host_tests::Bench;
 use tenax_logic::config::Config;
 use tenax_logic::detectors::{Detectors, Sensed};
-use tenax_logic::grip::Grip;
 use tenax_logic::journal::Journal;
 use tenax_logic::senses::Senses;
 use tenax_logic::store::record::{PAYLOAD_BYTES, Record};
@@ -22,26 +21,8 @@ impl Sensing {
     /// Takes a frame that came in whole, while nobody moves the hand.
     pub fn take(&mut self, frame: &Frame) -> Sensed<'_> {
         self.journal.begin(frame);
-        self.senses.take(&self.config, frame, &mut self.journal);
-        let senses = &self.senses;
-        Sensed {
-            frame: frame.sequence,
-            slot: frame.slot(),
-            valid: frame.valid,
-            vibration: senses.vibration,
-            envelopes: senses.envelopes(),
-            vibration_known: senses.hears(),
-            strain: senses.gauges(),
-            forces: senses.forces.as_ref(),
-            forces_are_new: senses.forces_are_new,
-            taxels: senses.taxels(),
-            head: senses.head(),
-            unloaded: senses.is_unloaded(&self.config),
-            grasp: matches!(senses.grip(&self.config), Grip::Holds(_)),
-            noisy: senses.vibration.knock,
-            moves: false,
-            wearer: false,
-        }
+        self.senses.process(&self.config, frame, &mut self.journal);
+        self.senses.sensed(&self.config, frame, 0, false)
     }
 }
 

@@ -191,7 +191,7 @@ fn a_wrong_teacher_is_survived_for_a_while_and_forgotten() {
     assert_eq!(fate(&weights_of(&network), &trial), Fate::Useful);
 }
 
-/// A day of use: an hour without a teacher, an hour with one that sees nothing move, an hour of knocks.
+/// A day of use: an hour without a teacher, an hour with one that sees nothing move, an hour of impacts.
 #[test]
 fn without_a_lesson_nothing_is_forgotten() {
     let config = TeacherConfig::default();
@@ -205,7 +205,7 @@ fn without_a_lesson_nothing_is_forgotten() {
             if ms % 33 == 0
                 && let Some(codes) = codes
             {
-                teacher.hear(&config, codes, 40);
+                teacher.receive(&config, codes, 40);
             }
             match teacher.lesson(&config, Situation { grasp: true, disturbed }) {
                 Ok(codes) => network.learn(&rule, &felt, &codes),
@@ -254,7 +254,7 @@ fn whole_path(finger: &Finger, config: &Config, average_shift: u32) -> Fate {
             if ms % 33 == 0 {
                 // Every fifth picture sees no motion.
                 let codes = if ms / 33 % 5 == 4 { [Code::Zero; 2] } else { moment.seen };
-                teacher.hear(&teacher_config, codes, 66);
+                teacher.receive(&teacher_config, codes, 66);
             }
             let raw = raw(&moment.felt);
             if let Ok(codes) = teacher.lesson(&teacher_config, Situation { grasp: true, disturbed: false }) {

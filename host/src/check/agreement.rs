@@ -1,8 +1,8 @@
 //! The image and the host's build of the logic, given the same codes, say the same, bit for bit.
 
 use super::Bar;
-use crate::board::Run;
-use crate::board::agreement::Agreement;
+use tenax_bench::board::Run;
+use tenax_bench::board::agreement::Agreement;
 
 /// The bar for a run on the emulated board.
 #[must_use]

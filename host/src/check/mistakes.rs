@@ -3,8 +3,8 @@
 use tenax_scene::{SceneFile, builtin};
 
 use super::Bar;
-use crate::replay::library::BUILTIN;
-use crate::replay::{Recipe, Recording};
+use tenax_bench::replay::library::BUILTIN;
+use tenax_bench::replay::{Recipe, Recording};
 
 /// The bars: one mistake of each kind.
 #[must_use]

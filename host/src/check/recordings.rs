@@ -10,8 +10,8 @@ use tenax_hal_shim::detector::DetectorId;
 
 use super::Bar;
 use super::side_by_side::Group;
-use crate::report::Report;
-use crate::session::{self, Board};
+use tenax_bench::report::Report;
+use tenax_bench::session::{self, Board};
 
 /// On the rig nothing slides before this, s.
 const RIG_STILL_UNTIL_S: f64 = 1.5;

@@ -5,7 +5,7 @@ use std::process::Command;
 use tenax_scene::builtin;
 
 use super::Bar;
-use crate::session::{self, Board};
+use tenax_bench::session::{self, Board};
 
 /// Two slow frames, ms.
 const TWO_SLOW_FRAMES_MS: f64 = 25.0;

@@ -1,12 +1,10 @@
-//! `tenax calibrate`: a person is told step by step what to do at the hand, and what came of it.
+//! `tenax calibrate`: the serial tools' calibrations at the hand, and that of a photoelastic head on its balance.
 
 mod photoelastic;
 
 use std::process::ExitCode;
 
-use super::{out, port};
-use crate::guide;
-use crate::link::{Client, Target};
+use tenax_serial::cli::calibrate::{Hand, hand};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -28,73 +26,14 @@ pub struct Args {
 
 #[derive(Debug, clap::Subcommand)]
 enum What {
-    /// The force sensor under known weights: zeroes it, and shows how far each reading is off
-    Force {
-        #[command(flatten)]
-        line: Line,
-        /// The weights in the order in which they are put on, N
-        #[arg(long, value_name = "N,N,...", value_delimiter = ',', default_values_t = [1.0, 2.0, 5.0, 10.0], value_parser = weight)]
-        weights_n: Vec<f64>,
-    },
-    /// The friction of a surface by strokes over it: measures mu_s, from which S2 follows
-    Friction {
-        #[command(flatten)]
-        line: Line,
-        /// How many strokes
-        #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=20))]
-        strokes: u32,
-    },
-    /// The wearer's muscles: three prompts of 5 s
-    Emg {
-        #[command(flatten)]
-        line: Line,
-    },
+    #[command(flatten)]
+    Hand(Hand),
     Photoelastic(photoelastic::Args),
 }
 
-#[derive(Debug, clap::Args)]
-struct Line {
-    /// Where the line is [default: the only board that is plugged in]
-    #[arg(long, value_name = "PORT")]
-    port: Option<Target>,
-}
-
-impl Line {
-    fn open(&self) -> anyhow::Result<Client> {
-        Client::open(&port::or_found(self.port.as_ref())?)
-    }
-}
-
-fn weight(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(weight) if (0.1..=60.0).contains(&weight) => Ok(weight),
-        Ok(_) => Err("a weight is from 0.1 to 60 N".to_owned()),
-        Err(_) => Err("write weights as 1,2,5 in N".to_owned()),
-    }
-}
-
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    let say: guide::Say<'_> = &mut |text| out::say!("{text}");
     match &args.what {
-        What::Photoelastic(args) => return photoelastic::main(args),
-        What::Force { line, weights_n } => {
-            let calibration = guide::force::calibrate(&mut line.open()?, weights_n, say)?;
-            say(&format!("\n{}", calibration.text().trim_end()))?;
-        }
-        What::Friction { line, strokes } => {
-            let measured = guide::friction::calibrate(&mut line.open()?, *strokes, say)?;
-            let [mu_s, s2] =
-                [measured.mu_s_permille, measured.s2_permille].map(|permille| f64::from(permille) / 1e3);
-            say(&format!(
-                "Static friction {mu_s:.3} on the scale of Ft/Fn; S2 is {s2:.3} from now on, and kept."
-            ))?;
-        }
-        What::Emg { line } => {
-            let apart = guide::emg::calibrate(&mut line.open()?, say)?;
-            say(&format!(
-                "Taken, and kept: rest, closing and opening are {apart:.1} deviations apart (3 are needed)."
-            ))?;
-        }
+        What::Hand(what) => hand(what),
+        What::Photoelastic(args) => photoelastic::main(args),
     }
-    Ok(ExitCode::SUCCESS)
 }

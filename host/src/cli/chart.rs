@@ -12,8 +12,8 @@ use super::format::Format;
 use super::out;
 use super::progress::with_bar;
 use super::workspace;
-use crate::chart;
-use crate::plot::png;
+use tenax_plot::png;
+use tenax_studies::chart;
 
 /// Draw charts.
 #[derive(Debug, clap::Args)]
@@ -46,6 +46,9 @@ enum Subject {
     Detectors,
     /// How the force array's network does against each quantity that sessions draw: where the method fails
     Array,
+    /// What each grip pays in newtons beyond need for what it saves in millimetres: the hand, each detector alone, all but each, no
+    /// reflex, constant grip, the bound; and decision delay by stiffness by gain
+    Front,
     /// What tells slip from rest in the force array: force sum, derivative, covariance, frequency, and their windows
     Features,
     /// How soon the slip of a lift could be told, and from which sensors, beside what a camera sees
@@ -62,6 +65,10 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         Subject::Scenes => with_bar("charts", |progress| chart::scenes(progress))?,
         Subject::Array => vec![with_bar("array", |progress| chart::array::chart(progress))?],
         Subject::Features => vec![with_bar("features", |progress| chart::features::chart(progress))?],
+        Subject::Front => {
+            let front = with_bar("front", |progress| chart::front::front(progress))?;
+            vec![front, with_bar("delay", |progress| chart::delay::map(progress))?]
+        }
         Subject::Sensors => {
             let recordings = recordings(args)?;
             vec![with_bar("sensors", |progress| chart::sensors::chart(&recordings, progress))?]
@@ -131,8 +138,8 @@ fn detectors(scores: Option<&Path>) -> anyhow::Result<chart::Chart> {
     };
     let tables: Vec<(&str, String)> = files.iter().map(read).collect::<Result<_, _>>()?;
     let tables: Vec<(&str, &str)> = tables.iter().map(|(data, table)| (*data, table.as_str())).collect();
-    let image = crate::image::build_kernels(&root)?;
-    let costs = with_bar("detectors", |_| crate::board::emulated::kernels::costs(&image))?;
+    let image = tenax_bench::image::build_kernels(&root)?;
+    let costs = with_bar("detectors", |_| tenax_bench::board::emulated::kernels::costs(&image))?;
     let instructions = costs.into_iter().map(|cost| (cost.name, cost.most)).collect();
     chart::detectors::chart(&tables, &instructions)
 }

@@ -6,11 +6,11 @@ use std::process::ExitCode;
 use tenax_launch::status::Status;
 
 use super::{out, size, test, workspace};
-use crate::board::Run;
-use crate::budgets::Line;
 use crate::check::side_by_side::{Group, measure};
 use crate::check::{Bar, Verdict, array, default_scene, learn, mistakes, recordings, wearer};
-use crate::session::{self, Board};
+use tenax_bench::board::Run;
+use tenax_bench::budgets::Line;
+use tenax_bench::session::{self, Board};
 
 /// Measure every promise of the project, one line each; fails if one is not kept.
 #[derive(Debug, clap::Args)]
@@ -32,7 +32,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let board = if args.host { Board::Host } else { Board::emulated(&root)? };
     if args.size {
         // Here, and not in the middle of what is measured side by side.
-        crate::image::build_kernels(&root)?;
+        tenax_bench::image::build_kernels(&root)?;
     }
     let mut groups = vec![
         Group::new("default scene", || default_scene(&root, &board, args)),

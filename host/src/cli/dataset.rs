@@ -9,9 +9,9 @@ use anyhow::{Context, bail};
 use super::folder;
 use super::out;
 use super::progress::with_bar;
-use crate::dataset::manifest::Manifest;
-use crate::dataset::session::Sizes;
-use crate::dataset::{Dataset, Label, Plan};
+use tenax_studies::dataset::manifest::Manifest;
+use tenax_studies::dataset::session::Sizes;
+use tenax_studies::dataset::{Dataset, Label, Plan};
 
 const EXAMPLES: &str = "\
 Examples:

@@ -11,18 +11,19 @@ use super::format::Format;
 use super::out;
 use super::progress::with_bar;
 use super::workspace;
-use crate::dataset::session::{Sizes, Split, sessions};
-use crate::dataset::{Dataset, Label, Plan};
-use crate::evaluate::network::Network;
-use crate::evaluate::real::{Logits, Real};
-use crate::evaluate::report::Report;
-use crate::evaluate::roc::Roc;
-use crate::evaluate::text::Text;
-use crate::evaluate::{Verdicts, adapt, draws, failures, online, readings, test_split};
-use crate::labelled::{self, Recording, library};
-use crate::report::oracle::Control;
-use crate::scorer::Card;
-use crate::session::Board;
+use tenax_bench::array::network::Network;
+use tenax_bench::array::real::{Logits, Real};
+use tenax_bench::array::{Verdicts, adapt, readings};
+use tenax_bench::labelled::{self, Recording, library};
+use tenax_bench::report::bound::Control;
+use tenax_bench::scorer::Card;
+use tenax_bench::session::Board;
+use tenax_studies::dataset::session::{Sizes, Split, sessions};
+use tenax_studies::dataset::{Dataset, Label, Plan};
+use tenax_studies::evaluate::report::Report;
+use tenax_studies::evaluate::roc::Roc;
+use tenax_studies::evaluate::text::Text;
+use tenax_studies::evaluate::{draws, failures, online, test_split};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -160,9 +161,9 @@ fn real(network: &Network) -> anyhow::Result<Option<Real>> {
 /// Says whether the emulated core judges recordings as this machine does.
 #[cfg(feature = "emulator")]
 fn on_the_core(recordings: &[Recording]) -> anyhow::Result<()> {
-    let image = crate::image::build_kernels(&workspace::root()?)?;
+    let image = tenax_bench::image::build_kernels(&workspace::root()?)?;
     let steps = with_bar("on the core", |progress| {
-        crate::evaluate::core::compare(&image, recordings, &mut |part| progress(part))
+        tenax_studies::evaluate::core::compare(&image, recordings, &mut |part| progress(part))
     })?;
     out::note!("the emulated core      says the same, bit for bit, in {steps} steps");
     Ok(())
@@ -203,7 +204,7 @@ fn online_tasks(args: &Args) -> anyhow::Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     }
     out::say!(
-        "task  material    kept      slid, mm (oracle)   peak, N (oracle, needed)   kept by its controls: no reflex, constant grip; alone s1, s2, hebbian, mlp"
+        "task  material    kept      slid, mm (bound)   peak, N (bound, needed)   kept by its controls: no reflex, constant grip; alone s1, s2, hebbian, mlp"
     )?;
     for row in online::rows(&tries) {
         let by = |name: &str| row.kept_by.get(name).copied().unwrap_or_default();
@@ -214,9 +215,9 @@ fn online_tasks(args: &Args) -> anyhow::Result<ExitCode> {
             row.kept,
             row.tries,
             row.distance_mm,
-            row.oracle_distance_mm,
+            row.bound_distance_mm,
             row.peak_force_n,
-            row.oracle_peak_force_n,
+            row.bound_peak_force_n,
             row.needed_force_n,
             by("no reflex"),
             by("constant grip"),
@@ -237,7 +238,7 @@ fn failing_scenes(args: &Args) -> anyhow::Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     }
     out::say!(
-        "scene               steps right  missed  false  slips caught  false alarms  object   slid, mm (oracle)  peak, N (oracle)"
+        "scene               steps right  missed  false  slips caught  false alarms  object   slid, mm (bound)  peak, N (bound)"
     )?;
     let or_dash = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.2}"));
     for row in rows {

@@ -7,19 +7,19 @@ use std::sync::{Mutex, PoisonError};
 
 use anyhow::{Context, ensure};
 
-use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::Setting;
+use tenax_logic::setting::SettingId;
 
 use super::format::Format;
 use super::out;
 use super::progress::Progress;
 use super::workspace;
-use crate::board::agreement::Agreement;
-use crate::learn::report::Report;
-use crate::learn::text::Text;
-use crate::learn::{self, Options, Outcome, figures};
-use crate::plot::png;
-use crate::session::Board;
+use tenax_bench::board::agreement::Agreement;
+use tenax_bench::session::Board;
+use tenax_plot::png;
+use tenax_studies::learn::report::Report;
+use tenax_studies::learn::text::Text;
+use tenax_studies::learn::{self, Options, Outcome, figures};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -41,7 +41,7 @@ pub struct Args {
     /// Minutes of holding, in which every alarm is false
     #[arg(long, value_name = "N", default_value_t = Options::default().minutes)]
     minutes: u64,
-    /// Lifts, and pours, in which the reflex is told of the slip by the network, the camera and an oracle
+    /// Lifts, and pours, in which the reflex is told of the slip by the network, the camera and the bound
     #[arg(long, value_name = "N", default_value_t = Options::default().lifts)]
     lifts: u64,
     /// Fingertips made by chance that learn the same way
@@ -110,7 +110,7 @@ fn setting(text: &str) -> anyhow::Result<Setting> {
     let id =
         SettingId::by_name(name).with_context(|| format!("--set {text}: no setting is called {name}"))?;
     let value = value.parse().with_context(|| format!("--set {text}: {value} is no whole number"))?;
-    Ok(Setting { id: id as u8, value })
+    Ok(Setting { id: id.number(), value })
 }
 
 /// All of it, with a bar for each part.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 
-use crate::board::Recorder;
+use tenax_bench::board::Recorder;
 
 /// A file that is made when the first byte comes.
 #[derive(Debug)]

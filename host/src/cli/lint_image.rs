@@ -4,9 +4,9 @@ use std::process::ExitCode;
 
 use super::out;
 use super::workspace;
-use crate::budgets::Budgets;
-use crate::image;
-use crate::image::panics;
+use tenax_bench::budgets::Budgets;
+use tenax_bench::image;
+use tenax_bench::image::panics;
 
 /// The chip besides the board's for which the image is compiled, to show what a port takes.
 const PORT: &str = "stm32f446re";

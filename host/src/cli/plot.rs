@@ -6,9 +6,9 @@ use std::process::ExitCode;
 use anyhow::Context;
 
 use super::out;
-use crate::plot::{draw, png};
-use crate::record::line_of;
-use crate::session;
+use tenax_bench::session;
+use tenax_plot::{draw, png};
+use tenax_serial::captured::line_of;
 
 /// Draw a recording.
 #[derive(Debug, clap::Args)]

@@ -13,12 +13,15 @@ use super::line_file::LineFile;
 use super::out;
 use super::progress::Progress;
 use super::workspace;
-use crate::plot::{draw, png};
-use crate::record::{self, Recording, is_recording};
-use crate::replay::{self, calibrate};
-use crate::report::text::Text;
-use crate::serve::{self, Server};
-use crate::session::{self, Board, Outcome};
+use tenax_bench::again;
+use tenax_bench::live::{Live, Use};
+use tenax_bench::replay::{self, calibrate};
+use tenax_bench::report::text::Text;
+use tenax_bench::session::{self, Board, Outcome};
+use tenax_plot::{draw, png};
+use tenax_serial::captured::is_recording;
+use tenax_serial::record::Recording;
+use tenax_serial::serve::{self, Server};
 
 /// Run a scene or a recording on a board; report and draw it.
 #[derive(Debug, clap::Args)]
@@ -38,7 +41,8 @@ pub struct Args {
     /// First calibrate the board to the wearer of these recordings: rest, closing, opening [default: not calibrated]
     #[arg(long, value_name = "REST.csv,CLOSE.csv,OPEN.csv", value_delimiter = ',', requires = "replay")]
     calibrate_emg: Option<Vec<PathBuf>>,
-    /// Run the scene's controls on the host, too: no reflex, a constant grip of the same mean force, each detector alone
+    /// Run the scene's controls on the host, too: no reflex, a constant grip of the same mean force, each detector alone,
+    /// all but each
     #[arg(long, conflicts_with = "replay")]
     controls: bool,
     /// Seed of every noise
@@ -70,7 +74,7 @@ pub struct Args {
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some(recording) = args.replay.as_deref().filter(|path| is_recording(path)) {
-        let outcome = record::replay::replay(recording)?;
+        let outcome = again::replay(recording)?;
         out::say!("{outcome}")?;
         return Ok(ExitCode::from(u8::from(outcome.difference.is_some())));
     }
@@ -94,7 +98,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let mut line = LineFile::new(path("line.bin"));
     let (mut server, live) = served(args)?.unzip();
     let mut recording = args.record.as_deref().map(Recording::create).transpose()?;
-    let line_use = serve::Use { live, streams_at_start: recording.is_some() };
+    let line_use = Use { live, streams_at_start: recording.is_some() };
     let recorder = &mut (&mut (&mut line, &mut server), &mut recording);
     let outcome = match &subject {
         Subject::Recording(file, recording) => {
@@ -108,7 +112,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             let mut outcome =
                 session::scene_served(file, args.seed, &board, line_use, recorder, &mut |s| progress.at(s))?;
             if args.controls {
-                outcome.report.controls = session::controls(file, args.seed, &outcome.truth);
+                outcome.report.controls = session::controls::controls(file, args.seed, &outcome.truth);
             }
             outcome
         }
@@ -131,7 +135,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
 }
 
 /// Begins to serve, if that is asked for, and says where.
-fn served(args: &Args) -> anyhow::Result<Option<(Server, serve::Live)>> {
+fn served(args: &Args) -> anyhow::Result<Option<(Server, Live)>> {
     if !args.serve && args.serve_tcp.is_none() && args.serve_truth.is_none() {
         return Ok(None);
     }
@@ -141,9 +145,10 @@ fn served(args: &Args) -> anyhow::Result<Option<(Server, serve::Live)>> {
         tcp: args.serve_tcp,
         truth: args.serve_truth,
     };
-    let (server, live) = Server::start(&options, |part| {
+    let (server, down) = Server::start(&options)?;
+    let live = Live::new(down, |part| {
         out::note!("the board is slower than real time: it runs, and is served, at {part:.2} of it");
-    })?;
+    });
     for place in server.places() {
         out::note!("serving on {place}");
     }

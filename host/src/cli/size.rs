@@ -6,12 +6,12 @@ use std::process::ExitCode;
 use super::out;
 use super::progress::Progress;
 use super::workspace;
-use crate::budgets::{Budgets, Line};
-use crate::crates;
-use crate::image;
-use crate::image::size::{FLASH_BYTES, RAM_BYTES, Size};
-use crate::report::Report;
-use crate::session::{self, Board};
+use tenax_bench::budgets::{Budgets, Line};
+use tenax_bench::image;
+use tenax_bench::image::size::{FLASH_BYTES, RAM_BYTES, Size};
+use tenax_bench::report::Report;
+use tenax_bench::session::{self, Board};
+use tenax_studies::crates;
 
 /// Flash, RAM, worst stack and instructions a tick of the image, beside their budgets.
 #[derive(Debug, clap::Args)]
@@ -87,7 +87,7 @@ pub fn lines(root: &Path, report: &Report) -> anyhow::Result<Vec<Line>> {
 /// What each kernel of the array detector costs at its worst.
 #[cfg(feature = "emulator")]
 fn array_costs(root: &Path) -> anyhow::Result<Vec<(String, u64)>> {
-    let costs = crate::board::emulated::kernels::costs(&image::build_kernels(root)?)?;
+    let costs = tenax_bench::board::emulated::kernels::costs(&image::build_kernels(root)?)?;
     Ok(costs.into_iter().map(|cost| (cost.name, cost.most)).collect())
 }
 

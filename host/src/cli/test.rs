@@ -1,11 +1,15 @@
-//! `tenax test`: every test of the workspace.
+//! `tenax test`: every test of the workspace, and their sum.
+
+mod sum;
 
 use std::process::{Command, ExitCode};
+
+use sum::Sum;
 
 use tenax_launch::image::{Binary, job};
 use tenax_launch::{jobs, tool};
 
-use super::workspace;
+use super::{out, workspace};
 
 /// Run every test of the workspace, the emulated ones included.
 #[derive(Debug, clap::Args)]
@@ -17,6 +21,9 @@ pub struct Args {
 
 /// What is tested in a debug build.
 const DEBUG: [&str; 6] = ["logic", "hal-shim", "scene", "vision", "launch", "host-tests"];
+
+/// What the tool is made of.
+const TOOL: [&str; 5] = ["serial", "plot", "board-model", "bench", "studies"];
 
 /// Tests of all that is not the tool, with the checks of a debug build: in the logic's arithmetic an overflow is an error.
 pub fn logic() -> Command {
@@ -32,6 +39,9 @@ pub fn logic() -> Command {
 fn tool() -> Command {
     let mut command = Command::new("cargo");
     command.arg("test").args(tool::BUILD);
+    for package in TOOL {
+        command.args(["--package", &format!("tenax-{package}")]);
+    }
     command
 }
 
@@ -46,12 +56,13 @@ fn training() -> Command {
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     // Before the tests, so that its messages are seen and what is to be installed is said once.
     jobs::run(vec![job(&workspace::root()?, &[Binary::Image, Binary::Kernels])])?;
-    let mut passed = true;
+    let mut sum = Sum::default();
     for mut command in [logic(), tool(), training()] {
         // The next is run even if one fails: a person wants to know of all that is broken.
-        passed &= workspace::run(command.args(&args.extra))?;
+        sum.run(command.arg("--no-fail-fast").args(&args.extra))?;
     }
-    Ok(if passed { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    out::say!("{sum}")?;
+    Ok(if sum.good() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
 #[cfg(test)]
@@ -66,7 +77,7 @@ mod tests {
         // The image is tested on the emulated board, by the tool's tests.
         let elsewhere = ["host", "train", "firmware"];
         for member in members.iter().filter_map(|member| member.as_str()) {
-            assert!(DEBUG.contains(&member) || elsewhere.contains(&member), "{member}");
+            assert!([&DEBUG[..], &TOOL, &elsewhere].concat().contains(&member), "{member}");
         }
     }
 }

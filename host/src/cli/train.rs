@@ -10,7 +10,7 @@ use super::folder;
 use super::out;
 use super::progress::with_bar;
 use super::workspace;
-use crate::labelled::{self, library};
+use tenax_bench::labelled::{self, library};
 
 const EXAMPLES: &str = "\
 Examples:

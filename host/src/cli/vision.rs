@@ -15,13 +15,13 @@ use tenax_vision::quality::Blind;
 use super::folder;
 use super::format::Format;
 use super::out;
-use crate::link::{Client, Outbox, Target};
-use crate::vision::calibrate::{self, Skin};
-use crate::vision::feed::Fault;
-use crate::vision::film::{self, Plan, Told};
-use crate::vision::source::Source;
-use crate::vision::told::Gains;
-use crate::vision::{scored, told};
+use tenax_serial::link::{Client, Outbox, Target};
+use tenax_studies::vision::calibrate::{self, Skin};
+use tenax_studies::vision::feed::Fault;
+use tenax_studies::vision::film::{self, Plan, Told};
+use tenax_studies::vision::source::Source;
+use tenax_studies::vision::told::Gains;
+use tenax_studies::vision::{scored, told};
 
 /// The load from which on a hand holds something, mN.
 const HOLDS_MN: i32 = 200;
@@ -339,6 +339,12 @@ fn drawn(args: &Args) -> anyhow::Result<ExitCode> {
                 percent(report.slip.recall),
                 percent(report.slip.false_rate),
                 percent(report.slip.false_rate_moving_background)
+            )?;
+            out::say!(
+                "worst session: recall {} %, false {} %, seen {} %",
+                percent(report.worst.recall),
+                percent(report.worst.false_rate),
+                percent(report.worst.seen)
             )?;
         }
     }

@@ -4,8 +4,8 @@
 use std::process::{Command, Output};
 use std::thread;
 
-use tenax::link::{Client, Target};
 use tenax_hal_shim::wire::Up;
+use tenax_serial::link::{Client, Target};
 
 use crate::serving::Serving;
 
@@ -32,7 +32,7 @@ fn bench(duration_s: f64, presses: &[(f64, f64, f64)], sweeps: &[(f64, f64)]) ->
 }
 
 fn calibrate(place: &str, args: &[&str]) -> (bool, String, String) {
-    let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_tenax"))
+    let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_tenax-host"))
         .arg("calibrate")
         .args(args)
         .args(["--port", place])
@@ -81,7 +81,7 @@ fn known_weights_show_how_far_the_force_sensor_is_off() {
     assert!((0.78..0.87).contains(&gain), "{out}");
     assert!((number(proposed, "force-ceiling-mn=") - 40_000.0 * gain).abs() < 30.0, "{proposed}");
     assert!((number(proposed, "loaded-mn=") - 600.0 * gain).abs() < 1.0, "{proposed}");
-    let set = Command::new(env!("CARGO_BIN_EXE_tenax"))
+    let set = Command::new(env!("CARGO_BIN_EXE_tenax-host"))
         .arg("config")
         .args(proposed.split(' '))
         .args(["--port", &served.places[0]])

@@ -2,12 +2,12 @@
 
 use std::process::{Command, Output};
 
-use tenax_hal_shim::setting::SettingId;
+use tenax_logic::setting::SettingId;
 
 use crate::serving::Serving;
 
 fn config(place: &str, args: &[&str]) -> (bool, String, String) {
-    let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_tenax"))
+    let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_tenax-host"))
         .args(["config", "--port", place])
         .args(args)
         .output()
@@ -23,7 +23,7 @@ fn every_setting_is_set_read_back_exported_imported_and_reset() {
 
     let (_, list, _) = config(place, &["list"]);
     assert_eq!(list.lines().count(), SettingId::ALL.len(), "{list}");
-    assert!(list.contains("s1-mv") && list.contains("20 to 250, default 100: S1"), "{list}");
+    assert!(list.contains("s1-mv") && list.contains("20 to 1500, default 100: S1"), "{list}");
 
     // All but the one that makes the line trusted: without it everything else would be refused.
     let settable: Vec<SettingId> =
@@ -44,7 +44,7 @@ fn every_setting_is_set_read_back_exported_imported_and_reset() {
     assert!(exported.contains("\ns1-mv = 100\n"), "{exported}");
 
     let (done, _, error) = config(place, &["set", "s1-mv=1501"]);
-    assert!(!done && error.contains("s1-mv = 1501 mV is outside 20 to 1500"), "{error}");
+    assert!(!done && error.contains("s1-mv = 1501 is refused: it has to be 20 to 1500"), "{error}");
     // From here on the narrower range is in force, and somebody has to be at the hand.
     assert!(config(place, &["set", "line-trusted-flag=0"]).0);
     let (done, _, error) = config(place, &["set", "s1-mv=120"]);

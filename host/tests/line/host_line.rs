@@ -2,12 +2,12 @@
 
 use std::process::{Command, Stdio};
 
-use tenax::board::line_log::LineLog;
-use tenax::board::{Run, Summary};
-use tenax::link::{Counts, Inbox};
-use tenax::session::{Board, load_scene};
+use tenax_bench::board::line_log::LineLog;
+use tenax_bench::board::{Run, Summary};
+use tenax_bench::session::{Board, load_scene};
 use tenax_hal_shim::wire::Up;
 use tenax_scene::World;
+use tenax_serial::link::{Counts, Inbox};
 
 const SCENE: &str = "rig";
 
@@ -61,7 +61,7 @@ fn hello_is_first_and_the_counters_come_ten_times_a_second() {
 #[test]
 fn the_file_holds_these_bytes() {
     let folder = tempfile::tempdir().unwrap();
-    let done = Command::new(env!("CARGO_BIN_EXE_tenax"))
+    let done = Command::new(env!("CARGO_BIN_EXE_tenax-host"))
         .args(["run", "--host", "--scene", SCENE, "--out"])
         .arg(folder.path())
         .stdout(Stdio::null())

@@ -5,9 +5,9 @@ use std::thread;
 use std::time::Duration;
 
 use serialport::{SerialPort, TTYPort};
-use tenax::link::Counts;
-use tenax::monitor::{End, Monitor};
 use tenax_hal_shim::wire::{Counters, FRAME_MAX, Up, encode};
+use tenax_serial::link::Counts;
+use tenax_serial::monitor::{End, Monitor};
 
 fn frame(sequence: u16) -> Vec<u8> {
     let message = Up::Counters(Counters { frames: u32::from(sequence), ..Counters::default() });

@@ -5,7 +5,7 @@ use std::process::{Child, Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use tenax_hal_shim::setting::SettingId;
+use tenax_logic::setting::SettingId;
 
 use crate::browser::Page;
 use crate::serving::Serving;
@@ -17,7 +17,7 @@ struct Web(Child, String);
 
 impl Web {
     fn watching(place: &str, truth: &str) -> Self {
-        let mut monitor = Command::new(env!("CARGO_BIN_EXE_tenax"))
+        let mut monitor = Command::new(env!("CARGO_BIN_EXE_tenax-host"))
             .args(["monitor", "--web", "0", "--control", "--port", place, "--truth", truth])
             .stderr(Stdio::piped())
             .spawn()

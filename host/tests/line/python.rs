@@ -35,11 +35,11 @@ import tenax
 
 with tenax.open(sys.argv[1]) as board:
     about = board.ask('About')
-    assert about.kind == 'About' and about.build == 0 and len(about.settings) > 20, about
+    assert about.kind == 'About' and about.identity.build == 0 and len(about.settings) > 20, about
     answer = board.ask('Set', 1, 120)
     assert (answer.kind, answer.value) == ('Setting', 120), answer
     refused = board.ask('Set', 1, 5)
-    assert (refused.why.kind, refused.why.min) == ('OutOfRange', 20), refused
+    assert (refused.refusal.kind, refused.refusal.min) == ('OutOfRange', 20), refused
     board.stream(raw=True, senses=True)
     kinds, frames = {}, []
     for message in board:

@@ -10,11 +10,11 @@ use std::time::{Duration, Instant};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use serialport::{SerialPort, TTYPort};
-use tenax::link::Target;
-use tenax::monitor::screen::{Shown, draw};
-use tenax::monitor::source::{News, Places, start};
-use tenax::monitor::view::View;
 use tenax_hal_shim::wire::{Counters, FRAME_MAX, Up, VERSION, encode};
+use tenax_serial::link::Target;
+use tenax_serial::monitor::screen::{Shown, draw};
+use tenax_serial::monitor::source::{News, Places, start};
+use tenax_serial::monitor::view::View;
 
 const WITHIN: Duration = Duration::from_secs(20);
 

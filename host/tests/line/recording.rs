@@ -3,17 +3,18 @@
 use std::io::{Read, Write};
 use std::net::TcpListener;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Output};
 use std::thread;
 
-use tenax::board::Recorder;
-use tenax::record::replay::Recorded;
-use tenax::record::{Recording, line_of};
-use tenax::serve::Use;
-use tenax::session::{Board, load_scene};
+use tenax_bench::again::Recorded;
+use tenax_bench::board::Recorder;
+use tenax_bench::live::Use;
+use tenax_bench::session::{Board, load_scene};
 use tenax_hal_shim::wire::{Answer, Down, FRAME_MAX, Last, PIECE_MAX, Raw, Receiver, Up, encode};
 use tenax_hal_shim::words::Fault;
 use tenax_scene::World;
+use tenax_serial::captured::line_of;
+use tenax_serial::record::Recording;
 
 const SCENE: &str = "pick-up-reflex";
 
@@ -36,7 +37,7 @@ fn record(path: &Path, streams_at_start: bool) -> Vec<u8> {
 /// A line with every message of frames changed by `change`; None leaves it out.
 fn changed(line: &[u8], change: impl Fn(Raw) -> Option<Raw>) -> Vec<u8> {
     let (mut inbox, mut encoder, mut out) =
-        (tenax::link::Inbox::default(), tenax::link::Encoder::default(), Vec::new());
+        (tenax_serial::link::Inbox::default(), tenax_serial::link::Encoder::default(), Vec::new());
     for heard in line.iter().filter_map(|&byte| inbox.push(byte)).flatten() {
         let message = match heard.received.message {
             Up::Raw(raw) => change(raw).map(Up::Raw),
@@ -58,7 +59,7 @@ fn a_recording_decides_the_same_bit_for_bit() {
     assert_eq!(outcome.difference, None);
     assert!(outcome.frames >= 11_990 && outcome.slows >= 479 && outcome.events > 5, "{outcome:?}");
     let run =
-        Command::new(env!("CARGO_BIN_EXE_tenax")).args(["run", "--replay"]).arg(&path).output().unwrap();
+        Command::new(env!("CARGO_BIN_EXE_tenax-host")).args(["run", "--replay"]).arg(&path).output().unwrap();
     assert_eq!(String::from_utf8(run.stdout).unwrap().trim(), outcome.to_string());
     // The control: one bit of one sample is another decision, or at least another checksum.
     let torn = changed(&line, |mut raw| {
@@ -118,24 +119,14 @@ print(compared)
 ";
 
 #[test]
+#[ignore = "needs Python's mcap and mcap-protobuf-support: TENAX_PYTHON=python cargo test ... -- --ignored"]
 fn the_public_reader_finds_the_numbers_of_the_csv() {
     let python = std::env::var("TENAX_PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    let has = Command::new(&python)
-        .args(["-c", "import mcap, mcap_protobuf"])
-        .stderr(Stdio::null())
-        .status()
-        .is_ok_and(|status| status.success());
-    if !has {
-        println!(
-            "skipped: {python} has no `mcap` and `mcap-protobuf-support`; TENAX_PYTHON names one that has"
-        );
-        return;
-    }
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.mcap");
     record(&path, true);
     let csv = folder.path().join("csv");
-    let played = Command::new(env!("CARGO_BIN_EXE_tenax"))
+    let played = Command::new(env!("CARGO_BIN_EXE_tenax-host"))
         .arg("play")
         .arg(&path)
         .arg("--csv")
@@ -188,7 +179,7 @@ fn the_seconds_before_a_fault_are_a_recording() {
     let (place, path) = (keeper(kept.clone()), folder.path().join("fault.mcap"));
     let tenax = |args: &[&str]| {
         let Output { status, stderr, .. } =
-            Command::new(env!("CARGO_BIN_EXE_tenax")).args(args).output().unwrap();
+            Command::new(env!("CARGO_BIN_EXE_tenax-host")).args(args).output().unwrap();
         (status.success(), String::from_utf8(stderr).unwrap())
     };
     let (file, csv) = (path.to_str().unwrap(), folder.path().join("csv"));

@@ -4,17 +4,17 @@ use std::time::Instant;
 
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
-use tenax::board::Run;
-use tenax::link::Inbox;
-use tenax::monitor::screen::{Edit, Shown, draw};
-use tenax::monitor::source::News;
-use tenax::monitor::view::View;
-use tenax::session::{Board, load_scene};
-use tenax::truth::Truth;
+use tenax_bench::board::Run;
+use tenax_bench::session::{Board, load_scene};
 use tenax_hal_shim::channel::{MYO_EXTENSOR, MYO_FLEXOR, PVDF_COUNT, mv_from_sample, sample_from_mv};
-use tenax_hal_shim::setting::SettingId;
-use tenax_hal_shim::wire::{Answer, BadFrame, Down, Refusal, Senses};
+use tenax_hal_shim::wire::{Answer, BadFrame, Down, Refusal, Senses, VERSION};
+use tenax_logic::setting::SettingId;
 use tenax_scene::World;
+use tenax_serial::link::Inbox;
+use tenax_serial::monitor::screen::{Edit, Shown, draw};
+use tenax_serial::monitor::source::News;
+use tenax_serial::monitor::view::View;
+use tenax_serial::truth::Truth;
 
 /// A view that has heard a scene's line.
 fn heard(scene: &str, seconds: f64) -> View {
@@ -105,7 +105,8 @@ fn an_answer_a_lost_line_and_another_version_are_said() {
     assert!(picture(&view, &shown, 80, 24).contains("NO LINE, trying again"));
     view.take(News::Open);
     view.take(News::Frame(Err(BadFrame::Version(9)), view.counts, Instant::now()));
-    assert!(picture(&view, &shown, 80, 24).contains("a board of version 9, and this tool speaks 3"));
+    let said = format!("a board of version 9, and this tool speaks {VERSION}");
+    assert!(picture(&view, &shown, 80, 24).contains(&said));
 }
 
 #[test]

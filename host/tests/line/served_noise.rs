@@ -2,14 +2,14 @@
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use tenax::link::Encoder;
-use tenax::session::Board;
+use tenax_bench::session::Board;
 use tenax_hal_shim::channel::SCAN_HZ;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
-use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{BAUD, DRIVE_HOLD_MAX_MS, Down, Receiver, Setting};
 use tenax_hal_shim::words::Code;
+use tenax_logic::setting::SettingId;
 use tenax_scene::plant::{Pins, Plant};
+use tenax_serial::link::Encoder;
 
 /// A hand at rest, and somebody who fills the line with anything.
 struct Noise {
@@ -56,7 +56,7 @@ impl Noise {
             0 if self.drives => drive,
             1 => Down::Set(Setting { id: random.random(), value: random.random() }),
             2 => Down::Set(Setting {
-                id: SettingId::by_name(setting.name).expect("its own name") as u8,
+                id: SettingId::by_name(setting.name).expect("its own name").number(),
                 value: random.random_range(setting.min..=setting.max),
             }),
             3 => Down::Zero,

@@ -31,7 +31,7 @@ impl Serving {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("served.toml");
         std::fs::write(&path, scene).unwrap();
-        let mut run = Command::new(env!("CARGO_BIN_EXE_tenax"))
+        let mut run = Command::new(env!("CARGO_BIN_EXE_tenax-host"))
             .args(["run", "--host", "--serve-tcp", "0", "--scene"])
             .arg(path)
             .args(more)

@@ -2,13 +2,13 @@
 
 use std::process::{Command, Output};
 
-use tenax::board::Run;
-use tenax::session::{Board, load_scene};
-use tenax::suggest::{Suggestion, Suggestions};
+use tenax_bench::board::Run;
+use tenax_bench::session::{Board, load_scene};
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
-use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{EventKind, TickRecord};
+use tenax_logic::setting::SettingId;
 use tenax_scene::{SceneFile, World};
+use tenax_serial::suggest::{Suggestion, Suggestions};
 
 use crate::serving::Serving;
 
@@ -94,7 +94,7 @@ fn what_is_suggested_is_printed_with_its_reason_and_set() {
     let file = served.folder.path().join("glass.line.bin");
     std::fs::write(&file, &run.line).unwrap();
     let config = |args: &[&str]| {
-        let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_tenax"))
+        let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_tenax-host"))
             .args(["config", "--port", &served.places[0]])
             .args(args)
             .output()

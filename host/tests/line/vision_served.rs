@@ -6,10 +6,10 @@ use std::thread;
 use std::time::Duration;
 
 use serde_json::Value;
-use tenax::link::{Client, Target};
 use tenax_hal_shim::behaviour::Behaviour;
 use tenax_hal_shim::wire::{Slow, Up};
 use tenax_hal_shim::words::{Code, DriveSource};
+use tenax_serial::link::{Client, Target};
 
 use crate::serving::Serving;
 
@@ -18,7 +18,7 @@ const SCENE: &str = "
 name = 'served'
 title = 'T'
 from = 'F'
-duration_s = 20
+duration_s = 26
 slip_floor_mm_s = 1.0
 arm = 'robot'
 line_trusted = true
@@ -93,7 +93,7 @@ impl Seen {
 fn see(more: &[&str]) -> Seen {
     let served = Serving::start(SCENE, &["--serve"]);
     let [one, other] = [0, 1].map(|at| served.places[at].clone());
-    let mut camera = Command::new(env!("CARGO_BIN_EXE_tenax"));
+    let mut camera = Command::new(env!("CARGO_BIN_EXE_tenax-host"));
     camera.args(["vision", "--drawn", "--seed", "1", "--teach", "--begin", "hold", "--rate-hz", "20"]);
     camera.args(["--report", "json", "--port", &other]).args(more);
     // The scene's own commands come first: a line has one sender at a time.
@@ -163,7 +163,7 @@ fn a_served_board_feels_with_a_camera_learns_from_it_and_holds_without_it() {
 #[test]
 fn each_way_in_which_a_camera_fails_is_noticed_and_said() {
     for (fault, least) in [("late", 40), ("frozen", 40), ("covered", 50), ("lost", 1)] {
-        let mut camera = Command::new(env!("CARGO_BIN_EXE_tenax"));
+        let mut camera = Command::new(env!("CARGO_BIN_EXE_tenax-host"));
         camera.args(["vision", "--drawn", "--seed", "1", "--report", "json", "--fault", fault]);
         let output = camera.output().expect("it starts");
         let said = String::from_utf8_lossy(&output.stderr);

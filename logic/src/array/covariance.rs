@@ -29,7 +29,7 @@ impl<const N: usize> SlidingCovariance<N> {
     /// 10 it is 2^13, 1.65 V or 8 N of one element in 12.5 ms, which no hand does.
     ///
     /// A power of two makes a difference in samples a normalised one, in Q13, as it stands. A running maximum instead would
-    /// make one knock deafen the detector for as long as it is remembered.
+    /// make one impact deafen the detector for as long as it is remembered.
     pub const D_MAX: i32 = 1 << (i32::MAX as u32 / N as u32).isqrt().ilog2();
 
     /// Takes the newest differences, and forgets the oldest. What is beyond +-[`D_MAX`](Self::D_MAX), above less one, is

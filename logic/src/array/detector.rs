@@ -1,4 +1,4 @@
-//! The verdict: features, network and a threshold with two edges.
+//! The verdict: features, network and a threshold with hysteresis.
 
 use core::ops::Range;
 
@@ -127,8 +127,8 @@ impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const
     /// `reading` counts in the first; other shares are none.
     pub fn work(&mut self, share: usize, reading: &Reading) -> Option<ArrayVerdict> {
         match share {
-            0 => self.preprocessor.take(reading),
-            1 => self.preprocessor.hear(),
+            0 => self.preprocessor.add_reading(reading),
+            1 => self.preprocessor.add_spectrum(),
             2 => {
                 self.felt = self.preprocessor.finish().is_some();
                 self.see(0..H1 / 4);

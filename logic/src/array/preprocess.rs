@@ -101,13 +101,13 @@ impl<const N: usize, const M: usize> Preprocessor<N, M> {
 
     /// Takes one slow frame. None until the windows are full, and while too many elements have no reading.
     pub fn push(&mut self, reading: &Reading) -> Option<&Features> {
-        self.take(reading);
-        self.hear();
+        self.add_reading(reading);
+        self.add_spectrum();
         self.finish()
     }
 
     /// The first third of [`push`](Self::push): equations 1 to 4 with their features, and the transform.
-    pub fn take(&mut self, reading: &Reading) {
+    pub fn add_reading(&mut self, reading: &Reading) {
         let arrival = self.past.push(reading);
         if arrival.gone.contains(&true) {
             self.covariance.forget(&arrival.gone);
@@ -129,8 +129,8 @@ impl<const N: usize, const M: usize> Preprocessor<N, M> {
     }
 
     /// The second third: the spectrum's features, and the structure functions of the shorter lags. Once for each
-    /// [`take`](Self::take).
-    pub fn hear(&mut self) {
+    /// [`add_reading`](Self::add_reading).
+    pub fn add_spectrum(&mut self) {
         self.structure.push_short(&self.past);
         if self.ready {
             for (feature, power) in self.features[COVARIANCES..].iter_mut().zip(self.spectrum.powers()) {
@@ -139,7 +139,7 @@ impl<const N: usize, const M: usize> Preprocessor<N, M> {
         }
     }
 
-    /// The last: those of the longer lags, and the features of all of them. Once for each [`hear`](Self::hear).
+    /// The last: those of the longer lags, and the features of all of them. Once for each [`add_spectrum`](Self::add_spectrum).
     pub fn finish(&mut self) -> Option<&Features> {
         self.structure.push_long(&self.past);
         if !self.ready {

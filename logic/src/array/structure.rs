@@ -11,7 +11,7 @@
 //! oldest window of the shortest lag is shown as its **quiet level**: the least that it was, slowly forgotten. More noise
 //! than a detector was trained with, from a bad supply or a motor's cable, is then no slip.
 //!
-//! What all elements do together, a knock or the motor, is taken off: `n sum(q^2) - (sum q)^2` of the `n` changes `q` is `n`
+//! What all elements do together, an impact or the motor, is taken off: `n sum(q^2) - (sum q)^2` of the `n` changes `q` is `n`
 //! times their squares about their mean, and an integer. (Ours; the paper has no such thing.)
 
 use core::ops::Range;

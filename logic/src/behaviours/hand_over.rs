@@ -7,12 +7,12 @@ use tenax_hal_shim::behaviour::Ending;
 use tenax_hal_shim::motor::Duty;
 
 use super::{BehaviourConfig, Course, Felt, Skin, Wish};
-use crate::config::frames;
 use crate::grip::Grip;
+use tenax_hal_shim::channel::frames;
 
 /// How long the hand opens, in frames: at full speed, some centimetres.
 const OPEN_FRAMES: u32 = frames(400);
-/// A force that is another one must be so for this long, in frames: three pictures, or four readings of the taxels. A knock is
+/// A force that is another one must be so for this long, in frames: three pictures, or four readings of the taxels. An impact is
 /// shorter.
 const STAYS_FRAMES: u32 = frames(50);
 /// What happens within this time after the beginning is not the other hand's doing, in frames.

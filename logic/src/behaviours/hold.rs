@@ -6,8 +6,8 @@
 //! What goes on to slip however far the fingers come is no slip, but a camera that sees motion for ever.
 
 use super::{BehaviourConfig, Course, Felt, Movement};
-use crate::config::frames;
 use crate::grip::Grip;
+use tenax_hal_shim::channel::frames;
 
 /// How far the fingers come for one slip, in frames of closing.
 const ANSWER_FRAMES_MAX: u32 = frames(500);

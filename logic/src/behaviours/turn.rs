@@ -10,8 +10,8 @@ use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::motor::Duty;
 
 use super::{BehaviourConfig, Course, Felt, Movement, Wish};
-use crate::config::frames;
 use crate::grip::Grip;
+use tenax_hal_shim::channel::frames;
 
 /// What still slips after being tightened for this long falls, in frames: that is the reflex's.
 const FALLS_FRAMES: u32 = frames(300);

@@ -1,4 +1,4 @@
-//! Evidence from outside: a scene's oracle, which knows whether the object slips.
+//! Evidence from outside: somebody who knows whether the object slips.
 
 use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
 

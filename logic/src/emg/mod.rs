@@ -11,6 +11,7 @@ pub mod log2;
 pub mod mains;
 pub mod model;
 pub mod quality;
+pub mod settings;
 
 #[cfg(test)]
 mod tests;

@@ -8,9 +8,9 @@ use tenax_hal_shim::wire::{EventKind, Refusal};
 use tenax_hal_shim::words::{GripMode, Line};
 
 use super::Fingertip;
-use super::heard::Heard;
+use super::verdicts::Verdicts;
 use crate::behaviours::{Course, Felt, Running, Wish, may_relax};
-use crate::config::frames;
+use tenax_hal_shim::channel::frames;
 
 /// A picture is too old to be believed after this, in frames, its own age included: the camera is lost, covered by its
 /// computer's load, or frozen.
@@ -74,16 +74,16 @@ impl Fingertip {
     }
 
     /// What the behaviour asks for in this tick, and may have.
-    pub(super) fn behave(&mut self, heard: Heard) -> MotorDrive {
+    pub(super) fn behave(&mut self, verdicts: Verdicts) -> MotorDrive {
         if self.behaviour.is_none() && self.eye.view.is_none() {
             return MotorDrive::Coast;
         }
-        let wish = self.step_behaviour(heard);
+        let wish = self.step_behaviour(verdicts);
         self.eye.tick();
         wish
     }
 
-    fn step_behaviour(&mut self, heard: Heard) -> MotorDrive {
+    fn step_behaviour(&mut self, verdicts: Verdicts) -> MotorDrive {
         if self.behaviour.is_none() {
             return MotorDrive::Coast;
         }
@@ -96,7 +96,7 @@ impl Fingertip {
             return MotorDrive::Coast;
         }
         let Some(mut running) = self.behaviour.take() else { return MotorDrive::Coast };
-        let felt = self.felt(Some(heard));
+        let felt = self.felt(Some(verdicts));
         let (grip, course) = (felt.grip, running.step(&self.config.behaviour, &felt));
         self.behaviour = Some(running);
         let ends = match course {
@@ -116,7 +116,7 @@ impl Fingertip {
         MotorDrive::Coast
     }
 
-    fn felt(&self, heard: Option<Heard>) -> Felt<'_> {
+    fn felt(&self, verdicts: Option<Verdicts>) -> Felt<'_> {
         let vibration = self.senses.vibration;
         Felt {
             view: self.eye.view.as_ref(),
@@ -125,8 +125,8 @@ impl Fingertip {
                 == u32::from(slot_of(Job::EndOfCycle)),
             taxels: self.senses.taxels(),
             grip: self.senses.grip(&self.config),
-            slips: heard.is_some_and(|heard| !heard.slip.is_empty()),
-            stirs: !vibration.knock && vibration.level >= self.config.vibration.s1 / 2,
+            slips: verdicts.is_some_and(|verdicts| !verdicts.slip.is_empty()),
+            stirs: !vibration.impact && vibration.level >= self.config.vibration.s1 / 2,
         }
     }
 }

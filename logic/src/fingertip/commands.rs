@@ -2,10 +2,10 @@
 
 use core::ops::RangeInclusive;
 
+use crate::setting::SettingId;
 use tenax_hal_shim::behaviour::Ending;
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::setting::SettingId;
 use tenax_hal_shim::wire::{DRIVE_HOLD_MAX_MS, Down, Refusal, Setting};
 use tenax_hal_shim::words::Line;
 
@@ -63,7 +63,7 @@ impl Fingertip {
                 Ok(())
             }
             Down::Teach { codes, age_ms } => {
-                self.detectors.hebbian.hear(&self.config.touch, codes, age_ms);
+                self.detectors.hebbian.teach(&self.config.hebbian, codes, age_ms);
                 Ok(())
             }
             Down::Forget => {
@@ -100,7 +100,7 @@ impl Fingertip {
         // Who trusts the line for ever, or says that nobody wears the hand, has to be at the hand: that nothing is held at
         // power-up is not enough.
         let for_ever = matches!(*command, Down::Set(Setting { id, .. })
-            if [SettingId::LineTrusted as u8, SettingId::NoWearer as u8].contains(&id));
+            if [SettingId::LineTrusted.number(), SettingId::NoWearer.number()].contains(&id));
         let consents = match self.line() {
             Line::Reading => false,
             Line::Armed { .. } => !for_ever || self.arming.is_deliberate(),

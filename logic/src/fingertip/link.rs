@@ -2,7 +2,7 @@
 
 use tenax_hal_shim::motor::MotorDrive;
 
-use crate::config::frames;
+use tenax_hal_shim::channel::frames;
 
 /// How long the line may drive the hand, in frames, until a muscle, a consent or as much silence renews it.
 const HOLD_FRAMES_MAX: u32 = frames(10_000);

@@ -7,7 +7,7 @@ use tenax_hal_shim::words::GripMode;
 
 use super::Fingertip;
 use crate::config::Config;
-use crate::touch::Learned;
+use crate::hebbian::Learned;
 use crate::vibration::Q;
 
 impl Fingertip {

@@ -131,7 +131,7 @@ impl<const N: usize> Normaliser<N> {
         }
     }
 
-    /// Lets the maxima rise. For the caller to allow: as learning is, so that a knock or a noisy motor makes no receptor
+    /// Lets the maxima rise. For the caller to allow: as learning is, so that an impact or a noisy motor makes no receptor
     /// deaf. One division for each maximum that rises.
     pub fn observe(&mut self, config: &NormaliserConfig<N>, raw: &[i32; N]) {
         let shift = config.average_shift.min(AVERAGE_SHIFT_MAX);

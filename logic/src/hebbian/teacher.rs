@@ -33,7 +33,7 @@ impl Default for TeacherConfig {
 pub struct Situation {
     /// The finger is loaded: what it feels comes from an object.
     pub grasp: bool,
-    /// The motor runs, the hand is knocked or swung, or a receptor has just been lost: what it feels is not slip.
+    /// The motor runs, the hand is struck or swung, or a receptor has just been lost: what it feels is not slip.
     pub disturbed: bool,
 }
 
@@ -49,7 +49,7 @@ pub struct Teacher {
 impl Teacher {
     /// Takes a message, and the age of the picture that it was made from, ms. A message from an older picture than the
     /// last one, one that overtook it, is dropped.
-    pub fn hear(&mut self, config: &TeacherConfig, codes: Codes, age_ms: u16) {
+    pub fn receive(&mut self, config: &TeacherConfig, codes: Codes, age_ms: u16) {
         if self.age_ms > config.fresh_ms {
             // After a silence it has to be believed anew.
             self.heard = 0;
@@ -118,7 +118,7 @@ mod tests {
     fn after(messages: &[Codes]) -> Teacher {
         let mut teacher = Teacher::default();
         for &codes in messages {
-            teacher.hear(&CONFIG, codes, 40);
+            teacher.receive(&CONFIG, codes, 40);
             for _ in 0..33 {
                 teacher.tick_ms();
             }
@@ -174,11 +174,11 @@ mod tests {
             teacher.tick_ms();
         }
         assert_eq!(teacher.lesson(&CONFIG, HELD), Err(NoLesson::Late));
-        teacher.hear(&CONFIG, [Minus, Plus], 40);
+        teacher.receive(&CONFIG, [Minus, Plus], 40);
         assert_eq!(teacher.lesson(&CONFIG, HELD), Err(NoLesson::Absent));
         let mut late = Teacher::default();
         for _ in 0..9 {
-            late.hear(&CONFIG, [Minus, Plus], 121);
+            late.receive(&CONFIG, [Minus, Plus], 121);
         }
         assert_eq!(late.lesson(&CONFIG, HELD), Err(NoLesson::Late));
     }
@@ -186,7 +186,7 @@ mod tests {
     #[test]
     fn a_picture_that_was_overtaken_is_dropped() {
         let mut teacher = after(&[[Minus, Plus]; 3]);
-        teacher.hear(&CONFIG, [Plus, Plus], 110);
+        teacher.receive(&CONFIG, [Plus, Plus], 110);
         assert_eq!(teacher.lesson(&CONFIG, HELD), Ok([Minus, Plus]));
         assert_eq!(teacher.age_ms(), Some(73));
     }

@@ -16,7 +16,7 @@ const KNOT_PHASE: i32 = HALF_TURN / KNOTS as i32;
 pub const ONE: i32 = 1 << 20;
 
 /// The calibration of one head. Levels are means in 1/16 of a sample.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Curve {
     /// Level without load.
     pub dark_q4: i32,

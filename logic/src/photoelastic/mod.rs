@@ -6,29 +6,29 @@
 //! | ac and dc apart | [`split`] | every frame |
 //! | whether it slips | [`slip`] | every frame |
 //! | dc to a phase, and both forces it can mean | [`curve`] | every cycle |
-//! | which of them | [`track`], [`turn`] | every cycle |
+//! | which of them, whatever the shear | [`track`] | every cycle |
 //! | how fast it slips | [`rate`] | every cycle, if asked |
-//! | whether it has to | [`friction`], equations 1 and 2 | if asked |
 //!
 //! `docs/photoelastic.md` says how the paper's equations are read.
 
 pub mod curve;
-pub mod friction;
+mod detector;
 pub mod rate;
+pub mod settings;
 pub mod slip;
 pub mod split;
 pub mod track;
-pub mod turn;
 
 use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ, HEAD, SAMPLE_MAX};
 use tenax_hal_shim::wire::Forces;
 
-use self::curve::{Curve, ONE};
+use self::curve::ONE;
+pub use self::detector::PhotoelasticDetector;
 use self::rate::RateFit;
+pub use self::settings::HeadConfig;
 use self::slip::Presence;
 use self::split::{Q, Split};
 use self::track::{Force, Hints, Track, Tracker};
-use self::turn::Branch;
 use crate::health::{Change, Limits, SensorHealth};
 
 /// The head's amplifier clips inside of its supply, so a pin against either end is broken.
@@ -37,33 +37,9 @@ const LIMITS: Limits = {
     Limits { low: SAMPLE_MAX / 33, high: SAMPLE_MAX - SAMPLE_MAX / 40, ..limits }
 };
 
-/// What can be chosen about the head.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct HeadConfig {
-    /// Whether a photoelastic head is in the place of film 12.
-    pub fitted: bool,
-    /// Mean size of the ac part that means slip, samples (14 bits).
-    pub slip: u16,
-    /// Its calibration.
-    pub curve: Curve,
-}
-
-impl HeadConfig {
-    /// Numbers without a meaning yet.
-    pub const BLANK: Self = Self {
-        fitted: false,
-        slip: 0,
-        curve: Curve { dark_q4: 0, bright_q4: 0, force_mn: [0; curve::KNOTS] },
-    };
-}
-
 /// Aluminium, fitted to slips of six heads (seeds 1 to 6): 19 % median error on them, 24 % on other heads. One that was fitted
 /// to the head itself is twice as good.
 pub const ALUMINIUM: RateFit = RateFit { constant: -16_736, amplitude: 896, frequency: 846, force: 21 };
-
-/// Of a shear that nobody measures, light is taken away: on the rising branch the true force is up to this much more than
-/// what is read, per mille (a shear of 0.35 of the force, `docs/photoelastic.md`).
-const SHEARED_PERMILLE: i32 = 600;
 
 /// The head.
 #[derive(Clone, Debug, Default)]
@@ -78,11 +54,11 @@ pub struct Head {
 impl Head {
     /// Takes a sample. What changed with the sensor, if something did.
     #[inline]
-    pub fn take(&mut self, config: &HeadConfig, sample: u16) -> Option<Change> {
+    pub fn process(&mut self, config: &HeadConfig, sample: u16) -> Option<Change> {
         if self.health.is_plain(&LIMITS, sample) {
             self.is_usable = true;
-            self.split.take(sample);
-            self.presence.take(config.slip, &self.split);
+            self.split.process(sample);
+            self.presence.process(config.slip, &self.split);
             return None;
         }
         self.take_odd(config, sample)
@@ -94,8 +70,8 @@ impl Head {
         self.is_usable = reading.is_ok();
         match reading {
             Ok(sample) => {
-                self.split.take(sample);
-                self.presence.take(config.slip, &self.split);
+                self.split.process(sample);
+                self.presence.process(config.slip, &self.split);
             }
             Err(_) => self.lose(),
         }
@@ -167,7 +143,7 @@ impl Head {
     #[must_use]
     pub fn swing(&self, config: &HeadConfig) -> Option<(i32, u16, i32)> {
         let period_q4 = self.split.period_q4();
-        let force_mn = self.force()?.mn;
+        let force_mn = self.force()?.mn();
         let span = i64::from(config.curve.bright_q4 - config.curve.dark_q4).max(1);
         let part = i64::from(self.split.envelope()) * 16 * i64::from(ONE) / (span << Q);
         (period_q4 > 0).then_some((part.min(i64::from(ONE)) as i32, period_q4, force_mn))
@@ -179,24 +155,12 @@ impl Head {
         self.swing(config).map_or(0, |(part, period_q4, force_mn)| fit.rate_um_s(part, period_q4, force_mn))
     }
 
-    /// What stands in for a force sensor that gives no number: the likeliest force as Fn, and the most that it can be as the
-    /// load, so that neither a ceiling nor an empty hand is missed. It knows no shear and no ratio. None while no force is known
-    /// or the curve's end is reached.
+    /// What stands in for a force sensor that gives no number. Each number errs to its safe side, whatever the shear: Fn, which is what
+    /// friction can carry, is the least force that explains the light, and the load is the most, so that neither a ceiling nor an
+    /// empty hand is missed. It knows no shear and no ratio. None without a reading.
     #[must_use]
     pub fn stand_in(&self) -> Option<Forces> {
-        let branch = match self.track() {
-            Track::Unknown(_) | Track::Saturated => return None,
-            Track::Certain(branch) | Track::Likely(branch) => branch,
-        };
-        let Force { mn, uncertainty_mn } = self.force()?;
-        let sheared_mn = if branch == Branch::Rising { mn * SHEARED_PERMILLE / 1_000 } else { 0 };
-        Some(Forces {
-            fn_mn: mn,
-            fx_mn: 0,
-            fy_mn: 0,
-            ft_mn: 0,
-            load_mn: mn + uncertainty_mn.max(sheared_mn),
-            ratio_permille: None,
-        })
+        let Force { least_mn, most_mn } = self.force()?;
+        Some(Forces { fn_mn: least_mn, fx_mn: 0, fy_mn: 0, ft_mn: 0, load_mn: most_mn, ratio_permille: None })
     }
 }

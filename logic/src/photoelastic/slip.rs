@@ -1,11 +1,11 @@
 //! Whether the ac part is slip: large enough for long enough, and swinging.
 //!
-//! A knock rings and dies away; a force that changes swings once. Slip over the strip goes on.
+//! An impact rings and dies away; a force that changes swings once. Slip over the strip goes on.
 
 use super::split::{Q, Split};
-use crate::config::frames;
+use tenax_hal_shim::channel::frames;
 
-/// For how long the ac part has to be large, in frames: longer than a knock's ring.
+/// For how long the ac part has to be large, in frames: longer than an impact's ring.
 const LASTS: u32 = frames(45);
 /// Swings in a row that it takes.
 const SWINGS: u16 = 3;
@@ -22,7 +22,7 @@ pub struct Presence {
 impl Presence {
     /// Takes a frame. `on` is the size that means slip, samples (14 bits); half of it keeps it said.
     #[inline]
-    pub fn take(&mut self, on: u16, split: &Split) {
+    pub fn process(&mut self, on: u16, split: &Split) {
         let on = (i32::from(on) << Q) >> u32::from(self.slip);
         let is_large = split.envelope() > on;
         if !is_large {
@@ -53,8 +53,8 @@ mod tests {
         (0..2_000).find(|&n| {
             let t = f64::from(n);
             let tone = size * (-t / decay).exp() * (TAU * hz * t / 2e3).sin();
-            split.take((6_000.0 + tone).round() as u16);
-            presence.take(10, &split);
+            split.process((6_000.0 + tone).round() as u16);
+            presence.process(10, &split);
             presence.is_slip()
         })
     }
@@ -64,7 +64,7 @@ mod tests {
         for hz in [20.0, 48.0, 150.0] {
             let at = said(hz, 60.0, f64::INFINITY).unwrap();
             assert!((LASTS..400).contains(&at), "{hz} Hz: {at}");
-            assert_eq!(said(hz, 60.0, 30.0), None, "a knock of {hz} Hz that dies in 15 ms");
+            assert_eq!(said(hz, 60.0, 30.0), None, "an impact of {hz} Hz that dies in 15 ms");
             assert_eq!(said(hz, 5.0, f64::INFINITY), None, "too small");
         }
         assert_eq!(said(2.0, 4_000.0, f64::INFINITY), None, "an arm that swings");
@@ -78,8 +78,8 @@ mod tests {
             for n in 0..4_000_u32 {
                 let noise = f64::from(n.wrapping_mul(0x9E37_79B9) >> 29) - 3.5;
                 let ramp = ((f64::from(n) - 1_000.0) / frames).clamp(0.0, 1.0);
-                split.take((2_000.0 + 8_000.0 * ramp + noise) as u16);
-                presence.take(10, &split);
+                split.process((2_000.0 + 8_000.0 * ramp + noise) as u16);
+                presence.process(10, &split);
                 assert!(!presence.is_slip(), "{frames}: {n}");
             }
         }

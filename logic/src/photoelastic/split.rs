@@ -54,7 +54,7 @@ pub struct Split {
 impl Split {
     /// Takes a 14-bit sample.
     #[inline]
-    pub fn take(&mut self, sample: u16) {
+    pub fn process(&mut self, sample: u16) {
         let x = (i32::from(sample) - MIDDLE) << Q;
         if !self.primed {
             self.primed = true;
@@ -157,7 +157,7 @@ mod tests {
             y
         }
 
-        fn take(&mut self, sample: u16) -> (f64, f64) {
+        fn process(&mut self, sample: u16) -> (f64, f64) {
             let x = f64::from(sample) - f64::from(MIDDLE);
             if !self.primed {
                 self.primed = true;
@@ -195,8 +195,8 @@ mod tests {
             let (mut split, mut float) = (Split::default(), Float::default());
             for (n, cycle) in samples.chunks_exact(25).enumerate() {
                 for &sample in cycle {
-                    split.take(sample);
-                    let (ac, envelope) = float.take(sample);
+                    split.process(sample);
+                    let (ac, envelope) = float.process(sample);
                     let lsb = |fixed: i32| f64::from(fixed) / f64::from(1 << Q);
                     let error = (lsb(split.ac()) - ac).abs().max((lsb(split.envelope()) - envelope).abs());
                     worst = worst.max(error);
@@ -216,7 +216,7 @@ mod tests {
         for hz in [12.0, 48.0, 145.0, 200.0] {
             let mut split = Split::default();
             for n in 0..4_000 {
-                split.take((8_190.0 + 300.0 * (TAU * hz * f64::from(n) / 2e3).sin()) as u16);
+                split.process((8_190.0 + 300.0 * (TAU * hz * f64::from(n) / 2e3).sin()) as u16);
             }
             let measured = 16.0 * 2e3 / f64::from(split.period_q4());
             assert!((measured / hz - 1.0).abs() < 0.05 && split.swings() > 10, "{measured} Hz for {hz} Hz");
@@ -224,7 +224,7 @@ mod tests {
         // 6 N/s on the steepest part of the curve: 4 samples a frame.
         let mut split = Split::default();
         for n in 0..2_000 {
-            split.take(1_000 + 4 * n);
+            split.process(1_000 + 4 * n);
         }
         assert!(split.envelope() < 2 << Q, "{}", split.envelope() >> Q);
         assert_eq!(split.period_q4(), 0);
@@ -234,9 +234,9 @@ mod tests {
     fn a_mean_of_other_than_a_cycle_at_most_is_none() {
         let mut split = Split::default();
         assert_eq!(split.take_mean_q4(), None);
-        (0..26).for_each(|_| split.take(100));
+        (0..26).for_each(|_| split.process(100));
         assert_eq!(split.take_mean_q4(), None);
-        (0..25).for_each(|_| split.take(SAMPLE_MAX));
+        (0..25).for_each(|_| split.process(SAMPLE_MAX));
         assert_eq!(split.take_mean_q4(), Some(i32::from(SAMPLE_MAX) * 16));
     }
 }

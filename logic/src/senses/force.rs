@@ -5,7 +5,7 @@ use tenax_hal_shim::words::Fault;
 
 use super::{DOUBTED_AFTER, FSR_LIMITS, OPEN_FRAMES, PRESSED_UV, Senses, report};
 use crate::config::Config;
-use crate::fsr;
+use crate::force::fsr;
 use crate::journal::Journal;
 
 impl Senses {

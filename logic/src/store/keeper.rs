@@ -3,7 +3,7 @@
 use tenax_hal_shim::words::Kept;
 
 use super::payload::ZeroBytes;
-use crate::config::frames;
+use tenax_hal_shim::channel::frames;
 
 /// Settings and zero are saved when they have changed, and then not again for this long, in frames.
 const CHANGED_FRAMES: u32 = frames(3_000);

@@ -1,12 +1,12 @@
 //! The payload of the settings' and the zero's records: words, so that a later version may append more.
 
+use crate::setting::SettingId;
 use heapless::Vec;
 use tenax_hal_shim::channel::FSR_COUNT;
-use tenax_hal_shim::setting::SettingId;
 
 use crate::config::Config;
 use crate::emg::model::{EmgModel, MODEL_WORDS};
-use crate::forces::ZERO_LIMIT_UV;
+use crate::force::sensor::ZERO_LIMIT_UV;
 
 /// Bits of a settings word that hold the value; the setting's number is above them.
 const VALUE_BITS: u32 = 24;
@@ -51,7 +51,7 @@ pub fn of_settings(config: &Config) -> SettingsBytes {
     for id in SettingId::ALL {
         let value = config.get(id);
         if value != id.row().default {
-            let word = u32::from(id as u8) << VALUE_BITS | value.unsigned_abs();
+            let word = u32::from(id.number()) << VALUE_BITS | value.unsigned_abs();
             // It has room for all of them.
             let _fits = bytes.extend_from_slice(&word.to_le_bytes());
         }
@@ -64,7 +64,7 @@ pub fn of_settings(config: &Config) -> SettingsBytes {
 pub fn restore_settings(config: &mut Config, bytes: &[u8]) -> bool {
     let mut all = true;
     // It decides which values of the others are accepted.
-    let trusted = u32::from(SettingId::LineTrusted as u8) << VALUE_BITS | 1;
+    let trusted = u32::from(SettingId::LineTrusted.number()) << VALUE_BITS | 1;
     config.line_trusted |= words(bytes).any(|word| word == trusted);
     for (place, word) in words(bytes).enumerate() {
         let value = (word & ((1 << VALUE_BITS) - 1)).cast_signed();

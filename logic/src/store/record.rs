@@ -14,8 +14,8 @@ use tenax_hal_shim::flash::{FlashArea, FlashFailed, Sector};
 use tenax_hal_shim::words::Kept;
 
 use crate::checksum::CRC;
+use crate::hebbian::{Learned, SNAPSHOT_LENGTH};
 use crate::store::payload::{EmgBytes, SettingsBytes, ZeroBytes};
-use crate::touch::{Learned, SNAPSHOT_LENGTH};
 
 /// Words of a record beside its payload.
 pub const OVERHEAD_WORDS: usize = 4;

@@ -73,14 +73,14 @@ impl Survey {
         };
         let mut at = OPENING_WORDS;
         while at < area.sector_words() {
-            at = survey.take(area, at);
+            at = survey.look_at(area, at);
         }
         survey
     }
 
     /// Takes what begins at `at`; where the next may begin. Only a record that checks out is skipped by its length: a tag
     /// that a power cut left half programmed may name any length, and another one each time it is read.
-    fn take(&mut self, area: &impl FlashArea, at: usize) -> usize {
+    fn look_at(&mut self, area: &impl FlashArea, at: usize) -> usize {
         let word = area.read(self.sector, at);
         if word == BLANK {
             return at + 1;

@@ -1,6 +1,6 @@
 //! What one film says: the envelope of its slip band, and the size of what is above it.
 //!
-//! Its sample, less the mains' [`hum`](crate::hum), goes through a high-pass (offset, drift and slow contact go), a low-pass, a
+//! Its sample, less the mains' [`hum`](super::hum), goes through a high-pass (offset, drift and slow contact go), a low-pass, a
 //! rectifier (the sign of a film means nothing: Tada 2006, section 2) and a second low-pass. What the low-pass took away is
 //! rectified too.
 //!
@@ -8,7 +8,7 @@
 //! filters ([`LowPass`]) keep 32 bits: what that rounds away is at most 0.0006 of a sample of any envelope, below 0.001, which
 //! is the bound of the tests against `f64`.
 
-use crate::hum::{Mains, Turn, Weights};
+use super::hum::{Mains, Turn, Weights};
 use crate::low_pass::LowPass;
 
 /// Lower edge of the slip band, Hz.
@@ -39,7 +39,7 @@ pub struct Film {
 
 /// What one film says, Q16 samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Heard {
+pub struct Levels {
     /// Envelope in the slip band.
     pub envelope: i32,
     /// Size of the vibration above it.
@@ -62,11 +62,11 @@ impl Film {
 
     /// Takes a 14-bit sample of a film that was primed.
     #[inline]
-    pub fn process(&mut self, sample: u16, mains: Turn) -> Heard {
+    pub fn process(&mut self, sample: u16, mains: Turn) -> Levels {
         let x = centred(sample).wrapping_sub(self.hum.heard(mains));
         let ac = x - HIGH_PASS.process(&mut self.offset, x);
         let low = LOW_PASS.process(&mut self.band, ac);
-        Heard { envelope: ENVELOPE.process(&mut self.envelope, low.abs()), above: (ac - low).abs() }
+        Levels { envelope: ENVELOPE.process(&mut self.envelope, low.abs()), above: (ac - low).abs() }
     }
 
     /// Learns the mains' hum a little further.
@@ -76,7 +76,7 @@ impl Film {
     }
 }
 
-impl Heard {
+impl Levels {
     /// The louder of the two, each of its parts by itself.
     #[inline]
     pub fn raise(&mut self, other: Self) {

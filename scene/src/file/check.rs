@@ -94,6 +94,7 @@ fn instants(scene: &SceneFile) -> Checked {
     all.extend(scene.press.iter().map(|press| &press.at_s));
     all.extend(scene.sweep.iter().map(|sweep| &sweep.at_s));
     all.extend(scene.knock.iter().map(|knock| &knock.at_s));
+    all.extend(scene.hum.iter().map(|hum| &hum.at_s));
     all.extend(scene.muscle.iter().map(|muscle| &muscle.at_s));
     all.extend(scene.electrode_lift.iter().map(|lift| &lift.at_s));
     all.extend(scene.fault.iter().flat_map(|fault| [Some(&fault.at_s), fault.until_s.as_ref()]).flatten());
@@ -156,17 +157,26 @@ fn refuse<'a>(mut foreign: impl Iterator<Item = &'a Spanned<Instant>>, what: &st
 
 fn fault(fault: &SensorFault) -> Checked {
     let channel = fault.channel.get_ref();
-    match (fault.kind, &fault.press_n) {
-        (FaultKind::Pressed, press_n) => {
-            demand((FSR..FSR + FSR_COUNT).contains(&channel.index()), fault.channel.span(), || {
-                format!("channel = \"{}\" cannot be pressed; allowed: fsr_a to fsr_d", channel.name())
-            })?;
-            demand(press_n.is_some(), fault.channel.span(), || "kind = \"pressed\" needs press_n".to_owned())
+    let kind = fault.kind;
+    demand(
+        kind != FaultKind::Pressed || (FSR..FSR + FSR_COUNT).contains(&channel.index()),
+        fault.channel.span(),
+        || format!("channel = \"{}\" cannot be pressed; allowed: fsr_a to fsr_d", channel.name()),
+    )?;
+    let press = fault.press_n.as_ref().map(Spanned::span);
+    only(kind == FaultKind::Pressed, press, fault, "pressed", "press_n")?;
+    let drift = fault.drift_per_s.as_ref().map(Spanned::span);
+    only(kind == FaultKind::Drift, drift, fault, "drift", "drift_per_s")
+}
+
+/// A key that faults of one kind need, and no other takes.
+fn only(is_it: bool, key: Option<Range<usize>>, fault: &SensorFault, kind: &str, name: &str) -> Checked {
+    match key {
+        None => demand(!is_it, fault.channel.span(), || format!("kind = \"{kind}\" needs {name}")),
+        Some(span) if !is_it => {
+            Err(Wrong { span, what: format!("{name} belongs to kind = \"{kind}\" only") })
         }
-        (_, Some(press_n)) => {
-            Err(Wrong { span: press_n.span(), what: "press_n belongs to kind = \"pressed\" only".to_owned() })
-        }
-        (_, None) => Ok(()),
+        Some(_) => Ok(()),
     }
 }
 
@@ -197,7 +207,7 @@ fn command(scene: &SceneFile, command: &Command) -> Checked {
                 return wrong(command.kind.span(), "a setting needs value".to_owned());
             };
             let row = id.row();
-            let range = if scene.trusts_line() { row.range_if_trusted() } else { row.range() };
+            let range = row.range_in_force(scene.trusts_line());
             demand(range.contains(value.get_ref()), value.span(), || {
                 format!(
                     "value = {} {} is outside {}..={} of {}",

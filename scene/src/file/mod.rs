@@ -1,5 +1,6 @@
 //! Scene files: TOML in, a checked [`SceneFile`] out, or one message that says where and what is allowed.
 
+pub mod base;
 pub mod channel;
 mod check;
 mod defaults;
@@ -9,15 +10,18 @@ pub mod quantity;
 pub mod sections;
 mod step;
 
+use base::{Find, Sources};
 use serde::Deserialize;
-use tenax_hal_shim::setting::SettingId;
+use tenax_logic::setting::SettingId;
 use toml::Spanned;
+
+use crate::builtin::find;
 
 pub use error::SceneError;
 pub use happening::Happening;
 use quantity::{Duration, Speed};
 use sections::{
-    Arm, Array, Camera, Command, CommandKind, Contact, ElectrodeLift, Fill, Fsr, Gripper, Knock, Move,
+    Arm, Array, Camera, Command, CommandKind, Contact, ElectrodeLift, Fill, Fsr, Gripper, Hum, Knock, Move,
     Muscle, Myo, Object, Photoelastic, Pitch, Press, Pull, Pvdf, Robot, SensorFault, Skin, Strain, Sweep,
     Swing, Table, Wet,
 };
@@ -77,6 +81,8 @@ pub struct SceneFile {
     #[serde(default)]
     pub(crate) knock: Vec<Knock>,
     #[serde(default)]
+    pub(crate) hum: Vec<Hum>,
+    #[serde(default)]
     pub(crate) muscle: Vec<Muscle>,
     #[serde(default)]
     pub(crate) electrode_lift: Vec<ElectrodeLift>,
@@ -88,15 +94,34 @@ pub struct SceneFile {
 }
 
 impl SceneFile {
-    /// Reads a scene. `file_name` is what errors call it.
+    /// Reads a scene, whose base is one of the program's. `file_name` is what errors call it.
     ///
     /// # Errors
     /// Says the file, the line, the key, and what is allowed there.
     pub fn parse(text: &str, file_name: &str) -> Result<Self, SceneError> {
-        let scene: Self =
-            toml::from_str(text).map_err(|error| SceneError::from_toml(&error, text, file_name))?;
-        check::check(&scene).map_err(|wrong| SceneError::at(wrong.span, wrong.what, text, file_name))?;
+        Self::parse_upon(text, file_name, &find)
+    }
+
+    /// Reads a scene whose base is what `find` gives for its name.
+    ///
+    /// # Errors
+    /// Says the file, the line, the key, and what is allowed there; the file may be the base.
+    pub fn parse_upon(text: &str, file_name: &str, find: Find<'_>) -> Result<Self, SceneError> {
+        let sources = Sources::read(text, file_name, find)?;
+        let scene = Self::deserialize(toml::Deserializer::from(sources.merged()?))
+            .map_err(|error| sources.of_toml(error.span().unwrap_or(0..0), error.message()))?;
+        check::check(&scene).map_err(|wrong| sources.wrong(wrong.span, wrong.what))?;
         Ok(scene)
+    }
+
+    /// A scene and what it stands on as one table, unchecked: for whoever draws its numbers anew.
+    ///
+    /// # Errors
+    /// If it is no TOML, or its base is not there.
+    pub fn table(text: &str, file_name: &str) -> Result<toml::Table, SceneError> {
+        let sources = Sources::read(text, file_name, &find)?;
+        toml::Table::deserialize(toml::Deserializer::from(sources.merged()?))
+            .map_err(|error| sources.of_toml(error.span().unwrap_or(0..0), error.message()))
     }
 
     /// Whether the board trusts its serial line. Unless the file says so, it does where somebody sends something: a scene is a

@@ -50,6 +50,8 @@ quantities! {
     Instant: 0.0 to 3600.0;
     /// How long something lasts, s: at least one scan.
     Duration: 0.000125 to 3600.0;
+    /// How fast a reading runs away, N/s or mV/s.
+    Drift: -1000.0 to 1000.0;
     /// How long something short lasts, ms.
     Milliseconds: 0.125 to 1000.0;
     /// The motor's dead time, ms.

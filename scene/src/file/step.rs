@@ -3,8 +3,8 @@
 use super::SceneFile;
 use super::check::{Checked, demand};
 use super::sections::{Object, Robot};
+use crate::bounds;
 use crate::schedule::STEP_S;
-use crate::stepping::bounds;
 
 /// The step must go into each bound at least so often.
 const MARGIN: f64 = 2.0;

@@ -46,11 +46,14 @@ pub struct Grasp {
     mass_kg: f64,
     table_n: f64,
     needed_n: f64,
-    plan_n: f64,
+    /// Its parts: along the pad, and against turning.
+    needs_n: [f64; 2],
+    shear_n: f64,
+    /// Shear over normal force that a slow pull still finds sticking, and that of what slides.
+    holds: f64,
+    slides: f64,
 }
 
-/// The plan's part above what holds exactly: nothing holds on the edge of sliding.
-const PLAN_MARGIN: f64 = 0.02;
 /// What slides is to stand still so soon, s: the motor's dead time, before which nothing can be known to have helped.
 const STOPS_S: f64 = 0.030;
 
@@ -93,7 +96,10 @@ impl Grasp {
             mass_kg: empty_kg,
             table_n: empty_kg * GRAVITY_M_S2,
             needed_n: 0.0,
-            plan_n: 0.0,
+            needs_n: [0.0; 2],
+            shear_n: 0.0,
+            holds: 0.0,
+            slides: 0.0,
         }
     }
 
@@ -120,8 +126,9 @@ impl Grasp {
             (self.speed_m_s + free_n / self.mass_kg * STEP_S) / (1.0 + drag_ns_per_m / self.mass_kg * STEP_S);
         // Torsion lets go where shear alone would: of a patch, that is below mu_s.
         let holds = self.contact.holds(dry);
-        let turn =
-            self.turn(Friction { mu_s: holds, mu_d: dry.mu_d.min(holds) }, grip_n, drag_ns_per_m, hand);
+        let slides = dry.mu_d.min(holds);
+        (self.holds, self.slides) = (holds, slides);
+        let turn = self.turn(Friction { mu_s: holds, mu_d: slides }, grip_n, drag_ns_per_m, hand);
         let friction = self.pitch.as_ref().map_or(dry, |pitch| pitch.leaves(dry));
         let push = Push { normal_n: grip_n, pads: PADS, friction, mass_kg: self.mass_kg, free_m_s };
         let outcome = self.contact.step(push, STEP_S);
@@ -133,8 +140,9 @@ impl Grasp {
 
         // Both at once, by the ellipsoid.
         let along_n = free_n.abs() / PADS / holds;
-        self.needed_n = (along_n * along_n + turn.needed_n * turn.needed_n).sqrt();
-        self.plan_n = if self.in_hand && grip_n > TOUCH_N { self.planned_n(dry, holds, hand) } else { 0.0 };
+        self.needed_n = along_n.hypot(turn.needed_n);
+        self.needs_n = [along_n, turn.needed_n];
+        self.shear_n = shear_n;
         self.lifted |= grip_n > TOUCH_N && self.table_n == 0.0;
         self.taken |= self.in_hand && self.shared && self.lifted && grip_n == 0.0;
         self.in_hand &= self.slid_m.abs() <= self.pad_m && !self.body.is_broken() && !self.taken;
@@ -154,17 +162,6 @@ impl Grasp {
             released_n: outcome.released_n + twisted_n,
             drop_n,
         }
-    }
-
-    /// The least force that carries all of it as it is now, and stops it if it slides, N.
-    fn planned_n(&self, dry: Friction, holds: f64, hand: &Hand) -> f64 {
-        let slides = !self.sticks || self.turns();
-        let mu = if slides { dry.mu_d.min(holds) } else { holds };
-        let stops_m_s2 = if slides { self.rubs_m_s() / STOPS_S } else { 0.0 };
-        let weight_n = self.mass_kg * (GRAVITY_M_S2 + hand.acceleration_m_s2().max(0.0) + stops_m_s2);
-        let along_n = weight_n / PADS / mu;
-        let turning_n = self.pitch.as_ref().map_or(0.0, |pitch| pitch.holds_n(weight_n, mu));
-        (1.0 + PLAN_MARGIN) * (along_n * along_n + turning_n * turning_n).sqrt()
     }
 
     /// The table keeps what stands on it from turning.
@@ -263,11 +260,27 @@ impl Grasp {
         &self.body
     }
 
-    /// What an oracle plans: the least force that carries all of it, the table's part too, as it is now, and stops it if it
-    /// slides, N. 0 while nothing presses on it.
+    /// What stops it if it slides or turns: what sliding friction needs to carry it, and to take its speed within
+    /// [`STOPS_S`], N of each finger. None while it sticks.
     #[must_use]
-    pub const fn plan_n(&self) -> f64 {
-        self.plan_n
+    pub fn stops_n(&self) -> Option<f64> {
+        let carries_n = self.needed_n * self.holds / self.slides;
+        let brakes_n = self.mass_kg * self.rubs_m_s() / STOPS_S / PADS / self.slides;
+        (!self.sticks || self.turns()).then_some(carries_n + brakes_n)
+    }
+
+    /// The least grip force of each finger under which all that sticks now would stick, N: what is needed, and what the skin's spring
+    /// takes on top of it as it swings.
+    #[must_use]
+    pub fn carries_n(&self) -> f64 {
+        let [along_n, turning_n] = self.needs_n;
+        along_n.max(self.shear_n.abs() / self.holds).hypot(turning_n)
+    }
+
+    /// The shear that each finger could still carry before it slides, N; below 0 it slides.
+    #[must_use]
+    pub fn margin_n(&self, grip_n: f64) -> f64 {
+        self.holds * (grip_n - self.needed_n)
     }
 
     /// The least grip force that would hold it at this instant, N.

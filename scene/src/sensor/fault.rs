@@ -15,6 +15,7 @@ struct Fault {
     channel: usize,
     kind: FaultKind,
     press_n: f64,
+    drift_per_s: f64,
     stuck_v: Option<f64>,
 }
 
@@ -28,18 +29,23 @@ impl Faults {
                 channel: fault.channel.get_ref().index(),
                 kind: fault.kind,
                 press_n: fault.press_n.as_ref().map_or(0.0, |press| press.get_ref().get()),
+                drift_per_s: fault.drift_per_s.as_ref().map_or(0.0, |drift| drift.get_ref().get()),
                 stuck_v: None,
             }
         });
         Self(faults.collect())
     }
 
-    /// What presses on the quadrants of the force sensor besides the object, N.
+    /// What presses on the quadrants of the force sensor besides the object, or seems to, N.
     pub(crate) fn pressed_n(&self, t_s: f64) -> [f64; FSR_COUNT] {
         let mut pressed_n = [0.0; FSR_COUNT];
-        for fault in &self.0 {
-            if fault.kind == FaultKind::Pressed && fault.span.contains(t_s) {
-                pressed_n[fault.channel - FSR] += fault.press_n;
+        for fault in self.0.iter().filter(|fault| fault.span.contains(t_s)) {
+            match fault.kind {
+                FaultKind::Pressed => pressed_n[fault.channel - FSR] += fault.press_n,
+                FaultKind::Drift if (FSR..FSR + FSR_COUNT).contains(&fault.channel) => {
+                    pressed_n[fault.channel - FSR] += fault.drifted(t_s);
+                }
+                _ => {}
             }
         }
         pressed_n
@@ -54,7 +60,15 @@ impl Faults {
                 FaultKind::Saturated => f64::from(REFERENCE_MV) / 1e3,
                 FaultKind::Stuck => *fault.stuck_v.get_or_insert(*pin_v),
                 FaultKind::Pressed => *pin_v,
+                FaultKind::Drift if (FSR..FSR + FSR_COUNT).contains(&fault.channel) => *pin_v,
+                FaultKind::Drift => *pin_v + fault.drifted(t_s) / 1e3,
             };
         }
+    }
+}
+
+impl Fault {
+    fn drifted(&self, t_s: f64) -> f64 {
+        (t_s - self.span.begin_s) * self.drift_per_s
     }
 }

@@ -38,7 +38,7 @@ impl Quadrants {
         let loads_n = fsr_quadrants_n(touch.normal_n, touch.shear_n, 0.0);
         let mut pins = [0.0; FSR_COUNT];
         for (n, quadrant) in self.quadrants.iter_mut().enumerate() {
-            let force_n = loads_n[n] + pressed_n[n];
+            let force_n = (loads_n[n] + pressed_n[n]).max(0.0);
             let play_n = self.hysteresis * force_n;
             quadrant.followed_n = quadrant.followed_n.clamp(force_n - play_n, force_n + play_n);
             let read_n = quadrant.followed_n + self.creep * quadrant.crept.step(quadrant.followed_n);

@@ -7,11 +7,11 @@ use tenax_hal_shim::front_end::PVDF_REST_MV;
 
 use super::front_end_v;
 use super::place::Place;
-use crate::file::sections::{Knock, Pvdf};
+use crate::file::sections::{Hum, Knock, Pvdf};
 use crate::physics::{TOUCH_N, Touch};
 use crate::pole::{LowPass, LowPasses};
 use crate::random::{Noise, Seeds, Source};
-use crate::schedule::STEP_S;
+use crate::schedule::{STEP_S, Span};
 
 /// A knock is forgotten after this many times its decay: e^-12 of millivolts is below any code.
 const KNOCK_DECAYS: f64 = 12.0;
@@ -29,6 +29,7 @@ const KNOCK_DECAYS: f64 = 12.0;
 pub(crate) struct Films {
     parameters: Pvdf,
     knocks: Vec<Knock>,
+    hums: Vec<(Span, Hum)>,
     pitch_m: f64,
     films: [Film; PVDF_COUNT],
     gains: [f64; PVDF_COUNT],
@@ -54,7 +55,12 @@ struct Film {
 }
 
 impl Films {
-    pub(crate) fn new(parameters: &Pvdf, knocks: &[Knock], pitch_mm: f64, seeds: Seeds) -> Self {
+    pub(crate) fn new(
+        parameters: &Pvdf,
+        (knocks, hums): (&[Knock], &[Hum]),
+        pitch_mm: f64,
+        seeds: Seeds,
+    ) -> Self {
         let mut making = Noise::new(seeds.making, Source::FilmMaking);
         let spread = parameters.spread.get();
         let skin_s = parameters.skin_ms.get() / 1e3;
@@ -75,6 +81,10 @@ impl Films {
         Self {
             parameters: parameters.clone(),
             knocks: knocks.to_vec(),
+            hums: hums
+                .iter()
+                .map(|hum| (Span::new(hum.at_s.get_ref().get(), hum.for_s.get()), hum.clone()))
+                .collect(),
             pitch_m: pitch_mm / 1e3,
             films,
             gains,
@@ -118,7 +128,13 @@ impl Films {
             p.motor_mv.get() * motor_speed.sqrt() * libm::sin(TAU * self.motor_phase)
         } else {
             0.0
-        } + p.mains_mv.get() * libm::sin(TAU * p.mains_hz.get() * t_s);
+        } + p.mains_mv.get() * libm::sin(TAU * p.mains_hz.get() * t_s)
+            + self
+                .hums
+                .iter()
+                .filter(|(span, _)| span.contains(t_s))
+                .map(|(_, hum)| hum_mv(hum, t_s))
+                .sum::<f64>();
 
         if touch.released_n > 0.0 {
             for film in &mut self.films {
@@ -165,6 +181,10 @@ fn spike(turns: f64) -> f64 {
     hump * hump * hump * hump - 35.0 / 128.0
 }
 
+fn hum_mv(hum: &Hum, t_s: f64) -> f64 {
+    hum.peak_mv.get() * libm::sin(TAU * hum.hum_hz.get() * t_s)
+}
+
 /// Whether a knock is still heard.
 fn rings(knock: &Knock, t_s: f64) -> bool {
     let decay_s = knock.decay_ms.get() / 1e3;
@@ -188,7 +208,7 @@ mod tests {
 
     fn made(film_decades: f64, making: u64) -> Films {
         let parameters = Pvdf { film_decades: Part::of(film_decades), ..Pvdf::default() };
-        Films::new(&parameters, &[], 1.0, Seeds { making, noise: 1 })
+        Films::new(&parameters, (&[], &[]), 1.0, Seeds { making, noise: 1 })
     }
 
     #[test]

@@ -21,6 +21,10 @@ const SPREADS: f64 = 1.4;
 /// The part of the picture in which the object lies, times the part of its points that have an edge to be seen moving
 /// (assumed).
 const TEXTURE_PART: f64 = 0.02;
+/// Slip below which a wrong picture shows slip and above which it shows none, px a picture.
+const SLIPS_PX: f64 = 0.3;
+/// What is seen to move in a wrong picture, in 1/10,000 of it: from hardly said to be slip to what a fast slip moves.
+const WRONG_E4: (f64, f64) = (30.0, 200.0);
 /// One pixel in the world, mm: 320 of them over 30 mm of skin.
 const PIXEL_MM: f64 = 0.094;
 
@@ -32,6 +36,9 @@ pub(crate) struct SkinCamera {
     /// Part of the load on each marker.
     shares: [f64; MARKERS],
     noise: Noise,
+    /// What goes wrong is drawn apart, so that the rest is the same with and without.
+    mistakes: Noise,
+    is_wrong: bool,
     pictures: u64,
     /// How far the object has moved over the skin since the last picture, m.
     moved_m: f64,
@@ -53,6 +60,8 @@ impl SkinCamera {
             patch_m: patch_mm / 1e3,
             shares,
             noise: Noise::new(seed, Source::Skin),
+            mistakes: Noise::new(seed, Source::SkinMistakes),
+            is_wrong: false,
             pictures: 0,
             moved_m: 0.0,
             under_way: VecDeque::new(),
@@ -85,6 +94,17 @@ impl SkinCamera {
         Some(CameraView { age_ms: ((t_s - taken_s) * 1e3).round() as u16, ..view })
     }
 
+    /// Whether this picture is told wrongly, and what is then seen to move, in 1/10,000: mistakes come in bursts.
+    fn goes_wrong(&mut self) -> Option<f64> {
+        let (part, stretch) =
+            (self.parameters.wrong_part.get(), self.parameters.wrong_pictures.get().max(1.0));
+        // It ends once in `stretch` pictures, and begins as often as keeps the part.
+        let change = if self.is_wrong { 1.0 / stretch } else { part / (stretch * (1.0 - part).max(1e-3)) };
+        self.is_wrong ^= self.mistakes.between(0.0, 1.0) < change;
+        let seen_e4 = self.mistakes.between(WRONG_E4.0, WRONG_E4.1);
+        self.is_wrong.then_some(seen_e4)
+    }
+
     fn view(&mut self, touch: &Touch, pitch_rad: f64) -> CameraView {
         let noise_n = self.parameters.force_noise_mn.get() / 1e3;
         let mut steps = |part: f64, whole_n: f64, step_mn: i32, low: f64, high: f64| {
@@ -95,7 +115,17 @@ impl SkinCamera {
         let shear = self.shares.map(|part| steps(part, touch.shear_n, SHEAR_STEP_MN, -128.0, 127.0) as i8);
         let pixels = self.moved_m * 1e3 / PIXEL_MM;
         let speckle_e4 = self.parameters.speckle_e4.get() * self.noise.normal().abs();
-        let moving_e4 = 1e4 * TEXTURE_PART * pixels.min(1.0) + speckle_e4;
+        let moving_e4 = match self.goes_wrong() {
+            // A spot of the background that leans on the object, or an object whose move was not found.
+            Some(seen_e4) => {
+                if pixels < SLIPS_PX {
+                    seen_e4
+                } else {
+                    0.0
+                }
+            }
+            None => 1e4 * TEXTURE_PART * pixels.min(1.0),
+        } + speckle_e4;
         let degrees = pitch_rad.to_degrees() + self.parameters.angle_noise_deg.get() * self.noise.normal();
         let sees = touch.normal_n > 0.0 && self.patch_m > 0.0;
         CameraView {
@@ -111,6 +141,7 @@ impl SkinCamera {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::file::quantity::{Gain, Part};
 
     fn views(touch: &Touch) -> Vec<CameraView> {
         let mut camera = SkinCamera::new(&Skin::default(), 5.0, 1);
@@ -137,6 +168,18 @@ mod tests {
         assert!(views.iter().all(|view| view.angle_ddeg.is_some_and(|angle| (angle - 57).abs() < 30)));
         let delay_ms = Skin::default().delay_ms.get();
         assert!(views.iter().all(|view| (f64::from(view.age_ms) - delay_ms).abs() <= 1.0));
+    }
+
+    #[test]
+    fn as_many_pictures_are_wrong_as_asked_for_and_in_bursts() {
+        let parameters =
+            Skin { wrong_part: Part::of(0.05), wrong_pictures: Gain::of(4.0), ..Skin::default() };
+        let mut camera = SkinCamera::new(&parameters, 5.0, 7);
+        let wrong: Vec<bool> = (0..40_000).map(|_| camera.goes_wrong().is_some()).collect();
+        let part = wrong.iter().filter(|wrong| **wrong).count() as f64 / wrong.len() as f64;
+        let bursts = wrong.windows(2).filter(|two| !two[0] && two[1]).count() as f64;
+        assert!((part - 0.05).abs() < 0.01, "{part}");
+        assert!((part * wrong.len() as f64 / bursts - 4.0).abs() < 0.5);
     }
 
     #[test]

@@ -1,9 +1,8 @@
 //! How friction is stepped through time, where each way of it fails, and what it costs.
 //!
 //! Five [`Method`]s run the same [`problem`]s. The scenes use [`Moreau`]; the others are here to be measured against it
-//! (`tenax chart scenes`, read in `docs/stepping.md`), and [`bounds`] says where theory puts the edge of each.
+//! (`tenax chart scenes`, read in `docs/stepping.md`), and [`bounds`](crate::bounds) says where theory puts the edge of each.
 
-pub mod bounds;
 mod euler;
 mod exponential;
 mod implicit;

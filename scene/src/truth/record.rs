@@ -72,4 +72,7 @@ pub struct Row {
     pub pitch_rad: f64,
     /// The least grip force of each finger that would hold at this instant, N; 0 while the hand does not carry.
     pub needed_n: f64,
+    /// The shear that each finger could still carry before it slides, N: friction times grip force above the need. 0 while the
+    /// hand does not carry.
+    pub margin_n: f64,
 }

@@ -64,6 +64,25 @@ impl Mask {
         *self = kept;
     }
 
+    /// Keeps the pieces that reach the picture's border.
+    pub fn keep_at_border(&mut self) {
+        let mut rest = core::mem::take(self);
+        for _ in 0..PIECES_MAX {
+            let Some((_, piece)) = rest.take_piece() else { break };
+            if piece.comes_within(1) {
+                self.unite(&piece);
+            }
+        }
+    }
+
+    /// Whether a pixel is this near to the border, px below 64.
+    #[must_use]
+    pub fn comes_within(&self, px: usize) -> bool {
+        let ends = self.rows[..px].iter().chain(&self.rows[HEIGHT - px..]).flatten().any(|&word| word != 0);
+        let (left, right) = ((1 << px) - 1, u64::MAX << (64 - px));
+        ends || self.rows.iter().any(|row| row[0] & left != 0 || row[WORDS - 1] & right != 0)
+    }
+
     /// Takes the piece out that holds the first pixel: the row and word where it begins, and the piece.
     fn take_piece(&mut self) -> Option<((usize, usize), Self)> {
         let (y, word) = (0..HEIGHT)

@@ -3,35 +3,26 @@
 //! It does if it reaches the border. While its colours are still being learned it does also if only what differs from the scene
 //! leads on from it to the border: its end has colours that are not known yet.
 
-use crate::frame::HEIGHT;
-use crate::mask::{Mask, WORDS};
+use crate::mask::Mask;
 
 /// How far from the border an object may end for what differs there to be its end, px.
 const REACH_PX: usize = 24;
 
 /// Whether `object` is cut by the border. `unknown` is what differs from the scene and may be more of it, if anything.
 pub fn is_cut(object: &Mask, unknown: Option<&Mask>) -> bool {
-    if comes_within(1, object) {
+    if object.comes_within(1) {
         return true;
     }
-    let Some(unknown) = unknown.filter(|_| comes_within(REACH_PX, object)) else { return false };
+    let Some(unknown) = unknown.filter(|_| object.comes_within(REACH_PX)) else { return false };
     let mut grown = object.clone();
     for _ in 0..REACH_PX {
         grown.dilate(1);
         grown.intersect(unknown);
-        if comes_within(1, &grown) {
+        if grown.comes_within(1) {
             return true;
         }
     }
     false
-}
-
-/// Whether a part of it is this near to the border, px below 64.
-fn comes_within(px: usize, mask: &Mask) -> bool {
-    let rows = mask.rows();
-    let ends = rows[..px].iter().chain(&rows[HEIGHT - px..]).flatten().any(|&word| word != 0);
-    let (left, right) = ((1 << px) - 1, u64::MAX << (64 - px));
-    ends || rows.iter().any(|row| row[0] & left != 0 || row[WORDS - 1] & right != 0)
 }
 
 #[cfg(test)]

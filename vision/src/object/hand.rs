@@ -11,8 +11,8 @@ const REDDER: (u32, u32) = (70, 110);
 /// How much redder than blue, 1/64.
 const WARMER: u32 = 74;
 
-/// Takes a hand out of `object`.
-pub fn leave_out(object: &mut Mask, frame: &Frame, white: [u8; 3]) {
+/// Takes a hand out of `object`, if what is left is large enough to be one, `least` pixels.
+pub fn leave_out(object: &mut Mask, frame: &Frame, white: [u8; 3], least: u32) {
     let all = object.count();
     if all == 0 {
         return;
@@ -33,6 +33,8 @@ pub fn leave_out(object: &mut Mask, frame: &Frame, white: [u8; 3]) {
     skin.erode(1);
     skin.dilate(6);
     skin.erode(4);
+    // A hand comes from outside: what does not reach the border is the object's own colour.
+    skin.keep_at_border();
     if skin.count() == 0 {
         return;
     }
@@ -47,6 +49,8 @@ pub fn leave_out(object: &mut Mask, frame: &Frame, white: [u8; 3]) {
     rest.fill_holes();
     if 2 * rest.count() >= all {
         rest.keep_large(25);
-        *object = rest;
+        if rest.count() >= least {
+            *object = rest;
+        }
     }
 }

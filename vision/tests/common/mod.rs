@@ -7,31 +7,20 @@ use std::process::{Command, Stdio};
 
 use tenax_vision::frame::{FRAME_BYTES, Frame, PIXELS, Plane, WIDTH};
 
-/// A file of the real recordings, if they are here.
-pub fn recording(name: &str) -> Option<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().find_map(|folder| {
-        let data = folder.join("shared/data/fingervision");
-        data.is_dir().then_some(data)
-    });
-    let path = folder.map(|folder| folder.join(name)).filter(|path| path.exists());
-    if path.is_none() {
-        println!("skipped, recording not present: fingervision/{name}");
-    }
-    path
+/// A file of the real recordings.
+pub fn recording(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/fingervision").join(name)
 }
 
-/// Calls `each` with the number and the picture of every frame of a video. False, with a message, without `ffmpeg`.
-pub fn for_each_frame(video: &Path, mut each: impl FnMut(usize, Frame)) -> bool {
-    let ffmpeg = Command::new("ffmpeg")
+/// Calls `each` with the number and the picture of every frame of a video.
+pub fn for_each_frame(video: &Path, mut each: impl FnMut(usize, Frame)) {
+    let mut ffmpeg = Command::new("ffmpeg")
         .args(["-v", "error", "-i"])
         .arg(video)
         .args(["-fps_mode", "passthrough", "-f", "rawvideo", "-pix_fmt", "gbrp", "-"])
         .stdout(Stdio::piped())
-        .spawn();
-    let Ok(mut ffmpeg) = ffmpeg else {
-        println!("skipped, the program ffmpeg is not installed");
-        return false;
-    };
+        .spawn()
+        .expect("ffmpeg is installed");
     let mut bytes = vec![0; FRAME_BYTES];
     let mut frames = ffmpeg.stdout.take().expect("piped");
     let mut number = 0;
@@ -39,7 +28,7 @@ pub fn for_each_frame(video: &Path, mut each: impl FnMut(usize, Frame)) -> bool 
         each(number, Frame::from_gbrp(&bytes).expect("whole"));
         number += 1;
     }
-    ffmpeg.wait().expect("ffmpeg ends").success()
+    assert!(ffmpeg.wait().expect("ffmpeg ends").success());
 }
 
 /// A plane on the heap.

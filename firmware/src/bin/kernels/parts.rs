@@ -53,7 +53,7 @@ impl Parts {
         black_box(tenax_kernel_features_10_40(&mut self.features, reading));
         black_box(tenax_kernel_features_5_20(&mut self.features_half, reading));
         black_box(tenax_kernel_features_1_10(&mut self.features_least, reading));
-        let config = HeadConfig { slip: 10, ..HeadConfig::BLANK };
+        let config = HeadConfig { slip: 10, ..HeadConfig::default() };
         // One of ten, so that it is called from one place.
         if let Some(sample) = reading[0] {
             tenax_kernel_head_sample(&mut self.head, &config, sample);
@@ -112,5 +112,5 @@ fn tenax_kernel_features_1_10<'p>(p: &'p mut Preprocessor<1, 10>, reading: &Read
 #[unsafe(no_mangle)]
 fn tenax_kernel_head_sample(head: &mut Head, config: &HeadConfig, sample: u16) {
     // Its faults are another kernel's.
-    let _change = head.take(config, sample);
+    let _change = head.process(config, sample);
 }

@@ -9,10 +9,10 @@ use tenax_hal_shim::channel::{REFERENCE_MV, SAMPLE_MAX};
 use tenax_scene::Seeds;
 use tenax_scene::sensor::photoelastic::curve::{Day, Making};
 
-use crate::chart;
 use crate::cli::{folder, out};
-use crate::photoelastic::balance::{self, Calibration};
-use crate::plot::png;
+use tenax_plot::png;
+use tenax_studies::chart;
+use tenax_studies::photoelastic::balance::{self, Calibration};
 
 /// The photoelastic head's curve from known weights.
 #[derive(Debug, clap::Args)]

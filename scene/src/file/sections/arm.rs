@@ -21,6 +21,16 @@ pub enum Arm {
     Robot,
 }
 
+impl Arm {
+    /// The part of the object's weight on the table that it feels.
+    pub(crate) const fn felt(self, table_part: f64) -> f64 {
+        match self {
+            Self::Person => table_part,
+            Self::Robot => 0.0,
+        }
+    }
+}
+
 /// The arm lifts or lowers the hand.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -4,7 +4,9 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use crate::file::channel::ChannelName;
-use crate::file::quantity::{Duration, Instant, Milliseconds, Millivolts, Newtons, Part, RingHertz};
+use crate::file::quantity::{
+    Drift, Duration, Hertz, Instant, Milliseconds, Millivolts, Newtons, Part, RingHertz,
+};
 
 /// Something hits the hand or the table: a short ring in every film.
 #[derive(Clone, Debug, Deserialize)]
@@ -27,6 +29,20 @@ impl Knock {
     const fn alike() -> Part {
         Part::of(0.0)
     }
+}
+
+/// Mains near by, in every film from an instant on, beside `[pvdf]`'s own.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Hum {
+    /// When.
+    pub at_s: Spanned<Instant>,
+    /// How long.
+    pub for_s: Duration,
+    /// Peak at the film.
+    pub peak_mv: Millivolts,
+    /// Its frequency.
+    pub hum_hz: Hertz,
 }
 
 /// An electrode lifts off the skin: it hears no muscle, and more mains.
@@ -55,6 +71,8 @@ pub enum FaultKind {
     Stuck,
     /// A quadrant of the force sensor with `press_n` on it that nobody put there: a bent finger cover.
     Pressed,
+    /// A reading that runs away by `drift_per_s`: a cell that creeps or warms, an amplifier whose offset wanders.
+    Drift,
 }
 
 /// A sensor breaks.
@@ -71,6 +89,8 @@ pub struct SensorFault {
     pub kind: FaultKind,
     /// The force of `pressed`.
     pub press_n: Option<Spanned<Newtons>>,
+    /// The rate of `drift`: of a quadrant of the force sensor N/s, of any other channel mV/s at the pin.
+    pub drift_per_s: Option<Spanned<Drift>>,
     /// The physical reason.
     pub reason: String,
 }

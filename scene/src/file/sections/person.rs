@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 use tenax_hal_shim::behaviour::Behaviour;
-use tenax_hal_shim::setting::SettingId;
+use tenax_logic::setting::SettingId;
 use toml::Spanned;
 
 use crate::file::quantity::{Duration, Instant, Millivolts, Newtons};

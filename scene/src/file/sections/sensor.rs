@@ -144,6 +144,10 @@ pub struct Skin {
     pub angle_noise_deg: Degrees,
     /// Points that move though nothing does, rms, in 1/10,000 of the picture.
     pub speckle_e4: Gain,
+    /// Pictures in which slip is told wrongly: seen where there is none, or missed, as a part.
+    pub wrong_part: Part,
+    /// How many of them come one after the other, mean.
+    pub wrong_pictures: Gain,
     /// When it goes dark: covered, or its cable is pulled.
     pub dark_from_s: Option<Instant>,
 }

@@ -1,0 +1,181 @@
+//! A network to be judged: the one that ships, or one that `tenax train` has written.
+
+use std::path::Path;
+
+use anyhow::{Context, anyhow, bail, ensure};
+use serde::{Deserialize, Serialize};
+use tenax_hal_shim::channel::{REFERENCE_MV, SAMPLE_MAX};
+use tenax_logic::array::detector::logistic_permille;
+use tenax_logic::array::{
+    ArrayDetector, FEATURES, Judgement, Layer, Mlp, Model, PreprocessorConfig, Reading, shipped,
+};
+
+use super::edges::{Confidences, Edges};
+use super::material::SEEN;
+use super::real::Logits;
+use crate::labelled::Step;
+
+/// The file in a folder of `tenax train`.
+pub const FILE: &str = "network.json";
+const H1: usize = 32;
+const H2: usize = 16;
+
+/// A network as `tenax train` writes it: the firmware's integers, what its features are made with, and on what noise it learned.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Saved {
+    /// Of the data that it learned from.
+    pub sha256: String,
+    /// A difference is to the reading so many slow frames before.
+    pub lag: u8,
+    /// Differences in the covariance.
+    pub window: usize,
+    /// See [`PreprocessorConfig`].
+    pub covariance_knee: u32,
+    /// See there.
+    pub spectrum_knee: u32,
+    /// See there.
+    pub structure_knee: u32,
+    /// First layer's rows, biases and shift.
+    pub first: (Vec<Vec<i16>>, Vec<i32>, u32),
+    /// Second layer's.
+    pub second: (Vec<Vec<i16>>, Vec<i32>, u32),
+    /// Last layer's weights and bias.
+    pub last: (Vec<i16>, i32),
+    /// How much a logit has to grow for the odds of slip to grow e-fold.
+    pub logit_per_nat: i32,
+    /// Confidence at which slip begins, and below which it is over.
+    #[serde(flatten)]
+    pub edges: Edges,
+    /// The least and the greatest [noise](super::adapt::noise_samples) of the recordings that it learned from, samples.
+    pub noise_samples: [f64; 2],
+}
+
+/// The firmware's model with one of its windows.
+#[derive(Clone, Debug)]
+enum Windows {
+    Ten(Box<Model<H1, 1, H2, 10>>),
+    Forty(Box<Model<H1, 1, H2, 40>>),
+}
+
+/// A network, ready to judge.
+#[derive(Clone, Debug)]
+pub struct Network {
+    windows: Windows,
+    /// What it learned on.
+    pub noise_samples: [f64; 2],
+}
+
+impl Network {
+    /// Differences in a covariance that can be judged.
+    pub const WINDOWS: [usize; 2] = [10, 40];
+
+    /// The one that ships.
+    #[must_use]
+    pub fn shipped() -> Self {
+        let ends = |end: usize| SEEN.map(|material| material.contact.noise_mv[end]);
+        let samples =
+            |mv: f64| mv * f64::from(SAMPLE_MAX) / f64::from(REFERENCE_MV) * std::f64::consts::SQRT_2;
+        let low = ends(0).into_iter().fold(f64::INFINITY, f64::min);
+        let high = ends(1).into_iter().fold(0.0, f64::max);
+        Self {
+            windows: Windows::Ten(Box::new(shipped::MODEL.clone())),
+            noise_samples: [samples(low), samples(high)],
+        }
+    }
+
+    /// One from a folder that `tenax train` has written.
+    ///
+    /// # Errors
+    /// If there is none, or it is none of the firmware's.
+    pub fn read(folder: &Path) -> anyhow::Result<Self> {
+        let file = folder.join(FILE);
+        let text = std::fs::read_to_string(&file)
+            .with_context(|| format!("{}: no network; `tenax train --out DIR` writes one", file.display()))?;
+        let saved: Saved = serde_json::from_str(&text).with_context(|| file.display().to_string())?;
+        Self::of(&saved).with_context(|| file.display().to_string())
+    }
+
+    /// One that was written.
+    ///
+    /// # Errors
+    /// If it is none of the firmware's.
+    pub fn of(saved: &Saved) -> anyhow::Result<Self> {
+        ensure!(saved.noise_samples[0] <= saved.noise_samples[1], "its noise is no range");
+        let windows = match saved.window {
+            10 => Windows::Ten(Box::new(saved.model()?)),
+            40 => Windows::Forty(Box::new(saved.model()?)),
+            other => bail!("it has a covariance of {other} differences; 10 and 40 can be judged"),
+        };
+        Ok(Self { windows, noise_samples: saved.noise_samples })
+    }
+
+    /// How confident it is in each step of one recording.
+    #[must_use]
+    pub fn confidences(&self, steps: &[Step]) -> Confidences {
+        let per_nat = match &self.windows {
+            Windows::Ten(model) => model.judgement.logit_per_nat,
+            Windows::Forty(model) => model.judgement.logit_per_nat,
+        };
+        let (logits, _) = self.judge(&super::readings(steps));
+        logits.into_iter().map(|logit| logit.map(|logit| logistic_permille(logit, per_nat))).collect()
+    }
+
+    /// The logit of each reading of one recording, and whether it says slip.
+    #[must_use]
+    pub fn judge(&self, readings: &[Reading]) -> (Logits, Vec<bool>) {
+        match &self.windows {
+            Windows::Ten(model) => judge(model, readings),
+            Windows::Forty(model) => judge(model, readings),
+        }
+    }
+}
+
+fn judge<const N: usize>(model: &Model<H1, 1, H2, N>, readings: &[Reading]) -> (Logits, Vec<bool>) {
+    let mut detector = ArrayDetector::new(model);
+    readings
+        .iter()
+        .map(|reading| {
+            let slip = detector.push(reading).slip;
+            (detector.logit(), slip)
+        })
+        .unzip()
+}
+
+impl Saved {
+    fn model<const N: usize>(&self) -> anyhow::Result<Model<H1, 1, H2, N>> {
+        let too_large = |_| anyhow!("a sum of the network could overflow");
+        let (first, second, last) = (&self.first, &self.second, &self.last);
+        Ok(Model {
+            preprocessor: PreprocessorConfig {
+                lag: self.lag,
+                covariance_knee: self.covariance_knee,
+                spectrum_knee: self.spectrum_knee,
+                structure_knee: self.structure_knee,
+                ..PreprocessorConfig::DEFAULT
+            },
+            network: Mlp::new(
+                Layer::<FEATURES, H1>::new(square(&first.0)?, fixed(&first.1)?, first.2)
+                    .map_err(too_large)?,
+                [Layer::<H1, H2>::new(square(&second.0)?, fixed(&second.1)?, second.2).map_err(too_large)?],
+                Layer::<H2, 1>::new([fixed(&last.0)?], [last.1], 0).map_err(too_large)?,
+            )
+            .map_err(too_large)?,
+            judgement: Judgement {
+                logit_per_nat: self.logit_per_nat,
+                on_permille: self.edges.on_permille,
+                off_permille: self.edges.off_permille,
+                on_frames: 1,
+                off_frames: 1,
+            },
+        })
+    }
+}
+
+fn fixed<T: Clone, const N: usize>(values: &[T]) -> anyhow::Result<[T; N]> {
+    <[T; N]>::try_from(values.to_vec()).ok().context("a layer of another size")
+}
+
+fn square<const I: usize, const O: usize>(rows: &[Vec<i16>]) -> anyhow::Result<[[i16; I]; O]> {
+    let rows: Vec<[i16; I]> = rows.iter().map(|row| fixed(row)).collect::<Result<_, _>>()?;
+    fixed(&rows)
+}

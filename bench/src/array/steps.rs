@@ -1,0 +1,80 @@
+//! Steps of recordings, counted by whether what was said of them is right.
+
+use std::collections::BTreeMap;
+
+use serde::{Serialize, Serializer};
+
+use super::Verdicts;
+use crate::labelled::{Recording, Step};
+
+/// Steps, counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Steps {
+    /// All of them.
+    pub steps: usize,
+    /// Slipped, and were not called slip.
+    pub missed: usize,
+    /// Did not slip, and were called slip.
+    #[serde(rename = "false")]
+    pub false_steps: usize,
+    /// Part of them that is right.
+    pub accuracy: f64,
+    /// Mean of the part of slipping steps that was called slip and the part of the others that was not.
+    pub balanced: f64,
+    /// Part of them that slipped: who always says 'never' has all the others right.
+    pub prevalence: f64,
+    #[serde(skip)]
+    slipped: usize,
+}
+
+impl Steps {
+    /// Of one recording.
+    #[must_use]
+    pub fn of(steps: &[Step], verdicts: &[bool]) -> Self {
+        let mut counted = Self::default();
+        counted.take(steps, verdicts);
+        counted
+    }
+
+    /// Adds those of another.
+    pub fn take(&mut self, steps: &[Step], verdicts: &[bool]) {
+        for (step, &said) in steps.iter().zip(verdicts) {
+            self.steps += 1;
+            self.slipped += usize::from(step.slip);
+            self.missed += usize::from(step.slip && !said);
+            self.false_steps += usize::from(!step.slip && said);
+        }
+        let right = |wrong: usize, of: usize| 1.0 - wrong as f64 / of.max(1) as f64;
+        self.accuracy = right(self.missed + self.false_steps, self.steps);
+        self.prevalence = self.slipped as f64 / self.steps.max(1) as f64;
+        // Where there is only one kind of step there is nothing to balance.
+        self.balanced = if self.slipped == 0 || self.slipped == self.steps {
+            self.accuracy
+        } else {
+            (right(self.missed, self.slipped) + right(self.false_steps, self.steps - self.slipped)) / 2.0
+        };
+    }
+}
+
+/// Scores by what their recordings share, the worst first.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct By(pub Vec<(String, Steps)>);
+
+impl By {
+    /// Of what was said of recordings, each under its name.
+    pub fn of<'a>(judged: impl Iterator<Item = (&'a str, &'a Recording, &'a Verdicts)>) -> Self {
+        let mut all: BTreeMap<&str, Steps> = BTreeMap::new();
+        for (name, recording, verdicts) in judged {
+            all.entry(name).or_default().take(&recording.steps, verdicts);
+        }
+        let mut all: Vec<_> = all.into_iter().map(|(name, steps)| (name.to_owned(), steps)).collect();
+        all.sort_by(|(_, a), (_, b)| a.balanced.total_cmp(&b.balanced));
+        Self(all)
+    }
+}
+
+impl Serialize for By {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, steps)| (name, steps)))
+    }
+}

@@ -1,0 +1,178 @@
+//! Whether a board and the host's build of the logic, given the same codes and the same commands in the same ticks, say
+//! the same, bit for bit.
+
+use std::fmt;
+
+use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, SCANS_PER_FRAME};
+use tenax_hal_shim::detector::DetectorSet;
+use tenax_hal_shim::frame::{Frame, Scan};
+use tenax_hal_shim::wire::{Answer, Down, Event, EventKind, Received, Slow, Up};
+use tenax_hal_shim::words::Consent;
+use tenax_logic::arming::DEBOUNCE_FRAMES;
+use tenax_logic::device::Device;
+
+use super::Run;
+use super::kept::device;
+
+/// What the host's build says to a run's codes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Said {
+    /// Slow frames: every detector output and every command of every tick.
+    pub slows: Vec<Slow>,
+    /// Events.
+    pub events: Vec<Event>,
+    /// The answer to each command.
+    pub answers: Vec<Answer>,
+    /// The detectors that say slip, and those that warn of it, tick for tick: the line tells both in one.
+    pub slip_and_warning: Vec<[DetectorSet; 2]>,
+}
+
+impl Said {
+    fn take(&mut self, message: Up) {
+        match message {
+            Up::Slow(slow) => self.slows.push(slow),
+            Up::Event(event) => self.events.push(event),
+            Up::Answer { answer, .. } => self.answers.push(answer),
+            _ => {}
+        }
+    }
+}
+
+/// Puts codes that were recorded on any board through the host's build of the logic.
+///
+/// `device` is the board as it was before the start ([`kept::device`](super::kept::device)), `pressed` the frames in which it
+/// took a press of the button. `commands` are those that the board took, in order, each with the sequence number of the
+/// frame before whose tick it took it. No frame may have been lost. Scans that do not fill a frame are left out.
+#[must_use]
+pub fn host_says(
+    scans: &[Scan],
+    mut device: Device,
+    pressed: &[u32],
+    commands: &[(u32, Received<Down>)],
+) -> Said {
+    let mut said = Said::default();
+    let mut commands = commands.iter().peekable();
+    let (frames, _) = scans.as_chunks::<SCANS_PER_FRAME>();
+    for (sequence, scans) in (0..).zip(frames) {
+        while let Some((_, command)) = commands.next_if(|(at, _)| *at <= sequence) {
+            said.take(device.command(command));
+        }
+        device
+            .button(pressed.iter().any(|at| (at - at.min(&(DEBOUNCE_FRAMES - 1))..=*at).contains(&sequence)));
+        device.tick(&Frame::from_scans(sequence, scans));
+        let fingertip = device.fingertip();
+        said.slip_and_warning.push([fingertip.slip(), fingertip.incipient()]);
+        std::iter::from_fn(|| device.next_message()).for_each(|message| said.take(message));
+    }
+    said
+}
+
+/// The frames in which a board took a press of its button, as it says.
+#[must_use]
+pub fn presses(events: &[Event]) -> Vec<u32> {
+    let of_button = |event: &&Event| event.kind == EventKind::Armed(Consent::Button);
+    events.iter().filter(of_button).map(|event| event.frame).collect()
+}
+
+/// How much was compared, and where it first differs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Agreement {
+    slows: usize,
+    events: usize,
+    commands: usize,
+    networks: usize,
+    difference: Option<String>,
+}
+
+impl Agreement {
+    /// Of a run and the host's logic. The run must have lost no frame and not restarted.
+    #[must_use]
+    pub fn of(run: &Run) -> Self {
+        Self::with_host(run).0
+    }
+
+    /// The same, and what the host's logic said.
+    #[must_use]
+    pub fn with_host(run: &Run) -> (Self, Said) {
+        let host = host_says(
+            &run.scans,
+            device(run.trusts_line, run.calibrated.as_ref()),
+            &presses(&run.events),
+            &run.taken,
+        );
+        let agreement = Self {
+            slows: run.slows.len(),
+            events: run.events.len(),
+            commands: run.taken.len(),
+            networks: run.networks().count(),
+            difference: difference(run, &host),
+        };
+        (agreement, host)
+    }
+
+    /// Whether nothing differs.
+    #[must_use]
+    pub const fn holds(&self) -> bool {
+        self.difference.is_none()
+    }
+}
+
+impl fmt::Display for Agreement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(difference) = &self.difference {
+            return write!(f, "DIFFERS: {difference}");
+        }
+        let ticks = self.slows * usize::from(FRAMES_PER_SLOW_FRAME);
+        write!(f, "{} slow frames with {ticks} ticks, {} events", self.slows, self.events)?;
+        if self.commands > 0 {
+            write!(f, ", {} commands' answers", self.commands)?;
+        }
+        if self.networks > 0 {
+            write!(f, ", the network {} times", self.networks)?;
+        }
+        f.write_str(", equal")
+    }
+}
+
+/// The first difference.
+fn difference(run: &Run, host: &Said) -> Option<String> {
+    if let Some((image, host)) = run.slows.iter().zip(&host.slows).find(|(image, host)| image != host) {
+        return Some(slow_difference(image, host));
+    }
+    // The board is switched off in the middle of a slow frame; what it had not yet sent cannot be compared.
+    let whole = host.slows.len().saturating_sub(1);
+    if run.slows.len() < whole {
+        return Some(format!("{} slow frames came up the line, {whole} were due", run.slows.len()));
+    }
+    let end = run.slows.last().map_or(0, |slow| slow.frame);
+    let due = host.events.iter().filter(|event| event.frame < end).count();
+    // What came after the last frame was answered too, and is no part of it.
+    let answers: Vec<_> =
+        run.answers.iter().take(run.taken.len()).map(|(_, answer)| answer.clone()).collect();
+    first("event", &run.events, &host.events, due)
+        .or_else(|| first("answer", &answers, &host.answers, run.taken.len()))
+}
+
+/// Where two lists begin to differ, of which the image's has at least `due`.
+fn first<T: PartialEq + fmt::Debug>(what: &str, image: &[T], host: &[T], due: usize) -> Option<String> {
+    if let Some((n, (image, host))) =
+        image.iter().zip(host).enumerate().find(|(_, (image, host))| image != host)
+    {
+        return Some(format!("{what} {n}: image {image:?}, host {host:?}"));
+    }
+    let (image, host) = (image.len(), host.len());
+    (image < due || image > host).then(|| format!("{what}s: image {image}, host {host}"))
+}
+
+/// Where two slow frames begin to differ.
+#[must_use]
+pub fn slow_difference(image: &Slow, host: &Slow) -> String {
+    let first = image.frame.saturating_sub(u32::from(FRAMES_PER_SLOW_FRAME) - 1);
+    match (first..).zip(image.ticks.iter().zip(&host.ticks)).find(|(_, (image, host))| image != host) {
+        Some((frame, (image, host))) => format!("frame {frame}: image {image:?}, host {host:?}"),
+        None => {
+            let without_ticks = |slow: &Slow| Slow { ticks: Default::default(), ..slow.clone() };
+            format!("frame {}: image {:?}, host {:?}", image.frame, without_ticks(image), without_ticks(host))
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! The array detector's arithmetic on the emulated core: what it gives for any readings, and what it costs.
+//!
+//! The image is `firmware/src/bin/kernels`. Whenever its core arrives at `tenax_kernels_next`, the answer to the last
+//! reading is taken out of its memory and the next reading put there ([`bench`]); the kernels' entries and returns are
+//! watched, and the difference of the instruction counts there is what each cost ([`meter`]).
+
+mod bench;
+mod meter;
+
+use std::num::NonZeroU64;
+use std::path::Path;
+use std::sync::mpsc;
+
+use anyhow::{Context, Result, anyhow, bail};
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+use rigless::emulator::{self, Finished, Start, Watch};
+use rigless::image::Image;
+use rigless::session::Session;
+use rigless::time::VirtualNanos;
+use tenax_logic::array::{ArrayDetector, ArrayVerdict, Features, Reading};
+
+use self::bench::Bench;
+use self::meter::Meters;
+use crate::image::kernels::KernelSymbols;
+use tenax_board_model::Models;
+use tenax_board_model::line::Line;
+use tenax_board_model::nucleo::Nucleo;
+
+pub use self::meter::Cost;
+
+const INSTRUCTIONS_PER_SECOND: NonZeroU64 = NonZeroU64::new(100_000_000).expect("not zero");
+
+/// What the core made of one reading.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Answer {
+    /// What the detector says.
+    pub verdict: ArrayVerdict,
+    /// What by. None while its windows are not full or too many elements have no reading.
+    pub evidence: Option<Evidence>,
+}
+
+/// What a verdict is given by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Evidence {
+    /// The features.
+    pub features: Features,
+    /// What the network made of them.
+    pub logit: i32,
+}
+
+impl Answer {
+    /// What a detector on this machine says to a reading, for comparison.
+    pub fn of<const H1: usize, const L: usize, const H2: usize, const N: usize, const M: usize>(
+        detector: &mut ArrayDetector<'_, H1, L, H2, N, M>,
+        reading: &Reading,
+    ) -> Self {
+        let verdict = detector.push(reading);
+        let evidence = detector.logit().map(|logit| Evidence { features: *detector.features(), logit });
+        Self { verdict, evidence }
+    }
+}
+
+/// What is run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kernels {
+    /// The detector.
+    Detector,
+    /// The detector, its parts and its rivals, each by itself.
+    All,
+}
+
+/// What a run gave.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Outcome {
+    /// For each recording, for each reading.
+    pub answers: Vec<Vec<Answer>>,
+    /// Every kernel that ran, by name.
+    pub costs: Vec<Cost>,
+}
+
+/// Puts recordings through the detector of the kernels' `image`
+/// ([`build_kernels`](crate::image::build_kernels)); it forgets one before the next.
+///
+/// `progress` is told now and then how many readings have been answered.
+///
+/// # Errors
+/// If the image cannot be read or placed, or its core does not come back for the next reading.
+pub fn run(
+    image: &Path,
+    recordings: &[Vec<Reading>],
+    kernels: Kernels,
+    progress: &mut dyn FnMut(usize),
+) -> Result<Outcome> {
+    let symbols = KernelSymbols::read(image)?;
+    let images = [Image::read(image, None).context("reading the image")?];
+    let (sender, reports) = mpsc::channel();
+    let bench = Bench::new(&symbols, recordings, kernels, sender);
+    // The emulator keeps its driver for itself, so it runs on a thread of its own and reports to this one.
+    let finished = std::thread::scope(|scope| {
+        let emulator = scope.spawn(|| execute(&images, &symbols, bench));
+        for answered in reports {
+            progress(answered);
+        }
+        emulator.join().map_err(|_| anyhow!("the emulator panicked; its message is above"))?
+    })?;
+    let bench = finished.driver;
+    if !bench.is_done() {
+        bail!("the kernels' image stopped at reading {}: has it panicked?", bench.answered());
+    }
+    Ok(bench.into_outcome())
+}
+
+/// Every kernel's cost on the readings of a hand that holds something: noise, and now and then a slip.
+///
+/// # Errors
+/// As [`run`].
+pub fn costs(image: &Path) -> Result<Vec<Cost>> {
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    let mut reading = |n: usize| -> Reading {
+        let spread = if (n / 40).is_multiple_of(2) { 5 } else { 200 };
+        std::array::from_fn(|_| Some(2_000 + random.random_range(0..spread)))
+    };
+    let readings = (0..400).map(&mut reading).collect();
+    Ok(run(image, &[readings], Kernels::All, &mut |_| {})?.costs)
+}
+
+fn execute(images: &[Image], symbols: &KernelSymbols, bench: Bench) -> Result<Finished<Nucleo, Bench>> {
+    let board = Nucleo::new(Models::Quick, INSTRUCTIONS_PER_SECOND, Line::default())?;
+    let mut session = Session::new(Box::new(board), 0, VirtualNanos(1))?;
+    for address in Meters::watched(symbols).chain([symbols.next]) {
+        session.watch(Watch::Instruction(address));
+    }
+    let mut finished = emulator::run(session, &Start::new(images), bench).context("the emulator")?;
+    finished.driver.stop_reporting();
+    Ok(finished)
+}

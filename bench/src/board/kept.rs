@@ -1,0 +1,149 @@
+//! What a board holds before the start when somebody has set it up: whether its line is trusted, and the calibration to the
+//! wearer of what is played. In flash for the emulated board, in the device for the host's.
+
+use anyhow::Context;
+use tenax_hal_shim::flash::{BLANK, FlashArea, FlashFailed, Sector};
+use tenax_hal_shim::words::Kept;
+use tenax_logic::config::Config;
+use tenax_logic::device::Device;
+use tenax_logic::emg::model::EmgModel;
+use tenax_logic::setting::SettingId;
+use tenax_logic::store::{Erase, open, payload};
+use tenax_scene::plant::{Calibrated, Plant};
+
+/// Where `memory.x` puts the log.
+pub const STORE: u64 = 0x0804_0000;
+/// Words in each of its two sectors.
+pub const SECTOR_WORDS: usize = 128 * 1024 / 4;
+
+/// The model of a wearer.
+///
+/// # Errors
+/// If there can be no such wearer.
+pub fn model_of(calibrated: &Calibrated) -> anyhow::Result<EmgModel> {
+    let uv = |mv: [u16; 2]| mv.map(|mv| i32::from(mv) * 1_000);
+    match *calibrated {
+        Calibrated::Levels { rest_mv, close_mv, open_mv } => {
+            EmgModel::of_uv(uv(rest_mv), uv(close_mv), uv(open_mv))
+        }
+        Calibrated::Words(words) => EmgModel::from_words(words),
+    }
+    .map_err(|refusal| anyhow::anyhow!("{refusal}"))
+    .context("the wearer's calibration")
+}
+
+/// What somebody has set up before the start.
+#[derive(Clone, Debug, Default)]
+pub struct Provision {
+    /// Its line is trusted.
+    pub trusts_line: bool,
+    /// It streams its frames from the start.
+    pub streams_at_start: bool,
+    /// The wearer it was calibrated to.
+    pub calibrated: Option<EmgModel>,
+}
+
+impl Provision {
+    /// What a plant's board was set up with.
+    ///
+    /// # Errors
+    /// If there can be no such wearer.
+    pub fn of(plant: &dyn Plant) -> anyhow::Result<Self> {
+        Ok(Self {
+            trusts_line: plant.trusts_line(),
+            streams_at_start: plant.streams_at_start(),
+            calibrated: plant.calibrated().as_ref().map(model_of).transpose()?,
+        })
+    }
+
+    /// What is kept of it, as it lies in flash.
+    #[must_use]
+    pub fn records(&self) -> Vec<(Kept, Vec<u8>)> {
+        let mut config = Config::default();
+        // Both are in every range.
+        let _accepted = config.set(SettingId::LineTrusted, self.trusts_line.into());
+        let _accepted = config.set(SettingId::StreamAtStart, self.streams_at_start.into());
+        let settings = payload::of_settings(&config);
+        let settings = (!settings.is_empty()).then(|| (Kept::Settings, settings.to_vec()));
+        let emg = self.calibrated.as_ref().map(|model| (Kept::Emg, payload::of_emg(model).to_vec()));
+        settings.into_iter().chain(emg).collect()
+    }
+
+    /// The host's device, set up the same way.
+    #[must_use]
+    pub fn device(&self) -> Device {
+        let mut device = Device::default();
+        for (kept, payload) in self.records() {
+            device.restore(kept, &payload);
+        }
+        device
+    }
+}
+
+/// The host's device of a board that was set up so.
+#[must_use]
+pub fn device(trusts_line: bool, calibrated: Option<&EmgModel>) -> Device {
+    Provision { trusts_line, calibrated: calibrated.copied(), streams_at_start: false }.device()
+}
+
+/// The two sectors as a file would hold them, written by the host's own build of the log.
+#[derive(Clone, Debug)]
+pub struct Sectors(pub Vec<u32>);
+
+impl Sectors {
+    /// A new chip's.
+    #[must_use]
+    pub fn blank() -> Self {
+        Self(vec![BLANK; 2 * SECTOR_WORDS])
+    }
+
+    /// With one more record. It must have room.
+    #[must_use]
+    pub fn saving(mut self, kept: Kept, payload: &[u8]) -> Self {
+        let (mut log, _) = open(&mut self, Erase::Allowed);
+        let mut saving = log.begin(kept, payload).expect("room");
+        while !saving.step(&mut self).expect("a flash that works") {}
+        self
+    }
+
+    /// The address of the log and its bytes.
+    #[must_use]
+    pub fn image(&self) -> (u64, Vec<u8>) {
+        (STORE, self.0.iter().flat_map(|word| word.to_le_bytes()).collect())
+    }
+
+    /// Of a board whose line is trusted.
+    #[must_use]
+    pub fn trusting() -> Self {
+        Self::provisioned(&Provision { trusts_line: true, ..Provision::default() })
+    }
+
+    /// Of a board that somebody has set up.
+    #[must_use]
+    pub fn provisioned(provision: &Provision) -> Self {
+        provision
+            .records()
+            .iter()
+            .fold(Self::blank(), |sectors, (kept, payload)| sectors.saving(*kept, payload))
+    }
+}
+
+impl FlashArea for Sectors {
+    fn sector_words(&self) -> usize {
+        SECTOR_WORDS
+    }
+
+    fn read(&self, sector: Sector, word: usize) -> u32 {
+        self.0[sector as usize * SECTOR_WORDS + word]
+    }
+
+    fn program(&mut self, sector: Sector, word: usize, value: u32) -> Result<(), FlashFailed> {
+        self.0[sector as usize * SECTOR_WORDS + word] &= value;
+        Ok(())
+    }
+
+    fn erase(&mut self, sector: Sector) -> Result<(), FlashFailed> {
+        self.0[sector as usize * SECTOR_WORDS..][..SECTOR_WORDS].fill(BLANK);
+        Ok(())
+    }
+}

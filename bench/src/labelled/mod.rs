@@ -1,0 +1,105 @@
+//! Labelled recordings of a force array: what `tenax train` learns from and `tenax evaluate` scores.
+//!
+//! A CSV file holds one or more recordings, one row a reading, and says where the object slipped: in every row, or once
+//! for a whole recording (the label then is the same in all of its rows). A [`recipe`] says which ten columns are the
+//! array, how they become the board's 14-bit samples, at what rate they were taken, and which labels mean slip. What comes
+//! out is what the board would have read: ten samples, 80 times a second.
+
+pub mod library;
+mod read;
+pub mod recipe;
+pub mod resample;
+
+use std::collections::BTreeSet;
+
+use serde::Deserialize;
+use tenax_hal_shim::channel::ARRAY_COUNT;
+
+use crate::scorer::{Doing, SlipSpan, onsets};
+
+pub use read::{LabelledError, parse, read};
+pub use recipe::ArrayRecipe;
+
+/// What a recording is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Part {
+    /// To learn from.
+    Train,
+    /// To choose by: when to stop, and the threshold.
+    Validation,
+    /// To score, once.
+    Test,
+}
+
+impl Part {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Train, Self::Validation, Self::Test];
+
+    /// What it is called in a file.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Train => "train",
+            Self::Validation => "validation",
+            Self::Test => "test",
+        }
+    }
+}
+
+/// One time step, 12.5 ms after the one before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Step {
+    /// The ten elements, 14-bit samples, 0 to [`SAMPLE_MAX`](tenax_hal_shim::channel::SAMPLE_MAX).
+    pub samples: [u16; ARRAY_COUNT],
+    /// Whether the object slipped.
+    pub slip: bool,
+}
+
+/// A recording without a gap.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    /// What it is called.
+    pub name: String,
+    /// What it shares with others that it must not be told apart from: a session or an object. Never in two parts.
+    pub session: String,
+    /// What scores are reported by beside the session.
+    pub material: String,
+    /// What it is for, if the file says so.
+    pub part: Option<Part>,
+    /// What was done in it, for false alarms to be counted by.
+    pub doing: Doing,
+    /// Its time at the first step, s.
+    pub first_s: f64,
+    /// Its steps, 80 a second.
+    pub steps: Vec<Step>,
+    /// Its slips, by micro onset: exact where the file has onsets, else [made of its labels](crate::scorer::onsets::of_labels).
+    pub slips: Vec<SlipSpan>,
+    /// Whether the file has onsets.
+    pub exact: bool,
+}
+
+impl Recording {
+    /// One whose labels are all that is known of its slips: a session of its own, for nothing in particular.
+    #[must_use]
+    pub fn of_steps(name: &str, steps: Vec<Step>) -> Self {
+        Self {
+            name: name.to_owned(),
+            session: name.to_owned(),
+            material: name.to_owned(),
+            part: None,
+            doing: Doing::Unknown,
+            first_s: 0.0,
+            slips: onsets::of_labels(steps.iter().map(|step| step.slip), 0.0),
+            steps,
+            exact: false,
+        }
+    }
+}
+
+/// The sessions of recordings, in order.
+#[must_use]
+pub fn sessions(recordings: &[Recording]) -> Vec<String> {
+    let set: BTreeSet<&str> = recordings.iter().map(|recording| recording.session.as_str()).collect();
+    set.into_iter().map(str::to_owned).collect()
+}

@@ -1,0 +1,100 @@
+//! How a run compares with the bound: the least force that holds, planned ahead by one who knows the whole scene and is limited
+//! by the gripper alone.
+
+use serde::Serialize;
+
+use super::fate::Fate;
+
+/// Slides nearer than this are the same, mm.
+pub const SAME_MM: f64 = 0.02;
+
+/// The bound's run, and how the real one compares. No ratio is below 0.98 (the plan's part above the edge of sliding) unless the
+/// bound is wrong.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Bound {
+    /// Whether it kept the object.
+    pub kept: Option<bool>,
+    /// How far the object slid, mm.
+    pub distance_mm: Option<f64>,
+    /// The greatest grip force, N: the least with which any grip of this gripper keeps the object from sliding, or, where the
+    /// run pressed less, from sliding further than it did.
+    pub peak_force_n: Option<f64>,
+    /// The run's slip distance over the bound's. 1 where neither object slid by 0.02 mm; null where only the run's did.
+    pub distance_ratio: Option<f64>,
+    /// The run's peak force over the bound's. Null if the run lost the object.
+    pub peak_force_ratio: Option<f64>,
+}
+
+impl Bound {
+    /// Compares.
+    #[must_use]
+    pub fn of(run: Option<&Fate>, bound: Option<&Fate>) -> Self {
+        let (Some(run), Some(bound)) = (run, bound) else {
+            return Self::default();
+        };
+        let peaks = run.peak_grip_n.zip(bound.peak_grip_n).filter(|_| run.kept());
+        let distance_ratio = match () {
+            () if bound.distance_mm >= SAME_MM => Some(run.distance_mm / bound.distance_mm),
+            () if run.distance_mm < SAME_MM => Some(1.0),
+            () => None,
+        };
+        Self {
+            kept: Some(bound.kept()),
+            distance_mm: Some(bound.distance_mm),
+            peak_force_n: bound.peak_grip_n,
+            distance_ratio,
+            peak_force_ratio: peaks.map(|(run_n, bound_n)| run_n / bound_n),
+        }
+    }
+}
+
+/// One of the runs beside which a run says something.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Control {
+    /// What it is: `no reflex`, `constant grip`, `s1 alone`, `without s1`.
+    pub name: String,
+    /// How far the object slid, mm.
+    pub distance_mm: f64,
+    /// The greatest grip force, N.
+    pub peak_force_n: Option<f64>,
+    /// The mean grip force while the hand carried the object, N.
+    pub mean_force_n: Option<f64>,
+    /// The mean of what it pressed beyond the need meanwhile, N.
+    pub beyond_need_n: Option<f64>,
+    /// Whether the hand still had it, or let it go on purpose.
+    pub kept: bool,
+}
+
+impl Control {
+    /// Of a run.
+    #[must_use]
+    pub fn of(name: &str, fate: &Fate) -> Self {
+        Self {
+            name: name.to_owned(),
+            distance_mm: fate.distance_mm,
+            peak_force_n: fate.peak_grip_n,
+            mean_force_n: fate.mean_grip_n,
+            beyond_need_n: fate.beyond_need_n,
+            kept: fate.kept(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ratio_is_there_where_it_says_something() {
+        let fate = |distance_mm, peak_n| Fate { distance_mm, peak_grip_n: Some(peak_n), ..Fate::default() };
+        let ratios = |run: &Fate, bound: &Fate| {
+            let own = Bound::of(Some(run), Some(bound));
+            (own.distance_ratio, own.peak_force_ratio)
+        };
+        assert_eq!(ratios(&fate(3.0, 12.0), &fate(1.5, 10.0)), (Some(2.0), Some(1.2)));
+        assert_eq!(ratios(&fate(0.01, 12.0), &fate(0.0, 10.0)), (Some(1.0), Some(1.2)));
+        assert_eq!(ratios(&fate(3.0, 12.0), &fate(0.0, 10.0)), (None, Some(1.2)));
+        let lost = Fate { dropped: true, ..fate(40.0, 5.0) };
+        assert_eq!(ratios(&lost, &fate(1.0, 10.0)), (Some(40.0), None));
+    }
+}

@@ -1,0 +1,98 @@
+//! What the reflex did, and whether there was a reason for it.
+
+use serde::Serialize;
+use tenax_hal_shim::wire::{Event, EventKind};
+use tenax_hal_shim::words::GripMode;
+
+use super::added::{Added, BEFORE_S};
+use super::fate::Fate;
+use crate::scorer::SlipSpan;
+use crate::timeline::Timeline;
+
+/// The reflex's part of a run.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Reflex {
+    /// Closing pulses that answered slip or a warning of it.
+    pub pulses: usize,
+    /// Those of them that began where nothing slipped, a warning's too. Null where nobody knows when it slipped.
+    pub without_slip: Option<usize>,
+    /// Newtons that the reflex added on a finger: true ones, or its force sensor's where the truth is not known.
+    pub added_n: f64,
+    /// Those of them that were added while nothing slipped or was about to: no slip within 50 ms, and the grip at 1.1 times what is
+    /// needed within a second or above it. Null where nobody knows when it slipped.
+    pub added_without_need_n: Option<f64>,
+    /// Newtons that it took back.
+    pub relaxed_n: f64,
+}
+
+impl Reflex {
+    /// Judges a run.
+    #[must_use]
+    pub fn of(added: &Added, timeline: &Timeline, events: &[Event], truth: Option<&Fate>) -> Self {
+        let pulses = events.iter().filter_map(|event| match event.kind {
+            EventKind::Mode { to: GripMode::Slip | GripMode::Incipient, .. } => {
+                Some(timeline.time_s(event.frame))
+            }
+            _ => None,
+        });
+        let pulses: Vec<f64> = pulses.collect();
+        let answers = |t_s: f64, slip: &SlipSpan| {
+            slip.macro_onset_s.is_some() && (slip.micro_onset_s - BEFORE_S..=slip.last_s()).contains(&t_s)
+        };
+        let without = |truth: &Fate| {
+            pulses.iter().filter(|&&t_s| !truth.slips.iter().any(|slip| answers(t_s, slip))).count()
+        };
+        let sums = added.sums(truth);
+        Self {
+            pulses: pulses.len(),
+            without_slip: truth.map(without),
+            added_n: sums.added_n,
+            added_without_need_n: sums.without_need_n,
+            relaxed_n: sums.relaxed_n,
+        }
+    }
+}
+
+/// The margin of the grip: the shear that a finger could still carry before the object slides, mN.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Margin {
+    /// The true one's least while the hand carried the object. Null where nobody knows it.
+    pub least_mn: Option<f64>,
+    /// Its last.
+    pub last_mn: Option<f64>,
+}
+
+impl Margin {
+    /// Of a run.
+    #[must_use]
+    pub fn of(truth: Option<&Fate>) -> Self {
+        let margin_mn = truth.and_then(|truth| truth.margin_n).map(|both| both.map(|n| n * 1e3));
+        Self { least_mn: margin_mn.map(|[least, _]| least), last_mn: margin_mn.map(|[_, last]| last) }
+    }
+}
+
+/// What became of the object.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Object {
+    /// Whether the hand still had it, or let it go on purpose. Null where nobody knows.
+    pub kept: Option<bool>,
+    /// Whether the hand rose without it.
+    pub left_behind: Option<bool>,
+    /// Whether another hand has taken it.
+    pub handed_over: Option<bool>,
+    /// How far it had turned in the hand at the end, degrees.
+    pub turned_deg: Option<f64>,
+}
+
+impl Object {
+    /// Judges a run.
+    #[must_use]
+    pub fn of(truth: Option<&Fate>) -> Self {
+        Self {
+            kept: truth.map(Fate::kept),
+            left_behind: truth.map(|truth| truth.left_behind),
+            handed_over: truth.map(|truth| truth.handed_over),
+            turned_deg: truth.map(|truth| truth.turned_rad.to_degrees()),
+        }
+    }
+}

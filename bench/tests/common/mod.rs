@@ -1,0 +1,33 @@
+//! What the host tool's tests share.
+#![allow(dead_code, reason = "each test file uses its own part of this one")]
+
+use std::path::{Path, PathBuf};
+
+use tenax_bench::replay::{Recipe, Recording};
+use tenax_bench::session::{self, Board, Outcome};
+
+/// A shared recording. They are never part of the project: where they are not, their tests are ignored.
+pub fn shared(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data").join(name)
+}
+
+/// Plays a shared recording on the host's logic with the recipe that its name calls for.
+pub fn played(name: &str) -> Outcome {
+    session::replay(&shared(name), None, 1, &Board::Host, &mut |_| {})
+        .expect("the recording is here, it and its recipe are good")
+}
+
+/// A recording from text.
+pub fn recording(csv: &str) -> Recording {
+    Recording::parse(csv.as_bytes(), "r.csv").expect("the recording is good")
+}
+
+/// A recipe from text, with the head that every recipe has.
+pub fn recipe(body: &str) -> Recipe {
+    Recipe::parse(&with_head(body), "r.toml").expect("the recipe is good")
+}
+
+/// Two lines, so that `body` begins in line 3.
+pub fn with_head(body: &str) -> String {
+    format!("title = 'T'\ndescription = 'D'\n{body}")
+}

@@ -1,0 +1,115 @@
+//! The image takes every code right and decides what the host's own build of the logic decides.
+
+use std::num::NonZeroU64;
+
+use tenax_bench::board::agreement::Agreement;
+use tenax_bench::board::emulated::Options;
+use tenax_bench::board::simulated;
+use tenax_hal_shim::channel::SCAN_HZ;
+use tenax_hal_shim::motor::{Duty, MotorDrive};
+use tenax_hal_shim::wire::{Answer, Down, Setting};
+use tenax_hal_shim::words::Code;
+use tenax_logic::setting::SettingId;
+
+use crate::onsets::held_against_evidence;
+use crate::{Rest, Swing, plain, run};
+
+#[test]
+fn ten_seconds_without_a_lost_code() {
+    let run = plain();
+    assert_eq!(run.starts, [None]);
+    let counters = run.counters;
+    assert_eq!((counters.overruns, counters.frames_lost, counters.ticks_late), (0, 0, 0));
+    assert_eq!((counters.telemetry_dropped, counters.bad_frames), (0, 0));
+    assert_eq!((run.bad_frames, run.messages_missed), (0, 0));
+    assert_eq!(counters.ticks, counters.frames);
+    assert!(counters.frames > 19_500, "{counters:?}");
+    // Each slow frame carries the CRC of its samples, so this is every code of every channel too.
+    assert_eq!(run.slows.len(), 800);
+    let agreement = Agreement::of(run);
+    assert!(agreement.holds(), "{agreement}");
+    let onsets = held_against_evidence(&run.slows);
+    assert!(onsets.iter().any(|frames| !frames.is_empty()), "a detector has spoken");
+}
+
+/// The check above can fail: one code off by one is another CRC.
+#[test]
+fn one_wrong_code_is_noticed() {
+    let mut run = plain().clone();
+    assert!(Agreement::of(&run).holds());
+    run.scans[250][3] ^= 1;
+    assert!(!Agreement::of(&run).holds());
+}
+
+#[test]
+fn the_simulated_board_keeps_the_images_time() {
+    let image = plain();
+    let (host, _) = simulated::run(Swing::new(image.virtual_s), &mut |_| {});
+    assert!(host.scans == image.scans);
+    assert_eq!(host.drives, image.drives);
+    assert_eq!(host.slows, image.slows);
+    assert_eq!(host.events, image.events);
+}
+
+/// At two cycles an instruction, the slow end of the bracket, no code is lost; only ticks that end a slow frame may run
+/// into the next frame.
+#[test]
+fn three_quarters_as_fast_a_core_is_fast_enough() {
+    let options = Options {
+        instructions_per_second: NonZeroU64::new(75_000_000).expect("not zero"),
+        ..Options::default()
+    };
+    let run = run(Swing::new(2.0), &options);
+    assert_eq!((run.counters.overruns, run.counters.frames_lost), (0, 0));
+    // In a slow frame, the tick that judges the array and those around its end are late at this speed, and nothing is lost.
+    assert!(run.counters.ticks_late <= run.counters.ticks / 25 * 4, "{:?}", run.counters);
+    assert!(Agreement::of(&run).holds());
+}
+
+/// Commands sent at every scan of a frame, and some at once: a late one is taken a tick later, and the host's logic says
+/// the same if it is given each of them where the image took it.
+#[test]
+fn the_host_says_the_same_when_it_takes_each_command_in_the_images_tick() {
+    let mut plant = Swing::new(1.5);
+    for n in 0..40 {
+        let at_s = 0.2 + f64::from(n) * 0.025 + f64::from(n % 4) / f64::from(SCAN_HZ);
+        let drive = MotorDrive::Open(Duty::per_mille(100 + n));
+        plant = plant.sending(at_s, Down::Drive { drive, hold_ms: 10 });
+        plant = plant.sending(at_s, Down::Teach { codes: [Code::Minus, Code::Plus], age_ms: 40 });
+        if n % 10 == 9 {
+            plant = plant
+                .sending(at_s, Down::Set(Setting { id: SettingId::S2.number(), value: n.into() }))
+                .sending(at_s, Down::Network);
+        }
+    }
+    // Muscles at rest: active ones refuse every drive.
+    let mut run = run(Rest::new(plant), &Options::default());
+    assert_eq!((run.taken.len(), run.networks().count()), (88, 4));
+    let agreement = Agreement::of(&run);
+    assert!(agreement.holds(), "{agreement}");
+    // One of them a tick early or late is another run: one that moved the hand, for the muscles refuse others.
+    let moved = |n: &usize| {
+        matches!(run.taken[*n].1.message, Down::Drive { .. }) && run.answers[*n].1 == Answer::Done
+    };
+    let moved = (0..run.taken.len()).rfind(moved).expect("some were carried out");
+    for other in [run.taken[moved].0 - 1, run.taken[moved].0 + 1] {
+        let own = std::mem::replace(&mut run.taken[moved].0, other);
+        assert!(!Agreement::of(&run).holds(), "{other} instead of {own}");
+        run.taken[moved].0 = own;
+    }
+}
+
+#[test]
+fn a_tick_costs_less_than_a_fifth_of_the_core() {
+    let run = plain();
+    let cost = run.tick_cost.expect("ticks were counted");
+    // 0.5 ms at 100 MHz are 50 000 cycles; three cycles an instruction at worst.
+    assert!(cost.count > 19_500 && cost.instructions_mean > 100.0, "{cost:?}");
+    assert!(3.0 * cost.instructions_mean < 10_000.0, "{cost:?}");
+    assert!(
+        3 * cost.instructions_max < 50_000,
+        "the dearest tick ends in its own half millisecond: {cost:?}"
+    );
+    let stack = run.stack_bytes.expect("the stack was painted");
+    assert!((256..32 * 1024).contains(&stack), "{stack} bytes");
+}

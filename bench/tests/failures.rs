@@ -1,0 +1,96 @@
+//! Scenes in which a reflex of many guards failed, beside their bound: what has to be kept, and with how much.
+//! `cargo test -p tenax-bench --test failures -- --nocapture` prints the table of docs/scenes.md.
+
+use std::path::Path;
+
+use tenax_bench::disturbances;
+use tenax_bench::report::Report;
+use tenax_bench::report::bound::SAME_MM;
+use tenax_bench::session::{self, Board};
+use tenax_scene::SceneFile;
+
+/// Each with the seconds in which its object slips, if it does, and the force that it bears, N.
+const SCENES: [(&str, bool, f64); 6] = [
+    ("drifting-quadrant", false, f64::INFINITY),
+    ("drifting-quadrants", true, f64::INFINITY),
+    ("hum-after-slip", true, f64::INFINITY),
+    ("slippery", true, f64::INFINITY),
+    ("egg", true, 25.0),
+    ("deaf-film", true, f64::INFINITY),
+];
+
+fn scene(name: &str) -> SceneFile {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes").join(name).with_extension("toml");
+    session::load_scene(path.to_str().unwrap()).unwrap()
+}
+
+fn ran(file: &SceneFile) -> Report {
+    session::scene(file, 1, &Board::Host, &mut |_| {}).unwrap().report
+}
+
+#[test]
+fn the_bound_keeps_every_one_of_them_with_little_more_than_is_needed() {
+    for (name, slips, bears_n) in SCENES {
+        let report = ran(&scene(name));
+        let (bound, grip, reflex) = (&report.bound, &report.grip, &report.reflex);
+        println!(
+            "| `{name}` | {} | {:.1} | {:.2} | {:.2} | {:.2} | {} | {:.2} |",
+            if report.object.kept == Some(true) { "kept" } else { "LOST" },
+            report.slip.distance_mm.unwrap(),
+            grip.peak_force_n.unwrap(),
+            bound.peak_force_n.unwrap(),
+            grip.needed_force_n.unwrap_or_default(),
+            reflex.pulses,
+            reflex.added_without_need_n.unwrap()
+        );
+        assert_eq!(bound.kept, Some(true), "{name}");
+        assert!(bound.distance_mm.unwrap() < SAME_MM, "{name}: {bound:?}");
+        assert!(bound.peak_force_n.unwrap() < bears_n, "{name}: {bound:?}");
+        // What is needed is the bound's, or what the wearer gripped with.
+        let needed_n = grip.needed_force_n.unwrap_or_default();
+        assert!(slips || needed_n < bound.peak_force_n.unwrap(), "{name}: {needed_n} N");
+    }
+}
+
+#[test]
+fn what_drifts_and_hums_reaches_the_pins() {
+    // The control of every scene in which nothing is to be answered: the disturbance is there.
+    let with = |name: &str, what: &str| {
+        let path =
+            Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes").join(name).with_extension("toml");
+        let text = std::fs::read_to_string(path).unwrap();
+        let without = text.split(what).next().unwrap().to_owned();
+        let last = |text: &str| {
+            let mut world = tenax_scene::World::new(&SceneFile::parse(text, name).unwrap(), 1);
+            (0..8 * 15_007)
+                .map(|_| {
+                    tenax_scene::plant::Plant::scan(&mut world, tenax_hal_shim::motor::MotorDrive::Coast)
+                        .codes()
+                })
+                .last()
+        };
+        assert_ne!(last(&text), last(&without), "{name}");
+    };
+    with("drifting-quadrant", "[[fault]]");
+    with("hum-after-slip", "[[hum]]");
+}
+
+#[test]
+fn minutes_of_disturbances_slip_nowhere_and_drop_nothing() {
+    // TENAX_MINUTES=60 is the hour.
+    let minutes = std::env::var("TENAX_MINUTES").ok().and_then(|own| own.parse().ok()).unwrap_or(1);
+    let text = disturbances::text(1, minutes);
+    let report = ran(&SceneFile::parse(&text, disturbances::NAME).unwrap());
+    println!(
+        "{minutes} min: {} pulses, {:.2} N added, {:.2} N of them without need; {:?}",
+        report.reflex.pulses,
+        report.reflex.added_n,
+        report.reflex.added_without_need_n.unwrap(),
+        report.bound
+    );
+    assert_eq!((report.object.kept, report.slip.macro_slips), (Some(true), Some(0)));
+    assert_eq!(
+        (report.bound.kept, report.bound.distance_mm.map(|mm| mm < SAME_MM)),
+        (Some(true), Some(true))
+    );
+}

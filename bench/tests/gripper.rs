@@ -1,0 +1,29 @@
+//! A gripper without myosensors: its reflex keeps what it lifts if the board knows that nobody wears it. The control is
+//! the same board that was not told so.
+
+use serde_json::Value;
+use tenax_bench::session::{self, Board};
+
+fn report(scene: &str, seed: u64) -> Value {
+    let file = session::load_scene(scene).unwrap();
+    let outcome = session::scene(&file, seed, &Board::Host, &mut |_| {}).unwrap();
+    serde_json::to_value(&outcome.report).unwrap()
+}
+
+#[test]
+fn a_gripper_keeps_what_it_lifts_and_one_that_waits_for_a_wearer_leaves_it_behind() {
+    for seed in 1..=4 {
+        let gripper = report("gripper", seed);
+        let slid_mm = gripper["slip"]["distance_mm"].as_f64().unwrap();
+        println!("seed {seed}: slid {slid_mm} mm, {}", gripper["reflex"]);
+        assert_eq!(gripper["wearer"]["none"], true, "told at the start");
+        assert_eq!(gripper["object"]["kept"], true, "seed {seed}");
+        assert!(slid_mm < 10.0, "seed {seed}: {slid_mm} mm");
+
+        let control = report("gripper-control", seed);
+        assert_eq!(control["wearer"]["none"], false);
+        assert_eq!(control["wearer"]["reflex_ticks"], 0, "seed {seed}");
+        assert_eq!(control["object"]["left_behind"], true, "seed {seed}");
+        assert_eq!(control["object"]["kept"], false, "what is left behind is not kept");
+    }
+}

@@ -1,0 +1,236 @@
+//! The flash as an array of words, which `rigless` leaves out of its model of the flash interface.
+//!
+//! The interface's registers are rigless's: keys, locks, the time of an erase. What a store into the array and the end of
+//! an erase do to the words is drawn here, and that the core stands still meanwhile, since it executes from the same bank
+//! (RM0383, section 3.5). The chip's memories are the F411's, not the F427's.
+
+use std::num::{NonZeroU32, NonZeroU64};
+
+use rigless::device::{ErasedDevice, ResetCause};
+use rigless::emulator::{Access, AccessKind, Host, Stop};
+use rigless::mcu::{Mcu, Operate};
+use rigless::session::Session;
+use rigless::soc::stm32f427::CPU;
+use rigless::soc::stm32f427::generated::flash::Register;
+use rigless::soc::{Bus, EraseBlocks, Error, Region, Width};
+use rigless::time::VirtualNanos;
+
+use super::nucleo::Nucleo;
+use super::part::Part;
+
+/// The instance that the array's words are programmed through.
+const INTERFACE: &str = "FLASH";
+const FLASH_CR: u64 = 0x4002_3C10;
+const FLASH_SR: u64 = 0x4002_3C0C;
+
+const CR_PG: u64 = 1;
+const CR_SER: u64 = 1 << 1;
+const CR_SNB_SHIFT: u64 = 3;
+const CR_SNB: u64 = 0xF;
+const CR_PSIZE: u64 = 0b11 << 8;
+const CR_PSIZE_WORD: u64 = 0b10 << 8;
+const CR_LOCK: u64 = 1 << 31;
+const SR_PGSERR: u64 = 1 << 7;
+const SR_BSY: u64 = 1 << 16;
+
+/// Where the array begins.
+const BASE: u64 = 0x0800_0000;
+const SIZE: u64 = 512 << 10;
+
+const fn blocks(size: u64, count: u32) -> EraseBlocks {
+    EraseBlocks {
+        size: NonZeroU64::new(size).expect("not zero"),
+        count: NonZeroU32::new(count).expect("not zero"),
+    }
+}
+
+/// RM0383, table 4.
+static SECTORS: [EraseBlocks; 3] = [blocks(16 << 10, 4), blocks(64 << 10, 1), blocks(128 << 10, 3)];
+
+/// RM0383, section 2.3, with the system memory whole.
+static MEMORY: [Region; 3] = [
+    Region::flash("flash", BASE, SIZE).erased_in(&SECTORS).erased_to(0xFF).programmed_by(INTERFACE),
+    Region::system("system", 0x1FFF_0000, 32 << 10),
+    Region::ram("sram", 0x2000_0000, 128 << 10),
+];
+
+/// The chip's memories as the emulator is to lay them out. It looks at nothing else of it.
+#[derive(Debug)]
+pub struct MemoryMap(Bus);
+
+impl MemoryMap {
+    /// The F411's, beside the peripherals of `mcu`.
+    pub fn new(mcu: &Part) -> Result<Self, Error> {
+        let peripherals: Vec<_> = mcu.bus().peripherals().copied().collect();
+        Ok(Self(Bus::builder(CPU, &MEMORY, peripherals).build()?))
+    }
+}
+
+impl Mcu for MemoryMap {
+    fn bus(&self) -> &Bus {
+        &self.0
+    }
+
+    fn bus_mut(&mut self) -> &mut Bus {
+        &mut self.0
+    }
+
+    fn reset(&mut self, _at: VirtualNanos, _cause: ResetCause) {
+        self.0.reset();
+    }
+
+    fn poll(&mut self, _now: VirtualNanos) {}
+
+    fn split(&mut self, _slot: usize) -> (&mut Bus, Option<&mut dyn ErasedDevice>) {
+        (&mut self.0, None)
+    }
+}
+
+/// What the array is doing, and what it did.
+#[derive(Debug, Default)]
+pub struct FlashArray {
+    doing: Option<Doing>,
+    /// How long a word takes to program, ns.
+    word_ns: u64,
+    /// Words programmed.
+    pub words: u64,
+    /// Sectors erased.
+    pub erases: u64,
+    power: Option<PowerCut>,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Doing {
+    Programs { until: VirtualNanos },
+    Erases { sector: u64 },
+}
+
+/// The power goes while a word is programmed.
+#[derive(Clone, Copy, Debug)]
+struct PowerCut {
+    words_before: u32,
+}
+
+impl FlashArray {
+    /// One that takes so long for a word, ns.
+    pub fn new(word_ns: u64) -> Self {
+        Self { word_ns, ..Self::default() }
+    }
+
+    /// Has the power go while the word after the next `words` is programmed: half of its bits are.
+    pub fn cut_power_after(&mut self, words: u32) {
+        self.power = Some(PowerCut { words_before: words });
+    }
+
+    /// The core made an access.
+    pub fn accessed(&mut self, access: &Access, session: &mut Session<Nucleo>, host: &mut dyn Host) {
+        if access.kind != AccessKind::Write {
+            return;
+        }
+        if (BASE..BASE + SIZE).contains(&access.address) {
+            self.store(access, session, host);
+        } else if access.address == FLASH_CR {
+            let mcu = &mut session.board_mut().mcu;
+            let control = peek(mcu, access.virtual_time, FLASH_CR);
+            let busy = peek(mcu, access.virtual_time, FLASH_SR) & SR_BSY != 0;
+            if busy && control & CR_SER != 0 && self.doing.is_none() {
+                self.doing = Some(Doing::Erases { sector: control >> CR_SNB_SHIFT & CR_SNB });
+                host.hold(true);
+            }
+        }
+    }
+
+    fn store(&mut self, access: &Access, session: &mut Session<Nucleo>, host: &mut dyn Host) {
+        let mcu = &mut session.board_mut().mcu;
+        let control = peek(mcu, access.virtual_time, FLASH_CR);
+        let ready = control & (CR_PG | CR_LOCK | CR_SER) == CR_PG && control & CR_PSIZE == CR_PSIZE_WORD;
+        if !ready || access.width != Width::W32 || !access.address.is_multiple_of(4) {
+            fail(mcu);
+            return;
+        }
+        let old = host.read(access.address, Width::W32).unwrap_or(0);
+        let mut programmed = old & access.value;
+        let cut = match &mut self.power {
+            Some(PowerCut { words_before: 0 }) => {
+                programmed |= old & 0xFFFF_0000;
+                self.power = None;
+                true
+            }
+            Some(PowerCut { words_before }) => {
+                *words_before -= 1;
+                false
+            }
+            None => false,
+        };
+        let landed = host.program(access.address, Width::W32, programmed);
+        debug_assert!(landed.is_ok(), "{:#x} is in the flash", access.address);
+        self.words += 1;
+        if cut {
+            // Power that comes back at once: the reset is the pin's, which the image tells from its own.
+            session.reset_by_pin(access.virtual_time, access.instruction_count, host);
+            return;
+        }
+        let until = VirtualNanos(access.virtual_time.0 + self.word_ns);
+        self.doing = Some(Doing::Programs { until });
+        session.pause_at(Some(until));
+        host.hold(true);
+    }
+
+    /// The emulator stopped: what is over now lets the core go on.
+    pub fn stopped(&mut self, stop: Stop, session: &mut Session<Nucleo>, host: &mut dyn Host) {
+        let over = match self.doing {
+            None => false,
+            Some(Doing::Programs { until }) => stop.at >= until,
+            Some(Doing::Erases { sector }) => {
+                let over = peek(&mut session.board_mut().mcu, stop.at, FLASH_SR) & SR_BSY == 0;
+                if over {
+                    erase(sector, host);
+                    self.erases += 1;
+                }
+                over
+            }
+        };
+        if over {
+            self.doing = None;
+            session.pause_at(None);
+            host.hold(false);
+        }
+    }
+
+    /// The chip was reset: it stops what it was doing.
+    pub fn reset(&mut self) {
+        self.doing = None;
+    }
+}
+
+fn peek(mcu: &mut Part, now: VirtualNanos, address: u64) -> u64 {
+    mcu.peek(now, address, Width::W32).unwrap_or(0)
+}
+
+/// Programming in any other way than a word at a time with PG set is a sequence error.
+fn fail(mcu: &mut Part) {
+    let bus = mcu.bus_mut();
+    if let Some(slot) = bus.slot_of(INTERFACE) {
+        let registers = bus.slot_mut(slot).registers_mut();
+        let status = registers.get(Register::Sr);
+        registers.set(Register::Sr, status | SR_PGSERR);
+    }
+}
+
+fn erase(sector: u64, host: &mut dyn Host) {
+    let mut begins = BASE;
+    let mut left = sector;
+    for run in &SECTORS {
+        let count = u64::from(run.count.get());
+        if left < count {
+            begins += left * run.size.get();
+            for word in (begins..begins + run.size.get()).step_by(8) {
+                let landed = host.program(word, Width::W64, u64::MAX);
+                debug_assert!(landed.is_ok(), "{word:#x} is in the flash");
+            }
+            return;
+        }
+        left -= count;
+        begins += count * run.size.get();
+    }
+}

@@ -1,0 +1,265 @@
+//! Walks the types of the messages: what they are called, and a message of each kind.
+
+use tenax_hal_shim::wire::{SCHEMA, VERSION};
+
+use postcard_schema::schema::{
+    DataModelType as Ty, DataModelVariant as Variant, NamedType, NamedValue, NamedVariant,
+};
+
+/// Every type that has fields or variants, in the order in which messages need them.
+#[derive(Default)]
+pub struct Types(Vec<&'static NamedType>);
+
+/// What a type is called where a field has it.
+fn reference(of: &NamedType) -> Reference {
+    match of.ty {
+        _ if matches!(of.name, "tick" | "frame") => Reference::Name(of.name.to_owned()),
+        Ty::Option(inner) => Reference::Option(Box::new(reference(inner))),
+        Ty::Seq(inner) => Reference::List(Box::new(reference(inner))),
+        Ty::Tuple(all) if all.iter().all(|one| one == &all[0]) => {
+            Reference::Array(all.len(), Box::new(reference(all[0])))
+        }
+        Ty::Tuple(all) => Reference::Tuple(all.iter().map(|one| reference(one)).collect()),
+        Ty::NewtypeStruct(inner) => reference(inner),
+        Ty::Struct(_) | Ty::Enum(_) => Reference::Name(of.name.to_owned()),
+        plain => Reference::Name(format!("{plain:?}").to_lowercase()),
+    }
+}
+
+enum Reference {
+    Name(String),
+    Option(Box<Self>),
+    List(Box<Self>),
+    Array(usize, Box<Self>),
+    Tuple(Vec<Self>),
+}
+
+impl Reference {
+    fn json(&self) -> String {
+        match self {
+            Self::Name(name) => format!("\"{name}\""),
+            Self::Option(inner) => format!("[\"opt\", {}]", inner.json()),
+            Self::List(inner) => format!("[\"vec\", {}]", inner.json()),
+            Self::Array(count, inner) => format!("[\"arr\", {count}, {}]", inner.json()),
+            Self::Tuple(all) => {
+                format!("[\"tuple\", [{}]]", all.iter().map(Self::json).collect::<Vec<_>>().join(", "))
+            }
+        }
+    }
+
+    fn words(&self) -> String {
+        match self {
+            Self::Name(name) => name.clone(),
+            Self::Option(inner) => format!("option {}", inner.words()),
+            Self::List(inner) => format!("list {}", inner.words()),
+            Self::Array(count, inner) => format!("[{count}] {}", inner.words()),
+            Self::Tuple(all) => format!("({})", all.iter().map(Self::words).collect::<Vec<_>>().join(", ")),
+        }
+    }
+}
+
+/// A field's name in Python; a field that has none is called after its type.
+fn field_name(name: Option<&str>, of: &NamedType) -> String {
+    let inner = |of: &NamedType| match of.ty {
+        Ty::Option(inner) => inner.name.to_owned(),
+        Ty::Struct(_) | Ty::Enum(_) | Ty::NewtypeStruct(_) => of.name.to_owned(),
+        _ => "value".to_owned(),
+    };
+    let name = name.map_or_else(|| inner(of), str::to_owned);
+    let mut snake = String::new();
+    for (n, letter) in name.chars().enumerate() {
+        if letter.is_uppercase() && n > 0 {
+            snake.push('_');
+        }
+        snake.extend(letter.to_lowercase());
+    }
+    // Words of Python, and the name of the message itself.
+    if matches!(snake.as_str(), "from" | "kind") { snake + "_" } else { snake }
+}
+
+fn fields(values: &[&NamedValue]) -> Vec<(String, Reference)> {
+    values.iter().map(|value| (field_name(Some(value.name), value.ty), reference(value.ty))).collect()
+}
+
+/// A variant's fields. Those of a message that is a type of its own are that type's.
+fn fields_of(variant: &NamedVariant) -> Vec<(String, Reference)> {
+    match variant.ty {
+        Variant::UnitVariant => Vec::new(),
+        Variant::NewtypeVariant(inner) => match inner.ty {
+            Ty::Struct(values) => fields(values),
+            _ => vec![(field_name(None, inner), reference(inner))],
+        },
+        Variant::TupleVariant(all) => all.iter().map(|of| (field_name(None, of), reference(of))).collect(),
+        Variant::StructVariant(values) => fields(values),
+    }
+}
+
+impl Types {
+    /// Adds a type, after those that it is made of.
+    pub fn add(&mut self, of: &'static NamedType) {
+        if matches!(of.name, "tick" | "frame") || self.0.iter().any(|known| known.name == of.name) {
+            return;
+        }
+        match of.ty {
+            Ty::Option(inner) | Ty::Seq(inner) | Ty::NewtypeStruct(inner) => self.add(inner),
+            Ty::Tuple(all) => all.iter().for_each(|one| self.add(one)),
+            Ty::Struct(values) => {
+                values.iter().for_each(|value| self.add(value.ty));
+                self.0.push(of);
+            }
+            Ty::Enum(variants) => {
+                for variant in *variants {
+                    match variant.ty {
+                        Variant::UnitVariant => {}
+                        Variant::NewtypeVariant(inner) => self.add(inner),
+                        Variant::TupleVariant(all) => all.iter().for_each(|one| self.add(one)),
+                        Variant::StructVariant(values) => values.iter().for_each(|value| self.add(value.ty)),
+                    }
+                }
+                self.0.push(of);
+            }
+            _ => {}
+        }
+    }
+
+    /// A line a type.
+    pub fn json(&self) -> Vec<String> {
+        let list = |fields: Vec<(String, Reference)>| {
+            let all: Vec<_> =
+                fields.iter().map(|(name, of)| format!("[\"{name}\", {}]", of.json())).collect();
+            format!("[{}]", all.join(", "))
+        };
+        let line = |of: &&NamedType| match of.ty {
+            Ty::Struct(values) => format!("\"{}\": {{\"struct\": {}}}", of.name, list(fields(values))),
+            Ty::Enum(variants) => {
+                let all: Vec<_> =
+                    variants.iter().map(|v| format!("[\"{}\", {}]", v.name, list(fields_of(v)))).collect();
+                format!("\"{}\": {{\"enum\": [{}]}}", of.name, all.join(", "))
+            }
+            _ => String::new(),
+        };
+        self.0.iter().map(line).collect()
+    }
+
+    /// The messages each way as tables, then the types in them.
+    pub fn markdown(&self) -> String {
+        let mut page = format!("Version {VERSION}, schema `{SCHEMA:016x}`.\n\n");
+        let list = |fields: Vec<(String, Reference)>| {
+            let all: Vec<_> = fields.iter().map(|(name, of)| format!("`{name}: {}`", of.words())).collect();
+            all.join(", ")
+        };
+        for (name, title) in [("Up", "From the board"), ("Answer", "Answers"), ("Down", "To the board")] {
+            let Some(Ty::Enum(variants)) = self.0.iter().find(|of| of.name == name).map(|of| of.ty) else {
+                continue;
+            };
+            page += &format!("### {title}\n\n| number | `{name}` | fields |\n|---|---|---|\n");
+            for (number, variant) in variants.iter().enumerate() {
+                page += &format!("| {number} | `{}` | {} |\n", variant.name, list(fields_of(variant)));
+            }
+            page += "\n";
+        }
+        page += "### Types in them\n\n| type | fields, or variants from 0 on |\n|---|---|\n";
+        for of in self.0.iter().filter(|of| !matches!(of.name, "Up" | "Answer" | "Down")) {
+            let what = match of.ty {
+                Ty::Struct(values) => list(fields(values)),
+                Ty::Enum(variants) => {
+                    let all: Vec<_> = variants
+                        .iter()
+                        .map(|variant| match list(fields_of(variant)) {
+                            fields if fields.is_empty() => variant.name.to_owned(),
+                            fields => format!("{} ({fields})", variant.name),
+                        })
+                        .collect();
+                    all.join(", ")
+                }
+                _ => String::new(),
+            };
+            page += &format!("| `{}` | {what} |\n", of.name);
+        }
+        page + "\n"
+    }
+}
+
+/// The bytes of messages: one of each variant, and of each variant that a field of it may have. With each the variant's number.
+pub fn messages(of: &NamedType) -> Vec<(usize, Vec<u8>)> {
+    let Ty::Enum(variants) = of.ty else { return Vec::new() };
+    let mut count = 0;
+    let all = variants.iter().enumerate().flat_map(|(number, variant)| {
+        of_variant(number, variant, &mut count)
+            .into_iter()
+            .map(move |bytes| (number, bytes))
+            .collect::<Vec<_>>()
+    });
+    all.collect()
+}
+
+fn varint(mut value: u64) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    while value >= 0x80 {
+        bytes.push(value as u8 | 0x80);
+        value >>= 7;
+    }
+    bytes.push(value as u8);
+    bytes
+}
+
+fn of_variant(number: usize, variant: &NamedVariant, count: &mut u64) -> Vec<Vec<u8>> {
+    let types: Vec<&NamedType> = match variant.ty {
+        Variant::UnitVariant => Vec::new(),
+        Variant::NewtypeVariant(inner) => vec![inner],
+        Variant::TupleVariant(all) => all.to_vec(),
+        Variant::StructVariant(values) => values.iter().map(|value| value.ty).collect(),
+    };
+    each(varint(number as u64), &types, count)
+}
+
+/// All parts as they are first, and each other that one of them may be.
+fn each(begin: Vec<u8>, types: &[&NamedType], count: &mut u64) -> Vec<Vec<u8>> {
+    let parts: Vec<Vec<Vec<u8>>> = types.iter().map(|of| values(of, count)).collect();
+    let with = |place: usize, which: usize| {
+        let mut bytes = begin.clone();
+        for (n, part) in parts.iter().enumerate() {
+            bytes.extend(&part[if n == place { which } else { 0 }]);
+        }
+        bytes
+    };
+    let others = parts.iter().enumerate().flat_map(|(place, part)| (1..part.len()).map(move |n| (place, n)));
+    std::iter::once(with(usize::MAX, 0)).chain(others.map(|(place, n)| with(place, n))).collect()
+}
+
+/// Bytes of a type: numbers of the longest form that differ from each other, of a plain list of names the last, and of variants
+/// with fields one of each.
+fn values(of: &NamedType, count: &mut u64) -> Vec<Vec<u8>> {
+    *count += 1;
+    let n = *count % 500;
+    let one = match of.ty {
+        _ if of.name == "tick" => vec![0xF4, 0x41, 0x80, 0x40, 0xE8, 0x37],
+        _ if of.name == "frame" => (1..=25).map(|byte| byte * 5).collect(),
+        Ty::Bool => vec![1],
+        Ty::U8 => vec![0x81 | n as u8 & 0x3F],
+        Ty::I8 => vec![0xC0 | n as u8 & 0x3F],
+        Ty::U16 => varint(300 + n),
+        Ty::U32 => varint(70_000 + n),
+        Ty::U64 => varint((1 << 40) + n),
+        // Zigzag of a number below 0 is odd.
+        Ty::I16 => varint(2 * (300 + n) + 1),
+        Ty::I32 => varint(2 * (70_000 + n) + 1),
+        Ty::Option(inner) => return each(vec![1], &[inner], count),
+        Ty::NewtypeStruct(inner) => return values(inner, count),
+        Ty::Seq(inner) => return each(vec![2], &[inner, inner], count),
+        Ty::Tuple(all) => return each(Vec::new(), all, count),
+        Ty::Struct(fields) => {
+            let types: Vec<&NamedType> = fields.iter().map(|field| field.ty).collect();
+            return each(Vec::new(), &types, count);
+        }
+        Ty::Enum(variants) if variants.iter().all(|v| matches!(v.ty, Variant::UnitVariant)) => {
+            varint(variants.len() as u64 - 1)
+        }
+        Ty::Enum(variants) => {
+            let all = variants.iter().enumerate();
+            return all.flat_map(|(number, variant)| of_variant(number, variant, count)).collect();
+        }
+        other => panic!("no message has {other:?}"),
+    };
+    vec![one]
+}

@@ -1,0 +1,79 @@
+//! The taxels of the normal-force array: which of their readings are valid.
+
+use tenax_hal_shim::channel::{ARRAY, ARRAY_COUNT, CHANNELS, SLOW_HZ};
+
+use super::Reading;
+use crate::health::{Change, Limits, SensorHealth};
+
+static LIMITS: Limits = Limits::of(&CHANNELS[ARRAY], SLOW_HZ);
+
+/// The ten taxels.
+#[derive(Clone, Debug, Default)]
+pub struct Taxels {
+    health: [SensorHealth; ARRAY_COUNT],
+    reading: Reading,
+}
+
+impl Taxels {
+    /// Takes a reading of one element (14 bits).
+    pub fn read(&mut self, element: usize, sample: u16) -> Option<Change> {
+        let (health, slot) = (self.health.get_mut(element)?, self.reading.get_mut(element)?);
+        if health.is_plain(&LIMITS, sample) {
+            *slot = Some(sample);
+            return None;
+        }
+        let (reading, change) = health.take(&LIMITS, sample);
+        *slot = reading.ok();
+        change
+    }
+
+    /// The frame that shows this element was lost: what was read before is no reading of now.
+    pub fn lose(&mut self, element: usize) {
+        if let Some(slot) = self.reading.get_mut(element) {
+            *slot = None;
+        }
+    }
+
+    /// The last reading of every element.
+    #[must_use]
+    pub const fn reading(&self) -> &Reading {
+        &self.reading
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tenax_hal_shim::words::Reason;
+
+    #[test]
+    fn a_dead_element_has_no_reading_and_is_told_once() {
+        let mut taxels = Taxels::default();
+        assert_eq!(taxels.read(2, 2_000), None);
+        assert_eq!(taxels.reading()[2], Some(2_000));
+        let changes: std::vec::Vec<_> = (0..80).filter_map(|_| taxels.read(2, 0)).collect();
+        assert_eq!(changes, [Change::Lost(Reason::Dead)]);
+        assert_eq!(taxels.reading(), &Reading::default());
+        assert_eq!(taxels.read(ARRAY_COUNT, 2_000), None);
+    }
+
+    #[test]
+    fn an_element_that_is_stuck_for_two_seconds_has_no_reading() {
+        let mut taxels = Taxels::default();
+        let lost_after = (0..400).position(|_| taxels.read(0, 3_000).is_some());
+        assert_eq!(lost_after, Some(160));
+        assert_eq!(taxels.reading()[0], None);
+    }
+
+    #[test]
+    fn an_element_whose_frame_was_lost_has_no_reading_until_the_next() {
+        let mut taxels = Taxels::default();
+        (0..ARRAY_COUNT).for_each(|element| _ = taxels.read(element, 2_000));
+        taxels.lose(3);
+        taxels.lose(ARRAY_COUNT);
+        let expected: Reading = core::array::from_fn(|element| (element != 3).then_some(2_000));
+        assert_eq!(taxels.reading(), &expected);
+        taxels.read(3, 2_001);
+        assert_eq!(taxels.reading()[3], Some(2_001));
+    }
+}

@@ -1,0 +1,182 @@
+//! Normal and tangential force from the four quadrants, by the formulas of Prosthesis, section 4.
+//!
+//! The paper's `Fn = sqrt(A^2 + B^2 + C^2 + D^2)` is kept, because its S2 is a threshold on the ratio that this Fn gives.
+//! It is **not** the normal force, which is the sum of the quadrants: under an even load it is half of the sum, under a
+//! tilt it is more. Scaled by two, as here, it is exact for an even load and `sqrt(1 + (Ft/P)^2)` too large under a
+//! shear along an axis: 4 % at a ratio of 0.3, 12 % at 0.5. So the ratio read here is `r / sqrt(1 + r^2)` for a true
+//! ratio r. Both grow together; a stroke that measures S2 measures it on the same scale.
+//!
+//! What is decided by a force and not by a ratio (is the finger loaded, is the ceiling reached) is decided by the load, the
+//! sum of the quadrants. And a ratio means something only if most quadrants agree that there is a load: one that is
+//! pressed by itself, by its own offset or a speck under the element, would read as a large shear.
+
+use tenax_hal_shim::channel::FSR_COUNT;
+use tenax_hal_shim::wire::Forces;
+
+use super::fsr::{force_mn, uv_above_rest};
+
+/// How far a quadrant's zero may be moved, uV: more is a load, not an offset.
+pub const ZERO_LIMIT_UV: i32 = 60_000;
+
+/// A quadrant that carries this much carries a part of the load, mN: more than its noise, and a fortieth of the least load.
+const CARRIES_MN: i32 = 15;
+/// Quadrants that have to. A shear along a diagonal may unload one.
+const AGREEING: usize = 3;
+/// While the hand is open a zero goes after its readings over so many of them: 0.8 s.
+const FOLLOWED_IN: i32 = 64;
+
+/// The force sensor: its calibrated zeros.
+#[derive(Clone, Debug, Default)]
+pub struct ForceSensor {
+    /// Calibrated, and kept through a power cut.
+    zero_uv: [i32; FSR_COUNT],
+    /// What they have drifted since, as far as it is known.
+    drift_uv: [i32; FSR_COUNT],
+    last_uv: [i32; FSR_COUNT],
+}
+
+impl ForceSensor {
+    /// Forces from one sample of each quadrant A, B, C, D. `loaded_mn` is the Fn from which the ratio means something.
+    pub fn process(&mut self, samples: [u16; FSR_COUNT], loaded_mn: i32) -> Forces {
+        self.last_uv = samples.map(uv_above_rest);
+        let mut quadrant_mn = [0; FSR_COUNT];
+        let zeros = self.zero_uv.iter().zip(&self.drift_uv).map(|(zero, drift)| zero + drift);
+        for ((mn, uv), zero) in quadrant_mn.iter_mut().zip(self.last_uv).zip(zeros) {
+            *mn = force_mn(uv - zero);
+        }
+        forces(quadrant_mn, loaded_mn)
+    }
+
+    /// Takes the last readings as zero; false, and nothing changed, if a quadrant is further from its calibrated zero
+    /// than any offset.
+    #[must_use]
+    pub fn zero(&mut self) -> bool {
+        let unloaded = self.last_uv.iter().all(|uv| uv.abs() <= ZERO_LIMIT_UV);
+        if unloaded {
+            self.zero_uv = self.last_uv;
+            self.drift_uv = [0; FSR_COUNT];
+        }
+        unloaded
+    }
+
+    /// The hand is surely open: what the quadrants read is no load, so their zeros go after it, as far as a working sensor's
+    /// may be off. What is further off is something that presses.
+    pub fn follow(&mut self) {
+        for ((drift, zero), &uv) in self.drift_uv.iter_mut().zip(&self.zero_uv).zip(&self.last_uv) {
+            if uv.abs() <= ZERO_LIMIT_UV {
+                // Rounded away from 0, so that the last microvolts are followed too.
+                let off = uv - zero - *drift;
+                *drift += (off + off.signum() * (FOLLOWED_IN - 1)) / FOLLOWED_IN;
+            }
+        }
+    }
+
+    /// The zeros, uV above rest.
+    #[must_use]
+    pub const fn zero_uv(&self) -> &[i32; FSR_COUNT] {
+        &self.zero_uv
+    }
+
+    /// Takes up zeros that were taken before, none further than [`ZERO_LIMIT_UV`].
+    pub const fn restore_zero(&mut self, zero_uv: [i32; FSR_COUNT]) {
+        self.zero_uv = zero_uv;
+    }
+}
+
+/// The paper's formulas on quadrant forces in mN, below 24 000 each: sums stay below 2^17, squares below 2^34.
+#[must_use]
+pub fn forces([a, b, c, d]: [i32; FSR_COUNT], loaded_mn: i32) -> Forces {
+    let fn_mn = 2 * root([a, b, c, d]);
+    let fx_mn = (a + b) - (c + d);
+    let fy_mn = (a + d) - (c + b);
+    let ft_mn = root([fx_mn, fy_mn]);
+    let load_mn = a + b + c + d;
+    let agreeing = [a, b, c, d].into_iter().filter(|&mn| mn >= CARRIES_MN).count();
+    let ratio_permille = (load_mn >= loaded_mn.max(1) && agreeing >= AGREEING && fn_mn > 0)
+        .then(|| (i64::from(ft_mn) * 1_000 / i64::from(fn_mn)).min(i64::from(u16::MAX)) as u16);
+    Forces { fn_mn, fx_mn, fy_mn, ft_mn, load_mn, ratio_permille }
+}
+
+/// Root of the sum of squares, rounded down: core's integer root, exact, where micromath's is off by up to 6.1 % (docs/crates.md).
+fn root<const N: usize>(values: [i32; N]) -> i32 {
+    // Of a number without a sign: core's root of one that has it would panic below 0.
+    let squares: u64 = values.iter().map(|&value| u64::from(value.unsigned_abs()).pow(2)).sum();
+    squares.isqrt() as i32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tenax_hal_shim::channel::sample_from_mv;
+    use tenax_hal_shim::front_end::{FSR_REST_MV, fsr_mv, fsr_quadrants_n};
+
+    #[test]
+    fn formulas_against_f64() {
+        for quadrants in
+            [[0; 4], [1, 0, 0, 0], [1_000; 4], [23_630, 0, 0, 23_630], [23_630; 4], [7, 11, 13, 17]]
+        {
+            let [a, b, c, d] = quadrants.map(f64::from);
+            let f = forces(quadrants, 600);
+            let exact_fn = 2.0 * (a * a + b * b + c * c + d * d).sqrt();
+            let (fx, fy) = ((a + b) - (c + d), (a + d) - (c + b));
+            assert!((f64::from(f.fn_mn) - exact_fn).abs() <= 2.0);
+            assert_eq!((f64::from(f.fx_mn), f64::from(f.fy_mn)), (fx, fy));
+            assert!((f64::from(f.ft_mn) - fx.hypot(fy)).abs() <= 1.0);
+        }
+    }
+
+    #[test]
+    fn a_known_ratio_is_read_on_the_papers_scale() {
+        for (normal, shear) in [(4.0, 0.4), (4.0, 1.2), (12.0, 6.0), (2.0, 1.4)] {
+            let samples = fsr_quadrants_n(normal, shear, 0.0)
+                .map(|f| sample_from_mv(fsr_mv(f, f64::powf).round() as u32));
+            let read = f64::from(ForceSensor::default().process(samples, 600).ratio_permille.unwrap()) / 1e3;
+            let true_ratio: f64 = shear / normal;
+            let expected = true_ratio / true_ratio.hypot(1.0);
+            assert!((read - expected).abs() < 0.02, "{normal} N, {shear} N: {read} for {expected}");
+        }
+    }
+
+    #[test]
+    fn an_unloaded_finger_has_no_ratio() {
+        assert_eq!(forces([100, 0, 0, 0], 600).ratio_permille, None);
+        assert_eq!(forces([0; 4], 0).ratio_permille, None);
+    }
+
+    #[test]
+    fn one_quadrant_by_itself_is_no_load_and_no_shear() {
+        let alone = forces([300, 0, 0, 0], 600);
+        assert_eq!((alone.load_mn, alone.ratio_permille), (300, None), "{alone:?}");
+        assert_eq!(forces([2_000, 0, 0, 0], 600).ratio_permille, None);
+        assert!(forces([500, 300, 300, 0], 600).ratio_permille.is_some(), "a shear along a diagonal");
+    }
+
+    #[test]
+    fn an_offset_is_followed_while_the_hand_is_open_and_a_press_is_not() {
+        for mv in [10, 45, -20] {
+            let mut sensor = ForceSensor::default();
+            let offset = sample_from_mv((FSR_REST_MV as i32 + mv) as u32);
+            for _ in 0..80 * 6 {
+                sensor.process([offset; 4], 600);
+                sensor.follow();
+            }
+            assert!(sensor.process([offset; 4], 600).load_mn <= 8, "{mv} mV");
+            assert_eq!(sensor.zero_uv(), &[0; 4], "what is kept stays as it was calibrated");
+            let pressed = sample_from_mv((FSR_REST_MV as i32 + mv + 200) as u32);
+            let before = sensor.process([pressed; 4], 600);
+            (0..800).for_each(|_| sensor.follow());
+            assert_eq!(sensor.process([pressed; 4], 600), before);
+        }
+    }
+
+    #[test]
+    fn only_an_unloaded_finger_is_zeroed() {
+        let mut sensor = ForceSensor::default();
+        let offset = sample_from_mv(FSR_REST_MV + 30);
+        assert!(sensor.process([offset; 4], 600).fn_mn > 0);
+        assert!(sensor.zero());
+        assert_eq!(sensor.process([offset; 4], 600).fn_mn, 0);
+        sensor.process([sample_from_mv(FSR_REST_MV + 300); 4], 600);
+        assert!(!sensor.zero());
+    }
+}

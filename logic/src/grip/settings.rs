@@ -1,0 +1,45 @@
+//! What can be chosen about the reflex.
+
+use crate::setting::settings;
+
+/// Limits and pulses of the grip reflex.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GripConfig {
+    /// Duty of the pulse that answers slip, per mille.
+    pub slip_duty_permille: u16,
+    /// Its length, in frames.
+    pub slip_frames: u32,
+    /// Its length at most while a detector still says slip, in frames.
+    pub slip_frames_max: u32,
+    /// Duty of the pulse that answers incipient slip, per mille.
+    pub incipient_duty_permille: u16,
+    /// Its length, in frames.
+    pub incipient_frames: u32,
+    /// How long the object is given to settle after a pulse, in frames: longer than the motor's dead time, so that the
+    /// noise of the hand's own closing is not answered by more closing.
+    pub settle_frames: u32,
+    /// Fn above which the reflex closes no further, mN.
+    pub ceiling_mn: i32,
+    /// How long the reflex may close altogether while no force is known, in frames, until the wearer takes over once.
+    pub blind_frames: u32,
+}
+
+settings! {
+    GripConfig:
+    /// Normal force above which the reflex closes no further
+    4 ForceCeiling "force-ceiling-mn" "mN" [3_000, 60_000] = 40_000 => Number(ceiling_mn);
+    /// Motor duty of the pulse that answers slip
+    23 SlipDuty "slip-duty-permille" "per mille" [400, 1_000] = 1_000 => Number(slip_duty_permille);
+    /// Length of the pulse that answers slip
+    24 SlipPulse "slip-pulse-ms" "ms" [10, 60] = 30 => Ms(slip_frames);
+    /// Its length at most while a detector still reports slip
+    25 SlipPulseMax "slip-pulse-max-ms" "ms" [10, 200] = 50 => Ms(slip_frames_max);
+    /// Motor duty of the pulse that answers incipient slip
+    26 IncipientDuty "incipient-duty-permille" "per mille" [100, 1_000] = 400 => Number(incipient_duty_permille);
+    /// Length of the pulse that answers incipient slip
+    27 IncipientPulse "incipient-pulse-ms" "ms" [5, 50] = 15 => Ms(incipient_frames);
+    /// How long the object is given to settle after a pulse, longer than the motor's dead time
+    28 Settle "settle-ms" "ms" [40, 150] = 80 => Ms(settle_frames);
+    /// How long the reflex may close altogether while no force is known, until a muscle takes over once
+    29 Blind "blind-ms" "ms" [0, 400] = 200 => Ms(blind_frames);
+}

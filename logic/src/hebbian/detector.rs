@@ -1,0 +1,394 @@
+//! HebbianDetector that learns: the films' envelopes and the gauges' loads go into the Hebbian network (Tada 2006), a camera
+//! teaches it over the serial line, and what it says alone is one more way to feel slip, and to be warned of it.
+//!
+//! Every tick has an output; lessons are given at 1 kHz, in every other tick, and the maxima rise in the ticks between,
+//! so that no tick does both. Learning and using go on at once: what the network says never holds the teacher's own
+//! codes (they are taken as 0), so it can be believed while it is being taught.
+//!
+//! Outputs mean slip while the films' part of o1 is far enough below 0, for some ticks, on a finger that holds something,
+//! and not while an impact rings or the motor runs fast, or just did. The films' part, because the gauges' is a matter of
+//! how hard is held, which speaks against slip and hides its beginning; and because a gauge that dies takes its part out
+//! of o1 for ever. An untaught network says 0, which is nothing.
+//!
+//! Slip begins in one place of the contact, and is heard by whoever lies there. An impact, a swing and the motor are heard
+//! everywhere; so what is heard everywhere is slip only if it lasts.
+//!
+//! Shear foretells it: Ft/Fn that rises towards where the camera saw slip ([`shear`](super::shear)) is a warning, and no slip. Where the films' own noise is above the
+//! threshold, it is the threshold ([`noise`](super::noise)).
+//!
+//! The direction is asked of the gauges alone: "vibration information only helps to detect micro slips, but not to detect
+//! the direction" (Tada 2006, section I), and a slip down that was louder than the slip up would be an offset of o2.
+
+use core::ops::Range;
+
+use tenax_hal_shim::channel::PVDF_COUNT;
+use tenax_hal_shim::schedule::{Job, slot_of};
+use tenax_hal_shim::wire::{Forces, NETWORK_OUTPUTS, NetworkState, RECEPTORS};
+use tenax_hal_shim::words::{Code, Codes, NoLesson};
+
+use super::balance::Balance;
+use super::noise::Noise;
+use super::pvdf_part::PvdfPart;
+use super::shear::Shear;
+use super::{
+    Activations, FingertipNetwork, Normaliser, NormaliserConfig, Output, Sense, Situation, Teacher, snapshot,
+};
+use crate::hebbian::settings::HebbianConfig;
+use crate::strain::Gauges;
+
+/// All that was learned.
+pub type Learned = snapshot::Contents<RECEPTORS, NETWORK_OUTPUTS>;
+/// Bytes of a saved network.
+pub const SNAPSHOT_LENGTH: usize = snapshot::length(RECEPTORS, NETWORK_OUTPUTS);
+
+/// How readings become activations. Both kinds are samples (14 bits) with 4 fraction bits.
+pub static NORMALISER: NormaliserConfig<RECEPTORS> = NormaliserConfig {
+    senses: {
+        let mut senses = [Sense::Pressure; RECEPTORS];
+        let mut film = 0;
+        while film < PVDF_COUNT {
+            senses[film] = Sense::Vibration;
+            film += 1;
+        }
+        senses
+    },
+    // 4 mV of vibration, 6 mV of load: below is noise.
+    floors: {
+        let mut floors = [480; RECEPTORS];
+        let mut film = 0;
+        while film < PVDF_COUNT {
+            floors[film] = 320;
+            film += 1;
+        }
+        floors
+    },
+    ceiling: 1 << 17,
+    average_shift: 8,
+};
+
+/// What the rest of the fingertip gives in a tick.
+#[derive(Clone, Copy, Debug)]
+pub struct Felt<'a> {
+    /// Each film's envelope, Q16 samples.
+    pub envelopes: &'a [i32; PVDF_COUNT],
+    /// The gauges: loads in 1/16 of a sample.
+    pub gauges: &'a Gauges,
+    /// The gauge that was read in this tick.
+    pub gauge: usize,
+    /// Whether an impact rings, or the motor runs fast.
+    pub loud: bool,
+    /// Whether the finger is known to touch nothing.
+    pub unloaded: bool,
+    /// Whether the finger holds something, and whether anything else than the object is felt.
+    pub situation: Situation,
+}
+
+/// The films, and the gauges, among the receptors.
+const FILMS: Range<usize> = 0..PVDF_COUNT;
+const GAUGES: Range<usize> = PVDF_COUNT..RECEPTORS;
+/// 1, as an output.
+const ONE: i64 = 1 << 26;
+/// More films than this hear what is everywhere.
+const SOMEWHERE_MAX: usize = 6;
+
+/// The slot in which shear is judged: the tick after the forces are there, which has more room than theirs.
+pub const SHEAR_IS_JUDGED: u8 = slot_of(Job::Forces) + 1;
+/// The slot in which a cycle of the films' part ends: nobody needs it for more.
+const CYCLE_ENDS: usize = 20;
+
+/// The network and all that it needs.
+#[derive(Clone, Debug)]
+pub struct HebbianDetector {
+    normaliser: Normaliser<RECEPTORS>,
+    network: FingertipNetwork,
+    teacher: Teacher,
+    /// Of the gauges always, of the films while there are lessons.
+    activations: Activations<RECEPTORS>,
+    pvdf_part: PvdfPart,
+    noise: Noise,
+    shear: Shear,
+    outputs: [Output; NETWORK_OUTPUTS],
+    /// The gauges' part of each output, since the last of them was read.
+    by_gauges: [i64; NETWORK_OUTPUTS],
+    /// The films' part of o1.
+    by_films: i64,
+    /// Whether a weight has changed since.
+    weights_changed: bool,
+    since_loud_frames: u32,
+    said_frames: u32,
+    /// Whether the films say slip.
+    films_say: bool,
+    /// Whether shear warns of it, on a finger that holds something.
+    warns: bool,
+    lesson: Result<Codes, NoLesson>,
+    odd: bool,
+    balance: Balance,
+    updates: u32,
+}
+
+impl Default for HebbianDetector {
+    /// One that knows nothing.
+    fn default() -> Self {
+        Self {
+            normaliser: Normaliser::new(&NORMALISER),
+            network: FingertipNetwork::default(),
+            teacher: Teacher::default(),
+            activations: Activations::default(),
+            pvdf_part: PvdfPart::default(),
+            noise: Noise::default(),
+            shear: Shear::default(),
+            outputs: [Output::default(); NETWORK_OUTPUTS],
+            by_gauges: [0; NETWORK_OUTPUTS],
+            by_films: 0,
+            weights_changed: false,
+            since_loud_frames: 0,
+            said_frames: 0,
+            films_say: false,
+            warns: false,
+            lesson: Err(NoLesson::Absent),
+            odd: false,
+            balance: Balance::default(),
+            updates: 0,
+        }
+    }
+}
+
+impl HebbianDetector {
+    /// Takes what is felt in one tick, learns if there is a lesson, and says what it means.
+    pub fn tick(&mut self, config: &HebbianConfig, felt: &Felt<'_>) {
+        let learns = self.lesson.is_ok();
+        if self.pvdf_part.is_outdated() && !learns {
+            self.know_gains();
+        }
+        let mut by_films = self.pvdf_part.process(felt);
+        if let Some(load) = felt.gauges.load(felt.gauge) {
+            self.weigh(PVDF_COUNT + felt.gauge, load);
+        }
+        if learns {
+            // Weights change with every lesson.
+            self.feel_films();
+            by_films = self.network.sum_of_parts(0, FILMS, &self.activations);
+        }
+        self.by_films = by_films;
+        let [o1_by_gauges, o2_by_gauges] = self.by_gauges;
+        self.outputs = [output(by_films + o1_by_gauges), output(o2_by_gauges)];
+        self.judge(config, felt, by_films);
+        self.noise.add(by_films);
+        if felt.gauge == CYCLE_ENDS {
+            let quiet = self.pvdf_part.is_quiet_known() && self.since_loud_frames >= config.loud_frames;
+            self.noise.end_cycle(felt.unloaded && quiet);
+        }
+        self.learn(config, felt, learns);
+    }
+
+    /// Takes forces, None without a number, in slot [`SHEAR_IS_JUDGED`], before its tick. `anew`: nothing is touched, or a muscle is active.
+    #[inline(never)]
+    pub fn foretell(&mut self, config: &HebbianConfig, forces: Option<&Forces>, grasp: bool, anew: bool) {
+        if anew {
+            self.shear.renew();
+        }
+        self.shear.feel(config.ahead_ms, forces);
+        self.warns = grasp && self.shear.warns();
+    }
+
+    /// The films' activations of now.
+    #[inline(never)]
+    fn feel_films(&mut self) {
+        self.normaliser.renew(&NORMALISER, 0, self.pvdf_part.heard(), &mut self.activations);
+    }
+
+    /// The gains after the last lesson.
+    #[inline(never)]
+    fn know_gains(&mut self) {
+        let [to_o1, _] = self.network.weights();
+        self.pvdf_part.renew(&to_o1, &self.normaliser.maxima());
+    }
+
+    /// Takes a new reading of one gauge into the gauges' part. While no weight has changed, no other gauge's has.
+    fn weigh(&mut self, receptor: usize, load: i32) {
+        let before = self.network.parts_of(receptor, &self.activations);
+        self.normaliser.renew(&NORMALISER, receptor, &[load], &mut self.activations);
+        if core::mem::take(&mut self.weights_changed) {
+            self.by_gauges =
+                [0, 1].map(|output| self.network.sum_of_parts(output, GAUGES, &self.activations));
+            return;
+        }
+        let after = self.network.parts_of(receptor, &self.activations);
+        for ((sum, before), after) in self.by_gauges.iter_mut().zip(before).zip(after) {
+            *sum += i64::from(after) - i64::from(before);
+        }
+    }
+
+    /// A frame was lost: nothing is felt.
+    pub fn lose(&mut self) {
+        self.outputs = [Output::default(); NETWORK_OUTPUTS];
+        self.said_frames = 0;
+        self.films_say = false;
+        self.warns = false;
+        self.shear.lose();
+        self.pass();
+    }
+
+    /// Takes what the teacher says.
+    pub fn teach(&mut self, config: &HebbianConfig, codes: Codes, age_ms: u16) {
+        self.teacher.receive(&config.teacher, codes, age_ms);
+    }
+
+    /// Forgets all that was learned.
+    pub fn forget(&mut self) {
+        self.normaliser.reset(&NORMALISER);
+        self.network = FingertipNetwork::default();
+        self.by_gauges = [0; NETWORK_OUTPUTS];
+        self.weights_changed = true;
+        self.pvdf_part.outdate();
+        self.shear = Shear::default();
+        self.noise = Noise::default();
+        self.balance = Balance::default();
+        self.updates = 0;
+    }
+
+    /// Whether touch alone says slip: the films hear it.
+    #[must_use]
+    pub const fn slips(&self) -> bool {
+        self.films_say
+    }
+
+    /// Whether it warns of slip: shear foretells it.
+    #[must_use]
+    pub const fn warns(&self) -> bool {
+        self.warns
+    }
+
+    /// What touch alone says, relative motion and direction: 128 would be 1.
+    #[must_use]
+    pub fn outputs(&self) -> [i8; NETWORK_OUTPUTS] {
+        self.outputs.map(|output| (output.into_bits() >> 19).clamp(-128, 127) as i8)
+    }
+
+    /// The PVDF part of o1, per mille.
+    #[must_use]
+    pub const fn by_films_permille(&self) -> i32 {
+        (self.by_films * 1_000 / ONE) as i32
+    }
+
+    /// Whether it has seen the finger unloaded, so that it can tell hum from slip.
+    #[must_use]
+    pub const fn is_quiet_known(&self) -> bool {
+        self.pvdf_part.is_quiet_known()
+    }
+
+    /// What it is learning, or why nothing.
+    pub const fn lesson(&self) -> Result<Codes, NoLesson> {
+        self.lesson
+    }
+
+    /// Updates of the weights since the start, or since all was forgotten.
+    #[must_use]
+    pub const fn updates(&self) -> u32 {
+        self.updates
+    }
+
+    /// Weights, activations and what goes on, for whoever asks.
+    #[must_use]
+    pub fn state(&self, frame: u32) -> NetworkState {
+        let mut activations = self.activations;
+        self.normaliser.renew(&NORMALISER, 0, self.pvdf_part.heard(), &mut activations);
+        NetworkState {
+            frame,
+            weights: self.network.weights().map(|row| row.map(|weight| weight.into_bits())),
+            activations: activations.as_bits().map(|bits| (bits >> 12) as i16),
+            updates: self.updates,
+            teacher_age_ms: self.teacher.age_ms(),
+            no_lesson: self.lesson.err(),
+        }
+    }
+
+    /// What was learned, to keep.
+    #[must_use]
+    pub fn learned(&self) -> Learned {
+        Learned::of(&self.normaliser, &self.network, self.shear.learned())
+    }
+
+    /// Takes up what was kept.
+    ///
+    /// # Errors
+    /// Says why the bytes are refused; then nothing has changed.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), snapshot::Damaged> {
+        let slips_at;
+        (self.normaliser, self.network, slips_at) = snapshot::restore(&NORMALISER, bytes)?;
+        self.shear.restore(slips_at);
+        self.noise = Noise::default();
+        self.weights_changed = true;
+        self.pvdf_part.outdate();
+        Ok(())
+    }
+
+    /// `sum` is the films' part of o1.
+    fn judge(&mut self, config: &HebbianConfig, felt: &Felt<'_>, sum: i64) {
+        self.since_loud_frames = if felt.loud { 0 } else { self.since_loud_frames.saturating_add(1) };
+        // Once said, half of it keeps it said: one slip has dips.
+        let threshold = i64::from(config.slip_permille) / if self.films_say { 2 } else { 1 };
+        let says = felt.situation.grasp
+            && self.since_loud_frames >= config.loud_frames
+            && sum * 1_000 <= -threshold * ONE
+            && sum <= -self.noise.floor() / if self.films_say { 2 } else { 1 };
+        if !says {
+            self.said_frames = 0;
+            self.films_say = false;
+            return;
+        }
+        self.said_frames = self.said_frames.saturating_add(1);
+        // Somewhere: at most so many films have half of the mean.
+        let hears = |part: &i32| i64::from(*part) * 2 * PVDF_COUNT as i64 <= sum;
+        let count = if self.lesson.is_ok() {
+            self.network.parts(0, FILMS, &self.activations).filter(hears).count()
+        } else {
+            self.pvdf_part.parts().filter(hears).count()
+        };
+        let somewhere = count <= SOMEWHERE_MAX;
+        let long_enough = if somewhere { config.slip_frames } else { config.everywhere_frames };
+        if self.said_frames >= long_enough {
+            self.films_say = true;
+            self.shear.renew();
+        }
+    }
+
+    /// `felt_so` is whether the activations are those of now.
+    fn learn(&mut self, config: &HebbianConfig, felt: &Felt<'_>, felt_so: bool) {
+        self.lesson = self.teacher.lesson(&config.teacher, felt.situation);
+        if let Ok(codes) = self.lesson {
+            self.pvdf_part.outdate();
+            if felt.gauge == usize::from(SHEAR_IS_JUDGED) && codes[0] == Code::Minus {
+                self.shear.learn();
+            }
+            if !felt_so {
+                self.feel_films();
+            }
+            if self.odd {
+                let codes = self.balance.admit(codes);
+                self.network.learn_some(&config.rule, &self.activations, &codes);
+                self.weights_changed = true;
+                self.updates = self.updates.saturating_add(1);
+            } else {
+                let mut readings = [0; RECEPTORS];
+                let (films, gauges) = readings.split_at_mut(PVDF_COUNT);
+                films.copy_from_slice(self.pvdf_part.heard());
+                gauges.copy_from_slice(&felt.gauges.loads());
+                self.normaliser.observe(&NORMALISER, &readings);
+            }
+        }
+        self.pass();
+    }
+
+    fn pass(&mut self) {
+        self.odd = !self.odd;
+        if self.odd {
+            self.teacher.tick_ms();
+        }
+    }
+}
+
+/// Equation 4, of a sum of parts.
+fn output(sum: i64) -> Output {
+    Output::from_bits(sum.clamp(-ONE, ONE) as i32)
+}

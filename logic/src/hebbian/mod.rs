@@ -1,0 +1,49 @@
+//! The network that teaches itself slip (Tada 2006, equations 1 to 6).
+//!
+//! Tactile nodes t_j (vibration and pressure receptors, [`activations`]) are connected to outputs o_i by weights w_ij
+//! ([`network`]). While a camera says what the object (v1) and the hand (v2) do ([`teacher`]), the weights learn to say
+//! it without the camera, and earlier. What was learned survives a power cut ([`snapshot`]).
+//!
+//! ```text
+//! o_i   = f(sum_j t_j w_ij + v_i)                            (3), f clips at +-1 (4)
+//! dw_ij = alpha r_ij t_j v_i - beta w_ij                     (5)
+//! r_ij  = (|w_ij| + delta) / ((sum_j |w_ij|) + delta)        (6)
+//! ```
+//!
+//! How the equations are read, what they settle at and where they fail is derived in `docs/hebbian.md`.
+//!
+//! Everything is integer, so that a PC and a Cortex-M4 agree to the last bit. Single precision would cost the same
+//! (a multiply-add is one instruction in both), but it drops an update below 2^-24 of its weight, which is every useful
+//! one at 1 kHz, and the chip's multiply-accumulate rounds unlike a PC's multiply and add.
+
+pub mod activations;
+mod adapter;
+mod arithmetic;
+mod balance;
+pub mod detector;
+pub mod gains;
+pub mod network;
+mod noise;
+mod pvdf_part;
+pub mod rule;
+pub mod settings;
+mod shear;
+pub mod snapshot;
+pub mod teacher;
+
+pub use activations::{Activation, Activations, Normaliser, NormaliserConfig, Sense};
+pub use detector::{HebbianDetector, Learned, NORMALISER, SNAPSHOT_LENGTH};
+pub use gains::Gains;
+pub use network::{Network, Output, Weight};
+pub use rule::{Config, Config as LearningConfig, NotAllowed, Rule};
+pub use snapshot::Damaged;
+pub use teacher::{Situation, Teacher, TeacherConfig};
+pub use tenax_hal_shim::words::{Code, Codes, NoLesson};
+
+/// Receptors of one fingertip: 12 vibration, 12 pressure (Tada 2006, section III.A).
+pub const RECEPTORS: usize = 24;
+/// Outputs: relative motion (o1) and direction (o2).
+pub const OUTPUTS: usize = 2;
+
+/// The network of one fingertip.
+pub type FingertipNetwork = Network<RECEPTORS, OUTPUTS>;

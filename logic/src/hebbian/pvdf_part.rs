@@ -1,0 +1,85 @@
+//! What the films hear of the object, and what that adds to o1.
+//!
+//! What a film hears all the time, noise and what is left of hum, is none of the object's: its quiet level is taken off its
+//! envelope. It follows the envelope's median while the finger is known to be unloaded, and stands still in a grasp. A finger that
+//! was switched on in a grasp, by a reset for one, cannot tell noise from slip: its films are not heard until it lets go.
+
+use tenax_hal_shim::channel::PVDF_COUNT;
+
+use super::Gains;
+use super::detector::Felt;
+use super::network::Weight;
+
+/// Fraction bits of a film's envelope (Q16) that are below what a film can tell; 4 are left, as a gauge's load has.
+const ENVELOPE_SHIFT: u32 = 12;
+
+/// How far a quiet level goes after an envelope in a tick, 1/16 of a sample: 4 mV in 0.15 s. A step of one size, whatever
+/// the envelope's, makes it the median, which an impact does not move.
+const QUIET_STEP: i32 = 1;
+
+/// Quiet levels, readings, and gains.
+#[derive(Clone, Debug, Default)]
+pub(super) struct PvdfPart {
+    /// What each film hears of nothing, 1/16 of a sample.
+    quiet: [i32; PVDF_COUNT],
+    /// Whether the finger has been unloaded since the start.
+    quiet_known: bool,
+    /// What each film hears beyond its quiet level, 1/16 of a sample.
+    heard: [i32; PVDF_COUNT],
+    /// What that adds to o1 while nothing is learned.
+    gains: Gains<PVDF_COUNT>,
+    /// Whether a weight or a maximum has changed since.
+    stale: bool,
+}
+
+impl PvdfPart {
+    /// Hears one tick; nothing while the quiet levels are not known. Gives the sum of what it adds to o1, by the gains.
+    #[inline]
+    pub(super) fn process(&mut self, felt: &Felt<'_>) -> i64 {
+        self.quiet_known |= felt.unloaded;
+        if !self.quiet_known {
+            return 0;
+        }
+        let beyond: [i32; PVDF_COUNT] =
+            core::array::from_fn(|n| (felt.envelopes[n] >> ENVELOPE_SHIFT) - self.quiet[n]);
+        if felt.unloaded {
+            for (quiet, beyond) in self.quiet.iter_mut().zip(beyond) {
+                *quiet += beyond.signum() * QUIET_STEP;
+            }
+        }
+        self.heard = beyond.map(|beyond| beyond.max(0));
+        self.parts().map(i64::from).sum()
+    }
+
+    /// What each film hears beyond its quiet level, 1/16 of a sample.
+    pub(super) const fn heard(&self) -> &[i32; PVDF_COUNT] {
+        &self.heard
+    }
+
+    /// What each film adds to o1, by the gains.
+    #[inline]
+    pub(super) fn parts(&self) -> impl Iterator<Item = i32> {
+        self.gains.each().iter().zip(&self.heard).map(|(gain, &heard)| gain.part(heard))
+    }
+
+    /// Whether the quiet levels are known.
+    pub(super) const fn is_quiet_known(&self) -> bool {
+        self.quiet_known
+    }
+
+    /// A weight or a maximum has changed.
+    pub(super) const fn outdate(&mut self) {
+        self.stale = true;
+    }
+
+    /// Whether one has, since the gains were made.
+    pub(super) const fn is_outdated(&self) -> bool {
+        self.stale
+    }
+
+    /// Makes the gains anew.
+    pub(super) fn renew(&mut self, weights: &[Weight], maxima: &[u32]) {
+        self.gains = Gains::of(weights, maxima);
+        self.stale = false;
+    }
+}

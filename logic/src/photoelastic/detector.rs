@@ -1,0 +1,55 @@
+//! The photoelastic head as a detector: its flicker, while something is held and nothing else shakes it.
+
+use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
+
+use super::{ALUMINIUM, HeadConfig};
+use crate::detectors::{Description, Detector, Said, Sensed, confidence};
+use tenax_hal_shim::channel::frames;
+
+/// After an impact or a fast run of the motor, in frames: the load still changes, and the filters ring.
+const AFTER_NOISE: u32 = frames(160);
+
+/// What it said last.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PhotoelasticDetector {
+    quiet: u32,
+    level: i32,
+    rate_um_s: i32,
+    health: DetectorHealth,
+}
+
+impl Detector for PhotoelasticDetector {
+    const ID: DetectorId = DetectorId::Photoelastic;
+    type Config = HeadConfig;
+
+    #[inline]
+    fn step(&mut self, config: &HeadConfig, sensed: &Sensed<'_>) -> Option<Said> {
+        config.fitted.then(|| self.judge(config, sensed))
+    }
+
+    fn describe(&self, config: &HeadConfig) -> Description {
+        Description {
+            confidence_permille: confidence(self.level, config.slip.into()),
+            direction: Direction::Unknown,
+            health: self.health,
+            raw: self.rate_um_s,
+        }
+    }
+}
+
+impl PhotoelasticDetector {
+    /// Most hands have no head.
+    #[cold]
+    #[inline(never)]
+    fn judge(&mut self, config: &HeadConfig, sensed: &Sensed<'_>) -> Said {
+        let head = sensed.head;
+        self.quiet = if sensed.noisy { 0 } else { self.quiet.saturating_add(1) };
+        let slips = sensed.valid && head.vibrates() && !sensed.unloaded && self.quiet >= AFTER_NOISE;
+        if sensed.forces_are_new {
+            self.level = head.level();
+            self.rate_um_s = if slips { head.rate_um_s(config, &ALUMINIUM) } else { 0 };
+            self.health = if head.is_usable() { DetectorHealth::Working } else { DetectorHealth::Blind };
+        }
+        Said::slip(slips)
+    }
+}

@@ -1,0 +1,78 @@
+//! Why the chip started, from the flags that its resets leave and a mark in RAM, and whether it has restarted too often.
+//!
+//! RM0383, section 6.3.20: any reset sets the pin's flag, a brown-out its own as well, and switching on those and its own.
+//! Flags stay until the next start clears them, so a reset in the first instants of a start adds to the ones before: the one
+//! that takes most away is told.
+
+use tenax_hal_shim::wire::ResetCause;
+use tenax_hal_shim::words::Fault;
+
+/// Restarts in a row after which the hand stays off: a hand that hangs, or pulls its supply down, as it begins to close would
+/// close a little further each time.
+pub const RESTARTS_MAX: u32 = 5;
+
+/// The chip's reset flags.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Flags {
+    /// The supply came from nothing.
+    pub power_on: bool,
+    /// The supply fell below the brown-out level, or came from nothing.
+    pub brown_out: bool,
+    /// The watchdog.
+    pub watchdog: bool,
+    /// Software.
+    pub software: bool,
+    /// The reset pin, or any other reset.
+    pub pin: bool,
+}
+
+/// What the run before wrote down before it reset the chip.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mark {
+    /// A panic or a fault of the core.
+    Panicked,
+    /// The voltage detector said that the supply falls.
+    SupplySagged,
+    /// The clock security system said that the crystal stopped.
+    CrystalLost,
+}
+
+/// How a run began.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Start {
+    /// Why the chip started.
+    pub cause: ResetCause,
+    /// Why the last run ended, if not by switching off.
+    pub after: Option<Fault>,
+    /// Restarts in a row, to be kept until the next start.
+    pub restarts: u32,
+    /// It has restarted too often: nothing is to move any more.
+    pub stay_off: bool,
+}
+
+/// How this run began; `restarts` is what was kept.
+///
+/// A restart counts if the hand brought it about: its software by a panic or by hanging, its motor by pulling the supply down.
+/// A lost clock is the board's and is survived on the chip's own oscillator: it neither counts nor clears the count.
+#[must_use]
+pub fn judge(flags: Flags, mark: Option<Mark>, restarts: u32) -> Start {
+    let mark = mark.filter(|_| flags.software);
+    let (cause, after) = match (flags, mark) {
+        (Flags { power_on: true, .. }, _) => (ResetCause::PowerOn, None),
+        (Flags { brown_out: true, .. }, _) => (ResetCause::Other, Some(Fault::SupplySagged)),
+        (Flags { watchdog: true, .. }, _) => (ResetCause::Watchdog, Some(Fault::WatchdogReset)),
+        (_, Some(Mark::Panicked)) => (ResetCause::Panic, Some(Fault::PanicReset)),
+        (_, Some(Mark::SupplySagged)) => (ResetCause::Software, Some(Fault::SupplySagged)),
+        (_, Some(Mark::CrystalLost)) => (ResetCause::Software, Some(Fault::CrystalLost)),
+        (Flags { software: true, .. }, None) => (ResetCause::Software, None),
+        (Flags { pin: true, .. }, None) => (ResetCause::Pin, None),
+        _ => (ResetCause::Other, None),
+    };
+    let restarts = match after {
+        None => 0,
+        Some(Fault::CrystalLost) => restarts.min(RESTARTS_MAX),
+        Some(_) => restarts.saturating_add(1),
+    };
+    let stay_off = restarts > RESTARTS_MAX;
+    Start { cause, after: if stay_off { Some(Fault::TooManyRestarts) } else { after }, restarts, stay_off }
+}

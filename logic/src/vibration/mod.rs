@@ -1,0 +1,285 @@
+//! S1: slip from the vibration of the PVDF films (Prosthesis, sections 4 and 5).
+//!
+//! Of each film its conditioning (`film`) gives the envelope of the slip band, 20 to 150 Hz, and the size of what is above it.
+//! The loudest film's of the latter goes through one more low-pass: the envelope above the band. The bands are those of real
+//! slip onsets, which have 83 to 94 % of their energy below 100 Hz and 1 to 3 % above 200 Hz.
+//!
+//! An impact is as loud as slip or louder, but rings above the band, and is over soon. So S1 needs a loud band, and a
+//! quieter sound above it, or a sound that stays.
+
+pub mod channel_mask;
+pub mod detector;
+mod film;
+pub mod hum;
+pub mod quality;
+pub mod settings;
+pub mod sliding;
+
+use tenax_hal_shim::channel::PVDF_COUNT;
+use tenax_hal_shim::wire::TickRecord;
+
+use self::channel_mask::ChannelMask;
+pub(crate) use self::film::Q;
+use self::film::{ENVELOPE, Film, Levels};
+use self::hum::{Mains, Turn};
+use self::sliding::{Hand, Sliding};
+use crate::vibration::settings::VibrationConfig;
+
+/// A loud vibration that has rung for this long is an impact's, in frames: what slides rings for a tick now and then.
+const IMPACT_RINGS: u32 = 12;
+/// A peak of the envelope is forgotten over `2^PEAK_SHIFT` frames, 0.13 s.
+const PEAK_SHIFT: u32 = 8;
+
+/// How far a film's sample can be believed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Trust {
+    /// It is a number.
+    #[default]
+    Full,
+    /// The film may be freezing: its jump to where it froze is not to be taken for slip.
+    Doubtful,
+    /// It is no number.
+    None,
+}
+
+/// What the films say in one tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Vibration {
+    /// Envelope of the loudest film, samples (14 bits).
+    pub level: u16,
+    /// Whether it is slip: above S1 and no impact.
+    pub s1: bool,
+    /// Whether it rings above the slip band as an impact does, and has not lasted longer than one.
+    pub impact: bool,
+    /// Whether something slides steadily, far below S1 (see [`sliding`]).
+    pub slides: bool,
+    /// The films that are masked because each was loud alone, a bit each.
+    pub masked: u16,
+}
+
+/// The detector.
+#[derive(Clone, Debug, Default)]
+pub struct VibrationDetector {
+    films: [Film; PVDF_COUNT],
+    mains: Mains,
+    envelopes: [i32; PVDF_COUNT],
+    /// Whether no film waits for its first sample.
+    all_primed: bool,
+    above: i32,
+    loud_frames: u32,
+    ringing_frames: u32,
+    /// The largest envelope since it became loud, slowly forgotten, and how many loud frames it took.
+    peak: i32,
+    peak_at: u32,
+    /// For how many frames it has rung since it became loud.
+    rang_frames: u32,
+    s1: bool,
+    mask: ChannelMask,
+    sliding: Sliding,
+    slides: bool,
+}
+
+impl VibrationDetector {
+    /// Takes every film's sample of one tick, and how far each can be believed: None if all of them can.
+    #[inline(always)]
+    pub fn process(
+        &mut self,
+        config: &VibrationConfig,
+        samples: &[u16; PVDF_COUNT],
+        trusts: Option<&[Trust; PVDF_COUNT]>,
+    ) -> Vibration {
+        let mains = self.mains.turn();
+        if self.mask.masked() != 0 {
+            let trusts = self.with_masks(config, trusts);
+            let loudest = self.process_each(samples, &trusts, mains);
+            return self.judge(config, loudest);
+        }
+        let loudest = match trusts {
+            None if self.all_primed => self.process_all(samples, mains),
+            None => self.process_each(samples, &[Trust::Full; PVDF_COUNT], mains),
+            Some(trusts) => self.process_each(samples, trusts, mains),
+        };
+        self.judge(config, loudest)
+    }
+
+    /// Another sensor is in a film's place from now on: its jump is no vibration.
+    pub fn forget(&mut self, film: usize) {
+        if let Some(film) = self.films.get_mut(film) {
+            *film = Film::default();
+            self.all_primed = false;
+        }
+    }
+
+    /// What a masked film hears is as doubtful as what a freezing one does.
+    #[inline(never)]
+    fn with_masks(
+        &mut self,
+        config: &VibrationConfig,
+        trusts: Option<&[Trust; PVDF_COUNT]>,
+    ) -> [Trust; PVDF_COUNT] {
+        let mut masked = trusts.copied().unwrap_or([Trust::Full; PVDF_COUNT]);
+        let on = i32::from(config.s1) << Q;
+        for (n, (trust, film)) in masked.iter_mut().zip(&self.films).enumerate() {
+            if *trust == Trust::Full && self.mask.is_masked(n) {
+                self.mask.check_masked(n, film.level(), on);
+                *trust = Trust::Doubtful;
+            }
+        }
+        masked
+    }
+
+    /// Every film at once, when all of them can be believed: the usual tick.
+    #[inline]
+    fn process_all(&mut self, samples: &[u16; PVDF_COUNT], mains: Turn) -> Levels {
+        let mut loudest = Levels::default();
+        for ((film, own), &sample) in self.films.iter_mut().zip(&mut self.envelopes).zip(samples) {
+            let levels = film.process(sample, mains);
+            *own = levels.envelope;
+            loudest.raise(levels);
+        }
+        loudest
+    }
+
+    #[inline(never)]
+    fn process_each(
+        &mut self,
+        samples: &[u16; PVDF_COUNT],
+        trusts: &[Trust; PVDF_COUNT],
+        mains: Turn,
+    ) -> Levels {
+        let mut loudest = Levels::default();
+        self.all_primed = true;
+        for (((film, own), &sample), &trust) in
+            self.films.iter_mut().zip(&mut self.envelopes).zip(samples).zip(trusts)
+        {
+            // Suspect PVDF channels are masked, their held envelope included.
+            *own = 0;
+            if trust == Trust::None {
+                // Primed anew when it comes back: its jump back is no vibration.
+                *film = Film::default();
+                self.all_primed = false;
+                continue;
+            }
+            film.prime(sample);
+            let levels = film.process(sample, mains);
+            if trust == Trust::Full {
+                *own = levels.envelope;
+                loudest.raise(levels);
+            }
+        }
+        loudest
+    }
+
+    /// What all films said in this tick.
+    fn judge(&mut self, config: &VibrationConfig, loudest: Levels) -> Vibration {
+        let Levels { envelope, above } = loudest;
+        let asked = self.mains.asks().filter(|_| self.loud_frames == 0);
+        if let Some(film) = asked.and_then(|film| self.films.get_mut(film)) {
+            film.adapt(&mut self.mains, config.mains_60_hz);
+        }
+        let above = ENVELOPE.process(&mut self.above, above);
+        let on = i32::from(config.s1) << Q;
+        // Once on, half the threshold keeps it on: the envelope of one slip has dips.
+        let loud = envelope > if self.s1 { on / 2 } else { on };
+        if loud {
+            self.mask.count_loud(&self.envelopes, on);
+        } else {
+            self.mask.count_quiet();
+        }
+        self.loud_frames = if loud { self.loud_frames.saturating_add(1) } else { 0 };
+        // A quiet film's noise is mostly above the band too, but no impact is as quiet.
+        let rings = above > i32::from(config.impact_level) << Q
+            && i64::from(above) * 1_000 > i64::from(envelope) * i64::from(config.impact_permille);
+        self.ringing_frames = if rings { self.ringing_frames.saturating_add(1) } else { 0 };
+        self.rang_frames = if loud { self.rang_frames.saturating_add(rings.into()) } else { 0 };
+        self.peak -= self.peak >> PEAK_SHIFT;
+        if !loud || envelope >= self.peak {
+            self.peak = envelope;
+            self.peak_at = self.loud_frames;
+        }
+        // What has rung is an impact until it has lasted longer than one and has not died away as one: an impact is loudest as
+        // it begins.
+        let lasts = self.loud_frames >= config.impact_frames && 4 * self.peak_at >= 3 * config.impact_frames;
+        let impact = rings || self.rang_frames >= IMPACT_RINGS;
+        self.s1 = loud && (self.s1 || !impact || lasts);
+        Vibration {
+            level: (envelope >> Q).clamp(0, i32::from(TickRecord::VIBRATION_MAX)) as u16,
+            s1: self.s1,
+            impact: rings && self.ringing_frames < config.impact_frames,
+            slides: self.slides,
+            masked: self.mask.masked(),
+        }
+    }
+
+    /// Listens for steady sliding: call it once in a slow frame.
+    pub fn slow(&mut self, hand: &Hand) {
+        self.slides = self.sliding.step(&self.envelopes, self.above, hand);
+    }
+
+    /// Each film's envelope in the slip band, Q16 samples; 0 of one that gives no number.
+    #[must_use]
+    pub const fn envelopes(&self) -> &[i32; PVDF_COUNT] {
+        &self.envelopes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::Config;
+    use core::f64::consts::PI;
+    use std::vec::Vec;
+    use tenax_hal_shim::channel::{FRAME_HZ, SAMPLE_MAX};
+
+    fn tick(detector: &mut VibrationDetector, sample: u16, trust: Trust) -> Vibration {
+        detector.process(&Config::default().vibration, &[sample; PVDF_COUNT], Some(&[trust; PVDF_COUNT]))
+    }
+
+    fn levels(samples: &[u16]) -> Vec<Vibration> {
+        let mut detector = VibrationDetector::default();
+        samples.iter().map(|&sample| tick(&mut detector, sample, Trust::Full)).collect()
+    }
+
+    fn tone(hz: f64, amplitude: f64, decay_s: f64, frames: u32) -> Vec<u16> {
+        (0..frames)
+            .map(|n| {
+                let t = f64::from(n) / f64::from(FRAME_HZ);
+                (8_192.0 + amplitude * (-t / decay_s).exp() * (2.0 * PI * hz * t).sin()) as u16
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_tone_in_the_band_is_slip_and_any_steady_voltage_is_not() {
+        assert!(levels(&tone(60.0, 3_000.0, 1e9, 400)).iter().any(|v| v.s1));
+        for steady in [0, 1, 8_192, SAMPLE_MAX] {
+            assert!(levels(&[steady; 4_000]).iter().all(|v| !v.s1 && v.level == 0));
+        }
+    }
+
+    #[test]
+    fn an_impact_is_not_slip_though_it_is_louder() {
+        let impact = levels(&tone(300.0, 7_000.0, 0.006, 400));
+        assert!(impact.iter().map(|v| v.level).max() > Some(Config::default().vibration.s1));
+        assert!(impact.iter().all(|v| !v.s1));
+    }
+
+    #[test]
+    fn a_high_tone_that_stays_is_slip_after_the_time_that_an_impact_lasts() {
+        let seen = levels(&tone(300.0, 7_000.0, 1e9, 400));
+        let first_loud = seen.iter().position(|v| v.level > 600).unwrap();
+        let first_s1 = seen.iter().position(|v| v.s1).unwrap();
+        let impact_frames = Config::default().vibration.impact_frames as usize;
+        assert!((first_s1 - first_loud).abs_diff(impact_frames) <= 10, "{first_loud} {first_s1}");
+    }
+
+    #[test]
+    fn a_film_that_comes_back_is_primed_anew() {
+        let mut detector = VibrationDetector::default();
+        for (trust, sample) in [(Trust::Full, 12_000), (Trust::None, 0), (Trust::Full, 12_000)] {
+            for _ in 0..200 {
+                assert_eq!(tick(&mut detector, sample, trust), Vibration::default());
+            }
+        }
+    }
+}

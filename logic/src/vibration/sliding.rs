@@ -1,0 +1,192 @@
+//! Steady sliding: films that stay above the noise they had while the object was held still.
+//!
+//! The onset of slip is loud, what follows is not: on the shared rig an object that slides at 40 mm/s gives a tenth of the
+//! onset's envelope. A threshold in volts that hears it would take any film's own noise for slip. So each film is compared with
+//! its own floor, which it had since the grasp began, and several films, smoothed over 0.1 s, have to agree for 0.2 s. A
+//! impact is over before, and what rings above the band more than in it is the world's noise, not the object's.
+//!
+//! What is heard so weakly is answered as a warning is, with small pulses, and only while they help: once the load has
+//! grown by half, it is no sliding that closing could stop.
+
+use tenax_hal_shim::channel::PVDF_COUNT;
+
+/// Slow frames over which floors are learned when a grasp begins: 0.3 s.
+const LEARN_FRAMES: u16 = 24;
+/// Of them, the first, in which they go to what is heard now.
+const LEAP_FRAMES: u16 = 4;
+/// Shifts of the low-passes, in slow frames: a floor's way down, up while it is learned, up later (13 s), and what is compared
+/// with it.
+const DOWN_SHIFT: u32 = 2;
+const LEARN_SHIFT: u32 = 4;
+const UP_SHIFT: u32 = 10;
+const SMOOTH_SHIFT: u32 = 3;
+/// Fraction bits of a level, in samples: what a few floors have room for.
+const Q: u32 = 8;
+/// A floor is at least this: 1 mV, more than the converter's own noise.
+const LEAST_FLOOR: i32 = 5 << Q;
+/// Films that have to agree.
+const FILMS: u32 = 3;
+/// How far above its floor a film is loud by itself, and together with the noise above the band, in floors.
+const LOUD: i32 = 6;
+const LOUD_TOGETHER: i32 = 2;
+const LOUD_ABOVE: i32 = 3;
+/// Slow frames in which it must be so, 0.2 s: the longest impact is over before. And of silence after which it is over.
+const BEGIN_FRAMES: u8 = 16;
+const END_FRAMES: u8 = 8;
+/// The load may grow by one part in so many, and by this, mN, while sliding is said.
+const GROWTH_PART: i32 = 2;
+const GROWTH_MN: i32 = 1_000;
+/// Slow frames of silence after which what closing did not stop is believed again: 1 s.
+const QUIET_FRAMES: u8 = 80;
+
+/// What the hand does meanwhile.
+#[derive(Clone, Copy, Debug)]
+pub struct Hand {
+    /// The load, mN; None while the finger holds nothing, or nobody knows.
+    pub load_mn: Option<i32>,
+    /// A muscle moves it.
+    pub wearer: bool,
+    /// It is loud itself: it answers slip, or settles.
+    pub striking: bool,
+}
+
+/// A level and its floor, [`Q`] fraction bits.
+#[derive(Clone, Copy, Debug, Default)]
+struct Level {
+    smooth: i32,
+    floor: i32,
+}
+
+impl Level {
+    /// Takes what is heard now, Q16; how loud it is, in floors, up to `most`. The floor moves by `2^-up` of what it lacks.
+    #[inline]
+    fn step(&mut self, now: i32, up: u32, most: i32) -> Floors {
+        let now = now >> (16 - Q);
+        let shift = if now < self.floor { DOWN_SHIFT } else { up };
+        self.floor += (now - self.floor) >> shift;
+        let floor = self.floor.max(LEAST_FLOOR);
+        // An impact is loud and short, sliding is neither: how loud does not count, only for how long.
+        self.smooth += (now.min(most * floor) - self.smooth) >> SMOOTH_SHIFT;
+        Floors { level: self.smooth, floor }
+    }
+}
+
+/// A level beside its floor. Both are below 2^22, so that a few floors fit.
+#[derive(Clone, Copy)]
+struct Floors {
+    level: i32,
+    floor: i32,
+}
+
+impl Floors {
+    const fn are_over(self, floors: i32) -> bool {
+        self.level > floors * self.floor
+    }
+}
+
+/// Hears sliding.
+#[derive(Clone, Debug, Default)]
+pub struct Sliding {
+    films: [Level; PVDF_COUNT],
+    above: Level,
+    learned_for: u16,
+    lasted: u8,
+    said: bool,
+    /// The load when it was first said.
+    load_mn: i32,
+    /// Closing did not help, and how long it has been quiet since.
+    in_vain: bool,
+    quiet: u8,
+}
+
+impl Sliding {
+    /// Takes a slow frame: each film's envelope in the slip band, and the loudest film's above it, Q16 samples. Whether
+    /// something slides.
+    pub fn step(&mut self, envelopes: &[i32; PVDF_COUNT], above: i32, hand: &Hand) -> bool {
+        let Some(load_mn) = hand.load_mn.filter(|_| !hand.wearer) else {
+            (self.learned_for, self.lasted, self.said, self.in_vain) = (0, 0, false, false);
+            return false;
+        };
+        if hand.striking {
+            return self.said;
+        }
+        let up = if self.learned_for < LEAP_FRAMES {
+            DOWN_SHIFT
+        } else if self.learned_for < LEARN_FRAMES {
+            LEARN_SHIFT
+        } else {
+            UP_SHIFT
+        };
+        let (mut loud, mut together, mut loudest) = (0, 0, 0);
+        for (film, &now) in self.films.iter_mut().zip(envelopes) {
+            let heard = film.step(now, up, 2 * LOUD);
+            loud += u32::from(heard.are_over(LOUD));
+            together += u32::from(heard.are_over(LOUD_TOGETHER));
+            loudest = loudest.max(heard.level);
+        }
+        let above = self.above.step(above, up, 2 * LOUD_ABOVE);
+        self.learned_for = self.learned_for.saturating_add(1);
+        if self.learned_for < LEARN_FRAMES {
+            return false;
+        }
+        let sounds =
+            above.level < loudest && (loud >= FILMS || (above.are_over(LOUD_ABOVE) && together >= FILMS));
+        self.lasted = if sounds == self.said { 0 } else { self.lasted + 1 };
+        if self.lasted >= if sounds { BEGIN_FRAMES } else { END_FRAMES } {
+            (self.said, self.lasted, self.load_mn) = (sounds, 0, load_mn);
+        }
+        self.in_vain |= self.said && load_mn > self.load_mn + self.load_mn / GROWTH_PART + GROWTH_MN;
+        self.quiet = if sounds { 0 } else { self.quiet.saturating_add(1) };
+        self.in_vain &= self.quiet < QUIET_FRAMES;
+        self.said && !self.in_vain
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MV: i32 = 5 << 16;
+
+    /// Slow frames of one sound: in the band of so many films, and above it.
+    fn after(sliding: &mut Sliding, frames: u32, films: usize, mv: i32, above_mv: i32, load_mn: i32) -> bool {
+        let mut envelopes = [2 * MV; PVDF_COUNT];
+        envelopes[..films].fill(mv * MV);
+        let hand = Hand { load_mn: Some(load_mn), wearer: false, striking: false };
+        (0..frames).fold(false, |_, _| sliding.step(&envelopes, above_mv * MV, &hand))
+    }
+
+    #[test]
+    fn films_that_stay_above_their_floors_slide_and_short_or_lonely_ones_do_not() {
+        let mut sliding = Sliding::default();
+        assert!(!after(&mut sliding, 400, 12, 2, 1, 4_000));
+        assert!(!after(&mut sliding, 5, 12, 200, 20, 4_000), "an impact");
+        assert!(!after(&mut sliding, 60, 12, 2, 1, 4_000));
+        assert!(!after(&mut sliding, 400, 2, 40, 1, 4_000), "two films of twelve");
+        assert!(!after(&mut sliding, 400, 12, 8, 12, 4_000), "it rings above the band");
+        after(&mut sliding, 400, 12, 2, 1, 4_000);
+        assert!(after(&mut sliding, 40, 12, 20, 1, 4_000), "a texture's tone");
+        assert!(!after(&mut sliding, 40, 12, 2, 1, 4_000));
+        assert!(after(&mut sliding, 40, 12, 6, 5, 4_000), "as on the rig: more of it above the band");
+    }
+
+    #[test]
+    fn noise_since_the_grasp_began_is_a_floor_and_not_sliding() {
+        let mut sliding = Sliding::default();
+        assert!(!after(&mut sliding, 4_000, 12, 60, 30, 4_000));
+        assert!(!after(&mut sliding, 400, 12, 110, 60, 4_000));
+        assert!(after(&mut sliding, 40, 12, 700, 60, 4_000));
+    }
+
+    #[test]
+    fn what_closing_does_not_stop_is_not_believed_before_it_was_quiet() {
+        let mut sliding = Sliding::default();
+        after(&mut sliding, 400, 12, 2, 1, 4_000);
+        assert!(after(&mut sliding, 40, 12, 20, 1, 4_000));
+        assert!(after(&mut sliding, 8, 12, 20, 1, 6_000));
+        assert!(!after(&mut sliding, 8, 12, 20, 1, 7_500));
+        assert!(!after(&mut sliding, 40, 12, 20, 1, 7_500));
+        after(&mut sliding, 160, 12, 2, 1, 7_500);
+        assert!(after(&mut sliding, 40, 12, 20, 1, 7_500));
+    }
+}

@@ -1,0 +1,84 @@
+//! The command line of the serial tools, a file a subcommand; the whole tool takes each from here.
+
+pub mod calibrate;
+pub mod config;
+pub mod flash;
+pub mod monitor;
+pub mod out;
+pub mod play;
+pub mod port;
+pub mod record;
+pub mod settings;
+pub mod wiring;
+pub mod workspace;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Watches, records, plays and sets up a Tenax fingertip over its serial line.
+#[derive(Debug, Parser)]
+#[command(name = "tenax", version)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Calibrate a sensor or the wearer's muscles, step by step
+    Calibrate(calibrate::Args),
+    /// Flash a NUCLEO-F411RE through probe-rs
+    Flash(flash::Args),
+    /// Watch a board: a screen, or one line a message
+    Monitor(monitor::Args),
+    /// Record a board's line
+    Record(record::Args),
+    /// Play a recording: serve its line, or write it as CSV
+    Play(play::Args),
+    /// Show and change a board's settings
+    Config(config::Args),
+    /// Print the channel map as a Markdown table
+    Wiring,
+    /// Print every setting with unit, range, default and meaning as a Markdown table
+    Settings,
+}
+
+/// Runs the command line. 0: done. 2: it could not be run.
+#[must_use]
+pub fn main() -> ExitCode {
+    exit(match Cli::parse().command {
+        Command::Calibrate(args) => calibrate::main(&args),
+        Command::Flash(args) => flash::main(&args),
+        Command::Monitor(args) => monitor::main(&args),
+        Command::Record(args) => record::main(&args),
+        Command::Play(args) => play::main(&args),
+        Command::Config(args) => config::main(&args),
+        Command::Wiring => wiring::main(),
+        Command::Settings => settings::main(),
+    })
+}
+
+/// What a command that has ended exits with; says what went wrong.
+pub fn exit(done: anyhow::Result<ExitCode>) -> ExitCode {
+    match done {
+        Ok(code) => code,
+        // Whoever read our output has read enough.
+        Err(error) if error.is::<out::Closed>() => ExitCode::SUCCESS,
+        Err(error) => {
+            out::note!("error: {error:#}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        Cli::command().debug_assert();
+    }
+}

@@ -1,0 +1,203 @@
+//! `tenax config`: a board's settings.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Duration;
+
+use anyhow::{Context, bail};
+use clap::Subcommand;
+use tenax_hal_shim::wire::{Answer, Down, Refusal, SETTINGS_PER_ANSWER, Setting};
+use tenax_logic::setting::SettingId;
+
+use super::{out, port};
+use crate::captured::line_of;
+use crate::link::{Client, Target};
+use crate::settings;
+use crate::suggest::{Suggestion, Suggestions};
+
+/// How long a board may take to answer.
+const ANSWER_WITHIN: Duration = Duration::from_secs(2);
+
+/// Show and change a board's settings.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Where the line is [default: the only board that is plugged in]
+    #[arg(long, value_name = "PORT", global = true)]
+    port: Option<Target>,
+    #[command(subcommand)]
+    command: Command,
+}
+
+const SUGGEST_EXAMPLES: &str = "\
+Examples:
+  tenax record --seconds 60 --out hand.mcap      rest, then contract each muscle, then hold something and let it slip
+  tenax config suggest hand.mcap                 prints the commands that set what was found, and why
+  tenax config suggest hand.mcap --write         sets it";
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Every setting: value, unit, range, default, meaning
+    List,
+    /// One setting's value
+    Get {
+        /// Its name, such as s1-mv
+        name: String,
+    },
+    /// Change settings; each is read back
+    Set {
+        /// Such as s1-mv=120
+        #[arg(required = true, value_name = "NAME=VALUE", value_parser = |text: &str| settings::parse(text))]
+        settings: Vec<Setting>,
+    },
+    /// Write every setting to a TOML file
+    Export {
+        /// [default: standard output]
+        file: Option<PathBuf>,
+    },
+    /// Set everything that a TOML file names
+    Import {
+        /// As `export` writes it
+        file: PathBuf,
+    },
+    /// Thresholds from a recording of this board, each with its reason; with --write they are set
+    #[command(after_help = SUGGEST_EXAMPLES)]
+    Suggest {
+        /// A recording (MCAP) or a captured line: some seconds of quiet, of holding, of slip, of contractions
+        file: PathBuf,
+        /// Set them, too
+        #[arg(long)]
+        write: bool,
+    },
+    /// Set settings back to their defaults
+    Reset {
+        /// Their names [default: all but line-trusted-flag]
+        names: Vec<String>,
+    },
+}
+
+/// Shows and changes settings.
+pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
+    // What is wrong with a file or a name is said before the board is asked.
+    let wanted = wanted(&args.command)?;
+    if let Command::Suggest { file, write } = &args.command {
+        return suggest(file, write.then_some(args.port.as_ref()));
+    }
+    let mut client = Client::open(&port::or_found(args.port.as_ref())?)?;
+    match &args.command {
+        Command::Suggest { .. } => {}
+        Command::List => out::print(format_args!("{}", list(&all(&mut client)?)))?,
+        Command::Get { name } => {
+            let answer = client.ask(&Down::Get(settings::named(name)?.number()), ANSWER_WITHIN)?;
+            let Answer::Setting(setting) = answer else { bail!("the board answers {answer:?}") };
+            out::say!("{}", setting.value)?;
+        }
+        Command::Export { file } => {
+            let text = settings::toml(&all(&mut client)?);
+            match file {
+                None => out::print(format_args!("{text}"))?,
+                Some(file) => {
+                    std::fs::write(file, text).with_context(|| format!("cannot write {}", file.display()))?;
+                }
+            }
+        }
+        Command::Set { .. } | Command::Import { .. } | Command::Reset { .. } => {
+            for setting in &wanted {
+                set(&mut client, *setting)?;
+            }
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// What is to be set.
+fn wanted(command: &Command) -> anyhow::Result<Vec<Setting>> {
+    let default = |id: SettingId| Setting { id: id.number(), value: id.row().default };
+    match command {
+        Command::List | Command::Export { .. } | Command::Suggest { .. } => Ok(Vec::new()),
+        Command::Get { name } => settings::named(name).map(|_| Vec::new()),
+        Command::Set { settings } => Ok(settings.clone()),
+        Command::Import { file } => {
+            let text =
+                std::fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
+            settings::of_toml(&text).with_context(|| file.display().to_string())
+        }
+        Command::Reset { names } if names.is_empty() => {
+            Ok(SettingId::ALL.into_iter().filter(|id| *id != SettingId::LineTrusted).map(default).collect())
+        }
+        Command::Reset { names } => names.iter().map(|name| settings::named(name).map(default)).collect(),
+    }
+}
+
+/// What a recording says of thresholds; set over this line, if they are to be.
+fn suggest(file: &Path, write: Option<Option<&Target>>) -> anyhow::Result<ExitCode> {
+    let Suggestions { all, missing } = Suggestions::of(&line_of(file)?);
+    for Suggestion { id, value, why } in &all {
+        out::say!("tenax config set {}={value}    # {why}", id.row().name)?;
+    }
+    for why in missing {
+        out::say!("# {why}")?;
+    }
+    if let Some(port) = write {
+        let mut client = Client::open(&port::or_found(port)?)?;
+        for suggestion in &all {
+            set(&mut client, suggestion.setting())?;
+        }
+    }
+    Ok(if all.is_empty() { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+/// Every setting of the board.
+fn all(client: &mut Client) -> anyhow::Result<Vec<Setting>> {
+    let mut settings: Vec<Setting> = Vec::new();
+    let mut from = 0;
+    loop {
+        let answer = client.ask(&Down::Settings(from), ANSWER_WITHIN)?;
+        let Answer::Settings(some) = answer else { bail!("the board answers {answer:?}") };
+        settings.extend(&some);
+        match some.last() {
+            Some(last) if some.len() == SETTINGS_PER_ANSWER && last.id < u8::MAX => from = last.id + 1,
+            _ => return Ok(settings),
+        }
+    }
+}
+
+fn set(client: &mut Client, setting: Setting) -> anyhow::Result<()> {
+    let name = SettingId::from_number(setting.id).map_or("?", |id| id.row().name);
+    match client.ask(&Down::Set(setting), ANSWER_WITHIN)? {
+        Answer::Setting(own) if own == setting => {}
+        Answer::Setting(own) => bail!("{name}: the board says {} instead of {}", own.value, setting.value),
+        Answer::Refused(Refusal::OutOfRange { min, max }) => {
+            bail!("{name} = {} is refused: it has to be {min} to {max}", setting.value)
+        }
+        Answer::Refused(Refusal::NotArmed) => bail!(
+            "{name} is refused: nobody at the hand has consented. Contract both muscles for 2 s or press the blue button, \
+             then try again within a minute"
+        ),
+        Answer::Refused(why) => bail!("{name} = {} is refused: {why:?}", setting.value),
+        other => bail!("the board answers {other:?}"),
+    }
+    // What it answers is what it has; what it has is asked for once more.
+    match client.ask(&Down::Get(setting.id), ANSWER_WITHIN)? {
+        Answer::Setting(own) if own == setting => {
+            out::say!("{name} = {}", own.value)
+        }
+        other => bail!("{name} was set to {}, and the board now answers {other:?}", setting.value),
+    }
+}
+
+fn list(settings: &[Setting]) -> String {
+    let trusted = settings::trusts_line(settings);
+    let line = |setting: &Setting| match SettingId::from_number(setting.id) {
+        Some(id) => {
+            let row = id.row();
+            let (min, max) = row.range_in_force(trusted).into_inner();
+            let changed = if setting.value == row.default { ' ' } else { '*' };
+            format!(
+                "{changed} {:<28}{:>9} {:<10} {min} to {max}, default {}: {}\n",
+                row.name, setting.value, row.unit, row.default, row.meaning
+            )
+        }
+        None => format!("? setting {} = {}, which this tool does not know\n", setting.id, setting.value),
+    };
+    settings.iter().map(line).collect()
+}

@@ -1,0 +1,164 @@
+//! `tenax monitor`: a board's serial line, or one that was captured.
+
+use std::io::{self, IsTerminal};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Duration;
+
+use anyhow::{Context, bail};
+use tenax_hal_shim::wire::{Down, SETTINGS_PER_ANSWER, Setting};
+use tenax_logic::setting::SettingId;
+
+use super::{out, port};
+use crate::link::{Client, Target};
+use crate::monitor::app;
+use crate::monitor::source::Places;
+use crate::web::Web;
+use crate::{monitor, settings};
+
+/// How long a board may take to answer.
+const ANSWER_WITHIN: Duration = Duration::from_secs(2);
+
+/// Watch a board's serial line.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Where the line is: /dev/ttyACM0, COM3, /dev/pts/5, tcp:127.0.0.1:7777, or a file with a captured one [default: the
+    /// only board that is plugged in]
+    #[arg(long, value_name = "PORT")]
+    port: Option<Target>,
+    /// A captured line, such as out/glass.line.bin of `tenax run`
+    #[arg(long, value_name = "FILE", conflicts_with = "port")]
+    file: Option<PathBuf>,
+    /// One line a message instead of the screen, as always where the output is no terminal
+    #[arg(long)]
+    plain: bool,
+    /// Instead of the screen, a page in the browser, on this port of 127.0.0.1; 0: any that is free
+    #[arg(long, value_name = "HTTP_PORT", num_args = 0..=1, default_missing_value = "7780", conflicts_with = "plain")]
+    web: Option<u16>,
+    /// Beside what the board says, show what really happens in its scene: where `tenax run --serve-truth` tells it
+    #[arg(long, value_name = "tcp:HOST:PORT", conflicts_with = "plain")]
+    truth: Option<Target>,
+    /// Let the screen's keys change something: settings, zero, calibration, the teacher
+    #[arg(long, conflicts_with = "plain")]
+    control: bool,
+    /// First ask the board for something, or tell it something; may be given more than once
+    #[arg(long, value_name = "COMMAND")]
+    send: Vec<Send>,
+    /// Change a setting, such as s1-mv=120; may be given more than once
+    #[arg(long, value_name = "NAME=VALUE", value_parser = |text: &str| settings::parse(text))]
+    set: Vec<Setting>,
+    /// Ask for a setting; may be given more than once
+    #[arg(long, value_name = "NAME", value_parser = |name: &str| settings::named(name))]
+    get: Vec<SettingId>,
+    /// Ask for every setting
+    #[arg(long)]
+    settings: bool,
+    /// Pass a camera's words on to the board, from standard input: a line `v1 v2 [age_ms]` for each picture
+    #[arg(long)]
+    teach: bool,
+}
+
+/// What can be sent by name.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum Send {
+    /// Ask for a sign of life
+    Ping,
+    /// Ask for the last sample of every channel
+    Samples,
+    /// Ask for the network's weights and activations
+    Network,
+    /// Take the readings of the unloaded finger as zero
+    Zero,
+    /// Save what the network has learned now
+    Save,
+    /// Forget all that the network has learned
+    Forget,
+    /// Calibrate the myosensors to the wearer: three prompts of 5 s
+    CalibrateEmg,
+}
+
+impl From<Send> for Down {
+    fn from(send: Send) -> Self {
+        match send {
+            Send::Ping => Self::Ping,
+            Send::Samples => Self::Samples,
+            Send::Network => Self::Network,
+            Send::Zero => Self::Zero,
+            Send::Save => Self::Save,
+            Send::Forget => Self::Forget,
+            Send::CalibrateEmg => Self::CalibrateEmg,
+        }
+    }
+}
+
+/// Watches a line until it ends or the person does.
+pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
+    let target = match &args.file {
+        Some(file) => Target::File(file.clone()),
+        None => port::or_found(args.port.as_ref())?,
+    };
+    let places = Places { line: target.clone(), truth: args.truth.clone() };
+    if let Some(port) = args.web {
+        let web = Web::new(&places, args.control, port)?;
+        out::note!("open {} in a browser of this machine; Ctrl-C ends it", web.place());
+        web.serve();
+        return Ok(ExitCode::SUCCESS);
+    }
+    let told =
+        !args.send.is_empty() || !args.set.is_empty() || !args.get.is_empty() || args.settings || args.teach;
+    let plain = args.plain || told || !io::stdout().is_terminal() || matches!(target, Target::File(_));
+    if !plain {
+        app::show(&places, args.control)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let mut client = Client::open(&target)?;
+    tell(args, &mut client)?;
+    let end = match print(&mut client, &mut io::stdout().lock()) {
+        // Whoever read our output has read enough.
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(ExitCode::SUCCESS),
+        other => other.context("cannot print")?,
+    };
+    out::note!("{}", client.counts());
+    match (end.kind(), &target) {
+        (io::ErrorKind::UnexpectedEof, Target::File(_)) => Ok(ExitCode::SUCCESS),
+        (io::ErrorKind::UnexpectedEof, _) => bail!(target.after_end(None)),
+        _ => bail!(target.after_end(Some(&end))),
+    }
+}
+
+/// Prints what comes until the line ends, and says how it ended.
+fn print(client: &mut Client, out: &mut dyn io::Write) -> io::Result<io::Error> {
+    loop {
+        match client.next_frame() {
+            Ok(Some(frame)) => monitor::print(&frame, out)?,
+            // Nothing more has come so far.
+            Ok(None) => out.flush()?,
+            Err(end) => return out.flush().map(|()| end),
+        }
+    }
+}
+
+/// Sends what is to be sent at once, and lets the teacher talk beside the watching.
+fn tell(args: &Args, client: &mut Client) -> anyhow::Result<()> {
+    let set = args.set.iter().map(|&setting| Down::Set(setting));
+    let get = args.get.iter().map(|&id| Down::Get(id.number()));
+    // The first of each part of the table that one answer has room for.
+    let all = SettingId::ALL.into_iter().step_by(SETTINGS_PER_ANSWER).map(|id| Down::Settings(id.number()));
+    let all = all.filter(|_| args.settings);
+    for command in args.send.iter().map(|&send| send.into()).chain(set).chain(get).chain(all) {
+        client.ask(&command, ANSWER_WITHIN)?;
+    }
+    if args.teach {
+        if !client.open_session(ANSWER_WITHIN)? {
+            out::note!("tenax: the board opened no session; what changes something will be refused");
+        }
+        let Some(mut outbox) = client.take_outbox() else { return Ok(()) };
+        // It ends with its input, or with the process.
+        std::thread::spawn(move || {
+            if let Err(error) = outbox.teach(io::stdin().lock()) {
+                out::note!("tenax: {error:#}; the teacher is not heard any more");
+            }
+        });
+    }
+    Ok(())
+}

@@ -1,0 +1,11 @@
+//! `tenax settings`: prints `docs/settings.md`.
+
+use std::process::ExitCode;
+
+use super::out;
+
+/// Prints the table of settings.
+pub fn main() -> anyhow::Result<ExitCode> {
+    out::print(format_args!("{}", crate::settings::markdown()))?;
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,382 @@
+//! The chart of `tenax chart photoelastic`: the head's curve, how well its force is followed, and what slip looks like.
+
+use serde::Serialize;
+use tenax_scene::physics::stribeck::Slider;
+use tenax_scene::sensor::photoelastic::HEAD_STRIP;
+use tenax_scene::sensor::photoelastic::curve::{Day, Making};
+use tenax_scene::sensor::photoelastic::optics::Layer;
+
+use super::{Chart, Progress, csv, draw};
+use crate::photoelastic::balance;
+use crate::photoelastic::bench::median;
+use crate::photoelastic::force::{self, Point, Score, Session, Story};
+use crate::photoelastic::rate::{self, Material, Rig, Seen};
+use crate::photoelastic::region::{self, Region};
+use tenax_plot::figure::colour;
+use tenax_plot::sheet::{Axis, Mark, Panel, Series, Sheet};
+
+/// Heads on whose days the rate is fitted, and their first days.
+const HEADS: [u64; 4] = [1, 2, 3, 4];
+/// Seeds of what is measured: no number of the logic was chosen by them.
+const VALIDATION: std::ops::Range<u64> = 1_001..1_013;
+/// Stories of each session.
+const STORIES: usize = 12;
+/// Slips of each day.
+const SLIPS: usize = 10;
+/// Rates of the curves, mm/s.
+const RATES_MM_S: [f64; 9] = [0.05, 0.1, 0.2, 0.4, 0.6, 1.0, 1.6, 2.3, 3.0];
+
+/// What it measures, for programs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// How well the force is followed where nothing shears.
+    pub force: Score,
+    /// The same with the shear of a lift: none to half of the force.
+    pub force_sheared: Score,
+    /// How well the rate is told.
+    pub rate: Rate,
+    /// How far the boundary of vibration is from theory, %.
+    pub boundary_pct: f64,
+    /// The slowest slip of aluminium that every head sees, mm/s.
+    pub slip_floor_mm_s: f64,
+}
+
+/// Of the slip rate.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Rate {
+    /// Median error on days that were not calibrated on, %.
+    pub median_pct: f64,
+}
+
+/// The rest of what was measured, for a person.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    /// For programs.
+    pub report: Report,
+    /// Rates on plastic with aluminium's calibration: median error, %.
+    pub other_material_pct: f64,
+}
+
+impl std::fmt::Display for Measured {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { report, other_material_pct } = self;
+        for (name, score) in
+            [("without shear", &report.force), ("sheared by 0 to 0.5", &report.force_sheared)]
+        {
+            writeln!(
+                f,
+                "force, {name:20}  certain in {:.1} % of the cycles: {:.2} % rms, {:.2} % at most, of 6 N; off by more than it says in {:.2} %",
+                100.0 * score.certain_part,
+                score.rms_pct_fs,
+                score.max_pct_fs,
+                100.0 * score.certain_off_part
+            )?;
+            writeln!(
+                f,
+                "  of all {} cycles          load below the true force in {:.2} %, least force above it in {:.2} %",
+                score.cycles,
+                100.0 * score.load_below_part,
+                100.0 * score.least_above_part
+            )?;
+        }
+        writeln!(
+            f,
+            "slip rate                    {:.1} % median error on other days, {other_material_pct:.0} % on plastic",
+            report.rate.median_pct
+        )?;
+        writeln!(f, "boundary of vibration        {:.2} % off theory", report.boundary_pct)?;
+        write!(f, "slowest slip seen            {:.2} mm/s on aluminium", report.slip_floor_mm_s)
+    }
+}
+
+/// Runs everything and draws it.
+///
+/// # Errors
+/// If the chart cannot be drawn.
+pub fn chart(progress: Progress) -> anyhow::Result<(Chart, Measured)> {
+    let [runs, lifts] = [false, true].map(|sheared| force::sessions(VALIDATION, STORIES, sheared));
+    let [force, force_sheared] = [&runs, &lifts].map(|runs| Score::of(runs.iter().map(Vec::as_slice)));
+    progress(0.3);
+    let (median_pct, other_material_pct) = rates(&|part| progress(0.3 + 0.4 * part));
+    let region = region::region(&mut |part| progress(0.7 + 0.1 * part));
+    let slip_floor_mm_s = region::floor_mm_s(VALIDATION.take(6));
+    progress(0.9);
+    let curves = Material::ALL.map(|material| (material, curve(material)));
+    let report = Report {
+        force,
+        force_sheared,
+        rate: Rate { median_pct },
+        boundary_pct: region.boundary_pct,
+        slip_floor_mm_s,
+    };
+    let (ramps, lift) = stories();
+    let sheet = Sheet {
+        title: "A photoelastic head: force from its light, slip from its flicker".to_owned(),
+        subtitle: format!(
+            "Heads, days and stories of seeds {} to {}; curves of the mean head. Friction and strip: assumed.",
+            VALIDATION.start,
+            VALIDATION.end - 1
+        ),
+        columns: 2,
+        panels: vec![
+            intensity(),
+            followed("ramps without shear, three of them turning at the peak", &ramps),
+            followed("grips, then lifts with a shear of 0.3 and 0.5 of the force", &lift),
+            by_shear(&lifts),
+            against_rate("ac part, mean size", Axis::log("mV", 0.5, 100.0), &curves, |seen| {
+                seen.amplitude_mv
+            }),
+            against_rate("ac part, frequency", Axis::even("Hz", 0.0, 200.0), &curves, |seen| seen.hz),
+            map(&region),
+        ],
+        errors: None,
+    };
+    let csv = table(&runs, &curves, &region)?;
+    progress(1.0);
+    let measured = Measured { report, other_material_pct };
+    Ok((Chart { name: "photoelastic", svg: draw::svg(&sheet)?, csv }, measured))
+}
+
+/// Each head is calibrated on four days, and asked on four others; then on plastic.
+fn rates(progress: Progress) -> (f64, f64) {
+    let (mut errors, mut others) = (Vec::new(), Vec::new());
+    for (n, head) in HEADS.into_iter().enumerate() {
+        let days = |from: u64, material| -> Vec<Seen> {
+            (from..from + 4).flat_map(|day| rate::slips(head, 100 * head + day, material, SLIPS)).collect()
+        };
+        let fit = rate::fit(&days(1, Material::Aluminium));
+        errors.extend(rate::errors_percent(&fit, &days(2_000, Material::Aluminium)));
+        others.extend(rate::errors_percent(&fit, &days(3_000, Material::Plastic)[..SLIPS]));
+        progress((n + 1) as f64 / HEADS.len() as f64);
+    }
+    (median(errors), median(others))
+}
+
+/// What the mean head sees of each rate.
+fn curve(material: Material) -> Vec<Seen> {
+    let slider = Slider { friction: material.friction(), ..HEAD_STRIP };
+    RATES_MM_S.map(|rate| Rig::mean(slider, 1).slide(region::LOAD_N, rate, 0.8 + 0.1 / rate)).to_vec()
+}
+
+/// Two stories on one head: ramps that turn at the peak, and lifts.
+fn stories() -> (Vec<Point>, Vec<Point>) {
+    let mut session = Session::new(VALIDATION.start);
+    let peak_n = session.peak_n();
+    let targets = [
+        (5.5, 3.0),
+        (peak_n, 3.0),
+        (4.0, 2.0),
+        (0.6, 4.0),
+        (peak_n, 1.5),
+        (0.3, 3.0),
+        (3.0, 6.0),
+        (0.0, 6.0),
+    ];
+    let ramps = session.run(&Story { steps: targets.to_vec(), shears: Vec::new() });
+    session.rest();
+    let grips = [
+        (0.5, 2.0),
+        (0.5, 2.0),
+        (0.0, 2.0),
+        (2.3, 4.0),
+        (2.3, 4.0),
+        (0.3, 4.0),
+        (4.0, 4.0),
+        (4.0, 4.0),
+        (0.0, 4.0),
+    ];
+    let shears = vec![0.0, 0.5, 0.0, 0.0, 0.3, 0.3, 0.0, 0.5, 0.0];
+    (ramps, session.run(&Story { steps: grips.to_vec(), shears }))
+}
+
+/// Where the head says that it is certain: what it says, and by how much it is off, against the shear.
+fn by_shear(runs: &[Vec<Point>]) -> Panel {
+    let certain = || runs.iter().flatten().filter(|point| point.is_certain);
+    let some = || certain().step_by((certain().count() / 1_500).max(1));
+    let off = some().filter_map(|point| Some((point.shear, point.read_n? - point.true_n)));
+    let says = |sign: f64| some().map(|point| (point.shear, sign * point.uncertainty_n)).collect();
+    panel(
+        "certain: off by, and may be off by, against shear",
+        Axis::even("shear, of the force", 0.0, 0.5),
+        Axis::even("N", -0.3, 0.3),
+        vec![
+            series("may be off by", colour::GREY, Mark::Dots, says(1.0)),
+            series("or so", colour::GREY, Mark::Dots, says(-1.0)),
+            series("off by", colour::BLUE, Mark::Dots, off.collect()),
+        ],
+    )
+}
+
+fn series(name: &str, colour: plotters::style::RGBColor, mark: Mark, points: Vec<(f64, f64)>) -> Series {
+    Series { name: name.to_owned(), colour, mark, points }
+}
+
+fn panel(title: &str, x: Axis, y: Axis, series: Vec<Series>) -> Panel {
+    Panel { title: title.to_owned(), x, y, cells: Vec::new(), series, words: Vec::new() }
+}
+
+fn intensity() -> Panel {
+    let calibration = balance::weigh(&Making::MEAN, &Day::FIRST, 1.into());
+    let Making { dark_mv, span_mv, .. } = Making::MEAN;
+    let printed = (0..=600)
+        .map(|n| f64::from(n) / 100.0)
+        .map(|force_n| (force_n, dark_mv + span_mv * Layer::DUBEY.intensity(force_n, 0.0)));
+    let weighed = calibration.weighed.iter().map(|w| (w.force_n, w.level_mv));
+    let read = calibration.weighed.iter().map(|w| (w.read_n, w.level_mv));
+    panel(
+        "light against force",
+        Axis::even("force, N", 0.0, 6.0),
+        Axis::even("mV", 0.0, 3_000.0),
+        vec![
+            series("equation 9 as printed", colour::GREY, Mark::Dashes, printed.collect()),
+            series("known weights", colour::VERMILLION, Mark::Crosses, weighed.collect()),
+            series("calibrated curve", colour::BLUE, Mark::Line, read.collect()),
+        ],
+    )
+}
+
+fn followed(title: &str, run: &[Point]) -> Panel {
+    let begin_s = run.first().map_or(0.0, |point| point.t_s);
+    let end_s = run.last().map_or(1.0, |point| point.t_s - begin_s);
+    let at = |point: &Point| point.t_s - begin_s;
+    let ends = |end: fn(&Point) -> f64, certain: bool| -> Vec<(f64, f64)> {
+        run.iter()
+            .filter(|point| point.is_certain == certain)
+            .map(|point| (at(point), end(point).min(6.5)))
+            .collect()
+    };
+    let both =
+        |certain| [ends(|point| point.range_n.0, certain), ends(|point| point.range_n.1, certain)].concat();
+    panel(
+        title,
+        Axis::even("time, s", 0.0, end_s),
+        Axis::even("force, N", 0.0, 6.5),
+        vec![
+            series("true force", colour::ORANGE, Mark::Line, run.iter().map(|p| (at(p), p.true_n)).collect()),
+            series("least and most, certain", colour::BLUE, Mark::Dots, both(true)),
+            series("least and most, either branch", colour::GREY, Mark::Dots, both(false)),
+        ],
+    )
+}
+
+fn against_rate(title: &str, y: Axis, curves: &[(Material, Vec<Seen>)], of: impl Fn(&Seen) -> f64) -> Panel {
+    let all = curves.iter().zip([colour::BLUE, colour::GREEN]).flat_map(|((material, seen), colour)| {
+        let points: Vec<_> = seen.iter().map(|seen| (seen.rate_mm_s, of(seen))).collect();
+        [Mark::Line, Mark::Dots].map(|mark| series(material.name(), colour, mark, points.clone()))
+    });
+    panel(title, Axis::log("slip rate, mm/s", 0.04, 4.0), y, all.collect())
+}
+
+fn map(region: &Region) -> Panel {
+    let points = |seen: bool| {
+        let points = region.points.iter().filter(move |point| point.seen == seen);
+        points.map(|point| (point.rate_mm_s, point.steepness_s_m)).collect()
+    };
+    let theory = (8..=200).filter_map(|n| {
+        let drop = f64::from(n) / 2_000.0;
+        Some((region::theory_mm_s(drop)?, region::steepness_s_m(drop)))
+    });
+    let measured = region.boundary.iter().map(|(steepness, _, measured)| (*measured, *steepness));
+    panel(
+        "where slip is seen; vibrates by itself to the left of the line",
+        Axis::log("slip rate, mm/s", 0.04, 12.0),
+        Axis::even("fall of friction at rest, s/m", 0.0, 36.0),
+        vec![
+            series("slip said", colour::BLUE, Mark::Dots, points(true)),
+            series("not said", colour::GREY, Mark::Crosses, points(false)),
+            series("c + P dmu/dv = 0", colour::VERMILLION, Mark::Line, theory.collect()),
+            series("boundary as measured", colour::VERMILLION, Mark::Rings, measured.collect()),
+        ],
+    )
+}
+
+/// Everything that was drawn and measured, one row each.
+fn table(runs: &[Vec<Point>], curves: &[(Material, Vec<Seen>)], region: &Region) -> anyhow::Result<String> {
+    let mut rows: Vec<[String; 4]> = Vec::new();
+    let row = |what: &str, which: String, x: f64, y: f64| {
+        [what.to_owned(), which, format!("{x:.5}"), format!("{y:.5}")]
+    };
+    for seed in VALIDATION {
+        let session = Session::new(seed);
+        let drawn = serde_json::to_value((session.making(), session.day()))?;
+        for part in drawn.as_array().into_iter().flatten().filter_map(|part| part.as_object()) {
+            let numbers = part.iter().filter_map(|(key, value)| Some((key, value.as_f64()?)));
+            rows.extend(numbers.map(|(key, value)| row("drawn", key.clone(), seed as f64, value)));
+        }
+    }
+    for (n, run) in runs.iter().enumerate() {
+        let score = Score::of([run.as_slice()]);
+        rows.push(row("story_rms_pct_fs", n.to_string(), score.cycles as f64, score.rms_pct_fs));
+        rows.push(row("story_certain_part", n.to_string(), score.cycles as f64, score.certain_part));
+    }
+    for (material, seen) in curves {
+        for seen in seen {
+            rows.push(row("ac_mv", material.name().to_owned(), seen.rate_mm_s, seen.amplitude_mv));
+            rows.push(row("ac_hz", material.name().to_owned(), seen.rate_mm_s, seen.hz));
+        }
+    }
+    for (steepness, theory, measured) in &region.boundary {
+        rows.push(row("boundary_mm_s", format!("{steepness:.3} s/m"), *theory, *measured));
+    }
+    for point in &region.points {
+        let seen = f64::from(u8::from(point.seen));
+        rows.push(row("seen", format!("{:.3} s/m", point.steepness_s_m), point.rate_mm_s, seen));
+    }
+    csv(&["what", "which", "x", "y"], rows.into_iter().map(Vec::from))
+}
+
+/// A calibration: its weights and curve, and what is left between them.
+///
+/// # Errors
+/// If it cannot be drawn.
+pub fn residuals(calibration: &balance::Calibration) -> anyhow::Result<Chart> {
+    let weighed = &calibration.weighed;
+    let end_n = weighed.last().map_or(6.0, |last| last.force_n.ceil());
+    let high_mv = weighed.iter().map(|w| w.level_mv).fold(0.0, f64::max);
+    let most_mn = weighed.iter().map(|w| 1e3 * (w.read_n - w.force_n).abs()).fold(10.0, f64::max).ceil();
+    let force = || Axis::even("force, N", 0.0, end_n);
+    let off = |w: &balance::Weighed| 1e3 * (w.read_n - w.force_n);
+    let sheet = Sheet {
+        title: "Calibration of a photoelastic head from known weights".to_owned(),
+        subtitle: format!("Residuals {:.2} % of full scale at most.", calibration.worst_percent()),
+        columns: 2,
+        panels: vec![
+            panel(
+                "light against force",
+                force(),
+                Axis::even("mV", 0.0, (high_mv / 500.0).ceil() * 500.0),
+                vec![
+                    series(
+                        "known weights",
+                        colour::VERMILLION,
+                        Mark::Crosses,
+                        weighed.iter().map(|w| (w.force_n, w.level_mv)).collect(),
+                    ),
+                    series(
+                        "calibrated curve",
+                        colour::BLUE,
+                        Mark::Line,
+                        weighed.iter().map(|w| (w.read_n, w.level_mv)).collect(),
+                    ),
+                ],
+            ),
+            panel(
+                "residuals",
+                force(),
+                Axis::even("read less true, mN", -most_mn, most_mn),
+                vec![series(
+                    "known weights",
+                    colour::VERMILLION,
+                    Mark::Crosses,
+                    weighed.iter().map(|w| (w.force_n, off(w))).collect(),
+                )],
+            ),
+        ],
+        errors: None,
+    };
+    let rows = weighed
+        .iter()
+        .map(|w| [w.force_n, w.level_mv, w.read_n].map(|number| format!("{number:.4}")).to_vec());
+    let csv = csv(&["force_n", "level_mv", "read_n"], rows)?;
+    Ok(Chart { name: "photoelastic-calibration", svg: draw::svg(&sheet)?, csv })
+}

@@ -1,0 +1,113 @@
+//! What the network is worth to the hand (Tada 2006, section III-D): a lift that the reflex secures and a cup that it keeps,
+//! told by the network, by the camera, and by the bound.
+
+use rayon::prelude::*;
+use tenax_scene::bound::Plan;
+use tenax_scene::{Seeds, World};
+
+use super::bench::{Bench, Judge};
+use super::finger::{Change, Finger};
+
+/// Who is tried, in this order wherever there are three.
+pub const JUDGES: [Judge; 3] = [Judge::Touch, Judge::Vision, Judge::Bound];
+
+/// When the lift begins, s, without what chance adds.
+const LIFT_S: f64 = 1.2;
+/// What chance adds at most, s: three of the camera's images.
+const LATER_S: f64 = 0.1;
+/// When the pour begins, s.
+const POUR_S: f64 = 4.0;
+/// What moves more slowly along the hand than this is secured, mm/s: the scenes' floor of slip.
+const FLOOR_MM_S: f64 = 1.0;
+
+/// One run.
+#[derive(Clone, Debug, Default)]
+pub struct Reflexed {
+    /// From its beginning, s (of the lift, or of the pour), and how far the object has sunk in the hand since, mm.
+    pub sunk_mm: Vec<(f64, f64)>,
+    /// When it last moved along the hand, s from the beginning of the lift.
+    pub secured_s: f64,
+    /// How far it had sunk in the end, mm. What the skin gives under the load is in it.
+    pub distance_mm: f64,
+    /// What each finger pressed with in the end, N.
+    pub grip_n: f64,
+    /// Whether it was dropped.
+    pub dropped: bool,
+}
+
+/// One of each judge, with the same chance.
+pub type Three = [Reflexed; 3];
+
+/// So many lifts.
+///
+/// # Errors
+/// If a scene cannot be made.
+pub fn lifts(finger: &Finger, learned: &Bench, count: u64, seed: u64) -> anyhow::Result<Vec<Three>> {
+    (0..count)
+        .into_par_iter()
+        .map(|n| {
+            let lift_s = LIFT_S + LATER_S * n as f64 / count as f64;
+            let grip = ("command.grip.for_s", (2.0 + 2.7 * finger.force()) / 12.0);
+            three("pick-up-reflex", finger, learned, seed + n, &[("move.0.at_s", lift_s), grip], lift_s)
+        })
+        .collect()
+}
+
+/// So many pours.
+///
+/// # Errors
+/// If a scene cannot be made.
+pub fn pours(finger: &Finger, learned: &Bench, count: u64, seed: u64) -> anyhow::Result<Vec<Three>> {
+    (0..count)
+        .into_par_iter()
+        .map(|n| {
+            let pour_s = POUR_S + LATER_S * n as f64 / count as f64;
+            let force = finger.force();
+            let changes = [
+                ("fill.0.at_s", pour_s),
+                ("fill.0.add_kg", 0.25 * finger.mass_kg() / 0.2),
+                ("command.grip.for_s", (2.0 + 7.3 * force) / 12.0),
+            ];
+            three("pour", finger, learned, seed + n, &changes, pour_s)
+        })
+        .collect()
+}
+
+fn three(
+    scene: &str,
+    finger: &Finger,
+    learned: &Bench,
+    seed: u64,
+    changes: &[Change],
+    from_s: f64,
+) -> anyhow::Result<Three> {
+    let scene = finger.scene(scene, seed, changes)?;
+    let run = |judge| {
+        let world = World::seeded(&scene, Seeds { making: finger.making, noise: seed });
+        let world = if judge == Judge::Bound { world.planning(Plan::of(&scene)) } else { world };
+        reflexed(&learned.clone().run(world, judge, &mut |_, _, _| ()), from_s)
+    };
+    Ok(JUDGES.map(run))
+}
+
+fn reflexed(world: &World, from_s: f64) -> Reflexed {
+    let truth = world.truth();
+    let rows: Vec<_> = truth.trace.iter().filter(|row| row.t_s >= from_s).collect();
+    let mut sunk_mm = Vec::with_capacity(rows.len());
+    let (mut distance_mm, mut last_s, mut secured_s) = (0.0, from_s, 0.0);
+    for row in &rows {
+        distance_mm += row.slide_mm_s * (row.t_s - last_s);
+        last_s = row.t_s;
+        sunk_mm.push((row.t_s - from_s, distance_mm));
+        if row.slide_mm_s.abs() > FLOOR_MM_S {
+            secured_s = row.t_s - from_s;
+        }
+    }
+    Reflexed {
+        sunk_mm,
+        secured_s,
+        distance_mm,
+        grip_n: rows.last().map_or(0.0, |row| row.grip_n),
+        dropped: truth.dropped,
+    }
+}

@@ -1,0 +1,105 @@
+//! The array detector on the emulated core against this machine's, and what it costs there. Builds its image first.
+#![cfg(feature = "emulator")]
+
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+use tenax_bench::board::emulated::kernels::{self, Answer, Cost, Kernels};
+use tenax_bench::labelled::{self, library};
+use tenax_hal_shim::channel::SAMPLE_MAX;
+use tenax_logic::array::{Reading, ShippedDetector};
+use tenax_studies::dataset::session::Split;
+use tenax_studies::dataset::{Dataset, Label, Plan};
+use tenax_studies::evaluate::core;
+
+fn image() -> &'static Path {
+    static IMAGE: OnceLock<PathBuf> = OnceLock::new();
+    IMAGE.get_or_init(|| {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package is in the workspace");
+        tenax_bench::image::build_kernels(root).expect("the image")
+    })
+}
+
+/// `frames` readings of elements that each move by `step` at most, of which one in `dead` has no reading.
+fn recording(random: &mut ChaCha8Rng, frames: usize, step: i32, dead: f64) -> Vec<Reading> {
+    let mut at = [i32::from(SAMPLE_MAX) / 2; 10];
+    let mut frame = || {
+        at.each_mut().map(|at| {
+            *at = (*at + random.random_range(-step..=step)).clamp(0, i32::from(SAMPLE_MAX));
+            (!random.random_bool(dead)).then_some(*at as u16)
+        })
+    };
+    (0..frames).map(|_| frame()).collect()
+}
+
+fn recordings() -> Vec<Vec<Reading>> {
+    println!("seed 1");
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    let random = &mut random;
+    let full = |n: usize| if n.is_multiple_of(2) { SAMPLE_MAX } else { 0 };
+    vec![
+        recording(random, 300, 5, 0.0),
+        recording(random, 300, 200, 0.0),
+        recording(random, 300, i32::from(SAMPLE_MAX), 0.0),
+        recording(random, 300, 20, 0.01),
+        recording(random, 300, 20, 0.3),
+        // All that a converter can do, at every frequency that it can do it with.
+        (0..300).map(|n| [Some(full(n)); 10]).collect(),
+        (0..300).map(|n| std::array::from_fn(|element| Some(full(n / (element + 1))))).collect(),
+        // No sample at all, though a word could hold it.
+        (0..60).map(|n| [Some(if n % 3 == 0 { 0 } else { u16::MAX - 1 }); 10]).collect(),
+        vec![[None; 10]; 50],
+        // Something that slides now and then: what has always been so is noise.
+        (0..6).flat_map(|n| recording(random, 60, if n % 2 == 0 { 2 } else { 60 }, 0.0)).collect(),
+    ]
+}
+
+#[test]
+fn the_core_says_what_this_machine_says() {
+    let recordings = recordings();
+    let outcome = kernels::run(image(), &recordings, Kernels::Detector, &mut |_| {}).unwrap();
+    let (mut judged, mut slipping) = (0, 0);
+    for (readings, answers) in recordings.iter().zip(&outcome.answers) {
+        let mut detector = ShippedDetector::default();
+        assert_eq!(readings.len(), answers.len());
+        for (n, (reading, answer)) in readings.iter().zip(answers).enumerate() {
+            assert_eq!(Answer::of(&mut detector, reading), *answer, "frame {n}: {reading:?}");
+            judged += u32::from(answer.evidence.is_some());
+            slipping += u32::from(answer.verdict.slip);
+        }
+    }
+    // Both answers were given, or it would have been no test.
+    assert!(judged > 1_500 && slipping > 20 && slipping < judged - 20, "{judged} {slipping}");
+}
+
+/// The shipped network on the first sessions of the built-in data's test split; `tenax evaluate --core` runs them all.
+#[test]
+fn the_core_judges_the_test_split_as_this_machine_does() {
+    let plan = Plan { seed: 1, sessions: 2, label: Label::Truth };
+    let csv = Dataset::make_split(plan, Split::Test, &|_| {}).unwrap().csv().unwrap();
+    let name = "array_dataset.csv";
+    let recipe = library::choose(name.as_ref(), None).unwrap();
+    let recordings = labelled::parse(csv.as_slice(), &recipe, name).unwrap();
+    let steps = core::compare(image(), &recordings, &mut |_| {}).unwrap();
+    // Six sessions, each of 48 s.
+    assert!(steps > 6 * 30 * 80, "{steps}");
+}
+
+#[test]
+fn kernels_cost_no_more_than_promised() {
+    let recordings = &recordings()[..5];
+    let costs = kernels::run(image(), recordings, Kernels::All, &mut |_| {}).unwrap().costs;
+    for Cost { name, calls, least, most, .. } in &costs {
+        println!("{name:<24}{least:>8}{most:>8}  {calls} calls");
+    }
+    let most = |name: &str| costs.iter().find(|cost| cost.name == name).expect(name).most;
+    assert!(most("covariance") <= 300);
+    assert!(most("spectrum") <= 1_750);
+    assert!(most("mlp_structure_8_1") <= 6_100);
+    // A sample of the photoelastic head: ac, dc, envelope, swings and presence.
+    assert!(most("head_sample") <= 150);
+    // A hundredth of what the core executes in 12.5 ms, at one instruction a cycle.
+    assert!(most("slow_frame") <= 12_500);
+}
