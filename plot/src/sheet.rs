@@ -70,6 +70,18 @@ pub struct Series {
     pub points: Vec<(f64, f64)>,
 }
 
+impl Series {
+    /// Points of one look.
+    pub fn new(
+        name: impl Into<String>,
+        colour: RGBColor,
+        mark: Mark,
+        points: impl IntoIterator<Item = (f64, f64)>,
+    ) -> Self {
+        Self { name: name.into(), colour, mark, points: points.into_iter().collect() }
+    }
+}
+
 /// A cell of a map.
 #[derive(Clone, Copy, Debug)]
 pub struct Cell {
@@ -98,6 +110,13 @@ pub struct Panel {
     pub words: Vec<(f64, f64, String)>,
 }
 
+impl Panel {
+    /// Curves and points alone.
+    pub fn new(title: impl Into<String>, x: Axis, y: Axis, series: Vec<Series>) -> Self {
+        Self { title: title.into(), x, y, cells: Vec::new(), series, words: Vec::new() }
+    }
+}
+
 /// The sheet: panels from left to right and from top to bottom, a legend at its foot.
 #[derive(Clone, Debug)]
 pub struct Sheet {
@@ -111,4 +130,16 @@ pub struct Sheet {
     pub panels: Vec<Panel>,
     /// The ends of the colours of errors, if there is a map.
     pub errors: Option<(f64, f64)>,
+}
+
+impl Sheet {
+    /// Without a map.
+    pub fn new(
+        title: impl Into<String>,
+        subtitle: impl Into<String>,
+        columns: u32,
+        panels: Vec<Panel>,
+    ) -> Self {
+        Self { title: title.into(), subtitle: subtitle.into(), columns, panels, errors: None }
+    }
 }

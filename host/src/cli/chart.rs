@@ -38,7 +38,7 @@ pub struct Args {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Subject {
-    /// How the scenes' friction is stepped: where each method fails, and what it costs
+    /// How the scenes' friction is stepped: the brush patch and the slider that vibrates by itself, beside theory
     Scenes,
     /// What the scenes' sensors say at the onset of slip, beside real recordings where they are present
     Sensors,
@@ -62,7 +62,7 @@ enum Subject {
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let folder = folder::made(&args.out)?;
     let charts = match args.subject {
-        Subject::Scenes => with_bar("charts", |progress| chart::scenes(progress))?,
+        Subject::Scenes => chart::scenes()?,
         Subject::Array => vec![with_bar("array", |progress| chart::array::chart(progress))?],
         Subject::Features => vec![with_bar("features", |progress| chart::features::chart(progress))?],
         Subject::Front => {

@@ -2,8 +2,7 @@
 
 use tenax_scene::physics::stribeck::{BLOCK_N, METAL, Slider, Stribeck};
 use tenax_scene::sensor::photoelastic::HEAD_STRIP;
-use tenax_scene::stepping::SHIPPED_S;
-use tenax_scene::stepping::problem::SelfExcited;
+use tenax_scene::stepping::{SHIPPED_S, SelfExcited};
 
 use super::rate::{Material, Rig, rig_of};
 

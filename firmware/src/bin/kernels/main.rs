@@ -6,7 +6,6 @@
 #![no_std]
 #![no_main]
 
-mod crates;
 mod mailbox;
 mod parts;
 mod rivals;
@@ -42,7 +41,6 @@ fn main() -> ! {
         if orders.everything {
             parts.run(&reading);
             rivals.run(detector.features());
-            crates::run(&reading);
         }
     }
 }

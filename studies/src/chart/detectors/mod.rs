@@ -8,7 +8,7 @@ use anyhow::Result;
 use plotters::style::RGBColor;
 
 use self::table::{Measured, Row};
-use super::{Chart, csv, draw};
+use super::{Chart, csv};
 use tenax_plot::figure::colour;
 use tenax_plot::sheet::draw::INK;
 use tenax_plot::sheet::{Axis, Mark, Panel, Series, Sheet};
@@ -67,17 +67,14 @@ pub fn chart(tables: &[(&str, &str)], instructions: &BTreeMap<String, u64>) -> R
         "shipped",
     ];
     let csv = csv(&header, rows)?;
-    let sheet = Sheet {
-        title: "Slip from normal force alone: what it gets right against what it takes".to_owned(),
-        subtitle:
-            "Sessions and objects never seen. Instructions of one slow frame (12.5 ms), features included, counted on the \
-                   emulated Cortex-M4."
-                .to_owned(),
-        columns: panels.len() as u32,
+    let sheet = Sheet::new(
+        "Slip from normal force alone: what it gets right against what it takes",
+        "Sessions and objects never seen. Instructions of one slow frame (12.5 ms), features included, counted on the \
+                   emulated Cortex-M4.",
+        panels.len() as u32,
         panels,
-        errors: None,
-    };
-    Ok(Chart { name: "detectors-cost", svg: draw::svg(&sheet)?, csv })
+    );
+    Chart::new("detectors-cost", &sheet, csv)
 }
 
 /// Of points by rising cost: those that nothing as cheap is better than.
@@ -114,31 +111,20 @@ fn panel(data: &str, all: &[Measured], front: &[usize]) -> Panel {
         .iter()
         .zip(COLOURS.iter().cycle())
         .map(|(name, &colour)| {
-            let own = all.iter().filter(|measured| measured.row.classifier == *name).map(at).collect();
-            one(name, colour, Mark::Dots, own)
+            let own = all.iter().filter(|measured| measured.row.classifier == *name).map(at);
+            Series::new(*name, colour, Mark::Dots, own)
         })
         .collect();
-    series.push(one("front", INK, Mark::Dashes, front.iter().map(|&n| points[n]).collect()));
+    series.push(Series::new("front", INK, Mark::Dashes, front.iter().map(|&n| points[n])));
     let bar = vec![(LOAD_BAR, y.ends.0), (LOAD_BAR, y.ends.1)];
-    series.push(one("1 % of 100 MHz", colour::GREY, Mark::Line, bar));
-    let shipped = all.iter().filter(|measured| measured.row.shipped).map(at).collect();
-    series.push(one("shipped", colour::VERMILLION, Mark::Rings, shipped));
-    Panel {
-        title: format!("{data}: each dot is a variant of a classifier"),
-        x,
-        y,
-        cells: Vec::new(),
-        series,
-        words: Vec::new(),
-    }
+    series.push(Series::new("1 % of 100 MHz", colour::GREY, Mark::Line, bar));
+    let shipped = all.iter().filter(|measured| measured.row.shipped).map(at);
+    series.push(Series::new("shipped", colour::VERMILLION, Mark::Rings, shipped));
+    Panel::new(format!("{data}: each dot is a variant of a classifier"), x, y, series)
 }
 
 const COLOURS: [RGBColor; 6] =
     [colour::BLUE, colour::ORANGE, colour::GREEN, colour::PURPLE, colour::SKY, colour::YELLOW];
-
-fn one(name: &str, colour: RGBColor, mark: Mark, points: Vec<(f64, f64)>) -> Series {
-    Series { name: name.to_owned(), colour, mark, points }
-}
 
 #[cfg(test)]
 mod tests {
