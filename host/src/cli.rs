@@ -99,7 +99,6 @@ enum Command {
 }
 
 /// Runs the command line. 0: done. 1: something measured is not as promised. 2: it could not be run.
-#[must_use]
 pub fn main() -> ExitCode {
     exit(match Cli::parse().command {
         Command::Run(args) => run::main(&args),

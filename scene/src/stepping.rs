@@ -24,7 +24,6 @@ const SWINGS: usize = 5;
 
 impl SelfExcited {
     /// Growth and frequency, or none if it does not swing.
-    #[must_use]
     pub fn measured(&self, dt_s: f64) -> Option<SmallSignal> {
         let friction_n = self.slider.friction.mu(self.surface_m_s) * self.normal_n;
         let even_m = friction_n / self.slider.stiffness_n_per_m;

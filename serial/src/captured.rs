@@ -9,10 +9,7 @@ use crate::{mcap, protobuf};
 /// The topic of a recording that holds them.
 pub const TOPIC: &str = "/line";
 
-/// The bytes of the line in a recording, or in a captured line.
-///
-/// # Errors
-/// If it cannot be read.
+/// The bytes of the line in a recording, or in a captured line. Fails if it cannot be read.
 pub fn line_of(path: &Path) -> anyhow::Result<Vec<u8>> {
     let bytes = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
     if !is_recording(path) {
@@ -31,7 +28,6 @@ pub fn line_of(path: &Path) -> anyhow::Result<Vec<u8>> {
 }
 
 /// Whether a file is called like a recording.
-#[must_use]
 pub fn is_recording(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcap"))
 }

@@ -30,10 +30,7 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// A recording in a new file. The board's time 0 is now.
-    ///
-    /// # Errors
-    /// If the file cannot be written.
+    /// A recording in a new file. The board's time 0 is now. Fails if the file cannot be written.
     pub fn create(path: &Path) -> anyhow::Result<Self> {
         let cannot = || format!("cannot write {}", path.display());
         let out = BufWriter::new(File::create(path).with_context(cannot)?);
@@ -78,10 +75,7 @@ impl Recording {
         }
     }
 
-    /// Ends the file.
-    ///
-    /// # Errors
-    /// If it could not be written whole.
+    /// Ends the file. Fails if it could not be written whole.
     pub fn finish(self) -> io::Result<()> {
         let finished = self.file.finish().map(drop);
         self.error.map_or(finished, Err)

@@ -105,7 +105,6 @@ pub struct Outcome {
     pub agreement: Option<Agreement>,
     /// A trial of the finger before it learned: the largest output, 128 would be 1.
     pub untaught: u8,
-    /// The lessons.
     pub lessons: Vec<Trial>,
     /// The held-out trials.
     pub trials: Vec<Trial>,
@@ -117,7 +116,6 @@ pub struct Outcome {
     pub holding: Holding,
     /// Lifts with the reflex.
     pub lifts: Vec<Three>,
-    /// Pours.
     pub pours: Vec<Three>,
     /// The plain finger with a film that crackles: with what it has learned, and with equal weights.
     pub crackling: Option<[crackle::Tried; 2]>,
@@ -130,10 +128,7 @@ pub struct Outcome {
 /// Told what is being done, and how much of it is over, 0 to 1.
 pub type Progress<'a> = &'a (dyn Fn(&str, f64) + Sync);
 
-/// Does all of it.
-///
-/// # Errors
-/// If a scene cannot be made or the board cannot be run.
+/// Does all of it. Fails if a scene cannot be made or the board cannot be run.
 pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Result<Outcome> {
     let finger = options.finger(Finger::plain(options.seed));
     let mut untaught = Bench::default();

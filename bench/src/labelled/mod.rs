@@ -33,11 +33,9 @@ pub enum Part {
 }
 
 impl Part {
-    /// All of them.
     pub const ALL: [Self; 3] = [Self::Train, Self::Validation, Self::Test];
 
     /// What it is called in a file.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Train => "train",
@@ -81,7 +79,6 @@ pub struct Recording {
 
 impl Recording {
     /// One whose labels are all that is known of its slips: a session of its own, for nothing in particular.
-    #[must_use]
     pub fn of_steps(name: &str, steps: Vec<Step>) -> Self {
         Self {
             name: name.to_owned(),
@@ -98,7 +95,6 @@ impl Recording {
 }
 
 /// The sessions of recordings, in order.
-#[must_use]
 pub fn sessions(recordings: &[Recording]) -> Vec<String> {
     let set: BTreeSet<&str> = recordings.iter().map(|recording| recording.session.as_str()).collect();
     set.into_iter().map(str::to_owned).collect()

@@ -14,10 +14,7 @@ use tenax_studies::evaluate::report::Report;
 
 /// A data set of another seed than the one that was learned from: 4 materials and the one outside of them.
 const PLAN: Plan = Plan { seed: 4, sessions: 4, label: Label::Truth };
-/// The bars.
-///
-/// # Errors
-/// If a scene cannot be made.
+/// The bars. Fails if a scene cannot be made.
 pub fn bars() -> anyhow::Result<Vec<Bar>> {
     let csv = Dataset::make_split(PLAN, Split::Test, &|_| {})?.csv()?;
     let name = "array_dataset.csv";

@@ -33,10 +33,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     Ok(if kept || !args.check { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Every budget, beside what the image takes and what a run of the default scene on it took.
-///
-/// # Errors
-/// If the image cannot be built or read.
+/// Every budget, beside what the image takes and what a run of the default scene on it took. Fails if the image cannot be built or read.
 pub fn lines(root: &Path, report: &Report) -> anyhow::Result<Vec<Line>> {
     let budgets = Budgets::of_checkout()?;
     let size = Size::read(&image::build(root)?)?;

@@ -14,9 +14,7 @@ use tenax_plot::figure::colour;
 use tenax_plot::sheet::{Axis, Mark, Panel, Series, Sheet};
 
 /// Judges the test part's pours, which nothing was chosen by, and draws what came of each quarter of their sessions.
-///
-/// # Errors
-/// If a scene cannot be made or the chart not be drawn.
+/// Fails if a scene cannot be made or the chart not be drawn.
 pub fn chart(progress: Progress) -> anyhow::Result<Chart> {
     let plan = Plan::default();
     let data = Dataset::make_split(plan, Split::Test, progress)?.csv()?;

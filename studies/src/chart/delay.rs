@@ -129,10 +129,7 @@ fn edge(delay_s: f64) -> f64 {
     high
 }
 
-/// Runs the map on the host.
-///
-/// # Errors
-/// If a scene or the chart cannot be made.
+/// Runs the map on the host. Fails if a scene or the chart cannot be made.
 pub fn map(progress: Progress) -> anyhow::Result<Chart> {
     let cells = PULSES_MS.into_iter().flat_map(|pulse_ms| {
         DELAYS_MS.into_iter().flat_map(move |delay| STIFFNESS_N_PER_MM.map(|k| (pulse_ms, delay, k)))

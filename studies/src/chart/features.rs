@@ -161,10 +161,7 @@ fn quantile(mut values: Vec<f64>, part: f64) -> f64 {
     values.get(rank.min(values.len().saturating_sub(1))).copied().unwrap_or(f64::NAN)
 }
 
-/// Records the pours, tests every candidate and draws.
-///
-/// # Errors
-/// If a recording or the chart cannot be made.
+/// Records the pours, tests every candidate and draws. Fails if a recording or the chart cannot be made.
 pub fn chart(progress: Progress) -> anyhow::Result<Chart> {
     let first = Sizes { train: 1, validation: 0, test: 0 };
     let drawn = sessions(1, first);

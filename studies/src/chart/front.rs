@@ -36,9 +36,7 @@ impl Run {
 }
 
 /// Runs every shipped scene that holds something in every grip, and draws what it cost. All on the host.
-///
-/// # Errors
-/// If the chart cannot be drawn.
+/// Fails if the chart cannot be drawn.
 pub fn front(progress: Progress) -> anyhow::Result<Chart> {
     let names: Vec<&str> = tenax_scene::builtin().iter().map(|(name, _)| *name).collect();
     let tries: Vec<(&str, u64)> =

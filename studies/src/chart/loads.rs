@@ -21,10 +21,7 @@ struct Told {
     spread_px: f64,
 }
 
-/// Draws how the loads of a table are told.
-///
-/// # Errors
-/// If the table or its pictures cannot be read.
+/// Draws how the loads of a table are told. Fails if the table or its pictures cannot be read.
 pub fn chart(table: &Path, progress: Progress) -> Result<Chart> {
     let skin = Skin::at_rest(table)?;
     let samples = skin.samples(table)?;

@@ -37,9 +37,7 @@ impl Chart {
 pub type Progress<'a> = tenax_bench::jobs::Told<'a>;
 
 /// Draws the brush patch and the Stribeck slider. Times are of this machine; all else is the same on every one.
-///
-/// # Errors
-/// If a chart cannot be drawn.
+/// Fails if a chart cannot be drawn.
 pub fn scenes() -> anyhow::Result<Vec<Chart>> {
     Ok(vec![patch::chart()?, growth::chart()?])
 }

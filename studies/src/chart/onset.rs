@@ -17,7 +17,6 @@ const ASKED_S: [[f64; 2]; 2] = [[0.30, 0.24], [0.15, 0.15]];
 /// Whether a finger is in a group.
 type IsIn = fn(&Bound) -> bool;
 
-/// What it measures.
 #[derive(Clone, Debug)]
 pub struct Measured(Vec<Bound>);
 
@@ -52,10 +51,7 @@ impl std::fmt::Display for Measured {
     }
 }
 
-/// Measures and draws it.
-///
-/// # Errors
-/// If a scene cannot be made, or the chart cannot be drawn.
+/// Measures and draws it. Fails if a scene cannot be made, or the chart cannot be drawn.
 pub fn chart(progress: Progress) -> anyhow::Result<(Chart, Measured)> {
     let (mut bounds, mut plain) = (Vec::new(), Vec::new());
     for (n, seed) in SEEDS.into_iter().enumerate() {

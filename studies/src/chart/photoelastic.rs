@@ -89,10 +89,7 @@ impl std::fmt::Display for Measured {
     }
 }
 
-/// Runs everything and draws it.
-///
-/// # Errors
-/// If the chart cannot be drawn.
+/// Runs everything and draws it. Fails if the chart cannot be drawn.
 pub fn chart(progress: Progress) -> anyhow::Result<(Chart, Measured)> {
     let [runs, lifts] = [false, true].map(|sheared| force::sessions(VALIDATION, STORIES, sheared));
     let [force, force_sheared] = [&runs, &lifts].map(|runs| Score::of(runs.iter().map(Vec::as_slice)));
@@ -316,10 +313,7 @@ fn table(runs: &[Vec<Point>], curves: &[(Material, Vec<Seen>)], region: &Region)
     csv(&["what", "which", "x", "y"], rows.into_iter().map(Vec::from))
 }
 
-/// A calibration: its weights and curve, and what is left between them.
-///
-/// # Errors
-/// If it cannot be drawn.
+/// A calibration: its weights and curve, and what is left between them. Fails if it cannot be drawn.
 pub fn residuals(calibration: &balance::Calibration) -> anyhow::Result<Chart> {
     let weighed = &calibration.weighed;
     let end_n = weighed.last().map_or(6.0, |last| last.force_n.ceil());

@@ -63,10 +63,7 @@ impl Choice {
 }
 
 /// Draws what the choices cost and bring on the video. All of them look at a frame one after the other, so that what else this machine
-/// does slows all alike.
-///
-/// # Errors
-/// If the video cannot be read.
+/// does slows all alike. Fails if the video cannot be read.
 pub fn choices(video: &Path, progress: Progress) -> Result<Chart> {
     let usual = Config::default;
     let running = |apart, rate| Way::Running(Running::new(apart, rate));

@@ -19,7 +19,6 @@ pub enum Split {
 
 impl Split {
     /// As in the data.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Train => "train",
@@ -45,18 +44,15 @@ impl Sizes {
     pub const DEFAULT_TRAIN: usize = 24;
 
     /// In proportion to those to learn from.
-    #[must_use]
     pub const fn of_train(train: usize) -> Self {
         Self { train, validation: train.div_ceil(4), test: train.div_ceil(2) }
     }
 }
 
-/// One session.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Session {
     /// Of the material, with a number.
     pub name: String,
-    /// What for.
     pub split: Split,
     /// The box's sides.
     pub material: &'static str,
@@ -149,7 +145,6 @@ fn rounded(value: f64) -> f64 {
 
 /// All sessions of a data set, the same for the same seed. Each draws from a stream of its own material, split and number:
 /// a larger data set has all sessions of a smaller one, in the same split.
-#[must_use]
 pub fn sessions(seed: u64, sizes: Sizes) -> Vec<Session> {
     let Sizes { train, validation, test } = sizes;
     let seen = [(Split::Train, train), (Split::Validation, validation), (Split::Test, test)];

@@ -89,7 +89,6 @@ pub struct Report {
 
 impl Report {
     /// Scores what was said of recordings, by a network and by the one without look-back.
-    #[must_use]
     pub fn new(recordings: &[Recording], said: &[Verdicts], said_without: &[Verdicts]) -> Self {
         let (mut all, mut without) = (Steps::default(), Steps::default());
         for ((recording, said), said_without) in recordings.iter().zip(said).zip(said_without) {

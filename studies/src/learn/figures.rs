@@ -46,10 +46,7 @@ impl Felt {
 /// A drawing and its name.
 pub type Drawing = (&'static str, String);
 
-/// All of them.
-///
-/// # Errors
-/// If one cannot be drawn.
+/// All of them. Fails if one cannot be drawn.
 pub fn draw_all(outcome: &Outcome) -> anyhow::Result<Vec<Drawing>> {
     let mut drawings = vec![("learn-receptors", draw::svg(&receptors(&outcome.felt))?)];
     if let Some(trial) = outcome.trials.first() {

@@ -19,10 +19,7 @@ const LOAD_BAR: f64 = 12_500.0;
 const MARGIN: f64 = 0.02;
 
 /// Joins tables of scores (of which data, and CSV, as [`Row`] describes it) with the instructions that each kernel took, and draws
-/// them side by side.
-///
-/// # Errors
-/// Says which line of the table is wrong, or has no kernel.
+/// them side by side. An error says which line of the table is wrong, or has no kernel.
 pub fn chart(tables: &[(&str, &str)], instructions: &BTreeMap<String, u64>) -> Result<Chart> {
     let (mut rows, mut panels) = (Vec::new(), Vec::new());
     for (data, table) in tables {

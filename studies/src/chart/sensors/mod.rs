@@ -16,10 +16,7 @@ const FROM_HZ: f64 = 10.0;
 /// To half the frame rate, Hz.
 const TO_HZ: f64 = 1_000.0;
 
-/// Runs the scenes and draws them beside what lies in `recordings`.
-///
-/// # Errors
-/// If a scene or the chart cannot be made.
+/// Runs the scenes and draws them beside what lies in `recordings`. Fails if a scene or the chart cannot be made.
 pub fn chart(recordings: &Path, progress: Progress) -> anyhow::Result<Chart> {
     // Parts of the whole time, as measured.
     let films = model::films(&mut |part| progress(0.7 * part))?;
