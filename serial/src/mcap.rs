@@ -18,6 +18,8 @@ const MESSAGE: u8 = 5;
 const CHUNK: u8 = 6;
 const CHUNK_INDEX: u8 = 8;
 const STATISTICS: u8 = 11;
+const METADATA: u8 = 12;
+const METADATA_INDEX: u8 = 13;
 const DATA_END: u8 = 15;
 /// A chunk is written when it is this long, bytes.
 const CHUNK_BYTES: usize = 1 << 20;
@@ -77,6 +79,8 @@ pub struct Writer<W: Write> {
     chunk: Vec<u8>,
     span_ns: Option<(u64, u64)>,
     index: Vec<Indexed>,
+    /// Index records of what was told of the file.
+    metadata: Vec<Vec<u8>>,
 }
 
 impl<W: Write> Writer<W> {
@@ -90,6 +94,7 @@ impl<W: Write> Writer<W> {
             chunk: Vec::new(),
             span_ns: None,
             index: Vec::new(),
+            metadata: Vec::new(),
         };
         writer.put(MAGIC)?;
         let library = concat!("tenax ", env!("CARGO_PKG_VERSION"));
@@ -110,10 +115,28 @@ impl<W: Write> Writer<W> {
         id
     }
 
-    /// A message of a channel at an instant.
-    pub fn message(&mut self, channel: u16, at_ns: u64, data: &[u8]) -> io::Result<()> {
+    /// What is to be known of the file.
+    pub fn metadata(&mut self, name: &str, about: &[(&str, String)]) -> io::Result<()> {
+        self.end_chunk()?;
+        let both = |content: Content, (key, value): &(&str, String)| {
+            content.bytes(key.as_bytes()).bytes(value.as_bytes())
+        };
+        let about = about.iter().fold(Content::default(), both);
+        let record = Content::default().bytes(name.as_bytes()).bytes(&about.0).record(METADATA);
+        let index = Content::default().u64(self.at).u64(record.len() as u64).bytes(name.as_bytes());
+        self.metadata.push(index.record(METADATA_INDEX));
+        self.put(&record)
+    }
+
+    /// Bytes that were written or wait to be.
+    pub const fn bytes(&self) -> u64 {
+        self.at + self.chunk.len() as u64
+    }
+
+    /// A message of a channel: when it was said, and when it came.
+    pub fn message(&mut self, channel: u16, at_ns: u64, came_ns: u64, data: &[u8]) -> io::Result<()> {
         let count = self.counts.entry(channel).or_default();
-        let content = Content::default().u16(channel).u32(*count as u32).u64(at_ns).u64(at_ns).raw(data);
+        let content = Content::default().u16(channel).u32(*count as u32).u64(at_ns).u64(came_ns).raw(data);
         *count += 1;
         self.chunk.extend_from_slice(&content.record(MESSAGE));
         let (first, last) = self.span_ns.unwrap_or((at_ns, at_ns));
@@ -137,13 +160,17 @@ impl<W: Write> Writer<W> {
             let content = content.u32(0).u64(0).bytes(b"").u64(chunk.content).u64(chunk.content);
             self.put(&content.record(CHUNK_INDEX))?;
         }
+        let metadata = std::mem::take(&mut self.metadata);
+        for index in &metadata {
+            self.put(index)?;
+        }
         let counts = std::mem::take(&mut self.counts);
         let mut each = Content::default();
         for (channel, count) in &counts {
             each = each.u16(*channel).u64(*count);
         }
         let content = Content::default().u64(counts.values().sum()).u16(counts.len() as u16);
-        let content = content.u32(counts.len() as u32).u32(0).u32(0).u32(chunks);
+        let content = content.u32(counts.len() as u32).u32(0).u32(metadata.len() as u32).u32(chunks);
         let content = content.u64(first.min(last)).u64(last).bytes(&each.0);
         self.put(&content.record(STATISTICS))?;
         self.put(&Content::default().u64(summary).u64(0).u32(0).record(FOOTER))?;
@@ -264,7 +291,7 @@ mod tests {
         let mut writer = Writer::new(Vec::new()).unwrap();
         let topics = ["/a", "/b"].map(|topic| writer.channel(topic, "tenax.A", b"descriptor"));
         for n in 0..messages {
-            writer.message(topics[n as usize % 2], n, &[n as u8; 100]).unwrap();
+            writer.message(topics[n as usize % 2], n, n, &[n as u8; 100]).unwrap();
         }
         writer.finish().unwrap()
     }

@@ -64,7 +64,7 @@ impl Answer {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kernels {
     Detector,
-    /// The detector, its parts and its rivals, each by itself.
+    /// The detector and its parts, each by itself.
     All,
 }
 

@@ -8,7 +8,6 @@
 
 mod mailbox;
 mod parts;
-mod rivals;
 
 use core::hint::black_box;
 use core::panic::PanicInfo;
@@ -19,7 +18,6 @@ use embassy_stm32 as _;
 use tenax_logic::array::{ArrayVerdict, Reading, ShippedDetector, shipped};
 
 use self::parts::Parts;
-use self::rivals::Rivals;
 
 type Detector = ShippedDetector;
 
@@ -28,7 +26,7 @@ fn main() -> ! {
     // The compiler is not to know the weights: it would write them into the code.
     let model = black_box(&shipped::MODEL);
     let mut detector = Detector::new(model);
-    let (mut parts, mut rivals) = (Parts::default(), Rivals::default());
+    let mut parts = Parts::default();
     loop {
         mailbox::tenax_kernels_next();
         let orders = mailbox::orders();
@@ -39,8 +37,7 @@ fn main() -> ! {
         let verdict = tenax_kernel_slow_frame(&mut detector, &reading);
         mailbox::answer(&detector, verdict);
         if orders.everything {
-            parts.run(&reading);
-            rivals.run(detector.features());
+            parts.run(&reading, detector.features());
         }
     }
 }
