@@ -17,10 +17,11 @@ use tenax_hal_shim::channel::ARRAY_COUNT;
 
 use collect::{Recording, Step, record};
 use manifest::Manifest;
-use session::{Session, Sizes, Split, sessions};
+use session::{Session, Sizes, sessions};
 use story::Story;
 
 use tenax_bench::jobs::{Jobs, Told};
+use tenax_bench::labelled::Part;
 use tenax_bench::scorer::onsets;
 
 /// Who says that it slipped.
@@ -72,7 +73,7 @@ impl Dataset {
     }
 
     /// Makes the sessions of one split only: they are the same as in the whole. Fails as [`make`](Self::make) does.
-    pub fn make_split(plan: Plan, split: Split, progress: Told) -> anyhow::Result<Self> {
+    pub fn make_split(plan: Plan, split: Part, progress: Told) -> anyhow::Result<Self> {
         let mut all = sessions(plan.seed, Sizes::of_train(plan.sessions));
         all.retain(|session| session.split == split);
         Self::record(plan, all, progress)

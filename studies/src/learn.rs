@@ -138,13 +138,11 @@ pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Resu
     let (learned, lessons, felt) = lessons_on_host(&finger, options, progress)?;
     let equal = learned.controlled(Some(Control::EqualWeights))?;
     let equal = Score::of(&trials_on_host(&finger, equal, options, progress)?);
-    let (trials, agreement) = match board {
-        Board::Host => (trials_on_host(&finger, learned.clone(), options, progress)?, None),
-        #[cfg(feature = "emulator")]
-        Board::Emulated { .. } => {
-            let (trials, agreement) = on_board(&finger, options, board, progress)?;
-            (trials, Some(agreement))
-        }
+    let (trials, agreement) = if matches!(board, Board::Host) {
+        (trials_on_host(&finger, learned.clone(), options, progress)?, None)
+    } else {
+        let (trials, agreement) = on_board(&finger, options, board, progress)?;
+        (trials, Some(agreement))
     };
 
     let over = AtomicU64::new(0);
@@ -217,7 +215,6 @@ fn trials_on_host(
 }
 
 /// Lessons and trials as one chain on a board: the trials, and whether the host's logic says the same all the way.
-#[cfg(feature = "emulator")]
 fn on_board(
     finger: &Finger,
     options: &Options,

@@ -11,8 +11,9 @@ pub mod recipe;
 pub mod resample;
 
 use std::collections::BTreeSet;
+use std::str::FromStr;
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use tenax_hal_shim::channel::ARRAY_COUNT;
 
 use crate::scorer::{Doing, SlipSpan, onsets};
@@ -21,7 +22,7 @@ pub use read::{LabelledError, parse, read};
 pub use recipe::ArrayRecipe;
 
 /// What a recording is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Part {
     /// To learn from.
@@ -36,12 +37,21 @@ impl Part {
     pub const ALL: [Self; 3] = [Self::Train, Self::Validation, Self::Test];
 
     /// What it is called in a file.
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             Self::Train => "train",
             Self::Validation => "validation",
             Self::Test => "test",
         }
+    }
+}
+
+impl FromStr for Part {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let part = Self::ALL.into_iter().find(|part| part.name() == name);
+        part.ok_or_else(|| format!("`{name}` is no part of a data set; they are train, validation and test"))
     }
 }
 

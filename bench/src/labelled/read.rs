@@ -177,7 +177,7 @@ impl Columns {
         let session = text(self.session).unwrap_or_else(|| name.clone());
         Ok(Row {
             material: text(self.material).unwrap_or_else(|| session.clone()),
-            part: self.part.map(|place| part(&record[place])).transpose()?,
+            part: self.part.map(|place| record[place].parse::<Part>()).transpose()?,
             t_s: match (self.time, &recipe.array.time) {
                 (Some(place), Some(column)) => Some(number(place, column.get_ref())?),
                 _ => None,
@@ -190,13 +190,6 @@ impl Columns {
             slip,
         })
     }
-}
-
-fn part(text: &str) -> Result<Part, String> {
-    Part::ALL
-        .into_iter()
-        .find(|part| part.name() == text)
-        .ok_or_else(|| format!("`{text}` is no part of a data set; they are train, validation and test"))
 }
 
 /// A recording whose rows are still coming.

@@ -7,8 +7,7 @@ use super::Bar;
 use tenax_bench::array::network::Network;
 use tenax_bench::array::{Verdicts, readings};
 use tenax_bench::bars::Goal;
-use tenax_bench::labelled::{self, library};
-use tenax_studies::dataset::session::Split;
+use tenax_bench::labelled::{self, Part, library};
 use tenax_studies::dataset::{Dataset, Label, Plan};
 use tenax_studies::evaluate::report::Report;
 
@@ -16,7 +15,7 @@ use tenax_studies::evaluate::report::Report;
 const PLAN: Plan = Plan { seed: 4, sessions: 4, label: Label::Truth };
 /// The bars. Fails if a scene cannot be made.
 pub fn bars() -> anyhow::Result<Vec<Bar>> {
-    let csv = Dataset::make_split(PLAN, Split::Test, &|_| {})?.csv()?;
+    let csv = Dataset::make_split(PLAN, Part::Test, &|_| {})?.csv()?;
     let name = "array_dataset.csv";
     let recordings = labelled::parse(csv.as_slice(), &library::choose(name.as_ref(), None)?, name)?;
     let network = Network::shipped();

@@ -3,13 +3,13 @@
 use rayon::prelude::*;
 
 use super::{Chart, Progress, csv};
-use crate::dataset::session::{Sizes, Split, sessions};
+use crate::dataset::session::{Sizes, sessions};
 use crate::dataset::{Dataset, Plan};
 use crate::evaluate::draws::{Draw, Part, draws};
 use tenax_bench::array::network::Network;
 use tenax_bench::array::real::Logits;
 use tenax_bench::array::{Verdicts, readings};
-use tenax_bench::labelled::{self, library};
+use tenax_bench::labelled::{self, Part as Set, library};
 use tenax_plot::figure::colour;
 use tenax_plot::sheet::{Axis, Mark, Panel, Series, Sheet};
 
@@ -17,7 +17,7 @@ use tenax_plot::sheet::{Axis, Mark, Panel, Series, Sheet};
 /// Fails if a scene cannot be made or the chart not be drawn.
 pub fn chart(progress: Progress) -> anyhow::Result<Chart> {
     let plan = Plan::default();
-    let data = Dataset::make_split(plan, Split::Test, progress)?.csv()?;
+    let data = Dataset::make_split(plan, Set::Test, progress)?.csv()?;
     let name = "array_dataset.csv";
     let recordings = labelled::parse(data.as_slice(), &library::choose(name.as_ref(), None)?, name)?;
     let network = Network::shipped();

@@ -6,9 +6,10 @@ use serde::Serialize;
 use sha2::{Digest, Sha256};
 
 use super::collect::Recording;
-use super::session::{Session, Split};
+use super::session::Session;
 use super::{Label, Plan};
 use tenax_bench::array::material::{HELD_OUT, Material, SEEN};
+use tenax_bench::labelled::Part;
 
 /// The manifest, written as TOML beside the data.
 #[derive(Clone, Debug, Serialize)]
@@ -31,7 +32,7 @@ pub struct Manifest {
     pub held_out: &'static str,
     /// How often the marker agrees with the world, per cent of steps.
     pub marker_agrees_percent: f64,
-    pub split: BTreeMap<Split, Counts>,
+    pub split: BTreeMap<Part, Counts>,
     pub material: Vec<Material>,
     pub session: Vec<SessionEntry>,
 }
@@ -70,7 +71,7 @@ pub struct SessionEntry {
 impl Manifest {
     /// Of data that is `bytes` in `file`.
     pub fn new(plan: &Plan, file: &str, bytes: &[u8], all: &[(Session, Vec<Recording>)]) -> Self {
-        let mut split: BTreeMap<Split, Counts> = BTreeMap::new();
+        let mut split: BTreeMap<Part, Counts> = BTreeMap::new();
         let (mut agree, mut steps) = (0, 0);
         for (session, recordings) in all {
             let counts = split.entry(session.split).or_default();

@@ -4,29 +4,7 @@ use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use serde::Serialize;
 
 use tenax_bench::array::material::{Ends, HELD_OUT, Material, SEEN};
-
-/// What a session's data is for. Whole sessions are: no step of one is in two splits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, clap::ValueEnum)]
-#[serde(rename_all = "lowercase")]
-pub enum Split {
-    /// A classifier learns from it.
-    Train,
-    /// It is chosen by it.
-    Validation,
-    /// It is judged by it, once.
-    Test,
-}
-
-impl Split {
-    /// As in the data.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Train => "train",
-            Self::Validation => "validation",
-            Self::Test => "test",
-        }
-    }
-}
+use tenax_bench::labelled::Part;
 
 /// How many sessions of each material there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,7 +31,8 @@ impl Sizes {
 pub struct Session {
     /// Of the material, with a number.
     pub name: String,
-    pub split: Split,
+    /// Whole sessions are for one thing: no step of one is in two parts.
+    pub split: Part,
     /// The box's sides.
     pub material: &'static str,
     /// Seed of all its noise.
@@ -99,7 +78,7 @@ pub struct Session {
 }
 
 impl Session {
-    fn draw(name: String, split: Split, material: &Material, rng: &mut ChaCha8Rng) -> Self {
+    fn draw(name: String, split: Part, material: &Material, rng: &mut ChaCha8Rng) -> Self {
         let seed = rng.random();
         let specimen = rng.random();
         let mut evenly = |low: f64, high: f64| rounded(rng.random_range(low..high));
@@ -147,8 +126,8 @@ fn rounded(value: f64) -> f64 {
 /// a larger data set has all sessions of a smaller one, in the same split.
 pub fn sessions(seed: u64, sizes: Sizes) -> Vec<Session> {
     let Sizes { train, validation, test } = sizes;
-    let seen = [(Split::Train, train), (Split::Validation, validation), (Split::Test, test)];
-    let held_out = [(Split::Test, 2 * test)];
+    let seen = [(Part::Train, train), (Part::Validation, validation), (Part::Test, test)];
+    let held_out = [(Part::Test, 2 * test)];
     let materials = SEEN.iter().map(|material| (material, &seen[..])).chain([(&HELD_OUT, &held_out[..])]);
     let mut all = Vec::new();
     for (index, (material, splits)) in materials.enumerate() {

@@ -7,11 +7,8 @@ use tenax_logic::array::logarithm::Knee;
 use tenax_logic::array::past::Past;
 use tenax_logic::array::spectrum::SlidingSpectrum;
 use tenax_logic::array::structure::{self, STRUCTURES, Structure, WINDOWS};
-use tenax_logic::array::{BINS, ELEMENTS, FEATURES, Features, Mlp, PreprocessorConfig, Reading, specimen};
+use tenax_logic::array::{BINS, ELEMENTS, FEATURES, Features, Mlp, PreprocessorConfig, Reading, shipped};
 use tenax_logic::photoelastic::{Head, HeadConfig};
-
-/// As large as the one that ships. Its weights are nobody's; its work is real.
-static NETWORK: Mlp<FEATURES, 32, 1, 16> = specimen::mlp(12);
 
 /// Their state.
 pub struct Parts {
@@ -46,7 +43,7 @@ impl Parts {
         black_box(tenax_kernel_spectrum(&mut self.spectrum, numbers.iter().sum()));
         self.past.push(reading);
         black_box(tenax_kernel_structure(&mut self.structure, &self.past, &self.knees));
-        black_box(tenax_kernel_mlp_structure_8_1(black_box(&NETWORK), features));
+        black_box(tenax_kernel_mlp_structure_8_1(black_box(&shipped::MODEL.network), features));
         let config = HeadConfig { slip: 10, ..HeadConfig::default() };
         // One of ten, so that it is called from one place.
         if let Some(sample) = reading[0] {
