@@ -26,6 +26,7 @@ pub mod network;
 pub mod past;
 pub mod preprocess;
 pub mod shipped;
+pub mod specimen;
 pub mod spectrum;
 pub mod structure;
 pub mod taxels;
