@@ -20,6 +20,7 @@ fn press(bench: &mut Bench, newtons: [f64; 4]) {
     }
 }
 
+// Shows R6.
 #[test]
 fn one_pressed_quadrant_of_an_empty_hand_closes_nothing() {
     for quadrant in 0..4 {
@@ -59,6 +60,7 @@ fn slip_while_an_s2_pulse_settles_is_answered() {
     assert!(slip && bench.fingertip.mode() == GripMode::Slip, "{:?}", bench.last_cause());
 }
 
+// Shows R5.
 #[test]
 fn one_humming_film_closes_the_hand_once_and_is_masked() {
     let mut bench = Bench::holding(33);
@@ -80,6 +82,7 @@ fn one_humming_film_closes_the_hand_once_and_is_masked() {
     assert!(reflex_ticks(&bench) > 20);
 }
 
+// Shows R6.
 #[test]
 fn an_offset_of_the_force_sensor_is_gone_once_the_hand_has_opened() {
     for mv in [10.0, 45.0] {
@@ -100,6 +103,7 @@ fn an_offset_of_the_force_sensor_is_gone_once_the_hand_has_opened() {
     }
 }
 
+// Shows R6.
 #[test]
 fn an_open_hand_that_still_reads_a_load_says_so_once() {
     // The control: an offset that the zeros follow.

@@ -37,6 +37,7 @@ fn an_object_that_rubs_quietly_is_held_more_firmly_with_small_pulses() {
     assert_eq!(full.count(), 0, "no pulse at full speed");
 }
 
+// Shows R4.
 #[test]
 fn films_that_hummed_when_the_grasp_began_slide_no_more_than_quiet_ones() {
     let mut bench = Bench::new(62);
@@ -56,6 +57,7 @@ fn films_that_hummed_when_the_grasp_began_slide_no_more_than_quiet_ones() {
     assert_eq!(reflex_ticks(&bench), 0);
 }
 
+// Shows R4.
 #[test]
 fn closing_that_does_not_help_ends_at_half_as_much_again() {
     let mut bench = Bench::holding(64);

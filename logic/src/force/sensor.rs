@@ -169,6 +169,7 @@ mod tests {
         }
     }
 
+    // Shows R6.
     #[test]
     fn only_an_unloaded_finger_is_zeroed() {
         let mut sensor = ForceSensor::default();
