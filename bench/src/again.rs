@@ -25,10 +25,7 @@ pub struct Recorded {
 }
 
 impl Recorded {
-    /// From a line's bytes.
-    ///
-    /// # Errors
-    /// If something that decides is not in them: says what, and how it is recorded.
+    /// From a line's bytes. Fails if something that decides is not in them: says what, and how it is recorded.
     pub fn of(line: &[u8]) -> anyhow::Result<Self> {
         let (mut inbox, mut recorded, mut starts) = (Inbox::default(), Self::default(), 0);
         for heard in line.iter().filter_map(|&byte| inbox.push(byte)).flatten() {
@@ -67,7 +64,6 @@ impl Recorded {
     }
 
     /// Decides everything once more.
-    #[must_use]
     pub fn replay(&self) -> Outcome {
         let mut device = Device::default();
         for Restored { kept, payload } in &self.restored {
@@ -155,10 +151,7 @@ impl fmt::Display for Outcome {
     }
 }
 
-/// Replays the recording at `path`.
-///
-/// # Errors
-/// As [`Recorded::of`].
+/// Replays the recording at `path`. Fails as [`Recorded::of`] does.
 pub fn replay(path: &std::path::Path) -> anyhow::Result<Outcome> {
     let line = line_of(path)?;
     Ok(Recorded::of(&line).with_context(|| path.display().to_string())?.replay())

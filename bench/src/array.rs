@@ -33,7 +33,6 @@ pub fn verdicts(mut detector: impl FnMut(&Reading) -> bool, steps: &[Step]) -> V
 }
 
 /// What a detector is told of a recording: an element that the fingertip would not believe has no reading.
-#[must_use]
 pub fn readings(steps: &[Step]) -> Vec<Reading> {
     let mut taxels = Taxels::default();
     let read = |step: &Step| {

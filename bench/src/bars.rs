@@ -31,19 +31,16 @@ impl Goal {
     ///
     /// # Panics
     /// If there is none: each name stands in the source, and a test or promise asks for it.
-    #[must_use]
     pub fn of(name: &str) -> &'static Self {
         ALL.get(name).unwrap_or_else(|| panic!("bars.toml has no [{name}]"))
     }
 
     /// Whether a value is no worse than what is held. Whether more is better shows in which side of the goal that lies.
-    #[must_use]
     pub fn holds(&self, value: f64) -> bool {
         if self.held > self.goal { value <= self.held } else { value >= self.held }
     }
 
     /// Whether a value reaches the goal itself.
-    #[must_use]
     pub fn reached(&self, value: f64) -> bool {
         if self.held > self.goal { value <= self.goal } else { value >= self.goal }
     }

@@ -34,10 +34,7 @@ pub struct Budgets {
 }
 
 impl Budgets {
-    /// Those of this checkout.
-    ///
-    /// # Errors
-    /// Says what is wrong with the file, and where.
+    /// Those of this checkout. An error says what is wrong with the file, and where.
     pub fn of_checkout() -> Result<Self> {
         toml::from_str(include_str!("../../budgets.toml")).context("budgets.toml")
     }
@@ -46,13 +43,10 @@ impl Budgets {
 /// One line of the table: what was measured, beside what is allowed.
 #[derive(Clone, Debug)]
 pub struct Line {
-    /// What.
     pub what: &'static str,
-    /// Its unit.
     pub unit: &'static str,
     /// What was measured, None where it could not be.
     pub measured: Option<u64>,
-    /// The budget.
     pub budget: u64,
     /// All that the chip has, where that is a number.
     pub of: Option<u64>,
@@ -60,7 +54,6 @@ pub struct Line {
 
 impl Line {
     /// Whether it is known to be within its budget.
-    #[must_use]
     pub fn is_kept(&self) -> bool {
         self.measured.is_some_and(|measured| measured <= self.budget)
     }

@@ -12,7 +12,6 @@ use rand::{RngExt, SeedableRng};
 pub const NAME: &str = "disturbance-hour";
 
 /// The scene as a text: so many minutes of it, drawn from a seed.
-#[must_use]
 pub fn text(seed: u64, minutes: u32) -> String {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut text = format!(

@@ -13,17 +13,12 @@ use tenax_launch::image::Binary;
 pub use tenax_launch::image::{TARGET, clippy, port};
 
 /// Builds the image of the workspace at `root`, fetching what it takes, and gives its ELF file.
-///
-/// # Errors
-/// Says what to install, or what the compiler said.
+/// An error says what to install, or what the compiler said.
 pub fn build(root: &Path) -> Result<PathBuf> {
     tenax_launch::image::build(root, Binary::Image)
 }
 
-/// Builds the image of the array detector's kernels, for [`kernels`](crate::board::emulated::kernels).
-///
-/// # Errors
-/// As [`build`].
+/// Builds the image of the array detector's kernels, for [`kernels`](crate::board::emulated::kernels). Fails as [`build`] does.
 pub fn build_kernels(root: &Path) -> Result<PathBuf> {
     tenax_launch::image::build(root, Binary::Kernels)
 }

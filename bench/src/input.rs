@@ -11,10 +11,7 @@ pub const LINE_MAX_BYTES: u64 = 100_000;
 /// The longest CSV file, bytes: ten minutes of sixteen columns at 8 kHz.
 pub const CSV_MAX_BYTES: u64 = 1_000_000_000;
 
-/// The text of a scene or a recipe.
-///
-/// # Errors
-/// If it cannot be read, is too long, or is no text.
+/// The text of a scene or a recipe. Fails if it cannot be read, is too long, or is no text.
 pub fn text(path: &Path) -> io::Result<String> {
     text_of(File::open(path)?)
 }

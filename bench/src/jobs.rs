@@ -18,7 +18,6 @@ impl<'a> Jobs<'a> {
         Self { count, done: Mutex::new(0.0), told }
     }
 
-    /// One of them begins.
     pub const fn begin(&self) -> Job<'_> {
         Job { jobs: self, part: 0.0 }
     }

@@ -52,7 +52,6 @@ impl Button {
 impl Live {
     /// What clients send comes down; `behind` is told once, if at all, that the board is slower than real time, and at which
     /// part of it it runs.
-    #[must_use]
     pub fn new(down: Down, behind: fn(f64)) -> Self {
         Self { down, room: 0, pace: Pace::new(behind), button: Button::default() }
     }
@@ -64,7 +63,6 @@ impl Live {
     }
 
     /// Tells what really happens.
-    #[must_use]
     pub const fn teller(&self) -> &Teller {
         &self.down.teller
     }
@@ -151,7 +149,6 @@ impl Use {
 
 /// A plant whose board's line is served, if it is.
 pub struct Served<P> {
-    /// The plant.
     pub plant: P,
     /// None: as fast as it goes, and nobody sends anything.
     pub live: Option<Live>,

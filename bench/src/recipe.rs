@@ -55,7 +55,6 @@ pub fn matches<'p>(patterns: impl IntoIterator<Item = &'p Spanned<String>>, file
     patterns.into_iter().any(matches)
 }
 
-/// Whether all of them are patterns.
 pub fn check_patterns<'p>(patterns: impl IntoIterator<Item = &'p Spanned<String>>) -> Checked {
     for pattern in patterns {
         glob::Pattern::new(pattern.get_ref())

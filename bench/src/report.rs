@@ -178,7 +178,6 @@ pub struct Subject<'a> {
     pub board: &'static str,
     /// Seed of every noise.
     pub seed: u64,
-    /// The run.
     pub run: &'a Summary,
     /// When its detectors spoke.
     pub timeline: &'a Timeline,
@@ -194,7 +193,6 @@ pub struct Subject<'a> {
 
 impl Report {
     /// Makes a report; [`Report::replay`] is for whoever played a recording.
-    #[must_use]
     pub fn new(subject: &Subject) -> Self {
         let (run, timeline) = (subject.run, subject.timeline);
         Self {
@@ -247,7 +245,6 @@ fn nobody_wears_it(run: &Summary) -> bool {
     told.unwrap_or(false)
 }
 
-/// How often a myosensor was lost.
 fn myosensors_lost(run: &Summary) -> usize {
     let is_one = |channel: u8| (MYO_FLEXOR..=MYO_EXTENSOR).contains(&usize::from(channel));
     let lost = |event: &&Event| matches!(event.kind, EventKind::Fault(Fault::SensorLost { channel, .. }) if is_one(channel));

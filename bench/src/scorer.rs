@@ -39,13 +39,11 @@ pub struct SlipSpan {
 
 impl SlipSpan {
     /// Until when a detection belongs to it, s.
-    #[must_use]
     pub fn last_s(&self) -> f64 {
         self.end_s + CAUGHT_WITHIN_S
     }
 
     /// Whether what begins at this instant belongs to it.
-    #[must_use]
     pub fn owns(&self, t_s: f64) -> bool {
         (self.micro_onset_s..=self.last_s()).contains(&t_s)
     }
@@ -64,7 +62,6 @@ pub struct Verdict {
 
 impl Verdict {
     /// Nobody's muscles are involved.
-    #[must_use]
     pub const fn new(from_s: f64, to_s: f64) -> Self {
         Self { from_s, to_s, by_wearer: false }
     }
@@ -84,7 +81,6 @@ pub enum Outcome {
 }
 
 /// **The definition of caught.** `macro_onset_s` is the slip's.
-#[must_use]
 pub fn outcome(slip: &SlipSpan, macro_onset_s: f64, verdicts: &[Verdict]) -> Outcome {
     let own = || verdicts.iter().filter(|verdict| !verdict.by_wearer);
     let first = own().map(|verdict| verdict.from_s).find(|&from_s| slip.owns(from_s));
@@ -123,7 +119,6 @@ impl Alarms {
 /// Macro slips that were not meant, by what became of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Counts {
-    /// All of them.
     pub count: usize,
     /// Those that a detection began in between micro onset and 50 ms after macro onset.
     pub caught: usize,
@@ -164,7 +159,6 @@ impl Counts {
 /// What a detector made of recordings or scenes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Card {
-    /// Its slips.
     #[serde(flatten)]
     pub slips: Counts,
     /// Detection less macro onset of those caught, ms, in their order.
@@ -173,7 +167,6 @@ pub struct Card {
     /// The same less micro onset.
     #[serde(skip)]
     pub after_micro_ms: Vec<f64>,
-    /// All false alarms.
     pub false_alarms: Alarms,
     /// By what was going on.
     pub false_by: BTreeMap<Doing, Alarms>,
@@ -181,7 +174,6 @@ pub struct Card {
 
 impl Card {
     /// Scores one recording or scene.
-    #[must_use]
     pub fn of(slips: &[SlipSpan], verdicts: &[Verdict], doing: &[Stretch]) -> Self {
         let mut card = Self::default();
         for slip in slips.iter().filter(|slip| !slip.meant) {
@@ -222,13 +214,11 @@ impl Card {
     }
 
     /// The part of the slips that was caught. None if there was none.
-    #[must_use]
     pub fn caught_part(&self) -> Option<f64> {
         (self.slips.count > 0).then(|| self.slips.caught as f64 / self.slips.count as f64)
     }
 
     /// The latency that this part of those caught do not exceed, ms. None if none was caught.
-    #[must_use]
     pub fn latency_ms(&self, part: f64) -> Option<f64> {
         let mut sorted = self.latencies_ms.clone();
         sorted.sort_by(f64::total_cmp);
@@ -238,7 +228,6 @@ impl Card {
 }
 
 /// When detections began that belong to no slip and not to what the wearer does, s.
-#[must_use]
 pub fn false_alarms_s(slips: &[SlipSpan], verdicts: &[Verdict]) -> Vec<f64> {
     let is_slip = |t_s: f64| slips.iter().any(|slip| slip.macro_onset_s.is_some() && slip.owns(t_s));
     verdicts

@@ -77,7 +77,6 @@ impl Board {
     }
 
     /// What it is called in reports.
-    #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Host => "host",
@@ -118,9 +117,7 @@ impl Board {
 pub struct Outcome {
     /// What the board left behind.
     pub run: Summary,
-    /// The report.
     pub report: Report,
-    /// The figure.
     pub figure: Figure,
     /// What really happened. Nothing is known of a recording.
     pub truth: Fate,
@@ -348,7 +345,6 @@ pub fn recorded(name: &str, line: &[u8]) -> anyhow::Result<Outcome> {
 }
 
 /// What a recording is called: its file's name.
-#[must_use]
 pub fn name_of(recording: &Path) -> String {
     recording
         .file_name()

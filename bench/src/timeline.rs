@@ -38,56 +38,47 @@ fn push(all: &mut [Edges; DetectorId::COUNT], set: DetectorSet, frame: u32, by_w
 
 impl Timeline {
     /// Of a run that has not begun; `zero_s` is added to virtual time (a recording has a time of its own).
-    #[must_use]
     pub fn new(zero_s: f64) -> Self {
         Self { zero_s, ..Self::default() }
     }
 
     /// What is added to virtual time, s.
-    #[must_use]
     pub const fn zero_s(&self) -> f64 {
         self.zero_s
     }
 
     /// When the tick of this frame ran, s: when the frame's last scan had been taken.
-    #[must_use]
     pub fn time_s(&self, frame: u32) -> f64 {
         self.zero_s + frame_end_s(frame)
     }
 
     /// When a detector began to say slip or to warn of it, believed or not, s.
-    #[must_use]
     pub fn said(&self, id: DetectorId) -> Vec<f64> {
         self.times_s(&self.said[id as usize])
     }
 
     /// When it began to say so and was believed, s.
-    #[must_use]
     pub fn believed(&self, id: DetectorId) -> Vec<f64> {
         self.times_s(&self.believed[id as usize])
     }
 
     /// The stretches in which it said so and was believed, for the [scorer](crate::scorer).
-    #[must_use]
     pub fn verdicts(&self, id: DetectorId) -> Vec<Verdict> {
         self.stretches(&self.believed[id as usize])
     }
 
     /// The stretches in which it said so, believed or not.
-    #[must_use]
     pub fn verdicts_said(&self, id: DetectorId) -> Vec<Verdict> {
         self.stretches(&self.said[id as usize])
     }
 
     /// When the reflex began to act on it, s.
-    #[must_use]
     pub fn acted(&self, id: DetectorId) -> Vec<f64> {
         self.times_s(&self.acted[id as usize])
     }
 
     /// When a muscle became active, s: the tick in which the wearer took over if it was this that changed the mode, else
     /// the end of the slow frame that first says so. `events` are the run's.
-    #[must_use]
     pub fn wearer(&self, events: &[Event]) -> Vec<f64> {
         let slow_frame_s = f64::from(FRAMES_PER_SLOW_FRAME) / f64::from(FRAME_HZ);
         let taken_over = events.iter().filter_map(|event| match event.kind {

@@ -1,5 +1,6 @@
 //! What the tests in `tests/` share: a fingertip on a bench, with a knob for the voltage of every pin.
 #![forbid(unsafe_code)]
+#![allow(missing_docs, reason = "a part of the tool: where a name says it all, nothing repeats it")]
 
 pub mod onsets;
 pub mod teaching;
@@ -29,7 +30,6 @@ fn relaxed() -> [f64; COUNT] {
 }
 
 /// A fingertip that is calibrated to the scenes' wearer and trusts its line.
-#[must_use]
 pub fn calibrated() -> Fingertip {
     let mut fingertip = Fingertip::trusting();
     fingertip.restore(Kept::Emg, &payload::of_emg(&wearer()));
@@ -40,7 +40,6 @@ pub fn calibrated() -> Fingertip {
 ///
 /// # Panics
 /// Never: this wearer's contractions separate.
-#[must_use]
 pub fn wearer() -> EmgModel {
     EmgModel::of_uv([50_000; 2], [900_000, 95_000], [80_000, 560_000]).expect("they separate")
 }
@@ -52,7 +51,6 @@ pub struct Bench {
     pub fingertip: Fingertip,
     /// Voltage of every pin, mV.
     pub pins_mv: [f64; COUNT],
-    /// Every event so far.
     pub events: Vec<Event>,
     /// Every slow frame so far.
     pub slows: Vec<Slow>,
@@ -65,7 +63,6 @@ pub struct Bench {
     pub lively: f64,
     /// A myosensor's pin whose electrode is off the skin: it does not fluctuate.
     pub lifted: Option<usize>,
-    /// Frames given so far.
     pub frames: u32,
     muscle_noise: ChaCha8Rng,
     /// Two low-passes each.
@@ -75,7 +72,6 @@ pub struct Bench {
 
 impl Bench {
     /// Everything at rest. The line is trusted: what needs consent has tests of its own (`tests/consent.rs`).
-    #[must_use]
     pub fn new(seed: u64) -> Self {
         Self {
             fingertip: calibrated(),
@@ -94,7 +90,6 @@ impl Bench {
     }
 
     /// Switched on at rest, then holding something with 4 N and a shear of 0.4 N, long enough for the reflex to watch.
-    #[must_use]
     pub fn holding(seed: u64) -> Self {
         let mut bench = Self::new(seed);
         bench.run(200);
@@ -203,7 +198,6 @@ impl Bench {
     }
 
     /// How the reflex came into the mode it is in.
-    #[must_use]
     pub fn last_cause(&self) -> Option<Cause> {
         self.events.iter().rev().find_map(|event| match event.kind {
             EventKind::Mode { cause, .. } => Some(cause),

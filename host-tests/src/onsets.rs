@@ -13,7 +13,6 @@ pub type Onsets = [Vec<u32>; DetectorId::COUNT];
 /// If an onset is in no frame in which its detector decided. Evidence has the last decision of a slow frame. So the onset
 /// of a detector that decides once a slow frame is that frame; one that decides in every frame has decided again since, and
 /// nothing may have changed after its last decision.
-#[must_use]
 pub fn held_against_evidence(slows: &[Slow]) -> Onsets {
     let mut onsets = Onsets::default();
     let mut before = DetectorSet::NONE;

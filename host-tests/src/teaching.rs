@@ -22,7 +22,6 @@ const AGE_MS: u16 = 40;
 
 impl Bench {
     /// Holds something, and was taught seven pick-ups. Nothing vibrates, and the teacher has gone.
-    #[must_use]
     pub fn taught(seed: u64) -> Self {
         let mut bench = Self::holding(seed);
         for _ in 0..7 {

@@ -223,7 +223,6 @@ impl Adversary {
     }
 }
 
-/// What was seen so far.
 #[derive(Debug, Default)]
 struct Seen {
     reflex: u64,

@@ -29,7 +29,6 @@ pub enum Verdict {
 /// One promise, measured.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bar {
-    /// What is promised.
     pub promise: String,
     /// What was measured.
     pub figure: String,

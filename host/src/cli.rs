@@ -37,7 +37,7 @@ Examples:
   tenax learn                               a fingertip teaches itself slip from a camera
   tenax scenes                              what there is to run
   tenax check                               every promise, measured
-  tenax chart scenes                        how friction is stepped, where that fails, and what it costs
+  tenax chart scenes                        how friction is stepped, beside theory
   tenax monitor                             watch the board that is plugged in
   tenax monitor --port /dev/pts/5           watch a running scene: the path is what `tenax run --serve` printed
   tenax config --port /dev/pts/5 set s1-mv=120
@@ -102,7 +102,6 @@ enum Command {
 }
 
 /// Runs the command line. 0: done. 1: something measured is not as promised. 2: it could not be run.
-#[must_use]
 pub fn main() -> ExitCode {
     exit(match Cli::parse().command {
         Command::Run(args) => run::main(&args),

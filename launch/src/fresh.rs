@@ -20,7 +20,6 @@ const VARIABLES: [&str; 3] = ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "RUSTUP_TO
 pub struct Program<'a> {
     /// The workspace.
     pub root: &'a Path,
-    /// Its file.
     pub file: PathBuf,
     /// What Cargo is told.
     pub how: String,
@@ -28,7 +27,6 @@ pub struct Program<'a> {
 
 impl Program<'_> {
     /// Whether a build would give the same.
-    #[must_use]
     pub fn is_fresh(&self) -> bool {
         let fresh = || {
             let stamp = self.file.with_extension("built");
@@ -42,10 +40,7 @@ impl Program<'_> {
         fresh().unwrap_or(false)
     }
 
-    /// Notes that a build that began then has succeeded.
-    ///
-    /// # Errors
-    /// If the note cannot be written.
+    /// Notes that a build that began then has succeeded. Fails if the note cannot be written.
     pub fn built(&self, begun: SystemTime) -> Result<()> {
         let stamp = self.file.with_extension("built");
         let write = || {

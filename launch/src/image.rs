@@ -16,7 +16,6 @@ use crate::jobs::{self, Desk, Job};
 
 /// What the image is compiled for: Cortex-M4F, hard float.
 pub const TARGET: &str = "thumbv7em-none-eabihf";
-/// The package that it is made of.
 const PACKAGE: &str = "tenax-firmware";
 /// The Cargo profile that it is made with.
 const PROFILE: &str = "firmware";
@@ -41,9 +40,7 @@ impl Binary {
 }
 
 /// Builds what is asked for of the workspace at `root`, fetching what it takes, and gives its ELF file.
-///
-/// # Errors
-/// Says what to install, or what the compiler said.
+/// An error says what to install, or what the compiler said.
 pub fn build(root: &Path, binary: Binary) -> Result<PathBuf> {
     jobs::run(vec![job(root, &[binary])])?;
     let elf = program(root, binary).file;
@@ -58,7 +55,6 @@ fn program(root: &Path, binary: Binary) -> Program<'_> {
 }
 
 /// The same, beside other jobs.
-#[must_use]
 pub fn job<'a>(root: &'a Path, binaries: &[Binary]) -> Job<'a> {
     let bins: Vec<_> = binaries.iter().flat_map(|binary| ["--bin", binary.name()]).collect();
     let programs: Vec<_> = binaries.iter().map(|&binary| program(root, binary)).collect();
@@ -73,19 +69,14 @@ pub fn job<'a>(root: &'a Path, binaries: &[Binary]) -> Job<'a> {
     Job { name: "image", done: "built", run: Box::new(run) }
 }
 
-/// Lints the image's package with the toolchain that builds it; a warning is an error.
-///
-/// # Errors
-/// Says what to install, or what Clippy said.
+/// Lints the image's package with the toolchain that builds it; a warning is an error. An error says what to install, or what Clippy said.
 pub fn clippy(root: &Path) -> Result<()> {
     let run = move |desk: &Desk| run(root, "clippy", &["--", "--deny", "warnings"], desk);
     jobs::run(vec![Job { name: "image", done: "linted", run: Box::new(run) }])
 }
 
 /// Compiles the image's package for another chip, named as the package's features are: what a port takes is in the sources.
-///
-/// # Errors
-/// Says what to install, or what the compiler said.
+/// An error says what to install, or what the compiler said.
 pub fn port(root: &Path, chip: &str) -> Result<()> {
     let more = ["--bin", PACKAGE, "--no-default-features", "--features", chip];
     let run = move |desk: &Desk| run(root, "check", &more, desk);

@@ -58,10 +58,7 @@ impl Desk {
     }
 }
 
-/// Runs the jobs to their end; at the first that fails, ends the others.
-///
-/// # Errors
-/// The first job's that failed.
+/// Runs the jobs to their end; at the first that fails, ends the others. Fails with the first job's that failed.
 pub fn run(jobs: Vec<Job<'_>>) -> Result<()> {
     let names: Vec<&str> = jobs.iter().map(|job| job.name).collect();
     let done: Vec<&str> = jobs.iter().map(|job| job.done).collect();

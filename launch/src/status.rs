@@ -33,7 +33,6 @@ struct Line {
 
 impl Status {
     /// Nothing is shown before [`SHOWN_AFTER`].
-    #[must_use]
     pub fn new(text: &str) -> Self {
         let terminal = stderr().is_terminal() && std::env::var_os("TERM").is_none_or(|term| term != "dumb");
         let line = Line {
@@ -69,7 +68,6 @@ impl Status {
     }
 
     /// For how long it has been shown or could have been.
-    #[must_use]
     pub fn elapsed(&self) -> Duration {
         lock(&self.shared).begun.elapsed()
     }

@@ -24,17 +24,13 @@ const BUILD_SERIAL: [&str; 3] = ["--release", "--package", "tenax-serial"];
 /// What runs a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tool {
-    /// All of it.
     Whole,
     /// The serial tools, which take no emulator and no plots: built in a minute and a half, the whole tool in minutes.
     Serial,
 }
 
 impl Tool {
-    /// The smaller one that has this command, or the whole if only that is built.
-    ///
-    /// # Errors
-    /// If this program is not in a target folder.
+    /// The smaller one that has this command, or the whole if only that is built. Fails if this program is not in a target folder.
     pub fn of(root: &Path, arguments: &[OsString]) -> Result<Self> {
         let [whole, serial] = [Self::Whole, Self::Serial];
         let is_small = is_serial(arguments)
@@ -50,7 +46,6 @@ impl Tool {
     }
 
     /// Its program in a target folder.
-    #[must_use]
     pub fn program<'a>(self, root: &'a Path, target: &Path) -> Program<'a> {
         let name = match self {
             Self::Whole => "tenax-host",
@@ -61,7 +56,6 @@ impl Tool {
     }
 
     /// Builds it from the workspace at `root` into the target folder that this program is in, if it is not built.
-    #[must_use]
     pub fn job(self, root: &Path) -> Job<'_> {
         let run = move |desk: &_| {
             let target = target()?;
@@ -80,10 +74,7 @@ impl Tool {
         Job { name: "tool", done: "built", run: Box::new(run) }
     }
 
-    /// Starts it; where the system can, this process becomes it.
-    ///
-    /// # Errors
-    /// If it is not there or does not start.
+    /// Starts it; where the system can, this process becomes it. Fails if it is not there or does not start.
     pub fn become_it(self, root: &Path, arguments: &[OsString]) -> Result<ExitCode> {
         let path = self.program(root, &target()?).file;
         ensure!(path.exists(), "the build succeeded, but there is no {}", path.display());
@@ -114,7 +105,6 @@ fn is_serial(arguments: &[OsString]) -> bool {
 }
 
 /// What the tool will ask for when it is called with these arguments. If this is wrong, the tool builds it itself.
-#[must_use]
 pub fn image_of(arguments: &[OsString]) -> &'static [Binary] {
     let has = |asked: &[&str]| arguments.iter().any(|own| asked.iter().any(|asked| own == asked));
     let command = arguments.first().and_then(|command| command.to_str());

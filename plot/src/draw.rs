@@ -25,7 +25,6 @@ const INK: RGBColor = RGBColor(40, 40, 40);
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// The figure as SVG.
 pub fn svg(figure: &Figure) -> anyhow::Result<String> {
     let mut svg = String::new();
     {

@@ -24,12 +24,10 @@ pub mod colour {
     pub const YELLOW: RGBColor = RGBColor(240, 228, 66);
 }
 
-/// A curve.
 #[derive(Clone, Debug)]
 pub struct Curve {
     /// What it is, at the panel's right.
     pub name: String,
-    /// Its colour.
     pub colour: RGBColor,
     /// Its points; a gap is a point whose value is NaN.
     pub points: Vec<(f64, f64)>,
@@ -38,7 +36,6 @@ pub struct Curve {
 /// A threshold.
 #[derive(Clone, Debug)]
 pub struct Level {
-    /// What it is.
     pub name: String,
     /// Where it is, from one end to the other.
     pub points: Vec<(f64, f64)>,
@@ -49,20 +46,15 @@ pub struct Level {
 pub struct Stretch {
     /// What it is; equal names share one entry at the panel's right.
     pub name: String,
-    /// Its colour.
     pub colour: RGBColor,
-    /// From, s.
     pub from_s: f64,
-    /// To, s.
     pub to_s: f64,
 }
 
-/// One panel.
 #[derive(Clone, Debug, Default)]
 pub struct Panel {
     /// What its axis shows, with the unit.
     pub label: String,
-    /// Curves.
     pub curves: Vec<Curve>,
     /// Thresholds.
     pub levels: Vec<Level>,
@@ -74,14 +66,11 @@ pub struct Panel {
     pub height: f64,
 }
 
-/// The figure.
 #[derive(Clone, Debug)]
 pub struct Figure {
-    /// What it is of.
     pub title: String,
     /// One line under it.
     pub subtitle: String,
-    /// From and to, s.
     pub span_s: (f64, f64),
     /// When the object slipped.
     pub slips: Vec<(f64, f64)>,

@@ -10,17 +10,13 @@ pub struct Lettering {
 }
 
 impl Lettering {
-    /// Reads the font.
-    ///
-    /// # Errors
-    /// If the font that comes along cannot be read.
+    /// Reads the font. Fails if the font that comes along cannot be read.
     pub fn new() -> Result<Self> {
         let face = Face::parse(dejavu::sans::regular(), 0).context("the font cannot be read")?;
         Ok(Self { face })
     }
 
     /// One line of words, `size` pixels high, its baseline beginning at the origin; and its width.
-    #[must_use]
     pub fn line(&self, words: &str, size: f32) -> (Option<Path>, f32) {
         // The font's units are as small as its designer liked, and its y axis goes up.
         let scale = size / f32::from(self.face.units_per_em());
@@ -75,9 +71,7 @@ impl OutlineBuilder for Outline {
 }
 
 /// Where a line of words of this width is put for an SVG's `text`: its anchor, its `dy`, its rotation.
-///
-/// # Errors
-/// If one of them is none that plotters writes.
+/// Fails if one of them is none that plotters writes.
 pub fn place(shape: &super::shapes::Shape<'_>, size: f32, width: f32) -> Result<Transform> {
     let (x, y) = (shape.number("x")?, shape.number("y")?);
     let left = match shape.text("text-anchor")? {

@@ -9,10 +9,7 @@ use super::shapes::Shape;
 /// Pixels for one of the SVG's.
 const SCALE: f32 = 1.5;
 
-/// Draws the SVG that plotters wrote as PNG.
-///
-/// # Errors
-/// If it is another SVG.
+/// Draws the SVG that plotters wrote as PNG. Fails if it is another SVG.
 pub fn png(svg: &str) -> Result<Vec<u8>> {
     let shapes = Shape::all(svg).context("the plot's SVG cannot be read back")?;
     let (size, shapes) = shapes.split_first().context("the plot is empty")?;

@@ -16,10 +16,7 @@ pub struct Shape<'a> {
 }
 
 impl<'a> Shape<'a> {
-    /// Every element, from back to front.
-    ///
-    /// # Errors
-    /// If it is not such an SVG.
+    /// Every element, from back to front. Fails if it is not such an SVG.
     pub fn all(svg: &'a str) -> Result<Vec<Self>> {
         let mut shapes = Vec::new();
         let mut rest = svg;
@@ -48,28 +45,19 @@ impl<'a> Shape<'a> {
         Ok(Self { name, attributes, words })
     }
 
-    /// An attribute's text.
-    ///
-    /// # Errors
-    /// If it is missing.
+    /// An attribute's text. Fails if it is missing.
     pub fn text(&self, key: &str) -> Result<&'a str> {
         let found = self.attributes.iter().find(|(own, _)| *own == key);
         found.map(|(_, value)| *value).with_context(|| format!("{} without {key}", self.name))
     }
 
-    /// An attribute's number.
-    ///
-    /// # Errors
-    /// If it is missing or not a number.
+    /// An attribute's number. Fails if it is missing or not a number.
     pub fn number(&self, key: &str) -> Result<f32> {
         let text = self.text(key)?;
         text.parse().with_context(|| format!("{}: {key} is {text}, not a number", self.name))
     }
 
-    /// The corners of a `polyline` or a `polygon`: `x,y` pairs with spaces between them.
-    ///
-    /// # Errors
-    /// If they are missing or not numbers.
+    /// The corners of a `polyline` or a `polygon`: `x,y` pairs with spaces between them. Fails if they are missing or not numbers.
     pub fn points(&self) -> Result<Vec<(f32, f32)>> {
         let pairs = self.text("points")?.split_whitespace();
         pairs
@@ -80,10 +68,7 @@ impl<'a> Shape<'a> {
             .collect()
     }
 
-    /// A colour, `#RRGGBB`; nothing where the attribute is `none` or missing.
-    ///
-    /// # Errors
-    /// If it is another kind of colour.
+    /// A colour, `#RRGGBB`; nothing where the attribute is `none` or missing. Fails if it is another kind of colour.
     pub fn colour(&self, key: &str) -> Result<Option<[u8; 3]>> {
         let hex = match self.text(key) {
             Err(_) | Ok("none") => return Ok(None),
@@ -97,7 +82,6 @@ impl<'a> Shape<'a> {
     }
 
     /// The words of a `text`, as a person reads them.
-    #[must_use]
     pub fn words(&self) -> String {
         let entities = [("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\""), ("&apos;", "'"), ("&amp;", "&")];
         entities.iter().fold(self.words.to_owned(), |words, (entity, sign)| words.replace(entity, sign))

@@ -15,7 +15,6 @@ pub struct Thin {
 }
 
 /// All of a curve at once.
-#[must_use]
 pub fn thin(points: impl IntoIterator<Item = (f64, f64)>, span_s: (f64, f64)) -> Vec<(f64, f64)> {
     let mut thin = Thin::new(span_s);
     points.into_iter().for_each(|point| thin.push(point));
@@ -38,7 +37,6 @@ type Point = (usize, (f64, f64));
 
 impl Thin {
     /// A curve without points, from and to these times, s.
-    #[must_use]
     pub fn new((from_s, to_s): (f64, f64)) -> Self {
         let width_s = ((to_s - from_s) / COLUMNS as f64).max(f64::MIN_POSITIVE);
         Self { from_s, to_s, width_s, kept: Vec::new(), column: None }
@@ -61,7 +59,6 @@ impl Thin {
     }
 
     /// The points that are left.
-    #[must_use]
     pub fn points(mut self) -> Vec<(f64, f64)> {
         self.flush();
         self.kept

@@ -27,7 +27,6 @@ pub struct Plan {
 
 impl Plan {
     /// Of a scene. None where there is nothing to grasp.
-    #[must_use]
     pub fn of(scene: &SceneFile) -> Option<Self> {
         let needed_n = needed_n(scene)?;
         let gripper = &scene.gripper;
@@ -49,13 +48,11 @@ impl Plan {
     }
 
     /// The same with no more than so much force, N.
-    #[must_use]
     pub fn at_most(self, most_n: f64) -> Self {
         Self { most_n, ..self }
     }
 
     /// At an instant, N. `stops_n` is what stops the object where it slides.
-    #[must_use]
     pub fn target_n(&self, t_s: f64, stops_n: Option<f64>) -> f64 {
         let frame = (t_s * f64::from(FRAME_HZ)) as usize;
         let planned_n = self.target_n.get(frame).copied().map_or(0.0, f64::from);

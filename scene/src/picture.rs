@@ -81,7 +81,6 @@ pub struct Truth {
 
 impl Session {
     /// Draws a session.
-    #[must_use]
     pub fn new(options: Options) -> Self {
         let mut noise = Noise::new(options.seed, Source::Picture);
         let middle = ((WIDTH as f64 - 1.0) / 2.0, (HEIGHT as f64 - 1.0) / 2.0);
@@ -141,13 +140,11 @@ impl Session {
     }
 
     /// The lens.
-    #[must_use]
     pub const fn lens(&self) -> Lens {
         self.lens
     }
 
     /// How many markers are in view.
-    #[must_use]
     pub const fn markers(&self) -> usize {
         self.markers.len()
     }

@@ -17,7 +17,6 @@ impl Default for Pins {
 
 impl Pins {
     /// The codes that the converter reads, 12 bits, rounded down as it does, clipped to its range. NaN reads as 0.
-    #[must_use]
     pub fn codes(&self) -> [u16; COUNT] {
         const MAX: f64 = CODE_MAX as f64;
         // Above this there is no room for a fraction: the sum's lowest bits are the nearest whole number.

@@ -76,13 +76,11 @@ enum Task {
 
 impl World {
     /// The scene at its beginning. The seed decides all noise and how the films came out in the making.
-    #[must_use]
     pub fn new(scene: &SceneFile, seed: u64) -> Self {
         Self::seeded(scene, seed.into())
     }
 
     /// The scene at its beginning, with one seed for the fingertip's making and one for the noise.
-    #[must_use]
     pub fn seeded(scene: &SceneFile, seeds: Seeds) -> Self {
         let seed = seeds.noise;
         let task = match &scene.object {
@@ -128,14 +126,12 @@ impl World {
     }
 
     /// The same with a plan to grip by ([`Plant::planned`]).
-    #[must_use]
     pub fn planning(mut self, plan: Option<Plan>) -> Self {
         self.plan = plan;
         self
     }
 
     /// What really happened so far.
-    #[must_use]
     pub const fn truth(&self) -> &Truth {
         &self.truth
     }
@@ -146,19 +142,16 @@ impl World {
     }
 
     /// What the sensed fingertip feels at this instant.
-    #[must_use]
     pub const fn touch(&self) -> &Touch {
         &self.touch
     }
 
     /// The photoelastic head, if there is one.
-    #[must_use]
     pub const fn head(&self) -> Option<&Head> {
         self.head.as_ref()
     }
 
     /// The camera's newest words that have come over the line.
-    #[must_use]
     pub const fn said(&self) -> Option<Seen> {
         self.eye.said()
     }
@@ -168,7 +161,6 @@ impl World {
     }
 
     /// How much of it is over, s.
-    #[must_use]
     pub fn now_s(&self) -> f64 {
         self.scans as f64 * STEP_S
     }

@@ -5,8 +5,7 @@ use tenax_scene::physics::brush::{BrushPatch, ELEMENTS, Pad};
 use tenax_scene::physics::contact::RigidCoulomb;
 use tenax_scene::physics::friction::Friction;
 use tenax_scene::physics::stribeck::{BLOCK_N, METAL, STRIP, Slider, Stribeck, StribeckSlider};
-use tenax_scene::stepping::SHIPPED_S;
-use tenax_scene::stepping::problem::SelfExcited;
+use tenax_scene::stepping::{SHIPPED_S, SelfExcited};
 
 /// The sliding speed at which `c + P dmu/dv = 0`, m/s.
 fn critical_m_s() -> f64 {

@@ -11,10 +11,7 @@ use crate::{mcap, protobuf};
 /// The topic of a recording that holds them.
 pub const TOPIC: &str = "/line";
 
-/// The bytes of the line in a recording, or in a captured line.
-///
-/// # Errors
-/// If it cannot be read, or holds no message of a board.
+/// The bytes of the line in a recording, or in a captured line. Fails if it cannot be read, or holds no message of a board.
 pub fn line_of(path: &Path) -> anyhow::Result<Vec<u8>> {
     let bytes = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
     let line = if is_recording(path) { recorded(path, &bytes)? } else { bytes };
@@ -52,7 +49,6 @@ fn recorded(path: &Path, bytes: &[u8]) -> anyhow::Result<Vec<u8>> {
 }
 
 /// Whether a file is called like a recording.
-#[must_use]
 pub fn is_recording(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcap"))
 }

@@ -45,7 +45,6 @@ enum Command {
 }
 
 /// Runs the command line. 0: done. 2: it could not be run.
-#[must_use]
 pub fn main() -> ExitCode {
     exit(match Cli::parse().command {
         Command::Calibrate(args) => calibrate::main(&args),

@@ -210,10 +210,7 @@ impl<W: Write> Writer<W> {
 }
 
 /// Hands every message of a file to `each`: its topic, its time and its data. A file that ends early, because whoever wrote
-/// it was killed, is read as far as it goes.
-///
-/// # Errors
-/// If it is no such file, or is compressed.
+/// it was killed, is read as far as it goes. Fails if it is no such file, or is compressed.
 pub fn read(file: &[u8], each: &mut dyn FnMut(&str, u64, &[u8])) -> anyhow::Result<()> {
     let records = file.strip_prefix(MAGIC).context("this is no MCAP file")?;
     let mut topics = BTreeMap::new();

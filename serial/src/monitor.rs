@@ -31,7 +31,6 @@ impl Monitor {
     }
 
     /// What has been counted.
-    #[must_use]
     pub fn counts(&self) -> Counts {
         self.inbox.counts()
     }

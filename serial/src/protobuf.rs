@@ -6,13 +6,11 @@
 pub enum Kind {
     /// A number. NaN: there was none.
     Number,
-    /// Numbers.
     Numbers,
     /// Yes or no.
     Flag,
     /// Words.
     Text,
-    /// Bytes.
     Bytes,
 }
 
@@ -53,7 +51,6 @@ fn bytes(out: &mut Vec<u8>, number: u64, bytes: &[u8]) {
 }
 
 /// A message with these values in the order of its fields.
-#[must_use]
 pub fn message(values: &[Value]) -> Vec<u8> {
     let mut out = Vec::new();
     for (number, value) in (1..).zip(values) {
@@ -78,7 +75,6 @@ pub fn message(values: &[Value]) -> Vec<u8> {
 }
 
 /// The first field of a message, which is of bytes.
-#[must_use]
 pub fn first_bytes(message: &[u8]) -> Option<&[u8]> {
     let mut rest = message.strip_prefix(&[(1 << 3 | BYTES) as u8])?;
     let (mut length, mut shift) = (0, 0);
@@ -94,7 +90,6 @@ pub fn first_bytes(message: &[u8]) -> Option<&[u8]> {
 }
 
 /// The `FileDescriptorSet` of one message (`google/protobuf/descriptor.proto`).
-#[must_use]
 pub fn descriptor(name: &str, fields: &[(String, Kind)]) -> Vec<u8> {
     let mut message = Vec::new();
     bytes(&mut message, 1, name.as_bytes());

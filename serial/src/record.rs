@@ -23,7 +23,6 @@ use crate::protobuf::{self, PACKAGE, Value};
 use crate::settings;
 
 /// What a recording that begins now is called: `tenax-20261123T081500Z.mcap`.
-#[must_use]
 pub fn name_now() -> PathBuf {
     let now = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
     PathBuf::from(format!("tenax-{}.mcap", now.replace(['-', ':'], "")))
@@ -42,9 +41,7 @@ pub struct Recording {
 
 impl Recording {
     /// A recording in a new file. The board's time 0 is now.
-    ///
-    /// # Errors
-    /// If the file cannot be written, is there already, or is not called `*.mcap`.
+    /// Fails if the file cannot be written, is there already, or is not called `*.mcap`.
     pub fn create(path: &Path) -> anyhow::Result<Self> {
         let name = path.display();
         if !is_recording(path) {
@@ -113,7 +110,6 @@ impl Recording {
     }
 
     /// Bytes in the file so far.
-    #[must_use]
     pub const fn bytes(&self) -> u64 {
         self.file.bytes()
     }
@@ -140,10 +136,7 @@ impl Recording {
         metadata
     }
 
-    /// Ends the file.
-    ///
-    /// # Errors
-    /// If it could not be written whole.
+    /// Ends the file. Fails if it could not be written whole.
     pub fn finish(mut self) -> io::Result<()> {
         if let Err(error) = self.file.metadata("tenax", &self.metadata()) {
             self.error.get_or_insert(error);

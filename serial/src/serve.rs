@@ -45,7 +45,6 @@ pub struct Options {
 /// Who was served.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
-    /// Clients.
     pub clients: u64,
     /// Messages that were dropped for a client that did not keep up.
     pub dropped: u64,
@@ -77,10 +76,7 @@ pub struct Server {
 }
 
 impl Server {
-    /// Begins to serve. What comes back with it is the board's.
-    ///
-    /// # Errors
-    /// If a place cannot be had; says which and what to do.
+    /// Begins to serve. What comes back with it is the board's. Fails if a place cannot be had; says which and what to do.
     pub fn start(options: &Options) -> anyhow::Result<(Self, Down)> {
         let (down, bytes) = sync_channel(DOWN_FRAMES);
         let hub = Arc::new(Hub::default());
@@ -120,19 +116,16 @@ impl Server {
     }
 
     /// Where what really happens is told, as `tenax monitor --truth` takes it.
-    #[must_use]
     pub fn truth_place(&self) -> Option<&str> {
         self.truth.as_ref().map(|(place, _)| place.as_str())
     }
 
     /// Where it serves, as `tenax monitor --port` takes it.
-    #[must_use]
     pub fn places(&self) -> &[String] {
         &self.places
     }
 
     /// Who was served so far.
-    #[must_use]
     pub fn tally(&self) -> Tally {
         self.hub.tally()
     }
@@ -174,7 +167,6 @@ pub struct Teller(Option<Arc<Hub>>);
 
 impl Teller {
     /// Whether anybody could listen.
-    #[must_use]
     pub const fn is_served(&self) -> bool {
         self.0.is_some()
     }

@@ -22,7 +22,6 @@ the wire and the flash call the setting.
 ";
 
 /// The whole page.
-#[must_use]
 pub fn markdown() -> String {
     let mut page = String::from(HEAD);
     for id in SettingId::ALL {
@@ -48,10 +47,7 @@ pub fn markdown() -> String {
     page
 }
 
-/// The setting of this name.
-///
-/// # Errors
-/// Names all that there are.
+/// The setting of this name. An error names all that there are.
 pub fn named(name: &str) -> anyhow::Result<SettingId> {
     SettingId::by_name(name).with_context(|| {
         let names = SettingId::ALL.map(|id| id.row().name).join(", ");
@@ -60,13 +56,11 @@ pub fn named(name: &str) -> anyhow::Result<SettingId> {
 }
 
 /// Whether the line is trusted where these are in force: it decides how far some of them may go.
-#[must_use]
 pub fn trusts_line(settings: &[Setting]) -> bool {
     settings.contains(&Setting { id: SettingId::LineTrusted.number(), value: 1 })
 }
 
 /// Settings as a TOML file, with what each does.
-#[must_use]
 pub fn toml(settings: &[Setting]) -> String {
     let mut text =
         String::from("# Settings of a Tenax board. `tenax config import` sets what is named here.\n");
@@ -87,9 +81,7 @@ pub fn toml(settings: &[Setting]) -> String {
 }
 
 /// The settings that a TOML file names. Whether the line is trusted comes last: a narrower range is in force after it.
-///
-/// # Errors
-/// Says what is wrong with it.
+/// An error says what is wrong with it.
 pub fn of_toml(text: &str) -> anyhow::Result<Vec<Setting>> {
     let table: toml::Table = text.parse().context("this is no TOML")?;
     let mut settings: Vec<Setting> =
@@ -99,10 +91,7 @@ pub fn of_toml(text: &str) -> anyhow::Result<Vec<Setting>> {
 }
 
 /// A setting and its value from `NAME=VALUE`. Whether the value is accepted is for the board to say, which knows the range that is
-/// in force.
-///
-/// # Errors
-/// Says what is wrong with it.
+/// in force. An error says what is wrong with it.
 pub fn parse(text: &str) -> anyhow::Result<Setting> {
     let (name, value) = text.split_once('=').with_context(|| format!("{text} is no NAME=VALUE"))?;
     let id = named(name.trim())?;

@@ -15,7 +15,6 @@ use crate::link::Inbox;
 /// A setting's value, and why.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Suggestion {
-    /// The setting.
     pub id: SettingId,
     /// Its value; within its range.
     pub value: i32,
@@ -37,7 +36,6 @@ impl Suggestion {
     }
 
     /// As it is sent.
-    #[must_use]
     pub const fn setting(&self) -> Setting {
         Setting { id: self.id.number(), value: self.value }
     }
@@ -54,7 +52,6 @@ pub struct Suggestions {
 
 impl Suggestions {
     /// From a line's bytes.
-    #[must_use]
     pub fn of(line: &[u8]) -> Self {
         let mut inbox = Inbox::default();
         let heard = line.iter().filter_map(|&byte| inbox.push(byte)).flatten();

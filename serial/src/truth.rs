@@ -17,7 +17,6 @@ const AGAIN_AFTER: Duration = Duration::from_millis(500);
 /// What is true at one instant.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Truth {
-    /// When, s.
     pub t_s: f64,
     /// How fast the object slides over the pad, mm/s.
     pub slide_mm_s: f64,
@@ -31,13 +30,11 @@ pub struct Truth {
     pub slips: usize,
     /// How far it has slid in them, mm.
     pub slipped_mm: f64,
-    /// Whether it was dropped.
     pub dropped: bool,
 }
 
 impl Truth {
     /// What slides, in a word.
-    #[must_use]
     pub const fn contact(&self) -> &'static str {
         if self.grip_n <= 0.0 {
             "no contact"

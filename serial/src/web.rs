@@ -43,10 +43,7 @@ pub struct Web {
 }
 
 impl Web {
-    /// Watches a board, for a page on this port of 127.0.0.1; 0: any that is free.
-    ///
-    /// # Errors
-    /// If the port cannot be had.
+    /// Watches a board, for a page on this port of 127.0.0.1; 0: any that is free. Fails if the port cannot be had.
     pub fn new(places: &Places, control: bool, port: u16) -> anyhow::Result<Self> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).with_context(|| {
             format!("cannot serve a page on port {port}: choose another, or 0 for any that is free")
@@ -69,7 +66,6 @@ impl Web {
     }
 
     /// Where the page is.
-    #[must_use]
     pub fn place(&self) -> String {
         format!("http://127.0.0.1:{}/", self.shared.port)
     }

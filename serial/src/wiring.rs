@@ -19,7 +19,6 @@ A voltage below `low` is a cut wire, above `high` a short or a sensor pressed ou
 ";
 
 /// The whole page.
-#[must_use]
 pub fn markdown() -> String {
     let mut page = String::from(HEAD);
     // Writing into a String cannot fail.

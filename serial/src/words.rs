@@ -27,7 +27,6 @@ pub fn why(bad: BadFrame) -> String {
 }
 
 /// A fault for a person.
-#[must_use]
 pub fn in_words(fault: &Fault) -> String {
     let name =
         |channel: u8| CHANNELS.get(usize::from(channel)).map_or("unknown channel", |channel| channel.name);
@@ -57,7 +56,6 @@ pub fn in_words(fault: &Fault) -> String {
 }
 
 /// What is kept, for a person.
-#[must_use]
 pub const fn kept_in_words(kept: Kept) -> &'static str {
     match kept {
         Kept::Network => "the network's weights",

@@ -17,10 +17,11 @@ use tenax_hal_shim::channel::ARRAY_COUNT;
 
 use collect::{Recording, Step, record};
 use manifest::Manifest;
-use session::{Session, Sizes, Split, sessions};
+use session::{Session, Sizes, sessions};
 use story::Story;
 
 use tenax_bench::jobs::{Jobs, Told};
+use tenax_bench::labelled::Part;
 use tenax_bench::scorer::onsets;
 
 /// Who says that it slipped.
@@ -35,8 +36,6 @@ pub enum Label {
 }
 
 impl Label {
-    /// Of a step.
-    #[must_use]
     pub const fn of(self, step: &Step) -> bool {
         match self {
             Self::Truth => step.slips,
@@ -45,14 +44,12 @@ impl Label {
     }
 }
 
-/// What is to be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Plan {
     /// Of everything that is drawn.
     pub seed: u64,
     /// Sessions to learn from, of each seen material; validation and test are in proportion ([`Sizes::of_train`]).
     pub sessions: usize,
-    /// Who labels it.
     pub label: Label,
 }
 
@@ -65,25 +62,18 @@ impl Default for Plan {
 /// A data set.
 #[derive(Clone, Debug)]
 pub struct Dataset {
-    /// Every session with its recordings.
     pub sessions: Vec<(Session, Vec<Recording>)>,
     plan: Plan,
 }
 
 impl Dataset {
-    /// Makes one, on all cores. `progress` is told the part that is done, 0 to 1.
-    ///
-    /// # Errors
-    /// If a drawn number is none that a scene may have.
+    /// Makes one, on all cores. `progress` is told the part that is done, 0 to 1. Fails if a drawn number is none that a scene may have.
     pub fn make(plan: Plan, progress: Told) -> anyhow::Result<Self> {
         Self::record(plan, sessions(plan.seed, Sizes::of_train(plan.sessions)), progress)
     }
 
-    /// Makes the sessions of one split only: they are the same as in the whole.
-    ///
-    /// # Errors
-    /// As [`make`](Self::make).
-    pub fn make_split(plan: Plan, split: Split, progress: Told) -> anyhow::Result<Self> {
+    /// Makes the sessions of one split only: they are the same as in the whole. Fails as [`make`](Self::make) does.
+    pub fn make_split(plan: Plan, split: Part, progress: Told) -> anyhow::Result<Self> {
         let mut all = sessions(plan.seed, Sizes::of_train(plan.sessions));
         all.retain(|session| session.split == split);
         Self::record(plan, all, progress)
@@ -140,7 +130,6 @@ impl Dataset {
     }
 
     /// What it says of itself, once it is `csv` in `file`.
-    #[must_use]
     pub fn manifest(&self, file: &str, csv: &[u8]) -> Manifest {
         Manifest::new(&self.plan, file, csv, &self.sessions)
     }

@@ -14,7 +14,6 @@ pub mod text;
 use tenax_bench::labelled::{Part, Recording};
 
 /// The recordings to be judged by: those that their file calls test, or all if it says nothing of the kind.
-#[must_use]
 pub fn test_split(recordings: Vec<Recording>) -> Vec<Recording> {
     if recordings.iter().all(|recording| recording.part.is_none()) {
         return recordings;

@@ -105,7 +105,6 @@ pub struct Outcome {
     pub agreement: Option<Agreement>,
     /// A trial of the finger before it learned: the largest output, 128 would be 1.
     pub untaught: u8,
-    /// The lessons.
     pub lessons: Vec<Trial>,
     /// The held-out trials.
     pub trials: Vec<Trial>,
@@ -117,7 +116,6 @@ pub struct Outcome {
     pub holding: Holding,
     /// Lifts with the reflex.
     pub lifts: Vec<Three>,
-    /// Pours.
     pub pours: Vec<Three>,
     /// The plain finger with a film that crackles: with what it has learned, and with equal weights.
     pub crackling: Option<[crackle::Tried; 2]>,
@@ -130,10 +128,7 @@ pub struct Outcome {
 /// Told what is being done, and how much of it is over, 0 to 1.
 pub type Progress<'a> = &'a (dyn Fn(&str, f64) + Sync);
 
-/// Does all of it.
-///
-/// # Errors
-/// If a scene cannot be made or the board cannot be run.
+/// Does all of it. Fails if a scene cannot be made or the board cannot be run.
 pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Result<Outcome> {
     let finger = options.finger(Finger::plain(options.seed));
     let mut untaught = Bench::default();
@@ -143,13 +138,11 @@ pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Resu
     let (learned, lessons, felt) = lessons_on_host(&finger, options, progress)?;
     let equal = learned.controlled(Some(Control::EqualWeights))?;
     let equal = Score::of(&trials_on_host(&finger, equal, options, progress)?);
-    let (trials, agreement) = match board {
-        Board::Host => (trials_on_host(&finger, learned.clone(), options, progress)?, None),
-        #[cfg(feature = "emulator")]
-        Board::Emulated { .. } => {
-            let (trials, agreement) = on_board(&finger, options, board, progress)?;
-            (trials, Some(agreement))
-        }
+    let (trials, agreement) = if matches!(board, Board::Host) {
+        (trials_on_host(&finger, learned.clone(), options, progress)?, None)
+    } else {
+        let (trials, agreement) = on_board(&finger, options, board, progress)?;
+        (trials, Some(agreement))
     };
 
     let over = AtomicU64::new(0);
@@ -222,7 +215,6 @@ fn trials_on_host(
 }
 
 /// Lessons and trials as one chain on a board: the trials, and whether the host's logic says the same all the way.
-#[cfg(feature = "emulator")]
 fn on_board(
     finger: &Finger,
     options: &Options,

@@ -1,14 +1,14 @@
 //! Studies: what many runs on the bench show of the fingertip, as figures for the pages of docs/.
 //!
-//! Here lives what teaches, evaluates, makes data sets, draws charts, looks through a camera or a photoelastic skin, and
-//! compares crates: each behind one command of the tool, which prints what it gives.
+//! Here lives what teaches, evaluates, makes data sets, draws charts and looks through a camera or a photoelastic skin: each
+//! behind one command of the tool, which prints what it gives.
 //! No board, no report or score of a single run (the bench's), no command line (the tool's).
 //! A number of a page is made here, by one command that the page names; nothing else depends on this crate but the tool.
 //! One study may use another's result (charts draw the others'), never the other way round.
 #![forbid(unsafe_code)]
+#![allow(missing_docs, reason = "a part of the tool: where a name says it all, nothing repeats it")]
 
 pub mod chart;
-pub mod crates;
 pub mod dataset;
 pub mod evaluate;
 pub mod learn;

@@ -3,7 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use tenax_bench::array::material::{HELD_OUT, SEEN};
-use tenax_studies::dataset::session::{Sizes, Split, sessions};
+use tenax_bench::labelled::Part;
+use tenax_studies::dataset::session::{Sizes, sessions};
 use tenax_studies::dataset::story::Story;
 use tenax_studies::dataset::{Dataset, Label, Plan, collect};
 
@@ -77,7 +78,7 @@ fn a_larger_one_has_every_session_of_a_smaller_one_in_the_same_split() {
 #[test]
 fn the_default_has_at_least_as_much_of_the_task_to_test_as_the_paper() {
     let all = sessions(1, Sizes::of_train(Sizes::DEFAULT_TRAIN));
-    let tested = all.iter().filter(|session| session.split == Split::Test).count();
+    let tested = all.iter().filter(|session| session.split == Part::Test).count();
     // A pour is 26 s of 80 steps; the paper validates on 2800.
     assert!(tested * 26 * 80 > 2_800, "{tested} sessions");
 }

@@ -8,7 +8,6 @@ use tenax_bench::scorer::{Card, Counts, Doing, SlipSpan, onsets};
 use tenax_bench::session::{self, Board};
 use tenax_hal_shim::detector::DetectorId;
 use tenax_logic::array::ShippedDetector;
-use tenax_studies::dataset::session::Split;
 use tenax_studies::dataset::{Dataset, Label, Plan};
 use tenax_studies::evaluate::report::Report;
 use tenax_studies::evaluate::{online, ran, test_split};
@@ -143,7 +142,7 @@ fn as_recording(scene: &str, steps: &[Step], slips: &[SlipSpan]) -> Recording {
 #[test]
 fn a_data_set_carries_the_onsets_of_its_worlds_exactly() {
     let plan = Plan { seed: 5, sessions: 1, label: Label::Truth };
-    let dataset = Dataset::make_split(plan, Split::Validation, &|_| {}).unwrap();
+    let dataset = Dataset::make_split(plan, Part::Validation, &|_| {}).unwrap();
     let recipe = library::choose("array_dataset.csv".as_ref(), None).unwrap();
     let read = labelled::parse(dataset.csv().unwrap().as_slice(), &recipe, "d.csv").unwrap();
     let mut slips = 0;

@@ -24,7 +24,6 @@ const RIDGE: f64 = 1e-4;
 
 /// Ways for a perceptron to learn a large data set with validation sessions: from random weights, quickly and slowly, and
 /// from the logistic regression.
-#[must_use]
 pub fn perceptrons(look_back: usize) -> [Candidate; 3] {
     let quick = Candidate {
         shyness: 1.0,
@@ -41,7 +40,6 @@ pub fn perceptrons(look_back: usize) -> [Candidate; 3] {
 
 /// The way for a large data set to be shipped from: the first of [`perceptrons`], with all but variances and structure functions
 /// scaled to a tenth, since the rest tells arrays apart sooner than sliding (`docs/training.md`).
-#[must_use]
 pub fn shipped() -> [Candidate; 1] {
     let [quick, ..] = perceptrons(1);
     [Candidate { shyness: 0.1, ..quick }]
@@ -56,7 +54,6 @@ const fn few(shyness: f32) -> Candidate {
 }
 
 /// The layers' sizes, in words.
-#[must_use]
 pub fn sizes(look_back: usize) -> String {
     match look_back {
         1 => format!("{FEATURES}-{H1}-{H2}-1"),
@@ -95,7 +92,6 @@ fn aim(recordings: &[Recording]) -> Aim {
 
 /// Recordings with parts: those of a file that names none are learned from, but for the last session, by which thresholds are
 /// chosen; `tests` are what is scored then.
-#[must_use]
 pub fn with_parts(mut recordings: Vec<Recording>, tests: Vec<Recording>) -> Vec<Recording> {
     if recordings.iter().all(|own| own.part.is_none()) {
         let last = recordings.iter().map(|own| own.session.clone()).max();
@@ -180,9 +176,7 @@ impl Parts {
 }
 
 /// Trains the paper's five, the perceptron's variants, and the perceptron that sees structure functions too, on the training part, chooses thresholds on the validation part and scores on the test part.
-///
-/// # Errors
-/// If the data set has not all three parts, or an optimiser fails.
+/// Fails if the data set has not all three parts, or an optimiser fails.
 pub fn compare(
     recordings: &[Recording],
     recipe: &Recipe,
@@ -236,7 +230,6 @@ pub fn compare(
 }
 
 /// The table as CSV, for the chart.
-#[must_use]
 pub fn csv(lines: &[Line]) -> String {
     let mut text =
         String::from("classifier,precision,window,lookback,balanced,auc,accuracy,missed,false,shipped\n");
@@ -255,7 +248,6 @@ pub fn csv(lines: &[Line]) -> String {
 }
 
 /// The table for people.
-#[must_use]
 pub fn text(lines: &[Line]) -> String {
     let mut text = format!(
         "{:<18}{:>6}{:>8}{:>8}{:>10}{:>10}{:>8}{:>8}{:>8}  balanced by material\n",

@@ -12,7 +12,6 @@ use crate::network::{H1, H2};
 use crate::quantise::Quantised;
 
 /// The source of a module with one `pub static MODEL`.
-#[must_use]
 pub fn rust(quantised: &Quantised, recipe: &Recipe, choice: &Choice, edges: Edges, about: &str) -> String {
     let back = choice.candidate.look_back;
     let (slope, intercept) = choice.calibration;
@@ -92,7 +91,6 @@ pub static MODEL: Model<{H1}, {back}, {H2}{windows}> = Model {{
 }
 
 /// The network as `tenax evaluate --network` reads it, with the choice's threshold for both edges.
-#[must_use]
 pub fn saved(
     quantised: &Quantised,
     recipe: &Recipe,
@@ -120,7 +118,6 @@ pub fn saved(
 }
 
 /// The threshold as a confidence, per mille.
-#[must_use]
 pub fn permille(choice: &Choice) -> u16 {
     let (slope, intercept) = choice.calibration;
     let odds = slope * choice.threshold + intercept;

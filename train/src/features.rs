@@ -42,7 +42,6 @@ impl Recipe {
     };
 
     /// Readings before the first features.
-    #[must_use]
     pub fn ready_after(&self) -> usize {
         (self.lag + self.window).max(self.spectrum).max(structure::READY_AFTER)
     }
@@ -59,9 +58,7 @@ impl Recipe {
 pub struct Sequence {
     /// The recording's name.
     pub name: String,
-    /// Its session.
     pub session: String,
-    /// Its material.
     pub material: String,
     /// What it is for, if its file says so.
     pub part: Option<Part>,
@@ -76,7 +73,6 @@ pub struct Sequence {
 /// Equations 1 to 4, the transform and the structure functions, as the firmware computes them, over a whole recording.
 ///
 /// With a lag of 1 and a window of 10 it is what [`Preprocessor`](tenax_logic::array::Preprocessor) gives, bit for bit.
-#[must_use]
 pub fn sequence(recording: &Recording, recipe: &Recipe) -> Sequence {
     let knees = (Knee::at(recipe.covariance_knee), Knee::at(recipe.spectrum_knee));
     let structure_knees = structure::knees(recipe.structure_knee);
@@ -179,7 +175,6 @@ pub enum Kind {
 
 impl Kind {
     /// Of a feature by its place.
-    #[must_use]
     pub fn of(feature: usize) -> Self {
         // Row by row of the upper triangle.
         let is_diagonal = || (0..ELEMENTS).any(|row| row * ELEMENTS + row - row * (row + 1) / 2 == feature);
@@ -192,7 +187,6 @@ impl Kind {
     }
 
     /// Whether it says how much the elements move, rather than how they move together: what holds for other objects, too.
-    #[must_use]
     pub fn is_believed_first(self) -> bool {
         matches!(self, Self::Variance | Self::Structure)
     }

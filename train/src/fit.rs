@@ -51,7 +51,6 @@ pub struct Choice {
 /// A trained detector in single precision.
 #[derive(Clone, Debug)]
 pub struct Trained {
-    /// The network.
     pub network: Network,
     /// What was chosen.
     pub choice: Choice,
@@ -69,9 +68,7 @@ struct Fold {
 ///
 /// If the file says what is for training and what for validation, that is kept to. If not, sessions are left out in turn.
 /// Nothing of the test part is looked at. `progress` is told which part of the work is done.
-///
-/// # Errors
-/// If there is too little to choose by, or the optimiser fails.
+/// Fails if there is too little to choose by, or the optimiser fails.
 pub fn fit(
     sequences: &[Sequence],
     candidates: &[Candidate],
@@ -214,7 +211,6 @@ fn run(
 }
 
 /// What a network says of a table.
-#[must_use]
 pub fn judge(network: &Network, table: &Table) -> Judged {
     let ready = table.ready(network.look_back());
     Judged {

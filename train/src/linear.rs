@@ -38,8 +38,6 @@ impl Linear {
         model
     }
 
-    /// The logit of a row.
-    #[must_use]
     pub fn logit(&self, row: &[f32]) -> f64 {
         f64::from(self.bias)
             + self.weights.iter().zip(row).map(|(w, x)| f64::from(*w) * f64::from(*x)).sum::<f64>()
@@ -67,10 +65,7 @@ fn dataset(table: &Table, rows: &[usize], standard: &Standard) -> DatasetBase<Ar
 }
 
 /// Logistic regression; with `alike`, both kinds count alike in sum. `ridge` is the penalty of a squared weight for each
-/// row.
-///
-/// # Errors
-/// If there are not both kinds of rows, or the optimiser fails.
+/// row. Fails if there are not both kinds of rows, or the optimiser fails.
 pub fn logistic(table: &Table, standard: &Standard, ridge: f64, alike: bool) -> anyhow::Result<Linear> {
     let rows = if alike { balanced(table, 0..table.len()) } else { (0..table.len()).collect() };
     let model = LogisticRegression::default()
@@ -85,10 +80,7 @@ pub fn logistic(table: &Table, standard: &Standard, ridge: f64, alike: bool) -> 
 }
 
 /// A linear support vector machine; learns from at most `rows_max` rows, drawn with the seed: the solver's matrix is as
-/// large as their square.
-///
-/// # Errors
-/// If there are not both kinds of rows, or the optimiser fails.
+/// large as their square. Fails if there are not both kinds of rows, or the optimiser fails.
 pub fn svm(table: &Table, standard: &Standard, rows_max: usize, seed: u64) -> anyhow::Result<Linear> {
     let mut rows: Vec<usize> = (0..table.len()).collect();
     rows.shuffle(&mut ChaCha8Rng::seed_from_u64(seed));

@@ -48,32 +48,27 @@ pub struct Network {
     pub second_bias: Vec<f32>,
     /// `H2` weights.
     pub last: Vec<f32>,
-    /// Bias.
     pub last_bias: f32,
 }
 
 impl Network {
     /// Frames seen.
-    #[must_use]
     pub fn look_back(&self) -> usize {
         self.second.len() / (H1 * H2)
     }
 
     /// What the first layer makes of a row.
-    #[must_use]
     pub fn see(&self, row: &[f32]) -> Vec<f32> {
         layer(&self.first, &self.first_bias, row)
     }
 
     /// The logit of what was seen, the present frame first.
-    #[must_use]
     pub fn judge(&self, seen: &[f32]) -> f64 {
         let hidden = layer(&self.second, &self.second_bias, seen);
         f64::from(self.last_bias + hidden.iter().zip(&self.last).map(|(h, w)| h * w).sum::<f32>())
     }
 
     /// Logits of a table's rows that can look back far enough, in their order.
-    #[must_use]
     pub fn logits(&self, table: &Table) -> Vec<f64> {
         let seen: Vec<Vec<f32>> = (0..table.len()).map(|row| self.see(table.row(row))).collect();
         let back = self.look_back();
@@ -103,10 +98,7 @@ pub struct Learner {
 
 impl Learner {
     /// One that has learned nothing, or that begins as a linear model: two units of each layer carry that one's logit and
-    /// its negative, so it can be unlearned but need not be found.
-    ///
-    /// # Errors
-    /// If candle fails.
+    /// its negative, so it can be unlearned but need not be found. Fails if candle fails.
     pub fn new(standard: &Standard, settings: Settings, begin: Option<&Linear>) -> anyhow::Result<Self> {
         let mut rng = ChaCha8Rng::seed_from_u64(settings.seed);
         let seen = H1 * settings.look_back;
@@ -166,10 +158,7 @@ impl Learner {
         hidden.matmul(&last.t()?)?.broadcast_add(last_bias)?.squeeze(1)
     }
 
-    /// Learns a table; after each pass `seen` is shown the network, and says whether to go on.
-    ///
-    /// # Errors
-    /// If candle fails.
+    /// Learns a table; after each pass `seen` is shown the network, and says whether to go on. Fails if candle fails.
     pub fn learn(
         &mut self,
         table: &Table,
@@ -207,10 +196,7 @@ impl Learner {
         Ok(())
     }
 
-    /// What it has learned, for features as they are.
-    ///
-    /// # Errors
-    /// If candle fails.
+    /// What it has learned, for features as they are. Fails if candle fails.
     pub fn network(&self) -> candle_core::Result<Network> {
         let values = |var: &Var| var.flatten_all()?.to_dtype(DType::F32)?.to_vec1::<f32>();
         let [first, first_bias, second, second_bias, last, last_bias] = &self.vars;
@@ -232,10 +218,7 @@ impl Learner {
     }
 }
 
-/// Weighted cross entropy of logits, written so that no logit is too large for it.
-///
-/// # Errors
-/// If candle fails.
+/// Weighted cross entropy of logits, written so that no logit is too large for it. Fails if candle fails.
 pub fn cross_entropy(logits: &Tensor, labels: &[f32], weights: &[f32]) -> candle_core::Result<Tensor> {
     let labels = Tensor::from_slice(labels, labels.len(), &Device::Cpu)?;
     let weights = Tensor::from_slice(weights, weights.len(), &Device::Cpu)?;

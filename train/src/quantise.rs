@@ -17,17 +17,14 @@ pub struct Quantised {
     pub first: Vec<Vec<i16>>,
     /// Its biases.
     pub first_bias: Vec<i32>,
-    /// Its shift.
     pub first_shift: u32,
     /// Second layer's rows, all frames of a unit in one, the present frame first.
     pub second: Vec<Vec<i16>>,
     /// Its biases.
     pub second_bias: Vec<i32>,
-    /// Its shift.
     pub second_shift: u32,
     /// Last layer's weights.
     pub last: Vec<i16>,
-    /// Its bias.
     pub last_bias: i32,
     /// Integer logits for one of the float network's.
     pub per_logit: f64,
@@ -42,7 +39,6 @@ impl Quantised {
     ///
     /// The units of the first layer are scaled so that a unit's weights before and after it are about as large (Nagel et
     /// al. 2019, cross-layer equalisation): a ReLU does not mind, and no unit loses more to rounding than another.
-    #[must_use]
     pub fn of(network: &Network, table: &Table, bits: u32) -> Self {
         let network = equalised(network);
         let back = network.look_back();
@@ -90,10 +86,7 @@ impl Quantised {
         }
     }
 
-    /// The firmware's network of these weights.
-    ///
-    /// # Errors
-    /// If the sizes are others, or a sum could overflow.
+    /// The firmware's network of these weights. Fails if the sizes are others, or a sum could overflow.
     pub fn integer<const L: usize>(&self) -> anyhow::Result<Integer<L>> {
         let too_large = |_| anyhow!("a sum of the network could overflow");
         let frame = |frame: usize| -> anyhow::Result<Layer<H1, H2>> {
@@ -114,9 +107,7 @@ impl Quantised {
     }
 
     /// Logits of a sequence in units of the float network's: one for each step that can look back far enough.
-    ///
-    /// # Errors
-    /// If the network is none of the firmware's.
+    /// Fails if the network is none of the firmware's.
     pub fn logits(&self, sequence: &Sequence) -> anyhow::Result<Vec<f64>> {
         match self.second.first().map_or(0, Vec::len) / H1 {
             1 => self.logits_of::<1>(sequence),

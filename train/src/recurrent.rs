@@ -40,15 +40,11 @@ pub struct Settings {
     pub epochs: usize,
     /// Sequences learned in a pass, drawn anew for each.
     pub sequences: usize,
-    /// Seed.
     pub seed: u64,
 }
 
 impl Recurrent {
-    /// Learns a table; `progress` is told which part is done.
-    ///
-    /// # Errors
-    /// If candle fails.
+    /// Learns a table; `progress` is told which part is done. Fails if candle fails.
     pub fn fit(
         table: &Table,
         standard: &Standard,
@@ -136,10 +132,7 @@ impl Recurrent {
         hidden.matmul(&last.t()?)?.broadcast_add(last_bias)?.squeeze(1)
     }
 
-    /// Logits of a table's rows that have enough frames, in their order.
-    ///
-    /// # Errors
-    /// If candle fails.
+    /// Logits of a table's rows that have enough frames, in their order. Fails if candle fails.
     pub fn logits(&self, table: &Table) -> anyhow::Result<Vec<f64>> {
         let rows = Tensor::from_vec(self.standard.apply(table), (table.len(), FEATURES), &Device::Cpu)?;
         let mut logits = Vec::new();

@@ -14,15 +14,12 @@ use crate::score::{Judged, Score, score};
 /// The data that was learned and scored.
 #[derive(Clone, Debug, Serialize)]
 pub struct Data {
-    /// File.
     pub file: String,
     /// SHA-256 of it.
     pub sha256: String,
-    /// Recordings.
     pub recordings: usize,
     /// Steps with features.
     pub steps: usize,
-    /// Those that slip.
     pub slip_steps: usize,
     /// Sessions or objects.
     pub sessions: Vec<String>,
@@ -30,7 +27,6 @@ pub struct Data {
 
 impl Data {
     /// Of a file's contents and what was made of them.
-    #[must_use]
     pub fn of<'a>(file: &str, bytes: &[u8], sequences: impl IntoIterator<Item = &'a Sequence>) -> Self {
         use sha2::{Digest, Sha256};
         let sha256 = Sha256::digest(bytes).iter().fold(String::new(), |mut text, byte| {
@@ -54,7 +50,6 @@ impl Data {
 /// Scores on recordings that nothing was learned or chosen from.
 #[derive(Clone, Debug, Serialize)]
 pub struct Test {
-    /// Step by step.
     #[serde(flatten)]
     pub steps: Score,
     /// Missed steps in 2800.
@@ -65,13 +60,11 @@ pub struct Test {
     pub recordings: Option<Score>,
     /// By material or object.
     pub by_material: BTreeMap<String, Score>,
-    /// By session.
     pub by_session: BTreeMap<String, Score>,
 }
 
 impl Test {
     /// Of what was said of each sequence; slip is above the threshold.
-    #[must_use]
     pub fn of(sequences: &[&Sequence], judged: &[Judged], threshold: f64) -> Self {
         let mut all = Judged::default();
         let mut whole = Some(Judged::default());
@@ -112,7 +105,6 @@ pub struct Report {
     pub data: Data,
     /// What was scored, if it is another file.
     pub test_data: Option<Data>,
-    /// What features are made with.
     pub features: Recipe,
     /// What was chosen, on sessions that it had not seen.
     pub choice: Choice,
@@ -134,13 +126,11 @@ pub struct Report {
 
 impl Report {
     /// Points of accuracy that 8 bits cost.
-    #[must_use]
     pub fn lost_points(&self) -> Option<f64> {
         Some(100.0 * (self.float.as_ref()?.steps.accuracy - self.quantised.as_ref()?.steps.accuracy))
     }
 
     /// A model card, Markdown.
-    #[must_use]
     pub fn card(&self) -> String {
         let mut text =
             String::from("# Model card: slip from ten normal forces\n\nWritten by `tenax train`.\n\n");

@@ -5,9 +5,7 @@ use serde::Serialize;
 /// Logits and what was so, step by step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Judged {
-    /// Logits.
     pub logits: Vec<f64>,
-    /// Whether it slipped.
     pub slips: Vec<bool>,
 }
 
@@ -42,7 +40,6 @@ pub const FALSE_MAX: f64 = 0.8 * 36.0 / 2_800.0;
 /// Counts at a threshold.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Score {
-    /// Steps.
     pub steps: usize,
     /// Steps that slipped and were not called slip.
     pub missed: usize,
@@ -58,7 +55,6 @@ pub struct Score {
 }
 
 /// Scores logits: slip is above the threshold.
-#[must_use]
 pub fn score(judged: &Judged, threshold: f64) -> Score {
     let (positives, negatives) = (judged.of(true), judged.of(false));
     let (mut missed, mut false_alarms) = (0, 0);
@@ -78,7 +74,6 @@ pub fn score(judged: &Judged, threshold: f64) -> Score {
 }
 
 /// Area under the ROC curve: the Mann-Whitney statistic, ties counting half.
-#[must_use]
 pub fn auc(judged: &Judged) -> f64 {
     let (positives, negatives) = (judged.of(true) as f64, judged.of(false) as f64);
     if positives == 0.0 || negatives == 0.0 {
@@ -98,7 +93,6 @@ pub fn auc(judged: &Judged) -> f64 {
 }
 
 /// The best threshold: the middle of the widest gap between logits that serves the aim best.
-#[must_use]
 pub fn threshold(judged: &Judged, aim: Aim) -> f64 {
     let (positives, negatives) = (judged.of(true).max(1) as f64, judged.of(false).max(1) as f64);
     let (slip_costs, rest_costs) = match aim {
@@ -137,7 +131,6 @@ pub fn threshold(judged: &Judged, aim: Aim) -> f64 {
 }
 
 /// Slope and intercept that make a logit a log-odds (Platt 1999; Newton's method as in Lin, Lin and Weng 2007).
-#[must_use]
 pub fn platt(judged: &Judged) -> (f64, f64) {
     let (positives, negatives) = (judged.of(true) as f64, judged.of(false) as f64);
     let targets = [1.0 / (negatives + 2.0), (positives + 1.0) / (positives + 2.0)];

@@ -17,7 +17,6 @@ pub struct Table {
 
 impl Table {
     /// All steps of sequences.
-    #[must_use]
     pub fn of<'a>(sequences: impl IntoIterator<Item = &'a Sequence>) -> Self {
         let mut table = Self::default();
         for sequence in sequences {
@@ -32,25 +31,21 @@ impl Table {
     }
 
     /// Rows.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.labels.len()
     }
 
     /// Whether there is none.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.labels.is_empty()
     }
 
     /// The features of a row.
-    #[must_use]
     pub fn row(&self, row: usize) -> &[f32] {
         &self.features[row * FEATURES..][..FEATURES]
     }
 
     /// Weights of a row that slips not and of one that does, so that both kinds count alike and the mean is 1.
-    #[must_use]
     pub fn class_weights(&self) -> [f32; 2] {
         let all = self.len().max(1) as f32;
         let slips = self.labels.iter().sum::<f32>();
@@ -58,7 +53,6 @@ impl Table {
     }
 
     /// Rows that have `look_back` rows of their own sequence, themselves included.
-    #[must_use]
     pub fn ready(&self, look_back: usize) -> Vec<usize> {
         (0..self.len()).filter(|&row| row + 1 >= self.begins[row] + look_back).collect()
     }
@@ -80,7 +74,6 @@ impl Standard {
     /// those are to be believed first: with few objects, covariances and spectra tell the objects apart rather than their sliding. At 1
     /// every feature gets a deviation of 1; below, features of one kind share their scale, so that a quiet element is not
     /// made loud.
-    #[must_use]
     pub fn of(table: &Table, shyness: f32) -> Self {
         let rows = table.len().max(1) as f64;
         let moment = |feature: usize, about: f64, power: i32| -> f64 {
@@ -116,7 +109,6 @@ impl Standard {
     }
 
     /// All rows, on the common scale.
-    #[must_use]
     pub fn apply(&self, table: &Table) -> Vec<f32> {
         let mut rows = table.features.clone();
         for row in rows.chunks_exact_mut(FEATURES) {

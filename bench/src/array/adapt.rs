@@ -23,7 +23,6 @@ const QUIET_PART: f64 = 0.01;
 
 /// How much readings of a recording differ from one to the next, as an rms over what the elements do apart, samples. The median
 /// over the steps: a slip for less than half of the time does not change it.
-#[must_use]
 pub fn noise_samples(steps: &[Step]) -> f64 {
     let mut squares: Vec<f64> = steps
         .windows(2)
@@ -44,7 +43,6 @@ pub fn noise_samples(steps: &[Step]) -> f64 {
 }
 
 /// The noise of an array from its recordings: of the quietest quarter of them, the loudest.
-#[must_use]
 pub fn noise_of(recordings: &[&Recording]) -> f64 {
     let mut all: Vec<f64> = recordings.iter().map(|recording| noise_samples(&recording.steps)).collect();
     all.sort_by(f64::total_cmp);
@@ -52,9 +50,7 @@ pub fn noise_of(recordings: &[&Recording]) -> f64 {
 }
 
 /// Refuses recordings of an array whose noise the network has not learned.
-///
-/// # Errors
-/// Says what was measured, what was learned, and what to do.
+/// An error says what was measured, what was learned, and what to do.
 pub fn accept(network: &Network, recordings: &[Recording]) -> anyhow::Result<()> {
     let [low, high] = network.noise_samples;
     for (session, own) in sessions(recordings) {
@@ -86,14 +82,11 @@ pub struct Judged {
     pub recordings: Vec<Recording>,
     /// Of each step of them.
     pub logits: Vec<Logits>,
-    /// Of each of them.
     pub on: Vec<i32>,
 }
 
 /// Adapts to each session's first `quiet_s` seconds without slip, and judges the rest.
-///
-/// # Errors
-/// If a session has no quiet recording that is long enough for the network's windows.
+/// Fails if a session has no quiet recording that is long enough for the network's windows.
 pub fn adapt(network: &Network, recordings: &[Recording], quiet_s: f64) -> anyhow::Result<Judged> {
     let mut judged = Judged::default();
     for (session, own) in sessions(recordings) {

@@ -23,7 +23,6 @@ const STEP: usize = 25;
 /// How confident a detector is in each step of a recording, per mille; None where it has nothing to judge by.
 pub type Confidences = Vec<Option<u16>>;
 
-/// The edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Edges {
     /// Slip begins at this confidence, per mille.
@@ -35,16 +34,13 @@ pub struct Edges {
 /// Edges, and what they make of the pours that they were chosen by.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Chosen {
-    /// The edges.
     #[serde(flatten)]
     pub edges: Edges,
-    /// The pours.
     pub pour: Pour,
 }
 
 /// The edges with the best balanced accuracy at no more than [`FALSE_PER_HOUR_MAX`] and [`FALSE_2800_MAX`], and their scores. None
 /// if there is nothing to choose by, or no edges are so quiet.
-#[must_use]
 pub fn choose(pours: &[(&Recording, Confidences)]) -> Option<Chosen> {
     let all: Vec<Edges> = ON
         .step_by(STEP)
@@ -60,7 +56,6 @@ pub fn choose(pours: &[(&Recording, Confidences)]) -> Option<Chosen> {
 }
 
 /// What edges make of pours.
-#[must_use]
 pub fn score(pours: &[(&Recording, Confidences)], edges: Edges) -> Option<Pour> {
     let said: Vec<Verdicts> = pours.iter().map(|(_, confidences)| verdicts(confidences, edges)).collect();
     pour(&pours.iter().map(|own| own.0).zip(&said).collect::<Vec<_>>())

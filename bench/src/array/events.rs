@@ -17,7 +17,6 @@ fn decided_after_s() -> f64 {
 }
 
 /// The stretches in which slip was said of a recording that begins at `first_s`.
-#[must_use]
 pub fn stretches(first_s: f64, said: &[bool]) -> Vec<Verdict> {
     let at_s = |step: usize| first_s + step as f64 * STEP_S + decided_after_s();
     let mut all: Vec<Verdict> = Vec::new();
@@ -34,7 +33,6 @@ pub fn stretches(first_s: f64, said: &[bool]) -> Vec<Verdict> {
 }
 
 /// The event scores of one recording.
-#[must_use]
 pub fn card(recording: &Recording, said: &Verdicts) -> Card {
     let from_s = recording.first_s;
     let whole =

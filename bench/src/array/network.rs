@@ -69,8 +69,6 @@ impl Network {
     /// Differences in a covariance that can be judged.
     pub const WINDOWS: [usize; 2] = [10, 40];
 
-    /// The one that ships.
-    #[must_use]
     pub fn shipped() -> Self {
         let ends = |end: usize| SEEN.map(|material| material.contact.noise_mv[end]);
         let samples =
@@ -83,10 +81,7 @@ impl Network {
         }
     }
 
-    /// One from a folder that `tenax train` has written.
-    ///
-    /// # Errors
-    /// If there is none, or it is none of the firmware's.
+    /// One from a folder that `tenax train` has written. Fails if there is none, or it is none of the firmware's.
     pub fn read(folder: &Path) -> anyhow::Result<Self> {
         let file = folder.join(FILE);
         let text = std::fs::read_to_string(&file)
@@ -95,10 +90,7 @@ impl Network {
         Self::of(&saved).with_context(|| file.display().to_string())
     }
 
-    /// One that was written.
-    ///
-    /// # Errors
-    /// If it is none of the firmware's.
+    /// One that was written. Fails if it is none of the firmware's.
     pub fn of(saved: &Saved) -> anyhow::Result<Self> {
         ensure!(saved.noise_samples[0] <= saved.noise_samples[1], "its noise is no range");
         let windows = match saved.window {
@@ -110,7 +102,6 @@ impl Network {
     }
 
     /// How confident it is in each step of one recording.
-    #[must_use]
     pub fn confidences(&self, steps: &[Step]) -> Confidences {
         let per_nat = match &self.windows {
             Windows::Ten(model) => model.judgement.logit_per_nat,
@@ -121,7 +112,6 @@ impl Network {
     }
 
     /// The logit of each reading of one recording, and whether it says slip.
-    #[must_use]
     pub fn judge(&self, readings: &[Reading]) -> (Logits, Vec<bool>) {
         match &self.windows {
             Windows::Ten(model) => judge(model, readings),

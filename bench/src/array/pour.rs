@@ -24,7 +24,6 @@ pub struct Pour {
     pub missed_2800: f64,
     /// False ones in 2800 (the paper: 36 with look-back, 47 without).
     pub false_2800: f64,
-    /// Steps.
     pub steps: usize,
     /// Macro slips.
     pub slips: usize,
@@ -32,7 +31,6 @@ pub struct Pour {
     pub by_material: By,
 }
 
-/// One card of many recordings.
 pub fn card<'a>(judged: impl Iterator<Item = (&'a Recording, &'a Verdicts)>) -> Card {
     let mut card = Card::default();
     for (recording, said) in judged {
@@ -42,7 +40,6 @@ pub fn card<'a>(judged: impl Iterator<Item = (&'a Recording, &'a Verdicts)>) -> 
 }
 
 /// Scores pours. None if there are none.
-#[must_use]
 pub fn pour(judged: &[(&Recording, &Verdicts)]) -> Option<Pour> {
     let mut all = Steps::default();
     for (recording, said) in judged {

@@ -13,7 +13,6 @@ pub struct Real {
     pub auc: f64,
     /// The same of whole recordings by their mean logits.
     pub recordings_auc: f64,
-    /// Recordings.
     pub recordings: usize,
     /// Steps with a verdict.
     pub steps: usize,
@@ -24,7 +23,6 @@ pub type Logits = Vec<Option<i32>>;
 
 impl Real {
     /// Of what was said; slip is a logit of at least `on`. None if there is only one kind of recording.
-    #[must_use]
     pub fn of(recordings: &[Recording], logits: &[Logits], on: &[i32]) -> Option<Self> {
         let (mut steps, mut whole) = (Vec::new(), Vec::new());
         let (mut right, mut of) = ([0_usize; 2], [0_usize; 2]);

@@ -10,7 +10,6 @@ use crate::labelled::{Recording, Step};
 /// Steps, counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Steps {
-    /// All of them.
     pub steps: usize,
     /// Slipped, and were not called slip.
     pub missed: usize,
@@ -29,7 +28,6 @@ pub struct Steps {
 
 impl Steps {
     /// Of one recording.
-    #[must_use]
     pub fn of(steps: &[Step], verdicts: &[bool]) -> Self {
         let mut counted = Self::default();
         counted.take(steps, verdicts);

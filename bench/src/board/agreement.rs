@@ -19,7 +19,6 @@ use super::kept::device;
 pub struct Said {
     /// Slow frames: every detector output and every command of every tick.
     pub slows: Vec<Slow>,
-    /// Events.
     pub events: Vec<Event>,
     /// The answer to each command.
     pub answers: Vec<Answer>,
@@ -43,7 +42,6 @@ impl Said {
 /// `device` is the board as it was before the start ([`kept::device`](super::kept::device)), `pressed` the frames in which it
 /// took a press of the button. `commands` are those that the board took, in order, each with the sequence number of the
 /// frame before whose tick it took it. No frame may have been lost. Scans that do not fill a frame are left out.
-#[must_use]
 pub fn host_says(
     scans: &[Scan],
     mut device: Device,
@@ -68,7 +66,6 @@ pub fn host_says(
 }
 
 /// The frames in which a board took a press of its button, as it says.
-#[must_use]
 pub fn presses(events: &[Event]) -> Vec<u32> {
     let of_button = |event: &&Event| event.kind == EventKind::Armed(Consent::Button);
     events.iter().filter(of_button).map(|event| event.frame).collect()
@@ -86,13 +83,11 @@ pub struct Agreement {
 
 impl Agreement {
     /// Of a run and the host's logic. The run must have lost no frame and not restarted.
-    #[must_use]
     pub fn of(run: &Run) -> Self {
         Self::with_host(run).0
     }
 
     /// The same, and what the host's logic said.
-    #[must_use]
     pub fn with_host(run: &Run) -> (Self, Said) {
         let host = host_says(
             &run.scans,
@@ -111,7 +106,6 @@ impl Agreement {
     }
 
     /// Whether nothing differs.
-    #[must_use]
     pub const fn holds(&self) -> bool {
         self.difference.is_none()
     }
@@ -165,7 +159,6 @@ fn first<T: PartialEq + fmt::Debug>(what: &str, image: &[T], host: &[T], due: us
 }
 
 /// Where two slow frames begin to differ.
-#[must_use]
 pub fn slow_difference(image: &Slow, host: &Slow) -> String {
     let first = image.frame.saturating_sub(u32::from(FRAMES_PER_SLOW_FRAME) - 1);
     match (first..).zip(image.ticks.iter().zip(&host.ticks)).find(|(_, (image, host))| image != host) {

@@ -101,10 +101,7 @@ pub enum Broken {
     #[error(
         "the image drove both sides of the motor bridge at {at_s} s: on a real board this shorts the supply"
     )]
-    BothSides {
-        /// When, s.
-        at_s: f64,
-    },
+    BothSides { at_s: f64 },
     /// The image never triggered a scan.
     #[error("the image had not begun to scan three seconds after its start")]
     NeverScanned,
@@ -113,9 +110,7 @@ pub enum Broken {
 /// Boots `image`, runs the plant to its end and keeps everything.
 ///
 /// `progress` is told the virtual time now and then, s.
-///
-/// # Errors
-/// If the image cannot be read or placed, or what it does would destroy a real board.
+/// Fails if the image cannot be read or placed, or what it does would destroy a real board.
 pub fn run<P: Plant + 'static>(
     image: &Path,
     plant: P,
@@ -128,10 +123,7 @@ pub fn run<P: Plant + 'static>(
     Ok((run, plant))
 }
 
-/// Boots `image` and runs the plant to its end; `recorder` is told of it as it goes.
-///
-/// # Errors
-/// As [`run`].
+/// Boots `image` and runs the plant to its end; `recorder` is told of it as it goes. Fails as [`run`] does.
 pub fn record<P: Plant + 'static>(
     image: &Path,
     plant: P,

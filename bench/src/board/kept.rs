@@ -16,10 +16,7 @@ pub const STORE: u64 = 0x0804_0000;
 /// Words in each of its two sectors.
 pub const SECTOR_WORDS: usize = 128 * 1024 / 4;
 
-/// The model of a wearer.
-///
-/// # Errors
-/// If there can be no such wearer.
+/// The model of a wearer. Fails if there can be no such wearer.
 pub fn model_of(calibrated: &Calibrated) -> anyhow::Result<EmgModel> {
     let uv = |mv: [u16; 2]| mv.map(|mv| i32::from(mv) * 1_000);
     match *calibrated {
@@ -35,7 +32,6 @@ pub fn model_of(calibrated: &Calibrated) -> anyhow::Result<EmgModel> {
 /// What somebody has set up before the start.
 #[derive(Clone, Debug, Default)]
 pub struct Provision {
-    /// Its line is trusted.
     pub trusts_line: bool,
     /// It streams its frames from the start.
     pub streams_at_start: bool,
@@ -44,10 +40,7 @@ pub struct Provision {
 }
 
 impl Provision {
-    /// What a plant's board was set up with.
-    ///
-    /// # Errors
-    /// If there can be no such wearer.
+    /// What a plant's board was set up with. Fails if there can be no such wearer.
     pub fn of(plant: &dyn Plant) -> anyhow::Result<Self> {
         Ok(Self {
             trusts_line: plant.trusts_line(),
@@ -57,7 +50,6 @@ impl Provision {
     }
 
     /// What is kept of it, as it lies in flash.
-    #[must_use]
     pub fn records(&self) -> Vec<(Kept, Vec<u8>)> {
         let mut config = Config::default();
         // Both are in every range.
@@ -70,7 +62,6 @@ impl Provision {
     }
 
     /// The host's device, set up the same way.
-    #[must_use]
     pub fn device(&self) -> Device {
         let mut device = Device::default();
         for (kept, payload) in self.records() {
@@ -81,7 +72,6 @@ impl Provision {
 }
 
 /// The host's device of a board that was set up so.
-#[must_use]
 pub fn device(trusts_line: bool, calibrated: Option<&EmgModel>) -> Device {
     Provision { trusts_line, calibrated: calibrated.copied(), streams_at_start: false }.device()
 }
@@ -92,13 +82,11 @@ pub struct Sectors(pub Vec<u32>);
 
 impl Sectors {
     /// A new chip's.
-    #[must_use]
     pub fn blank() -> Self {
         Self(vec![BLANK; 2 * SECTOR_WORDS])
     }
 
     /// With one more record. It must have room.
-    #[must_use]
     pub fn saving(mut self, kept: Kept, payload: &[u8]) -> Self {
         let (mut log, _) = open(&mut self, Erase::Allowed);
         let mut saving = log.begin(kept, payload).expect("room");
@@ -107,19 +95,16 @@ impl Sectors {
     }
 
     /// The address of the log and its bytes.
-    #[must_use]
     pub fn image(&self) -> (u64, Vec<u8>) {
         (STORE, self.0.iter().flat_map(|word| word.to_le_bytes()).collect())
     }
 
     /// Of a board whose line is trusted.
-    #[must_use]
     pub fn trusting() -> Self {
         Self::provisioned(&Provision { trusts_line: true, ..Provision::default() })
     }
 
     /// Of a board that somebody has set up.
-    #[must_use]
     pub fn provisioned(provision: &Provision) -> Self {
         provision
             .records()

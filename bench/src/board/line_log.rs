@@ -14,7 +14,6 @@ pub struct LineLog {
 
 impl LineLog {
     /// The line of a run of so many frames.
-    #[must_use]
     pub fn new(frames: u32) -> Self {
         Self { inbox: Inbox::default(), frames }
     }

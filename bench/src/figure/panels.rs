@@ -14,7 +14,6 @@ use tenax_plot::figure::{Curve, Figure, Level, Panel, Stretch, colour};
 use tenax_plot::thin::{Thin, thin};
 
 /// The figure of a run: what was drawn of it while it went.
-#[must_use]
 pub fn figure(subject: &Subject, sketch: Sketch) -> Figure {
     let span_s = sketch.span_s();
     let slips = subject.truth.map_or_else(Vec::new, |truth| {

@@ -46,15 +46,12 @@ pub struct Needs {
 /// The motor's drive, %, by who drove it.
 #[derive(Clone, Debug)]
 pub struct Drives {
-    /// The wearer.
     pub wearer: Thin,
-    /// The reflex.
     pub reflex: Thin,
     /// Somebody over the serial line.
     pub link: Thin,
     /// Whether they ever did.
     pub by_link: bool,
-    /// A behaviour.
     pub behaviour: Thin,
     /// Whether one ever did.
     pub by_behaviour: bool,
@@ -62,7 +59,6 @@ pub struct Drives {
 
 impl Sketch {
     /// Of a run that has not begun, between two instants, s; `zero_s` is added to virtual time.
-    #[must_use]
     pub fn new(zero_s: f64, span_s: (f64, f64)) -> Self {
         let thin = || Thin::new(span_s);
         Self {
@@ -87,14 +83,11 @@ impl Sketch {
         }
     }
 
-    /// From and to, s.
-    #[must_use]
     pub const fn span_s(&self) -> (f64, f64) {
         self.span_s
     }
 
     /// When the last slow frame that was heard of ended, and as much again, s.
-    #[must_use]
     pub const fn end_s(&self) -> Option<f64> {
         self.end_s
     }
@@ -136,7 +129,6 @@ impl Recorder for Sketch {
 
 impl Needs {
     /// Of a world that has not begun, between two instants, s.
-    #[must_use]
     pub fn new(span_s: (f64, f64)) -> Self {
         Self { grip: Thin::new(span_s), needed: Thin::new(span_s) }
     }
@@ -178,7 +170,6 @@ impl Steps {
     }
 
     /// The corners, in order of time.
-    #[must_use]
     pub fn points(self) -> Vec<(f64, f64)> {
         let (_, to_s) = self.span_s;
         let mut points = self.corners.points();

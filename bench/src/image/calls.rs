@@ -36,10 +36,7 @@ enum Step {
 pub struct Calls(pub Vec<Function>);
 
 impl Calls {
-    /// Reads them from an ELF file.
-    ///
-    /// # Errors
-    /// If it has no code, or none of it has a name.
+    /// Reads them from an ELF file. Fails if it has no code, or none of it has a name.
     pub fn of(file: &File<'_>) -> Result<Self> {
         let text = file.section_by_name(".text").context("has no .text section")?;
         let (base, code) = (text.address(), text.data()?);
@@ -78,7 +75,6 @@ impl Calls {
     }
 
     /// Everything that calls one of these, and everything that calls that.
-    #[must_use]
     pub fn callers(&self, of: &BTreeSet<usize>) -> BTreeSet<usize> {
         let mut all = BTreeSet::new();
         let mut next: VecDeque<usize> = of.iter().copied().collect();
@@ -93,7 +89,6 @@ impl Calls {
     }
 
     /// Everything that is reached from `roots`, each with who called it first; of a root, itself.
-    #[must_use]
     pub fn reached(&self, roots: &BTreeSet<usize>) -> BTreeMap<usize, usize> {
         let mut by: BTreeMap<usize, usize> = roots.iter().map(|&root| (root, root)).collect();
         let mut next: VecDeque<usize> = roots.iter().copied().collect();
@@ -109,7 +104,6 @@ impl Calls {
     }
 
     /// The way to a function that was reached, from its root.
-    #[must_use]
     pub fn way(&self, reached: &BTreeMap<usize, usize>, to: usize) -> String {
         let mut way = vec![to];
         while let Some(&by) = way.last().and_then(|last| reached.get(last))

@@ -43,10 +43,7 @@ pub struct KernelSymbols {
 }
 
 impl KernelSymbols {
-    /// Reads them from an ELF file.
-    ///
-    /// # Errors
-    /// If it is not the kernels' image, or a kernel is called from more than one place.
+    /// Reads them from an ELF file. Fails if it is not the kernels' image, or a kernel is called from more than one place.
     pub fn read(elf: &Path) -> Result<Self> {
         let bytes = std::fs::read(elf).with_context(|| format!("reading the image {}", elf.display()))?;
         Self::parse(&bytes).with_context(|| format!("the kernels' image {}", elf.display()))

@@ -27,10 +27,7 @@ pub struct Control {
     pub functions: usize,
 }
 
-/// Reads an image's ELF file.
-///
-/// # Errors
-/// If control may panic, or call something that nobody knows; says by which way.
+/// Reads an image's ELF file. Fails if control may panic, or call something that nobody knows; says by which way.
 pub fn check(elf: &Path) -> Result<Control> {
     let bytes = std::fs::read(elf).with_context(|| format!("reading the image {}", elf.display()))?;
     let file = File::parse(&*bytes).context("not an ELF file")?;
@@ -64,9 +61,7 @@ fn check_calls(calls: &Calls) -> Result<Control> {
 }
 
 /// The places from which an image may panic, by the crate that they are in: each has a `Location` among the constants.
-///
-/// # Errors
-/// If the file cannot be read.
+/// Fails if the file cannot be read.
 pub fn sites(elf: &Path) -> Result<BTreeMap<String, u64>> {
     let bytes = std::fs::read(elf).with_context(|| format!("reading the image {}", elf.display()))?;
     let file = File::parse(&*bytes).context("not an ELF file")?;

@@ -13,9 +13,7 @@ pub const BUILTIN: [(&str, &str); 2] = [
 ];
 
 /// The recipe to read a file with: the one that was asked for, by file or by name; else the one that its name calls for.
-///
-/// # Errors
-/// If there is none, or it is wrong; says which there are.
+/// Fails if there is none, or it is wrong; says which there are.
 pub fn choose(path: &Path, asked: Option<&str>) -> anyhow::Result<ArrayRecipe> {
     let builtin = |(name, text): (&str, &str)| ArrayRecipe::parse(text, &format!("recipes/{name}.toml"));
     if let Some(asked) = asked {

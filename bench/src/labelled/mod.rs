@@ -11,8 +11,9 @@ pub mod recipe;
 pub mod resample;
 
 use std::collections::BTreeSet;
+use std::str::FromStr;
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use tenax_hal_shim::channel::ARRAY_COUNT;
 
 use crate::scorer::{Doing, SlipSpan, onsets};
@@ -21,7 +22,7 @@ pub use read::{LabelledError, parse, read};
 pub use recipe::ArrayRecipe;
 
 /// What a recording is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Part {
     /// To learn from.
@@ -33,17 +34,24 @@ pub enum Part {
 }
 
 impl Part {
-    /// All of them.
     pub const ALL: [Self; 3] = [Self::Train, Self::Validation, Self::Test];
 
     /// What it is called in a file.
-    #[must_use]
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             Self::Train => "train",
             Self::Validation => "validation",
             Self::Test => "test",
         }
+    }
+}
+
+impl FromStr for Part {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let part = Self::ALL.into_iter().find(|part| part.name() == name);
+        part.ok_or_else(|| format!("`{name}` is no part of a data set; they are train, validation and test"))
     }
 }
 
@@ -81,7 +89,6 @@ pub struct Recording {
 
 impl Recording {
     /// One whose labels are all that is known of its slips: a session of its own, for nothing in particular.
-    #[must_use]
     pub fn of_steps(name: &str, steps: Vec<Step>) -> Self {
         Self {
             name: name.to_owned(),
@@ -98,7 +105,6 @@ impl Recording {
 }
 
 /// The sessions of recordings, in order.
-#[must_use]
 pub fn sessions(recordings: &[Recording]) -> Vec<String> {
     let set: BTreeSet<&str> = recordings.iter().map(|recording| recording.session.as_str()).collect();
     set.into_iter().map(str::to_owned).collect()

@@ -24,7 +24,6 @@ pub enum LabelledError {
     /// The file cannot be opened or read.
     #[error("{file}: cannot be read")]
     Unreadable {
-        /// The file.
         file: String,
         /// Why not.
         source: std::io::Error,
@@ -32,7 +31,6 @@ pub enum LabelledError {
     /// A column that the recipe asks for is not there.
     #[error("{file}:1: no column `{column}`, which the recipe asks for; the columns are {columns}")]
     NoColumn {
-        /// The file.
         file: String,
         /// What was asked for.
         column: String,
@@ -42,25 +40,17 @@ pub enum LabelledError {
     /// Something about a row.
     #[error("{file}:{line}: {what}")]
     Row {
-        /// The file.
         file: String,
         /// Line in the file, from 1; the header is line 1.
         line: u64,
-        /// What.
         what: String,
     },
     /// Nothing below the header.
     #[error("{file}: no rows below the header")]
-    Empty {
-        /// The file.
-        file: String,
-    },
+    Empty { file: String },
 }
 
-/// Reads a file.
-///
-/// # Errors
-/// Says which row is wrong, and what is allowed.
+/// Reads a file. An error says which row is wrong, and what is allowed.
 pub fn read(path: &Path, recipe: &ArrayRecipe) -> Result<Vec<Recording>, LabelledError> {
     let name = path.display().to_string();
     let file = File::open(path).map_err(|source| LabelledError::Unreadable { file: name.clone(), source })?;
@@ -68,9 +58,7 @@ pub fn read(path: &Path, recipe: &ArrayRecipe) -> Result<Vec<Recording>, Labelle
 }
 
 /// Reads from anything; `file` is what errors call it. Recordings come in the order of their first rows.
-///
-/// # Errors
-/// Says which row is wrong, and what is allowed.
+/// An error says which row is wrong, and what is allowed.
 pub fn parse(source: impl Read, recipe: &ArrayRecipe, file: &str) -> Result<Vec<Recording>, LabelledError> {
     let mut reader =
         csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(Rows::new(source));
@@ -102,7 +90,6 @@ pub fn parse(source: impl Read, recipe: &ArrayRecipe, file: &str) -> Result<Vec<
     Ok(order.into_iter().map(|open| open.close(columns.onsets.is_some())).collect())
 }
 
-/// Where the columns are.
 struct Columns {
     array: [usize; ARRAY_COUNT],
     label: usize,
@@ -190,7 +177,7 @@ impl Columns {
         let session = text(self.session).unwrap_or_else(|| name.clone());
         Ok(Row {
             material: text(self.material).unwrap_or_else(|| session.clone()),
-            part: self.part.map(|place| part(&record[place])).transpose()?,
+            part: self.part.map(|place| record[place].parse::<Part>()).transpose()?,
             t_s: match (self.time, &recipe.array.time) {
                 (Some(place), Some(column)) => Some(number(place, column.get_ref())?),
                 _ => None,
@@ -203,13 +190,6 @@ impl Columns {
             slip,
         })
     }
-}
-
-fn part(text: &str) -> Result<Part, String> {
-    Part::ALL
-        .into_iter()
-        .find(|part| part.name() == text)
-        .ok_or_else(|| format!("`{text}` is no part of a data set; they are train, validation and test"))
 }
 
 /// A recording whose rows are still coming.

@@ -72,7 +72,6 @@ pub struct Recordings {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Labels {
-    /// The column.
     pub column: String,
     /// Values that mean slip.
     pub slip: Spanned<Vec<String>>,
@@ -104,24 +103,16 @@ fn one() -> Spanned<f64> {
 }
 
 impl ArrayRecipe {
-    /// Reads a recipe file.
-    ///
-    /// # Errors
-    /// If it cannot be read or is wrong; says in which line and what is allowed.
+    /// Reads a recipe file. Fails if it cannot be read or is wrong; says in which line and what is allowed.
     pub fn read(path: &Path) -> anyhow::Result<Self> {
         recipe::read(path, Self::parse)
     }
 
-    /// Reads and checks a recipe; `file` is what errors call it.
-    ///
-    /// # Errors
-    /// Says in which line and what is allowed.
+    /// Reads and checks a recipe; `file` is what errors call it. An error says in which line and what is allowed.
     pub fn parse(text: &str, file: &str) -> Result<Self, RecipeError> {
         recipe::parse(text, file, Self::check)
     }
 
-    /// Whether it is for files of this name.
-    #[must_use]
     pub fn is_for(&self, file_name: &str) -> bool {
         recipe::matches(&self.applies_to, file_name)
     }

@@ -6,7 +6,6 @@ use tenax_hal_shim::channel::SLOW_HZ;
 ///
 /// Between rows a signal is a straight line. A recording that is faster than 80 Hz is not low-passed first: the board's
 /// switched inputs would not do so either.
-#[must_use]
 pub fn instants(t_s: &[f64]) -> Vec<(usize, f64)> {
     let (Some(&first), Some(&last)) = (t_s.first(), t_s.last()) else { return Vec::new() };
     let rate_hz = f64::from(SLOW_HZ);

@@ -14,9 +14,7 @@ use tenax_scene::plant::Plant;
 use super::{Recording, ReplayPlant, library};
 
 /// Calibrates to the wearer of these recordings: rest, close, open. Of each, the first 5 s as the board reads them.
-///
-/// # Errors
-/// If one cannot be read or has no recipe, or the calibration is refused.
+/// Fails if one cannot be read or has no recipe, or the calibration is refused.
 pub fn calibrate(recordings: &[PathBuf], recipe: Option<&str>, seed: u64) -> anyhow::Result<EmgModel> {
     let [rest, close, open] = recordings else {
         bail!("a calibration takes three recordings: REST.csv,CLOSE.csv,OPEN.csv");

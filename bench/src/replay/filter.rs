@@ -17,7 +17,6 @@ pub enum Pass {
 
 impl Filter {
     /// A filter with this corner. None if the corner is not below half the rate: then there is nothing to filter.
-    #[must_use]
     pub fn new(pass: Pass, corner_hz: f64, rate_hz: f64) -> Option<Self> {
         let kind = match pass {
             Pass::Low => Type::LowPass,

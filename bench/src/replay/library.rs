@@ -20,7 +20,6 @@ pub const BUILTIN: [(&str, &str); 4] = [
 pub struct Named {
     /// Its name here, or its file.
     pub name: String,
-    /// It.
     pub recipe: Recipe,
 }
 

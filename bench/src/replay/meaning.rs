@@ -11,15 +11,12 @@ use crate::recipe;
 pub enum Motion {
     /// It stays as it is.
     Rest,
-    /// It closes.
     Close,
-    /// It opens.
     Open,
 }
 
 impl Motion {
     /// What reports call it.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Rest => "rest",
@@ -43,7 +40,6 @@ pub struct Meaning {
 
 impl Meaning {
     /// Whether it is for recordings of this name.
-    #[must_use]
     pub fn is_for(&self, file_name: &str) -> bool {
         recipe::matches([&self.named], file_name)
     }

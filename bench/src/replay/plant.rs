@@ -152,7 +152,6 @@ impl ReplayPlant {
     }
 
     /// What to add to virtual time to get the recording's own time, s.
-    #[must_use]
     pub fn time_zero_s(&self) -> f64 {
         self.grid.from_s
     }

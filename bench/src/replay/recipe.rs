@@ -134,7 +134,6 @@ pub struct HoldForce {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HoldPins {
-    /// The channels.
     pub channels: Vec<Spanned<String>>,
     /// The voltage, V.
     pub volts: Spanned<f64>,
@@ -171,19 +170,16 @@ impl Recipe {
     }
 
     /// Whether it is for recordings of this name.
-    #[must_use]
     pub fn is_for(&self, file_name: &str) -> bool {
         recipe::matches(&self.applies_to, file_name)
     }
 
     /// What a recording of this name means for the hand.
-    #[must_use]
     pub fn meaning_of(&self, file_name: &str) -> Option<&Meaning> {
         self.meaning.iter().find(|meaning| meaning.is_for(file_name))
     }
 
     /// Whether anything listens to this column.
-    #[must_use]
     pub fn uses(&self, column: &str) -> bool {
         let mapped = self.map.iter().any(|map| map.column == column);
         let pressed = self.force.as_ref().is_some_and(|force| {
@@ -193,7 +189,6 @@ impl Recipe {
     }
 
     /// Whether a column is a muscle.
-    #[must_use]
     pub fn maps_a_muscle(&self) -> bool {
         self.map.iter().any(Map::is_muscle)
     }
@@ -233,7 +228,6 @@ impl Recipe {
 
 impl Map {
     /// Whether it brings a column to a myosensor's pin.
-    #[must_use]
     pub fn is_muscle(&self) -> bool {
         let muscles = [channel::MYO_FLEXOR, channel::MYO_EXTENSOR];
         let indices = self.channels.iter().filter_map(|name| channel::by_name(name.get_ref()));

@@ -68,7 +68,6 @@ pub enum RecordingError {
         file: String,
         /// Line in the file, from 1; the header is line 1.
         line: u64,
-        /// What.
         what: String,
     },
     /// Longer than can be meant.
@@ -195,7 +194,6 @@ impl Recording {
     }
 
     /// The file, as errors call it.
-    #[must_use]
     pub fn file(&self) -> &str {
         &self.file
     }
@@ -206,31 +204,26 @@ impl Recording {
     }
 
     /// Time stamps, s, never decreasing, at least two.
-    #[must_use]
     pub fn t_s(&self) -> &[f64] {
         &self.t_s
     }
 
     /// The first time stamp, s.
-    #[must_use]
     pub fn first_s(&self) -> f64 {
         self.t_s[0]
     }
 
     /// From the first to the last row, s.
-    #[must_use]
     pub fn duration_s(&self) -> f64 {
         self.t_s[self.t_s.len() - 1] - self.t_s[0]
     }
 
     /// The longest time between two rows, s. Between rows a signal is a straight line, so a long one is worth saying.
-    #[must_use]
     pub fn longest_gap_s(&self) -> f64 {
         self.t_s.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max)
     }
 
     /// Rows a second, on average. Infinite where all rows have one time stamp.
-    #[must_use]
     pub fn rate_hz(&self) -> f64 {
         (self.t_s.len() - 1) as f64 / self.duration_s()
     }

@@ -13,13 +13,11 @@ pub struct Grid {
     pub per_scan: usize,
     /// When the first instant is, in the recording's time, s.
     pub from_s: f64,
-    /// Scans.
     pub scans: usize,
 }
 
 impl Grid {
     /// A grid for a recording of `rate_hz` rows a second that begins at `first_s`, with a lead-in and a lead-out.
-    #[must_use]
     pub fn new(rate_hz: f64, first_s: f64, duration_s: f64, lead_in_s: f64, lead_out_s: f64) -> Self {
         let scan_hz = f64::from(SCAN_HZ);
         let per_scan = (2.0 * rate_hz / scan_hz).ceil().clamp(1.0, 16.0) as usize;
@@ -31,7 +29,6 @@ impl Grid {
     }
 
     /// Instants a second.
-    #[must_use]
     pub fn rate_hz(&self) -> f64 {
         f64::from(SCAN_HZ) * self.per_scan as f64
     }
@@ -39,7 +36,6 @@ impl Grid {
     /// The series on the grid: straight lines between rows, the first and last row held outside.
     ///
     /// `t_s` must not decrease and must be as long as `values`.
-    #[must_use]
     pub fn draw(&self, t_s: &[f64], values: &[f64]) -> Vec<f64> {
         let step_s = 1.0 / self.rate_hz();
         let mut next = 0;
@@ -62,7 +58,6 @@ impl Grid {
     }
 
     /// Every instant that is a scan.
-    #[must_use]
     pub fn thin(&self, values: &[f64]) -> Vec<f64> {
         values.iter().step_by(self.per_scan).copied().collect()
     }

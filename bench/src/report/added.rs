@@ -153,7 +153,6 @@ fn slips(truth: &Fate, t_s: f64) -> bool {
 
 impl Added {
     /// The newtons of a run: true ones of a scene, those of the force sensor where nobody knows the truth.
-    #[must_use]
     pub fn sums(&self, truth: Option<&Fate>) -> Sums {
         let mut sums = Sums { without_need_n: truth.map(|_| 0.0), ..Sums::default() };
         for stretch in self.stretches.iter().chain(&self.open) {

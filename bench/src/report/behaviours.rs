@@ -8,9 +8,7 @@ use crate::timeline::Timeline;
 /// One behaviour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Ran {
-    /// What.
     pub name: &'static str,
-    /// From when, s.
     pub begin_s: f64,
     /// Until when, s. Null if it still went on.
     pub end_s: Option<f64>,
@@ -19,7 +17,6 @@ pub struct Ran {
 }
 
 /// All of them, in order.
-#[must_use]
 pub fn of(events: &[Event], timeline: &Timeline) -> Vec<Ran> {
     let mut all: Vec<Ran> = Vec::new();
     for event in events {

@@ -27,7 +27,6 @@ pub struct Bound {
 
 impl Bound {
     /// Compares.
-    #[must_use]
     pub fn of(run: Option<&Fate>, bound: Option<&Fate>) -> Self {
         let (Some(run), Some(bound)) = (run, bound) else {
             return Self::default();
@@ -67,7 +66,6 @@ pub struct Control {
 
 impl Control {
     /// Of a run.
-    #[must_use]
     pub fn of(name: &str, fate: &Fate) -> Self {
         Self {
             name: name.to_owned(),

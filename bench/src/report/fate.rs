@@ -14,7 +14,6 @@ pub struct Fate {
     pub doing: Vec<Stretch>,
     /// How far the object slid altogether when it was not meant to, mm.
     pub distance_mm: f64,
-    /// Whether it was dropped.
     pub dropped: bool,
     /// Whether the hand rose without it.
     pub left_behind: bool,
@@ -30,7 +29,6 @@ pub struct Fate {
     pub crushed_at_s: Option<f64>,
     /// How deep, for good, mm.
     pub dent_mm: f64,
-    /// When it broke, s.
     pub broken_at_s: Option<f64>,
     /// The least force that would have held it at its heaviest, N.
     pub needed_force_n: Option<f64>,
@@ -44,7 +42,6 @@ pub struct Fate {
 
 impl Fate {
     /// A world's log, as far as it goes, of this scene.
-    #[must_use]
     pub fn of(truth: &Truth, scene: &SceneFile) -> Self {
         let held = truth.needed_grip_n > 0.0;
         Self {
@@ -68,14 +65,12 @@ impl Fate {
     }
 
     /// Whether the hand still had it, or let it go on purpose.
-    #[must_use]
     pub const fn kept(&self) -> bool {
         !self.dropped && !self.left_behind && self.broken_at_s.is_none()
     }
 }
 
 /// Every slip of a world and every run of micro slips that came to nothing, by micro onset.
-#[must_use]
 pub fn spans(truth: &Truth) -> Vec<SlipSpan> {
     let slips = truth.slips.iter().map(|slip| SlipSpan {
         micro_onset_s: slip.micro_onset_s,

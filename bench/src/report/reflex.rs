@@ -27,7 +27,6 @@ pub struct Reflex {
 
 impl Reflex {
     /// Judges a run.
-    #[must_use]
     pub fn of(added: &Added, timeline: &Timeline, events: &[Event], truth: Option<&Fate>) -> Self {
         let pulses = events.iter().filter_map(|event| match event.kind {
             EventKind::Mode { to: GripMode::Slip | GripMode::Incipient, .. } => {
@@ -58,13 +57,11 @@ impl Reflex {
 pub struct Margin {
     /// The true one's least while the hand carried the object. Null where nobody knows it.
     pub least_mn: Option<f64>,
-    /// Its last.
     pub last_mn: Option<f64>,
 }
 
 impl Margin {
     /// Of a run.
-    #[must_use]
     pub fn of(truth: Option<&Fate>) -> Self {
         let margin_mn = truth.and_then(|truth| truth.margin_n).map(|both| both.map(|n| n * 1e3));
         Self { least_mn: margin_mn.map(|[least, _]| least), last_mn: margin_mn.map(|[_, last]| last) }
@@ -86,7 +83,6 @@ pub struct Object {
 
 impl Object {
     /// Judges a run.
-    #[must_use]
     pub fn of(truth: Option<&Fate>) -> Self {
         Self {
             kept: truth.map(Fate::kept),

@@ -80,7 +80,6 @@ impl Meant {
 pub struct Force {
     /// Ft/Fn at the crest. Null where it has none.
     pub peak_ratio: Option<f64>,
-    /// When, s.
     pub peak_s: Option<f64>,
     /// When S2 first spoke, s.
     pub s2_first_s: Option<f64>,
@@ -119,7 +118,6 @@ pub struct ActivePart {
 
 impl ActivePart {
     /// Of a recording that is to be played; `zero_s` is added to virtual time.
-    #[must_use]
     pub fn new(recording: &Recording, zero_s: f64) -> Self {
         let first_s = recording.first_s();
         Self { zero_s, within_s: first_s..=first_s + recording.duration_s(), all: 0, active: 0 }

@@ -23,11 +23,9 @@ pub struct Slip {
     pub latency_ms: Option<f64>,
     /// How far the object slid in the whole run, mm.
     pub distance_mm: Option<f64>,
-    /// Whether it was dropped.
     pub dropped: Option<bool>,
     /// Macro slips in the whole run that the wearer did not mean.
     pub macro_slips: Option<usize>,
-    /// How many of them were caught.
     pub macro_slips_caught: Option<usize>,
 }
 
@@ -36,7 +34,6 @@ const WARNS: [DetectorId; 1] = [DetectorId::S2];
 
 impl Slip {
     /// Scores a run.
-    #[must_use]
     pub fn of(timeline: &Timeline, truth: Option<&Fate>) -> Self {
         let Some(truth) = truth else {
             return Self::default();
@@ -121,7 +118,6 @@ impl Serialize for Detectors {
 
 impl Detectors {
     /// Scores a run.
-    #[must_use]
     pub fn of(timeline: &Timeline, events: &[Event], truth: Option<&Fate>) -> Self {
         let wearer = timeline.wearer(events);
         Self {
@@ -130,8 +126,6 @@ impl Detectors {
         }
     }
 
-    /// One of them.
-    #[must_use]
     pub fn of_id(&self, id: DetectorId) -> Detector {
         self.all.iter().find(|(own, _)| *own == id).map_or_else(Detector::default, |(_, own)| own.clone())
     }

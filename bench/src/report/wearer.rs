@@ -120,7 +120,6 @@ pub struct Judge {
     muscles: Muscles,
     /// The scans of the frame that is not yet whole.
     scans: Vec<Scan>,
-    /// Frames so far.
     frames: usize,
     active: Frames,
     wish_since: Option<usize>,
@@ -159,7 +158,6 @@ impl Default for Judge {
 
 impl Judge {
     /// Of a hand that was calibrated to this wearer.
-    #[must_use]
     pub fn new(calibrated: Option<&EmgModel>) -> Self {
         // Whoever contracts with less than any muscle does is active all the same; a wearer whose rest is strong, later.
         let on_mv = calibrated.map_or([ON_MV; 2], |model| {
@@ -238,7 +236,6 @@ impl Judge {
     }
 
     /// The verdict over the run; `active_first_s` is when a myosensor first became active, `faults` how often one was lost.
-    #[must_use]
     pub fn verdict(&self, active_first_s: Option<f64>, faults: usize) -> Wearer {
         let seconds = |ticks: u64| ticks as f64 / f64::from(FRAME_HZ);
         Wearer {

@@ -21,7 +21,6 @@ pub enum Doing {
 
 impl Doing {
     /// As in data and reports.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Hold => "hold",
@@ -33,7 +32,6 @@ impl Doing {
     }
 
     /// By its name in a data set's column.
-    #[must_use]
     pub fn named(name: &str) -> Self {
         match name {
             "pick" => Self::Move,
@@ -54,16 +52,12 @@ impl Serialize for Doing {
 /// A stretch of one doing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretch {
-    /// From, s.
     pub from_s: f64,
-    /// To, s.
     pub to_s: f64,
-    /// What.
     pub doing: Doing,
 }
 
 /// What goes on in a scene, without a gap. Of several things at once, the one that disturbs most.
-#[must_use]
 pub fn in_scene(scene: &SceneFile) -> Vec<Stretch> {
     let happenings = scene.happenings();
     let end_s = scene.duration_s();

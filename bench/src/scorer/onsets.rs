@@ -14,7 +14,6 @@ use super::SlipSpan;
 const STEP_S: f64 = 1.0 / SLOW_HZ as f64;
 
 /// Slips as text; nothing for none.
-#[must_use]
 pub fn text<'a>(slips: impl IntoIterator<Item = &'a SlipSpan>) -> String {
     let mut text = String::new();
     for slip in slips {
@@ -35,10 +34,7 @@ pub fn text<'a>(slips: impl IntoIterator<Item = &'a SlipSpan>) -> String {
     text
 }
 
-/// The slips of a cell.
-///
-/// # Errors
-/// Says what is wrong with it.
+/// The slips of a cell. An error says what is wrong with it.
 pub fn parse(cell: &str) -> Result<Vec<SlipSpan>, String> {
     cell.split(';').filter(|slip| !slip.trim().is_empty()).map(one).collect()
 }
@@ -67,7 +63,6 @@ fn one(text: &str) -> Result<SlipSpan, String> {
 /// Slips of a recording that has labels and no onsets: each run of labelled steps, from the beginning of its first to the end
 /// of its last, with no micro slip before it. Two that are nearer than the time that a detection may take are one. The first
 /// step ends at `first_s`.
-#[must_use]
 pub fn of_labels(labels: impl Iterator<Item = bool>, first_s: f64) -> Vec<SlipSpan> {
     let mut slips: Vec<SlipSpan> = Vec::new();
     for (n, _) in labels.enumerate().filter(|(_, slips)| *slips) {

@@ -14,7 +14,6 @@ use crate::report::fate::Fate;
 const WITHIN: f64 = 0.01;
 
 /// What becomes of a scene's object in this grip.
-#[must_use]
 pub fn gripped(file: &SceneFile, seed: u64, grips: Grips) -> Fate {
     fate(file, World::new(file, seed), grips)
 }
@@ -28,7 +27,6 @@ fn fate(file: &SceneFile, world: World, grips: Grips) -> Fate {
 /// The bound of a scene beside `run`. It plans the least force from which nothing slides. Beside a run that kept the object with
 /// less, it plans the least force that lets it slide no further than it did there; where the object had turned and so needed less
 /// than any plan can know ahead, it is what the object needed as it hung in that run.
-#[must_use]
 pub fn bound(file: &SceneFile, seed: u64, run: &Fate) -> Fate {
     let plan = Plan::of(file);
     let planned = |most_n| {
@@ -63,7 +61,6 @@ pub fn bound(file: &SceneFile, seed: u64, run: &Fate) -> Fate {
 
 /// What becomes of a scene's object without the reflex, in a constant grip of the same mean force as `truth`'s run had, with each
 /// detector alone, and with all but each.
-#[must_use]
 pub fn runs(file: &SceneFile, seed: u64, truth: &Fate) -> Vec<(String, Fate)> {
     let each = || {
         DetectorId::ALL.into_iter().filter(|&id| match id {
@@ -82,7 +79,6 @@ pub fn runs(file: &SceneFile, seed: u64, truth: &Fate) -> Vec<(String, Fate)> {
 }
 
 /// The controls of a scene, as a report has them.
-#[must_use]
 pub fn controls(file: &SceneFile, seed: u64, truth: &Fate) -> Vec<Control> {
     runs(file, seed, truth).iter().map(|(name, fate)| Control::of(name, fate)).collect()
 }

@@ -8,7 +8,6 @@ use rigless::soc::stm32f427::generated::dma2::{Register, lisr, s0cr, s0fcr, s0nd
 const ADC1_DR: u64 = 0x4001_204C;
 /// The chip's RAM: what is carried to anywhere else may be refused.
 const RAM: std::ops::Range<u64> = 0x2000_0000..0x2002_0000;
-/// Bytes of a code.
 const CODE_BYTES: u64 = 2;
 /// The registers of stream 0, in the order of their addresses, and the first one of stream 1.
 const FIRST_ROW: usize = Register::S0cr as usize;

@@ -45,11 +45,9 @@ struct Carried {
 /// A store of DMA.
 #[derive(Clone, Copy, Debug)]
 pub struct Stored {
-    /// Where.
     pub address: u64,
     /// How wide.
     pub width: Width,
-    /// What.
     pub value: u64,
 }
 
@@ -92,12 +90,10 @@ impl Pair {
         (self.memory.begins, self.memory.message) = (begins, message);
     }
 
-    /// What a register of the port holds.
     pub fn port_holds(&self, register: usart6::Register) -> u64 {
         self.bus.slots()[self.port_slot].registers().get(register)
     }
 
-    /// What a register of DMA holds.
     pub fn dma_holds(&self, register: dma2::Register) -> u64 {
         self.bus.slots()[self.dma_slot].registers().get(register)
     }

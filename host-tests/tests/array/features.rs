@@ -18,7 +18,6 @@ fn some(samples: &[u16; ELEMENTS]) -> Reading {
     samples.map(Some)
 }
 
-/// Where the entries of an element are.
 fn entries_of(element: usize) -> impl Iterator<Item = usize> {
     let pairs = (0..ELEMENTS).flat_map(|a| (a..ELEMENTS).map(move |b| (a, b)));
     pairs.enumerate().filter(move |(_, (a, b))| *a == element || *b == element).map(|(n, _)| n)

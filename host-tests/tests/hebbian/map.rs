@@ -123,7 +123,6 @@ pub fn fate(weights: &[[f64; RECEPTORS]; 2], trial: &[Moment]) -> Fate {
     }
 }
 
-/// Teaches these moments.
 pub fn teach(network: &mut FingertipNetwork, config: &Config, moments: &[Moment]) {
     let rule = Rule::new(config).unwrap();
     for moment in moments {

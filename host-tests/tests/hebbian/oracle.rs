@@ -5,7 +5,6 @@ use tenax_logic::hebbian::{Activations, Code, Config, Network};
 /// The largest weight, as the fixed-point network has it.
 pub const FULL_SCALE: f64 = 8.0;
 
-/// An activation, exactly.
 pub fn exact<const N: usize>(activations: &Activations<N>) -> [f64; N] {
     activations.as_bits().map(|t| f64::from(t) / f64::from(1 << 26))
 }

@@ -25,7 +25,6 @@ use tenax_logic::hebbian::{Activation, Activations, Code, Codes, RECEPTORS};
 
 /// Vibration receptors come first.
 pub const VIBRATION: usize = 12;
-/// The receptor that is an offset.
 pub const OFFSET: usize = RECEPTORS - 1;
 /// Trials in a lesson (Tada 2006, section III.C).
 pub const TRIALS: u64 = 7;
@@ -88,7 +87,6 @@ impl Finger {
         }
     }
 
-    /// One trial.
     pub fn trial(&self, seed: u64) -> Vec<Moment> {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let keep = f64::exp(-1.0 / 20.0);

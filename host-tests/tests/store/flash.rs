@@ -5,7 +5,6 @@ use tenax_hal_shim::flash::{BLANK, FlashArea, FlashFailed, Sector};
 /// What an operation has done when the power goes.
 #[derive(Clone, Copy, Debug)]
 pub enum Harm {
-    /// Nothing.
     Nothing,
     /// Everything; the core never hears of it.
     Everything,
@@ -42,7 +41,6 @@ pub struct TestFlash {
     pub dead: bool,
     /// Erases fail.
     pub worn: bool,
-    /// Operations so far.
     pub operations: usize,
     /// Erases of each sector.
     pub erases: [usize; 2],

@@ -5,7 +5,6 @@ use tenax_bench::board::Run;
 use tenax_bench::board::agreement::Agreement;
 
 /// The bar for a run on the emulated board.
-#[must_use]
 pub fn bar(run: &Run) -> Bar {
     let agreement = Agreement::of(run);
     Bar::new(

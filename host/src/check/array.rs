@@ -7,19 +7,15 @@ use super::Bar;
 use tenax_bench::array::network::Network;
 use tenax_bench::array::{Verdicts, readings};
 use tenax_bench::bars::Goal;
-use tenax_bench::labelled::{self, library};
-use tenax_studies::dataset::session::Split;
+use tenax_bench::labelled::{self, Part, library};
 use tenax_studies::dataset::{Dataset, Label, Plan};
 use tenax_studies::evaluate::report::Report;
 
 /// A data set of another seed than the one that was learned from: 4 materials and the one outside of them.
 const PLAN: Plan = Plan { seed: 4, sessions: 4, label: Label::Truth };
-/// The bars.
-///
-/// # Errors
-/// If a scene cannot be made.
+/// The bars. Fails if a scene cannot be made.
 pub fn bars() -> anyhow::Result<Vec<Bar>> {
-    let csv = Dataset::make_split(PLAN, Split::Test, &|_| {})?.csv()?;
+    let csv = Dataset::make_split(PLAN, Part::Test, &|_| {})?.csv()?;
     let name = "array_dataset.csv";
     let recordings = labelled::parse(csv.as_slice(), &library::choose(name.as_ref(), None)?, name)?;
     let network = Network::shipped();

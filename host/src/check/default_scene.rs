@@ -13,7 +13,6 @@ const SLIDES_MM: f64 = 9.0;
 const LOAD_PERCENT: f64 = 20.0;
 
 /// The bars of one run of the default scene. On the emulated board everything of it was kept, in `run`.
-#[must_use]
 pub fn bars(outcome: &Outcome, run: Option<&Run>) -> Vec<Bar> {
     let report = &outcome.report;
     let name = &report.scene;

@@ -11,10 +11,7 @@ const LEAD_S: f64 = 0.16;
 /// The part of vision's slip in the pour that may be left.
 const POUR_PART: f64 = 0.5;
 
-/// The bars.
-///
-/// # Errors
-/// If a scene cannot be made.
+/// The bars. Fails if a scene cannot be made.
 pub fn bars() -> anyhow::Result<Vec<Bar>> {
     let options = Options { controls: false, ..Options::default() };
     let outcome = learn::run(&options, &Board::Host, &|_, _| ())?;

@@ -7,7 +7,6 @@ use tenax_bench::replay::library::BUILTIN;
 use tenax_bench::replay::{Recipe, Recording};
 
 /// The bars: one mistake of each kind.
-#[must_use]
 pub fn bars() -> Vec<Bar> {
     let scene = builtin().first().map_or(String::new(), |(_, text)| format!("durations = 3\n{text}"));
     let recipe = BUILTIN.first().map_or(String::new(), |(_, text)| text.replace("\"myo_", "\"mio_"));

@@ -11,7 +11,6 @@ use anyhow::Result;
 pub struct Group<'a, T> {
     /// Shown while it runs.
     pub name: String,
-    /// Measures it.
     pub measure: Box<dyn Fn() -> Result<T> + Sync + 'a>,
 }
 
@@ -23,9 +22,7 @@ impl<'a, T> Group<'a, T> {
 }
 
 /// Measures all groups. `running` hears the names of those that run, `each` the results in the groups' order.
-///
-/// # Errors
-/// The first in the groups' order; what comes after it is not told.
+/// Fails with the first in the groups' order; what comes after it is not told.
 pub fn measure<T: Send>(
     groups: &[Group<'_, T>],
     mut running: impl FnMut(String),

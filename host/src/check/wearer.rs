@@ -39,7 +39,6 @@ pub fn scenes() -> anyhow::Result<Vec<Bar>> {
 }
 
 /// The contract against random hands: `host-tests/tests/wearer.rs` and `random_steps.rs`, run by cargo.
-#[must_use]
 pub fn random(test: &mut Command) -> Bar {
     const PROMISE: &str =
         "1,000,000 random steps: reflex silent while active, open within 2 slow frames, no fault opens";

@@ -38,7 +38,7 @@ pub struct Args {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Subject {
-    /// How the scenes' friction is stepped: where each method fails, and what it costs
+    /// How the scenes' friction is stepped: the brush patch and the slider that vibrates by itself, beside theory
     Scenes,
     /// What the scenes' sensors say at the onset of slip, beside real recordings where they are present
     Sensors,
@@ -62,7 +62,7 @@ enum Subject {
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let folder = folder::made(&args.out)?;
     let charts = match args.subject {
-        Subject::Scenes => with_bar("charts", |progress| chart::scenes(progress))?,
+        Subject::Scenes => chart::scenes()?,
         Subject::Array => vec![with_bar("array", |progress| chart::array::chart(progress))?],
         Subject::Features => vec![with_bar("features", |progress| chart::features::chart(progress))?],
         Subject::Front => {
@@ -118,10 +118,8 @@ fn recordings(args: &Args) -> anyhow::Result<PathBuf> {
     }
 }
 
-#[cfg(feature = "emulator")]
 fn detectors(scores: Option<&Path>) -> anyhow::Result<chart::Chart> {
-    let root = workspace::root()?;
-    let figures = root.join("docs/figures");
+    let figures = workspace::root()?.join("docs/figures");
     let files = scores.map_or_else(
         || {
             vec![
@@ -131,23 +129,11 @@ fn detectors(scores: Option<&Path>) -> anyhow::Result<chart::Chart> {
         },
         |own| vec![("scores", own.to_owned())],
     );
-    let read = |(data, file): &(&'static str, PathBuf)| {
-        let table = fs::read_to_string(file)
-            .with_context(|| format!("cannot read the detectors' scores {}", file.display()))?;
-        anyhow::Ok((*data, table))
+    let text = |file: &Path| {
+        fs::read_to_string(file).with_context(|| format!("cannot read the table {}", file.display()))
     };
+    let read = |(data, file): &(&'static str, PathBuf)| anyhow::Ok((*data, text(file)?));
     let tables: Vec<(&str, String)> = files.iter().map(read).collect::<Result<_, _>>()?;
     let tables: Vec<(&str, &str)> = tables.iter().map(|(data, table)| (*data, table.as_str())).collect();
-    let image = tenax_bench::image::build_kernels(&root)?;
-    let costs = with_bar("detectors", |_| tenax_bench::board::emulated::kernels::costs(&image))?;
-    let instructions = costs.into_iter().map(|cost| (cost.name, cost.most)).collect();
-    chart::detectors::chart(&tables, &instructions)
-}
-
-#[cfg(not(feature = "emulator"))]
-fn detectors(_scores: Option<&Path>) -> anyhow::Result<chart::Chart> {
-    anyhow::bail!(
-        "instructions are counted on the emulated board, and this `tenax` was built without it: use `cargo tenax chart \
-         detectors` in a checkout"
-    )
+    chart::detectors::chart(&tables, &text(&figures.join("kernels.csv"))?)
 }

@@ -14,11 +14,11 @@ use super::workspace;
 use tenax_bench::array::network::Network;
 use tenax_bench::array::real::{Logits, Real};
 use tenax_bench::array::{Verdicts, adapt, readings};
-use tenax_bench::labelled::{self, Recording, library};
+use tenax_bench::labelled::{self, Part, Recording, library};
 use tenax_bench::report::bound::Control;
 use tenax_bench::scorer::Card;
 use tenax_bench::session::Board;
-use tenax_studies::dataset::session::{Sizes, Split, sessions};
+use tenax_studies::dataset::session::{Sizes, sessions};
 use tenax_studies::dataset::{Dataset, Label, Plan};
 use tenax_studies::evaluate::report::Report;
 use tenax_studies::evaluate::roc::Roc;
@@ -60,8 +60,8 @@ pub struct Args {
     #[arg(long, value_name = "N", default_value_t = Sizes::DEFAULT_TRAIN, conflicts_with = "dataset")]
     sessions: usize,
     /// Of the built-in data set: which part. The test part is for figures that nothing is chosen by
-    #[arg(long, value_name = "PART", value_enum, default_value_t = Split::Test, conflicts_with = "dataset")]
-    part: Split,
+    #[arg(long, value_name = "train|validation|test", default_value = "test", conflicts_with = "dataset")]
+    part: Part,
     /// The paper's two tasks with the whole hand, instead of recordings
     #[arg(long, conflicts_with_all = ["dataset", "sessions"])]
     online: bool,

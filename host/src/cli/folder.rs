@@ -5,10 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 
-/// The folder, made if it is not there.
-///
-/// # Errors
-/// If it cannot be made, is no folder, or cannot be written to.
+/// The folder, made if it is not there. Fails if it cannot be made, is no folder, or cannot be written to.
 pub fn made(folder: &Path) -> anyhow::Result<PathBuf> {
     let cannot = || format!("cannot write to the folder {}", folder.display());
     if folder.exists() && !folder.is_dir() {

@@ -18,9 +18,7 @@ pub enum Format {
 
 impl Format {
     /// Prints a report on stdout: as `text`, or as the keys and numbers of `report`.
-    ///
-    /// # Errors
-    /// If the report cannot be written as JSON, or not printed.
+    /// Fails if the report cannot be written as JSON, or not printed.
     pub fn print(self, text: &impl Display, report: &impl Serialize) -> anyhow::Result<()> {
         match self {
             Self::Text => out::print(format_args!("{text}")),

@@ -21,10 +21,7 @@ impl LineFile {
         Self { path, file: None }
     }
 
-    /// Where the bytes are, if there were any.
-    ///
-    /// # Errors
-    /// If they could not be written.
+    /// Where the bytes are, if there were any. Fails if they could not be written.
     pub fn close(self) -> anyhow::Result<Option<PathBuf>> {
         let cannot = |path: &Path| format!("cannot write {}", path.display());
         match self.file {

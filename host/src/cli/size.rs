@@ -11,7 +11,6 @@ use tenax_bench::image;
 use tenax_bench::image::size::{FLASH_BYTES, RAM_BYTES, Size};
 use tenax_bench::report::Report;
 use tenax_bench::session::{self, Board};
-use tenax_studies::crates;
 
 /// Flash, RAM, worst stack and instructions a tick of the image, beside their budgets.
 #[derive(Debug, clap::Args)]
@@ -19,27 +18,10 @@ pub struct Args {
     /// Fail if a budget (budgets.toml) is passed, or could not be measured
     #[arg(long)]
     check: bool,
-    /// Instead: roots, logarithms, angles and transforms of micromath, libm and microfft beside the logic's own
-    #[arg(long, conflicts_with = "check")]
-    crates: bool,
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let root = workspace::root()?;
-    if args.crates {
-        let costs = array_costs(&root)?;
-        for row in crates::rows() {
-            let cost = costs.iter().find(|(name, _)| name == row.kernel).map(|(_, most)| most.to_string());
-            out::say!(
-                "{:<28}{:<24}{:>6} instructions, off by at most {}",
-                row.what,
-                row.by,
-                cost.unwrap_or("?".to_owned()),
-                row.off
-            )?;
-        }
-        return Ok(ExitCode::SUCCESS);
-    }
     let board = Board::emulated(&root)?;
     let file = session::load_scene(session::DEFAULT_SCENE)?;
     let progress = Progress::new(&format!("scene {}", file.name), file.duration_s());
@@ -51,10 +33,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     Ok(if kept || !args.check { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Every budget, beside what the image takes and what a run of the default scene on it took.
-///
-/// # Errors
-/// If the image cannot be built or read.
+/// Every budget, beside what the image takes and what a run of the default scene on it took. Fails if the image cannot be built or read.
 pub fn lines(root: &Path, report: &Report) -> anyhow::Result<Vec<Line>> {
     let budgets = Budgets::of_checkout()?;
     let size = Size::read(&image::build(root)?)?;

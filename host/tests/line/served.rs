@@ -20,7 +20,6 @@ use crate::serving::Serving;
 
 const WITHIN: Duration = Duration::from_secs(5);
 
-/// Every pin at rest.
 struct Rest(Pins, f64);
 
 impl Plant for Rest {

@@ -30,7 +30,6 @@ const NOT_FOR_THE_IMAGE: [&str; 11] = [
 /// A compiler, and how it comes by the target's `core`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Toolchain {
-    /// The one on PATH has it.
     OnPath,
     /// Debian's, which builds it.
     Debian {

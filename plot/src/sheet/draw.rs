@@ -21,7 +21,6 @@ const FAILED: RGBColor = RGBColor(225, 225, 225);
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
-/// The sheet as SVG.
 pub fn svg(sheet: &Sheet) -> anyhow::Result<String> {
     let rows = (sheet.panels.len() as u32).div_ceil(sheet.columns);
     let height = TITLE_HEIGHT + rows * PANEL_HEIGHT + FOOT_HEIGHT;

@@ -21,13 +21,11 @@ const OFFERED: usize = 4;
 
 impl ChannelName {
     /// Index in [`CHANNELS`].
-    #[must_use]
     pub const fn index(self) -> usize {
         self.0
     }
 
     /// Its name.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         CHANNELS[self.0].name
     }

@@ -11,7 +11,6 @@ pub struct SceneError {
 
 impl SceneError {
     /// The line, counted from 1.
-    #[must_use]
     pub const fn line(&self) -> usize {
         self.line
     }

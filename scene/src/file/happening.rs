@@ -18,7 +18,6 @@ pub enum Happening {
 
 impl SceneFile {
     /// From, to, s, and what.
-    #[must_use]
     pub fn happenings(&self) -> Vec<(f64, f64, Happening)> {
         let from = |at_s: f64, for_s: f64, what| (at_s, at_s + for_s, what);
         let fills =

@@ -95,17 +95,13 @@ pub struct SceneFile {
 
 impl SceneFile {
     /// Reads a scene, whose base is one of the program's. `file_name` is what errors call it.
-    ///
-    /// # Errors
-    /// Says the file, the line, the key, and what is allowed there.
+    /// An error says the file, the line, the key, and what is allowed there.
     pub fn parse(text: &str, file_name: &str) -> Result<Self, SceneError> {
         Self::parse_upon(text, file_name, &find)
     }
 
     /// Reads a scene whose base is what `find` gives for its name.
-    ///
-    /// # Errors
-    /// Says the file, the line, the key, and what is allowed there; the file may be the base.
+    /// An error says the file, the line, the key, and what is allowed there; the file may be the base.
     pub fn parse_upon(text: &str, file_name: &str, find: Find<'_>) -> Result<Self, SceneError> {
         let sources = Sources::read(text, file_name, find)?;
         let scene = Self::deserialize(toml::Deserializer::from(sources.merged()?))
@@ -115,9 +111,7 @@ impl SceneFile {
     }
 
     /// A scene and what it stands on as one table, unchecked: for whoever draws its numbers anew.
-    ///
-    /// # Errors
-    /// If it is no TOML, or its base is not there.
+    /// Fails if it is no TOML, or its base is not there.
     pub fn table(text: &str, file_name: &str) -> Result<toml::Table, SceneError> {
         let sources = Sources::read(text, file_name, &find)?;
         toml::Table::deserialize(toml::Deserializer::from(sources.merged()?))
@@ -126,13 +120,11 @@ impl SceneFile {
 
     /// Whether the board trusts its serial line. Unless the file says so, it does where somebody sends something: a scene is a
     /// laboratory, and its script stands for one who has set `line-trusted-flag` before.
-    #[must_use]
     pub fn trusts_line(&self) -> bool {
         self.line_trusted.unwrap_or(!self.command.is_empty() || self.camera.teaches || self.skin.is_some())
     }
 
     /// Whether somebody sets the board up for a photoelastic head.
-    #[must_use]
     pub fn fits_head(&self) -> bool {
         let fits = |command: &Command| {
             *command.kind.get_ref() == CommandKind::Set(SettingId::Head)
@@ -142,13 +134,11 @@ impl SceneFile {
     }
 
     /// How long it lasts, s.
-    #[must_use]
     pub const fn duration_s(&self) -> f64 {
         self.duration_s.get()
     }
 
     /// The relative speed above which the object counts as slipping, mm/s.
-    #[must_use]
     pub const fn slip_floor_mm_s(&self) -> f64 {
         self.slip_floor_mm_s.get()
     }

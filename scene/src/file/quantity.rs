@@ -20,14 +20,12 @@ macro_rules! quantities {
 
         impl $name {
             /// A value known when compiling. Outside the range it does not compile in a constant.
-            #[must_use]
             pub const fn of(value: f64) -> Self {
                 assert!(value >= $low && value <= $high, "outside its range");
                 Self(value)
             }
 
             /// The number.
-            #[must_use]
             pub const fn get(self) -> f64 {
                 self.0
             }

@@ -18,13 +18,11 @@ pub struct Pad {
 
 impl Pad {
     /// Of the whole patch while all of it sticks, `k pi a^2`, N/m.
-    #[must_use]
     pub fn stiffness_n_per_m(&self) -> f64 {
         self.stiffness_n_per_m3 * self.area_m2()
     }
 
     /// The displacement at which the last element lets go, `mu p0 / k`, m: `s` is the displacement over it.
-    #[must_use]
     pub fn macro_slip_m(&self, normal_n: f64, mu: f64) -> f64 {
         mu * 1.5 * normal_n / self.stiffness_n_per_m()
     }
@@ -50,31 +48,16 @@ pub struct Element {
 
 impl Element {
     /// Distance from the centre as a part of the contact's radius.
-    #[must_use]
     pub const fn radius_part(&self) -> f64 {
         self.radius_part
     }
 
-    /// Its part of the area.
-    #[must_use]
-    pub const fn area_part(&self) -> f64 {
-        self.area_part
-    }
-
-    /// Its part of the normal load.
-    #[must_use]
-    pub const fn load_part(&self) -> f64 {
-        self.load_part
-    }
-
     /// Whether it sticks.
-    #[must_use]
     pub const fn sticks(&self) -> bool {
         self.sticks
     }
 
     /// The shear that it let go of in the last step, N: this micro-slip event is what a PVDF film over it hears.
-    #[must_use]
     pub const fn released_n(&self) -> f64 {
         self.released_n
     }
@@ -108,7 +91,6 @@ pub struct BrushPatch {
 
 impl BrushPatch {
     /// At rest, loose.
-    #[must_use]
     pub fn new(pad: Pad, elements: NonZeroU16) -> Self {
         let edge = |n: u16| f64::from(n) / f64::from(elements.get());
         let ring = |n: u16| {
@@ -164,13 +146,11 @@ impl BrushPatch {
     }
 
     /// The rings, from the edge of the contact to its centre.
-    #[must_use]
     pub fn elements(&self) -> &[Element] {
         &self.elements
     }
 
     /// The part of the radius that sticks, c/a.
-    #[must_use]
     pub fn stick_radius_part(&self) -> f64 {
         self.elements
             .iter()
@@ -181,13 +161,11 @@ impl BrushPatch {
     }
 
     /// Whether none of it sticks.
-    #[must_use]
     pub fn is_sliding(&self) -> bool {
         self.elements.iter().all(|element| !element.sticks)
     }
 
     /// Energy in its bristles, J.
-    #[must_use]
     pub fn energy_j(&self) -> f64 {
         let squares =
             self.elements.iter().map(|element| element.area_part * element.bristle_m * element.bristle_m);
@@ -198,25 +176,21 @@ impl BrushPatch {
 /// The closed forms, for one friction coefficient, with `s = k delta / (mu p0)` from 0 to 1.
 pub mod closed_form {
     /// Q / (mu P) of the brush: (3 s - s^3) / 2.
-    #[must_use]
     pub fn shear(s: f64) -> f64 {
         (3.0 * s - s * s * s) / 2.0
     }
 
     /// c / a of the brush: sqrt(1 - s^2).
-    #[must_use]
     pub fn stick_radius(s: f64) -> f64 {
         (1.0 - s * s).max(0.0).sqrt()
     }
 
     /// Q / P of the brush where what slides has mu_d and `s` is reckoned with mu_s: `1.5 mu_s s (1 - s^2) + mu_d s^3`.
-    #[must_use]
     pub fn shear_with_drop(s: f64, friction: super::Friction) -> f64 {
         1.5 * friction.mu_s * s * (1.0 - s * s) + friction.mu_d * s * s * s
     }
 
     /// The s of its greatest shear: `sqrt(mu_s / (3 mu_s - 2 mu_d))`. Whoever pulls harder than there loses all of it.
-    #[must_use]
     pub fn peak(friction: super::Friction) -> f64 {
         (friction.mu_s / (3.0 * friction.mu_s - 2.0 * friction.mu_d)).sqrt()
     }
@@ -225,13 +199,11 @@ pub mod closed_form {
     ///
     /// With the same stiffness at rest (`k pi a^2 = 8 G* a`) both let go altogether at the same displacement, so `s`
     /// means the same.
-    #[must_use]
     pub fn half_space_shear(s: f64) -> f64 {
         1.0 - (1.0 - s) * (1.0 - s).sqrt()
     }
 
     /// c / a of the elastic half-space under a shear of `q` = Q / (mu P): (1 - q)^(1/3).
-    #[must_use]
     pub fn half_space_stick_radius(q: f64) -> f64 {
         libm::cbrt(1.0 - q)
     }

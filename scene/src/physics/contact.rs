@@ -30,7 +30,6 @@ impl Default for RigidCoulomb {
 
 impl RigidCoulomb {
     /// Whether it sticks.
-    #[must_use]
     pub const fn sticks(&self) -> bool {
         self.sticks
     }

@@ -19,13 +19,11 @@ impl Friction {
     /// What a speed of `speed_m_s` adds to `mu_d` where friction rises by `per_decade` of it with each tenfold speed:
     /// `mu_d k log10(1 + v / v_0)`, as rubber's does below its peak (Grosch 1963; that it is a straight line over the
     /// logarithm is assumed).
-    #[must_use]
     pub fn rise(self, per_decade: f64, speed_m_s: f64) -> f64 {
         self.mu_d * per_decade * libm::log10(1.0 + speed_m_s / SLOWEST_M_S)
     }
 
     /// The same as damping: what it adds over the speed, s/m. At rest it is the slope.
-    #[must_use]
     pub fn rise_s_per_m(self, per_decade: f64, speed_m_s: f64) -> f64 {
         // Below a thousandth of the slowest the quotient is the slope to four places.
         let speed_m_s = speed_m_s.max(1e-3 * SLOWEST_M_S);
@@ -64,7 +62,6 @@ impl Surface {
     }
 
     /// The coefficients at `t_s`.
-    #[must_use]
     pub fn at(&self, t_s: f64) -> Friction {
         self.patches.iter().filter(|patch| t_s >= patch.wetting.begin_s).fold(self.dry, |dry, patch| {
             let part = smooth(patch.wetting.progress(t_s)) * (1.0 - patch.dried(t_s));

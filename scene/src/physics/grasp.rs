@@ -201,68 +201,57 @@ impl Grasp {
 
     /// How the fingers feel it: its width, mm, and the stiffness of pad and object together, N/mm a finger. None once
     /// it has left the pads: the fingers close on nothing.
-    #[must_use]
     pub fn between_the_fingers(&self) -> Option<(f64, f64)> {
         self.in_hand.then(|| (self.body.width_mm(), self.body.stiffness_n_per_mm()))
     }
 
     /// Over where it stood, m.
-    #[must_use]
     pub fn height_m(&self, hand: &Hand) -> f64 {
         self.rest_m + hand.height_m() + self.slid_m
     }
 
     /// With what is in it, kg.
-    #[must_use]
     pub const fn mass_kg(&self) -> f64 {
         self.mass_kg
     }
 
     /// The part of its weight that stands on the table.
-    #[must_use]
     pub fn table_part(&self) -> f64 {
         self.table_n / (self.mass_kg * GRAVITY_M_S2)
     }
 
     /// Whether nothing but the hand carries it.
-    #[must_use]
     pub fn is_held(&self) -> bool {
         self.in_hand && self.lifted && self.table_n == 0.0
     }
 
     /// Whether it was lifted and has then left the pads.
-    #[must_use]
     pub const fn is_dropped(&self) -> bool {
         self.lifted && !self.in_hand && !self.taken
     }
 
     /// Whether another hand has it too, so that what slides now is meant to.
-    #[must_use]
     pub const fn is_shared(&self) -> bool {
         self.shared || self.taken
     }
 
     /// Whether another hand has taken it.
-    #[must_use]
     pub const fn is_taken(&self) -> bool {
         self.taken
     }
 
     /// How far it has turned about the pads, rad.
-    #[must_use]
     pub fn pitch_rad(&self) -> f64 {
         self.pitch.as_ref().map_or(0.0, Pitch::angle_rad)
     }
 
     /// What the grip did to it.
-    #[must_use]
     pub const fn body(&self) -> &Body {
         &self.body
     }
 
     /// What stops it if it slides or turns: what sliding friction needs to carry it, and to take its speed within
     /// [`STOPS_S`], N of each finger. None while it sticks.
-    #[must_use]
     pub fn stops_n(&self) -> Option<f64> {
         let carries_n = self.needed_n * self.holds / self.slides;
         let brakes_n = self.mass_kg * self.rubs_m_s() / STOPS_S / PADS / self.slides;
@@ -271,20 +260,17 @@ impl Grasp {
 
     /// The least grip force of each finger under which all that sticks now would stick, N: what is needed, and what the skin's spring
     /// takes on top of it as it swings.
-    #[must_use]
     pub fn carries_n(&self) -> f64 {
         let [along_n, turning_n] = self.needs_n;
         along_n.max(self.shear_n.abs() / self.holds).hypot(turning_n)
     }
 
     /// The shear that each finger could still carry before it slides, N; below 0 it slides.
-    #[must_use]
     pub fn margin_n(&self, grip_n: f64) -> f64 {
         self.holds * (grip_n - self.needed_n)
     }
 
     /// The least grip force that would hold it at this instant, N.
-    #[must_use]
     pub const fn needed_n(&self) -> f64 {
         self.needed_n
     }

@@ -66,7 +66,6 @@ impl Gripper {
 
     /// What the motor has to be told for the next frame so that each finger comes to press with `target_n` and no more, once
     /// what it was told before has reached the fingers; None if it will press so hard anyway.
-    #[must_use]
     pub fn closing_to(
         &self,
         target_n: f64,
@@ -112,37 +111,31 @@ impl Gripper {
     }
 
     /// Distance between the pads when nothing is compressed, mm.
-    #[must_use]
     pub const fn opening_mm(&self) -> f64 {
         self.opening_mm
     }
 
     /// The opening as a part of the whole range.
-    #[must_use]
     pub fn opening_part(&self) -> f64 {
         self.opening_mm / self.range_mm
     }
 
     /// How fast the opening grows, mm/s.
-    #[must_use]
     pub const fn speed_mm_s(&self) -> f64 {
         self.speed_mm_s
     }
 
     /// The speed as a part of the fastest, 0 to 1.
-    #[must_use]
     pub fn speed_part(&self) -> f64 {
         (self.speed_mm_s / self.speed_max_mm_s).abs()
     }
 
     /// The motor's current that makes torque, as a part of the stall current at the whole supply.
-    #[must_use]
     pub const fn current_part(&self) -> f64 {
         self.current
     }
 
     /// Force of each finger on something `width_mm` wide, N: the pads and what they press on are one spring.
-    #[must_use]
     pub fn grip_n(&self, width_mm: f64, stiffness_n_per_mm: f64) -> f64 {
         (stiffness_n_per_mm * (width_mm - self.opening_mm) / 2.0).max(0.0)
     }

@@ -61,19 +61,16 @@ impl Hand {
     }
 
     /// Over where it grasps, m.
-    #[must_use]
     pub const fn height_m(&self) -> f64 {
         self.height_m
     }
 
     /// Upwards, m/s.
-    #[must_use]
     pub const fn speed_m_s(&self) -> f64 {
         self.speed_m_s
     }
 
     /// Upwards, m/s^2.
-    #[must_use]
     pub const fn acceleration_m_s2(&self) -> f64 {
         self.acceleration_m_s2
     }

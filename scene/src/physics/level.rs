@@ -52,7 +52,6 @@ pub struct Outcome {
 
 impl Level {
     /// At rest, as a scene has it.
-    #[must_use]
     pub fn of(scene: &SceneFile) -> Self {
         Self::new(&scene.contact)
     }
@@ -74,7 +73,6 @@ impl Level {
     }
 
     /// The greatest shear over normal force at which a slow pull still finds it sticking.
-    #[must_use]
     pub fn holds(&self, friction: Friction) -> f64 {
         match self {
             Self::Rigid(_) | Self::Stribeck(..) => friction.mu_s,
@@ -93,7 +91,6 @@ impl Level {
     }
 
     /// Energy that the pads could give back, J.
-    #[must_use]
     pub fn energy_j(&self, pads: f64) -> f64 {
         match self {
             Self::Patch(patch) => pads * patch.energy_j(),

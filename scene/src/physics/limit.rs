@@ -43,25 +43,21 @@ impl Body {
     }
 
     /// Where the fingers take it, mm.
-    #[must_use]
     pub fn width_mm(&self) -> f64 {
         self.width_mm - self.dent_mm
     }
 
     /// Of pad and object together, N/mm a finger.
-    #[must_use]
     pub const fn stiffness_n_per_mm(&self) -> f64 {
         self.stiffness_n_per_mm
     }
 
     /// How far it is crushed for good, mm.
-    #[must_use]
     pub const fn dent_mm(&self) -> f64 {
         self.dent_mm
     }
 
     /// Whether it is broken.
-    #[must_use]
     pub const fn is_broken(&self) -> bool {
         self.broken
     }

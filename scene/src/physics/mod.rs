@@ -49,7 +49,6 @@ pub struct Touch {
 
 impl Touch {
     /// How fast the object rubs over the pad, m/s: along it, and by turning.
-    #[must_use]
     pub fn rub_m_s(&self) -> f64 {
         (self.slide_m_s * self.slide_m_s + self.turn_m_s * self.turn_m_s).sqrt()
     }

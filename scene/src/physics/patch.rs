@@ -16,7 +16,6 @@ pub struct Patch {
 
 impl Patch {
     /// At rest, loose.
-    #[must_use]
     pub fn new(pad: Pad, relaxation_s: f64) -> Self {
         Self {
             brush: BrushPatch::new(pad, ELEMENTS),
@@ -28,13 +27,11 @@ impl Patch {
     }
 
     /// The part of the area that sticks.
-    #[must_use]
     pub const fn stuck_part(&self) -> f64 {
         self.stuck_part
     }
 
     /// Energy in its bristles, J.
-    #[must_use]
     pub fn energy_j(&self) -> f64 {
         self.brush.energy_j()
     }

@@ -102,14 +102,12 @@ impl Pitch {
     }
 
     /// The least force of each pad that would keep this weight from turning as it hangs now, N, if nothing slid.
-    #[must_use]
     pub fn holds_n(&self, weight_n: f64, mu: f64) -> f64 {
         let (sin, cos) = (libm::sin(self.angle_rad), libm::cos(self.angle_rad));
         (weight_n * (self.offset_m * cos - self.hang_m * sin)).abs() / (2.0 * TORSION * self.radius_m * mu)
     }
 
     /// The friction along the pad that torsion leaves.
-    #[must_use]
     pub fn leaves(&self, friction: Friction) -> Friction {
         Friction { mu_s: friction.mu_s * self.slide_part, mu_d: friction.mu_d * self.slide_part }
     }
@@ -138,19 +136,16 @@ impl Pitch {
     }
 
     /// Whether it turns.
-    #[must_use]
     pub const fn turns(&self) -> bool {
         !self.contact.sticks()
     }
 
     /// How far it has turned, rad, positive towards the load.
-    #[must_use]
     pub const fn angle_rad(&self) -> f64 {
         self.angle_rad
     }
 
     /// How fast it turns, rad/s.
-    #[must_use]
     pub const fn speed_rad_s(&self) -> f64 {
         self.speed_rad_s
     }

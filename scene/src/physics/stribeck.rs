@@ -19,13 +19,11 @@ pub struct Stribeck {
 
 impl Stribeck {
     /// The coefficient at a sliding speed of either direction.
-    #[must_use]
     pub fn mu(&self, slide_m_s: f64) -> f64 {
         self.mu_d + (self.mu_s - self.mu_d) * libm::exp(-slide_m_s.abs() / self.speed_m_s)
     }
 
     /// dmu/dv at a sliding speed, s/m: never positive.
-    #[must_use]
     pub fn slope_s_m(&self, slide_m_s: f64) -> f64 {
         (self.mu_d - self.mu(slide_m_s)) / self.speed_m_s
     }
@@ -56,7 +54,6 @@ pub struct SmallSignal {
 
 impl Slider {
     /// What the linearised equation says about sliding at `surface_m_s` under `normal_n`.
-    #[must_use]
     pub fn small_signal(&self, normal_n: f64, surface_m_s: f64) -> SmallSignal {
         let net_ns_per_m = self.damping_ns_per_m + normal_n * self.friction.slope_s_m(surface_m_s);
         let growth_per_s = -net_ns_per_m / (2.0 * self.mass_kg);
@@ -90,13 +87,11 @@ pub struct StribeckSlider {
 
 impl StribeckSlider {
     /// At rest, its spring loose.
-    #[must_use]
     pub const fn new(slider: Slider) -> Self {
         Self { slider, position_m: 0.0, speed_m_s: 0.0, shear_n: 0.0 }
     }
 
     /// Deflected by `position_m`, moving at `speed_m_s`.
-    #[must_use]
     pub const fn with_motion(mut self, position_m: f64, speed_m_s: f64) -> Self {
         self.position_m = position_m;
         self.speed_m_s = speed_m_s;
@@ -134,19 +129,16 @@ impl StribeckSlider {
     }
 
     /// Deflection of its spring, m: what the photoelastic layer sees.
-    #[must_use]
     pub const fn position_m(&self) -> f64 {
         self.position_m
     }
 
     /// Speed of the mass, m/s.
-    #[must_use]
     pub const fn speed_m_s(&self) -> f64 {
         self.speed_m_s
     }
 
     /// Friction on the mass in the last inner step, N.
-    #[must_use]
     pub const fn shear_n(&self) -> f64 {
         self.shear_n
     }

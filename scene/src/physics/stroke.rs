@@ -84,7 +84,6 @@ impl Stroke {
     }
 
     /// Where the probe is, m.
-    #[must_use]
     pub const fn probe_m(&self) -> f64 {
         self.probe_m
     }

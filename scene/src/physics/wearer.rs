@@ -47,7 +47,6 @@ impl Wearer {
     }
 
     /// To whom the hand was calibrated; None in scenes without contractions.
-    #[must_use]
     pub fn calibrated(&self) -> Option<Calibrated> {
         (!self.contractions.is_empty()).then_some(WEARER)
     }

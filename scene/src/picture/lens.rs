@@ -11,13 +11,11 @@ pub struct Lens {
 
 impl Lens {
     /// Where a place of the flat world is seen.
-    #[must_use]
     pub fn seen(&self, (x, y): (f64, f64)) -> (f64, f64) {
         self.scaled((x, y), |r| self.focal_px * libm::atan(r / self.focal_px))
     }
 
     /// What place of the flat world is seen there.
-    #[must_use]
     pub fn flat(&self, (x, y): (f64, f64)) -> (f64, f64) {
         // Nothing is seen beyond 80 degrees.
         self.scaled((x, y), |r| self.focal_px * libm::tan((r / self.focal_px).min(1.4)))

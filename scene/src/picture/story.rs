@@ -80,7 +80,6 @@ impl Story {
     }
 
     /// The world at an instant.
-    #[must_use]
     pub fn at(&self, t_s: f64) -> State {
         let near = smooth(t_s, COMES_S, GRASPED_S - 0.1) - smooth(t_s, LET_GO_S + 0.1, GONE_S);
         let mut object = (
@@ -113,13 +112,11 @@ impl Story {
     }
 
     /// Whether the object moves against the finger.
-    #[must_use]
     pub fn slides(t_s: f64) -> bool {
         SLIDES_S.iter().chain([&TURN_S]).any(|&(from_s, to_s)| (from_s..to_s).contains(&t_s))
     }
 
     /// Whether it is gripped.
-    #[must_use]
     pub fn gripped(t_s: f64) -> bool {
         (GRASPED_S + 0.3..LET_GO_S - 0.3).contains(&t_s)
     }

@@ -49,7 +49,6 @@ impl Texture {
     }
 
     /// The colour between four pixels.
-    #[must_use]
     pub fn at(&self, x: f64, y: f64) -> [f32; 3] {
         let (left, top) = (x.floor(), y.floor());
         let (right, down) = ((x - left) as f32, (y - top) as f32);

@@ -31,9 +31,7 @@ pub fn print(what: Arguments) -> anyhow::Result<()> {
 }
 
 /// For what goes on, and gives its verdict as the exit code, whether anybody reads or not.
-///
-/// # Errors
-/// What went wrong, unless it is that the output is [`Closed`].
+/// An error says what went wrong, unless it is that the output is [`Closed`].
 pub fn unless_closed(printed: anyhow::Result<()>) -> anyhow::Result<()> {
     match printed {
         Err(error) if error.is::<Closed>() => Ok(()),

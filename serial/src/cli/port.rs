@@ -8,10 +8,7 @@ use crate::link::Target;
 /// The maker of the ST-LINK on the board.
 const ST: u16 = 0x0483;
 
-/// The line that was named, or that of the only board.
-///
-/// # Errors
-/// If there is none or there are several: says what is seen.
+/// The line that was named, or that of the only board. Fails if there is none or there are several: says what is seen.
 pub fn or_found(named: Option<&Target>) -> anyhow::Result<Target> {
     if let Some(target) = named {
         return Ok(target.clone());

@@ -12,10 +12,7 @@ use crate::link::Client;
 /// Three prompts of 5 s, and what is thought about them.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// Follows the board's prompts to the end; gives the distance of the states in their deviations.
-///
-/// # Errors
-/// Says why the board refused it.
+/// Follows the board's prompts to the end; gives the distance of the states in their deviations. An error says why the board refused it.
 pub fn calibrate(client: &mut Client, say: Say<'_>) -> anyhow::Result<f64> {
     ask(client, Down::CalibrateEmg)?;
     wait_for(client, PATIENCE, "the board's prompts", |message| {

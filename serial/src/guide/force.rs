@@ -31,7 +31,6 @@ const GRAVITY: f64 = 9.806_65;
 /// A weight, and what the board read, N.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weighed {
-    /// What it is.
     pub true_n: f64,
     /// What the board says.
     pub read_n: f64,
@@ -46,7 +45,6 @@ pub struct Calibration {
 
 impl Calibration {
     /// What the board reads for 1 N, by least squares through no load.
-    #[must_use]
     pub fn gain(&self) -> f64 {
         let sum = |product: fn(&Weighed) -> f64| self.weighed.iter().map(product).sum::<f64>();
         sum(|own| own.read_n * own.true_n) / sum(|own| own.true_n * own.true_n)
@@ -62,7 +60,6 @@ impl Calibration {
     }
 
     /// The table, and what follows from it.
-    #[must_use]
     pub fn text(&self) -> String {
         let mut text =
             format!("{:>10}{:>10}{:>12}{:>16}\n", "weight, N", "read, N", "error, %", "off the line, %");
@@ -99,10 +96,7 @@ impl Calibration {
     }
 }
 
-/// Zeroes the unloaded finger, then has one weight after the other put on it.
-///
-/// # Errors
-/// If the board refuses, or a weight never comes.
+/// Zeroes the unloaded finger, then has one weight after the other put on it. Fails if the board refuses, or a weight never comes.
 pub fn calibrate(client: &mut Client, weights_n: &[f64], say: Say<'_>) -> anyhow::Result<Calibration> {
     say("Nothing may touch the finger.")?;
     wait_for(client, PATIENCE, "a finger that nothing touches", steady(-1.0, 0.5))?;

@@ -27,10 +27,7 @@ pub struct Measured {
     pub s2_permille: u16,
 }
 
-/// Has so many strokes done.
-///
-/// # Errors
-/// If the board refuses, or nothing slid.
+/// Has so many strokes done. Fails if the board refuses, or nothing slid.
 pub fn calibrate(client: &mut Client, strokes: u32, say: Say<'_>) -> anyhow::Result<Measured> {
     // A board that was just switched on knows its sensors a moment later, and a muscle may still be relaxing.
     let ready = "the hand to be at rest with every sensor that the reflex needs; `tenax monitor` says which is missing";

@@ -44,32 +44,23 @@ impl From<Line> for Client {
 }
 
 impl Client {
-    /// One on the line at `target`.
-    ///
-    /// # Errors
-    /// As [`Target::open`].
+    /// One on the line at `target`. Fails as [`Target::open`] does.
     pub fn open(target: &Target) -> anyhow::Result<Self> {
         target.open().map(Self::from)
     }
 
     /// What has been counted.
-    #[must_use]
     pub fn counts(&self) -> Counts {
         self.inbox.counts()
     }
 
     /// The next message. None while there is none yet, after a tenth of a second at most.
-    ///
-    /// # Errors
-    /// If the line has ended: `UnexpectedEof` where it was closed in order.
+    /// Fails if the line has ended: `UnexpectedEof` where it was closed in order.
     pub fn next_message(&mut self) -> io::Result<Option<Heard>> {
         Ok(self.next_frame()?.and_then(Result::ok))
     }
 
-    /// The next message, or a frame that was none. None while nothing has come.
-    ///
-    /// # Errors
-    /// As [`next_message`](Self::next_message).
+    /// The next message, or a frame that was none. None while nothing has come. Fails as [`next_message`](Self::next_message) does.
     pub fn next_frame(&mut self) -> io::Result<Option<Result<Heard, BadFrame>>> {
         if self.heard.is_empty() {
             self.read()?;
@@ -79,15 +70,11 @@ impl Client {
     }
 
     /// Whether commands can be sent: a captured line takes none.
-    #[must_use]
     pub const fn can_send(&self) -> bool {
         self.outbox.is_some()
     }
 
-    /// Sends a command without waiting; returns its number, which its answer names.
-    ///
-    /// # Errors
-    /// If the line is a captured one, or has ended.
+    /// Sends a command without waiting; returns its number, which its answer names. Fails if the line is a captured one, or has ended.
     pub fn send(&mut self, command: &Down) -> anyhow::Result<u16> {
         let Some(outbox) = &mut self.outbox else {
             bail!("a captured line cannot be told anything: give a port, or tcp:HOST:PORT");
@@ -101,10 +88,7 @@ impl Client {
 
     /// Sends a command and returns its answer. All messages that come meanwhile, the answer too, are still given by
     /// [`next_message`](Self::next_message). What changes something needs a session: one is opened when the board asks
-    /// for it.
-    ///
-    /// # Errors
-    /// If there is no answer in `within`, or the line has ended, or is a captured one.
+    /// for it. Fails if there is no answer in `within`, or the line has ended, or is a captured one.
     pub fn ask(&mut self, command: &Down, within: Duration) -> anyhow::Result<Answer> {
         let mut answer = self.ask_once(command, within)?;
         for attempt in 1..=SESSIONS_MAX {
@@ -122,10 +106,7 @@ impl Client {
         Ok(answer)
     }
 
-    /// Opens a session, without which the board only lets read. False if it refused.
-    ///
-    /// # Errors
-    /// As [`ask`](Self::ask).
+    /// Opens a session, without which the board only lets read. False if it refused. Fails as [`ask`](Self::ask) does.
     pub fn open_session(&mut self, within: Duration) -> anyhow::Result<bool> {
         let Answer::Nonce(nonce) = self.ask_once(&Down::Hello, within)? else { return Ok(false) };
         Ok(self.ask_once(&Down::Open { nonce }, within)? == Answer::Done)

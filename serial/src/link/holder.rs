@@ -19,7 +19,6 @@ impl Display for Holder {
 }
 
 /// Another process that has the port open. None as well where the system, or another user's process, does not tell.
-#[must_use]
 pub fn of(port: &Path) -> Option<Holder> {
     let port = port.canonicalize().ok()?;
     let processes = std::fs::read_dir("/proc").ok()?;

@@ -7,7 +7,6 @@ use tenax_hal_shim::wire::{BadFrame, Received, Receiver, Up};
 /// What came, and what should have come.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Messages.
     pub messages: u64,
     /// Frames that were no message.
     pub bad_frames: u64,
@@ -62,7 +61,6 @@ impl Inbox {
     }
 
     /// What has been counted.
-    #[must_use]
     pub const fn counts(&self) -> Counts {
         self.counts
     }

@@ -23,10 +23,7 @@ pub struct LastSeconds {
 }
 
 impl LastSeconds {
-    /// Fetches it. None: the board keeps nothing.
-    ///
-    /// # Errors
-    /// If the board does not answer, or answers something else.
+    /// Fetches it. None: the board keeps nothing. Fails if the board does not answer, or answers something else.
     pub fn fetch(client: &mut Client) -> anyhow::Result<Option<Self>> {
         let mut line = Vec::new();
         loop {
@@ -50,16 +47,12 @@ impl LastSeconds {
         }
     }
 
-    /// Tells the board that it is in safe hands: it keeps what it says from now on.
-    ///
-    /// # Errors
-    /// If the board does not answer.
+    /// Tells the board that it is in safe hands: it keeps what it says from now on. Fails if the board does not answer.
     pub fn let_go(client: &mut Client) -> anyhow::Result<()> {
         client.ask(&Down::Last(u16::MAX), PIECE_WITHIN).map(drop)
     }
 
     /// From and to, frames of the board's time.
-    #[must_use]
     pub fn span(&self) -> Option<(u32, u32)> {
         let mut inbox = Inbox::default();
         let heard = self.line.iter().filter_map(|&byte| inbox.push(byte)).flatten();

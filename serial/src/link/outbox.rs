@@ -30,9 +30,7 @@ impl<W: Write> Outbox<W> {
     }
 
     /// Sends a camera's words as they come, a line each: `v1 v2 [age_ms]`, until there are no more.
-    ///
-    /// # Errors
-    /// Names the line that is none, and says what one looks like.
+    /// An error names the line that is none, and says what one looks like.
     pub fn teach(&mut self, words: impl BufRead) -> anyhow::Result<()> {
         for (number, line) in (1..).zip(words.lines()) {
             let line = line.context("cannot read the teacher's words")?;

@@ -27,7 +27,6 @@ pub enum Target {
     Tcp {
         /// Name or address.
         host: String,
-        /// Port.
         port: u16,
     },
     /// A line that was captured.
@@ -72,10 +71,7 @@ impl Display for Target {
 }
 
 impl Target {
-    /// Opens the line.
-    ///
-    /// # Errors
-    /// Says what is wrong, and what to do about it.
+    /// Opens the line. An error says what is wrong, and what to do about it.
     pub fn open(&self) -> anyhow::Result<Line> {
         match self {
             Self::Port(name) => open_port(name),
@@ -87,7 +83,6 @@ impl Target {
     }
 
     /// Why the line can have ended, and what to do about it.
-    #[must_use]
     pub fn after_end(&self, error: Option<&io::Error>) -> String {
         let why = error.map_or_else(String::new, |error| format!(" ({error})"));
         match self {

@@ -20,9 +20,7 @@ const PICTURE_EVERY: Duration = Duration::from_millis(50);
 const PICTURE_AGE_MS: u16 = 33;
 
 /// Shows a board until somebody quits. `control` lets keys change something.
-///
-/// # Errors
-/// If the terminal cannot be drawn on, or a recording cannot be written.
+/// Fails if the terminal cannot be drawn on, or a recording cannot be written.
 pub fn show(places: &Places, control: bool) -> anyhow::Result<()> {
     let (commands, waiting) = channel();
     let (sender, news) = channel();

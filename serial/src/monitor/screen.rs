@@ -39,7 +39,6 @@ pub struct Shown {
     pub control: bool,
     /// What comes is kept back.
     pub paused: bool,
-    /// Where it is recorded.
     pub recording: Option<String>,
     /// The settings are open.
     pub edit: Option<Edit>,

@@ -35,7 +35,6 @@ pub struct Point {
     pub ratio: Option<f64>,
     /// S2 in force.
     pub s2: f64,
-    /// The load, N.
     pub load_n: Option<f64>,
 }
 
@@ -44,7 +43,6 @@ pub struct Point {
 pub struct Fate {
     /// It said slip, or warned.
     pub said: Option<u32>,
-    /// It was believed.
     pub believed: Option<u32>,
     /// The reflex acted on it.
     pub acted: Option<u32>,
@@ -63,7 +61,6 @@ pub struct View {
     pub senses: Option<Senses>,
     /// The last counters.
     pub counters: Option<Counters>,
-    /// Who it is.
     pub about: Option<About>,
     /// Settings whose value was said.
     pub settings: BTreeMap<u8, i32>,
@@ -132,31 +129,26 @@ impl View {
     }
 
     /// Lines of the log so far, those that are kept no more included.
-    #[must_use]
     pub const fn said(&self) -> u64 {
         self.said
     }
 
     /// The time of the last slow frame, s.
-    #[must_use]
     pub fn t_s(&self) -> f64 {
         self.slow.as_ref().map_or(0.0, |slow| seconds(slow.frame))
     }
 
     /// A setting in force, if it was said.
-    #[must_use]
     pub fn setting(&self, id: SettingId) -> Option<i32> {
         self.settings.get(&id.number()).copied()
     }
 
     /// The values of a setting that the board accepts now.
-    #[must_use]
     pub fn range_in_force(&self, id: SettingId) -> RangeInclusive<i32> {
         id.row().range_in_force(self.setting(SettingId::LineTrusted) == Some(1))
     }
 
     /// Frames of the board's time that went by in a second here, and slow frames that came.
-    #[must_use]
     pub fn rates(&self) -> Option<(f64, f64)> {
         let ((first, from), (last, to)) = (self.arrivals.front()?, self.arrivals.back()?);
         let lasted_s = last.duration_since(*first).as_secs_f64();
@@ -283,7 +275,6 @@ impl View {
 }
 
 /// When a frame ended, s.
-#[must_use]
 pub fn seconds(frame: u32) -> f64 {
     (f64::from(frame) + 1.0) / f64::from(FRAME_HZ)
 }

@@ -13,10 +13,7 @@ use crate::link::Inbox;
 /// Numbers of a frame's films, and of the films' envelopes.
 const LIST: usize = tenax_hal_shim::channel::PVDF_COUNT;
 
-/// Writes what a line says into `folder`; returns the files.
-///
-/// # Errors
-/// If one cannot be written.
+/// Writes what a line says into `folder`; returns the files. Fails if one cannot be written.
 pub fn export(line: &[u8], folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
     let mut files: BTreeMap<String, csv::Writer<File>> = BTreeMap::new();

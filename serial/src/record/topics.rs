@@ -27,15 +27,12 @@ pub enum Topic {
     Sensors,
     /// What happened, in words.
     Event,
-    /// Counters.
     Counters,
     /// Settings whose value was said.
     Setting,
 }
 
 impl Topic {
-    /// All of them.
-    #[must_use]
     pub fn all() -> Vec<Self> {
         let detectors = DetectorId::ALL.map(Self::Detector);
         let rest =
@@ -44,7 +41,6 @@ impl Topic {
     }
 
     /// What it is called in the file.
-    #[must_use]
     pub fn name(self) -> String {
         match self {
             Self::Line => captured::TOPIC.to_owned(),
@@ -60,7 +56,6 @@ impl Topic {
     }
 
     /// What its messages are called.
-    #[must_use]
     pub const fn message(self) -> &'static str {
         match self {
             Self::Line => "Line",
@@ -76,7 +71,6 @@ impl Topic {
     }
 
     /// The fields of its messages.
-    #[must_use]
     pub fn fields(self) -> Vec<(String, Kind)> {
         use Kind::{Bytes, Flag, Number, Numbers, Text};
         let named =
@@ -148,14 +142,12 @@ fn identifier(name: &str, unit: &str) -> String {
 }
 
 /// When a frame ended, s of the board's time.
-#[must_use]
 pub fn seconds(frame: u32) -> f64 {
     (f64::from(frame) + 1.0) / f64::from(FRAME_HZ)
 }
 
 /// What a message says, each with the frame that it is of. `last` is the frame that was heard of last, for messages that
 /// name none.
-#[must_use]
 pub fn rows(message: &Up, last: u32) -> Vec<(Topic, u32, Vec<Value>)> {
     match message {
         Up::Slow(slow) => slow_rows(slow),

@@ -22,7 +22,6 @@ pub struct After {
 }
 
 impl After {
-    /// Nothing.
     pub const NOTHING: Self = Self { points_s: f64::MIN, truth_s: f64::MIN, lines: 0 };
 
     /// All that there is. A board or a scene that started anew counts from 0 again.

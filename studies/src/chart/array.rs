@@ -2,24 +2,22 @@
 
 use rayon::prelude::*;
 
-use super::{Chart, Progress, csv, draw};
-use crate::dataset::session::{Sizes, Split, sessions};
+use super::{Chart, Progress, csv};
+use crate::dataset::session::{Sizes, sessions};
 use crate::dataset::{Dataset, Plan};
 use crate::evaluate::draws::{Draw, Part, draws};
 use tenax_bench::array::network::Network;
 use tenax_bench::array::real::Logits;
 use tenax_bench::array::{Verdicts, readings};
-use tenax_bench::labelled::{self, library};
+use tenax_bench::labelled::{self, Part as Set, library};
 use tenax_plot::figure::colour;
 use tenax_plot::sheet::{Axis, Mark, Panel, Series, Sheet};
 
 /// Judges the test part's pours, which nothing was chosen by, and draws what came of each quarter of their sessions.
-///
-/// # Errors
-/// If a scene cannot be made or the chart not be drawn.
+/// Fails if a scene cannot be made or the chart not be drawn.
 pub fn chart(progress: Progress) -> anyhow::Result<Chart> {
     let plan = Plan::default();
-    let data = Dataset::make_split(plan, Split::Test, progress)?.csv()?;
+    let data = Dataset::make_split(plan, Set::Test, progress)?.csv()?;
     let name = "array_dataset.csv";
     let recordings = labelled::parse(data.as_slice(), &library::choose(name.as_ref(), None)?, name)?;
     let network = Network::shipped();
@@ -42,16 +40,14 @@ fn of(draws: &[Draw]) -> anyhow::Result<Chart> {
         })
     });
     let csv = csv(&header, rows)?;
-    let sheet = Sheet {
-        title: "Slip from normal force: where the network that ships fails".to_owned(),
-        subtitle: "Pours of the test part, material outside of the training's hull included. Each point is a quarter of the sessions; \
-                   quantities in the order in which they matter."
-            .to_owned(),
-        columns: 4,
-        panels: draws.iter().map(panel).collect(),
-        errors: None,
-    };
-    Ok(Chart { name: "array-draws", svg: draw::svg(&sheet)?, csv })
+    let sheet = Sheet::new(
+        "Slip from normal force: where the network that ships fails",
+        "Pours of the test part, material outside of the training's hull included. Each point is a quarter of the sessions; \
+                   quantities in the order in which they matter.",
+        4,
+        draws.iter().map(panel).collect(),
+    );
+    Chart::new("array-draws", &sheet, csv)
 }
 
 fn panel(draw: &Draw) -> Panel {
@@ -69,23 +65,20 @@ fn panel(draw: &Draw) -> Panel {
     let line = |of: &dyn Fn(&Part) -> Option<f64>| -> Vec<(f64, f64)> {
         draw.parts.iter().filter_map(|part| Some((middle(part), of(part)?))).collect()
     };
-    let one = |name: &str, colour, mark, points| Series { name: name.to_owned(), colour, mark, points };
     let area = line(&|part| Some(part.auc));
     let balanced = line(&|part| Some(part.balanced));
     let caught = line(&|part| part.caught);
-    Panel {
-        title: draw.quantity.clone(),
+    Panel::new(
+        draw.quantity.clone(),
         x,
-        y: Axis::even("", 0.0, 1.0),
-        cells: Vec::new(),
-        series: vec![
-            one("area under ROC, a step", colour::BLUE, Mark::Line, area.clone()),
-            one("area under ROC, a step", colour::BLUE, Mark::Dots, area),
-            one("balanced accuracy as shipped", colour::ORANGE, Mark::Line, balanced),
-            one("slips caught within 50 ms as shipped", colour::VERMILLION, Mark::Dashes, caught),
+        Axis::even("", 0.0, 1.0),
+        vec![
+            Series::new("area under ROC, a step", colour::BLUE, Mark::Line, area.clone()),
+            Series::new("area under ROC, a step", colour::BLUE, Mark::Dots, area),
+            Series::new("balanced accuracy as shipped", colour::ORANGE, Mark::Line, balanced),
+            Series::new("slips caught within 50 ms as shipped", colour::VERMILLION, Mark::Dashes, caught),
         ],
-        words: Vec::new(),
-    }
+    )
 }
 
 #[cfg(test)]

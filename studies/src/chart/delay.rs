@@ -129,10 +129,7 @@ fn edge(delay_s: f64) -> f64 {
     high
 }
 
-/// Runs the map on the host.
-///
-/// # Errors
-/// If a scene or the chart cannot be made.
+/// Runs the map on the host. Fails if a scene or the chart cannot be made.
 pub fn map(progress: Progress) -> anyhow::Result<Chart> {
     let cells = PULSES_MS.into_iter().flat_map(|pulse_ms| {
         DELAYS_MS.into_iter().flat_map(move |delay| STIFFNESS_N_PER_MM.map(|k| (pulse_ms, delay, k)))
@@ -203,32 +200,21 @@ fn panel(pulse_ms: u32, cells: &[Point]) -> Panel {
     let y = Axis::log("stiffness, N/mm a finger", 0.23, 22.0);
     let line = (0..=60).map(|n| 6.5 * (230.0_f64 / 6.5).powf(f64::from(n) / 60.0));
     let cycles = own.iter().filter(|cell| cell.pulses > CYCLE_PULSES);
-    let series = |name: &str, colour, mark, points| Series { name: name.to_owned(), colour, mark, points };
-    Panel {
-        title: format!("pulses of {pulse_ms} ms"),
-        cells: own.iter().map(cell).collect(),
-        series: vec![
-            series(
-                "theory: below it the glass is lost",
-                colour::VERMILLION,
-                Mark::Line,
-                line.map(|ms| (ms, edge(ms / 1e3))).collect(),
-            ),
-            series(
-                "limit cycle",
-                colour::PURPLE,
-                Mark::Crosses,
-                cycles.map(|cell| (cell.delay_ms, cell.stiffness)).collect(),
-            ),
-            series(
-                "the defaults",
-                colour::GREEN,
-                Mark::Dots,
-                if pulse_ms == PULSE_MS { vec![DEFAULT] } else { vec![] },
-            ),
-        ],
-        x,
-        y,
-        words: Vec::new(),
-    }
+    let series = vec![
+        Series::new(
+            "theory: below it the glass is lost",
+            colour::VERMILLION,
+            Mark::Line,
+            line.map(|ms| (ms, edge(ms / 1e3))),
+        ),
+        Series::new(
+            "limit cycle",
+            colour::PURPLE,
+            Mark::Crosses,
+            cycles.map(|cell| (cell.delay_ms, cell.stiffness)),
+        ),
+        Series::new("the defaults", colour::GREEN, Mark::Dots, (pulse_ms == PULSE_MS).then_some(DEFAULT)),
+    ];
+    let cells = own.iter().map(cell).collect();
+    Panel { cells, ..Panel::new(format!("pulses of {pulse_ms} ms"), x, y, series) }
 }

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use statrs::stats_tests::NaNPolicy;
 use statrs::stats_tests::ks_test::{KSTwoSampleAlternativeMethod, ks_twosample};
 
-use super::{Chart, Progress, csv, draw};
+use super::{Chart, Progress, csv};
 use crate::dataset::collect::{Recording, record};
 use crate::dataset::session::{Sizes, sessions};
 use crate::dataset::story::Story;
@@ -161,10 +161,7 @@ fn quantile(mut values: Vec<f64>, part: f64) -> f64 {
     values.get(rank.min(values.len().saturating_sub(1))).copied().unwrap_or(f64::NAN)
 }
 
-/// Records the pours, tests every candidate and draws.
-///
-/// # Errors
-/// If a recording or the chart cannot be made.
+/// Records the pours, tests every candidate and draws. Fails if a recording or the chart cannot be made.
 pub fn chart(progress: Progress) -> anyhow::Result<Chart> {
     let first = Sizes { train: 1, validation: 0, test: 0 };
     let drawn = sessions(1, first);
@@ -211,26 +208,23 @@ pub fn chart(progress: Progress) -> anyhow::Result<Chart> {
     for windows in [&CANDIDATES[2..5], &CANDIDATES[5..8]] {
         let title = format!("{}, by window", windows[0].name());
         let series =
-            windows.iter().zip([colour::GREY, colour::SKY, colour::BLUE]).map(|(candidate, colour)| Series {
-                name: format!("{} over {}", candidate.name(), candidate.window()),
-                colour,
-                mark: Mark::Line,
-                points: points(shown, *candidate).collect(),
+            windows.iter().zip([colour::GREY, colour::SKY, colour::BLUE]).map(|(candidate, colour)| {
+                let name = format!("{} over {}", candidate.name(), candidate.window());
+                Series::new(name, colour, Mark::Line, points(shown, *candidate))
             });
         panels.push(panel(title, "samples", false, series.collect()));
     }
-    let sheet = Sheet {
-        title: "What tells slip from rest: Bamshad's figures 5 and 6 on the scenes' data".to_owned(),
-        subtitle: format!(
+    let sheet = Sheet::new(
+        "What tells slip from rest: Bamshad's figures 5 and 6 on the scenes' data",
+        format!(
             "Drawn: {} of the data set's first session. Distances: Kolmogorov-Smirnov, slip against no slip, {} pours.",
             shown.story.name(),
             recordings.len()
         ),
-        columns: 2,
+        2,
         panels,
-        errors: None,
-    };
-    Ok(Chart { name: "features", svg: draw::svg(&sheet)?, csv })
+    );
+    Chart::new("features", &sheet, csv)
 }
 
 fn points(recording: &Recording, candidate: Candidate) -> impl Iterator<Item = (f64, f64)> {
@@ -239,15 +233,9 @@ fn points(recording: &Recording, candidate: Candidate) -> impl Iterator<Item = (
 
 /// Steps that slip apart from those that do not.
 fn by_label(recording: &Recording, candidate: Candidate) -> Vec<Series> {
-    let kind = |slips: bool, name: &str, colour| Series {
-        name: name.to_owned(),
-        colour,
-        mark: Mark::Dots,
-        points: points(recording, candidate)
-            .zip(&recording.steps)
-            .filter(|(_, step)| step.slips == slips)
-            .map(|(point, _)| point)
-            .collect(),
+    let kind = |slips: bool, name: &str, colour| {
+        let own = points(recording, candidate).zip(&recording.steps).filter(|(_, step)| step.slips == slips);
+        Series::new(name, colour, Mark::Dots, own.map(|(point, _)| point))
     };
     vec![kind(false, "no slip", colour::GREY), kind(true, "slip", colour::VERMILLION)]
 }
@@ -262,7 +250,7 @@ fn panel(title: String, unit: &str, even: bool, series: Vec<Series>) -> Panel {
     } else {
         Axis::log(unit, low.max(0.1), 1.5 * high)
     };
-    Panel { title, x: Axis::even("time, s", 0.0, end_s), y, cells: Vec::new(), series, words: Vec::new() }
+    Panel::new(title, Axis::even("time, s", 0.0, end_s), y, series)
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use tenax_bench::report::fate::Fate;
 use tenax_bench::session::{self, controls};
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_plot::figure::colour;
-use tenax_plot::sheet::{Axis, Mark, Panel, Series, Sheet, draw};
+use tenax_plot::sheet::{Axis, Mark, Panel, Series, Sheet};
 
 use super::{Chart, Progress, csv};
 
@@ -36,9 +36,7 @@ impl Run {
 }
 
 /// Runs every shipped scene that holds something in every grip, and draws what it cost. All on the host.
-///
-/// # Errors
-/// If the chart cannot be drawn.
+/// Fails if the chart cannot be drawn.
 pub fn front(progress: Progress) -> anyhow::Result<Chart> {
     let names: Vec<&str> = tenax_scene::builtin().iter().map(|(name, _)| *name).collect();
     let tries: Vec<(&str, u64)> =
@@ -68,16 +66,15 @@ pub fn front(progress: Progress) -> anyhow::Result<Chart> {
     let csv = csv(&header, rows)?;
     let all = panel("all scenes that hold something, mean", &runs.iter().collect::<Vec<_>>());
     let own = OWN.map(|name| panel(name, &runs.iter().filter(|run| run.scene == name).collect::<Vec<_>>()));
-    let sheet = Sheet {
-        title: "What a grip pays for what it saves".to_owned(),
-        subtitle: format!(
+    let sheet = Sheet::new(
+        "What a grip pays for what it saves",
+        format!(
             "newtons beyond need against millimetres slid; lost counts as {LOST_MM} mm; seeds 1 and 2; the best corner is the lower left"
         ),
-        columns: 3,
-        panels: std::iter::once(all).chain(own).collect(),
-        errors: None,
-    };
-    Ok(Chart { name: "front", svg: draw::svg(&sheet)?, csv })
+        3,
+        std::iter::once(all).chain(own).collect(),
+    );
+    Chart::new("front", &sheet, csv)
 }
 
 /// None of a scene in which nothing is carried.
@@ -129,16 +126,14 @@ fn panel(title: &str, runs: &[&Run]) -> Panel {
                 |of: &dyn Fn(&Run) -> f64| own.iter().map(|run| of(run)).sum::<f64>() / own.len() as f64;
             let point = (mean(&Run::slid_mm), mean(&|run| run.fate.beyond_need_n.unwrap_or(0.0)));
             let (colour, mark) = look(grip);
-            Series { name: (*grip).to_owned(), colour, mark, points: vec![point] }
+            Series::new(*grip, colour, mark, [point])
         })
         .collect();
     let most_n = series.iter().flat_map(|own| &own.points).map(|(_, n)| *n).fold(1.0, f64::max);
-    Panel {
-        title: title.to_owned(),
-        x: Axis::log("slid, mm", 0.8 * LEAST_MM, 1.4 * LOST_MM),
-        y: Axis::even("beyond need, mean, N", 0.0, 1.1 * most_n),
-        cells: Vec::new(),
+    Panel::new(
+        title,
+        Axis::log("slid, mm", 0.8 * LEAST_MM, 1.4 * LOST_MM),
+        Axis::even("beyond need, mean, N", 0.0, 1.1 * most_n),
         series,
-        words: Vec::new(),
-    }
+    )
 }

@@ -1,10 +1,9 @@
 //! The Stribeck slider: when it vibrates by itself, how fast that grows, and what it sounds like.
 
 use tenax_scene::physics::stribeck::{BLOCK_N, STRIP};
-use tenax_scene::stepping::SHIPPED_S;
-use tenax_scene::stepping::problem::SelfExcited;
+use tenax_scene::stepping::{SHIPPED_S, SelfExcited};
 
-use super::{Chart, csv, draw};
+use super::{Chart, csv};
 use tenax_plot::figure::colour;
 use tenax_plot::sheet::{Axis, Mark, Panel, Series, Sheet};
 
@@ -30,40 +29,19 @@ pub fn chart() -> anyhow::Result<Chart> {
 
     let fine = || (0..=40).map(|n| 2.8 + 5.4 * f64::from(n) / 40.0);
     let hertz = |omega_rad_s: f64| omega_rad_s / std::f64::consts::TAU;
-    let panel = |title: &str, y: Axis, line: Vec<(f64, f64)>, dots: Vec<(f64, f64)>| Panel {
-        title: title.to_owned(),
-        x: Axis::even("sliding speed, mm/s", 2.8, 8.2),
-        y,
-        cells: Vec::new(),
-        series: vec![
-            Series {
-                name: "linearised equation".to_owned(),
-                colour: colour::BLUE,
-                mark: Mark::Line,
-                points: line,
-            },
-            Series {
-                name: "stepped by 125 us".to_owned(),
-                colour: colour::VERMILLION,
-                mark: Mark::Dots,
-                points: dots,
-            },
-            Series {
-                name: "c + P dmu/dv = 0".to_owned(),
-                colour: colour::GREY,
-                mark: Mark::Dashes,
-                points: vec![(2.8, 0.0), (8.2, 0.0)],
-            },
-        ],
-        words: Vec::new(),
+    let panel = |title: &str, y: Axis, line: Vec<(f64, f64)>, dots: Vec<(f64, f64)>| {
+        let series = vec![
+            Series::new("linearised equation", colour::BLUE, Mark::Line, line),
+            Series::new("stepped by 125 us", colour::VERMILLION, Mark::Dots, dots),
+            Series::new("c + P dmu/dv = 0", colour::GREY, Mark::Dashes, [(2.8, 0.0), (8.2, 0.0)]),
+        ];
+        Panel::new(title, Axis::even("sliding speed, mm/s", 2.8, 8.2), y, series)
     };
-    let sheet = Sheet {
-        title: "Vibrating by itself: the Stribeck slider near steady sliding".to_owned(),
-        subtitle:
-            "Above zero a small vibration grows by itself, below it dies. Parameters of the strip: assumed."
-                .to_owned(),
-        columns: 2,
-        panels: vec![
+    let sheet = Sheet::new(
+        "Vibrating by itself: the Stribeck slider near steady sliding",
+        "Above zero a small vibration grows by itself, below it dies. Parameters of the strip: assumed.",
+        2,
+        vec![
             panel(
                 "growth rate",
                 Axis::even("growth, 1/s", -350.0, 300.0),
@@ -77,7 +55,6 @@ pub fn chart() -> anyhow::Result<Chart> {
                 measured.iter().map(|(mm_s, signal)| (*mm_s, hertz(signal.omega_rad_s))).collect(),
             ),
         ],
-        errors: None,
-    };
-    Ok(Chart { name: "stribeck-growth", svg: draw::svg(&sheet)?, csv })
+    );
+    Chart::new("stribeck-growth", &sheet, csv)
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use anyhow::Result;
 
-use super::{Chart, Progress, csv, draw};
+use super::{Chart, Progress, csv};
 use crate::vision::calibrate::{Sample, Skin};
 use tenax_plot::figure::colour;
 use tenax_plot::sheet::{Axis, Mark, Panel, Series, Sheet};
@@ -21,10 +21,7 @@ struct Told {
     spread_px: f64,
 }
 
-/// Draws how the loads of a table are told.
-///
-/// # Errors
-/// If the table or its pictures cannot be read.
+/// Draws how the loads of a table are told. Fails if the table or its pictures cannot be read.
 pub fn chart(table: &Path, progress: Progress) -> Result<Chart> {
     let skin = Skin::at_rest(table)?;
     let samples = skin.samples(table)?;
@@ -69,32 +66,26 @@ pub fn chart(table: &Path, progress: Progress) -> Result<Chart> {
         "spread_px",
     ];
     let csv = csv(&header, rows)?;
-    let sheet = Sheet {
-        title: "Known loads on a real FingerVision skin".to_owned(),
-        subtitle: "A dot is a load, the mean of ten pictures, told by a calibration on all other loads"
-            .to_owned(),
-        columns: 2,
-        panels: vec![shear(&loads), normal(&loads), direction(&loads), again(&loads)],
-        errors: None,
-    };
-    Ok(Chart { name: "vision-loads", svg: draw::svg(&sheet)?, csv })
+    let sheet = Sheet::new(
+        "Known loads on a real FingerVision skin",
+        "A dot is a load, the mean of ten pictures, told by a calibration on all other loads",
+        2,
+        vec![shear(&loads), normal(&loads), direction(&loads), again(&loads)],
+    );
+    Chart::new("vision-loads", &sheet, csv)
 }
 
 fn dots(name: &str, colour: plotters::style::RGBColor, points: Vec<(f64, f64)>) -> Series {
-    Series { name: name.to_owned(), colour, mark: Mark::Dots, points }
+    Series::new(name, colour, Mark::Dots, points)
 }
 
 fn line(name: &str, mark: Mark, points: Vec<(f64, f64)>) -> Series {
-    Series { name: name.to_owned(), colour: colour::GREY, mark, points }
-}
-
-fn panel(title: &str, x: Axis, y: Axis, series: Vec<Series>) -> Panel {
-    Panel { title: title.to_owned(), x, y, cells: Vec::new(), series, words: Vec::new() }
+    Series::new(name, colour::GREY, mark, points)
 }
 
 fn shear(loads: &[Told]) -> Panel {
     let points = |axis: usize| loads.iter().map(|load| (load.truth_n[axis], load.mean_n[axis])).collect();
-    panel(
+    Panel::new(
         "shear",
         Axis::even("truth, N", -3.5, 3.5),
         Axis::even("told, N", -3.5, 3.5),
@@ -108,7 +99,7 @@ fn shear(loads: &[Told]) -> Panel {
 
 fn normal(loads: &[Told]) -> Panel {
     let ends = |part: f64| vec![(1.0, part), (20.0, 20.0 * part)];
-    panel(
+    Panel::new(
         "normal force",
         Axis::log("truth, N", 0.9, 25.0),
         Axis::log("told, N", 0.5, 30.0),
@@ -132,7 +123,7 @@ fn direction(loads: &[Told]) -> Panel {
     let off = |load: &Told| 100.0 * (load.mean_n[1] / load.truth_n[1] - 1.0);
     let at = |load: &Told| load.truth_n[2].atan2(load.truth_n[0]).to_degrees();
     let noise = |load: &Told| 100.0 * load.varies_n / load.truth_n[1];
-    panel(
+    Panel::new(
         "normal force above 3 N: what is wrong, by the direction of the tilt",
         Axis::even("direction of shear, degrees", -185.0, 185.0),
         Axis::even("% of the load", -60.0, 60.0),
@@ -144,12 +135,12 @@ fn direction(loads: &[Told]) -> Panel {
                 colour::VERMILLION,
                 heavy().filter(leans).map(|load| (at(load), off(load))).collect(),
             ),
-            Series {
-                name: "scatter of its ten pictures".to_owned(),
-                colour: colour::SKY,
-                mark: Mark::Rings,
-                points: heavy().filter(leans).map(|load| (at(load), noise(load))).collect(),
-            },
+            Series::new(
+                "scatter of its ten pictures",
+                colour::SKY,
+                Mark::Rings,
+                heavy().filter(leans).map(|load| (at(load), noise(load))),
+            ),
         ],
     )
 }
@@ -159,7 +150,7 @@ fn again(loads: &[Told]) -> Panel {
     let upright = loads.iter().filter(|load| load.truth_n[0].hypot(load.truth_n[2]) < 0.01);
     let tilted = loads.iter().filter(|load| load.truth_n[0].hypot(load.truth_n[2]) >= 0.01);
     let at = |load: &Told| (load.truth_n[1], load.spread_px / load.truth_n[1]);
-    panel(
+    Panel::new(
         "how far a newton spreads the markers",
         Axis::log("normal force, N", 0.9, 25.0),
         Axis::even("px rms for each newton", 0.0, 0.5),

@@ -1,6 +1,6 @@
 //! The chart of `tenax chart onset`: how soon anybody could tell the slip of a lift, and from what.
 
-use super::{Chart, Progress, csv, draw};
+use super::{Chart, Progress, csv};
 use crate::learn::observer::{self, Bound, CERTAIN, SENSES, Watched};
 use tenax_plot::figure::colour;
 use tenax_plot::sheet::{Axis, Mark, Panel, Series, Sheet};
@@ -17,7 +17,6 @@ const ASKED_S: [[f64; 2]; 2] = [[0.30, 0.24], [0.15, 0.15]];
 /// Whether a finger is in a group.
 type IsIn = fn(&Bound) -> bool;
 
-/// What it measures.
 #[derive(Clone, Debug)]
 pub struct Measured(Vec<Bound>);
 
@@ -52,10 +51,7 @@ impl std::fmt::Display for Measured {
     }
 }
 
-/// Measures and draws it.
-///
-/// # Errors
-/// If a scene cannot be made, or the chart cannot be drawn.
+/// Measures and draws it. Fails if a scene cannot be made, or the chart cannot be drawn.
 pub fn chart(progress: Progress) -> anyhow::Result<(Chart, Measured)> {
     let (mut bounds, mut plain) = (Vec::new(), Vec::new());
     for (n, seed) in SEEDS.into_iter().enumerate() {
@@ -90,20 +86,15 @@ pub fn chart(progress: Progress) -> anyhow::Result<(Chart, Measured)> {
         "all_no_delay_s",
     ]);
     let csv = csv(&header, rows)?;
-    let sheet = Sheet {
-        title: "How soon anybody could tell the slip of a lift".to_owned(),
-        subtitle: format!(
+    let sheet = Sheet::new(
+        "How soon anybody could tell the slip of a lift",
+        format!(
             "observers that know every voltage in advance, wrong once in 3 h; seeds 1 to 3, {FINGERTIPS} fingers each"
         ),
-        columns: 2,
-        panels: vec![rising(plain.first()), leads(&bounds)],
-        errors: None,
-    };
-    Ok((Chart { name: "onset", svg: draw::svg(&sheet)?, csv }, Measured(bounds)))
-}
-
-fn series(name: &str, colour: plotters::style::RGBColor, mark: Mark, points: Vec<(f64, f64)>) -> Series {
-    Series { name: name.to_owned(), colour, mark, points }
+        2,
+        vec![rising(plain.first()), leads(&bounds)],
+    );
+    Ok((Chart::new("onset", &sheet, csv)?, Measured(bounds)))
 }
 
 const COLOURS: [plotters::style::RGBColor; SENSES.len()] =
@@ -114,22 +105,20 @@ fn rising(trial: Option<&Watched>) -> Panel {
     let mut all = Vec::new();
     if let Some(trial) = trial {
         for (n, (sense, colour)) in SENSES.into_iter().zip(COLOURS).enumerate() {
-            let points = trial.rising.iter().map(|(t_s, told)| (*t_s, told[n].max(0.01))).collect();
-            all.push(series(sense, colour, Mark::Line, points));
+            let points = trial.rising.iter().map(|(t_s, told)| (*t_s, told[n].max(0.01)));
+            all.push(Series::new(sense, colour, Mark::Line, points));
         }
         let upright = |t_s: f64| vec![(t_s, 0.01), (t_s, 1_000.0)];
-        all.push(series("first place lets go", colour::PURPLE, Mark::Dashes, upright(trial.micro_s)));
-        all.push(series("all of it slides", colour::VERMILLION, Mark::Dashes, upright(trial.macro_s)));
-        all.push(series("certain", colour::GREY, Mark::Dashes, vec![(0.0, CERTAIN), (0.5, CERTAIN)]));
+        all.push(Series::new("first place lets go", colour::PURPLE, Mark::Dashes, upright(trial.micro_s)));
+        all.push(Series::new("all of it slides", colour::VERMILLION, Mark::Dashes, upright(trial.macro_s)));
+        all.push(Series::new("certain", colour::GREY, Mark::Dashes, vec![(0.0, CERTAIN), (0.5, CERTAIN)]));
     }
-    Panel {
-        title: "what the pins tell of it, one trial of the plain finger".to_owned(),
-        x: Axis::even("time from the beginning of the lift, s", 0.0, 0.5),
-        y: Axis::log("d'", 0.01, 1_000.0),
-        cells: Vec::new(),
-        series: all,
-        words: Vec::new(),
-    }
+    Panel::new(
+        "what the pins tell of it, one trial of the plain finger",
+        Axis::even("time from the beginning of the lift, s", 0.0, 0.5),
+        Axis::log("d'", 0.01, 1_000.0),
+        all,
+    )
 }
 
 /// Each finger's bounds on the lead, over what sliding keeps of its friction.
@@ -138,23 +127,21 @@ fn leads(bounds: &[Bound]) -> Panel {
         bounds.iter().map(|bound| (bound.ratio, of(bound)[0])).collect::<Vec<_>>()
     };
     let mut all = vec![
-        series("first place lets go", colour::PURPLE, Mark::Rings, dots(&|bound| bound.first_place_s)),
-        series("all of it slides", colour::VERMILLION, Mark::Crosses, dots(&|bound| bound.macro_s)),
+        Series::new("first place lets go", colour::PURPLE, Mark::Rings, dots(&|bound| bound.first_place_s)),
+        Series::new("all of it slides", colour::VERMILLION, Mark::Crosses, dots(&|bound| bound.macro_s)),
     ];
-    all.push(series(SENSES[0], COLOURS[0], Mark::Dots, dots(&|bound| bound.certain_s[0])));
+    all.push(Series::new(SENSES[0], COLOURS[0], Mark::Dots, dots(&|bound| bound.certain_s[0])));
     let asked = ASKED_S.map(|asked_s| asked_s[0]);
-    all.push(series(
+    all.push(Series::new(
         "asked for",
         colour::GREY,
         Mark::Line,
         vec![(0.6, asked[0]), (SLIPPERY, asked[0]), (SLIPPERY, asked[1]), (0.95, asked[1])],
     ));
-    Panel {
-        title: "lead over a camera with 53 ms of delay, each finger".to_owned(),
-        x: Axis::even("what sliding keeps of static friction", 0.58, 0.97),
-        y: Axis::even("lead, s", -0.1, 0.6),
-        cells: Vec::new(),
-        series: all,
-        words: Vec::new(),
-    }
+    Panel::new(
+        "lead over a camera with 53 ms of delay, each finger",
+        Axis::even("what sliding keeps of static friction", 0.58, 0.97),
+        Axis::even("lead, s", -0.1, 0.6),
+        all,
+    )
 }

@@ -6,7 +6,7 @@ use tenax_scene::sensor::photoelastic::HEAD_STRIP;
 use tenax_scene::sensor::photoelastic::curve::{Day, Making};
 use tenax_scene::sensor::photoelastic::optics::Layer;
 
-use super::{Chart, Progress, csv, draw};
+use super::{Chart, Progress, csv};
 use crate::photoelastic::balance;
 use crate::photoelastic::bench::median;
 use crate::photoelastic::force::{self, Point, Score, Session, Story};
@@ -89,10 +89,7 @@ impl std::fmt::Display for Measured {
     }
 }
 
-/// Runs everything and draws it.
-///
-/// # Errors
-/// If the chart cannot be drawn.
+/// Runs everything and draws it. Fails if the chart cannot be drawn.
 pub fn chart(progress: Progress) -> anyhow::Result<(Chart, Measured)> {
     let [runs, lifts] = [false, true].map(|sheared| force::sessions(VALIDATION, STORIES, sheared));
     let [force, force_sheared] = [&runs, &lifts].map(|runs| Score::of(runs.iter().map(Vec::as_slice)));
@@ -110,15 +107,15 @@ pub fn chart(progress: Progress) -> anyhow::Result<(Chart, Measured)> {
         slip_floor_mm_s,
     };
     let (ramps, lift) = stories();
-    let sheet = Sheet {
-        title: "A photoelastic head: force from its light, slip from its flicker".to_owned(),
-        subtitle: format!(
+    let sheet = Sheet::new(
+        "A photoelastic head: force from its light, slip from its flicker",
+        format!(
             "Heads, days and stories of seeds {} to {}; curves of the mean head. Friction and strip: assumed.",
             VALIDATION.start,
             VALIDATION.end - 1
         ),
-        columns: 2,
-        panels: vec![
+        2,
+        vec![
             intensity(),
             followed("ramps without shear, three of them turning at the peak", &ramps),
             followed("grips, then lifts with a shear of 0.3 and 0.5 of the force", &lift),
@@ -129,12 +126,11 @@ pub fn chart(progress: Progress) -> anyhow::Result<(Chart, Measured)> {
             against_rate("ac part, frequency", Axis::even("Hz", 0.0, 200.0), &curves, |seen| seen.hz),
             map(&region),
         ],
-        errors: None,
-    };
+    );
     let csv = table(&runs, &curves, &region)?;
     progress(1.0);
     let measured = Measured { report, other_material_pct };
-    Ok((Chart { name: "photoelastic", svg: draw::svg(&sheet)?, csv }, measured))
+    Ok((Chart::new("photoelastic", &sheet, csv)?, measured))
 }
 
 /// Each head is calibrated on four days, and asked on four others; then on plastic.
@@ -194,25 +190,17 @@ fn by_shear(runs: &[Vec<Point>]) -> Panel {
     let certain = || runs.iter().flatten().filter(|point| point.is_certain);
     let some = || certain().step_by((certain().count() / 1_500).max(1));
     let off = some().filter_map(|point| Some((point.shear, point.read_n? - point.true_n)));
-    let says = |sign: f64| some().map(|point| (point.shear, sign * point.uncertainty_n)).collect();
-    panel(
+    let says = |sign: f64| some().map(move |point| (point.shear, sign * point.uncertainty_n));
+    Panel::new(
         "certain: off by, and may be off by, against shear",
         Axis::even("shear, of the force", 0.0, 0.5),
         Axis::even("N", -0.3, 0.3),
         vec![
-            series("may be off by", colour::GREY, Mark::Dots, says(1.0)),
-            series("or so", colour::GREY, Mark::Dots, says(-1.0)),
-            series("off by", colour::BLUE, Mark::Dots, off.collect()),
+            Series::new("may be off by", colour::GREY, Mark::Dots, says(1.0)),
+            Series::new("or so", colour::GREY, Mark::Dots, says(-1.0)),
+            Series::new("off by", colour::BLUE, Mark::Dots, off),
         ],
     )
-}
-
-fn series(name: &str, colour: plotters::style::RGBColor, mark: Mark, points: Vec<(f64, f64)>) -> Series {
-    Series { name: name.to_owned(), colour, mark, points }
-}
-
-fn panel(title: &str, x: Axis, y: Axis, series: Vec<Series>) -> Panel {
-    Panel { title: title.to_owned(), x, y, cells: Vec::new(), series, words: Vec::new() }
 }
 
 fn intensity() -> Panel {
@@ -223,14 +211,14 @@ fn intensity() -> Panel {
         .map(|force_n| (force_n, dark_mv + span_mv * Layer::DUBEY.intensity(force_n, 0.0)));
     let weighed = calibration.weighed.iter().map(|w| (w.force_n, w.level_mv));
     let read = calibration.weighed.iter().map(|w| (w.read_n, w.level_mv));
-    panel(
+    Panel::new(
         "light against force",
         Axis::even("force, N", 0.0, 6.0),
         Axis::even("mV", 0.0, 3_000.0),
         vec![
-            series("equation 9 as printed", colour::GREY, Mark::Dashes, printed.collect()),
-            series("known weights", colour::VERMILLION, Mark::Crosses, weighed.collect()),
-            series("calibrated curve", colour::BLUE, Mark::Line, read.collect()),
+            Series::new("equation 9 as printed", colour::GREY, Mark::Dashes, printed),
+            Series::new("known weights", colour::VERMILLION, Mark::Crosses, weighed),
+            Series::new("calibrated curve", colour::BLUE, Mark::Line, read),
         ],
     )
 }
@@ -247,14 +235,14 @@ fn followed(title: &str, run: &[Point]) -> Panel {
     };
     let both =
         |certain| [ends(|point| point.range_n.0, certain), ends(|point| point.range_n.1, certain)].concat();
-    panel(
+    Panel::new(
         title,
         Axis::even("time, s", 0.0, end_s),
         Axis::even("force, N", 0.0, 6.5),
         vec![
-            series("true force", colour::ORANGE, Mark::Line, run.iter().map(|p| (at(p), p.true_n)).collect()),
-            series("least and most, certain", colour::BLUE, Mark::Dots, both(true)),
-            series("least and most, either branch", colour::GREY, Mark::Dots, both(false)),
+            Series::new("true force", colour::ORANGE, Mark::Line, run.iter().map(|p| (at(p), p.true_n))),
+            Series::new("least and most, certain", colour::BLUE, Mark::Dots, both(true)),
+            Series::new("least and most, either branch", colour::GREY, Mark::Dots, both(false)),
         ],
     )
 }
@@ -262,30 +250,30 @@ fn followed(title: &str, run: &[Point]) -> Panel {
 fn against_rate(title: &str, y: Axis, curves: &[(Material, Vec<Seen>)], of: impl Fn(&Seen) -> f64) -> Panel {
     let all = curves.iter().zip([colour::BLUE, colour::GREEN]).flat_map(|((material, seen), colour)| {
         let points: Vec<_> = seen.iter().map(|seen| (seen.rate_mm_s, of(seen))).collect();
-        [Mark::Line, Mark::Dots].map(|mark| series(material.name(), colour, mark, points.clone()))
+        [Mark::Line, Mark::Dots].map(|mark| Series::new(material.name(), colour, mark, points.clone()))
     });
-    panel(title, Axis::log("slip rate, mm/s", 0.04, 4.0), y, all.collect())
+    Panel::new(title, Axis::log("slip rate, mm/s", 0.04, 4.0), y, all.collect())
 }
 
 fn map(region: &Region) -> Panel {
     let points = |seen: bool| {
         let points = region.points.iter().filter(move |point| point.seen == seen);
-        points.map(|point| (point.rate_mm_s, point.steepness_s_m)).collect()
+        points.map(|point| (point.rate_mm_s, point.steepness_s_m))
     };
     let theory = (8..=200).filter_map(|n| {
         let drop = f64::from(n) / 2_000.0;
         Some((region::theory_mm_s(drop)?, region::steepness_s_m(drop)))
     });
     let measured = region.boundary.iter().map(|(steepness, _, measured)| (*measured, *steepness));
-    panel(
+    Panel::new(
         "where slip is seen; vibrates by itself to the left of the line",
         Axis::log("slip rate, mm/s", 0.04, 12.0),
         Axis::even("fall of friction at rest, s/m", 0.0, 36.0),
         vec![
-            series("slip said", colour::BLUE, Mark::Dots, points(true)),
-            series("not said", colour::GREY, Mark::Crosses, points(false)),
-            series("c + P dmu/dv = 0", colour::VERMILLION, Mark::Line, theory.collect()),
-            series("boundary as measured", colour::VERMILLION, Mark::Rings, measured.collect()),
+            Series::new("slip said", colour::BLUE, Mark::Dots, points(true)),
+            Series::new("not said", colour::GREY, Mark::Crosses, points(false)),
+            Series::new("c + P dmu/dv = 0", colour::VERMILLION, Mark::Line, theory),
+            Series::new("boundary as measured", colour::VERMILLION, Mark::Rings, measured),
         ],
     )
 }
@@ -325,10 +313,7 @@ fn table(runs: &[Vec<Point>], curves: &[(Material, Vec<Seen>)], region: &Region)
     csv(&["what", "which", "x", "y"], rows.into_iter().map(Vec::from))
 }
 
-/// A calibration: its weights and curve, and what is left between them.
-///
-/// # Errors
-/// If it cannot be drawn.
+/// A calibration: its weights and curve, and what is left between them. Fails if it cannot be drawn.
 pub fn residuals(calibration: &balance::Calibration) -> anyhow::Result<Chart> {
     let weighed = &calibration.weighed;
     let end_n = weighed.last().map_or(6.0, |last| last.force_n.ceil());
@@ -336,47 +321,46 @@ pub fn residuals(calibration: &balance::Calibration) -> anyhow::Result<Chart> {
     let most_mn = weighed.iter().map(|w| 1e3 * (w.read_n - w.force_n).abs()).fold(10.0, f64::max).ceil();
     let force = || Axis::even("force, N", 0.0, end_n);
     let off = |w: &balance::Weighed| 1e3 * (w.read_n - w.force_n);
-    let sheet = Sheet {
-        title: "Calibration of a photoelastic head from known weights".to_owned(),
-        subtitle: format!("Residuals {:.2} % of full scale at most.", calibration.worst_percent()),
-        columns: 2,
-        panels: vec![
-            panel(
+    let sheet = Sheet::new(
+        "Calibration of a photoelastic head from known weights",
+        format!("Residuals {:.2} % of full scale at most.", calibration.worst_percent()),
+        2,
+        vec![
+            Panel::new(
                 "light against force",
                 force(),
                 Axis::even("mV", 0.0, (high_mv / 500.0).ceil() * 500.0),
                 vec![
-                    series(
+                    Series::new(
                         "known weights",
                         colour::VERMILLION,
                         Mark::Crosses,
-                        weighed.iter().map(|w| (w.force_n, w.level_mv)).collect(),
+                        weighed.iter().map(|w| (w.force_n, w.level_mv)),
                     ),
-                    series(
+                    Series::new(
                         "calibrated curve",
                         colour::BLUE,
                         Mark::Line,
-                        weighed.iter().map(|w| (w.read_n, w.level_mv)).collect(),
+                        weighed.iter().map(|w| (w.read_n, w.level_mv)),
                     ),
                 ],
             ),
-            panel(
+            Panel::new(
                 "residuals",
                 force(),
                 Axis::even("read less true, mN", -most_mn, most_mn),
-                vec![series(
+                vec![Series::new(
                     "known weights",
                     colour::VERMILLION,
                     Mark::Crosses,
-                    weighed.iter().map(|w| (w.force_n, off(w))).collect(),
+                    weighed.iter().map(|w| (w.force_n, off(w))),
                 )],
             ),
         ],
-        errors: None,
-    };
+    );
     let rows = weighed
         .iter()
         .map(|w| [w.force_n, w.level_mv, w.read_n].map(|number| format!("{number:.4}")).to_vec());
     let csv = csv(&["force_n", "level_mv", "read_n"], rows)?;
-    Ok(Chart { name: "photoelastic-calibration", svg: draw::svg(&sheet)?, csv })
+    Chart::new("photoelastic-calibration", &sheet, csv)
 }

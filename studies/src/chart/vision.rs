@@ -10,7 +10,7 @@ use tenax_vision::frame::{Frame, Plane, plane};
 use tenax_vision::mask::Mask;
 use tenax_vision::object::{Config, Mixture, Movement, Running, Tracker};
 
-use super::{Chart, Progress, csv, draw};
+use super::{Chart, Progress, csv};
 use crate::vision::feed::{Feed, Next};
 use crate::vision::source::Source;
 use tenax_plot::figure::colour;
@@ -63,10 +63,7 @@ impl Choice {
 }
 
 /// Draws what the choices cost and bring on the video. All of them look at a frame one after the other, so that what else this machine
-/// does slows all alike.
-///
-/// # Errors
-/// If the video cannot be read.
+/// does slows all alike. Fails if the video cannot be read.
 pub fn choices(video: &Path, progress: Progress) -> Result<Chart> {
     let usual = Config::default;
     let running = |apart, rate| Way::Running(Running::new(apart, rate));
@@ -107,33 +104,22 @@ pub fn choices(video: &Path, progress: Progress) -> Result<Chart> {
     let fastest = choices.iter().map(Choice::fps).fold(0.0, f64::max);
     let panel = |title: &str, y: Axis, of: &dyn Fn(&Choice) -> f64| {
         let looks = COLOURS.into_iter().cycle().zip([Mark::Dots; 6].into_iter().chain([Mark::Rings; 6]));
-        let series = choices.iter().zip(looks).map(|(choice, (colour, mark))| Series {
-            name: choice.name.to_owned(),
-            colour,
-            mark,
-            points: vec![(choice.fps(), of(choice))],
+        let series = choices.iter().zip(looks).map(|(choice, (colour, mark))| {
+            Series::new(choice.name, colour, mark, [(choice.fps(), of(choice))])
         });
-        Panel {
-            title: title.to_owned(),
-            x: Axis::even("frames a second on one core", 0.0, 1.1 * fastest),
-            y,
-            cells: Vec::new(),
-            series: series.collect(),
-            words: Vec::new(),
-        }
+        Panel::new(title, Axis::even("frames a second on one core", 0.0, 1.1 * fastest), y, series.collect())
     };
-    let sheet = Sheet {
-        title: "Finding the object and its slip: speed against accuracy".to_owned(),
-        subtitle: "Real FingerVision video, 20 outlines by hand; seconds are this machine's".to_owned(),
-        columns: 3,
-        panels: vec![
+    let sheet = Sheet::new(
+        "Finding the object and its slip: speed against accuracy",
+        "Real FingerVision video, 20 outlines by hand; seconds are this machine's",
+        3,
+        vec![
             panel("overlap, mean", Axis::even("intersection over union", 0.4, 0.9), &Choice::mean),
             panel("overlap, worst outline", Axis::even("intersection over union", 0.4, 0.9), &Choice::worst),
             panel("seen in the empty scene", Axis::even("share of frames", -0.002, 0.02), &empty_share),
         ],
-        errors: None,
-    };
-    Ok(Chart { name: "vision-choices", svg: draw::svg(&sheet)?, csv })
+    );
+    Chart::new("vision-choices", &sheet, csv)
 }
 
 /// Colours of the choices, with dots and then with rings.

@@ -31,7 +31,6 @@ pub struct Step {
     pub marker_slips: bool,
 }
 
-/// A recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     /// What is recorded.
@@ -48,7 +47,6 @@ pub struct Recording {
 
 impl Recording {
     /// Slips that the world counted.
-    #[must_use]
     pub fn slips(&self) -> usize {
         self.spans.iter().filter(|span| span.macro_onset_s.is_some()).count()
     }
@@ -69,10 +67,7 @@ fn stream(session: &Session, story: Story, stream: Stream) -> ChaCha8Rng {
     rng
 }
 
-/// Records a story of a session.
-///
-/// # Errors
-/// If the session has a number that no scene may have.
+/// Records a story of a session. Fails if the session has a number that no scene may have.
 pub fn record(session: &Session, story: Story) -> anyhow::Result<Recording> {
     let scene = story.scene_in(session, &mut stream(session, story, Stream::Story))?;
     let operator = Operator::new(story, session, stream(session, story, Stream::Operator));

@@ -6,9 +6,10 @@ use serde::Serialize;
 use sha2::{Digest, Sha256};
 
 use super::collect::Recording;
-use super::session::{Session, Split};
+use super::session::Session;
 use super::{Label, Plan};
 use tenax_bench::array::material::{HELD_OUT, Material, SEEN};
+use tenax_bench::labelled::Part;
 
 /// The manifest, written as TOML beside the data.
 #[derive(Clone, Debug, Serialize)]
@@ -19,13 +20,11 @@ pub struct Manifest {
     pub seed: u64,
     /// Sessions to learn from, of each seen material.
     pub sessions: usize,
-    /// Who labelled it.
     pub label: Label,
     /// The data's file, beside this one.
     pub file: String,
     /// Of the data's bytes.
     pub sha256: String,
-    /// What its columns are.
     pub columns: &'static str,
     /// Steps a second.
     pub rate_hz: u32,
@@ -33,30 +32,21 @@ pub struct Manifest {
     pub held_out: &'static str,
     /// How often the marker agrees with the world, per cent of steps.
     pub marker_agrees_percent: f64,
-    /// By split.
-    pub split: BTreeMap<Split, Counts>,
-    /// The materials.
+    pub split: BTreeMap<Part, Counts>,
     pub material: Vec<Material>,
-    /// Every session.
     pub session: Vec<SessionEntry>,
 }
 
-/// What the columns are.
 const COLUMNS: &str = "split, session, material, recording; task: what is done in it; t_s: when the tenth element was read, s; \
                        label: 1 slipped since the step before; slips: exact onsets of the slips whose micro onset is since the \
                        step before, as micro/macro/end/mm in s and mm, no macro onset where it came to nothing, ! where it was \
                        meant; a1 to a10: the elements' samples, 14 bits, 3300 mV full scale";
 
-/// How much there is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Counts {
-    /// Sessions.
     pub sessions: usize,
-    /// Recordings.
     pub recordings: usize,
-    /// Steps.
     pub steps: usize,
-    /// Those with slip.
     pub slip_steps: usize,
     /// Slips that the worlds counted.
     pub slips: usize,
@@ -69,7 +59,6 @@ pub struct Counts {
 pub struct SessionEntry {
     /// How much it gave.
     pub steps: usize,
-    /// Those with slip.
     pub slip_steps: usize,
     /// Slips that the worlds counted.
     pub slips: usize,
@@ -81,9 +70,8 @@ pub struct SessionEntry {
 
 impl Manifest {
     /// Of data that is `bytes` in `file`.
-    #[must_use]
     pub fn new(plan: &Plan, file: &str, bytes: &[u8], all: &[(Session, Vec<Recording>)]) -> Self {
-        let mut split: BTreeMap<Split, Counts> = BTreeMap::new();
+        let mut split: BTreeMap<Part, Counts> = BTreeMap::new();
         let (mut agree, mut steps) = (0, 0);
         for (session, recordings) in all {
             let counts = split.entry(session.split).or_default();

@@ -27,7 +27,6 @@ pub struct Marker {
 
 impl Marker {
     /// A camera with its own noise.
-    #[must_use]
     pub const fn new(rng: ChaCha8Rng) -> Self {
         Self { rng, height_mm: Vec::new(), pitch_deg: Vec::new() }
     }
@@ -47,14 +46,12 @@ impl Marker {
     }
 
     /// Whether each image shows slip.
-    #[must_use]
     pub fn slips(&self) -> Vec<bool> {
         let [height, pitch] = [&self.height_mm, &self.pitch_deg].map(|track| speeds(track));
         height.iter().zip(pitch).map(|(mm_s, deg_s)| *mm_s > HEIGHT_MM_S || deg_s > PITCH_DEG_S).collect()
     }
 
     /// The image that shows an instant.
-    #[must_use]
     pub fn image_at(t_s: f64) -> usize {
         (t_s * IMAGE_HZ).round() as usize
     }

@@ -70,8 +70,6 @@ pub struct Operator {
 }
 
 impl Operator {
-    /// For a story in a session.
-    #[must_use]
     pub fn new(story: Story, session: &Session, mut rng: ChaCha8Rng) -> Self {
         let mut between = |low: f64, high: f64| rng.random_range(low..high);
         let plans = match story {

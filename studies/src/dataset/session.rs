@@ -4,30 +4,7 @@ use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use serde::Serialize;
 
 use tenax_bench::array::material::{Ends, HELD_OUT, Material, SEEN};
-
-/// What a session's data is for. Whole sessions are: no step of one is in two splits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, clap::ValueEnum)]
-#[serde(rename_all = "lowercase")]
-pub enum Split {
-    /// A classifier learns from it.
-    Train,
-    /// It is chosen by it.
-    Validation,
-    /// It is judged by it, once.
-    Test,
-}
-
-impl Split {
-    /// As in the data.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Train => "train",
-            Self::Validation => "validation",
-            Self::Test => "test",
-        }
-    }
-}
+use tenax_bench::labelled::Part;
 
 /// How many sessions of each material there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,19 +22,17 @@ impl Sizes {
     pub const DEFAULT_TRAIN: usize = 24;
 
     /// In proportion to those to learn from.
-    #[must_use]
     pub const fn of_train(train: usize) -> Self {
         Self { train, validation: train.div_ceil(4), test: train.div_ceil(2) }
     }
 }
 
-/// One session.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Session {
     /// Of the material, with a number.
     pub name: String,
-    /// What for.
-    pub split: Split,
+    /// Whole sessions are for one thing: no step of one is in two parts.
+    pub split: Part,
     /// The box's sides.
     pub material: &'static str,
     /// Seed of all its noise.
@@ -103,7 +78,7 @@ pub struct Session {
 }
 
 impl Session {
-    fn draw(name: String, split: Split, material: &Material, rng: &mut ChaCha8Rng) -> Self {
+    fn draw(name: String, split: Part, material: &Material, rng: &mut ChaCha8Rng) -> Self {
         let seed = rng.random();
         let specimen = rng.random();
         let mut evenly = |low: f64, high: f64| rounded(rng.random_range(low..high));
@@ -149,11 +124,10 @@ fn rounded(value: f64) -> f64 {
 
 /// All sessions of a data set, the same for the same seed. Each draws from a stream of its own material, split and number:
 /// a larger data set has all sessions of a smaller one, in the same split.
-#[must_use]
 pub fn sessions(seed: u64, sizes: Sizes) -> Vec<Session> {
     let Sizes { train, validation, test } = sizes;
-    let seen = [(Split::Train, train), (Split::Validation, validation), (Split::Test, test)];
-    let held_out = [(Split::Test, 2 * test)];
+    let seen = [(Part::Train, train), (Part::Validation, validation), (Part::Test, test)];
+    let held_out = [(Part::Test, 2 * test)];
     let materials = SEEN.iter().map(|material| (material, &seen[..])).chain([(&HELD_OUT, &held_out[..])]);
     let mut all = Vec::new();
     for (index, (material, splits)) in materials.enumerate() {

@@ -24,7 +24,6 @@ impl Story {
     pub const ALL: [Self; 3] = [Self::Pour, Self::Pick, Self::Disturb];
 
     /// As in the data.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Pour => "pour",
@@ -41,10 +40,7 @@ impl Story {
         }
     }
 
-    /// The scene of this story in this session.
-    ///
-    /// # Errors
-    /// If a drawn number is none that a scene may have.
+    /// The scene of this story in this session. Fails if a drawn number is none that a scene may have.
     pub fn scene_in(self, session: &Session, rng: &mut ChaCha8Rng) -> anyhow::Result<SceneFile> {
         let (scene, duration_s) = self.told(session, rng)?;
         finish(scene, duration_s, &format!("{} in {}", self.scene(), session.name))
@@ -86,10 +82,7 @@ impl Story {
     }
 
     /// The same story for a fingertip that has to hold the box itself, once somebody has closed the hand on it with about
-    /// what holds it: nobody tightens the grip but the fingertip.
-    ///
-    /// # Errors
-    /// If a drawn number is none that a scene may have.
+    /// what holds it: nobody tightens the grip but the fingertip. Fails if a drawn number is none that a scene may have.
     pub fn task_in(self, session: &Session, rng: &mut ChaCha8Rng) -> anyhow::Result<SceneFile> {
         let (mut scene, duration_s) = self.told(session, rng)?;
         let mass_kg = number(&scene, "object", "mass_kg");

@@ -13,9 +13,7 @@ use tenax_bench::labelled::Recording;
 /// Puts recordings through the detector of the kernels' `image`
 /// ([`build_kernels`](tenax_bench::image::build_kernels)) and through this machine's; gives the number of steps in which
 /// features, logit, verdict, confidence and age were compared. `progress` is told the part that is done, 0 to 1.
-///
-/// # Errors
-/// In which step of which recording they first differ; or if the image does not run.
+/// An error says in which step of which recording they first differ; or if the image does not run.
 pub fn compare(image: &Path, recordings: &[Recording], progress: &mut dyn FnMut(f64)) -> Result<usize> {
     let read: Vec<Vec<Reading>> = recordings.par_iter().map(|recording| readings(&recording.steps)).collect();
     let steps: usize = read.iter().map(Vec::len).sum();

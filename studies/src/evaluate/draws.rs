@@ -61,7 +61,6 @@ fn quantities(session: &Session) -> Vec<(String, f64)> {
 }
 
 /// Scores pours against every quantity, the one that matters most first. Sessions are those that the recordings are of.
-#[must_use]
 pub fn draws(
     sessions: &[Session],
     recordings: &[Recording],

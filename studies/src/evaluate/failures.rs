@@ -54,9 +54,7 @@ pub struct Row {
 }
 
 /// Runs them all, on all cores, and scores what a `fresh` detector makes of what the board's converter read.
-///
-/// # Errors
-/// If a board cannot be run.
+/// Fails if a board cannot be run.
 pub fn rows<D: FnMut(&Reading) -> bool>(
     fresh: impl Fn() -> D + Sync,
     seed: u64,

@@ -35,7 +35,6 @@ pub struct Try {
     pub distance_mm: f64,
     /// The controls that kept it: without the reflex, in a constant grip of the same mean force, with each detector alone.
     pub kept_by: Vec<String>,
-    /// How far with the bound, mm.
     pub bound_distance_mm: f64,
     /// The greatest force of a finger, N.
     pub peak_force_n: f64,
@@ -52,7 +51,6 @@ pub struct Row {
     pub material: &'static str,
     /// `pick` or `pour`.
     pub task: &'static str,
-    /// Tries.
     pub tries: usize,
     /// Those in which the box was kept.
     pub kept: usize,
@@ -73,10 +71,7 @@ pub struct Row {
 
 /// Tries everything, on all cores. `progress` is told the part that is done, 0 to 1.
 ///
-/// Sessions are drawn from another seed than any data set's default, so no network has seen one of them.
-///
-/// # Errors
-/// If a board cannot be run.
+/// Sessions are drawn from another seed than any data set's default, so no network has seen one of them. Fails if a board cannot be run.
 pub fn tasks(seed: u64, times: usize, board: &Board, progress: Told) -> anyhow::Result<Vec<Try>> {
     let drawn = sessions(SEED_OFFSET + seed, Sizes { train: times, validation: 0, test: 0 });
     let jobs: Vec<(Story, &Session)> =
@@ -111,7 +106,6 @@ fn attempt(task: Story, session: &Session, board: &Board, mut job: Job) -> anyho
 }
 
 /// The tries as a table: each task with each material.
-#[must_use]
 pub fn rows(tries: &[Try]) -> Vec<Row> {
     let all = TASKS.iter().flat_map(|task| SEEN.iter().map(move |material| (task.name(), material.name)));
     let row = |(task, material)| {

@@ -59,18 +59,8 @@ pub struct Report {
     /// Recordings of a real array. Null where they are not present.
     pub real: Option<Real>,
     /// Steps of all recordings.
-    pub steps: usize,
-    /// Those that slipped and were not called slip.
-    pub missed: usize,
-    /// Those that did not slip and were called slip.
-    #[serde(rename = "false")]
-    pub false_steps: usize,
-    /// Part of them that is right.
-    pub accuracy: f64,
-    /// Mean of the part of slipping steps that was called slip and the part of the others that was not.
-    pub balanced: f64,
-    /// Part of them that slipped.
-    pub prevalence: f64,
+    #[serde(flatten)]
+    pub all: Steps,
     /// Their slips.
     pub events: EventScores,
     /// Detections that belong to no slip, an hour.
@@ -89,7 +79,6 @@ pub struct Report {
 
 impl Report {
     /// Scores what was said of recordings, by a network and by the one without look-back.
-    #[must_use]
     pub fn new(recordings: &[Recording], said: &[Verdicts], said_without: &[Verdicts]) -> Self {
         let (mut all, mut without) = (Steps::default(), Steps::default());
         for ((recording, said), said_without) in recordings.iter().zip(said).zip(said_without) {
@@ -98,17 +87,11 @@ impl Report {
         }
         let card = card(recordings.iter().zip(said));
         let judged = || recordings.iter().zip(said);
-        let Steps { steps, missed, false_steps, accuracy, balanced, prevalence, .. } = all;
         Self {
             pour: pour(&judged().filter(|(recording, _)| recording.doing == Doing::Pour).collect::<Vec<_>>()),
             roc: None,
             real: None,
-            steps,
-            missed,
-            false_steps,
-            accuracy,
-            balanced,
-            prevalence,
+            all,
             events: EventScores::of(&card),
             false_per_hour: card.false_alarms.per_hour,
             false_by: card.false_by,

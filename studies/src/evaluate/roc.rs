@@ -49,7 +49,6 @@ pub struct Roc {
 
 impl Roc {
     /// Of the pours. None where nothing slips in them, or everything does.
-    #[must_use]
     pub fn of(recordings: &[Recording], logits: &[Logits]) -> Option<Self> {
         let pours: Vec<(&Recording, &Logits)> =
             recordings.iter().zip(logits).filter(|(own, _)| own.doing == Doing::Pour).collect();

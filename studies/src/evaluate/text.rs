@@ -82,11 +82,11 @@ impl Display for Text<'_> {
         writeln!(
             f,
             "all recordings: balanced {:.3}, {:.2} % right of {} steps, {} missed, {} false",
-            report.balanced,
-            100.0 * report.accuracy,
-            report.steps,
-            report.missed,
-            report.false_steps
+            report.all.balanced,
+            100.0 * report.all.accuracy,
+            report.all.steps,
+            report.all.missed,
+            report.all.false_steps
         )?;
         writeln!(f, "  {:<20}{} missed, {} false", "no look-back", without.missed, without.false_steps)?;
         write!(

@@ -131,16 +131,12 @@ impl Bench {
     }
 
     /// The same with a film that crackles.
-    #[must_use]
     pub const fn crackling(mut self) -> Self {
         self.crackles = true;
         self
     }
 
-    /// A new fingertip with these settings.
-    ///
-    /// # Errors
-    /// If a setting does not take its value.
+    /// A new fingertip with these settings. Fails if a setting does not take its value.
     pub fn with_settings(settings: &[Setting]) -> anyhow::Result<Self> {
         let mut bench = Self::default();
         for setting in settings {
@@ -161,9 +157,7 @@ impl Bench {
     }
 
     /// How unlike the films are, standard deviation over mean: their maxima, and their weights of o1.
-    ///
-    /// # Errors
-    /// None but of a bug: what was learned can be restored.
+    /// Fails by a bug alone: what was learned can be restored.
     pub fn films_apart(&self) -> anyhow::Result<[f64; 2]> {
         let (normaliser, weights, _) = self.kept()?;
         let apart = |values: Vec<f64>| {
@@ -176,10 +170,7 @@ impl Bench {
     }
 
     /// The same fingertip as a control has it: something of what was learned is changed; nothing, if there is none. Either way it is
-    /// switched off and on in between.
-    ///
-    /// # Errors
-    /// None but of a bug: what was learned can be restored.
+    /// switched off and on in between. Fails by a bug alone: what was learned can be restored.
     pub fn controlled(&self, control: Option<Control>) -> anyhow::Result<Self> {
         let (normaliser, mut weights, more) = self.kept()?;
         let films = &mut weights[0][..PVDF_COUNT];
@@ -195,13 +186,11 @@ impl Bench {
     }
 
     /// What the network said in the ticks of the last slow frame.
-    #[must_use]
     pub fn said(&self) -> &[Said] {
         &self.said
     }
 
     /// Weights and activations.
-    #[must_use]
     pub fn network(&self) -> NetworkState {
         self.fingertip.network()
     }

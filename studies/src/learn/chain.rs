@@ -28,7 +28,6 @@ pub struct Chain {
 
 impl Chain {
     /// A chain of at least one trial.
-    #[must_use]
     pub fn new(setups: Vec<Setup>) -> Self {
         let left = setups.first().map_or(0, |setup| slow_frames(&setup.world) * SLOW_FRAME_SCANS);
         Self { setups, now: 0, left }
@@ -36,7 +35,6 @@ impl Chain {
 
     /// What a board said in each, and what was true. `host` is what the host's logic said to the same codes: it tells slip from a
     /// warning, which the line does not, and is the board's own where the two agree.
-    #[must_use]
     pub fn trials(self, run: &Run, host: &Said) -> Vec<Trial> {
         let mut slows = run.slows.iter().peekable();
         let mut begins = 0;

@@ -23,7 +23,6 @@ pub enum Control {
 }
 
 impl Control {
-    /// All of them.
     pub const ALL: [Self; 7] = [
         Self::EqualWeights,
         Self::EqualVolts,
@@ -35,7 +34,6 @@ impl Control {
     ];
 
     /// Its key in a report.
-    #[must_use]
     pub const fn key(self) -> &'static str {
         match self {
             Self::EqualWeights => "equal_weights",
@@ -49,7 +47,6 @@ impl Control {
     }
 
     /// Changes the films' weights of o1, and gives the ratio of slip, per mille with 8 fraction bits. `maxima` are the films'.
-    #[must_use]
     pub fn change(self, films: &mut [Weight], maxima: &[u32], slips_at: u32) -> u32 {
         let sum: i64 = films.iter().map(|weight| i64::from(weight.into_bits())).sum();
         match self {

@@ -37,9 +37,7 @@ pub(super) fn crackle(pvdf: &mut [u16; PVDF_COUNT], frame: u32) {
 pub type Tried = (Score, Holding);
 
 /// A plain finger of which one film crackles learns; then it is tried with what it has learned, and with equal weights.
-///
-/// # Errors
-/// If a scene cannot be made.
+/// Fails if a scene cannot be made.
 pub fn compare(options: &Options) -> anyhow::Result<[Tried; 2]> {
     let finger = options.finger(Finger::plain(options.seed));
     let mut learned = Bench::with_settings(&options.settings)?.crackling();

@@ -12,7 +12,7 @@ use super::trial::{Setup, Trial, Word};
 use super::{LESSONS, Outcome};
 use tenax_plot::draw;
 use tenax_plot::figure::{Curve, Figure, Panel, colour};
-use tenax_plot::sheet::{self, draw as sheets};
+use tenax_plot::sheet::{self, Axis, Mark, Series, Sheet, draw as sheets};
 use tenax_plot::thin::thin;
 
 /// What the network was given in a trial.
@@ -46,10 +46,7 @@ impl Felt {
 /// A drawing and its name.
 pub type Drawing = (&'static str, String);
 
-/// All of them.
-///
-/// # Errors
-/// If one cannot be drawn.
+/// All of them. Fails if one cannot be drawn.
 pub fn draw_all(outcome: &Outcome) -> anyhow::Result<Vec<Drawing>> {
     let mut drawings = vec![("learn-receptors", draw::svg(&receptors(&outcome.felt))?)];
     if let Some(trial) = outcome.trials.first() {
@@ -171,30 +168,21 @@ fn outputs(trial: &Trial) -> Figure {
 }
 
 /// Figures 7 (c) and (d), 8 and 9.
-fn worth(outcome: &Outcome) -> sheet::Sheet {
+fn worth(outcome: &Outcome) -> Sheet {
     let mut panels = Vec::new();
     panels.extend(outcome.trials.first().map(beginning));
     panels.push(firsts(outcome));
     panels.push(sunk("8: the lift with the reflex", &outcome.lifts, 1.2));
     panels.push(sunk("9: the pour", &outcome.pours, 6.0));
-    sheet::Sheet {
-        title: "What the network is worth (Tada 2006, figures 7 c, 7 d, 8 and 9)".to_owned(),
-        subtitle: format!(
+    Sheet::new(
+        "What the network is worth (Tada 2006, figures 7 c, 7 d, 8 and 9)",
+        format!(
             "{} held-out trials, {} board, seed {}; lift and pour of one seed on the host's logic",
             outcome.score.trials, outcome.board, outcome.options.seed
         ),
-        columns: 2,
+        2,
         panels,
-        errors: None,
-    }
-}
-
-fn series(name: &str, colour: RGBColor, mark: sheet::Mark, points: Vec<(f64, f64)>) -> sheet::Series {
-    sheet::Series { name: name.to_owned(), colour, mark, points }
-}
-
-fn plain(title: &str, x: sheet::Axis, y: sheet::Axis, series: Vec<sheet::Series>) -> sheet::Panel {
-    sheet::Panel { title: title.to_owned(), x, y, cells: Vec::new(), series, words: Vec::new() }
+    )
 }
 
 /// Figure 7 (c).
@@ -204,27 +192,22 @@ fn beginning(trial: &Trial) -> sheet::Panel {
     let o1 = ticks.map(|(tick, outputs)| (since(Trial::time_s(tick)), f64::from(outputs[0]) / 128.0));
     let codes = trial.truth.camera.iter().map(|seen| (since(seen.arrives_s), f64::from(seen.v1)));
     let mut all = vec![
-        series("network", colour::BLUE, sheet::Mark::Line, o1.collect()),
-        series("vision", colour::ORANGE, sheet::Mark::Line, steps(codes)),
+        Series::new("network", colour::BLUE, Mark::Line, o1),
+        Series::new("vision", colour::ORANGE, Mark::Line, steps(codes)),
     ];
     let upright = |t_s: f64| vec![(since(t_s), -1.2), (since(t_s), 1.2)];
     if let Some([up, _]) = trial.both_slips() {
-        all.push(series(
-            "first place lets go",
-            colour::GREEN,
-            sheet::Mark::Dashes,
-            upright(up.micro_onset_s),
-        ));
-        all.push(series("all of it slides", colour::PURPLE, sheet::Mark::Dashes, upright(up.macro_onset_s)));
+        all.push(Series::new("first place lets go", colour::GREEN, Mark::Dashes, upright(up.micro_onset_s)));
+        all.push(Series::new("all of it slides", colour::PURPLE, Mark::Dashes, upright(up.macro_onset_s)));
     }
     for (name, colour, word) in
         [("slip said", colour::VERMILLION, Word::Slip), ("first word", colour::GREY, Word::Any)]
     {
         let said = trial.said_s(word).map(|t_s| (since(t_s), 0.0));
-        all.push(series(name, colour, sheet::Mark::Rings, said.into_iter().collect()));
+        all.push(Series::new(name, colour, Mark::Rings, said));
     }
-    let x = sheet::Axis::even("time from the beginning of the lift, s", 0.0, 0.8);
-    plain("7 (c): o1 and v1 as the slip begins", x, sheet::Axis::even("o1, v1", -1.2, 1.2), all)
+    let x = Axis::even("time from the beginning of the lift, s", 0.0, 0.8);
+    sheet::Panel::new("7 (c): o1 and v1 as the slip begins", x, Axis::even("o1, v1", -1.2, 1.2), all)
 }
 
 /// Figure 7 (d), each trial by itself.
@@ -232,37 +215,36 @@ fn firsts(outcome: &Outcome) -> sheet::Panel {
     let score = &outcome.score;
     let dots = |name: &str, colour, mark, times: &[f64]| {
         let points = times.iter().enumerate().map(|(n, &t_s)| (n as f64 + 1.0, t_s));
-        let points = points.filter(|(_, t_s)| t_s.is_finite()).collect();
-        series(name, colour, mark, points)
+        Series::new(name, colour, mark, points.filter(|(_, t_s)| t_s.is_finite()))
     };
     // A trial in which it was not said has no dot.
     let said_s = |words: &Words| -> Vec<f64> {
         words.said_s.iter().map(|said_s| said_s.unwrap_or(f64::NAN)).collect()
     };
-    let x = sheet::Axis::even("trial", 0.0, score.trials as f64 + 1.0);
+    let x = Axis::even("trial", 0.0, score.trials as f64 + 1.0);
     let all = vec![
-        dots("first word", colour::BLUE, sheet::Mark::Dots, &said_s(&score.first)),
-        dots("slip said", colour::VERMILLION, sheet::Mark::Rings, &said_s(&score.slip)),
-        dots("vision", colour::ORANGE, sheet::Mark::Dots, &score.vision_s),
-        dots("first place lets go", colour::GREEN, sheet::Mark::Dashes, &score.micro_s),
-        dots("all of it slides", colour::PURPLE, sheet::Mark::Dashes, &score.macro_s),
+        dots("first word", colour::BLUE, Mark::Dots, &said_s(&score.first)),
+        dots("slip said", colour::VERMILLION, Mark::Rings, &said_s(&score.slip)),
+        dots("vision", colour::ORANGE, Mark::Dots, &score.vision_s),
+        dots("first place lets go", colour::GREEN, Mark::Dashes, &score.micro_s),
+        dots("all of it slides", colour::PURPLE, Mark::Dashes, &score.macro_s),
     ];
-    plain("7 (d): when slip was first said", x, sheet::Axis::even("s from the lift", 0.0, 0.8), all)
+    sheet::Panel::new("7 (d): when slip was first said", x, Axis::even("s from the lift", 0.0, 0.8), all)
 }
 
 /// Figures 8 and 9: how far the object sinks in the hand, by who tells the reflex.
 fn sunk(title: &str, runs: &[Three], until_s: f64) -> sheet::Panel {
     let names = [("network", colour::BLUE), ("vision", colour::ORANGE), ("bound", colour::GREY)];
-    let all: Vec<sheet::Series> = runs
+    let all: Vec<Series> = runs
         .iter()
         .take(1)
         .flat_map(|three| three.iter().zip(names))
         .map(|(run, (name, colour))| {
-            let points = run.sunk_mm.iter().copied().filter(|(t_s, _)| *t_s <= until_s).collect();
-            series(name, colour, sheet::Mark::Line, points)
+            let points = run.sunk_mm.iter().copied().filter(|(t_s, _)| *t_s <= until_s);
+            Series::new(name, colour, Mark::Line, points)
         })
         .collect();
     let most = all.iter().flat_map(|series| &series.points).map(|point| point.1).fold(1.0, f64::max);
-    let x = sheet::Axis::even("time, s", 0.0, until_s);
-    plain(title, x, sheet::Axis::even("slipped, mm", 0.0, most * 1.05), all)
+    let x = Axis::even("time, s", 0.0, until_s);
+    sheet::Panel::new(title, x, Axis::even("slipped, mm", 0.0, most * 1.05), all)
 }

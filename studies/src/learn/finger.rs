@@ -38,7 +38,6 @@ pub struct Finger {
 
 impl Finger {
     /// The scene files' own, but for its friction.
-    #[must_use]
     pub const fn plain(making: u64) -> Self {
         Self {
             making,
@@ -54,7 +53,6 @@ impl Finger {
     /// films, the gains of its receptors and how unlike they are; each film's own gain, and its own noise. What nobody has measured
     /// is drawn over a decade, evenly over its logarithm; friction has the ends of `dataset::material`, sliding keeps 0.6 to 0.95 of it. What is left out is as in
     /// the scene files.
-    #[must_use]
     pub fn random(seed: u64) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let mut between = |low: f64, high: f64| rng.random_range(low..high);
@@ -91,24 +89,17 @@ impl Finger {
     }
 
     /// What sliding keeps of static friction.
-    #[must_use]
     pub fn ratio(&self) -> f64 {
         self.mu_d / self.mu_s
     }
 
     /// The scene of this name with this finger and its object, which differs by chance from one time to the next: friction
-    /// and mass by up to 3 %, the first grip by 5 %.
-    ///
-    /// # Errors
-    /// If the scene does not become one with these numbers.
+    /// and mass by up to 3 %, the first grip by 5 %. Fails if the scene does not become one with these numbers.
     pub fn scene(&self, name: &str, seed: u64, more: &[Change]) -> anyhow::Result<SceneFile> {
         self.edited_scene(name, seed, more, |_| ())
     }
 
-    /// The same, and whatever else `edit` does to the file.
-    ///
-    /// # Errors
-    /// If the scene does not become one with these numbers.
+    /// The same, and whatever else `edit` does to the file. Fails if the scene does not become one with these numbers.
     pub fn edited_scene(
         &self,
         name: &str,
@@ -139,7 +130,6 @@ impl Finger {
     }
 
     /// The same finger with one more number of its scenes changed.
-    #[must_use]
     pub fn with(mut self, change: Change) -> Self {
         self.changes.retain(|(place, _)| *place != change.0);
         self.changes.push(change);
@@ -147,20 +137,17 @@ impl Finger {
     }
 
     /// The object's mass, kg.
-    #[must_use]
     pub const fn mass_kg(&self) -> f64 {
         self.mass_kg
     }
 
     /// How long the fingers close at 36 mm/s until they press the object with so many times what it needs, s: they have 1 mm
     /// each to go, and press 0.3 N for each mm after that.
-    #[must_use]
     pub fn closing_s(&self, times: f64) -> f64 {
         (2.0 + times * self.force * NEEDED_N / 0.3) / 36.0
     }
 
     /// What the object needs, over what that of the scene files does.
-    #[must_use]
     pub const fn force(&self) -> f64 {
         self.force
     }

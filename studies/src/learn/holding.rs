@@ -28,9 +28,7 @@ pub struct Holding {
     pub hours: f64,
     /// False alarms of slip, or of a warning.
     pub any: False,
-    /// Of slip.
     pub slip: False,
-    /// Of a warning.
     pub warning: False,
     /// Slips that were true: none is meant here.
     pub slips: u32,
@@ -39,7 +37,6 @@ pub struct Holding {
 /// False alarms of one kind of word.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct False {
-    /// How many.
     pub count: u32,
     /// Those of them in micro slip that came to nothing: right about the contact, wrong about the object.
     pub in_micro_slip: u32,
@@ -61,17 +58,12 @@ impl Add for False {
 }
 
 impl Holding {
-    /// So many in an hour of it.
-    #[must_use]
     pub fn per_hour(&self, alarms: False) -> f64 {
         if self.hours > 0.0 { f64::from(alarms.count) / self.hours } else { 0.0 }
     }
 }
 
-/// So many minutes with this fingertip, each by itself. `done` is told when one is over.
-///
-/// # Errors
-/// If a scene cannot be made.
+/// So many minutes with this fingertip, each by itself. `done` is told when one is over. Fails if a scene cannot be made.
 pub fn hold(
     finger: &Finger,
     learned: &Bench,

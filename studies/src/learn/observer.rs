@@ -51,10 +51,7 @@ pub struct Watched {
     pub rising: Vec<(f64, [f64; SENSES.len()])>,
 }
 
-/// Watches the held-out trials of a finger.
-///
-/// # Errors
-/// If a scene cannot be made.
+/// Watches the held-out trials of a finger. Fails if a scene cannot be made.
 pub fn watch(finger: &Finger, all: u64, trials: u64) -> anyhow::Result<Vec<Watched>> {
     (0..trials)
         .into_par_iter()
@@ -175,7 +172,6 @@ pub struct Bound {
 
 impl Bound {
     /// Of the trials that a camera saw.
-    #[must_use]
     pub fn of(finger: [u64; 2], ratio: f64, trials: &[Watched]) -> Self {
         let lead = |when: &dyn Fn(&Watched) -> Option<f64>| {
             [1, 0].map(|delay| {
@@ -198,10 +194,7 @@ impl Bound {
     }
 }
 
-/// The plain finger and so many made by chance, with the same trials as `tenax learn` of this seed.
-///
-/// # Errors
-/// If a scene cannot be made.
+/// The plain finger and so many made by chance, with the same trials as `tenax learn` of this seed. Fails if a scene cannot be made.
 pub fn bounds(all: u64, fingertips: u64, trials: u64) -> anyhow::Result<(Vec<Bound>, Vec<Watched>)> {
     let plain = Finger::plain(all);
     let watched = watch(&plain, all, trials)?;

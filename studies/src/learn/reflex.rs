@@ -31,17 +31,13 @@ pub struct Reflexed {
     pub distance_mm: f64,
     /// What each finger pressed with in the end, N.
     pub grip_n: f64,
-    /// Whether it was dropped.
     pub dropped: bool,
 }
 
 /// One of each judge, with the same chance.
 pub type Three = [Reflexed; 3];
 
-/// So many lifts.
-///
-/// # Errors
-/// If a scene cannot be made.
+/// So many lifts. Fails if a scene cannot be made.
 pub fn lifts(finger: &Finger, learned: &Bench, count: u64, seed: u64) -> anyhow::Result<Vec<Three>> {
     (0..count)
         .into_par_iter()
@@ -53,10 +49,7 @@ pub fn lifts(finger: &Finger, learned: &Bench, count: u64, seed: u64) -> anyhow:
         .collect()
 }
 
-/// So many pours.
-///
-/// # Errors
-/// If a scene cannot be made.
+/// So many pours. Fails if a scene cannot be made.
 pub fn pours(finger: &Finger, learned: &Bench, count: u64, seed: u64) -> anyhow::Result<Vec<Three>> {
     (0..count)
         .into_par_iter()

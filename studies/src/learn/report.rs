@@ -12,7 +12,6 @@ use super::{Other, Outcome};
 /// Mean, standard deviation and least of a sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Spread {
-    /// Mean.
     pub mean: f64,
     /// Standard deviation of the sample.
     pub sd: f64,
@@ -22,7 +21,6 @@ pub struct Spread {
 
 impl Spread {
     /// Of these; zeros if there are none.
-    #[must_use]
     pub fn of(values: &[f64]) -> Self {
         let count = values.len() as f64;
         if values.is_empty() {
@@ -63,14 +61,11 @@ impl Words {
         self.lead_no_delay_s.extend(lead(trial.vision_without_delay_s()));
     }
 
-    /// Of the leads.
-    #[must_use]
     pub fn lead(&self) -> Spread {
         Spread::of(&self.lead_s)
     }
 
     /// How much earlier than `other` in the same trials, s, of those in which both spoke.
-    #[must_use]
     pub fn sooner_s(&self, other: &Self) -> Vec<f64> {
         let both = self.said_s.iter().zip(&other.said_s);
         both.filter_map(|(own, other)| Some((*other)? - (*own)?)).collect()
@@ -80,7 +75,6 @@ impl Words {
 /// Held-out trials, scored.
 #[derive(Clone, Debug, Default)]
 pub struct Score {
-    /// How many.
     pub trials: u64,
     /// First said by the camera, s after the lift began.
     pub vision_s: Vec<f64>,
@@ -97,8 +91,6 @@ pub struct Score {
 }
 
 impl Score {
-    /// Of these trials.
-    #[must_use]
     pub fn of(trials: &[Trial]) -> Self {
         let mut score = Self { trials: trials.len() as u64, ..Self::default() };
         for trial in trials {
@@ -170,7 +162,6 @@ pub struct Slip {
 /// A control beside what was learned, of slip.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Against {
-    /// Its lead, s.
     pub lead_s: f64,
     /// Trials in whose slip it did not say it.
     pub missed: u64,
@@ -178,7 +169,6 @@ pub struct Against {
     pub learned_sooner_s: f64,
 }
 
-/// Warnings.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Warning {
     /// False alarms in an hour of holding.
@@ -188,7 +178,6 @@ pub struct Warning {
 /// Fingers made by chance.
 #[derive(Clone, Debug, Serialize)]
 pub struct Fingertips {
-    /// How many.
     pub count: u64,
     /// The mean lead of the worst of them, s. Null if one of them said neither in a slip or told a direction wrongly, or there are
     /// none.
@@ -201,10 +190,8 @@ pub struct Fingertips {
     pub even: Group,
 }
 
-/// Some of them.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Group {
-    /// How many.
     pub count: usize,
     /// Mean lead of the first word, slip or a warning of it, s.
     pub lead_s: f64,
@@ -220,7 +207,6 @@ pub struct Group {
     pub slip_lead_s_no_delay: f64,
     /// Trials in whose slip it was not said.
     pub slip_missed: u64,
-    /// Each control.
     pub controls: BTreeMap<&'static str, Controlled>,
 }
 
@@ -238,7 +224,6 @@ pub struct Controlled {
 /// Lifts with more force than the object needs, in which every verdict is false.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Safe {
-    /// How many.
     pub lifts: u64,
     /// In which slip was said, or warned of.
     pub said: u64,
@@ -285,8 +270,6 @@ impl Group {
 }
 
 impl Report {
-    /// Of an outcome.
-    #[must_use]
     pub fn of(outcome: &Outcome) -> Self {
         let (score, equal) = (&outcome.score, &outcome.equal);
         let holding = &outcome.holding;
@@ -331,7 +314,6 @@ impl Report {
 
 impl Outcome {
     /// Lifts with more force than is needed.
-    #[must_use]
     pub fn safe(&self) -> Safe {
         self.others.iter().fold(Safe::default(), |all, other| Safe {
             lifts: all.lifts + other.safe.lifts,
@@ -341,20 +323,17 @@ impl Outcome {
     }
 
     /// Whether every finger made by chance said slip, or warned, in every slip, and told its direction.
-    #[must_use]
     pub fn others_work(&self) -> bool {
         self.others.iter().all(|other| other.score.first.missed == 0 && other.score.direction_wrong == 0)
     }
 
     /// The mean lead of the worst finger made by chance, s.
-    #[must_use]
     pub fn worst_lead_s(&self) -> Option<f64> {
         let seen = self.others.iter().filter(|other| !other.score.first.lead_s.is_empty());
         seen.map(|other| other.score.first.lead().mean).min_by(f64::total_cmp)
     }
 
     /// The fingers made by chance whose sliding keeps at most 0.75 of static friction, or the others.
-    #[must_use]
     pub fn group(&self, slippery: bool) -> Group {
         Group::of(self.others.iter().filter(|other| (other.ratio <= SLIPPERY) == slippery))
     }
@@ -366,7 +345,6 @@ pub(super) fn said_s(words: &Words) -> Spread {
 }
 
 /// A figure of each judge's runs, in the order of [`JUDGES`].
-#[must_use]
 pub fn of_judges(runs: &[Three], figure: impl Fn(&Reflexed) -> f64) -> [Spread; 3] {
     [0, 1, 2].map(|judge| Spread::of(&runs.iter().map(|three| figure(&three[judge])).collect::<Vec<_>>()))
 }

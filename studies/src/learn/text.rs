@@ -7,7 +7,6 @@ use super::reflex::{Reflexed, Three};
 use super::report::{Controlled, Score, Spread, Words, of_judges, said_s};
 use super::{LESSONS, Outcome};
 
-/// All of it.
 #[derive(Clone, Copy, Debug)]
 pub struct Text<'a>(pub &'a Outcome);
 

@@ -16,7 +16,6 @@ use super::finger::{Change, Finger};
 use tenax_bench::report::fate;
 use tenax_bench::scorer::{Card, Doing, Outcome, Stretch, Verdict, outcome};
 
-/// The scene of a trial.
 pub const SCENE: &str = "pick-up-trial";
 /// When its arm begins to lift, at the earliest, s. Chance adds up to six of the camera's images, so that no image has a
 /// favourite instant.
@@ -26,7 +25,6 @@ const LATER_S: f64 = 0.2;
 /// A trial before it is run.
 #[derive(Debug)]
 pub struct Setup {
-    /// Its world.
     pub world: World,
     /// When the arm begins to lift, s.
     pub lift_s: f64,
@@ -34,18 +32,12 @@ pub struct Setup {
 
 impl Setup {
     /// A trial of this finger. The seed decides all that differs from one trial to the next. A lesson is one in which the
-    /// camera teaches.
-    ///
-    /// # Errors
-    /// If the scene cannot be made.
+    /// camera teaches. Fails if the scene cannot be made.
     pub fn new(finger: &Finger, seed: u64, lesson: bool) -> anyhow::Result<Self> {
         Self::changed(finger, seed, lesson, &[])
     }
 
-    /// A lift with more force than the object needs, by chance; the fingers do not close further.
-    ///
-    /// # Errors
-    /// If the scene cannot be made.
+    /// A lift with more force than the object needs, by chance; the fingers do not close further. Fails if the scene cannot be made.
     pub fn held(finger: &Finger, seed: u64) -> anyhow::Result<Self> {
         let more = ChaCha8Rng::seed_from_u64(seed).random_range(SAFE_FORCE);
         let grip = [
@@ -56,19 +48,13 @@ impl Setup {
         Self::changed(finger, seed, false, &grip)
     }
 
-    /// The same with some numbers of its scene changed.
-    ///
-    /// # Errors
-    /// If the scene cannot be made.
+    /// The same with some numbers of its scene changed. Fails if the scene cannot be made.
     pub fn changed(finger: &Finger, seed: u64, lesson: bool, more: &[Change]) -> anyhow::Result<Self> {
         let (scene, lift_s) = Self::scene(finger, seed, lesson, more)?;
         Ok(Self { world: World::seeded(&scene, Seeds { making: finger.making, noise: seed }), lift_s })
     }
 
-    /// Its scene, and when the arm begins to lift, s.
-    ///
-    /// # Errors
-    /// If the scene cannot be made.
+    /// Its scene, and when the arm begins to lift, s. Fails if the scene cannot be made.
     pub fn scene(
         finger: &Finger,
         seed: u64,
@@ -102,8 +88,6 @@ pub enum Word {
 }
 
 impl Word {
-    /// Whether this is said.
-    #[must_use]
     pub const fn is_in(self, said: Said) -> bool {
         match self {
             Self::Any => said.slip || said.incipient,
@@ -114,7 +98,6 @@ impl Word {
 }
 
 /// What the network said in a tick, of the detectors that say slip and of those that warn.
-#[must_use]
 pub const fn by_network([slip, warning]: [DetectorSet; 2]) -> Said {
     Said { slip: slip.contains(DetectorId::Hebbian), incipient: warning.contains(DetectorId::Hebbian) }
 }
@@ -148,7 +131,6 @@ impl Trial {
     }
 
     /// When a tick ran, s.
-    #[must_use]
     pub fn time_s(tick: usize) -> f64 {
         (tick as f64 + 1.0) / f64::from(FRAME_HZ)
     }
@@ -158,13 +140,11 @@ impl Trial {
     }
 
     /// The slip up, if there was one.
-    #[must_use]
     pub fn slip_up(&self) -> Option<Slip> {
         self.slips_since_lift().next().copied()
     }
 
     /// The slips that were not meant: up, then down.
-    #[must_use]
     pub fn both_slips(&self) -> Option<[Slip; 2]> {
         let up = self.slip_up()?;
         // A long slip is the one that is meant here; a slide of a fraction of a millimetre before or after is part of it.
@@ -173,7 +153,6 @@ impl Trial {
     }
 
     /// The stretches in which the network said this.
-    #[must_use]
     pub fn verdicts(&self, word: Word) -> Vec<Verdict> {
         let mut all: Vec<Verdict> = Vec::new();
         let mut before = false;
@@ -189,7 +168,6 @@ impl Trial {
     }
 
     /// When the network first said this in the slip up, in time or late, s.
-    #[must_use]
     pub fn said_s(&self, word: Word) -> Option<f64> {
         let up = self.slip_up()?;
         let span =
@@ -201,7 +179,6 @@ impl Trial {
     }
 
     /// The event scores of the trial, from its beginning to the end of the slip down. What rubs afterwards stands on the table.
-    #[must_use]
     pub fn card(&self, word: Word) -> Card {
         let Some([_, down]) = self.both_slips() else { return Card::default() };
         let to_s = down.end_s.unwrap_or(f64::INFINITY).min(Self::time_s(self.said.len()));
@@ -210,13 +187,11 @@ impl Trial {
     }
 
     /// When the camera's first v1 = -1 after that came over the line, s.
-    #[must_use]
     pub fn vision_s(&self) -> Option<f64> {
         Some(self.first_seen()?.arrives_s)
     }
 
     /// When the second of its images was taken, s: a camera without delay had said it then.
-    #[must_use]
     pub fn vision_without_delay_s(&self) -> Option<f64> {
         Some(self.first_seen()?.t_s)
     }
@@ -226,14 +201,12 @@ impl Trial {
     }
 
     /// Ticks between two instants.
-    #[must_use]
     pub fn ticks(&self, span_s: Range<f64>) -> Range<usize> {
         let tick = |t_s: f64| ((t_s * f64::from(FRAME_HZ)) as usize).min(self.outputs.len());
         tick(span_s.start)..tick(span_s.end)
     }
 
     /// What o2 said of the direction in a slip, the mean of it, -1 to 1.
-    #[must_use]
     pub fn direction(&self, slip: &Slip) -> f64 {
         let ticks = self.ticks(slip.macro_onset_s..slip.end_s.unwrap_or(f64::INFINITY));
         let said = &self.outputs[ticks];
@@ -241,7 +214,6 @@ impl Trial {
     }
 
     /// Whether this was said where nothing slipped.
-    #[must_use]
     pub fn false_alarm(&self, word: Word) -> bool {
         self.card(word).false_alarms.count > 0
     }

@@ -42,7 +42,6 @@ pub struct Calibration {
 
 impl Calibration {
     /// The settings that bring it to a board, with their values.
-    #[must_use]
     pub fn settings(&self) -> Vec<(SettingId, i32)> {
         use SettingId as Id;
         let mv = |level_q4: i32| mv_from_sample((level_q4 >> 4) as u16) as i32;
@@ -61,13 +60,11 @@ impl Calibration {
     }
 
     /// The configuration of a head with this calibration.
-    #[must_use]
     pub fn config(&self) -> HeadConfig {
         HeadConfig { curve: self.curve, ..mean_head() }
     }
 
     /// The largest residual, % of the curve's end.
-    #[must_use]
     pub fn worst_percent(&self) -> f64 {
         let end_n = f64::from(self.curve.force_mn[KNOTS - 1]) / 1e3;
         self.weighed.iter().map(|w| (w.read_n - w.force_n).abs() / end_n * 100.0).fold(0.0, f64::max)
@@ -75,7 +72,6 @@ impl Calibration {
 }
 
 /// Puts weight after weight on a head, up to 20 % beyond where its curve should end.
-#[must_use]
 pub fn weigh(making: &Making, day: &Day, seeds: Seeds) -> Calibration {
     let mut bench = Bench::new(mean_head(), seeds.noise);
     let read = |force_n: f64, bench: &mut Bench| {
@@ -95,7 +91,6 @@ pub fn weigh(making: &Making, day: &Day, seeds: Seeds) -> Calibration {
 }
 
 /// The curve through forces and levels (1/16 of a sample), in rising order of force, the first without load.
-#[must_use]
 pub fn fit(levels: &[(f64, f64)]) -> Calibration {
     let dark = levels.first().map_or(0.0, |first| first.1);
     let top = (1..levels.len() - 1).max_by(|a, b| levels[*a].1.total_cmp(&levels[*b].1)).unwrap_or(1);

@@ -15,7 +15,6 @@ pub const SCAN_S: f64 = 1.0 / SCAN_HZ as f64;
 const CONVERTER_LSB: f64 = 1.0;
 
 /// The mean head's calibration, fitted.
-#[must_use]
 pub fn mean_head() -> HeadConfig {
     HeadConfig { fitted: true, ..Config::default().head }
 }
@@ -33,13 +32,11 @@ pub struct Bench {
 
 impl Bench {
     /// A head that is read for the first time. The seed is the converter's.
-    #[must_use]
     pub fn new(config: HeadConfig, seed: u64) -> Self {
         Self { config, head: Head::default(), converter: ChaCha8Rng::seed_from_u64(seed), scans: 0 }
     }
 
     /// Since the start, s.
-    #[must_use]
     pub fn now_s(&self) -> f64 {
         self.scans as f64 * SCAN_S
     }
@@ -60,7 +57,6 @@ impl Bench {
         sample
     }
 
-    /// One cycle.
     pub fn cycle(&mut self, hints: Hints, mut pin_v: impl FnMut(f64) -> f64) {
         for _ in 0..FRAMES_PER_SLOW_FRAME {
             self.frame(&mut pin_v);
@@ -80,7 +76,6 @@ pub fn over_decades(random: &mut ChaCha8Rng, low: f64, high: f64) -> f64 {
 }
 
 /// The middle of a list that is not empty.
-#[must_use]
 pub fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)

@@ -22,7 +22,6 @@ const AT_THE_PEAK_N: f64 = 0.06;
 /// One cycle of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Point {
-    /// When, s.
     pub t_s: f64,
     /// The true force, N.
     pub true_n: f64,
@@ -36,7 +35,6 @@ pub struct Point {
     pub shear: f64,
     /// Whether the branch is known.
     pub is_certain: bool,
-    /// Whether it is the wrong one.
     pub is_wrong: bool,
 }
 
@@ -76,7 +74,6 @@ impl Story {
     }
 
     /// The same, of an object that is lifted, swung and set down meanwhile: at each target its shear is another one.
-    #[must_use]
     pub fn sheared(mut self, random: &mut ChaCha8Rng) -> Self {
         let most = f64::from(SHEAR_MAX_PERMILLE) / 1e3;
         self.shears = self.steps.iter().map(|_| between(random, 0.0, most)).collect();
@@ -123,7 +120,6 @@ pub struct Session {
 
 impl Session {
     /// Of a head and a day drawn with this seed. A hand has gripped once over the peak with it since it was switched on.
-    #[must_use]
     pub fn new(seed: u64) -> Self {
         let seeds = Seeds { making: seed, noise: seed };
         let making = Making::drawn(seeds, 0.2);
@@ -151,25 +147,20 @@ impl Session {
     }
 
     /// The head.
-    #[must_use]
     pub const fn making(&self) -> &Making {
         &self.making
     }
 
     /// Where its light is brightest today, N.
-    #[must_use]
     pub const fn peak_n(&self) -> f64 {
         self.peak_n
     }
 
     /// The logic that reads it.
-    #[must_use]
     pub const fn head(&self) -> &Head {
         &self.bench.head
     }
 
-    /// Its day.
-    #[must_use]
     pub const fn day(&self) -> &Day {
         &self.day
     }
@@ -253,13 +244,10 @@ pub struct Score {
     pub least_above_part: f64,
     /// Time in which the head says that it is certain, and of the wrong branch, s.
     pub wrong_branch_s: f64,
-    /// Cycles.
     pub cycles: usize,
 }
 
 impl Score {
-    /// Of runs.
-    #[must_use]
     pub fn of<'a>(runs: impl IntoIterator<Item = &'a [Point]>) -> Self {
         let (mut score, mut squares, mut certain, mut off) = (Self::default(), 0.0, 0_usize, 0_usize);
         let (mut below, mut above) = (0_usize, 0_usize);
@@ -288,7 +276,6 @@ impl Score {
 }
 
 /// As many sessions as there are seeds, each with as many stories, sheared or not.
-#[must_use]
 pub fn sessions(seeds: impl IntoIterator<Item = u64>, stories: usize, sheared: bool) -> Vec<Vec<Point>> {
     let mut runs = Vec::new();
     for seed in seeds {

@@ -25,7 +25,6 @@ impl<const N: usize> LeastSquares<N> {
     }
 
     /// The unknowns. Without pivots: the matrix is positive definite where there are as many different equations.
-    #[must_use]
     pub fn solve(mut self) -> [f64; N] {
         for n in 0..N {
             let (pivot, value) = (self.matrix[n], self.right[n]);

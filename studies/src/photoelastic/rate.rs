@@ -23,7 +23,6 @@ const RATES_MM_S: (f64, f64) = (0.1, 3.0);
 /// Loads, N: the blocks of 105 and 155 g between two fingers need some 1 to 2 N.
 const LOADS_N: (f64, f64) = (0.7, 2.0);
 
-/// The materials.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Material {
     /// The aluminium block.
@@ -37,7 +36,6 @@ impl Material {
     pub const ALL: [Self; 2] = [Self::Aluminium, Self::Plastic];
 
     /// For a person.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Aluminium => "aluminium",
@@ -46,7 +44,6 @@ impl Material {
     }
 
     /// Of the material on the strip.
-    #[must_use]
     pub const fn friction(self) -> Stribeck {
         match self {
             Self::Aluminium => METAL,
@@ -80,13 +77,11 @@ pub struct Seen {
 
 impl Rig {
     /// The mean head on its first day, calibrated.
-    #[must_use]
     pub fn mean(slider: Slider, seed: u64) -> Self {
         Self::with(Making::MEAN, Day::FIRST, slider, seed, &super::bench::mean_head())
     }
 
     /// A head of this making and its day; `config` is its calibration.
-    #[must_use]
     pub fn with(
         making: Making,
         day: Day,
@@ -143,7 +138,6 @@ impl Rig {
 }
 
 /// A head that was calibrated on its first day, and a material, both on a day of their own.
-#[must_use]
 pub fn rig_of(making_seed: u64, day_seed: u64, material: Material) -> Rig {
     let seeds = Seeds { making: making_seed, noise: day_seed };
     let making = Making::drawn(seeds, 0.2);
@@ -162,7 +156,6 @@ pub fn rig_of(making_seed: u64, day_seed: u64, material: Material) -> Rig {
 }
 
 /// Slips at rates and loads drawn with the day's seed, on one head.
-#[must_use]
 pub fn slips(making_seed: u64, day_seed: u64, material: Material, count: usize) -> Vec<Seen> {
     let mut random = ChaCha8Rng::seed_from_u64(day_seed ^ 0x51);
     (0..count)
@@ -175,7 +168,6 @@ pub fn slips(making_seed: u64, day_seed: u64, material: Material, count: usize) 
 }
 
 /// The fit of all slips that swing (least squares of logarithms).
-#[must_use]
 pub fn fit<'a>(slips: impl IntoIterator<Item = &'a Seen>) -> RateFit {
     let mut equations = LeastSquares::<4>::default();
     for seen in slips {
@@ -191,7 +183,6 @@ pub fn fit<'a>(slips: impl IntoIterator<Item = &'a Seen>) -> RateFit {
 }
 
 /// How far off each rate is, %.
-#[must_use]
 pub fn errors_percent(fit: &RateFit, slips: &[Seen]) -> Vec<f64> {
     let error = |seen: &Seen| {
         let (amplitude, period_q4, force_mn) = seen.swing?;

@@ -2,8 +2,7 @@
 
 use tenax_scene::physics::stribeck::{BLOCK_N, METAL, Slider, Stribeck};
 use tenax_scene::sensor::photoelastic::HEAD_STRIP;
-use tenax_scene::stepping::SHIPPED_S;
-use tenax_scene::stepping::problem::SelfExcited;
+use tenax_scene::stepping::{SHIPPED_S, SelfExcited};
 
 use super::rate::{Material, Rig, rig_of};
 
@@ -24,13 +23,11 @@ fn slider(drop: f64) -> Slider {
 }
 
 /// The steepest fall of this friction, dmu/dv at rest, s/m.
-#[must_use]
 pub fn steepness_s_m(drop: f64) -> f64 {
     -slider(drop).friction.slope_s_m(0.0)
 }
 
 /// The speed at which `c + P dmu/dv = 0`, mm/s; None if the fall is nowhere steep enough.
-#[must_use]
 pub fn theory_mm_s(drop: f64) -> Option<f64> {
     let steepest = LOAD_N * steepness_s_m(drop);
     (steepest > HEAD_STRIP.damping_ns_per_m)
@@ -45,7 +42,6 @@ fn grows(drop: f64, rate_mm_s: f64) -> bool {
 }
 
 /// The speed below which it vibrates by itself as the scene's strip does, mm/s, by halving.
-#[must_use]
 pub fn measured_mm_s(drop: f64) -> Option<f64> {
     let theory_mm_s = theory_mm_s(drop)?;
     let (mut low, mut high) = (0.5 * theory_mm_s, 2.0 * theory_mm_s);
@@ -70,7 +66,6 @@ pub struct Point {
     pub seen: bool,
 }
 
-/// The region.
 #[derive(Clone, Debug)]
 pub struct Region {
     /// Steepness, and the boundary's speed by theory and as measured, mm/s.
@@ -82,7 +77,6 @@ pub struct Region {
 }
 
 /// Measures it.
-#[must_use]
 pub fn region(progress: &mut dyn FnMut(f64)) -> Region {
     let mut boundary_pct = 0.0_f64;
     let mut boundary = Vec::new();
@@ -112,7 +106,6 @@ pub fn region(progress: &mut dyn FnMut(f64)) -> Region {
 }
 
 /// The slowest slip of aluminium, mm/s, that is seen on every head of these seeds, and so is every faster one of the list.
-#[must_use]
 pub fn floor_mm_s(seeds: impl IntoIterator<Item = u64>) -> f64 {
     let mut worst = 0.0_f64;
     for seed in seeds {

@@ -52,13 +52,11 @@ pub struct Sample {
 
 impl Sample {
     /// How far the markers are spread about their mean move, px rms.
-    #[must_use]
     pub fn spread_px(&self) -> f64 {
         self.features.normal[0].into()
     }
 
     /// The force that a calibration makes of it: x, into the skin, z; N.
-    #[must_use]
     pub fn estimate_n(&self, loads: &Loads) -> [f64; 3] {
         let force = loads.newtons(&self.features);
         [force.x, force.normal, force.y].map(f64::from)
@@ -68,7 +66,6 @@ impl Sample {
 /// How a calibration does on samples.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Score {
-    /// Pictures.
     pub pictures: usize,
     /// Shear along x, N rms.
     pub x_rms_n: f64,
@@ -119,10 +116,7 @@ fn for_each_picture(paths: Vec<PathBuf>, mut each: impl FnMut(usize, &Frame) -> 
 }
 
 impl Skin {
-    /// The skin whose pictures at rest are in a table.
-    ///
-    /// # Errors
-    /// If there are none, or hardly a marker is seen in them.
+    /// The skin whose pictures at rest are in a table. Fails if there are none, or hardly a marker is seen in them.
     pub fn at_rest(table: &Path) -> Result<Self> {
         let rest: Vec<PathBuf> =
             rows_of(table)?.into_iter().filter(|(row, _)| row.mass_g == 0.0).map(|(_, path)| path).collect();
@@ -147,16 +141,11 @@ impl Skin {
         Ok(Self { markers })
     }
 
-    /// How many markers it has.
-    #[must_use]
     pub fn markers(&self) -> usize {
         self.markers.len()
     }
 
-    /// The samples of a table of loads on this skin.
-    ///
-    /// # Errors
-    /// If pictures cannot be read, or too few markers are found in one.
+    /// The samples of a table of loads on this skin. Fails if pictures cannot be read, or too few markers are found in one.
     pub fn samples(&self, table: &Path) -> Result<Vec<Sample>> {
         let (rows, paths): (Vec<Row>, Vec<PathBuf>) = rows_of(table)?.into_iter().unzip();
         let mut grey = plane();
@@ -199,9 +188,7 @@ impl Skin {
     }
 
     /// Weights that bring the samples' features nearest to their forces; light loads count more, for errors are relative.
-    ///
-    /// # Errors
-    /// If there are no samples.
+    /// Fails if there are no samples.
     pub fn fit(&self, samples: &[Sample]) -> Result<Loads> {
         if samples.is_empty() {
             bail!("no loads to calibrate on");
@@ -291,7 +278,6 @@ fn ridge(rows: &[Vec<f64>], targets: &[f64], ridge: f64) -> Vec<f64> {
 }
 
 /// How weights do on samples.
-#[must_use]
 pub fn score(loads: &Loads, samples: &[Sample]) -> Score {
     let forces: Vec<_> =
         samples.iter().map(|sample| (loads.newtons(&sample.features), sample.force_n)).collect();
@@ -320,7 +306,6 @@ pub fn score(loads: &Loads, samples: &[Sample]) -> Score {
 type Sum = (f64, [f64; 3], [f64; 3], f64);
 
 /// Each load's truth and estimate: mean over its pictures, N.
-#[must_use]
 pub fn table(loads: &Loads, samples: &[Sample]) -> Vec<(f64, [f64; 3], [f64; 3])> {
     let mut sums: BTreeMap<[i64; 4], Sum> = BTreeMap::new();
     for sample in samples {
@@ -337,7 +322,6 @@ pub fn table(loads: &Loads, samples: &[Sample]) -> Vec<(f64, [f64; 3], [f64; 3])
 }
 
 /// Samples whose mass is within 2 % of one of `masses_g`, and the others.
-#[must_use]
 pub fn left_out(samples: &[Sample], masses_g: &[f64]) -> (Vec<Sample>, Vec<Sample>) {
     let is = |sample: &&Sample| masses_g.iter().any(|mass| (sample.mass_g - mass).abs() <= 0.02 * mass);
     (

@@ -70,10 +70,7 @@ pub struct Feed {
 
 impl Feed {
     /// Opens a source of so many pictures a second. In real time if it is `live`, from the first picture that is asked for; what is
-    /// drawn is drawn before.
-    ///
-    /// # Errors
-    /// If it cannot be opened.
+    /// drawn is drawn before. Fails if it cannot be opened.
     pub fn open(source: &Source, rate_hz: f64, fault: Option<Fault>, live: bool) -> Result<Self> {
         let mut pictures = source.open()?;
         let by_arrival = matches!(source, Source::Device(_));
@@ -110,10 +107,7 @@ impl Feed {
         Ok(Self { sent, live, clock: None, by_arrival, last_ms: 0.0, waiting: None, silent: false })
     }
 
-    /// What comes next.
-    ///
-    /// # Errors
-    /// If a picture could not be read.
+    /// What comes next. Fails if a picture could not be read.
     pub fn take(&mut self) -> Result<Next> {
         self.clock = self.clock.or_else(|| self.live.then(Instant::now));
         let sent = match self.waiting.take() {

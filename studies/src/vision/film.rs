@@ -87,19 +87,13 @@ impl Plan {
         self.rate_hz.or_else(|| self.source.rate_hz()).unwrap_or(30.0)
     }
 
-    /// Opens the source.
-    ///
-    /// # Errors
-    /// If it is not there.
+    /// Opens the source. Fails if it is not there.
     pub fn open(&self) -> Result<Feed> {
         Feed::open(&self.source, self.rate_hz(), self.fault, self.live)
     }
 }
 
-/// Follows all of a source's pictures; `told` hears of each.
-///
-/// # Errors
-/// If pictures cannot be read, or results not written.
+/// Follows all of a source's pictures; `told` hears of each. Fails if pictures cannot be read, or results not written.
 pub fn follow(plan: &Plan, mut feed: Feed, mut told: impl FnMut(Told<'_>) -> Result<()>) -> Result<Report> {
     let mut tables = plan.folder.as_deref().map(Tables::create).transpose()?;
     let mut camera = Camera::new(Config::default());

@@ -16,10 +16,7 @@ const RED: (u8, u8, u8) = (235, 30, 30);
 const GREY: (u8, u8, u8) = (150, 150, 150);
 const YELLOW: (u8, u8, u8) = (250, 220, 0);
 
-/// Draws one picture as PNG.
-///
-/// # Errors
-/// If it cannot be written.
+/// Draws one picture as PNG. Fails if it cannot be written.
 pub fn png(frame: &Frame, camera: &Camera, summary: &Summary) -> Result<Vec<u8>> {
     let (width, height) = (2 * WIDTH * SCALE, HEIGHT * SCALE);
     let mut bytes = vec![255; 4 * width * height];

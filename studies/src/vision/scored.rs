@@ -27,7 +27,6 @@ const SHEAR_MIN_PX: f64 = 1.0;
 pub struct Report {
     /// Sessions drawn, from this seed on.
     pub seed: u64,
-    /// How many.
     pub sessions: u64,
     /// Pictures.
     pub frames: usize,
@@ -68,7 +67,6 @@ pub struct Worst {
     pub seen: Option<f64>,
 }
 
-/// One session.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct BySession {
     /// What it was drawn from.
@@ -192,10 +190,7 @@ impl Scores {
     }
 }
 
-/// Draws and follows sessions.
-///
-/// # Errors
-/// If a picture has another size than the camera wants, which no session draws.
+/// Draws and follows sessions. Fails if a picture has another size than the camera wants, which no session draws.
 pub fn score(seed: u64, sessions: u64) -> Result<Report> {
     let mut scores = Scores::default();
     let (mut frames, mut worked) = (0, Duration::ZERO);

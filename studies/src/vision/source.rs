@@ -33,7 +33,6 @@ pub enum Source {
 pub enum Pictures {
     /// What `ffmpeg` decodes.
     Decoded(Decoded),
-    /// What is drawn.
     Drawn(Box<Session>),
 }
 
@@ -48,10 +47,7 @@ pub struct Decoded {
 }
 
 impl Source {
-    /// Starts to decode.
-    ///
-    /// # Errors
-    /// If it is not there, or `ffmpeg` is not installed.
+    /// Starts to decode. Fails if it is not there, or `ffmpeg` is not installed.
     pub fn open(&self) -> Result<Pictures> {
         let mut command = Command::new("ffmpeg");
         command.args(["-nostdin", "-v", "error"]);
@@ -91,14 +87,12 @@ impl Source {
     }
 
     /// The lens, where it is known: its focal length, px.
-    #[must_use]
     pub fn focal_px(&self) -> Option<f32> {
         let &Self::Drawn { seed, rate_hz } = self else { return None };
         Some(session(seed, rate_hz).lens().focal_px as f32)
     }
 
     /// Pictures a second that a video says it has.
-    #[must_use]
     pub fn rate_hz(&self) -> Option<f64> {
         let path = match self {
             Self::Video(path) => path,
@@ -124,10 +118,7 @@ impl Source {
 }
 
 impl Pictures {
-    /// Reads the next picture. False after the last.
-    ///
-    /// # Errors
-    /// If `ffmpeg` could not decode it.
+    /// Reads the next picture. False after the last. Fails if `ffmpeg` could not decode it.
     pub fn next(&mut self, planes: &mut [u8; FRAME_BYTES]) -> Result<bool> {
         let decoded = match self {
             Self::Decoded(decoded) => decoded,

@@ -20,7 +20,6 @@ pub struct Gains {
 }
 
 /// What the board's behaviours feel with. None of a camera that is not to be believed: its silence tells the board.
-#[must_use]
 pub fn view(camera: &Camera, summary: &Summary, gains: Gains, age_ms: u16) -> Option<CameraView> {
     if summary.blind.is_some() {
         return None;
@@ -57,7 +56,6 @@ pub fn view(camera: &Camera, summary: &Summary, gains: Gains, age_ms: u16) -> Op
 }
 
 /// The teacher's words, None while the camera has nothing to say.
-#[must_use]
 pub fn teach(summary: &Summary, age_ms: u16) -> Option<Down> {
     let code = |value: i8| match value {
         ..0 => Code::Minus,
@@ -68,7 +66,6 @@ pub fn teach(summary: &Summary, age_ms: u16) -> Option<Down> {
 }
 
 /// The same as a line of `tenax monitor --teach`: `v1 v2 age_ms`.
-#[must_use]
 pub fn teaching(summary: &Summary, age_ms: u16) -> Option<String> {
     summary.codes().map(|(v1, v2)| format!("{v1} {v2} {age_ms}"))
 }

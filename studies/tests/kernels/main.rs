@@ -7,10 +7,9 @@ use std::sync::OnceLock;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use tenax_bench::board::emulated::kernels::{self, Answer, Cost, Kernels};
-use tenax_bench::labelled::{self, library};
+use tenax_bench::labelled::{self, Part, library};
 use tenax_hal_shim::channel::SAMPLE_MAX;
 use tenax_logic::array::{Reading, ShippedDetector};
-use tenax_studies::dataset::session::Split;
 use tenax_studies::dataset::{Dataset, Label, Plan};
 use tenax_studies::evaluate::core;
 
@@ -78,7 +77,7 @@ fn the_core_says_what_this_machine_says() {
 #[test]
 fn the_core_judges_the_test_split_as_this_machine_does() {
     let plan = Plan { seed: 1, sessions: 2, label: Label::Truth };
-    let csv = Dataset::make_split(plan, Split::Test, &|_| {}).unwrap().csv().unwrap();
+    let csv = Dataset::make_split(plan, Part::Test, &|_| {}).unwrap().csv().unwrap();
     let name = "array_dataset.csv";
     let recipe = library::choose(name.as_ref(), None).unwrap();
     let recordings = labelled::parse(csv.as_slice(), &recipe, name).unwrap();

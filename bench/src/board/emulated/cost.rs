@@ -21,7 +21,6 @@ pub struct CostMeter {
     count: u64,
     sum: u64,
     max: u64,
-    /// Who is told of each.
     told: Option<Sender<Tick>>,
 }
 

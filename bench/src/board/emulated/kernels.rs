@@ -43,7 +43,6 @@ pub struct Answer {
 /// What a verdict is given by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Evidence {
-    /// The features.
     pub features: Features,
     /// What the network made of them.
     pub logit: i32,
@@ -64,9 +63,8 @@ impl Answer {
 /// What is run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kernels {
-    /// The detector.
     Detector,
-    /// The detector, its parts and its rivals, each by itself.
+    /// The detector and its parts, each by itself.
     All,
 }
 
@@ -83,9 +81,7 @@ pub struct Outcome {
 /// ([`build_kernels`](crate::image::build_kernels)); it forgets one before the next.
 ///
 /// `progress` is told now and then how many readings have been answered.
-///
-/// # Errors
-/// If the image cannot be read or placed, or its core does not come back for the next reading.
+/// Fails if the image cannot be read or placed, or its core does not come back for the next reading.
 pub fn run(
     image: &Path,
     recordings: &[Vec<Reading>],
@@ -111,10 +107,7 @@ pub fn run(
     Ok(bench.into_outcome())
 }
 
-/// Every kernel's cost on the readings of a hand that holds something: noise, and now and then a slip.
-///
-/// # Errors
-/// As [`run`].
+/// Every kernel's cost on the readings of a hand that holds something: noise, and now and then a slip. Fails as [`run`] does.
 pub fn costs(image: &Path) -> Result<Vec<Cost>> {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let mut reading = |n: usize| -> Reading {

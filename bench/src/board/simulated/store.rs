@@ -12,7 +12,6 @@ use crate::board::kept::Sectors;
 /// Ticks from one word to the next (`firmware/src/store.rs`).
 const TICKS_PER_WORD: u32 = 4;
 
-/// The store.
 pub struct Store {
     flash: Sectors,
     log: Log,

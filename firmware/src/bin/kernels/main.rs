@@ -6,10 +6,8 @@
 #![no_std]
 #![no_main]
 
-mod crates;
 mod mailbox;
 mod parts;
-mod rivals;
 
 use core::hint::black_box;
 use core::panic::PanicInfo;
@@ -20,7 +18,6 @@ use embassy_stm32 as _;
 use tenax_logic::array::{ArrayVerdict, Reading, ShippedDetector, shipped};
 
 use self::parts::Parts;
-use self::rivals::Rivals;
 
 type Detector = ShippedDetector;
 
@@ -29,7 +26,7 @@ fn main() -> ! {
     // The compiler is not to know the weights: it would write them into the code.
     let model = black_box(&shipped::MODEL);
     let mut detector = Detector::new(model);
-    let (mut parts, mut rivals) = (Parts::default(), Rivals::default());
+    let mut parts = Parts::default();
     loop {
         mailbox::tenax_kernels_next();
         let orders = mailbox::orders();
@@ -40,9 +37,7 @@ fn main() -> ! {
         let verdict = tenax_kernel_slow_frame(&mut detector, &reading);
         mailbox::answer(&detector, verdict);
         if orders.everything {
-            parts.run(&reading);
-            rivals.run(detector.features());
-            crates::run(&reading);
+            parts.run(&reading, detector.features());
         }
     }
 }

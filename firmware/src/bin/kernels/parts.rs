@@ -7,7 +7,7 @@ use tenax_logic::array::logarithm::Knee;
 use tenax_logic::array::past::Past;
 use tenax_logic::array::spectrum::SlidingSpectrum;
 use tenax_logic::array::structure::{self, STRUCTURES, Structure, WINDOWS};
-use tenax_logic::array::{BINS, ELEMENTS, Features, Preprocessor, PreprocessorConfig, Reading};
+use tenax_logic::array::{BINS, ELEMENTS, FEATURES, Features, Mlp, PreprocessorConfig, Reading, shipped};
 use tenax_logic::photoelastic::{Head, HeadConfig};
 
 /// Their state.
@@ -17,10 +17,6 @@ pub struct Parts {
     past: Past,
     structure: Structure,
     knees: [Knee; WINDOWS],
-    /// The windows of the paper's figure 6.
-    features: Preprocessor<10, 40>,
-    features_half: Preprocessor<5, 20>,
-    features_least: Preprocessor<1, 10>,
     head: Head,
 }
 
@@ -33,9 +29,6 @@ impl Default for Parts {
             past: Past::default(),
             structure: Structure::default(),
             knees: structure::knees(config.structure_knee),
-            features: Preprocessor::new(config),
-            features_half: Preprocessor::new(config),
-            features_least: Preprocessor::new(config),
             head: Head::default(),
         }
     }
@@ -43,16 +36,14 @@ impl Default for Parts {
 
 impl Parts {
     /// Runs each of them once. Numbers of the reading stand in for differences: what they are costs nothing.
-    pub fn run(&mut self, reading: &Reading) {
+    pub fn run(&mut self, reading: &Reading, features: &Features) {
         let numbers = reading.map(|sample| i32::from(sample.unwrap_or(0)));
         tenax_kernel_covariance(&mut self.covariance, &numbers);
         black_box(self.covariance.entries());
         black_box(tenax_kernel_spectrum(&mut self.spectrum, numbers.iter().sum()));
         self.past.push(reading);
         black_box(tenax_kernel_structure(&mut self.structure, &self.past, &self.knees));
-        black_box(tenax_kernel_features_10_40(&mut self.features, reading));
-        black_box(tenax_kernel_features_5_20(&mut self.features_half, reading));
-        black_box(tenax_kernel_features_1_10(&mut self.features_least, reading));
+        black_box(tenax_kernel_mlp_structure_8_1(black_box(&shipped::MODEL.network), features));
         let config = HeadConfig { slip: 10, ..HeadConfig::default() };
         // One of ten, so that it is called from one place.
         if let Some(sample) = reading[0] {
@@ -89,23 +80,8 @@ fn tenax_kernel_structure(
 
 #[inline(never)]
 #[unsafe(no_mangle)]
-fn tenax_kernel_features_10_40<'p>(
-    p: &'p mut Preprocessor<10, 40>,
-    reading: &Reading,
-) -> Option<&'p Features> {
-    p.push(reading)
-}
-
-#[inline(never)]
-#[unsafe(no_mangle)]
-fn tenax_kernel_features_5_20<'p>(p: &'p mut Preprocessor<5, 20>, reading: &Reading) -> Option<&'p Features> {
-    p.push(reading)
-}
-
-#[inline(never)]
-#[unsafe(no_mangle)]
-fn tenax_kernel_features_1_10<'p>(p: &'p mut Preprocessor<1, 10>, reading: &Reading) -> Option<&'p Features> {
-    p.push(reading)
+fn tenax_kernel_mlp_structure_8_1(network: &Mlp<FEATURES, 32, 1, 16>, features: &Features) -> i32 {
+    network.judge(&[network.see(features)])
 }
 
 #[inline(never)]

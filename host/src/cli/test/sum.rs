@@ -23,10 +23,7 @@ pub struct Sum {
 }
 
 impl Sum {
-    /// Runs `cargo test`, shows what it says, and counts.
-    ///
-    /// # Errors
-    /// If it does not start.
+    /// Runs `cargo test`, shows what it says, and counts. Fails if it does not start.
     pub fn run(&mut self, command: &mut Command) -> anyhow::Result<()> {
         let shown = format!("{command:?}").replace('"', "");
         eprintln!("$ {shown}");
@@ -71,7 +68,6 @@ impl Sum {
     }
 
     /// Whether nothing failed.
-    #[must_use]
     pub const fn good(&self) -> bool {
         self.failed == 0 && self.broken == 0
     }

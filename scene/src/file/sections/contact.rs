@@ -54,27 +54,23 @@ impl Contact {
     }
 
     /// Shear stiffness of the skin under the whole patch.
-    #[must_use]
     pub fn skin_n_per_mm(&self) -> Stiffness {
         // The finger on the friction rig has 1.9 N/mm (`scenes/rig.toml`); silicone rubber is taken as the same.
         self.skin_n_per_mm.as_ref().map_or(Stiffness::of(2.0), |skin| *skin.get_ref())
     }
 
     /// Damping of the skin over its stiffness.
-    #[must_use]
     pub fn skin_ms(&self) -> Milliseconds {
         // Assumed: rubber that rings once.
         self.skin_ms.as_ref().map_or(Milliseconds::of(3.0), |skin| *skin.get_ref())
     }
 
     /// How much sliding friction rises with each decade of speed.
-    #[must_use]
     pub fn mu_per_decade(&self) -> f64 {
         self.mu_per_decade.as_ref().map_or(0.0, |part| part.get_ref().get())
     }
 
     /// Stribeck's speed.
-    #[must_use]
     pub fn stribeck_mm_s(&self) -> Speed {
         // Assumed, as the strip's in `physics::stribeck`.
         self.stribeck_mm_s.as_ref().map_or(Speed::of(3.0), |speed| *speed.get_ref())

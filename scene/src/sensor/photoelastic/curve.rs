@@ -56,7 +56,6 @@ impl Making {
 
     /// A head of this seed. `spread` is the part by which force and voltages differ from the mean one, either way; what the
     /// paper says nothing of is drawn over a decade (`docs/photoelastic.md`).
-    #[must_use]
     pub fn drawn(seeds: Seeds, spread: f64) -> Self {
         let mut noise = Noise::new(seeds.making, Source::HeadMaking);
         let mut near = |mean: f64, part: f64| mean * noise.between(1.0 - part * spread, 1.0 + part * spread);
@@ -72,7 +71,6 @@ impl Making {
     ///
     /// Equation 9 has it proportional to force, so that the curve would be back at twice the peak. Figure 14 is back at 3.5
     /// times: the phase grows as `F^0.55`, nearly that of a line contact which widens under load (Hertz: `F^0.5`).
-    #[must_use]
     pub fn phase_rad(&self, normal_n: f64) -> f64 {
         let exponent = std::f64::consts::LN_2 / libm::log(self.back_n / self.peak_n);
         let turns = 0.5 * libm::pow(normal_n.max(0.0) / self.peak_n, exponent);
@@ -86,7 +84,6 @@ impl Day {
         Self { source: 1.0, source_per_min: 0.0, ambient_mv: 0.0, aged_rad: 0.0, aged_optic: 1.0 };
 
     /// A day of this seed. `drift` is the part by which source and coefficient have changed at most, either way.
-    #[must_use]
     pub fn drawn(seeds: Seeds, drift: f64, ambient_mv: f64) -> Self {
         let mut noise = Noise::new(seeds.noise, Source::HeadDay);
         Self {
@@ -101,7 +98,6 @@ impl Day {
 
 /// What the receiver's amplifier gives, mV, before it clips. Orientation and the share of shear in the principal stresses
 /// are equations 4 to 9; the phase under a normal force alone is the head's own curve.
-#[must_use]
 pub fn receiver_mv(layer: &Layer, making: &Making, day: &Day, t_s: f64, normal_n: f64, shear_n: f64) -> f64 {
     let normal_n = normal_n.max(0.0);
     // Below a millinewton there is no contact to shear.

@@ -61,7 +61,6 @@ impl Head {
     }
 
     /// A head by itself, for a bench: nothing knocks at it.
-    #[must_use]
     pub fn with(layer: Layer, making: Making, day: Day, slider: Slider, seeds: Seeds) -> Self {
         Self {
             layer,
@@ -79,13 +78,11 @@ impl Head {
     }
 
     /// How it was made.
-    #[must_use]
     pub const fn making(&self) -> &Making {
         &self.making
     }
 
     /// Its day.
-    #[must_use]
     pub const fn day(&self) -> &Day {
         &self.day
     }
@@ -116,7 +113,6 @@ fn friction(parameters: &Photoelastic) -> Stribeck {
 }
 
 /// The strip and the layer under it, as they came out in the making.
-#[must_use]
 pub fn drawn_strip(seeds: Seeds, spread: f64) -> Slider {
     let mut noise = Noise::new(seeds.making, Source::HeadStrip);
     let mut near = |mean: f64| mean * noise.between(1.0 - spread, 1.0 + spread);

@@ -31,13 +31,11 @@ impl Layer {
     };
 
     /// Equation 5: the sensing area, m^2.
-    #[must_use]
     pub fn area_m2(&self) -> f64 {
         self.breadth_m * self.thickness_m
     }
 
     /// Equations 3, 4 and 6 to 8: plane stress under a normal and a shear force.
-    #[must_use]
     pub fn stress(&self, normal_n: f64, shear_n: f64) -> Stress {
         let (sigma_x, tau_xy) = (normal_n / self.area_m2(), shear_n / self.area_m2());
         let root = libm::sqrt(sigma_x * sigma_x + 4.0 * tau_xy * tau_xy);
@@ -52,21 +50,18 @@ impl Layer {
     }
 
     /// The argument of equation 9's second sine: half the retardation, rad.
-    #[must_use]
     pub fn phase_rad(&self, stress: &Stress) -> f64 {
         std::f64::consts::PI * self.thickness_m * (stress.sigma_1 - stress.sigma_2) * self.stress_optic_m2_n
             / self.wavelength_m
     }
 
     /// Equation 9's first factor, `sin^2 2 theta`; theta lies between the plane of sigma_1 and that of polarisation.
-    #[must_use]
     pub fn orientation(&self, stress: &Stress) -> f64 {
         let sine = libm::sin(2.0 * (self.polariser_rad - stress.alpha_rad));
         sine * sine
     }
 
     /// Equation 9 as printed: the part of the incident light that comes out.
-    #[must_use]
     pub fn intensity(&self, normal_n: f64, shear_n: f64) -> f64 {
         let stress = self.stress(normal_n, shear_n);
         let sine = libm::sin(self.phase_rad(&stress));

@@ -12,7 +12,6 @@ use crate::monitor::view::View;
 /// What is chosen and typed.
 #[derive(Debug, Default)]
 pub struct Edit {
-    /// The row.
     pub row: usize,
     /// The value as far as it is typed. None: nothing is typed.
     pub typed: Option<String>,
@@ -27,13 +26,11 @@ impl Edit {
     }
 
     /// The setting that is chosen.
-    #[must_use]
     pub fn id(&self) -> SettingId {
         SettingId::ALL[self.row]
     }
 }
 
-/// Draws them.
 pub fn draw(frame: &mut Frame<'_>, area: Rect, view: &View, edit: &Edit, control: bool) {
     frame.render_widget(Clear, area);
     let [list, meaning] = Layout::vertical([Constraint::Min(3), Constraint::Length(4)]).areas(area);

@@ -8,7 +8,7 @@ use anyhow::Result;
 use plotters::style::RGBColor;
 
 use self::table::{Measured, Row};
-use super::{Chart, csv, draw};
+use super::{Chart, csv};
 use tenax_plot::figure::colour;
 use tenax_plot::sheet::draw::INK;
 use tenax_plot::sheet::{Axis, Mark, Panel, Series, Sheet};
@@ -18,15 +18,14 @@ const LOAD_BAR: f64 = 12_500.0;
 /// Balanced accuracy that an axis has above its best and below its worst.
 const MARGIN: f64 = 0.02;
 
-/// Joins tables of scores (of which data, and CSV, as [`Row`] describes it) with the instructions that each kernel took, and draws
-/// them side by side.
-///
-/// # Errors
-/// Says which line of the table is wrong, or has no kernel.
-pub fn chart(tables: &[(&str, &str)], instructions: &BTreeMap<String, u64>) -> Result<Chart> {
+/// Joins tables of scores (of which data, and CSV, as [`Row`] describes it) with the instructions that each kernel took (CSV:
+/// kernel,instructions), and draws them side by side. An error says which line of the table is wrong, or has no kernel.
+pub fn chart(tables: &[(&str, &str)], kernels: &str) -> Result<Chart> {
+    let instructions: BTreeMap<String, u64> =
+        csv::Reader::from_reader(kernels.as_bytes()).deserialize().collect::<Result<_, _>>()?;
     let (mut rows, mut panels) = (Vec::new(), Vec::new());
     for (data, table) in tables {
-        let mut all = table::read(table, instructions)?;
+        let mut all = table::read(table, &instructions)?;
         all.sort_by(|a, b| {
             a.instructions.cmp(&b.instructions).then(b.row.balanced.total_cmp(&a.row.balanced))
         });
@@ -67,17 +66,14 @@ pub fn chart(tables: &[(&str, &str)], instructions: &BTreeMap<String, u64>) -> R
         "shipped",
     ];
     let csv = csv(&header, rows)?;
-    let sheet = Sheet {
-        title: "Slip from normal force alone: what it gets right against what it takes".to_owned(),
-        subtitle:
-            "Sessions and objects never seen. Instructions of one slow frame (12.5 ms), features included, counted on the \
-                   emulated Cortex-M4."
-                .to_owned(),
-        columns: panels.len() as u32,
+    let sheet = Sheet::new(
+        "Slip from normal force alone: what it gets right against what it takes",
+        "Sessions and objects never seen. Instructions of one slow frame (12.5 ms), features included, counted on the \
+                   emulated Cortex-M4.",
+        panels.len() as u32,
         panels,
-        errors: None,
-    };
-    Ok(Chart { name: "detectors-cost", svg: draw::svg(&sheet)?, csv })
+    );
+    Chart::new("detectors-cost", &sheet, csv)
 }
 
 /// Of points by rising cost: those that nothing as cheap is better than.
@@ -114,31 +110,20 @@ fn panel(data: &str, all: &[Measured], front: &[usize]) -> Panel {
         .iter()
         .zip(COLOURS.iter().cycle())
         .map(|(name, &colour)| {
-            let own = all.iter().filter(|measured| measured.row.classifier == *name).map(at).collect();
-            one(name, colour, Mark::Dots, own)
+            let own = all.iter().filter(|measured| measured.row.classifier == *name).map(at);
+            Series::new(*name, colour, Mark::Dots, own)
         })
         .collect();
-    series.push(one("front", INK, Mark::Dashes, front.iter().map(|&n| points[n]).collect()));
+    series.push(Series::new("front", INK, Mark::Dashes, front.iter().map(|&n| points[n])));
     let bar = vec![(LOAD_BAR, y.ends.0), (LOAD_BAR, y.ends.1)];
-    series.push(one("1 % of 100 MHz", colour::GREY, Mark::Line, bar));
-    let shipped = all.iter().filter(|measured| measured.row.shipped).map(at).collect();
-    series.push(one("shipped", colour::VERMILLION, Mark::Rings, shipped));
-    Panel {
-        title: format!("{data}: each dot is a variant of a classifier"),
-        x,
-        y,
-        cells: Vec::new(),
-        series,
-        words: Vec::new(),
-    }
+    series.push(Series::new("1 % of 100 MHz", colour::GREY, Mark::Line, bar));
+    let shipped = all.iter().filter(|measured| measured.row.shipped).map(at);
+    series.push(Series::new("shipped", colour::VERMILLION, Mark::Rings, shipped));
+    Panel::new(format!("{data}: each dot is a variant of a classifier"), x, y, series)
 }
 
 const COLOURS: [RGBColor; 6] =
     [colour::BLUE, colour::ORANGE, colour::GREEN, colour::PURPLE, colour::SKY, colour::YELLOW];
-
-fn one(name: &str, colour: RGBColor, mark: Mark, points: Vec<(f64, f64)>) -> Series {
-    Series { name: name.to_owned(), colour, mark, points }
-}
 
 #[cfg(test)]
 mod tests {
@@ -151,19 +136,12 @@ mod tests {
                          logistic,8,10/40,1,0.940,0.940,100,68,\n\
                          svm,8,10/40,1,0.930,0.930,110,68,\n";
 
-    fn costs() -> BTreeMap<String, u64> {
-        let costs =
-            [("features_10_40", 2_500), ("mlp_8_1", 3_500), ("mlp_8_5", 7_000), ("mlp_float_1", 9_600)];
-        costs
-            .iter()
-            .chain(&[("logistic_8_1", 200), ("slow_frame", 9_100), ("structure", 500)])
-            .map(|&(n, c)| (n.to_owned(), c))
-            .collect()
-    }
+    const KERNELS: &str = "kernel,instructions\nfeatures_10_40,2500\nmlp_8_1,3500\nmlp_8_5,7000\nmlp_float_1,9600\n\
+                           logistic_8_1,200\nslow_frame,9100\nstructure,500\n";
 
     #[test]
     fn scores_and_costs_are_joined_and_the_front_is_what_nothing_beats() {
-        let chart = chart(&[("pours", TABLE)], &costs()).unwrap();
+        let chart = chart(&[("pours", TABLE)], KERNELS).unwrap();
         let mut rows = csv::Reader::from_reader(chart.csv.as_bytes());
         let rows: Vec<Vec<String>> =
             rows.records().map(|row| row.unwrap().iter().map(str::to_owned).collect()).collect();
@@ -190,23 +168,21 @@ mod tests {
     #[test]
     fn what_has_no_kernel_is_said_with_what_there_is() {
         let table = "classifier,precision,window,lookback,balanced,accuracy,missed,false\nforest,8,10/40,1,0.9,0.9,1,1\n";
-        let error = format!("{:#}", chart(&[("pours", table)], &costs()).unwrap_err());
+        let error = format!("{:#}", chart(&[("pours", table)], KERNELS).unwrap_err());
         assert!(
             error.contains("line 2") && error.contains("forest_8_1") && error.contains("mlp_8_5"),
             "{error}"
         );
-        let error = format!("{:#}", chart(&[("pours", "classifier\nmlp\n")], &costs()).unwrap_err());
+        let error = format!("{:#}", chart(&[("pours", "classifier\nmlp\n")], KERNELS).unwrap_err());
         assert!(error.contains("precision"), "{error}");
         assert!(
             chart(
                 &[("pours", "classifier,precision,window,lookback,balanced,accuracy,missed,false\n")],
-                &costs()
+                KERNELS
             )
             .is_err()
         );
         let percent = TABLE.replace("0.990", "99.0");
-        assert!(
-            format!("{:#}", chart(&[("pours", &percent)], &costs()).unwrap_err()).contains("part of all")
-        );
+        assert!(format!("{:#}", chart(&[("pours", &percent)], KERNELS).unwrap_err()).contains("part of all"));
     }
 }

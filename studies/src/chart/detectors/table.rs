@@ -86,7 +86,7 @@ pub fn read(table: &str, instructions: &BTreeMap<String, u64>) -> Result<Vec<Mea
         let cost = |kernel: &String| {
             instructions.get(kernel).copied().with_context(|| {
                 let known: Vec<&str> = instructions.keys().map(String::as_str).collect();
-                format!("line {line}: the kernels' image has no `{kernel}`, only {}", known.join(", "))
+                format!("line {line}: the kernels' table has no `{kernel}`, only {}", known.join(", "))
             })
         };
         let (needed, not_needed) = row.kernels();

@@ -6,7 +6,7 @@ mod recorded;
 
 use std::path::Path;
 
-use super::{Chart, Progress, csv, draw};
+use super::{Chart, Progress, csv};
 use model::{Curve, PickUp};
 use tenax_plot::figure::colour;
 use tenax_plot::sheet::{Axis, Mark, Panel, Series, Sheet};
@@ -16,10 +16,7 @@ const FROM_HZ: f64 = 10.0;
 /// To half the frame rate, Hz.
 const TO_HZ: f64 = 1_000.0;
 
-/// Runs the scenes and draws them beside what lies in `recordings`.
-///
-/// # Errors
-/// If a scene or the chart cannot be made.
+/// Runs the scenes and draws them beside what lies in `recordings`. Fails if a scene or the chart cannot be made.
 pub fn chart(recordings: &Path, progress: Progress) -> anyhow::Result<Chart> {
     // Parts of the whole time, as measured.
     let films = model::films(&mut |part| progress(0.7 * part))?;
@@ -44,82 +41,55 @@ pub fn chart(recordings: &Path, progress: Progress) -> anyhow::Result<Chart> {
     });
     let csv = csv(&["what", "curve", "t_s", "value"], rows)?;
 
-    let sheet = Sheet {
-        title: "What the sensors say at the onset of slip".to_owned(),
-        subtitle: present.to_owned(),
-        columns: 2,
-        panels: vec![
-            Panel {
-                title: "PVDF films, mV at the film; 0 is the peak".to_owned(),
-                x: Axis::even("time, s", -0.04, 0.04),
-                y: Axis::even("mV", -30.0, 50.0),
-                ..plain(beside(&real_films, &films))
-            },
-            Panel {
-                title: "the same 100 ms, by frequency".to_owned(),
-                x: Axis::log("frequency, Hz", FROM_HZ, TO_HZ),
-                y: Axis::log("amplitude of a bin, mV", 1e-3, 30.0),
-                ..plain(beside(&spectra(&real_films), &spectra(&films)))
-            },
-            Panel {
-                title: "friction rig: Ft/Fn; 0 is the plate's first motion".to_owned(),
-                x: Axis::even("time, s", -0.02, 0.12),
-                y: Axis::even("Ft/Fn", -0.1, 0.8),
-                ..plain(beside(&real_rig, &rig))
-            },
+    let sheet = Sheet::new(
+        "What the sensors say at the onset of slip",
+        present,
+        2,
+        vec![
+            Panel::new(
+                "PVDF films, mV at the film; 0 is the peak",
+                Axis::even("time, s", -0.04, 0.04),
+                Axis::even("mV", -30.0, 50.0),
+                beside(&real_films, &films),
+            ),
+            Panel::new(
+                "the same 100 ms, by frequency",
+                Axis::log("frequency, Hz", FROM_HZ, TO_HZ),
+                Axis::log("amplitude of a bin, mV", 1e-3, 30.0),
+                beside(&spectra(&real_films), &spectra(&films)),
+            ),
+            Panel::new(
+                "friction rig: Ft/Fn; 0 is the plate's first motion",
+                Axis::even("time, s", -0.02, 0.12),
+                Axis::even("Ft/Fn", -0.1, 0.8),
+                beside(&real_rig, &rig),
+            ),
             picked(&pick_up),
         ],
-        errors: None,
-    };
-    Ok(Chart { name: "sensors", svg: draw::svg(&sheet)?, csv })
+    );
+    Chart::new("sensors", &sheet, csv)
 }
 
 /// Tada 2006, figures 6 and 7: the camera's word against the contact's own state.
 fn picked(pick_up: &PickUp) -> Panel {
-    let series = |name: &str, colour, mark, points: &[(f64, f64)]| Series {
-        name: name.to_owned(),
-        colour,
-        mark,
-        points: points.to_vec(),
-    };
-    Panel {
-        title: "pick-up: the camera's v1 (-1 slips), and what sticks".to_owned(),
-        x: Axis::even("time, s", 1.0, 4.5),
-        y: Axis::even("v1; part of the contact", -1.2, 1.2),
-        ..plain(vec![
-            series("camera, v1", colour::ORANGE, Mark::Dots, &pick_up.v1),
-            series("part that sticks", colour::GREEN, Mark::Line, &pick_up.stuck_part),
-        ])
-    }
-}
-
-fn plain(series: Vec<Series>) -> Panel {
-    let nothing = Axis::even("", 0.0, 1.0);
-    Panel {
-        title: String::new(),
-        x: nothing.clone(),
-        y: nothing,
-        cells: Vec::new(),
+    let series = vec![
+        Series::new("camera, v1", colour::ORANGE, Mark::Dots, pick_up.v1.iter().copied()),
+        Series::new("part that sticks", colour::GREEN, Mark::Line, pick_up.stuck_part.iter().copied()),
+    ];
+    let y = Axis::even("v1; part of the contact", -1.2, 1.2);
+    Panel::new(
+        "pick-up: the camera's v1 (-1 slips), and what sticks",
+        Axis::even("time, s", 1.0, 4.5),
+        y,
         series,
-        words: Vec::new(),
-    }
+    )
 }
 
 fn beside(recorded: &[Curve], modelled: &[Curve]) -> Vec<Series> {
-    let series = |curves: &[Curve], name: &'static str, colour| {
-        curves
-            .iter()
-            .map(|curve| Series {
-                name: name.to_owned(),
-                colour,
-                mark: Mark::Line,
-                points: curve.points.clone(),
-            })
-            .collect::<Vec<_>>()
-    };
-    let mut both = series(recorded, "recorded", colour::VERMILLION);
-    both.extend(series(modelled, "modelled", colour::BLUE));
-    both
+    let series =
+        |curve: &Curve, name, colour| Series::new(name, colour, Mark::Line, curve.points.iter().copied());
+    let recorded = recorded.iter().map(|curve| series(curve, "recorded", colour::VERMILLION));
+    recorded.chain(modelled.iter().map(|curve| series(curve, "modelled", colour::BLUE))).collect()
 }
 
 /// The amplitude of each bin of the Fourier transform, by its definition: the cuts are short.

@@ -19,7 +19,6 @@ const RIG_MOVES_S: f64 = 1.5266;
 /// A line of a panel.
 #[derive(Clone, Debug)]
 pub struct Curve {
-    /// What it is.
     pub name: String,
     /// Time, s (or frequency, Hz), and value.
     pub points: Vec<(f64, f64)>,

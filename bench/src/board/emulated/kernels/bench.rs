@@ -72,7 +72,6 @@ impl Bench {
         self.done
     }
 
-    /// How many were.
     pub fn answered(&self) -> usize {
         self.outcome.answers.iter().map(Vec::len).sum()
     }

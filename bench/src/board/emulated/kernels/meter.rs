@@ -9,7 +9,6 @@ use crate::image::kernels::{Kernel, KernelSymbols};
 /// What a kernel cost, in instructions from its entry to where it returned.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Cost {
-    /// Which.
     pub name: String,
     /// How often it ran.
     pub calls: u64,
@@ -22,7 +21,6 @@ pub struct Cost {
 
 impl Cost {
     /// The mean of all calls.
-    #[must_use]
     pub fn mean(&self) -> f64 {
         self.sum as f64 / self.calls as f64
     }

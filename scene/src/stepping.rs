@@ -1,6 +1,9 @@
-//! The Stribeck slider, a hair away from sliding evenly.
+//! The step of every scene, and the Stribeck slider, a hair away from sliding evenly, to measure it with.
 
 use crate::physics::stribeck::{Slider, SmallSignal, StribeckSlider};
+
+/// The step that the scenes use, s: one scan.
+pub const SHIPPED_S: f64 = crate::schedule::STEP_S;
 
 /// Measures how a small deviation from even sliding grows and how fast it swings, as [`StribeckSlider`] steps it: to be
 /// held against [`Slider::small_signal`].
@@ -21,7 +24,6 @@ const SWINGS: usize = 5;
 
 impl SelfExcited {
     /// Growth and frequency, or none if it does not swing.
-    #[must_use]
     pub fn measured(&self, dt_s: f64) -> Option<SmallSignal> {
         let friction_n = self.slider.friction.mu(self.surface_m_s) * self.normal_n;
         let even_m = friction_n / self.slider.stiffness_n_per_m;
