@@ -1,5 +1,6 @@
 //! What a plant is put into while its board's line is served: real time goes by, and clients' bytes come down.
 
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -21,6 +22,8 @@ const SLOW: f64 = 0.95;
 const LOOK_SCANS: u64 = 8;
 /// Bits that a byte takes on the line.
 const BITS_PER_BYTE: u32 = 10;
+/// How long a press of the button lasts.
+const PRESSED: Duration = Duration::from_millis(300);
 
 /// Real time, and the clients' bytes.
 pub struct Live {
@@ -28,6 +31,22 @@ pub struct Live {
     /// What the real line could have carried by now and did not, in bytes times [`SCAN_HZ`]: below 0 it is busy.
     room: i64,
     pace: Pace,
+    button: Button,
+}
+
+/// The board's button, which a person presses at the keyboard.
+#[derive(Clone, Default)]
+pub struct Button(Arc<Mutex<Option<Instant>>>);
+
+impl Button {
+    /// Presses it, as long as a finger does.
+    pub fn press(&self) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(Instant::now());
+    }
+
+    fn is_down(&self) -> bool {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).is_some_and(|at| at.elapsed() < PRESSED)
+    }
 }
 
 impl Live {
@@ -35,7 +54,13 @@ impl Live {
     /// part of it it runs.
     #[must_use]
     pub fn new(down: Down, behind: fn(f64)) -> Self {
-        Self { down, room: 0, pace: Pace::new(behind) }
+        Self { down, room: 0, pace: Pace::new(behind), button: Button::default() }
+    }
+
+    /// The same with this button.
+    #[must_use]
+    pub fn with_button(self, button: Button) -> Self {
+        Self { button, ..self }
     }
 
     /// Tells what really happens.
@@ -51,7 +76,8 @@ impl Live {
         if self.room < 0 {
             return Vec::new();
         }
-        let bytes = self.down.bytes.try_recv().unwrap_or_default();
+        let sent = self.down.bytes.lock().unwrap_or_else(PoisonError::into_inner).try_recv();
+        let bytes = sent.unwrap_or_default();
         self.room -= bytes.len() as i64 * i64::from(SCAN_HZ);
         bytes
     }
@@ -157,6 +183,10 @@ impl<P: Plant> Plant for Served<P> {
         bytes
     }
 
+    fn button(&self) -> bool {
+        self.plant.button() || self.live.as_ref().is_some_and(|live| live.button.is_down())
+    }
+
     fn streams_at_start(&self) -> bool {
         self.streams_at_start || self.plant.streams_at_start()
     }
@@ -175,7 +205,8 @@ mod tests {
     fn clients_bytes_come_down_no_faster_than_on_the_real_line() {
         let (down, bytes) = sync_channel(1_000);
         (0..1_000).for_each(|_| down.send(vec![7; 100]).unwrap());
-        let mut live = Live::new(Down { bytes, teller: Teller::default() }, |_| {});
+        let mut live =
+            Live::new(Down { bytes: Arc::new(Mutex::new(bytes)), teller: Teller::default() }, |_| {});
         let second: usize = (0..SCAN_HZ).map(|_| live.bytes().len()).sum();
         assert!((92_000..92_400).contains(&second), "{second}");
     }
@@ -183,7 +214,8 @@ mod tests {
     #[test]
     fn a_second_takes_a_second_and_a_stop_is_not_made_up_for() {
         let (_down, bytes) = sync_channel(1);
-        let mut pace = Live::new(Down { bytes, teller: Teller::default() }, |_| {}).pace;
+        let mut pace =
+            Live::new(Down { bytes: Arc::new(Mutex::new(bytes)), teller: Teller::default() }, |_| {}).pace;
         let run = |pace: &mut Pace, scans: u32| {
             let began = Instant::now();
             (0..scans).for_each(|_| pace.wait());

@@ -74,3 +74,48 @@ fn what_is_missing_or_cannot_be_written_is_said_before_work_begins() {
     let wrong = failed(&[&train[..], &[out]].concat());
     assert!(wrong.contains(":1: no column"), "{wrong}");
 }
+
+#[test]
+fn what_is_no_boards_line_is_neither_played_nor_watched_nor_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let (empty, random) = (folder.path().join("empty.bin"), folder.path().join("random.bin"));
+    std::fs::write(&empty, "").unwrap();
+    std::fs::write(
+        &random,
+        (0..100_000_u32).map(|n| (n.wrapping_mul(2_654_435_761) >> 13) as u8).collect::<Vec<u8>>(),
+    )
+    .unwrap();
+    let readme = concat!(env!("CARGO_MANIFEST_DIR"), "/../README.md");
+    for file in [readme, empty.to_str().unwrap(), random.to_str().unwrap()] {
+        for command in
+            [&["play", "--serve-tcp", "0"][..], &["plot"], &["config", "suggest"], &["monitor", "--file"]]
+        {
+            let said = failed(&[command, &[file]].concat());
+            assert!(
+                said.contains("is no board's line") && said.contains("tenax record"),
+                "{command:?}: {said}"
+            );
+        }
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_port_that_another_program_reads_names_it() {
+    use serialport::{SerialPort, TTYPort};
+
+    let (_near, far) = TTYPort::pair().unwrap();
+    let path = far.name().unwrap();
+    // Or this program would be the one that is named.
+    drop(far);
+    let mut other = Command::new("sh")
+        .args(["-c", &format!("exec 3<{path}; echo; exec sleep 60")])
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    other.stdout.take().unwrap().read_exact(&mut [0]).unwrap();
+    let said = failed(&["monitor", "--plain", "--port", &path]);
+    assert!(said.contains(&format!("another program reads {path}: process {} (s", other.id())), "{said}");
+    other.kill().unwrap();
+    other.wait().unwrap();
+}

@@ -4,6 +4,7 @@
 
 mod client;
 mod encoder;
+mod holder;
 mod inbox;
 mod last;
 mod outbox;

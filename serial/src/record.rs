@@ -1,23 +1,33 @@
 //! Recordings of a board's line: MCAP for Foxglove, PlotJuggler and Python, and CSV with the same values.
 //!
 //! The topic `/line` holds the bytes as they came; all other topics are made from them. So a recording is played, watched
-//! and replayed like a captured line, and what a later tool knows better it takes from the bytes again.
+//! and replayed like a captured line, and what a later tool knows better it takes from the bytes again. A message's log time is the
+//! board's, its publish time this computer's. The metadata `tenax` tell tool, chip, build, schema and settings.
 
 pub mod csv;
 pub mod topics;
 
 use std::fs::File;
-use std::io::{self, BufWriter};
-use std::path::Path;
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::io::{self, BufWriter, ErrorKind};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use anyhow::Context;
-use tenax_hal_shim::wire::{FRAME_MAX, Received, Up, encode};
+use anyhow::{Context, bail};
+use tenax_hal_shim::wire::{About, Answer, FRAME_MAX, Received, Up, encode};
 
 use self::topics::{Topic, rows, seconds};
+use crate::captured::is_recording;
 use crate::link::Inbox;
 use crate::mcap::Writer;
 use crate::protobuf::{self, PACKAGE, Value};
+use crate::settings;
+
+/// What a recording that begins now is called: `tenax-20261123T081500Z.mcap`.
+#[must_use]
+pub fn name_now() -> PathBuf {
+    let now = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
+    PathBuf::from(format!("tenax-{}.mcap", now.replace(['-', ':'], "")))
+}
 
 /// A recording that is being written.
 pub struct Recording {
@@ -25,6 +35,7 @@ pub struct Recording {
     channels: Vec<(Topic, u16)>,
     began_ns: u64,
     last: u32,
+    about: Option<About>,
     error: Option<io::Error>,
     inbox: Inbox,
 }
@@ -33,10 +44,23 @@ impl Recording {
     /// A recording in a new file. The board's time 0 is now.
     ///
     /// # Errors
-    /// If the file cannot be written.
+    /// If the file cannot be written, is there already, or is not called `*.mcap`.
     pub fn create(path: &Path) -> anyhow::Result<Self> {
-        let cannot = || format!("cannot write {}", path.display());
-        let out = BufWriter::new(File::create(path).with_context(cannot)?);
+        let name = path.display();
+        if !is_recording(path) {
+            bail!(
+                "{name}: a recording is an MCAP file; call it {}. `tenax play FILE.mcap --csv DIR` makes CSV of it",
+                path.with_extension("mcap").display()
+            );
+        }
+        let cannot = || format!("cannot write {name}");
+        let file = match File::create_new(path) {
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {
+                bail!("{name} is there already, and a recording overwrites nothing: choose another name")
+            }
+            other => other.with_context(cannot)?,
+        };
+        let out = BufWriter::new(file);
         let mut file = Writer::new(out).with_context(cannot)?;
         let channels = Topic::all()
             .into_iter()
@@ -46,13 +70,23 @@ impl Recording {
                 (topic, file.channel(&topic.name(), &format!("{PACKAGE}.{message}"), &descriptor))
             })
             .collect();
-        let began_ns =
-            SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos() as u64);
-        Ok(Self { file, channels, began_ns, last: 0, error: None, inbox: Inbox::default() })
+        Ok(Self {
+            file,
+            channels,
+            began_ns: now_ns(),
+            last: 0,
+            about: None,
+            error: None,
+            inbox: Inbox::default(),
+        })
     }
 
     /// Takes a message in. An error is kept for [`finish`](Self::finish).
     pub fn take(&mut self, received: &Received<Up>) {
+        if let Up::About(about) | Up::Answer { answer: Answer::About(about), .. } = &received.message {
+            self.about = Some(about.clone());
+        }
+        let came_ns = now_ns();
         let rows = rows(&received.message, self.last);
         if let Some(last) = rows.iter().map(|(_, frame, _)| *frame).max() {
             self.last = self.last.max(last);
@@ -63,7 +97,7 @@ impl Recording {
         for (topic, frame, values) in line.into_iter().chain(rows) {
             let at_ns = self.began_ns + (seconds(frame) * 1e9) as u64;
             let channel = self.channels.iter().find(|(own, _)| *own == topic).map_or(0, |(_, id)| *id);
-            if let Err(error) = self.file.message(channel, at_ns, &protobuf::message(&values)) {
+            if let Err(error) = self.file.message(channel, at_ns, came_ns, &protobuf::message(&values)) {
                 self.error.get_or_insert(error);
             }
         }
@@ -78,12 +112,47 @@ impl Recording {
         }
     }
 
+    /// Bytes in the file so far.
+    #[must_use]
+    pub const fn bytes(&self) -> u64 {
+        self.file.bytes()
+    }
+
+    /// Who the board is, as far as it said so.
+    fn metadata(&self) -> Vec<(&'static str, String)> {
+        let mut metadata = vec![
+            ("tool", concat!("tenax ", env!("CARGO_PKG_VERSION")).to_owned()),
+            (
+                "began",
+                humantime::format_rfc3339_millis(UNIX_EPOCH + Duration::from_nanos(self.began_ns))
+                    .to_string(),
+            ),
+        ];
+        if let Some(About { identity, schema, settings, .. }) = &self.about {
+            let [c0, c1, c2] = identity.chip;
+            metadata.extend([
+                ("chip", format!("{c0:08x}-{c1:08x}-{c2:08x}")),
+                ("build", format!("{:016x}", identity.build)),
+                ("schema", format!("{schema:016x}")),
+                ("settings", settings::toml(settings)),
+            ]);
+        }
+        metadata
+    }
+
     /// Ends the file.
     ///
     /// # Errors
     /// If it could not be written whole.
-    pub fn finish(self) -> io::Result<()> {
+    pub fn finish(mut self) -> io::Result<()> {
+        if let Err(error) = self.file.metadata("tenax", &self.metadata()) {
+            self.error.get_or_insert(error);
+        }
         let finished = self.file.finish().map(drop);
         self.error.map_or(finished, Err)
     }
+}
+
+fn now_ns() -> u64 {
+    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos() as u64)
 }

@@ -14,8 +14,8 @@ mod tcp;
 
 use std::fmt::{self, Display};
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::sync::mpsc::{Receiver, sync_channel};
+use std::sync::{Arc, Mutex};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
@@ -58,10 +58,11 @@ impl Display for Tally {
     }
 }
 
-/// What goes with a server to the board that it serves.
+/// What goes with a server to the board that it serves, or to one after the other.
+#[derive(Clone)]
 pub struct Down {
     /// Frames that clients send to the board.
-    pub bytes: Receiver<Vec<u8>>,
+    pub bytes: Arc<Mutex<Receiver<Vec<u8>>>>,
     /// Tells what really happens.
     pub teller: Teller,
 }
@@ -103,7 +104,10 @@ impl Server {
         }
         let truth = options.truth.map(|port| truth_at(port, &mut doors)).transpose()?;
         let teller = Teller(truth.as_ref().map(|(_, hub)| Arc::clone(hub)));
-        Ok((Self { hub, framer: Framer::default(), places, truth, doors }, Down { bytes, teller }))
+        Ok((
+            Self { hub, framer: Framer::default(), places, truth, doors },
+            Down { bytes: Arc::new(Mutex::new(bytes)), teller },
+        ))
     }
 
     /// Hands on what comes up the line.
@@ -125,6 +129,12 @@ impl Server {
     #[must_use]
     pub fn places(&self) -> &[String] {
         &self.places
+    }
+
+    /// Who was served so far.
+    #[must_use]
+    pub fn tally(&self) -> Tally {
+        self.hub.tally()
     }
 
     /// Ends when every client has read what is left, or half a second later.

@@ -6,8 +6,8 @@ use tenax_hal_shim::channel::{CHANNELS, COUNT, FRAME_HZ, mv_from_sample};
 use tenax_hal_shim::detector::{DetectorHealth, DetectorId, DetectorSet};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{
-    About, Answer, BadFrame, Event, EventKind, Identity, Last, NetworkState, Raw, Refusal, Restored, SCHEMA,
-    Setting, Slow, TickRecord, Up, VERSION,
+    About, Answer, BadFrame, Down, Event, EventKind, Identity, Last, NetworkState, Raw, Refusal, Restored,
+    SCHEMA, Setting, Slow, TickRecord, Up, VERSION,
 };
 use tenax_hal_shim::words::{Calibration, Fault, Kept, Line};
 use tenax_logic::setting::SettingId;
@@ -64,6 +64,40 @@ pub const fn kept_in_words(kept: Kept) -> &'static str {
         Kept::Zero => "the force sensor's zeros",
         Kept::Settings => "the settings",
         Kept::Emg => "the wearer's calibration",
+    }
+}
+
+/// Which image runs on which chip.
+pub struct AboutWords<'a>(pub &'a About);
+
+impl Display for AboutWords<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Identity { build, chip: [c0, c1, c2], .. } = self.0.identity;
+        match build {
+            0 => write!(f, "the host's own build"),
+            _ => write!(f, "image {build:016x} on chip {c0:08x}{c1:08x}{c2:08x}"),
+        }
+    }
+}
+
+/// What the board answers to a command, for the person who gave it.
+pub struct AnswerWords<'a>(pub &'a Down, pub &'a Answer);
+
+impl Display for AnswerWords<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(command, answer) = self;
+        match (command, answer) {
+            (Down::Set(Setting { id, value }), Answer::Done | Answer::Refused(_)) => {
+                match SettingId::from_number(*id) {
+                    Some(id) => write!(f, "set {} = {value}: ", id.row().name)?,
+                    None => write!(f, "set {id} = {value}: ")?,
+                }
+            }
+            (_, Answer::Done | Answer::Refused(_)) => write!(f, "{command:?}: ")?,
+            _ => {}
+        }
+        let up = Up::Answer { of: 0, frame: 0, answer: (*answer).clone() };
+        write!(f, "{}", Words(&up).to_string().replace(": command 0", "").replace(" command 0", ""))
     }
 }
 
@@ -161,12 +195,13 @@ fn last_words(f: &mut fmt::Formatter<'_>, last: &Last) -> fmt::Result {
 }
 
 fn about_words(f: &mut fmt::Formatter<'_>, about: &About) -> fmt::Result {
-    let Identity { build, chip: [c0, c1, c2], reset } = about.identity;
-    match build {
-        0 => write!(f, "about: the host's own build")?,
-        _ => write!(f, "about: image {build:016x} on chip {c0:08x}{c1:08x}{c2:08x}")?,
-    }
-    write!(f, ", started because of {reset:?}, {:.1} s ago", f64::from(about.frames) / f64::from(FRAME_HZ))?;
+    let ago_s = f64::from(about.frames) / f64::from(FRAME_HZ);
+    write!(
+        f,
+        "about: {}, started because of {:?}, {ago_s:.1} s ago",
+        AboutWords(about),
+        about.identity.reset
+    )?;
     if about.schema != SCHEMA {
         let (own, board) = (SCHEMA, about.schema);
         write!(

@@ -20,11 +20,14 @@ pub fn figure(subject: &Subject, sketch: Sketch) -> Figure {
     let slips = subject.truth.map_or_else(Vec::new, |truth| {
         joined(truth.slips.iter().map(|slip| (slip.micro_onset_s, slip.end_s.min(span_s.1))), span_s)
     });
-    let strip = modes(subject, sketch.end_s().unwrap_or(span_s.1), span_s);
+    let strip = modes(subject, sketch.first_mode, sketch.end_s().unwrap_or(span_s.1), span_s);
     let Sketch { forces: drawn, needs, ratio, s2, vibration, muscles: envelopes, motor: drives, .. } = sketch;
     Figure {
         title: subject.scene.to_owned(),
-        subtitle: format!("{} board, seed {}", subject.board, subject.seed),
+        subtitle: match subject.board {
+            "recorded" => "recorded".to_owned(),
+            board => format!("{board} board, seed {}", subject.seed),
+        },
         span_s,
         slips,
         panels: vec![
@@ -171,13 +174,16 @@ fn motor(drives: Drives, strip: Vec<Stretch>) -> Panel {
 }
 
 /// Every stretch of one mode; the run ends at `end_s`.
-fn modes(subject: &Subject, end_s: f64, (from_s, to_s): (f64, f64)) -> Vec<Stretch> {
+fn modes(subject: &Subject, first: Option<GripMode>, end_s: f64, (from_s, to_s): (f64, f64)) -> Vec<Stretch> {
     let mut stretches = Vec::new();
-    let mut begun = (GripMode::default(), subject.timeline.zero_s());
     let changes = subject.run.events.iter().filter_map(|event| match event.kind {
         EventKind::Mode { to, .. } => Some((to, subject.timeline.time_s(event.frame))),
         _ => None,
     });
+    // What was in force before the first change: a run begins in standby, a recording perhaps in the middle.
+    let first =
+        if changes.clone().next().is_none() || from_s > subject.timeline.zero_s() { first } else { None };
+    let mut begun = (first.unwrap_or_default(), subject.timeline.zero_s());
     for next in changes.chain([(GripMode::default(), end_s.max(to_s))]) {
         let (mode, since_s) = std::mem::replace(&mut begun, next);
         let (colour, name) = look(mode);

@@ -3,7 +3,7 @@
 use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, REFERENCE_MV, SAMPLE_MAX};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Slow, TickRecord};
-use tenax_hal_shim::words::DriveSource;
+use tenax_hal_shim::words::{DriveSource, GripMode};
 use tenax_scene::truth::Row;
 
 use crate::board::Recorder;
@@ -16,6 +16,8 @@ pub struct Sketch {
     span_s: (f64, f64),
     zero_s: f64,
     end_s: Option<f64>,
+    /// The mode when it was first told: a recording may begin in the middle.
+    pub first_mode: Option<GripMode>,
     /// Fn and Ft as measured, N.
     pub forces: [Thin; 2],
     /// What is true of the grip, where it is known.
@@ -67,6 +69,7 @@ impl Sketch {
             span_s,
             zero_s,
             end_s: None,
+            first_mode: None,
             forces: [thin(), thin()],
             needs: None,
             ratio: thin(),
@@ -114,6 +117,7 @@ impl Recorder for Sketch {
             self.tick(self.zero_s + frame_end_s(frame), tick);
         }
         let t_s = self.zero_s + frame_end_s(slow.frame);
+        self.first_mode.get_or_insert(slow.mode);
         // A gap where there is no number.
         let point = |value: Option<f64>| (t_s, value.unwrap_or(f64::NAN));
         let newtons = |mn: i32| f64::from(mn) / 1e3;

@@ -1,10 +1,13 @@
 //! `tenax run`: a scene or a recording on a board; report and figure.
 
 use std::fs;
+use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::thread;
 
 use anyhow::Context;
+use clap::ArgGroup;
 use tenax_scene::SceneFile;
 
 use super::folder;
@@ -14,17 +17,18 @@ use super::out;
 use super::progress::Progress;
 use super::workspace;
 use tenax_bench::again;
-use tenax_bench::live::{Live, Use};
+use tenax_bench::live::{Button, Live, Use};
 use tenax_bench::replay::{self, calibrate};
 use tenax_bench::report::text::Text;
 use tenax_bench::session::{self, Board, Outcome};
 use tenax_plot::{draw, png};
 use tenax_serial::captured::is_recording;
 use tenax_serial::record::Recording;
-use tenax_serial::serve::{self, Server};
+use tenax_serial::serve::{self, Down, Server};
 
 /// Run a scene or a recording on a board; report and draw it.
 #[derive(Debug, clap::Args)]
+#[command(group(ArgGroup::new("served").args(["serve", "serve_tcp"]).multiple(true)))]
 pub struct Args {
     /// Run the host's own build of the logic: no image, no emulator
     #[arg(long)]
@@ -67,6 +71,9 @@ pub struct Args {
     /// line of JSON 50 times a second; 0: any that is free
     #[arg(long, value_name = "PORT", conflicts_with = "replay")]
     serve_truth: Option<u16>,
+    /// Run the scene again and again, each time with the next seed, as a bench that stays on; Ctrl-C ends it
+    #[arg(long = "loop", conflicts_with_all = ["replay", "record", "controls"], requires = "served")]
+    repeat: bool,
     /// Record the line, every frame included, so that `run --replay FILE.mcap` can decide everything once more
     #[arg(long, value_name = "FILE.mcap")]
     record: Option<PathBuf>,
@@ -96,7 +103,17 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let path = |extension: &str| folder.join(format!("{stem}.{extension}"));
     let board = if args.host { Board::Host } else { Board::emulated(&workspace::root()?)? };
     let mut line = LineFile::new(path("line.bin"));
-    let (mut server, live) = served(args)?.unzip();
+    let (mut server, down) = served(args)?.unzip();
+    let button = Button::default();
+    if down.is_some() {
+        listen(&button);
+    }
+    let live = down.as_ref().map(|down| live_of(down, &button));
+    if let (true, Subject::Scene(file), Some(server), Some(down)) =
+        (args.repeat, &subject, &mut server, &down)
+    {
+        return again_and_again(file, args.seed, &board, server, &|| live_of(down, &button));
+    }
     let mut recording = args.record.as_deref().map(Recording::create).transpose()?;
     let line_use = Use { live, streams_at_start: recording.is_some() };
     let recorder = &mut (&mut (&mut line, &mut server), &mut recording);
@@ -135,7 +152,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
 }
 
 /// Begins to serve, if that is asked for, and says where.
-fn served(args: &Args) -> anyhow::Result<Option<(Server, Live)>> {
+fn served(args: &Args) -> anyhow::Result<Option<(Server, Down)>> {
     if !args.serve && args.serve_tcp.is_none() && args.serve_truth.is_none() {
         return Ok(None);
     }
@@ -146,16 +163,47 @@ fn served(args: &Args) -> anyhow::Result<Option<(Server, Live)>> {
         truth: args.serve_truth,
     };
     let (server, down) = Server::start(&options)?;
-    let live = Live::new(down, |part| {
-        out::note!("the board is slower than real time: it runs, and is served, at {part:.2} of it");
-    });
     for place in server.places() {
         out::note!("serving on {place}");
     }
     if let Some(place) = server.truth_place() {
         out::note!("telling what really happens on {place}");
     }
-    Ok(Some((server, live)))
+    Ok(Some((server, down)))
+}
+
+fn live_of(down: &Down, button: &Button) -> Live {
+    let slow =
+        |part| out::note!("the board is slower than real time: it runs, and is served, at {part:.2} of it");
+    Live::new(down.clone(), slow).with_button(button.clone())
+}
+
+/// Lets a person at the keyboard press the board's button.
+fn listen(button: &Button) {
+    if !io::stdin().is_terminal() {
+        return;
+    }
+    out::note!("Enter presses the board's blue button: consent to what the line sends, for a minute");
+    let button = button.clone();
+    // It ends with the process.
+    thread::spawn(move || io::stdin().lines().map_while(Result::ok).for_each(|_| button.press()));
+}
+
+/// One run after the other on the same served line, until somebody ends the process.
+fn again_and_again(
+    file: &SceneFile,
+    seed: u64,
+    board: &Board,
+    server: &mut Server,
+    live: &dyn Fn() -> Live,
+) -> anyhow::Result<ExitCode> {
+    for seed in seed.. {
+        let line = Use { live: Some(live()), streams_at_start: false };
+        let outcome = session::scene_served(file, seed, board, line, server, &mut |_| {})?;
+        let fate = if outcome.truth.dropped { "DROPPED" } else { "kept" };
+        out::note!("{}, seed {seed}: {fate}; the board is switched on anew", file.name);
+    }
+    Ok(ExitCode::SUCCESS)
 }
 
 /// What is run.

@@ -71,7 +71,7 @@ fn a_person_sees_the_board_beside_the_truth_zooms_pauses_and_sets_a_setting() {
     until(&mut page, &settings);
     let first = page.value("document.querySelector('#settings tr').innerText");
     assert!(first.as_str().unwrap().contains("mV, 20 to 250, default 100"), "{first}");
-    assert_eq!(page.value("document.querySelectorAll('#detectors tr').length"), 6);
+    assert_eq!(page.value("document.querySelectorAll('#detectors tr').length"), 5);
 
     page.value(
         "(() => { const input = document.querySelector('#settings input'); input.value = 120; \

@@ -16,6 +16,8 @@ use tenax_scene::World;
 use tenax_serial::captured::line_of;
 use tenax_serial::record::Recording;
 
+use crate::serving::Serving;
+
 const SCENE: &str = "pick-up-reflex";
 
 /// A scene's recording, and the bytes of its line.
@@ -139,6 +141,37 @@ fn the_public_reader_finds_the_numbers_of_the_csv() {
     let compared: u32 = String::from_utf8(read.stdout).unwrap().trim().parse().unwrap();
     println!("{compared} values compared");
     assert!(compared > 250_000, "{compared}");
+}
+
+#[test]
+fn a_recording_overwrites_nothing_says_what_it_lacks_and_names_its_board() {
+    let served = Serving::trusting();
+    let folder = tempfile::tempdir().unwrap();
+    let record = |more: &[&str]| {
+        let Output { status, stderr, .. } = Command::new(env!("CARGO_BIN_EXE_tenax-host"))
+            .current_dir(folder.path())
+            .args(["record", "--seconds", "0.5", "--port", &served.places[0]])
+            .args(more)
+            .output()
+            .unwrap();
+        (status.success(), String::from_utf8(stderr).unwrap())
+    };
+    let (done, said) = record(&[]);
+    assert!(done && said.contains("but not replayed"), "{said}");
+    let files: Vec<_> = std::fs::read_dir(&folder).unwrap().map(|file| file.unwrap().file_name()).collect();
+    let [name] = &files[..] else { panic!("{files:?}") };
+    let name = name.to_str().unwrap();
+    assert!(name.starts_with("tenax-20") && name.ends_with("Z.mcap"), "{name}");
+    let bytes = std::fs::read(folder.path().join(name)).unwrap();
+    for known in ["build", "schema", "chip", "began", "s1-mv = 100"] {
+        assert!(bytes.windows(known.len()).any(|part| part == known.as_bytes()), "{known}");
+    }
+    let (done, said) = record(&["--out", name]);
+    assert!(!done && said.contains("is there already"), "{said}");
+    assert!(std::fs::read(folder.path().join(name)).unwrap() == bytes);
+    let (done, said) = record(&["--out", "foo.csv"]);
+    assert!(!done && said.contains("call it foo.mcap"), "{said}");
+    drop(served.end());
 }
 
 /// A stand-in for a board that has kept these bytes: where it is. It serves two clients, one after the other.

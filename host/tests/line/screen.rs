@@ -58,7 +58,6 @@ fn what_matters_is_on_the_screen_at_80_by_24_and_at_200_by_60() {
             "s1 ",
             "hebbian",
             "mlp",
-            "injected ",
             "photoela ",
             "flexor ",
             "extensor ",

@@ -200,12 +200,9 @@ fn the_monitor_sets_a_setting_of_a_scene_that_runs() {
     for (monitor, place) in monitors.into_iter().zip(&places) {
         let Output { status, stdout, stderr } = monitor.wait_with_output().unwrap();
         let [text, error] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
-        assert!(text.contains(" s1-mv = 120 mV\n"), "{text}{error}");
-        assert!(text.contains(" done: command 0\n"), "{text}");
-        assert!(text.contains(" settings:\n"), "{text}");
-        assert!(error.contains(" 0 bad frames skipped, 0 messages missed\n"), "{error}");
-        assert!(error.contains("served run"), "{error}");
-        assert_eq!((status.code(), error.contains(place.as_str())), (Some(2), true), "{error}");
+        // The answers, and then it ends.
+        assert!(text.starts_with("Ping: done\ns1-mv = 120 mV\nsettings:\n"), "{text}{error}");
+        assert_eq!((status.code(), error.as_str()), (Some(0), ""), "{place}");
     }
     let rest = served.end();
     assert!(rest.iter().any(|line| line.contains("2 clients, 0 messages dropped")), "{rest:?}");

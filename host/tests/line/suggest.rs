@@ -35,11 +35,19 @@ fn s1_follows_the_noise_where_nothing_slips() {
         let (run, _) = scene("explore-wood", &format!("[pvdf]\nnoise_mv = {noise}"));
         suggested(&run, SettingId::S1)
     };
-    // So loud that the least that S1 may be is no bound.
-    let (one, two) = (quiet("1.5"), quiet("3.0"));
+    // So loud that the default is no bound.
+    let (one, two) = (quiet("2.5"), quiet("5.0"));
     let ratio = f64::from(two.value) / f64::from(one.value);
     assert!((1.6..2.4).contains(&ratio), "{one:?} {two:?}");
     assert!(one.why.contains("of quiet"), "{one:?}");
+}
+
+#[test]
+fn quiet_alone_never_lowers_s1() {
+    let (run, _) = scene("glass-quiet", "");
+    let Suggestions { all, missing } = Suggestions::of(&run.line);
+    assert!(all.iter().all(|suggestion| suggestion.id != SettingId::S1), "{all:?}");
+    assert!(missing.iter().any(|why| why.contains("let something slip")), "{missing:?}");
 }
 
 #[test]

@@ -14,6 +14,7 @@ use crate::captured::line_of;
 use crate::link::{Client, Target};
 use crate::settings;
 use crate::suggest::{Suggestion, Suggestions};
+use crate::words::AboutWords;
 
 /// How long a board may take to answer.
 const ANSWER_WITHIN: Duration = Duration::from_secs(2);
@@ -68,10 +69,19 @@ enum Command {
         #[arg(long)]
         write: bool,
     },
+    /// Settings that differ from their defaults, or from a file
+    Diff {
+        /// As `export` writes it [default: the defaults]
+        file: Option<PathBuf>,
+    },
     /// Set settings back to their defaults
     Reset {
-        /// Their names [default: all but line-trusted-flag]
+        /// Their names
+        #[arg(conflicts_with = "all")]
         names: Vec<String>,
+        /// Every setting but line-trusted-flag
+        #[arg(long)]
+        all: bool,
     },
 }
 
@@ -93,10 +103,27 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         }
         Command::Export { file } => {
             let text = settings::toml(&all(&mut client)?);
+            let text = match client.ask(&Down::About, ANSWER_WITHIN)? {
+                Answer::About(about) => {
+                    format!("# Of {}, schema {:016x}.\n{text}", AboutWords(&about), about.schema)
+                }
+                other => bail!("the board answers {other:?}"),
+            };
             match file {
                 None => out::print(format_args!("{text}"))?,
                 Some(file) => {
                     std::fs::write(file, text).with_context(|| format!("cannot write {}", file.display()))?;
+                }
+            }
+        }
+        Command::Diff { .. } => {
+            let own = all(&mut client)?;
+            for Setting { id, value } in wanted {
+                let name = SettingId::from_number(id).map_or("?", |id| id.row().name);
+                match own.iter().find(|setting| setting.id == id) {
+                    Some(own) if own.value == value => {}
+                    Some(own) => out::say!("{name} = {}, there {value}", own.value)?,
+                    None => out::say!("{name}: the board does not have it, there {value}")?,
                 }
             }
         }
@@ -116,15 +143,19 @@ fn wanted(command: &Command) -> anyhow::Result<Vec<Setting>> {
         Command::List | Command::Export { .. } | Command::Suggest { .. } => Ok(Vec::new()),
         Command::Get { name } => settings::named(name).map(|_| Vec::new()),
         Command::Set { settings } => Ok(settings.clone()),
-        Command::Import { file } => {
+        Command::Diff { file: None } => Ok(SettingId::ALL.into_iter().map(default).collect()),
+        Command::Import { file } | Command::Diff { file: Some(file) } => {
             let text =
                 std::fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
             settings::of_toml(&text).with_context(|| file.display().to_string())
         }
-        Command::Reset { names } if names.is_empty() => {
+        Command::Reset { all: true, .. } => {
             Ok(SettingId::ALL.into_iter().filter(|id| *id != SettingId::LineTrusted).map(default).collect())
         }
-        Command::Reset { names } => names.iter().map(|name| settings::named(name).map(default)).collect(),
+        Command::Reset { names, .. } if names.is_empty() => {
+            bail!("name the settings to reset, or give --all; `tenax config diff` shows which differ")
+        }
+        Command::Reset { names, .. } => names.iter().map(|name| settings::named(name).map(default)).collect(),
     }
 }
 
@@ -170,8 +201,8 @@ fn set(client: &mut Client, setting: Setting) -> anyhow::Result<()> {
             bail!("{name} = {} is refused: it has to be {min} to {max}", setting.value)
         }
         Answer::Refused(Refusal::NotArmed) => bail!(
-            "{name} is refused: nobody at the hand has consented. Contract both muscles for 2 s or press the blue button, \
-             then try again within a minute"
+            "{name} is refused: nobody at the hand has consented. Contract both muscles for 2 s or press the blue button \
+             (of a served scene: Enter where it runs), then try again within a minute"
         ),
         Answer::Refused(why) => bail!("{name} = {} is refused: {why:?}", setting.value),
         other => bail!("the board answers {other:?}"),

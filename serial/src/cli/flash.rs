@@ -10,7 +10,6 @@ use tenax_launch::image::{self, Binary};
 use super::out;
 use super::workspace;
 
-const CHIP: &str = "STM32F411RETx";
 const INSTALL: &str = "\
 probe-rs is not installed, and it is what talks to the board's ST-LINK.
 Install it with   cargo install probe-rs-tools --locked
@@ -18,14 +17,32 @@ or as https://probe.rs/docs/getting-started/installation says, then run `tenax f
 
 /// Flash a NUCLEO-F411RE through probe-rs.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Flash this file (ELF) instead of building the image
     #[arg(long, value_name = "FILE")]
     image: Option<PathBuf>,
+    /// The chip, as probe-rs calls it. The image is linked for the default; another needs an image of its own
+    #[arg(long, default_value = "STM32F411RETx")]
+    chip: String,
+    /// Read the flash back and compare it
+    #[arg(long)]
+    verify: bool,
+    /// Then print what the image says over the probe (defmt over RTT), until Ctrl-C
+    #[arg(long)]
+    log: bool,
     /// Which probe, if several are plugged in: VID:PID or VID:PID:SERIAL, as `probe-rs list` shows
     #[arg(long)]
     probe: Option<String>,
 }
+
+const EXAMPLES: &str = "\
+Examples:
+  tenax flash                       build the image and flash the only probe's board
+  tenax flash --verify --log        compare the flash, then print the image's log
+  tenax flash --image FILE          flash this ELF
+The ELF's path is printed: other programmers take it, too, such as
+  openocd -f board/st_nucleo_f4.cfg -c 'program FILE verify reset exit'";
 
 /// Flashes the image.
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
@@ -39,14 +56,16 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         Some(image) => image.clone(),
         None => image::build(&workspace::root()?, Binary::Image)?,
     };
-    let mut download = Command::new("probe-rs");
-    download.args(["download", "--chip", CHIP]).arg(&image);
-    let mut reset = Command::new("probe-rs");
-    reset.args(["reset", "--chip", CHIP]);
-    if let Some(probe) = &args.probe {
-        download.args(["--probe", probe]);
-        reset.args(["--probe", probe]);
-    }
+    out::note!("the image is {}", image.display());
+    let probe_rs = |what: &str| {
+        let mut command = Command::new("probe-rs");
+        command.args([what, "--chip", &args.chip]);
+        command.args(args.probe.iter().flat_map(|probe| ["--probe", probe]));
+        command
+    };
+    let mut download = probe_rs("download");
+    download.args(args.verify.then_some("--verify")).arg(&image);
+    let mut reset = probe_rs("reset");
     for command in [&mut download, &mut reset] {
         let status = command.status().context("cannot start probe-rs")?;
         if !status.success() {
@@ -58,5 +77,9 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         }
     }
     out::say!("flashed {}; watch it with   tenax monitor", image.display())?;
+    if args.log {
+        let status = probe_rs("attach").arg(&image).status().context("cannot start probe-rs")?;
+        return Ok(ExitCode::from(u8::from(!status.success())));
+    }
     Ok(ExitCode::SUCCESS)
 }

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use anyhow::{Context, bail};
-use tenax_hal_shim::wire::{Down, SETTINGS_PER_ANSWER, Setting};
+use tenax_hal_shim::wire::{Answer, Down, SETTINGS_PER_ANSWER, Setting};
 use tenax_logic::setting::SettingId;
 
 use super::{out, port};
@@ -14,6 +14,7 @@ use crate::link::{Client, Target};
 use crate::monitor::app;
 use crate::monitor::source::Places;
 use crate::web::Web;
+use crate::words::AnswerWords;
 use crate::{monitor, settings};
 
 /// How long a board may take to answer.
@@ -41,7 +42,8 @@ pub struct Args {
     /// Let the screen's keys change something: settings, zero, calibration, the teacher
     #[arg(long, conflicts_with = "plain")]
     control: bool,
-    /// First ask the board for something, or tell it something; may be given more than once
+    /// Ask the board for something, or tell it something, and print its answer; may be given more than once. With --plain,
+    /// go on watching
     #[arg(long, value_name = "COMMAND")]
     send: Vec<Send>,
     /// Change a setting, such as s1-mv=120; may be given more than once
@@ -112,7 +114,10 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     }
     let mut client = Client::open(&target)?;
-    tell(args, &mut client)?;
+    let refused = tell(args, &mut client)?;
+    if told && !args.plain && !args.teach {
+        return Ok(ExitCode::from(u8::from(refused)));
+    }
     let end = match print(&mut client, &mut io::stdout().lock()) {
         // Whoever read our output has read enough.
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(ExitCode::SUCCESS),
@@ -138,21 +143,28 @@ fn print(client: &mut Client, out: &mut dyn io::Write) -> io::Result<io::Error> 
     }
 }
 
-/// Sends what is to be sent at once, and lets the teacher talk beside the watching.
-fn tell(args: &Args, client: &mut Client) -> anyhow::Result<()> {
+/// Sends what is to be sent at once and prints the answers, and lets the teacher talk beside the watching. Whether
+/// anything was refused.
+fn tell(args: &Args, client: &mut Client) -> anyhow::Result<bool> {
     let set = args.set.iter().map(|&setting| Down::Set(setting));
     let get = args.get.iter().map(|&id| Down::Get(id.number()));
     // The first of each part of the table that one answer has room for.
     let all = SettingId::ALL.into_iter().step_by(SETTINGS_PER_ANSWER).map(|id| Down::Settings(id.number()));
     let all = all.filter(|_| args.settings);
+    let mut refused = false;
     for command in args.send.iter().map(|&send| send.into()).chain(set).chain(get).chain(all) {
-        client.ask(&command, ANSWER_WITHIN)?;
+        let answer = client.ask(&command, ANSWER_WITHIN)?;
+        refused |= matches!(answer, Answer::Refused(_));
+        // Whoever goes on watching sees it where it comes up the line.
+        if !args.plain && !args.teach {
+            out::say!("{}", AnswerWords(&command, &answer))?;
+        }
     }
     if args.teach {
         if !client.open_session(ANSWER_WITHIN)? {
             out::note!("tenax: the board opened no session; what changes something will be refused");
         }
-        let Some(mut outbox) = client.take_outbox() else { return Ok(()) };
+        let Some(mut outbox) = client.take_outbox() else { return Ok(refused) };
         // It ends with its input, or with the process.
         std::thread::spawn(move || {
             if let Err(error) = outbox.teach(io::stdin().lock()) {
@@ -160,5 +172,5 @@ fn tell(args: &Args, client: &mut Client) -> anyhow::Result<()> {
             }
         });
     }
-    Ok(())
+    Ok(refused)
 }

@@ -53,8 +53,10 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     for place in server.places() {
         out::note!("serving on {place}");
     }
-    // Whoever watches has time to come.
-    thread::sleep(Duration::from_millis(500));
+    out::note!("it begins when somebody listens; Ctrl-C ends it");
+    while server.tally().clients == 0 {
+        thread::sleep(Duration::from_millis(50));
+    }
     let (mut inbox, mut encoder, mut last) = (Inbox::default(), Encoder::default(), None);
     let began = Instant::now();
     for heard in line.iter().filter_map(|&byte| inbox.push(byte)).flatten() {

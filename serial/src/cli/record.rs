@@ -1,5 +1,6 @@
 //! `tenax record`: a board's line into an MCAP file.
 
+use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -7,11 +8,11 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
-use tenax_hal_shim::wire::Down;
+use tenax_hal_shim::wire::{Down, Up};
 
 use super::{out, port};
 use crate::link::{Client, LastSeconds, Target};
-use crate::record::{Recording, topics};
+use crate::record::{self, Recording, topics};
 use crate::words::in_words;
 
 /// The board streams for as long after each time that it is asked.
@@ -24,9 +25,9 @@ pub struct Args {
     /// Where the line is [default: the only board that is plugged in]
     #[arg(long, value_name = "PORT")]
     port: Option<Target>,
-    /// The recording
-    #[arg(long, value_name = "FILE.mcap", default_value = "tenax.mcap")]
-    out: PathBuf,
+    /// The recording; nothing is overwritten [default: tenax- and the time, in this folder]
+    #[arg(long, value_name = "FILE.mcap")]
+    out: Option<PathBuf>,
     /// End after so many seconds [default: Ctrl-C, or the end of the line]
     #[arg(long, value_name = "S")]
     seconds: Option<f64>,
@@ -40,19 +41,23 @@ pub struct Args {
 
 const EXAMPLES: &str = "\
 Examples:
-  tenax record --out walk.mcap                 until Ctrl-C, with every frame: it can be replayed
+  tenax record --out walk.mcap                 until Ctrl-C, with every frame
   tenax record --seconds 60 --no-frames        a minute of what was decided, a fifth of the line
   tenax record --last --out fault.mcap         the board has restarted: what it did in the seconds before
-  tenax plot fault.mcap                        draws any of them";
+  tenax plot fault.mcap                        draws any of them
+
+A recording can be replayed (`tenax run --replay`) if it begins before the board's start: set stream-at-start-flag to 1,
+start `tenax record`, then press the board's reset button.";
 
 /// Records until it is to end.
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let target = port::or_found(args.port.as_ref())?;
     let mut client = Client::open(&target)?;
+    let path = args.out.clone().unwrap_or_else(record::name_now);
     if args.last {
-        return last(&mut client, &args.out);
+        return last(&mut client, &path);
     }
-    let mut recording = Recording::create(&args.out)?;
+    let mut recording = Recording::create(&path)?;
     let stopped = Arc::new(AtomicBool::new(false));
     signal_hook::flag::register(signal_hook::consts::SIGINT, Arc::clone(&stopped))
         .context("cannot listen for Ctrl-C")?;
@@ -61,6 +66,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let began = Instant::now();
     let mut asked: Option<Instant> = None;
+    let (mut joined, mut progress) = (Joined::default(), Progress::new(began));
     let is_over = || {
         stopped.load(Relaxed) || args.seconds.is_some_and(|seconds| began.elapsed().as_secs_f64() >= seconds)
     };
@@ -70,15 +76,74 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             asked = Some(Instant::now());
         }
         match client.next_message() {
-            Ok(Some(heard)) => recording.take(&heard.received),
+            Ok(Some(heard)) => {
+                joined.take(&heard.received.message);
+                recording.take(&heard.received);
+            }
             Ok(None) => {}
             Err(_) => break,
         }
+        progress.show(|| format!("{}, {} kB", client.counts(), recording.bytes() / 1_000));
     }
-    recording.finish().with_context(|| format!("cannot write {}", args.out.display()))?;
+    progress.end();
+    recording.finish().with_context(|| format!("cannot write {}", path.display()))?;
     let lasted = Duration::from_secs(began.elapsed().as_secs());
-    out::note!("{} in {lasted:?}, written to {}", client.counts(), args.out.display());
+    out::note!("{} in {lasted:?}, written to {}", client.counts(), path.display());
     Ok(ExitCode::SUCCESS)
+}
+
+/// Where in the board's run the recording begins: before its start, or too late for a replay, which is said once.
+#[derive(Default)]
+struct Joined {
+    is_known: bool,
+}
+
+impl Joined {
+    fn take(&mut self, message: &Up) {
+        let frame = match message {
+            Up::Hello { .. } => Some(0),
+            Up::Raw(raw) => Some(raw.first),
+            _ => None,
+        };
+        if !self.is_known && frame.is_some_and(|frame| frame > 0) {
+            out::note!(
+                "it begins {:.1} s after the board's start: it can be watched, plotted and exported, but not replayed. To \
+                 replay one: tenax config set stream-at-start-flag=1, tenax record, then press the board's reset button",
+                topics::seconds(frame.unwrap_or(0))
+            );
+        }
+        self.is_known |= frame.is_some();
+    }
+}
+
+/// How far it is: each second on a terminal, every ten seconds in a log.
+struct Progress {
+    began: Instant,
+    every: Duration,
+    shown: Duration,
+}
+
+impl Progress {
+    fn new(began: Instant) -> Self {
+        let every = Duration::from_secs(if io::stderr().is_terminal() { 1 } else { 10 });
+        Self { began, every, shown: Duration::ZERO }
+    }
+
+    fn show(&mut self, what: impl Fn() -> String) {
+        let now = self.began.elapsed();
+        if now < self.shown + self.every {
+            return;
+        }
+        self.shown = now;
+        let line = format!("{:4} s: {}", now.as_secs(), what());
+        if self.every.as_secs() == 1 { eprint!("\r{line} ") } else { out::note!("{line}") }
+    }
+
+    fn end(&self) {
+        if self.every.as_secs() == 1 && !self.shown.is_zero() {
+            eprintln!();
+        }
+    }
 }
 
 /// What the board keeps of a run that ended in a fault.

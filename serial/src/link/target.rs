@@ -1,7 +1,6 @@
 //! Where a board's line is: a serial port, a pseudo-terminal, a TCP address or a captured file; and how it is opened.
 
 use std::fmt::{self, Display};
-use std::fs::File;
 use std::io::{self, Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
 use std::path::{Path, PathBuf};
@@ -11,7 +10,8 @@ use std::time::Duration;
 use anyhow::{Context, anyhow, bail};
 use tenax_hal_shim::wire::BAUD;
 
-use crate::captured::{is_recording, line_of};
+use super::holder;
+use crate::captured::line_of;
 
 /// How long a read waits for bytes before it returns, so that whoever reads can look at something else meanwhile.
 const READ_TIMEOUT: Duration = Duration::from_millis(100);
@@ -82,14 +82,7 @@ impl Target {
             Self::Tcp { host, port } => connect(host, *port).with_context(|| {
                 format!("cannot connect to {self}: is `tenax run --serve-tcp {port}` running there?")
             }),
-            Self::File(path) => {
-                let up: Box<dyn Read + Send> = if is_recording(path) {
-                    Box::new(io::Cursor::new(line_of(path)?))
-                } else {
-                    Box::new(File::open(path).with_context(|| format!("cannot open {self}"))?)
-                };
-                Ok(Line { up, down: None })
-            }
+            Self::File(path) => Ok(Line { up: Box::new(io::Cursor::new(line_of(path)?)), down: None }),
         }
     }
 
@@ -113,6 +106,12 @@ fn open_port(name: &str) -> anyhow::Result<Line> {
     // Whoever is killed would leave a pseudo-terminal locked for everybody after him. A real port is for one alone: two
     // would each get half of the bytes.
     let pseudo = is_pseudo(name);
+    if let Some(holder) = holder::of(Path::new(name)) {
+        bail!(
+            "another program reads {name}: {holder}. Two would each get half of the bytes: end it first, or serve on \
+             TCP (--serve-tcp), where each client hears everything"
+        );
+    }
     let baud = if pseudo && cfg!(target_os = "macos") { 0 } else { BAUD };
     let open = || {
         let up = serialport::new(name, baud).timeout(READ_TIMEOUT).exclusive(!pseudo).open()?;

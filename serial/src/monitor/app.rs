@@ -13,7 +13,7 @@ use tenax_hal_shim::words::Code;
 use super::screen::{self, Edit, Shown};
 use super::source::{self, News, Places};
 use super::view::View;
-use crate::record::Recording;
+use crate::record::{self, Recording};
 
 const PICTURE_EVERY: Duration = Duration::from_millis(50);
 /// Age of a picture that a key stands for, ms.
@@ -93,6 +93,7 @@ impl App {
                 self.marks += 1;
                 self.view.say(format!("{:10.4} s mark {}", self.view.t_s(), self.marks));
             }
+            KeyCode::Char('?') => screen::KEYS.iter().for_each(|line| self.view.say(*line)),
             KeyCode::Char('r') => self.record()?,
             KeyCode::Char('s') => self.shown.edit = Some(Edit::default()),
             KeyCode::Char('z') => self.send(Down::Zero),
@@ -144,8 +145,7 @@ impl App {
         if self.recording.is_some() {
             return self.end_recording();
         }
-        let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
-        let path = PathBuf::from(format!("tenax-{}.mcap", now.as_secs()));
+        let path = record::name_now();
         self.recording = Some((path.clone(), Recording::create(&path)?));
         self.shown.recording = Some(path.display().to_string());
         Ok(())

@@ -19,6 +19,16 @@ pub use self::settings::Edit;
 
 /// From this height on every sensor's reading is shown too.
 const TALL: u16 = 40;
+/// From this width on the settings are shown beside the traces.
+const WIDE: u16 = 150;
+
+/// What every key does, for the log.
+pub const KEYS: [&str; 4] = [
+    "q quit, space pause, m mark the log, r record or end it",
+    "s settings: up and down choose, Enter changes, d default",
+    "with --control: z zero the force sensor, c calibrate the muscles",
+    "with --control: t teach that it slips, y that it holds",
+];
 
 /// What is shown beside the board.
 #[derive(Debug, Default)]
@@ -51,7 +61,7 @@ pub fn draw(frame: &mut Frame<'_>, view: &View, shown: &Shown) {
         Layout::horizontal([Constraint::Percentage(51), Constraint::Percentage(49)]).areas(body);
     draw_left(frame, left, view, tall);
     let [detectors, muscles, line, log] = Layout::vertical([
-        Constraint::Length(2 + DetectorId::COUNT as u16),
+        Constraint::Length(1 + DetectorId::COUNT as u16),
         Constraint::Length(4),
         Constraint::Length(6),
         Constraint::Min(3),
@@ -62,8 +72,16 @@ pub fn draw(frame: &mut Frame<'_>, view: &View, shown: &Shown) {
     panels::line(frame, line, view);
     panels::log(frame, log, view);
     if let Some(edit) = &shown.edit {
-        settings::draw(frame, body, view, edit, shown.control);
+        // Beside the traces that they move: at least the vibration stays in view.
+        let over = if body.width >= WIDE { right } else { below_first(left, body) };
+        settings::draw(frame, over, view, edit, shown.control);
     }
+}
+
+/// The body without the height of its first trace.
+fn below_first(left: Rect, body: Rect) -> Rect {
+    let first = left.height / 3;
+    Rect { y: body.y + first, height: body.height - first, ..body }
 }
 
 fn draw_left(frame: &mut Frame<'_>, area: Rect, view: &View, tall: bool) {
@@ -126,8 +144,8 @@ fn help(shown: &Shown) -> &'static str {
         (Some(_), true) => " up/down choose   Enter change   d default   Esc close",
         (Some(_), false) => " up/down   Esc close   (to change: start with --control)",
         (None, true) => {
-            " q quit  space pause  m mark  r record  s settings  z zero  t slips  y holds  c calibrate"
+            " ? keys  q quit  space pause  m mark  r record  s settings  z zero  t slips  y holds"
         }
-        (None, false) => " q quit  space pause  m mark  r record  s settings   read only: --control",
+        (None, false) => " ? keys  q quit  space pause  r record  s settings   read only: --control",
     }
 }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ, mv_from_sample};
 use tenax_hal_shim::detector::{DetectorId, DetectorSet, Evidence};
 use tenax_hal_shim::wire::{
-    About, Answer, BadFrame, Counters, Down, EventKind, Senses, Setting, Slow, TickRecord, Up,
+    About, Answer, BadFrame, Counters, Down, EventKind, Senses, Slow, TickRecord, Up,
 };
 use tenax_hal_shim::words::Fault;
 use tenax_logic::setting::SettingId;
@@ -15,7 +15,7 @@ use tenax_logic::setting::SettingId;
 use super::source::News;
 use crate::link::{Counts, Heard};
 use crate::truth::Truth;
-use crate::words::{Words, why};
+use crate::words::{AnswerWords, Words, why};
 
 /// Slow frames whose readings are drawn: ten seconds.
 pub const HISTORY: usize = 800;
@@ -184,6 +184,7 @@ impl View {
             Up::Hello { .. } => {
                 self.faults.clear();
                 self.history.clear();
+                self.fates = Default::default();
                 self.say(Words(&received.message).to_string());
             }
             Up::Event(event) => {
@@ -252,18 +253,10 @@ impl View {
     }
 
     fn answered(&mut self, command: &Down, answer: Result<Answer, String>) {
-        let answer = match answer {
-            Ok(answer) => Words(&Up::Answer { of: 0, frame: 0, answer }).to_string().replace("command 0", ""),
-            Err(why) => why,
-        };
-        let asked = match command {
-            Down::Set(Setting { id, value }) => match SettingId::from_number(*id) {
-                Some(id) => format!("set {} = {value}", id.row().name),
-                None => format!("set {id} = {value}"),
-            },
-            other => format!("{other:?}"),
-        };
-        self.say(format!("> {asked}: {}", answer.replace(": :", ":")));
+        match answer {
+            Ok(answer) => self.say(format!("> {}", AnswerWords(command, &answer))),
+            Err(why) => self.say(format!("> {command:?}: {why}")),
+        }
     }
 
     fn fault(&mut self, fault: &Fault) {

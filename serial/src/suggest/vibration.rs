@@ -60,6 +60,12 @@ pub fn suggest(slows: &[Slow]) -> Result<Suggestion, String> {
                 slips.len()
             ),
         ),
+        // How quiet slip may be is only heard while something slips: noise alone can raise S1, never lower it.
+        None if floor <= f64::from(SettingId::S1.row().default) => {
+            return Err(format!(
+                "s1-mv: {quietly}, far enough below the default; let something slip to choose it better"
+            ));
+        }
         None => Suggestion::new(
             SettingId::S1,
             floor,

@@ -1,6 +1,7 @@
 //! What the page is told.
 
 use serde_json::{Value, json};
+use tenax_hal_shim::channel::{CHANNELS, Channel, mv_from_sample};
 use tenax_hal_shim::detector::DetectorId;
 use tenax_logic::setting::SettingId;
 
@@ -49,6 +50,8 @@ pub fn event(view: &View, place: &str, after: &After) -> Value {
     let counters = view.counters.unwrap_or_default();
     let detectors: Vec<Value> = DetectorId::ALL
         .into_iter()
+        // Nothing is injected but by a test.
+        .filter(|&id| id != DetectorId::Injected)
         .map(|id| {
             let fate = &view.fates[id as usize];
             let evidence = fate.evidence;
@@ -68,7 +71,12 @@ pub fn event(view: &View, place: &str, after: &After) -> Value {
         .filter(|truth| truth.t_s > after.truth_s)
         .map(|truth| json!([truth.t_s, truth.slide_mm_s, truth.needed_n, truth.grip_n]))
         .collect();
+    let sensors = view.senses.as_ref().map(|senses| {
+        let reading = |(channel, &sample): (&Channel, &u16)| json!([channel.name, mv_from_sample(sample)]);
+        CHANNELS.iter().zip(&senses.samples).map(reading).collect::<Vec<Value>>()
+    });
     json!({
+        "sensors": sensors,
         "truth": view.truth.back().map(|truth| json!({ "now": truth, "contact": truth.contact() })),
         "truths": truths,
         "place": place,

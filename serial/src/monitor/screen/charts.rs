@@ -90,12 +90,16 @@ fn trace(frame: &mut Frame<'_>, area: Rect, view: &View, trace: Trace<'_>) {
         let lines = Dataset::default().marker(Marker::Braille).graph_type(GraphType::Line);
         lines.style(Style::new().fg(color)).data(data)
     };
-    let chart = Chart::new(vec![set(&trace.threshold, Color::Red), set(&trace.values, Color::Cyan)])
-        .block(Block::bordered().title(trace.title).border_style(Style::new().fg(Color::DarkGray)))
-        .x_axis(Axis::default().bounds([end_s - SPAN_S, end_s]))
-        .y_axis(Axis::default().bounds([0.0, top]).labels([
-            Text::from("0"),
-            Text::from(format!("{top:.0$} {1}", usize::from(top < 10.0), trace.unit)),
-        ]));
+    let chart =
+        Chart::new(vec![set(&trace.threshold, Color::Red), set(&trace.values, Color::Cyan)])
+            .block(Block::bordered().title(trace.title).border_style(Style::new().fg(Color::DarkGray)))
+            .x_axis(Axis::default().bounds([end_s - SPAN_S, end_s]).labels([
+                Text::from(format!("{:.0} s", end_s - SPAN_S)),
+                Text::from(format!("{end_s:.0} s")),
+            ]))
+            .y_axis(Axis::default().bounds([0.0, top]).labels([
+                Text::from("0"),
+                Text::from(format!("{top:.0$} {1}", usize::from(top < 10.0), trace.unit)),
+            ]));
     frame.render_widget(chart, area);
 }

@@ -16,6 +16,8 @@ use crate::monitor::view::{Fate, View};
 
 /// Frames for which what happened is shown as just now: half a second.
 const RECENT: u32 = FRAME_HZ / 2;
+/// Frames after which it is shown no more: five seconds.
+const FORGOTTEN: u32 = 5 * FRAME_HZ;
 
 fn block(title: &str) -> Block<'_> {
     Block::bordered().title(title).border_style(Style::new().fg(Color::DarkGray))
@@ -24,7 +26,7 @@ fn block(title: &str) -> Block<'_> {
 /// What every detector says, and what became of it.
 pub fn detectors(frame: &mut Frame<'_>, area: Rect, view: &View) {
     let now = view.slow.as_ref().map_or(0, |slow| slow.frame);
-    let rows = DetectorId::ALL.map(|id| {
+    let rows = DetectorId::ALL.into_iter().filter(|&id| id != DetectorId::Injected).map(|id| {
         let fate = &view.fates[id as usize];
         Row::new(
             [
@@ -71,8 +73,8 @@ fn mark(when: Option<u32>, now: u32, word: &'static str, color: Color) -> Span<'
         Some(at) if now.wrapping_sub(at) < RECENT => {
             Span::styled(word, Style::new().fg(color).add_modifier(Modifier::BOLD))
         }
-        Some(_) => Span::styled(word, Style::new().fg(Color::DarkGray)),
-        None => Span::raw(""),
+        Some(at) if now.wrapping_sub(at) < FORGOTTEN => Span::styled(word, Style::new().fg(Color::DarkGray)),
+        _ => Span::raw(""),
     }
 }
 
@@ -134,10 +136,15 @@ pub fn line(frame: &mut Frame<'_>, area: Rect, view: &View) {
 
 /// What happened, the newest at the bottom.
 pub fn log(frame: &mut Frame<'_>, area: Rect, view: &View) {
-    let room = usize::from(area.height.saturating_sub(2));
-    let from = view.log.len().saturating_sub(room);
-    let lines: Vec<Text<'_>> = view.log.iter().skip(from).map(|line| Text::from(line.trim_start())).collect();
-    frame.render_widget(Paragraph::new(lines).block(block("what happened")), area);
+    let [room, width] = [area.height, area.width].map(|side| usize::from(side.saturating_sub(2)).max(1));
+    let wrapped = |line: &String| -> Vec<String> {
+        let letters: Vec<char> = line.trim_start().chars().collect();
+        letters.chunks(width).map(|part| part.iter().collect()).collect()
+    };
+    let newest = view.log.len().saturating_sub(room);
+    let lines: Vec<Text<'_>> = view.log.iter().skip(newest).flat_map(wrapped).map(Text::from).collect();
+    let above = lines.len().saturating_sub(room);
+    frame.render_widget(Paragraph::new(lines[above..].to_vec()).block(block("what happened")), area);
 }
 
 /// Columns of a reading in mV, with the space behind it.
