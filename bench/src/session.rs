@@ -166,6 +166,16 @@ pub fn scene_with(
     scene_served(file, seed, board, Use::default(), recorder, progress)
 }
 
+/// As [`scene_with`], without the bound, whose search takes up to ten times as long as the run.
+pub fn scene_alone(
+    file: &SceneFile,
+    seed: u64,
+    board: &Board,
+    recorder: &mut dyn Recorder,
+) -> anyhow::Result<Outcome> {
+    judged(file, seed, board, Use::default(), recorder, &mut |_| {}, &|_| None)
+}
+
 /// As [`scene_with`], with the board's line used so.
 pub fn scene_served(
     file: &SceneFile,
@@ -174,6 +184,19 @@ pub fn scene_served(
     line: Use,
     recorder: &mut dyn Recorder,
     progress: &mut dyn FnMut(f64),
+) -> anyhow::Result<Outcome> {
+    let bound = |truth: &Fate| Some(controls::bound(file, seed, truth));
+    judged(file, seed, board, line, recorder, progress, &bound)
+}
+
+fn judged(
+    file: &SceneFile,
+    seed: u64,
+    board: &Board,
+    line: Use,
+    recorder: &mut dyn Recorder,
+    progress: &mut dyn FnMut(f64),
+    bound: &dyn Fn(&Fate) -> Option<Fate>,
 ) -> anyhow::Result<Outcome> {
     let span_s = (0.0, seconds_of(frames_in(file.duration_s())));
     let world = World::new(file, seed);
@@ -184,7 +207,7 @@ pub fn scene_served(
     let (run, Served { mut plant, .. }) = board.record(plant, &mut (&mut witness, recorder), progress)?;
     plant.draw();
     let truth = Fate { grips: std::mem::take(&mut plant.grips), ..Fate::of(plant.world.truth(), file) };
-    let bound = controls::bound(file, seed, &truth);
+    let bound = bound(&truth);
     let Witness { timeline, judge, added, mut sketch } = witness;
     sketch.needs = Some(plant.needs);
     let subject = Subject {
@@ -196,7 +219,7 @@ pub fn scene_served(
         judge: &judge,
         added: &added,
         truth: Some(&truth),
-        bound: Some(&bound),
+        bound: bound.as_ref(),
     };
     let report = Report::new(&subject);
     let mut figure = panels::figure(&subject, sketch);

@@ -52,6 +52,27 @@ fn the_bound_keeps_every_one_of_them_with_little_more_than_is_needed() {
     }
 }
 
+// Shows R4.
+#[test]
+fn cells_that_drift_add_nothing() {
+    // All quadrants that run down are followed by a real slip, whose answer is needed.
+    for name in ["drifting-quadrant", "drifting-quadrants"] {
+        let report = ran(&scene(name));
+        assert_eq!(report.object.kept, Some(true), "{name}");
+        let without_n = report.reflex.added_without_need_n.unwrap();
+        assert!(without_n < 0.1, "{name}: {without_n} N without need in {} pulses", report.reflex.pulses);
+    }
+}
+
+// Shows R4.
+#[test]
+fn hum_that_closing_does_not_change_is_not_answered_for_long() {
+    let report = ran(&scene("hum-after-slip"));
+    let without_n = report.reflex.added_without_need_n.unwrap();
+    // 9.0 N while only half as much force again ended it.
+    assert!(without_n < 2.5, "{without_n} N without need in {} pulses", report.reflex.pulses);
+}
+
 #[test]
 fn what_drifts_and_hums_reaches_the_pins() {
     // The control of every scene in which nothing is to be answered: the disturbance is there.

@@ -10,6 +10,7 @@ fn report(scene: &str, seed: u64) -> Value {
     serde_json::to_value(&outcome.report).unwrap()
 }
 
+// Shows R8.
 #[test]
 fn a_gripper_keeps_what_it_lifts_and_one_that_waits_for_a_wearer_leaves_it_behind() {
     for seed in 1..=4 {

@@ -24,7 +24,7 @@ fn text(name: &str) -> &'static str {
 fn run(scene: &str, seed: u64) -> (Outcome, Run) {
     let scene = SceneFile::parse(scene, "scene").unwrap_or_else(|error| panic!("{error}"));
     let mut run = Run::default();
-    let outcome = session::scene_with(&scene, seed, &Board::Host, &mut run, &mut |_| {}).unwrap();
+    let outcome = session::scene_alone(&scene, seed, &Board::Host, &mut run).unwrap();
     (outcome, run)
 }
 

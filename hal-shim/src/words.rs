@@ -67,7 +67,7 @@ pub enum Reason {
     NoContact,
     /// A myosensor's envelope stands still and mains is in it.
     Hum,
-    /// A myosensor's envelope climbs and climbs.
+    /// It climbs or sinks without a cause: a myosensor's envelope, or a quadrant of the force sensor against the other three.
     Creep,
     /// A myosensor's envelope stands still, as none of a muscle does.
     Flat,

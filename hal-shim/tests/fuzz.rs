@@ -116,6 +116,7 @@ fn both(bytes: usize) {
 }
 
 /// A million bytes; `TENAX_FUZZ_BYTES=100000000 cargo test --release -p tenax-hal-shim --test fuzz` takes a quarter of a minute.
+// Shows L5.
 #[test]
 fn garbage_at_each_end_is_counted_and_no_whole_frame_is_lost() {
     let asked = std::env::var("TENAX_FUZZ_BYTES").ok();

@@ -68,6 +68,7 @@ proptest! {
         prop_assert_eq!(receive(&bytes).pop(), Some(Ok((7, message))));
     }
 
+    // Shows L5.
     #[test]
     fn one_wrong_bit_is_never_another_command(message in down(), at in any::<prop::sample::Index>(), bit in 0..8u8) {
         let mut bytes = frame(1, &message);

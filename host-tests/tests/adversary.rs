@@ -301,6 +301,7 @@ impl Adversary {
     }
 }
 
+// Shows W2.
 #[test]
 fn whatever_goes_wrong_the_wearer_comes_first() {
     let number = |name: &str| std::env::var(name).ok().and_then(|text| text.parse().ok());

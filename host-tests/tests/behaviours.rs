@@ -75,6 +75,7 @@ fn taxels_feel_a_pull_where_no_camera_does() {
 }
 
 /// Each fault during a hand-over: nothing opens, and what cannot go on ends.
+// Shows W4.
 #[test]
 fn no_fault_opens_a_hand_that_waits_to_hand_over() {
     type Break = fn(&mut Bench);
@@ -98,6 +99,7 @@ fn no_fault_opens_a_hand_that_waits_to_hand_over() {
     }
 }
 
+// Shows L6.
 #[test]
 fn a_camera_that_goes_dark_ends_what_it_began_and_the_hand_holds_on() {
     for what in [Behaviour::HandOver, Behaviour::GentleGrasp, Behaviour::Turn { by_ddeg: 200 }] {
@@ -120,6 +122,7 @@ fn a_camera_that_goes_dark_ends_what_it_began_and_the_hand_holds_on() {
     }
 }
 
+// Shows L4.
 #[test]
 fn holding_never_silences_the_reflex() {
     let mut bench = Bench::holding(5);
@@ -147,6 +150,7 @@ fn holding_closes_a_little_for_what_only_the_camera_sees() {
     }
 }
 
+// Shows W2.
 #[test]
 fn the_wearer_ends_every_behaviour() {
     for what in [
@@ -174,6 +178,7 @@ fn the_wearer_ends_every_behaviour() {
     }
 }
 
+// Shows L2.
 #[test]
 fn what_opens_needs_consent_as_long_as_it_lasts() {
     for revoked in [false, true] {
@@ -207,6 +212,7 @@ fn a_turn_that_falls_is_the_reflexs() {
     assert!(ticks().all(|tick| !tick.drive.opens()), "it slips: nothing is loosened");
 }
 
+// Shows R7.
 #[test]
 fn lost_frames_move_nothing() {
     let mut bench = Bench::new(10);
@@ -221,6 +227,7 @@ fn lost_frames_move_nothing() {
 }
 
 /// A camera that sees motion for ever is broken: what it adds ends.
+// Shows L6.
 #[test]
 fn a_camera_that_sees_motion_for_ever_closes_the_hand_for_half_a_second() {
     let mut bench = Bench::holding(11);
@@ -234,6 +241,7 @@ fn a_camera_that_sees_motion_for_ever_closes_the_hand_for_half_a_second() {
 }
 
 /// What a camera alone sees opens nothing: light changes too.
+// Shows L6.
 #[test]
 fn motion_in_the_picture_is_no_pull_unless_the_skin_feels_one() {
     // A card's pull is too small for any one marker, and not for all of them.
@@ -247,6 +255,7 @@ fn motion_in_the_picture_is_no_pull_unless_the_skin_feels_one() {
 }
 
 /// Nothing that would feel it says that it slips: the grasp is loosened by so much, and no further.
+// Shows L6.
 #[test]
 fn a_turn_in_which_nothing_slips_gives_up_before_the_object_falls() {
     let mut bench = Bench::holding(13);
@@ -264,6 +273,7 @@ fn a_turn_in_which_nothing_slips_gives_up_before_the_object_falls() {
 
 /// Begun again and again, a behaviour that answers slip itself silences the reflex as long as somebody's consent lasts, and until
 /// the last one is over: 80 s. Not for ever.
+// Shows L4.
 #[test]
 fn a_row_of_hand_overs_silences_the_reflex_as_long_as_the_consent() {
     let mut bench = Bench::holding(14);

@@ -38,6 +38,7 @@ fn uncalibrated(seed: u64) -> Bench {
     bench
 }
 
+// Shows W7.
 #[test]
 fn a_wearer_is_learned_kept_and_answered() {
     let mut bench = uncalibrated(31);
@@ -58,6 +59,7 @@ fn a_wearer_is_learned_kept_and_answered() {
     assert!(bench.run(50).last().expect("frames").opens());
 }
 
+// Shows W7.
 #[test]
 fn what_does_not_separate_is_refused_and_a_hand_that_holds_is_not_calibrated() {
     let mut bench = uncalibrated(32);
@@ -69,6 +71,7 @@ fn what_does_not_separate_is_refused_and_a_hand_that_holds_is_not_calibrated() {
     assert_eq!(bench.fingertip.command(&Down::CalibrateEmg), Err(Refusal::Loaded));
 }
 
+// Shows W7.
 #[test]
 fn whoever_comes_to_hold_something_can_let_it_go() {
     // Calibrated before, and empty when it begins anew.

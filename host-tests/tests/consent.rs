@@ -58,6 +58,7 @@ fn reflex_frames(bench: &Bench) -> usize {
     ticks.filter(|tick| tick.source == DriveSource::Reflex).count()
 }
 
+// Shows L1.
 #[test]
 fn a_stranger_reads_and_changes_nothing() {
     let mut bench = strangers(1);
@@ -73,6 +74,7 @@ fn a_stranger_reads_and_changes_nothing() {
     assert_eq!(bench.slows.last().map(|slow| slow.line), Some(Line::Reading));
 }
 
+// Shows L2.
 #[test]
 fn the_button_and_both_muscles_consent_for_a_minute_and_it_is_told() {
     let mut bench = strangers(2);
@@ -91,6 +93,7 @@ fn the_button_and_both_muscles_consent_for_a_minute_and_it_is_told() {
     assert!(told.contains(&EventKind::Armed(Consent::Muscles)));
 }
 
+// Shows L2.
 #[test]
 fn an_empty_hand_just_switched_on_consents_but_not_to_trust_for_ever() {
     let mut bench = Bench::new(3);
@@ -115,6 +118,7 @@ fn an_empty_hand_just_switched_on_consents_but_not_to_trust_for_ever() {
     assert_eq!(bench.fingertip.config().get(SettingId::S1), 250, "back in the range of a wearer's hand");
 }
 
+// Shows L2.
 #[test]
 fn a_restart_by_the_watchdog_is_no_consent() {
     let mut bench = Bench::new(4);
@@ -124,6 +128,7 @@ fn a_restart_by_the_watchdog_is_no_consent() {
     assert_eq!(bench.fingertip.command(&OPEN), Err(Refusal::NotArmed));
 }
 
+// Shows W2.
 #[test]
 fn a_links_open_never_beats_an_active_flexor() {
     for flexor_mv in [200.0, 600.0] {
@@ -137,6 +142,7 @@ fn a_links_open_never_beats_an_active_flexor() {
     }
 }
 
+// Shows L3.
 #[test]
 fn a_links_close_ends_at_the_force_ceiling() {
     let mut bench = Bench::holding(6);
@@ -151,6 +157,7 @@ fn a_links_close_ends_at_the_force_ceiling() {
     }
 }
 
+// Shows R3.
 #[test]
 fn a_link_that_cannot_feel_spends_the_blind_budget_and_does_not_renew_it() {
     let mut bench = Bench::holding(7);
@@ -173,6 +180,7 @@ fn a_link_that_cannot_feel_spends_the_blind_budget_and_does_not_renew_it() {
     assert!(bench.run(2_000).iter().any(|drive| drive.closes()), "a muscle renews it");
 }
 
+// Shows L4.
 #[test]
 fn to_coast_silences_no_reflex() {
     let mut bench = Bench::holding(8);
@@ -185,6 +193,7 @@ fn to_coast_silences_no_reflex() {
 }
 
 /// By consent, of an untrusted line: a gripper's may hold for as long as it likes.
+// Shows L4.
 #[test]
 fn a_link_that_holds_for_ever_gives_the_reflex_back() {
     let mut bench = strangers(9);
@@ -207,6 +216,7 @@ fn answer(device: &mut Device, sequence: u16, message: Down) -> Answer {
     }
 }
 
+// Shows L5.
 #[test]
 fn a_recorded_session_does_nothing_when_it_is_sent_again() {
     let mut bench = strangers(10);

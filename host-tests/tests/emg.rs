@@ -192,6 +192,7 @@ fn must_be_reported(emg_active_mv: f64, fault: Fault) -> Option<&'static [Qualit
     }
 }
 
+// Shows W5.
 #[test]
 fn no_fault_moves_the_hand_for_longer_than_100_ms_and_each_is_reported() {
     let strategy = (fault(), 0usize..4, 0usize..2, 0usize..3, any::<u64>());
@@ -304,6 +305,7 @@ fn bursts_of_a_real_muscle_are_answered_and_no_sensor_is_doubted() {
 }
 
 /// Opening follows its envelope: from the reading that supports it to the wish.
+// Shows W3.
 #[test]
 fn opening_is_answered_within_25_ms_of_its_envelope() {
     let strategy = (0usize..3, 1.4..2.0, 0.03..0.3, any::<bool>(), any::<u64>());

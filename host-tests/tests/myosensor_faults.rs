@@ -23,6 +23,7 @@ fn reasons(bench: &Bench, channel: usize) -> Vec<Reason> {
     lost.collect()
 }
 
+// Shows W4.
 #[test]
 fn a_lifted_extensor_never_opens_a_hand_that_holds() {
     for mv in [160.0, 165.0, 180.0, 200.0, 220.0, 300.0, 400.0, 500.0, 600.0] {
@@ -34,6 +35,7 @@ fn a_lifted_extensor_never_opens_a_hand_that_holds() {
     }
 }
 
+// Shows W4.
 #[test]
 fn a_noisy_extensor_never_opens_a_hand_that_holds() {
     for (seed, tone_mv, part) in [(1, 80.0, 0.5), (2, 90.0, 0.4), (3, 100.0, 0.35), (4, 100.0, 0.4)] {
@@ -46,6 +48,7 @@ fn a_noisy_extensor_never_opens_a_hand_that_holds() {
     }
 }
 
+// Shows W4.
 #[test]
 fn creep_of_the_extensor_never_opens_a_hand_that_holds() {
     for mv_per_s in [100.0, 1_000.0, 5_000.0, 30_000.0] {
@@ -62,6 +65,7 @@ fn creep_of_the_extensor_never_opens_a_hand_that_holds() {
     }
 }
 
+// Shows W5.
 #[test]
 fn a_lifted_flexor_does_not_squeeze_without_end() {
     for mv in [160.0, 200.0, 300.0, 450.0, 600.0, 1_500.0] {
@@ -73,6 +77,7 @@ fn a_lifted_flexor_does_not_squeeze_without_end() {
     }
 }
 
+// Shows W5.
 #[test]
 fn opening_wins_over_a_flexor_that_hums() {
     let mut bench = Bench::holding(24);

@@ -35,6 +35,7 @@ fn reflex_ticks(bench: &Bench) -> usize {
     ticks.filter(|tick| tick.source == DriveSource::Reflex).count()
 }
 
+// Shows R8.
 #[test]
 fn without_myosensors_the_reflex_works_where_nobody_wears_the_hand_and_nowhere_else() {
     for no_wearer in [true, false] {
@@ -49,6 +50,7 @@ fn without_myosensors_the_reflex_works_where_nobody_wears_the_hand_and_nowhere_e
     }
 }
 
+// Shows W1.
 #[test]
 fn a_muscle_that_is_there_all_the_same_comes_first() {
     let mut bench = Bench::holding(52);
@@ -65,6 +67,7 @@ fn a_muscle_that_is_there_all_the_same_comes_first() {
     assert!(bench.run(50).last().is_some_and(|drive| drive.opens()), "and it opens");
 }
 
+// Shows R8.
 #[test]
 fn only_somebody_at_the_hand_says_that_nobody_wears_it() {
     let mut bench = Bench::new(53);

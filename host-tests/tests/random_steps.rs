@@ -92,6 +92,7 @@ fn random_command(rng: &mut ChaCha8Rng) -> Down {
     }
 }
 
+// Shows W1.
 #[test]
 fn a_million_random_steps() {
     const SEED: u64 = 0x7E4A;

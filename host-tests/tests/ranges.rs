@@ -109,6 +109,7 @@ fn on_all_cores<T: Sync>(items: &[T], check: impl Fn(&T) + Sync) {
     });
 }
 
+// Shows W6.
 #[test]
 fn every_pair_at_its_ends_rests_answers_slip_and_opens() {
     let pairs = pairs();
@@ -117,12 +118,14 @@ fn every_pair_at_its_ends_rests_answers_slip_and_opens() {
 }
 
 /// The control: without anything set, the reflex does close until the ceiling.
+// Shows R2.
 #[test]
 fn the_defaults_close_up_to_the_ceiling() {
     let n = squeezed_n(&[(SettingId::ForceCeiling, 10_000)]);
     assert!((6.0..11.0).contains(&n), "{n} N");
 }
 
+// Shows R2.
 #[test]
 fn every_setting_at_its_ends_stops_at_the_ceiling() {
     let all: Vec<_> = SettingId::ALL.into_iter().filter(|id| *id != SettingId::LineTrusted).collect();

@@ -20,6 +20,7 @@ fn press(bench: &mut Bench, newtons: [f64; 4]) {
     }
 }
 
+// Shows R6.
 #[test]
 fn one_pressed_quadrant_of_an_empty_hand_closes_nothing() {
     for quadrant in 0..4 {
@@ -41,6 +42,27 @@ fn one_pressed_quadrant_of_an_empty_hand_closes_nothing() {
     assert!(reflex_ticks(&bench) > 100);
 }
 
+// Shows R4.
+#[test]
+fn a_quadrant_that_drifts_in_a_grasp_closes_nothing_and_is_told() {
+    // The shear is the wearer's own in the control: the same numbers on all quadrants.
+    for (rigid, closes) in [(false, false), (true, true)] {
+        let mut bench = Bench::holding(33);
+        for n in 0..80_000 {
+            let drifted_n = 0.1 * f64::from(n) / 2_000.0;
+            let half_n = drifted_n / 2.0;
+            // On A and B, and off C and D: what a shear does.
+            let sheared = [1.1 + half_n, 1.1 + half_n, 0.9, 0.9];
+            press(&mut bench, if rigid { sheared } else { [1.1, 1.1 + drifted_n, 0.9, 0.9] });
+            bench.run(1);
+        }
+        assert_eq!(reflex_ticks(&bench) > 0, closes, "rigid: {rigid}");
+        let told = Fault::SensorLost { channel: FSR as u8 + 1, reason: Reason::Creep };
+        let is_told = bench.events.iter().any(|event| event.kind == EventKind::Fault(told));
+        assert_eq!(is_told, !rigid);
+    }
+}
+
 #[test]
 fn slip_while_an_s2_pulse_settles_is_answered() {
     let mut bench = Bench::holding(32);
@@ -59,6 +81,7 @@ fn slip_while_an_s2_pulse_settles_is_answered() {
     assert!(slip && bench.fingertip.mode() == GripMode::Slip, "{:?}", bench.last_cause());
 }
 
+// Shows R5.
 #[test]
 fn one_humming_film_closes_the_hand_once_and_is_masked() {
     let mut bench = Bench::holding(33);
@@ -80,6 +103,7 @@ fn one_humming_film_closes_the_hand_once_and_is_masked() {
     assert!(reflex_ticks(&bench) > 20);
 }
 
+// Shows R6.
 #[test]
 fn an_offset_of_the_force_sensor_is_gone_once_the_hand_has_opened() {
     for mv in [10.0, 45.0] {
@@ -100,6 +124,7 @@ fn an_offset_of_the_force_sensor_is_gone_once_the_hand_has_opened() {
     }
 }
 
+// Shows R6.
 #[test]
 fn an_open_hand_that_still_reads_a_load_says_so_once() {
     // The control: an offset that the zeros follow.

@@ -32,6 +32,7 @@ const RESETS: [(Flags, Option<Mark>, ResetCause, Option<Fault>); 8] = [
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1_000))]
 
+    // Shows B2.
     #[test]
     fn resets_in_any_order_are_told_and_counted_where_the_hand_brought_them_about(
         row in prop::collection::vec(0..RESETS.len(), 1..40), stale in any::<u8>(),
@@ -69,6 +70,7 @@ fn a_mark_counts_only_after_a_reset_by_software() {
     assert_eq!(judge(NONE, Some(Mark::Panicked), 3).after, None);
 }
 
+// Shows B2.
 #[test]
 fn a_hand_that_browns_out_at_each_closing_stays_off_and_one_without_a_clock_does_not() {
     let again = |flags, mark| (0..20).fold(0, |kept, _| judge(flags, mark, kept).restarts);

@@ -63,6 +63,7 @@ fn answered(bench: &Bench) -> (usize, usize) {
     (by(Cause::Slip(DetectorId::Hebbian)), by(Cause::Incipient(DetectorId::Hebbian)))
 }
 
+// Shows R4.
 #[test]
 fn what_was_learned_on_something_slippery_holds_something_rough_by_half_harder_at_most() {
     let mut without = looking_ahead(taught_on_something_slippery(81), 0);

@@ -50,6 +50,7 @@ fn o2_tells_up_from_down() {
     }
 }
 
+// Shows W1.
 #[test]
 fn while_a_muscle_is_active_the_network_moves_nothing() {
     let mut bench = Bench::taught(3);
@@ -59,6 +60,7 @@ fn while_a_muscle_is_active_the_network_moves_nothing() {
     assert!(bench.run(4_000).iter().all(|drive| !drive.closes()));
 }
 
+// Shows R5.
 #[test]
 fn gauges_that_fail_are_no_slip() {
     let mut bench = Bench::taught(4);
@@ -78,6 +80,7 @@ fn gauges_that_fail_are_no_slip() {
     }
 }
 
+// Shows R5.
 #[test]
 fn films_that_freeze_are_no_slip() {
     for frozen in (0..=SAMPLE_MAX).step_by(1_365) {

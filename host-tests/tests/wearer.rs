@@ -30,6 +30,7 @@ fn said(bench: &Bench, id: DetectorId) -> bool {
     bench.slows.iter().flat_map(|slow| &slow.ticks).any(|tick| tick.said.contains(id))
 }
 
+// Shows W1.
 #[test]
 fn the_same_vibration_fires_without_a_muscle_and_is_silent_with_one() {
     for (flexor_mv, fires) in [(50.0, true), (400.0, false)] {
@@ -61,6 +62,7 @@ fn by_reflex(bench: &Bench) -> usize {
     ticks.filter(|tick| tick.source == DriveSource::Reflex).count()
 }
 
+// Shows W1.
 #[test]
 fn the_array_closes_a_hand_at_rest_and_not_one_that_its_wearer_moves() {
     let mut bench = sliding(11);
@@ -74,6 +76,7 @@ fn the_array_closes_a_hand_at_rest_and_not_one_that_its_wearer_moves() {
     assert_eq!(by_reflex(&bench), 0);
 }
 
+// Shows R7.
 #[test]
 fn what_the_array_said_does_not_outlive_the_frames_that_would_renew_it() {
     // In the first ticks after the last element is read it is judged. An object that slid, and then rests.
@@ -126,6 +129,7 @@ fn run_losing(bench: &mut Bench, places: &[u8], frames: u32) -> Vec<MotorDrive> 
     (0..frames).map(give).collect()
 }
 
+// Shows W5.
 #[test]
 fn a_muscle_whose_frames_are_lost_asks_for_nothing_and_is_not_known_to_rest() {
     const EXTENSOR: [u8; 3] = [11, 17, 23];
@@ -146,6 +150,7 @@ fn a_muscle_whose_frames_are_lost_asks_for_nothing_and_is_not_known_to_rest() {
     assert!(run_losing(&mut bench, &EXTENSOR[..1], 1_000).iter().any(|drive| drive.closes()));
 }
 
+// Shows R7.
 #[test]
 fn a_force_whose_frames_are_lost_is_not_the_force_of_now() {
     for lost in [&[15][..], &[12, 13, 14, 15], &[13]] {
@@ -160,6 +165,7 @@ fn a_force_whose_frames_are_lost_is_not_the_force_of_now() {
     }
 }
 
+// Shows R1.
 #[test]
 fn only_slip_moves_a_hand_that_nobody_commands() {
     let mut bench = Bench::holding(2);
@@ -177,6 +183,7 @@ fn only_slip_moves_a_hand_that_nobody_commands() {
     )));
 }
 
+// Shows R2.
 #[test]
 fn the_reflex_stops_at_the_force_ceiling() {
     let mut bench = Bench::holding(3);
@@ -188,6 +195,7 @@ fn the_reflex_stops_at_the_force_ceiling() {
     );
 }
 
+// Shows L3.
 #[test]
 fn a_lost_link_stops_the_motor() {
     let mut bench = Bench::holding(4);
@@ -199,6 +207,7 @@ fn a_lost_link_stops_the_motor() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
+    // Shows W3.
     #[test]
     fn open_takes_effect_within_two_slow_frames(
         seed in any::<u64>(),
@@ -233,6 +242,7 @@ proptest! {
         prop_assert!(drive.opens(), "dead {dead:?}, seed {seed}");
     }
 
+    // Shows W4.
     #[test]
     fn no_fault_opens_the_hand(
         seed in any::<u64>(),
@@ -256,6 +266,7 @@ proptest! {
         prop_assert!(bench.run(3_000).iter().all(|drive| !drive.opens()));
     }
 
+    // Shows W4.
     #[test]
     fn a_frozen_myosensor_opens_nothing(seed in any::<u64>(), frozen in 0..=SAMPLE_MAX) {
         let mut bench = Bench::holding(seed);
@@ -268,6 +279,7 @@ proptest! {
         }
     }
 
+    // Shows R1.
     #[test]
     fn any_samples_whatever_are_survived(
         frames in proptest::collection::vec((any::<[u16; 14]>(), any::<bool>()), 1..200),
@@ -284,6 +296,7 @@ proptest! {
     }
 }
 
+// Shows R3.
 #[test]
 fn a_dead_quadrant_leaves_the_films_with_a_budget_that_ends() {
     let mut bench = Bench::holding(5);
@@ -295,6 +308,7 @@ fn a_dead_quadrant_leaves_the_films_with_a_budget_that_ends() {
     assert!(closing > 0 && closing <= budget + 1, "{closing} frames of closing, {budget} allowed");
 }
 
+// Shows W5.
 #[test]
 fn a_dead_myosensor_silences_the_reflex_and_the_other_still_commands() {
     let mut bench = Bench::holding(6);
@@ -307,6 +321,7 @@ fn a_dead_myosensor_silences_the_reflex_and_the_other_still_commands() {
     assert!(bench.run(OPEN_WITHIN_FRAMES).last().unwrap().opens());
 }
 
+// Shows R5.
 #[test]
 fn a_film_that_freezes_anywhere_is_no_slip() {
     for frozen in (0..=SAMPLE_MAX).step_by(1_365) {
@@ -319,6 +334,7 @@ fn a_film_that_freezes_anywhere_is_no_slip() {
     }
 }
 
+// Shows R6.
 #[test]
 fn a_quadrant_pressed_at_boot_closes_nothing_until_it_was_seen_unloaded() {
     let mut bench = Bench::new(8);
@@ -330,6 +346,7 @@ fn a_quadrant_pressed_at_boot_closes_nothing_until_it_was_seen_unloaded() {
     assert!(bench.run(400).iter().any(|drive| drive.closes()), "S2 is back");
 }
 
+// Shows L4.
 #[test]
 fn a_stroke_that_nobody_ends_gives_the_reflex_back() {
     let mut bench = Bench::holding(9);
@@ -342,6 +359,7 @@ fn a_stroke_that_nobody_ends_gives_the_reflex_back() {
     assert!(bench.run(2_000).iter().any(|drive| drive.closes()));
 }
 
+// Shows W6.
 #[test]
 fn no_setting_makes_the_hand_deaf_to_a_contraction() {
     let mut bench = Bench::holding(10);

@@ -13,6 +13,7 @@ mod lint_image;
 mod plot;
 mod progress;
 mod run;
+mod safety;
 mod scenes;
 mod size;
 mod test;
@@ -64,6 +65,8 @@ enum Command {
     Test(test::Args),
     /// Measure every promise of the project, one line each; fails if one is not kept
     Check(check::Args),
+    /// Hold requirements, hazards and tests against each other
+    Safety(safety::Args),
     /// Make a labelled data set of the normal-force array
     Dataset(dataset::Args),
     /// Score the force array's network on what it never saw, or the whole hand in the paper's tasks
@@ -106,6 +109,7 @@ pub fn main() -> ExitCode {
         Command::Scenes => scenes::main(),
         Command::Test(args) => test::main(&args),
         Command::Check(args) => check::main(&args),
+        Command::Safety(args) => safety::main(&args),
         Command::Train(args) => train::main(&args),
         Command::Calibrate(args) => calibrate::main(&args),
         Command::Chart(args) => chart::main(&args),

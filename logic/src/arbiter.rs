@@ -49,6 +49,7 @@ mod tests {
     use super::*;
     use tenax_hal_shim::motor::Duty;
 
+    // Shows W2.
     #[test]
     fn the_contract_over_every_combination() {
         let drives = [MotorDrive::Coast, MotorDrive::Close(Duty::FULL), MotorDrive::Open(Duty::FULL)];

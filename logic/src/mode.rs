@@ -105,6 +105,7 @@ mod tests {
         }
     }
 
+    // Shows R1.
     #[test]
     fn closing_is_entered_by_a_detector_alone() {
         for (_, cause, _) in TRANSITIONS.iter().filter(|row| closes(row.2)) {

@@ -68,6 +68,8 @@ pub struct Senses {
     frames_seen: u32,
     /// Frames in which the hand was opened since it was last closed.
     open_frames: u32,
+    /// Frames since the motor was driven.
+    still_frames: u32,
     /// The reflex answers slip, or lets the object settle after it.
     striking: bool,
     /// Cycles in which it was surely open and read a load.
@@ -159,6 +161,8 @@ impl Senses {
     /// nothing. `striking`: the reflex answers slip, or lets the object settle after it, and the hand itself is loud.
     pub const fn driven(&mut self, drive: MotorDrive, striking: bool, frames: u32) {
         self.striking = striking;
+        self.still_frames =
+            if matches!(drive, MotorDrive::Coast) { self.still_frames.saturating_add(frames) } else { 0 };
         match drive {
             MotorDrive::Open(_) => self.open_frames = self.open_frames.saturating_add(frames),
             MotorDrive::Close(_) => self.open_frames = 0,
@@ -284,11 +288,8 @@ impl Senses {
     /// Listens for steady sliding. Call it once a slow frame, always after the same tick.
     #[inline(never)]
     pub fn think(&mut self, config: &Config) {
-        let load_mn = match self.grip(config) {
-            Grip::Holds(mn) => Some(mn),
-            Grip::Unloaded | Grip::Unknown => None,
-        };
-        self.detector.slow(&Hand { load_mn, wearer: self.gate.is_active(), striking: self.striking });
+        let forces = self.forces.filter(|_| matches!(self.grip(config), Grip::Holds(_)));
+        self.detector.slow(&Hand { forces, wearer: self.gate.is_active(), striking: self.striking });
     }
 
     /// The head takes its sample. What the films are given in its place is a film that is whole and hears nothing: the middle of

@@ -14,6 +14,7 @@ use tenax_logic::setting::SettingId;
 use crate::onsets::held_against_evidence;
 use crate::{Rest, Swing, plain, run};
 
+// Shows B8.
 #[test]
 fn ten_seconds_without_a_lost_code() {
     let run = plain();
@@ -33,6 +34,7 @@ fn ten_seconds_without_a_lost_code() {
 }
 
 /// The check above can fail: one code off by one is another CRC.
+// Shows B8.
 #[test]
 fn one_wrong_code_is_noticed() {
     let mut run = plain().clone();
@@ -53,6 +55,7 @@ fn the_simulated_board_keeps_the_images_time() {
 
 /// At two cycles an instruction, the slow end of the bracket, no code is lost; only ticks that end a slow frame may run
 /// into the next frame.
+// Shows B8.
 #[test]
 fn three_quarters_as_fast_a_core_is_fast_enough() {
     let options = Options {
@@ -99,6 +102,7 @@ fn the_host_says_the_same_when_it_takes_each_command_in_the_images_tick() {
     }
 }
 
+// Shows B8.
 #[test]
 fn a_tick_costs_less_than_a_fifth_of_the_core() {
     let run = plain();

@@ -14,6 +14,7 @@ fn with(at_s: f64, mishap: Mishap) -> Options {
     Options { mishaps: vec![(at_s, mishap)], ..Options::default() }
 }
 
+// Shows B3.
 #[test]
 fn an_overrun_costs_a_few_frames_and_is_told() {
     let run = run(Swing::new(2.0), &with(1.0, Mishap::DmaStalls));
@@ -35,6 +36,7 @@ fn an_overrun_costs_a_few_frames_and_is_told() {
     assert!(run.slows.iter().zip(&host).all(|(image, host)| image.frame == host.frame));
 }
 
+// Shows L5.
 #[test]
 fn garbage_on_the_line_is_counted_and_moves_nothing() {
     // Neither a frame nor the start of one: a full period of a shift register, zeros and all.
@@ -50,6 +52,7 @@ fn garbage_on_the_line_is_counted_and_moves_nothing() {
     assert_eq!((run.counters.overruns, run.counters.ticks_late), (0, 0));
 }
 
+// Shows B1.
 #[test]
 fn the_watchdog_stops_a_driven_motor_and_the_next_start_says_so() {
     let drive = MotorDrive::Close(Duty::per_mille(400));
@@ -64,6 +67,7 @@ fn the_watchdog_stops_a_driven_motor_and_the_next_start_says_so() {
     assert!(!drives(&run, 0.0, 1.5).iter().any(|now| now.opens()));
 }
 
+// Shows B1.
 #[test]
 fn a_panic_stops_a_driven_motor_at_once_and_the_next_start_says_so() {
     let drive = MotorDrive::Close(Duty::per_mille(400));
@@ -77,6 +81,7 @@ fn a_panic_stops_a_driven_motor_at_once_and_the_next_start_says_so() {
 }
 
 /// Whichever of a frame's four scans DMA loses its ring in: each start lasts a scan longer than the one before.
+// Shows B3.
 #[test]
 fn dma_that_cannot_reach_its_ring_is_a_panic_in_every_scan_of_a_frame() {
     let scan_s = 1.0 / f64::from(SCAN_HZ);
@@ -92,6 +97,7 @@ fn dma_that_cannot_reach_its_ring_is_a_panic_in_every_scan_of_a_frame() {
     assert_eq!(run.starts, starts);
 }
 
+// Shows B2.
 #[test]
 fn a_board_that_restarts_again_and_again_stays_off_in_the_end() {
     let drive = MotorDrive::Close(Duty::per_mille(400));

@@ -32,6 +32,7 @@ fn every_command_is_answered_in_order() {
     assert_eq!(run.slows.last().map(|slow| slow.s2_permille), Some(400));
 }
 
+// Shows L3.
 #[test]
 fn a_drive_command_holds_as_long_as_it_says() {
     let drive = MotorDrive::Open(Duty::per_mille(250));
@@ -43,6 +44,7 @@ fn a_drive_command_holds_as_long_as_it_says() {
 }
 
 /// What a stranger sends is refused, the session and the button notwithstanding each other, and both together move it.
+// Shows L1.
 #[test]
 fn a_stranger_needs_a_session_and_somebody_at_the_hand() {
     let drive = MotorDrive::Open(Duty::per_mille(250));
@@ -73,6 +75,7 @@ fn a_stranger_needs_a_session_and_somebody_at_the_hand() {
 }
 
 /// Every kind of command, 5,000 a second: more than the line is ever asked for, and as much as it carries.
+// Shows L5.
 #[test]
 fn a_flood_of_commands_makes_no_tick_late() {
     let duty = Duty::per_mille(300);

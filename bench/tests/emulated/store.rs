@@ -60,6 +60,7 @@ fn a_setting_is_saved_by_itself_and_survives_a_reset() {
     assert_eq!(run.flash.erases, 0, "a new chip is blank");
 }
 
+// Shows B4.
 #[test]
 fn power_lost_in_the_middle_of_a_save_leaves_the_setting_before() {
     let plant = |duration_s| Rest::new(Swing::new(duration_s).sending(0.2, s2(500)));
@@ -82,6 +83,7 @@ fn power_lost_in_the_middle_of_a_save_leaves_the_setting_before() {
 }
 
 /// The longest that a word may take, and the longest record: no frame is lost, no tick is late, no code is wrong.
+// Shows B7.
 #[test]
 fn sampling_loses_nothing_while_the_network_is_saved() {
     let plant = || Swing::new(1.0).sending(0.3, Down::Save);
@@ -130,6 +132,7 @@ fn what_the_network_learned_is_used_and_saved_again() {
     assert_eq!(faults(&run), []);
 }
 
+// Shows B5.
 #[test]
 fn a_damaged_record_is_told_and_the_one_before_is_used() {
     let mut sectors =
@@ -142,6 +145,7 @@ fn a_damaged_record_is_told_and_the_one_before_is_used() {
     assert_eq!(s2_at_end(&run), Some(350));
 }
 
+// Shows B6.
 #[test]
 fn a_boot_with_a_half_full_sector_erases_the_other_and_goes_on() {
     let mut sectors = Sectors::blank().saving(Kept::Settings, &settings(450));
@@ -161,6 +165,7 @@ fn a_boot_with_a_half_full_sector_erases_the_other_and_goes_on() {
 }
 
 /// The control is the test above: switched on, it does erase.
+// Shows B6.
 #[test]
 fn a_boot_after_a_reset_erases_nothing_for_something_may_be_held() {
     let mut sectors = Sectors::blank().saving(Kept::Settings, &settings(450));

@@ -93,6 +93,7 @@ fn streamed(run: &Run) -> (usize, usize) {
     (firsts.len(), senses)
 }
 
+// Shows B7.
 #[test]
 fn decisions_are_the_same_without_telemetry_with_all_of_it_and_with_too_much() {
     let world = || World::new(&load_scene("pick-up-reflex").expect("a scene"), 1);
@@ -126,6 +127,7 @@ fn decisions_are_the_same_without_telemetry_with_all_of_it_and_with_too_much() {
 }
 
 /// Everything on: no message and no frame is lost, in 10 s, or in as many as `TENAX_STREAM_S` says; 600 take one minute.
+// Shows B7.
 #[test]
 fn a_stream_of_everything_loses_nothing() {
     let asked = std::env::var("TENAX_STREAM_S").ok();

@@ -45,6 +45,7 @@ proptest! {
     }
 }
 
+// Shows R5.
 #[test]
 fn without_readings_it_stands_down_and_says_for_how_long() {
     let mut detector = ArrayDetector::new(&specimen::MODEL);

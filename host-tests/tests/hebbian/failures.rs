@@ -73,6 +73,7 @@ fn r_suppresses_an_offset_only_if_the_teacher_is_balanced() {
 }
 
 /// Films die after learning: each takes its part and no more, nothing is said that is not so, and learning goes on.
+// Shows R5.
 #[test]
 fn a_receptor_that_dies_takes_only_its_part() {
     let finger = Finger::new(1);

@@ -54,6 +54,7 @@ fn live(flash: &mut TestFlash) -> (Promise, Result<(), FlashFailed>) {
     (promise, Ok(()))
 }
 
+// Shows B4.
 #[test]
 fn any_cut_leaves_the_old_or_the_new() {
     let mut whole = TestFlash::blank(SECTOR_WORDS);
@@ -104,6 +105,7 @@ fn boot_with_cuts(flash: &TestFlash, promise: &Promise) -> usize {
 
 /// One bit of the word at the cut, or three, read now so, now so, in every order of three boots: what is finished before and after is
 /// found all the same.
+// Shows B4.
 #[test]
 fn bits_that_read_now_so_now_so_hide_nothing_that_was_finished() {
     const READS: [[bool; 3]; 8] = {

@@ -53,6 +53,7 @@ fn fn_mn(bench: &Bench) -> i32 {
     bench.slows.last().and_then(|slow| slow.forces).expect("forces").fn_mn
 }
 
+// Shows B4.
 #[test]
 fn zero_and_settings_survive_and_a_fingertip_without_them_differs() {
     let mut flash = TestFlash::blank(4_096);

@@ -103,6 +103,7 @@ fn a_full_sector_refuses_until_the_next_boot_and_erases_nothing_before() {
 }
 
 /// What is held when the hand is reset cannot be let go while the core stands still.
+// Shows B6.
 #[test]
 fn a_boot_after_a_reset_erases_nothing_and_uses_the_room_there_is() {
     let mut flash = TestFlash::blank(128);
@@ -154,6 +155,7 @@ fn payloads_that_are_no_record_are_refused() {
     assert!(log.begin(Kept::Zero, &[0; 4 * 255]).is_ok());
 }
 
+// Shows B5.
 #[test]
 fn a_worn_flash_costs_the_log_but_not_what_it_held() {
     let mut flash = TestFlash::blank(128);

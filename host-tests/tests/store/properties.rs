@@ -80,6 +80,7 @@ proptest! {
     }
 
     /// One rotten record of a kept costs that record: the one before it is used, and the other kepts stay.
+    // Shows B5.
     #[test]
     fn a_rotten_record_leaves_the_one_before(bit in 0usize..32, word in 0usize..6) {
         let mut flash = TestFlash::blank(SECTOR_WORDS);

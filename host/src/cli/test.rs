@@ -4,12 +4,14 @@ mod sum;
 
 use std::process::{Command, ExitCode};
 
+use anyhow::Context;
 use sum::Sum;
 
 use tenax_launch::image::{Binary, job};
 use tenax_launch::{jobs, tool};
 
 use super::{out, workspace};
+use crate::safety::RESULTS;
 
 /// Run every test of the workspace, the emulated ones included.
 #[derive(Debug, clap::Args)]
@@ -60,6 +62,11 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     for mut command in [logic(), tool(), training()] {
         // The next is run even if one fails: a person wants to know of all that is broken.
         sum.run(command.arg("--no-fail-fast").args(&args.extra))?;
+    }
+    if args.extra.is_empty() {
+        // For `tenax safety --tested`.
+        let path = workspace::root()?.join(RESULTS);
+        std::fs::write(&path, &sum.results).with_context(|| format!("cannot write {}", path.display()))?;
     }
     out::say!("{sum}")?;
     Ok(if sum.good() { ExitCode::SUCCESS } else { ExitCode::FAILURE })

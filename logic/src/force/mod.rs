@@ -1,10 +1,16 @@
-//! Normal and shear force from the four-quadrant force sensor, and S2, which judges their ratio.
+//! Normal and shear force from the four-quadrant force sensor, its drift, and what their ratio foretells: S2, the look-ahead, and how much a
+//! warning may ask for.
 
+mod ahead;
+mod asked;
 mod detector;
+pub mod drift;
 pub mod friction;
 pub mod fsr;
 pub mod sensor;
 pub mod settings;
 
+pub use ahead::Ahead;
+pub use asked::Asked;
 pub use friction::FrictionDetector;
 pub use sensor::ForceSensor;

@@ -13,38 +13,51 @@
 use tenax_hal_shim::channel::FSR_COUNT;
 use tenax_hal_shim::wire::Forces;
 
+use super::drift::{Cells, Drift, Motor};
 use super::fsr::{force_mn, uv_above_rest};
 
 /// How far a quadrant's zero may be moved, uV: more is a load, not an offset.
 pub const ZERO_LIMIT_UV: i32 = 60_000;
 
 /// A quadrant that carries this much carries a part of the load, mN: more than its noise, and a fortieth of the least load.
-const CARRIES_MN: i32 = 15;
+pub(super) const CARRIES_MN: i32 = 15;
 /// Quadrants that have to. A shear along a diagonal may unload one.
 const AGREEING: usize = 3;
 /// While the hand is open a zero goes after its readings over so many of them: 0.8 s.
 const FOLLOWED_IN: i32 = 64;
 
-/// The force sensor: its calibrated zeros.
+/// The force sensor: its calibrated zeros, and what its cells have drifted in a grasp.
 #[derive(Clone, Debug, Default)]
 pub struct ForceSensor {
     /// Calibrated, and kept through a power cut.
     zero_uv: [i32; FSR_COUNT],
-    /// What they have drifted since, as far as it is known.
+    /// What they have drifted since, as far as an open hand shows it.
     drift_uv: [i32; FSR_COUNT],
     last_uv: [i32; FSR_COUNT],
+    /// What they have drifted in a grasp.
+    drift: Drift,
 }
 
 impl ForceSensor {
-    /// Forces from one sample of each quadrant A, B, C, D. `loaded_mn` is the Fn from which the ratio means something.
-    pub fn process(&mut self, samples: [u16; FSR_COUNT], loaded_mn: i32) -> Forces {
+    /// Forces from one sample of each quadrant A, B, C, D. `loaded_mn` is the Fn from which the ratio means something. None once the
+    /// quadrants have sunk so far that they tell nothing.
+    pub fn process(&mut self, samples: [u16; FSR_COUNT], loaded_mn: i32, motor: Motor) -> Option<Forces> {
         self.last_uv = samples.map(uv_above_rest);
         let mut quadrant_mn = [0; FSR_COUNT];
         let zeros = self.zero_uv.iter().zip(&self.drift_uv).map(|(zero, drift)| zero + drift);
         for ((mn, uv), zero) in quadrant_mn.iter_mut().zip(self.last_uv).zip(zeros) {
             *mn = force_mn(uv - zero);
         }
-        forces(quadrant_mn, loaded_mn)
+        match self.drift.step(quadrant_mn, loaded_mn, motor) {
+            Cells::Known(quadrant_mn) => Some(forces(quadrant_mn, loaded_mn)),
+            Cells::Sunk => None,
+        }
+    }
+
+    /// The quadrant whose reading contradicts the other three.
+    #[must_use]
+    pub const fn blamed(&self) -> Option<usize> {
+        self.drift.blamed()
     }
 
     /// Takes the last readings as zero; false, and nothing changed, if a quadrant is further from its calibrated zero
@@ -55,6 +68,7 @@ impl ForceSensor {
         if unloaded {
             self.zero_uv = self.last_uv;
             self.drift_uv = [0; FSR_COUNT];
+            self.drift = Drift::default();
         }
         unloaded
     }
@@ -130,7 +144,13 @@ mod tests {
         for (normal, shear) in [(4.0, 0.4), (4.0, 1.2), (12.0, 6.0), (2.0, 1.4)] {
             let samples = fsr_quadrants_n(normal, shear, 0.0)
                 .map(|f| sample_from_mv(fsr_mv(f, f64::powf).round() as u32));
-            let read = f64::from(ForceSensor::default().process(samples, 600).ratio_permille.unwrap()) / 1e3;
+            let read = f64::from(
+                ForceSensor::default()
+                    .process(samples, 600, Motor::default())
+                    .unwrap()
+                    .ratio_permille
+                    .unwrap(),
+            ) / 1e3;
             let true_ratio: f64 = shear / normal;
             let expected = true_ratio / true_ratio.hypot(1.0);
             assert!((read - expected).abs() < 0.02, "{normal} N, {shear} N: {read} for {expected}");
@@ -157,26 +177,27 @@ mod tests {
             let mut sensor = ForceSensor::default();
             let offset = sample_from_mv((FSR_REST_MV as i32 + mv) as u32);
             for _ in 0..80 * 6 {
-                sensor.process([offset; 4], 600);
+                sensor.process([offset; 4], 600, Motor::default());
                 sensor.follow();
             }
-            assert!(sensor.process([offset; 4], 600).load_mn <= 8, "{mv} mV");
+            assert!(sensor.process([offset; 4], 600, Motor::default()).unwrap().load_mn <= 8, "{mv} mV");
             assert_eq!(sensor.zero_uv(), &[0; 4], "what is kept stays as it was calibrated");
             let pressed = sample_from_mv((FSR_REST_MV as i32 + mv + 200) as u32);
-            let before = sensor.process([pressed; 4], 600);
+            let before = sensor.process([pressed; 4], 600, Motor::default());
             (0..800).for_each(|_| sensor.follow());
-            assert_eq!(sensor.process([pressed; 4], 600), before);
+            assert_eq!(sensor.process([pressed; 4], 600, Motor::default()), before);
         }
     }
 
+    // Shows R6.
     #[test]
     fn only_an_unloaded_finger_is_zeroed() {
         let mut sensor = ForceSensor::default();
         let offset = sample_from_mv(FSR_REST_MV + 30);
-        assert!(sensor.process([offset; 4], 600).fn_mn > 0);
+        assert!(sensor.process([offset; 4], 600, Motor::default()).unwrap().fn_mn > 0);
         assert!(sensor.zero());
-        assert_eq!(sensor.process([offset; 4], 600).fn_mn, 0);
-        sensor.process([sample_from_mv(FSR_REST_MV + 300); 4], 600);
+        assert_eq!(sensor.process([offset; 4], 600, Motor::default()).unwrap().fn_mn, 0);
+        sensor.process([sample_from_mv(FSR_REST_MV + 300); 4], 600, Motor::default());
         assert!(!sensor.zero());
     }
 }

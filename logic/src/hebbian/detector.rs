@@ -13,7 +13,7 @@
 //! Slip begins in one place of the contact, and is heard by whoever lies there. An impact, a swing and the motor are heard
 //! everywhere; so what is heard everywhere is slip only if it lasts.
 //!
-//! Shear foretells it: Ft/Fn that rises towards where the camera saw slip ([`shear`](super::shear)) is a warning, and no slip. Where the films' own noise is above the
+//! Shear foretells it: Ft/Fn that rises towards where the camera saw slip ([`Ahead`]) is a warning, and no slip. Where the films' own noise is above the
 //! threshold, it is the threshold ([`noise`](super::noise)).
 //!
 //! The direction is asked of the gauges alone: "vibration information only helps to detect micro slips, but not to detect
@@ -29,10 +29,10 @@ use tenax_hal_shim::words::{Code, Codes, NoLesson};
 use super::balance::Balance;
 use super::noise::Noise;
 use super::pvdf_part::PvdfPart;
-use super::shear::Shear;
 use super::{
     Activations, FingertipNetwork, Normaliser, NormaliserConfig, Output, Sense, Situation, Teacher, snapshot,
 };
+use crate::force::Ahead;
 use crate::hebbian::settings::HebbianConfig;
 use crate::strain::Gauges;
 
@@ -106,7 +106,7 @@ pub struct HebbianDetector {
     activations: Activations<RECEPTORS>,
     pvdf_part: PvdfPart,
     noise: Noise,
-    shear: Shear,
+    shear: Ahead,
     outputs: [Output; NETWORK_OUTPUTS],
     /// The gauges' part of each output, since the last of them was read.
     by_gauges: [i64; NETWORK_OUTPUTS],
@@ -136,7 +136,7 @@ impl Default for HebbianDetector {
             activations: Activations::default(),
             pvdf_part: PvdfPart::default(),
             noise: Noise::default(),
-            shear: Shear::default(),
+            shear: Ahead::default(),
             outputs: [Output::default(); NETWORK_OUTPUTS],
             by_gauges: [0; NETWORK_OUTPUTS],
             by_films: 0,
@@ -241,7 +241,7 @@ impl HebbianDetector {
         self.by_gauges = [0; NETWORK_OUTPUTS];
         self.weights_changed = true;
         self.pvdf_part.outdate();
-        self.shear = Shear::default();
+        self.shear = Ahead::default();
         self.noise = Noise::default();
         self.balance = Balance::default();
         self.updates = 0;

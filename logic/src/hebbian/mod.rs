@@ -27,7 +27,6 @@ mod noise;
 mod pvdf_part;
 pub mod rule;
 pub mod settings;
-mod shear;
 pub mod snapshot;
 pub mod teacher;
 

@@ -1,11 +1,13 @@
 //! The force sensor's quadrants: each reading as it comes, and the forces when all four have.
 
-use tenax_hal_shim::channel::{FSR, FSR_COUNT};
-use tenax_hal_shim::words::Fault;
+use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, FSR, FSR_COUNT};
+use tenax_hal_shim::words::{Fault, Reason};
 
 use super::{DOUBTED_AFTER, FSR_LIMITS, OPEN_FRAMES, PRESSED_UV, Senses, report};
 use crate::config::Config;
+use crate::force::drift::Motor;
 use crate::force::fsr;
+use crate::health::Change;
 use crate::journal::Journal;
 
 impl Senses {
@@ -41,7 +43,17 @@ impl Senses {
         }
         // Once it has been seen unloaded, its zero is known again.
         self.pressed &= samples.into_iter().any(is_pressed);
-        let mut forces = self.force_sensor.process(samples, config.friction.loaded_mn);
+        let blamed = self.force_sensor.blamed();
+        let motor = Motor {
+            still: self.still_frames / u32::from(FRAMES_PER_SLOW_FRAME),
+            opened: self.open_frames > 0,
+        };
+        let forces = self.force_sensor.process(samples, config.friction.loaded_mn, motor);
+        self.blame(blamed, journal);
+        let Some(mut forces) = forces else {
+            self.forces = None;
+            return;
+        };
         if self.pressed {
             // What presses it may be no object: the size of the force is still a bound, its direction is not.
             forces.ratio_permille = None;
@@ -50,6 +62,15 @@ impl Senses {
         if self.open_frames >= OPEN_FRAMES {
             self.force_sensor.follow();
             self.doubt_load(config, journal);
+        }
+    }
+
+    /// Tells which quadrant contradicts the others now, and did not.
+    fn blame(&self, before: Option<usize>, journal: &mut Journal) {
+        let blamed = self.force_sensor.blamed();
+        if blamed != before {
+            report(journal, FSR + before.unwrap_or(0), before.map(|_| Change::Back));
+            report(journal, FSR + blamed.unwrap_or(0), blamed.map(|_| Change::Lost(Reason::Creep)));
         }
     }
 

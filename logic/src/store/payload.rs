@@ -133,6 +133,7 @@ mod tests {
         );
     }
 
+    // Shows B5.
     #[test]
     fn a_value_that_is_not_accepted_and_a_setting_that_is_unknown_leave_the_others() {
         let mut config = Config::default();

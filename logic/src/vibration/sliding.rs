@@ -5,10 +5,13 @@
 //! its own floor, which it had since the grasp began, and several films, smoothed over 0.1 s, have to agree for 0.2 s. A
 //! impact is over before, and what rings above the band more than in it is the world's noise, not the object's.
 //!
-//! What is heard so weakly is answered as a warning is, with small pulses, and only while they help: once the load has
-//! grown by half, it is no sliding that closing could stop.
+//! What is heard so weakly is answered as a warning is, with small pulses, and only while they help: once the load has grown by half, or
+//! the shear shows that the object is held, it is no sliding that closing could stop ([`Asked`]).
 
 use tenax_hal_shim::channel::PVDF_COUNT;
+use tenax_hal_shim::wire::Forces;
+
+use crate::force::Asked;
 
 /// Slow frames over which floors are learned when a grasp begins: 0.3 s.
 const LEARN_FRAMES: u16 = 24;
@@ -33,17 +36,14 @@ const LOUD_ABOVE: i32 = 3;
 /// Slow frames in which it must be so, 0.2 s: the longest impact is over before. And of silence after which it is over.
 const BEGIN_FRAMES: u8 = 16;
 const END_FRAMES: u8 = 8;
-/// The load may grow by one part in so many, and by this, mN, while sliding is said.
-const GROWTH_PART: i32 = 2;
-const GROWTH_MN: i32 = 1_000;
 /// Slow frames of silence after which what closing did not stop is believed again: 1 s.
 const QUIET_FRAMES: u8 = 80;
 
 /// What the hand does meanwhile.
 #[derive(Clone, Copy, Debug)]
 pub struct Hand {
-    /// The load, mN; None while the finger holds nothing, or nobody knows.
-    pub load_mn: Option<i32>,
+    /// The forces; None while the finger holds nothing, or nobody knows.
+    pub forces: Option<Forces>,
     /// A muscle moves it.
     pub wearer: bool,
     /// It is loud itself: it answers slip, or settles.
@@ -92,8 +92,8 @@ pub struct Sliding {
     learned_for: u16,
     lasted: u8,
     said: bool,
-    /// The load when it was first said.
-    load_mn: i32,
+    /// What it has asked for since it was said.
+    asked: Asked,
     /// Closing did not help, and how long it has been quiet since.
     in_vain: bool,
     quiet: u8,
@@ -103,7 +103,7 @@ impl Sliding {
     /// Takes a slow frame: each film's envelope in the slip band, and the loudest film's above it, Q16 samples. Whether
     /// something slides.
     pub fn step(&mut self, envelopes: &[i32; PVDF_COUNT], above: i32, hand: &Hand) -> bool {
-        let Some(load_mn) = hand.load_mn.filter(|_| !hand.wearer) else {
+        let Some(forces) = hand.forces.filter(|_| !hand.wearer) else {
             (self.learned_for, self.lasted, self.said, self.in_vain) = (0, 0, false, false);
             return false;
         };
@@ -133,9 +133,11 @@ impl Sliding {
             above.level < loudest && (loud >= FILMS || (above.are_over(LOUD_ABOVE) && together >= FILMS));
         self.lasted = if sounds == self.said { 0 } else { self.lasted + 1 };
         if self.lasted >= if sounds { BEGIN_FRAMES } else { END_FRAMES } {
-            (self.said, self.lasted, self.load_mn) = (sounds, 0, load_mn);
+            (self.said, self.lasted) = (sounds, 0);
+            self.asked.renew();
+            self.asked.begin(&forces);
         }
-        self.in_vain |= self.said && load_mn > self.load_mn + self.load_mn / GROWTH_PART + GROWTH_MN;
+        self.in_vain |= self.said && (self.asked.in_vain(&forces) || self.asked.is_held(&forces));
         self.quiet = if sounds { 0 } else { self.quiet.saturating_add(1) };
         self.in_vain &= self.quiet < QUIET_FRAMES;
         self.said && !self.in_vain
@@ -152,7 +154,8 @@ mod tests {
     fn after(sliding: &mut Sliding, frames: u32, films: usize, mv: i32, above_mv: i32, load_mn: i32) -> bool {
         let mut envelopes = [2 * MV; PVDF_COUNT];
         envelopes[..films].fill(mv * MV);
-        let hand = Hand { load_mn: Some(load_mn), wearer: false, striking: false };
+        let forces = Forces { fn_mn: load_mn, fx_mn: 0, fy_mn: 0, ft_mn: 0, load_mn, ratio_permille: None };
+        let hand = Hand { forces: Some(forces), wearer: false, striking: false };
         (0..frames).fold(false, |_, _| sliding.step(&envelopes, above_mv * MV, &hand))
     }
 

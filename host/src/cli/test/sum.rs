@@ -18,6 +18,8 @@ pub struct Sum {
     broken: u32,
     /// The lines of tests that were ignored, each with its reason.
     reasons: Vec<String>,
+    /// What each test said: a line of `ok`, `FAILED` or `ignored` and its path.
+    pub results: String,
 }
 
 impl Sum {
@@ -54,8 +56,14 @@ impl Sum {
             self.passed += count("passed");
             self.failed += count("failed");
             self.ignored += count("ignored");
-        } else if line.starts_with("test ") && line.contains(" ... ignored") {
-            self.reasons.push(line.to_owned());
+        } else if let Some((path, result)) =
+            line.strip_prefix("test ").and_then(|line| line.split_once(" ... "))
+        {
+            let word = result.split([',', ' ']).next().unwrap_or_default();
+            if word == "ignored" {
+                self.reasons.push(line.to_owned());
+            }
+            self.results.push_str(&format!("{word} {path}\n"));
         }
     }
 

@@ -7,11 +7,13 @@
 //! How far to look ahead is a choice (`docs/hebbian.md`): the films hear the first places let go; shear only foretells it, and
 //! does so in every lift that would have held by a little. 0 is not at all.
 //!
-//! What was learned on something slippery would warn for ever of something rough. So in one grasp it asks for half as much force
-//! again as when it first warned, and then is silent until something is known: the films have heard slip, the camera has seen it,
-//! a muscle was active, or the finger touched nothing.
+//! What was learned on something slippery would warn for ever of something rough. So in one grasp it asks for no more than a warning may
+//! ([`Asked`]), and then is silent until something is known: the films have heard slip, the camera has seen it, a muscle was active, or
+//! the finger touched nothing.
 
 use tenax_hal_shim::wire::Forces;
+
+use super::Asked;
 
 /// The part of the learned ratio that is close, per mille.
 const CLOSE_PERMILLE: i32 = 850;
@@ -23,8 +25,6 @@ const SPAN: usize = 2;
 const READING_US: i32 = 12_500;
 /// Readings in a row that have to agree.
 const AGREEING: u8 = 2;
-/// What it may ask for in a grasp, as a part of the load at which it first warned: half as much again, as steady sliding may.
-const GROWTH_PART: i32 = 2;
 /// The learned ratio follows the lessons over `2^FOLLOWS` readings, 0.4 s.
 const FOLLOWS: u32 = 5;
 /// The smallest ratio that is taken for friction, per mille, as S2's stroke does.
@@ -34,26 +34,25 @@ const FRACTION: u32 = 8;
 
 /// What was learned, and what is felt.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Shear {
+pub struct Ahead {
     /// Ft/Fn of slip, per mille with [`FRACTION`] bits; 0 before a lesson.
     slips_at: i32,
     /// The last ratios, the newest first.
     before: [Option<u16>; SPAN],
     agreeing: u8,
     says: bool,
-    /// The load when it first warned in this grasp, mN.
-    warned_at_mn: Option<i32>,
+    /// What it has asked for in this grasp.
+    asked: Asked,
 }
 
-impl Shear {
+impl Ahead {
     /// Takes a new reading, None while there is no ratio, and how far to look ahead: 0 is not at all.
     #[inline(never)]
-    pub(super) fn feel(&mut self, ahead_ms: u16, forces: Option<&Forces>) {
+    pub fn feel(&mut self, ahead_ms: u16, forces: Option<&Forces>) {
         let [newer, oldest] = self.before;
-        let load_mn = forces.map_or(0, |forces| forces.load_mn);
         let ratio_permille = forces.and_then(|forces| forces.ratio_permille);
         self.before = [ratio_permille, newer];
-        let Some(ratio_permille) = ratio_permille.filter(|_| ahead_ms > 0) else {
+        let (Some(forces), Some(ratio_permille)) = (forces, ratio_permille.filter(|_| ahead_ms > 0)) else {
             self.agreeing = 0;
             self.says = false;
             return;
@@ -63,24 +62,23 @@ impl Shear {
         // A ratio is below 2^16 and the look ahead below 2^8 ms, so the product is below 2^31 in ms.
         let ahead = risen * i32::from(ahead_ms) / (SPAN as i32 * READING_US / 1_000);
         let limit = (self.slips_at >> FRACTION) * if self.says { FAR_PERMILLE } else { CLOSE_PERMILLE };
-        let in_vain = self.warned_at_mn.is_some_and(|at_mn| load_mn > at_mn + at_mn / GROWTH_PART);
         let close = self.slips_at >> FRACTION >= LEAST_PERMILLE
             && i64::from(ratio + ahead) * 1_000 >= i64::from(limit)
-            && !in_vain;
+            && !self.asked.in_vain(forces);
         self.agreeing = if close { self.agreeing.saturating_add(1) } else { 0 };
         self.says = close && (self.says || self.agreeing >= AGREEING);
-        if self.says && self.warned_at_mn.is_none() {
-            self.warned_at_mn = Some(load_mn);
+        if self.says {
+            self.asked.begin(forces);
         }
     }
 
     /// Something is known of slip, or another grasp begins: it may ask for force anew.
-    pub(super) const fn renew(&mut self) {
-        self.warned_at_mn = None;
+    pub const fn renew(&mut self) {
+        self.asked.renew();
     }
 
     /// The camera says that it slips: the newest ratio is that of slip.
-    pub(super) fn learn(&mut self) {
+    pub fn learn(&mut self) {
         if let [Some(ratio), _] = self.before {
             let ratio = i32::from(ratio) << FRACTION;
             let off = ratio - self.slips_at;
@@ -90,22 +88,22 @@ impl Shear {
     }
 
     /// Whether slip is near.
-    pub(super) const fn warns(&self) -> bool {
+    pub const fn warns(&self) -> bool {
         self.says
     }
 
     /// No reading of now. It is the same grasp.
-    pub(super) fn lose(&mut self) {
-        *self = Self { slips_at: self.slips_at, warned_at_mn: self.warned_at_mn, ..Self::default() };
+    pub fn lose(&mut self) {
+        *self = Self { slips_at: self.slips_at, asked: self.asked, ..Self::default() };
     }
 
     /// Ft/Fn of slip, per mille with [`FRACTION`] bits; 0 before a lesson.
-    pub(super) const fn learned(&self) -> u32 {
+    pub const fn learned(&self) -> u32 {
         self.slips_at.unsigned_abs()
     }
 
     /// Takes up what was learned; what no ratio can be is none.
-    pub(super) fn restore(&mut self, learned: u32) {
+    pub fn restore(&mut self, learned: u32) {
         self.slips_at = if learned >> FRACTION <= u16::MAX as u32 { learned as i32 } else { 0 };
     }
 }
@@ -120,8 +118,8 @@ mod tests {
     }
 
     /// One that has learned that it slips at this ratio.
-    fn taught(permille: u16) -> Shear {
-        let mut shear = Shear::default();
+    fn taught(permille: u16) -> Ahead {
+        let mut shear = Ahead::default();
         shear.feel(0, Some(&reading(permille, 2_000)));
         shear.learn();
         shear.lose();
@@ -129,7 +127,7 @@ mod tests {
     }
 
     /// The reading at which it warns, of a ratio that rises by so much a reading.
-    fn warns_at(mut shear: Shear, ahead_ms: u16, rise: u16) -> Option<u16> {
+    fn warns_at(mut shear: Ahead, ahead_ms: u16, rise: u16) -> Option<u16> {
         (0..600 / rise).map(|n| n * rise).find(|&ratio| {
             shear.feel(ahead_ms, Some(&reading(ratio, 2_000)));
             shear.warns()
@@ -138,7 +136,7 @@ mod tests {
 
     #[test]
     fn before_a_lesson_it_says_nothing() {
-        assert_eq!(warns_at(Shear::default(), 200, 10), None);
+        assert_eq!(warns_at(Ahead::default(), 200, 10), None);
     }
 
     #[test]
@@ -180,7 +178,7 @@ mod tests {
         }
         let (_, spent) = warns(3_001);
         // A lost frame and a ratio that is not known for a while are the same grasp.
-        for same in [Shear::lose, |shear: &mut Shear| shear.feel(75, None)] {
+        for same in [Ahead::lose, |shear: &mut Ahead| shear.feel(75, None)] {
             let mut shear = spent.clone();
             same(&mut shear);
             (0..AGREEING).for_each(|_| shear.feel(75, Some(&reading(400, 3_001))));
@@ -188,7 +186,7 @@ mod tests {
         }
         let mut lesson = spent.clone();
         lesson.learn();
-        for mut shear in [lesson, Shear { warned_at_mn: None, ..spent }] {
+        for mut shear in [lesson, Ahead { asked: Asked::default(), ..spent }] {
             (0..AGREEING).for_each(|_| shear.feel(75, Some(&reading(400, 3_001))));
             assert!(shear.warns());
         }
@@ -206,13 +204,13 @@ mod tests {
 
     #[test]
     fn the_learned_ratio_is_the_mean_of_the_lessons_and_survives() {
-        let mut shear = Shear::default();
+        let mut shear = Ahead::default();
         for n in 0..400_u16 {
             shear.feel(0, Some(&reading(400 + (n % 5) * 10, 2_000)));
             shear.learn();
         }
         assert!((418..=422).contains(&(shear.learned() >> FRACTION)), "{}", shear.learned());
-        let mut other = Shear::default();
+        let mut other = Ahead::default();
         other.restore(shear.learned());
         assert_eq!(other.learned(), shear.learned());
         other.restore(u32::MAX);

@@ -1,0 +1,32 @@
+//! `tenax safety`: requirements, hazards and tests, held against each other.
+
+use std::process::ExitCode;
+
+use super::format::Format;
+use super::workspace;
+use crate::safety::Matrix;
+
+/// Hold requirements, hazards and tests against each other.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    /// Every test that shows a requirement has to have passed when `tenax test` last ran
+    #[arg(long)]
+    tested: bool,
+    /// How to print the matrix
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    report: Format,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  tenax safety                      the matrix: requirement, hazards, tests
+  tenax test && tenax safety --tested
+A test names what it shows in a comment above it: // Shows W1, R2.";
+
+/// Prints the matrix. 1: something is missing.
+pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
+    let matrix = Matrix::of(&workspace::root()?, args.tested)?;
+    args.report.print(&matrix, &matrix)?;
+    Ok(ExitCode::from(u8::from(!matrix.problems.is_empty())))
+}

@@ -1,0 +1,100 @@
+//! How much force a warning may ask for before something is known.
+//!
+//! A warning may be wrong for ever: films that hum, a friction that was learned on something else. So it asks for half as much force
+//! again as when it began, and no more. And where it says that the object slides, force shows sooner whether it does: what slides carries
+//! Ft = mu Fn, which grows as the hand closes; what is held carries its weight, whatever the grip.
+
+use tenax_hal_shim::wire::Forces;
+
+/// What it may ask for, as a part of the load at which it began.
+const GROWTH_PART: i32 = 2;
+/// The growth of the load that shows what is held, as a part of it: several times what hysteresis makes of it.
+const SHOWS_PART: i32 = 8;
+/// Ft of what is held grows by less than this part of what it would if it slid.
+const HELD_PART: i64 = 2;
+
+/// Load and shear when a warning began.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Asked(Option<At>);
+
+#[derive(Clone, Copy, Debug)]
+struct At {
+    load_mn: i32,
+    /// None where no ratio was known.
+    ft_mn: Option<i32>,
+}
+
+const fn at(forces: &Forces) -> At {
+    At {
+        load_mn: forces.load_mn,
+        ft_mn: if forces.ratio_permille.is_some() { Some(forces.ft_mn) } else { None },
+    }
+}
+
+impl Asked {
+    /// It begins to ask, if it did not yet.
+    pub fn begin(&mut self, forces: &Forces) {
+        self.0.get_or_insert(at(forces));
+    }
+
+    /// Something is known, or another grasp begins: it may ask anew.
+    pub const fn renew(&mut self) {
+        self.0 = None;
+    }
+
+    /// Whether it has had all that it may ask for.
+    #[must_use]
+    pub fn in_vain(&self, forces: &Forces) -> bool {
+        self.0.is_some_and(|began| forces.load_mn > began.load_mn + began.load_mn / GROWTH_PART)
+    }
+
+    /// Whether the hand has closed since and the shear has not grown with it, as it does where something slides.
+    #[must_use]
+    pub fn is_held(&self, forces: &Forces) -> bool {
+        let (Some(began), now) = (self.0, at(forces)) else { return false };
+        let (Some(began_mn), Some(now_mn)) = (began.ft_mn, now.ft_mn) else { return false };
+        let grown_mn = now.load_mn - began.load_mn;
+        // Forces are below 2^17 mN.
+        grown_mn > began.load_mn / SHOWS_PART
+            && i64::from(now_mn - began_mn) * HELD_PART * i64::from(began.load_mn)
+                < i64::from(began_mn) * i64::from(grown_mn)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn forces(load_mn: i32, ft_mn: i32) -> Forces {
+        Forces {
+            fn_mn: load_mn,
+            fx_mn: ft_mn,
+            fy_mn: 0,
+            ft_mn,
+            load_mn,
+            ratio_permille: Some((ft_mn * 1_000 / load_mn) as u16),
+        }
+    }
+
+    #[test]
+    fn half_as_much_again_and_no_more_until_something_is_known() {
+        let mut asked = Asked::default();
+        assert!(!asked.in_vain(&forces(9_000, 100)), "it asked for nothing");
+        for (load_mn, vain) in [(2_000, false), (3_000, false), (3_001, true)] {
+            asked.begin(&forces(load_mn, 100));
+            assert_eq!(asked.in_vain(&forces(load_mn, 100)), vain, "{load_mn}");
+        }
+        asked.renew();
+        assert!(!asked.in_vain(&forces(3_001, 100)));
+    }
+
+    #[test]
+    fn what_slides_carries_more_as_the_hand_closes_and_what_is_held_does_not() {
+        let mut asked = Asked::default();
+        asked.begin(&forces(4_000, 1_000));
+        assert!(!asked.is_held(&forces(4_400, 1_000)), "hysteresis could do that");
+        assert!(asked.is_held(&forces(4_600, 1_000)));
+        assert!(!asked.is_held(&forces(4_600, 1_150)), "it slides");
+        assert!(!asked.is_held(&Forces { ratio_permille: None, ..forces(4_600, 1_000) }), "nobody knows");
+    }
+}

@@ -1,0 +1,311 @@
+//! What the quadrants' readings have drifted since they were zeroed, found while something is held.
+//!
+//! Two facts tell drift from force. The element on the quadrants is rigid: whatever presses on it, A + C = B + D. And nothing but the
+//! motor changes a grip slowly: an object that is lost is lost at once, and a skin that yields yields by a part.
+//!
+//! - **One cell** that moves against the other three breaks the first. It is taken from them then, and its drift with it.
+//! - **All cells** that sink together look like a load that goes. What goes slowly, with the motor at rest, and beyond what a skin yields
+//!   is drift. Where two cells have sunk to nothing, the sensor gives no force.
+
+use tenax_hal_shim::channel::FSR_COUNT;
+
+use super::sensor::CARRIES_MN;
+
+/// Which way each cell counts in A - B + C - D.
+const SIGNS: [i32; FSR_COUNT] = [1, -1, 1, -1];
+/// Cells may contradict each other by this, mN, and by this part of the load: hysteresis and gains (Interlink's guide) leave so much.
+const TOLERATED_MN: i32 = 60;
+const TOLERATED_PART: i32 = 20;
+/// Readings for which they have to: half a second.
+const CONTRADICTS_FOR: u8 = 40;
+/// Readings of a new grasp over which the cells' gains are learned: half a second.
+const LEARN: u8 = 40;
+const LEARN_SHIFT: u32 = 3;
+/// Fraction bits of a contradiction as a part of the load.
+const GAIN_Q: u32 = 12;
+/// What a cell has moved is counted against what it was over `2^ANCHOR_SHIFT` readings, 3 s, with this many fraction bits; and the
+/// votes for each cell are forgotten over twice that.
+const ANCHOR_SHIFT: u32 = 8;
+const VOTES_SHIFT: u32 = 9;
+/// A cell is blamed in place of another one when it has so many times as many votes.
+const CLEARLY: i64 = 2;
+/// Votes that are no noise, mN^2: a few mN for as long as votes are kept.
+const HEARD: i64 = 100_000;
+/// A drift is followed by this in a reading, mN: 0.24 N/s of one cell, 0.5 N/s of all.
+const CELL_FOLLOWS_MN: i32 = 3;
+const ALL_FOLLOWS_MN: i32 = 6;
+/// Readings after the motor's last drive before a load stands still: 0.5 s.
+const STILL_FOR: u32 = 40;
+/// The part of a load that a skin may yield by itself.
+const YIELDS_PART: i32 = 5;
+
+/// What the cells tell of each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cells {
+    /// Their forces, mN, drift taken off.
+    Known([i32; FSR_COUNT]),
+    /// Too few of them carry anything that could be told from drift.
+    Sunk,
+}
+
+/// What the motor does to the grip.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Motor {
+    /// Readings since it was driven.
+    pub still: u32,
+    /// It has opened the hand since it last closed it.
+    pub opened: bool,
+}
+
+/// The drift of all four cells.
+#[derive(Clone, Debug, Default)]
+pub struct Drift {
+    /// The cell that is blamed.
+    blamed: Option<usize>,
+    /// How far the cells contradict each other beyond their gains: SIGNS times the drift of the blamed one, mN.
+    off_mn: i32,
+    contradicts: u8,
+    /// Readings since the grasp began, and what A - B + C - D is of the load for want of equal gains.
+    learned: u8,
+    gain: i32,
+    /// Each cell's reading of late, with [`ANCHOR_SHIFT`] fraction bits, and how much of the contradiction it explains.
+    anchors: [i32; FSR_COUNT],
+    votes: [i64; FSR_COUNT],
+    /// What all of them have sunk by together, mN, and the load that they stood still at.
+    sunk_mn: i32,
+    stood_at_mn: Option<i32>,
+}
+
+impl Drift {
+    /// The cell that is blamed.
+    pub const fn blamed(&self) -> Option<usize> {
+        self.blamed
+    }
+
+    /// Takes a reading of all cells, mN. `loaded_mn` is the load of a grasp.
+    pub fn step(&mut self, read_mn: [i32; FSR_COUNT], loaded_mn: i32, motor: Motor) -> Cells {
+        self.let_go(read_mn, motor.opened);
+        let cells = self.corrected(read_mn);
+        let load_mn: i32 = cells.iter().sum();
+        let carry = read_mn.iter().filter(|&&mn| mn >= CARRIES_MN).count();
+        if load_mn < loaded_mn {
+            (self.learned, self.contradicts, self.sunk_mn, self.stood_at_mn) = (0, 0, 0, None);
+        } else if self.sunk_mn > 0 && carry + 1 < FSR_COUNT {
+            return Cells::Sunk;
+        } else {
+            self.contradict(read_mn, load_mn);
+            self.sink(load_mn, motor.still);
+        }
+        Cells::Known(self.corrected(read_mn))
+    }
+
+    /// What the cells carry, if they have drifted as far as is known.
+    fn corrected(&self, mut cells: [i32; FSR_COUNT]) -> [i32; FSR_COUNT] {
+        if let Some(blamed) = self.blamed {
+            cells[blamed] -= SIGNS[blamed] * self.off_mn;
+        }
+        // No cell pulls.
+        cells.map(|mn| (mn + self.sunk_mn / FSR_COUNT as i32).max(0))
+    }
+
+    /// Where no cell carries anything but the blamed one, nothing is held: what is read is drift.
+    fn let_go(&mut self, read_mn: [i32; FSR_COUNT], opened: bool) {
+        let carries = |n: usize| read_mn[n] >= CARRIES_MN;
+        if let Some(blamed) = self.blamed
+            && (0..FSR_COUNT).all(|n| n == blamed || !carries(n))
+            && (opened || self.sunk_mn == 0)
+        {
+            self.off_mn = SIGNS[blamed] * read_mn[blamed];
+            if !carries(blamed) {
+                self.blamed = None;
+            }
+        }
+        if opened && !(0..FSR_COUNT).any(carries) {
+            self.sunk_mn = 0;
+        }
+    }
+
+    /// Holds the cells against each other.
+    fn contradict(&mut self, read_mn: [i32; FSR_COUNT], load_mn: i32) {
+        if (0..FSR_COUNT).any(|n| read_mn[n] < CARRIES_MN && self.blamed != Some(n)) {
+            // A shear that lifts the element off a cell breaks the rule, too.
+            self.contradicts = 0;
+            return;
+        }
+        let of = |cells: &[i32; FSR_COUNT]| cells.iter().zip(SIGNS).map(|(mn, sign)| mn * sign).sum::<i32>();
+        // A load is below 2^17.
+        let now = of(&read_mn) - if self.blamed.is_some() { self.off_mn } else { 0 };
+        if self.learned < LEARN {
+            if self.learned == 0 {
+                self.anchors = read_mn.map(|mn| mn << ANCHOR_SHIFT);
+                self.votes = [0; FSR_COUNT];
+                self.gain = 0;
+            }
+            self.learned += 1;
+            let part = ((i64::from(now) << GAIN_Q) / i64::from(load_mn.max(1))) as i32;
+            let limit = (1 << GAIN_Q) / 4;
+            self.gain += (part.clamp(-limit, limit) - self.gain) >> LEARN_SHIFT;
+        }
+        let moved = core::array::from_fn(|n| {
+            let lacks = (read_mn[n] << ANCHOR_SHIFT) - self.anchors[n];
+            self.anchors[n] += lacks >> ANCHOR_SHIFT;
+            lacks >> ANCHOR_SHIFT
+        });
+        let all_moved = i64::from(of(&moved));
+        for ((votes, moved), sign) in self.votes.iter_mut().zip(moved).zip(SIGNS) {
+            *votes += all_moved * i64::from(moved * sign) - (*votes >> VOTES_SHIFT);
+        }
+        let excess = now - ((i64::from(load_mn) * i64::from(self.gain)) >> GAIN_Q) as i32;
+        let beyond = excess.abs() > TOLERATED_MN + load_mn / TOLERATED_PART;
+        self.contradicts = if beyond { self.contradicts.saturating_add(1) } else { 0 };
+        let most = (0..FSR_COUNT).max_by_key(|&n| self.votes[n]);
+        match (self.blamed, most) {
+            (None, Some(most)) if self.contradicts >= CONTRADICTS_FOR => self.blamed = Some(most),
+            (Some(blamed), Some(most)) if self.votes[most] > CLEARLY * self.votes[blamed].max(0) + HEARD => {
+                self.blamed = Some(most);
+            }
+            _ => {}
+        }
+        if self.blamed.is_some() {
+            self.off_mn += excess.clamp(-CELL_FOLLOWS_MN, CELL_FOLLOWS_MN);
+        }
+    }
+
+    /// Holds the load against what it was when the motor came to rest.
+    fn sink(&mut self, load_mn: i32, still: u32) {
+        if still < STILL_FOR {
+            self.stood_at_mn = None;
+            return;
+        }
+        let stood_at_mn = *self.stood_at_mn.get_or_insert(load_mn);
+        let yields_mn = stood_at_mn / YIELDS_PART;
+        let lacks_mn = stood_at_mn - yields_mn - load_mn;
+        if lacks_mn > yields_mn {
+            // Faster than any drift: it is another load.
+            (self.sunk_mn, self.stood_at_mn) = (0, None);
+        } else {
+            self.sunk_mn += lacks_mn.clamp(0, ALL_FOLLOWS_MN);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::vec::Vec;
+
+    const LOADED_MN: i32 = 600;
+    const STILL: Motor = Motor { still: 1_000, opened: false };
+    const MOVES: Motor = Motor { still: 0, opened: false };
+
+    /// Cells under a load and a shear along both axes, mN.
+    fn cells(load: f64, x: f64, y: f64) -> [f64; FSR_COUNT] {
+        [load + x + y, load + x - y, load - x - y, load - x + y].map(|four| four / 4.0)
+    }
+
+    fn read(cells: [f64; FSR_COUNT]) -> [i32; FSR_COUNT] {
+        cells.map(|mn| mn.max(0.0).round() as i32)
+    }
+
+    fn known(cells: Cells) -> [i32; FSR_COUNT] {
+        match cells {
+            Cells::Known(cells) => cells,
+            Cells::Sunk => panic!("sunk"),
+        }
+    }
+
+    /// Taken, and held for a second.
+    fn holding(cells: [f64; FSR_COUNT]) -> Drift {
+        let mut drift = Drift::default();
+        (0..40).for_each(|_| _ = drift.step(read(cells), LOADED_MN, MOVES));
+        (0..40).for_each(|_| _ = drift.step(read(cells), LOADED_MN, STILL));
+        drift
+    }
+
+    #[test]
+    fn one_cell_that_drifts_is_found_and_taken_off_while_a_load_grows_or_falls() {
+        for (cell, way, pours) in
+            (0..FSR_COUNT).flat_map(|n| [(n, 1.0, 0.0), (n, 1.0, 1.0), (n, 1.0, -1.0), (n, -1.0, 0.5)])
+        {
+            let mut drift = holding(cells(6_500.0, 1_200.0, 0.0));
+            for n in 0..80 * 120 {
+                let t_s = f64::from(n) / 80.0;
+                // Half a newton in 7 s, and 100 mN/s of drift.
+                let x = 1_200.0 + pours * 70.0 * t_s.min(7.0);
+                let mut true_cells = cells(6_500.0, x, 0.0);
+                true_cells[cell] += way * 100.0 * t_s;
+                let [a, b, c, d] = known(drift.step(read(true_cells), LOADED_MN, STILL));
+                let (fx, fy) = (f64::from(a + b - c - d), f64::from(a + d - b - c));
+                let off = (fx - x).hypot(fy);
+                assert!(off < 750.0, "cell {cell}, {way}, {pours}: {off} mN after {t_s} s, {drift:?}");
+            }
+            assert_eq!(drift.blamed(), Some(cell), "{way}, {pours}");
+        }
+    }
+
+    #[test]
+    fn unequal_gains_and_hysteresis_blame_nobody_whatever_shear_does() {
+        let gains = [1.08, 0.93, 0.97, 1.05];
+        let with = |mut cells: [f64; FSR_COUNT]| {
+            cells.iter_mut().zip(gains).for_each(|(mn, gain)| *mn *= gain);
+            cells
+        };
+        let mut drift = holding(with(cells(4_000.0, 0.0, 0.0)));
+        for n in 0..80 * 60 {
+            let turn = f64::from(n) / 80.0;
+            let load = 4_000.0 + f64::from(n) * 2.0;
+            let now = with(cells(load, 0.3 * load * turn.sin(), 0.3 * load * turn.cos()));
+            assert_eq!(known(drift.step(read(now), LOADED_MN, MOVES)), read(now));
+        }
+        assert_eq!(drift.blamed(), None);
+    }
+
+    #[test]
+    fn all_cells_that_sink_slowly_are_held_until_they_tell_nothing() {
+        let mut drift = holding(cells(6_500.0, 1_200.0, 0.0));
+        let mut seen = Vec::new();
+        for n in 0..80 * 30 {
+            let sunk = f64::from(n) / 80.0 * 100.0;
+            match drift.step(read(cells(6_500.0, 1_200.0, 0.0).map(|mn| mn - sunk)), LOADED_MN, STILL) {
+                Cells::Known(cells) => seen.push(cells.iter().sum::<i32>()),
+                Cells::Sunk => break,
+            }
+        }
+        assert!((80 * 12..80 * 16).contains(&seen.len()), "{}", seen.len());
+        assert!(seen.iter().all(|load| (5_100..=6_500).contains(load)), "{:?}", seen.last());
+        assert_eq!(drift.step([0; FSR_COUNT], LOADED_MN, STILL), Cells::Sunk);
+        assert_eq!(known(drift.step([0; FSR_COUNT], LOADED_MN, Motor { still: 0, opened: true })), [0; 4]);
+    }
+
+    #[test]
+    fn what_is_lost_at_once_or_let_go_by_the_motor_is_no_drift() {
+        for (falls_mn, motor) in [(400.0, STILL), (20.0, MOVES)] {
+            let mut drift = holding(cells(6_500.0, 0.0, 0.0));
+            let mut load = 6_500.0;
+            while load > 0.0 {
+                load -= falls_mn;
+                drift.step(read(cells(load, 0.0, 0.0)), LOADED_MN, motor);
+            }
+            assert_eq!(known(drift.step([0; FSR_COUNT], LOADED_MN, motor)), [0; FSR_COUNT]);
+        }
+    }
+
+    #[test]
+    fn an_empty_hand_is_empty_whatever_a_cell_has_drifted() {
+        for way in [1.0, -1.0] {
+            let mut drift = holding(cells(6_500.0, 0.0, 0.0));
+            let mut off = 0.0;
+            for _ in 0..80 * 14 {
+                off += way * 1.25;
+                let mut now = cells(6_500.0, 0.0, 0.0);
+                now[2] += off;
+                drift.step(read(now), LOADED_MN, STILL);
+            }
+            assert_eq!(drift.blamed(), Some(2));
+            let mut empty = [0.0; FSR_COUNT];
+            empty[2] += off;
+            let cells = known(drift.step(read(empty), LOADED_MN, MOVES));
+            assert!(cells.iter().all(|&mn| mn <= CARRIES_MN), "{cells:?}");
+        }
+    }
+}
