@@ -9,6 +9,7 @@ use tenax_hal_shim::wire::Slow;
 
 use super::wearer::Wearer;
 use crate::board::Recorder;
+use crate::recipe::Named;
 use crate::replay::facts::{Crest, crest, muscle_onset_s};
 use crate::replay::meaning::{Meaning, Motion};
 use crate::replay::{Recipe, Recording};
