@@ -30,7 +30,6 @@ pub struct Forces {
 
 impl Forces {
     /// The means over the markers that are known. None if there are fewer than `least`.
-    #[must_use]
     pub fn of(markers: &[Marker], least: usize) -> Option<Self> {
         let mut sum = Self::default();
         for marker in markers.iter().filter(|marker| marker.known()) {
