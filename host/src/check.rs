@@ -1,4 +1,4 @@
-//! Every promise of the README as a bar: what is promised, what was measured, whether it holds.
+//! Every promise of docs/results.md as a bar: what is promised, what was measured, whether it holds.
 
 pub mod agreement;
 pub mod array;

@@ -3,6 +3,7 @@
 mod calibrate;
 mod chart;
 mod check;
+mod commands;
 mod dataset;
 mod evaluate;
 mod folder;
@@ -22,7 +23,7 @@ mod vision;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use tenax_serial::cli::{config, exit, flash, monitor, out, play, record, settings, wiring, workspace};
 
 const EXAMPLES: &str = "\
@@ -95,6 +96,8 @@ enum Command {
     Size(size::Args),
     /// Run Clippy on the image with the toolchain that builds it
     LintImage,
+    /// Print every command with its options as a Markdown table
+    Commands,
     /// Print the channel map as a Markdown table
     Wiring,
     /// Print every setting with unit, range, default and meaning as a Markdown table
@@ -124,6 +127,7 @@ pub fn main() -> ExitCode {
         Command::Config(args) => config::main(&args),
         Command::Size(args) => size::main(&args),
         Command::LintImage => lint_image::main(),
+        Command::Commands => commands::main(&Cli::command()),
         Command::Wiring => wiring::main(),
         Command::Settings => settings::main(),
     })
@@ -132,7 +136,6 @@ pub fn main() -> ExitCode {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
 
     #[test]
     fn the_command_line_is_well_formed() {

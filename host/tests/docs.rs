@@ -76,3 +76,13 @@ fn every_test_that_a_page_names_is_one() {
         }
     }
 }
+
+#[test]
+fn the_commands_page_is_the_tools() {
+    let printed = Command::new(env!("CARGO_BIN_EXE_tenax-host")).arg("commands").output().unwrap().stdout;
+    let page = fs::read_to_string(root().join("docs/commands.md")).unwrap();
+    assert!(
+        String::from_utf8(printed).unwrap() == page,
+        "docs/commands.md is stale: run   cargo tenax commands > docs/commands.md"
+    );
+}
