@@ -16,10 +16,10 @@ use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ, MYO_EXTENSOR, MYO_FLEXOR, MYO_
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::select_of_slot;
 use tenax_logic::emg::calibration::{Calibration, PROMPT_FRAMES, Progress};
-use tenax_logic::emg::intent::Wish;
+use tenax_logic::emg::decide::Wish;
 use tenax_logic::emg::mains::mains_of;
 use tenax_logic::emg::model::EmgModel;
-use tenax_logic::emg::quality::Quality;
+use tenax_logic::emg::trust::Quality;
 use tenax_logic::emg::{Emg, Verdict, uv_of_sample};
 use tenax_scene::plant::Plant;
 
