@@ -268,7 +268,14 @@ impl Decide {
         match self.wish {
             Wish::Open if over[1] => Wish::Open,
             Wish::Open if (place >= PLACE_STAYS[1] || blind[0]) && opens >= ends(1) => Wish::Open,
-            Wish::Close if may_close && place <= PLACE_STAYS[0] && closes >= ends(0) => Wish::Close,
+            Wish::Close
+                if may_close
+                    && place <= PLACE_STAYS[0]
+                    && opens < sites.both[0] + BOTH / 2
+                    && closes >= ends(0) =>
+            {
+                Wish::Close
+            }
             Wish::Rest | Wish::Close if may_open && place >= PLACE_BEGINS && opens >= begins(1) => Wish::Open,
             Wish::Rest | Wish::Open
                 if may_close && place <= PLACE_BEGINS && opens < sites.both[0] && closes >= begins(0) =>

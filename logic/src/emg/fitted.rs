@@ -30,7 +30,7 @@ pub const LEAST_SPREADS: i32 = 3;
 /// Place of the electrodes' ratio between calibrated closing (0) and opening (1000): closing begins below, opening above.
 pub const PLACE_BEGINS: i32 = 480;
 /// Closing goes on below, opening above.
-pub const PLACE_STAYS: [i32; 2] = [600, 400];
+pub const PLACE_STAYS: [i32; 2] = [520, 400];
 /// Readings for which a wish stands before it is one: rest 25 ms, closing 38 ms, opening 75 ms.
 pub const DWELL: [u16; 3] = [6, 9, 18];
 /// A single reading above all that was calibrated opens after so many.
