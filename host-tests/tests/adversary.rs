@@ -30,8 +30,8 @@ const SAFE_MM: f64 = 0.75;
 const RENEWED_FRAMES: u32 = 8_000;
 /// How long the muscles rest and are well before an opening is held to its time: 6 s.
 const WELL_FRAMES: u32 = 12_000;
-/// An opening that a muscle began goes on for a while when its electrode fails (docs/emg.md), in frames: 0.6 s.
-const ASKED_FRAMES: u32 = 1_200;
+/// An opening that a muscle began goes on for a while when its electrode fails: what was proven counts for 1 s (docs/emg.md).
+const ASKED_FRAMES: u32 = 2_200;
 /// The largest blind budget that can be set, and a slow frame in which it is noticed, in frames.
 const BLIND_FRAMES: u32 = 800 + 25;
 
@@ -265,8 +265,8 @@ impl Adversary {
         seen.active[slot as usize] = self.is_active(step);
         let asked = seen.asked_at.is_some_and(|at| step - at < ASKED_FRAMES) || step < self.link_open_until;
         seen.opening += u64::from(drive.opens());
-        // An empty finger drops nothing.
-        if asked || seen.empty || step - seen.strayed_at > RENEWED_FRAMES {
+        // An empty finger drops nothing, and who is switched on anew does not know what was opened before.
+        if asked || seen.empty || self.started_at == step || step - seen.strayed_at > RENEWED_FRAMES {
             seen.stray_mm = 0.0;
         } else if let MotorDrive::Open(duty) = drive {
             seen.strays += u32::from(seen.stray_mm == 0.0);
