@@ -16,10 +16,10 @@ use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ, MYO_EXTENSOR, MYO_FLEXOR, MYO_
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::select_of_slot;
 use tenax_logic::emg::calibration::{Calibration, PROMPT_FRAMES, Progress};
-use tenax_logic::emg::intent::Wish;
+use tenax_logic::emg::decide::Wish;
 use tenax_logic::emg::mains::mains_of;
 use tenax_logic::emg::model::EmgModel;
-use tenax_logic::emg::quality::Quality;
+use tenax_logic::emg::trust::Quality;
 use tenax_logic::emg::{Emg, Verdict, uv_of_sample};
 use tenax_scene::plant::Plant;
 
@@ -257,10 +257,13 @@ fn holds_the_bars(prefix: &str, windows_right: f64) {
     println!("\nsession `{prefix}`, the longest wrong motion over all calibrations, ms: {worst:?}");
     for (name, &ms) in &worst {
         let most = match *name {
-            name if name.starts_with("fist") || name.starts_with("handflexion") => 50,
+            // It begins with an extension of 0.4 s at 0.85 of the held one, with the flexor at rest: that is an opening.
+            "handflexion_dynamic" => 520,
+            name if name.starts_with("fist") || name.starts_with("handflexion") => 0,
             name if name.starts_with("handextension") || name.starts_with("rest") => 0,
-            // Extended fingers are neither of this wearer's contractions: closing is an error, and has no bar.
-            _ => 250,
+            // Extended fingers are neither of this wearer's contractions: closing is an error, and has no bar. Calibrated from a flexion
+            // that drives the extensor for its first 0.75 s, relaxing between two extensions closes.
+            _ => 1_000,
         };
         assert!(ms <= most, "{name}: {ms} ms of what nobody wants");
     }
@@ -269,13 +272,14 @@ fn holds_the_bars(prefix: &str, windows_right: f64) {
 #[test]
 #[cfg_attr(not(recordings), ignore = "no recordings in ../shared/data")]
 fn the_first_session_keeps_its_bars() {
-    holds_the_bars("", 0.98);
+    // 0.98 before a wish was averaged over 0.13 s and stood for 40 ms; one flexion drives the extensor more for its first 0.75 s.
+    holds_the_bars("", 0.92);
 }
 
 #[test]
 #[cfg_attr(not(recordings), ignore = "no recordings in ../shared/data")]
 fn the_second_session_keeps_its_bars() {
-    holds_the_bars("b_", 0.85);
+    holds_the_bars("b_", 0.94);
 }
 
 #[test]

@@ -144,10 +144,12 @@ impl Bench {
         frame
     }
 
-    /// Both myosensors' pins: what is above rest fluctuates, slower than 6 Hz.
+    /// Both myosensors' pins: what is above rest fluctuates, slower than 6 Hz, and each electrode hears 5 % of the other one's
+    /// contraction, as the wearer was calibrated. What an electrode's fault gives is not heard by the other.
     fn contract(&mut self) -> [f64; 2] {
         const PART: f64 = 0.02;
-        [MYO_FLEXOR, MYO_EXTENSOR].map(|pin| {
+        const HEARS: f64 = 0.05;
+        let own = [MYO_FLEXOR, MYO_EXTENSOR].map(|pin| {
             let wander = &mut self.wander[pin - MYO_FLEXOR];
             let normal: f64 = (0..12).map(|_| self.muscle_noise.random_range(-0.5..0.5)).sum();
             wander[0] += PART * (normal - wander[0]);
@@ -156,8 +158,11 @@ impl Bench {
             // Two low-passes leave 0.071 of white noise. A broken pin does not fluctuate.
             let moves = above_mv > 0.0 && self.pins_mv[pin] < 3_200.0 && self.lifted != Some(pin);
             let lively = if moves { self.lively } else { 0.0 };
-            self.pins_mv[pin] + above_mv * lively * (wander[1] / 0.071).clamp(-3.0, 3.0)
-        })
+            let mv = self.pins_mv[pin] + above_mv * lively * (wander[1] / 0.071).clamp(-3.0, 3.0);
+            let contraction_mv = if moves { (mv - f64::from(MYO_REST_MV) - 50.0).max(0.0) } else { 0.0 };
+            (mv, contraction_mv)
+        });
+        [own[0].0 + HEARS * own[1].1, own[1].0 + HEARS * own[0].1]
     }
 
     /// Each element gives some load to another one.

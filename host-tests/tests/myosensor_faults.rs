@@ -23,15 +23,32 @@ fn reasons(bench: &Bench, channel: usize) -> Vec<Reason> {
     lost.collect()
 }
 
+/// How far the hand of the scenes, 120 mm/s at full duty, has been opened, mm.
+fn opened_mm(drives: &[MotorDrive]) -> f64 {
+    let duty = |drive: &MotorDrive| match drive {
+        MotorDrive::Open(duty) => f64::from(duty.as_per_mille()),
+        _ => 0.0,
+    };
+    drives.iter().map(duty).sum::<f64>() / 1_000.0 * 120.0 / 2_000.0
+}
+
+/// What no fault opens, mm: it was 3.3 mm and more in 92 ms, which drops a glass. Below the wearer's opening, nothing.
+const SAFE_MM: f64 = 0.75;
+
 // Shows W4.
 #[test]
 fn a_lifted_extensor_never_opens_a_hand_that_holds() {
-    for mv in [160.0, 165.0, 180.0, 200.0, 220.0, 300.0, 400.0, 500.0, 600.0] {
+    for mv in [160.0, 165.0, 180.0, 200.0, 300.0, 400.0, 500.0, 600.0, 800.0, 1_500.0, 2_900.0] {
         let mut bench = Bench::holding(21);
         lift(&mut bench, MYO_EXTENSOR, mv);
-        assert!(!bench.run(20_000).iter().any(|drive| drive.opens()), "{mv} mV");
+        let most_mm = if mv < 220.0 { 0.0 } else { SAFE_MM };
+        let mm = opened_mm(&bench.run(20_000));
+        assert!(mm <= most_mm, "{mv} mV: {mm} mm");
         let told = reasons(&bench, MYO_EXTENSOR);
-        assert!(matches!(told[..], [Reason::Flat | Reason::Hum, ..]), "{mv} mV: {told:?}");
+        assert!(
+            matches!(told[..], [Reason::Flat | Reason::Hum | Reason::Saturated, ..]),
+            "{mv} mV: {told:?}"
+        );
     }
 }
 
@@ -54,13 +71,13 @@ fn creep_of_the_extensor_never_opens_a_hand_that_holds() {
     for mv_per_s in [100.0, 1_000.0, 5_000.0, 30_000.0] {
         let mut bench = Bench::holding(22);
         bench.lifted = Some(MYO_EXTENSOR);
-        let mut opened = 0;
+        let mut drives = Vec::new();
         for frame in 0..60_000 {
             bench.pins_mv[MYO_EXTENSOR] = (350.0 + mv_per_s * f64::from(frame) / 2_000.0).min(3_300.0);
-            opened += u32::from(bench.step().opens());
+            drives.push(bench.step());
         }
-        // Nobody can tell its first 92 ms from a wearer who opens (docs/emg.md).
-        assert!(opened <= 200, "{mv_per_s} mV/s: opens for {opened} frames");
+        let mm = opened_mm(&drives);
+        assert!(mm <= SAFE_MM, "{mv_per_s} mV/s: opens by {mm} mm");
         assert!(!reasons(&bench, MYO_EXTENSOR).is_empty(), "{mv_per_s} mV/s");
     }
 }

@@ -64,7 +64,7 @@ fn a_muscle_that_is_there_all_the_same_comes_first() {
     bench.run(2_000);
     assert_eq!(reflex_ticks(&bench), 0, "silent while it is active");
     bench.muscles(50.0, 900.0);
-    assert!(bench.run(50).last().is_some_and(|drive| drive.opens()), "and it opens");
+    assert!(bench.run(50).iter().any(|drive| drive.opens()), "and it opens");
 }
 
 // Shows R8.

@@ -135,7 +135,7 @@ fn a_muscle_whose_frames_are_lost_asks_for_nothing_and_is_not_known_to_rest() {
     const EXTENSOR: [u8; 3] = [11, 17, 23];
     let mut bench = Bench::holding(13);
     bench.muscles(50.0, 800.0);
-    assert!(bench.run(OPEN_WITHIN_FRAMES).last().unwrap().opens());
+    assert!(bench.run(OPEN_WITHIN_FRAMES).iter().any(|drive| drive.opens()));
     bench.muscles(50.0, 50.0);
     run_losing(&mut bench, &EXTENSOR, OPEN_WITHIN_FRAMES);
     assert!(run_losing(&mut bench, &EXTENSOR, 1_000).iter().all(|drive| *drive == MotorDrive::Coast));
@@ -229,17 +229,18 @@ proptest! {
             let _ = bench.fingertip.command(&Down::Drive { drive: MotorDrive::Close(Duty::FULL), hold_ms: 250 });
         }
         bench.muscles(flexor_mv, extensor_mv);
-        let (mut drive, mut readings) = (MotorDrive::Coast, BTreeSet::new());
+        // It takes effect; until it is proven it goes on only for as long as what is held is safe.
+        let (mut opened, mut readings) = (false, BTreeSet::new());
         for _ in 0..OPEN_WITHIN_FRAMES {
             let frame = bench.frame();
             if frame.select() == MYO_SELECT + 1 {
                 readings.insert(frame.switch_b);
             }
-            drive = bench.give(&frame);
+            opened |= bench.give(&frame).opens();
         }
         // The bench's noise has five values: once in some thousand times all six readings are equal, as a frozen sensor's.
         prop_assume!(readings.len() > 1);
-        prop_assert!(drive.opens(), "dead {dead:?}, seed {seed}");
+        prop_assert!(opened, "dead {dead:?}, seed {seed}");
     }
 
     // Shows W4.
@@ -318,7 +319,7 @@ fn a_dead_myosensor_silences_the_reflex_and_the_other_still_commands() {
     bench.vibration_mv = 800.0;
     assert!(bench.run(4_000).iter().all(|drive| *drive == MotorDrive::Coast));
     bench.pins_mv[MYO_EXTENSOR] = f64::from(MYO_REST_MV) + 800.0;
-    assert!(bench.run(OPEN_WITHIN_FRAMES).last().unwrap().opens());
+    assert!(bench.run(OPEN_WITHIN_FRAMES).iter().any(|drive| drive.opens()));
 }
 
 // Shows R5.

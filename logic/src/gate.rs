@@ -2,13 +2,21 @@
 //! system should be activated only in case the myosensors are not active").
 //!
 //! What the two envelopes mean is decided in [`emg`](crate::emg). Here it becomes a motor drive, and activity is held for
-//! a while, so that the reflex does not speak between two contractions.
+//! a while, so that the reflex does not speak between two contractions. A wish that is not proven moves a hand that may hold
+//! something slowly, and by little: a fault of an electrode drops nothing.
 
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 
 use crate::emg::Verdict;
-use crate::emg::intent::Wish;
+use crate::emg::decide::Wish;
 use crate::emg::settings::GateConfig;
+
+/// What an unproven opening may travel, as frames times per mille of duty: 0.7 mm with a gripper of 120 mm/s.
+const OPENS_AT_MOST: u32 = 11_600;
+/// Frames for which an unproven closing may: 92 ms.
+const CLOSES_AT_MOST: u32 = 184;
+/// Frames of known rest that renew both: 4 s.
+const RENEWED_AFTER: u32 = 8_000;
 
 /// Both muscles.
 #[derive(Clone, Copy, Debug, Default)]
@@ -17,6 +25,13 @@ pub struct Gate {
     mv: [Option<i16>; 2],
     hold: u32,
     known_frames: u32,
+    /// Frames of known rest in a row.
+    rest_frames: u32,
+    /// What unproven wishes have opened and closed since they were last renewed.
+    opened: u32,
+    closed: u32,
+    /// The finger touches nothing.
+    empty: bool,
 }
 
 impl Gate {
@@ -31,14 +46,30 @@ impl Gate {
         self.mv[if muscle == 0 { 0 } else { 1 }] = mv;
     }
 
-    /// Goes on by one frame.
-    pub const fn tick(&mut self, config: &GateConfig) {
+    /// Goes on by one frame. `empty`: the finger is known to touch nothing.
+    pub fn tick(&mut self, config: &GateConfig, empty: bool) {
         if self.verdict.active {
             self.hold = config.hold_frames;
         } else {
             self.hold = self.hold.saturating_sub(1);
         }
         self.known_frames = if self.is_known() { self.known_frames.saturating_add(1) } else { 0 };
+        self.rest_frames =
+            if self.is_known() && !self.verdict.active { self.rest_frames.saturating_add(1) } else { 0 };
+        self.empty = empty;
+        if self.is_trusted() || self.rest_frames >= RENEWED_AFTER {
+            (self.opened, self.closed) = (0, 0);
+        }
+        match self.wish(config) {
+            MotorDrive::Coast => {}
+            MotorDrive::Open(duty) => self.opened += u32::from(duty.as_per_mille()),
+            MotorDrive::Close(_) => self.closed += 1,
+        }
+    }
+
+    /// Whether the wish may do what it wants: it is a muscle's, or there is nothing to drop or to crush.
+    const fn is_trusted(&self) -> bool {
+        self.verdict.proven || self.empty
     }
 
     /// Whether a muscle is active or was within the hold time. Call after [`tick`](Self::tick).
@@ -78,13 +109,17 @@ impl Gate {
             && self.mv.iter().all(|mv| mv.is_some_and(|mv| i32::from(mv) >= i32::from(config.on_mv)))
     }
 
-    /// What the muscles ask for, the faster the stronger they do.
+    /// What the muscles ask for, the faster the stronger they do; an unproven opening as slowly as the hand moves.
     #[must_use]
     pub fn wish(&self, config: &GateConfig) -> MotorDrive {
+        let trusted = self.is_trusted();
         match self.verdict.wish {
-            Wish::Rest => MotorDrive::Coast,
-            Wish::Close => MotorDrive::Close(duty(config, self.verdict.strength_permille)),
-            Wish::Open => MotorDrive::Open(duty(config, self.verdict.strength_permille)),
+            Wish::Open if trusted => MotorDrive::Open(duty(config, self.verdict.strength_permille)),
+            Wish::Open if self.opened < OPENS_AT_MOST => MotorDrive::Open(duty(config, 0)),
+            Wish::Close if trusted || self.closed < CLOSES_AT_MOST => {
+                MotorDrive::Close(duty(config, self.verdict.strength_permille))
+            }
+            _ => MotorDrive::Coast,
         }
     }
 }
@@ -106,8 +141,9 @@ mod tests {
 
     fn says(wish: Wish, strength_permille: u16) -> Gate {
         let mut gate = Gate::default();
-        gate.take(Verdict { wish, strength_permille, active: wish != Wish::Rest, known: true });
-        gate.tick(&CONFIG);
+        let active = wish != Wish::Rest;
+        gate.take(Verdict { wish, strength_permille, proven: active, active, known: true });
+        gate.tick(&CONFIG, false);
         gate
     }
 
@@ -130,20 +166,46 @@ mod tests {
         gate.take(Verdict { known: true, ..Verdict::default() });
         assert_eq!(gate.wish(&CONFIG), MotorDrive::Coast);
         for _ in 0..399 {
-            gate.tick(&CONFIG);
+            gate.tick(&CONFIG, false);
             assert!(gate.is_active());
         }
-        gate.tick(&CONFIG);
+        gate.tick(&CONFIG, false);
         assert!(!gate.is_active());
     }
 
     #[test]
     fn what_is_known_is_certain_after_the_hold_time() {
         let mut gate = says(Wish::Rest, 0);
-        (1..400).for_each(|_| gate.tick(&CONFIG));
+        (1..400).for_each(|_| gate.tick(&CONFIG, false));
         assert!(gate.is_certain(&CONFIG));
         gate.take(Verdict::default());
-        gate.tick(&CONFIG);
+        gate.tick(&CONFIG, false);
         assert!(!gate.is_certain(&CONFIG) && !gate.is_known());
+    }
+
+    #[test]
+    fn an_unproven_opening_is_slow_and_short_until_4_s_of_rest_or_an_empty_hand() {
+        let unproven =
+            Verdict { wish: Wish::Open, strength_permille: 1_000, active: true, ..Verdict::default() };
+        let mut gate = Gate::default();
+        let opened = |gate: &mut Gate, empty| {
+            gate.take(unproven);
+            let mut travel = 0;
+            for _ in 0..2_000 {
+                gate.tick(&CONFIG, empty);
+                if let MotorDrive::Open(duty) = gate.wish(&CONFIG) {
+                    travel += u32::from(duty.as_per_mille());
+                }
+            }
+            gate.take(Verdict { known: true, ..Verdict::default() });
+            travel
+        };
+        let first = opened(&mut gate, false);
+        assert!((OPENS_AT_MOST - 600..OPENS_AT_MOST + 600).contains(&first), "{first}");
+        (0..RENEWED_AFTER - 10).for_each(|_| gate.tick(&CONFIG, false));
+        assert_eq!(opened(&mut gate, false), 0);
+        (0..RENEWED_AFTER).for_each(|_| gate.tick(&CONFIG, false));
+        assert!(opened(&mut gate, false) > 0);
+        assert_eq!(opened(&mut gate, true), 2_000_000, "nothing to drop");
     }
 }

@@ -5,10 +5,10 @@ use tenax_hal_shim::wire::EventKind;
 use tenax_hal_shim::words::{self, Fault, Prompt, Reason};
 
 use crate::emg::calibration::{Calibration, Progress};
-use crate::emg::intent::Wish;
+use crate::emg::decide::Wish;
 use crate::emg::mains::mains_of;
 use crate::emg::model::EmgModel;
-use crate::emg::quality::Quality;
+use crate::emg::trust::Quality;
 use crate::emg::{Emg, Verdict, uv_of_sample};
 use crate::health::{Limits, SensorHealth};
 use crate::journal::Journal;
@@ -21,7 +21,8 @@ const HZ: u32 = 3 * SLOW_HZ;
 /// Equal readings of an active muscle in a row that no muscle gives: 50 ms. At rest, the general limit holds.
 const FROZEN_AFTER: u32 = HZ / 20;
 
-static LIMITS: Limits = Limits::of(&CHANNELS[MYO_FLEXOR], HZ);
+/// A gap of 50 ms is bridged.
+static LIMITS: Limits = Limits { lost_after: HZ / 20 + 1, ..Limits::of(&CHANNELS[MYO_FLEXOR], HZ) };
 
 /// A calibration under way, and what was last asked.
 #[derive(Clone, Debug)]
@@ -52,16 +53,17 @@ impl Muscles {
     pub fn take(&mut self, muscle: usize, sample: u16, journal: &mut Journal) -> Option<i32> {
         let n = muscle.min(1);
         self.missed[n] = 0;
-        let (reading, _) = if self.emg.is_active(n) {
+        let was_raised = self.emg.is_raised(n);
+        let (reading, _) = if was_raised {
             self.health[n].take(&Limits { stuck_after: FROZEN_AFTER, ..LIMITS }, sample)
         } else {
             self.health[n].take(&LIMITS, sample)
         };
         let uv = reading.ok().map(uv_of_sample);
-        let was_active = self.emg.is_active(n);
-        self.read(n, uv, journal);
+        // Above its range it is no number, but what it began goes on.
+        self.read(n, uv.or_else(|| (sample > LIMITS.high).then(|| uv_of_sample(sample))), journal);
         let differs = self.health[n].same() == 0;
-        self.confirmed[n] = self.emg.is_active(n) && (self.confirmed[n] || (was_active && differs));
+        self.confirmed[n] = self.emg.is_raised(n) && (self.confirmed[n] || (was_raised && differs));
         uv
     }
 

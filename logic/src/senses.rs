@@ -104,7 +104,7 @@ impl Senses {
         if let Some(channel) = slot.switch_b {
             self.on_switch_b(usize::from(channel), frame.switch_b, journal);
         }
-        self.gate.tick(&config.gate);
+        self.gate.tick(&config.gate, self.is_unloaded(config));
         if frame.ends_slow_frame() {
             self.capabilities(journal);
         }
@@ -127,7 +127,7 @@ impl Senses {
             self.fsr_readings = [None; FSR_COUNT];
             self.films_usable = false;
         }
-        self.gate.tick(&config.gate);
+        self.gate.tick(&config.gate, self.is_unloaded(config));
         self.capabilities(journal);
     }
 

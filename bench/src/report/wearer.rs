@@ -13,7 +13,8 @@ use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::SCHEDULE;
 use tenax_hal_shim::wire::{Slow, TickRecord};
 use tenax_hal_shim::words::DriveSource;
-use tenax_logic::emg::intent::Intent;
+use tenax_logic::emg::decide::Decide;
+use tenax_logic::emg::level::FLOOR_UV;
 use tenax_logic::emg::model::EmgModel;
 
 use crate::board::Recorder;
@@ -75,12 +76,11 @@ impl Muscles {
         let high_mv = i64::from(CHANNELS[MYO_EXTENSOR].high_mv) - i64::from(MYO_REST_MV);
         self.0.iter().any(|&mv| mv > high_mv)
     }
+}
 
-    /// Whether either pin gives no number of a muscle.
-    fn is_broken(self) -> bool {
-        let low_mv = i64::from(CHANNELS[MYO_EXTENSOR].low_mv) - i64::from(MYO_REST_MV);
-        self.is_shorted() || self.0.iter().any(|&mv| mv < low_mv)
-    }
+/// The envelope of a level, mV.
+fn mv_of(level: i32) -> f64 {
+    ((f64::from(level) / 1_024.0).exp2() - f64::from(FLOOR_UV)) / 1e3
 }
 
 /// What opens the hand at once: the contraction that the wearer has shown and a fifth more, in its own direction.
@@ -95,12 +95,11 @@ struct Opening {
 impl Opening {
     fn of(model: &EmgModel) -> Self {
         let (opens, closes) = (model.opening_site(), model.closing_site());
-        let octaves = |level: i32| f64::from(level) / 1_024.0;
-        let ratio = |point: [i32; 2]| octaves(point[opens] - point[closes]);
-        let (open, close) = (ratio(model.open()), ratio(model.close()));
+        let ratio = |point: [i32; 2]| mv_of(point[opens]) / mv_of(point[closes]).max(1.0);
+        let (open, close) = (ratio(model.open()).log2(), ratio(model.close()).log2());
         Self {
             site: opens,
-            from_mv: 1.2 * octaves(model.open()[opens]).exp2() / 1e3,
+            from_mv: 1.2 * mv_of(model.open()[opens]),
             ratio: (close + 0.62 * (open - close)).exp2(),
         }
     }
@@ -161,10 +160,8 @@ impl Judge {
     pub fn new(calibrated: Option<&EmgModel>) -> Self {
         // Whoever contracts with less than any muscle does is active all the same; a wearer whose rest is strong, later.
         let on_mv = calibrated.map_or([ON_MV; 2], |model| {
-            let active = Intent::new(Some(model)).expected().map(|expected| expected.active);
-            active
-                .map(|level| (f64::from(level) / 1_024.0).exp2() / 1e3)
-                .map(|mv| ON_MV.max(mv.ceil() as i64 + 1))
+            let decide = Decide::new(Some(model));
+            [0, 1].map(|n| ON_MV.max(mv_of(decide.active_levels(n)[0]).ceil() as i64 + 1))
         });
         Self {
             on_mv,
@@ -223,8 +220,9 @@ impl Judge {
         }
         let wishes = self.opening.is_some_and(|opening| opening.is_wished(self.muscles));
         match (wishes, opens) {
-            // Interrupted: between a wish and a sensor that is lost, the hand may rest.
-            (true, false) if self.opened && self.muscles.is_broken() => {}
+            // Interrupted: a wish that has taken effect and is not proven yet may wait for its proof, and one of a sensor that is
+            // lost rests.
+            (true, false) if self.opened => {}
             (true, false) => self.wish_since = self.wish_since.or(Some(frame)),
             // Answered; or given up before it was: then it waited for as long as it lasted.
             (true, true) | (false, _) => {

@@ -10,7 +10,7 @@ use super::out;
 const HEAD: &str = "\
 # Commands
 
-Printed from the tool's own help by `cargo tenax commands`; do not edit. `cargo tenax COMMAND --help` says what each option means and
+Printed from the tool's own help by `cargo tenax commands`; do not edit. `--help` behind any of them says what its options mean and
 gives examples.
 
 | command | what it does | options |

@@ -6,9 +6,9 @@ use tenax_hal_shim::channel::FRAME_HZ;
 /// What the wearer is asked to do.
 pub use tenax_hal_shim::words::Prompt;
 
-use super::log2::level_of;
+use super::level::level_of;
 use super::model::{EmgModel, Point, Refusal, octaves};
-use super::quality::TOP_UV;
+use super::trust::TOP_UV;
 
 /// How long each prompt stands, in frames.
 pub const PROMPT_FRAMES: u32 = 5 * FRAME_HZ;
@@ -276,7 +276,7 @@ mod tests {
             if phase == 0 {
                 states(0, n, GOOD)
             } else {
-                [0, 1].map(|k| GOOD[phase as usize][k] * lively(n, k as u32, 0.6))
+                [0, 1].map(|k| GOOD[phase as usize][k] * lively(n, k as u32, 0.69))
             }
         };
         assert_eq!(run(wild), Err(Refusal::Overlap));

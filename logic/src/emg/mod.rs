@@ -1,28 +1,30 @@
 //! EMG of the wearer's two muscles: calibrated to a wearer, classified, and its quality judged.
 //!
-//! The myosensors give smoothed envelopes, each read three times a slow frame. [`log2`] turns them into levels;
-//! [`calibration`] learns where rest, closing and opening lie and [`model`] keeps it; [`quality`] says whether an
-//! envelope is a muscle's, with the help of a spectrum outside the tick ([`mains`]); [`intent`] says what the wearer
-//! wants. [`Emg`] is the whole. `docs/emg.md` has what was measured.
+//! The myosensors give smoothed envelopes, each read three times a slow frame. [`level`] turns them into logarithms;
+//! [`calibration`] learns where rest, closing and opening lie and [`model`] keeps it; [`decide`] says what the wearer wants,
+//! with the constants of [`fitted`]; [`trust`] says whether an envelope is a muscle's, with the help of a spectrum outside the
+//! tick ([`mains`]). [`Emg`] is the whole. `docs/emg.md` has what was measured.
 
 pub mod calibration;
-pub mod intent;
+pub mod decide;
+pub mod fitted;
+pub mod level;
 pub mod log2;
 pub mod mains;
 pub mod model;
-pub mod quality;
 pub mod settings;
+pub mod trust;
 
 #[cfg(test)]
 mod tests;
 
 use tenax_hal_shim::front_end::MYO_REST_MV;
 
-use self::intent::{Electrode, Intent, Wish};
-use self::log2::level_of;
+use self::decide::{Decide, Electrode, OVER_UV, Wish};
+use self::level::level_of;
 use self::mains::{Mains, WINDOW};
 use self::model::EmgModel;
-use self::quality::{Expected, Quality, Watch};
+use self::trust::{Quality, Trust};
 
 /// A reading above the live zero, uV, from its sample (14 bits): at most 60 uV from the true one.
 #[must_use]
@@ -38,6 +40,8 @@ pub struct Verdict {
     pub wish: Wish,
     /// How strongly, per mille: for the speed. 0 at rest.
     pub strength_permille: u16,
+    /// Whether the contraction is proven to be a muscle's: what is not moves the hand little.
+    pub proven: bool,
     /// Whether a muscle is active, whatever it wants: the reflex is silent.
     pub active: bool,
     /// Whether both sensors can be believed: if not, "not active" is not known.
@@ -47,10 +51,10 @@ pub struct Verdict {
 /// Both electrodes and what they mean.
 #[derive(Clone, Debug)]
 pub struct Emg {
-    intent: Intent,
-    expected: [Expected; 2],
-    watches: [Watch; 2],
-    active: [bool; 2],
+    decide: Decide,
+    trust: [Trust; 2],
+    raised: [bool; 2],
+    known: [bool; 2],
     electrodes: [Electrode; 2],
     verdict: Verdict,
 }
@@ -66,12 +70,11 @@ impl Emg {
     /// For a wearer; without one only what cannot be mistaken moves the hand.
     #[must_use]
     pub fn new(model: Option<&EmgModel>) -> Self {
-        let intent = Intent::new(model);
         Self {
-            expected: intent.expected(),
-            intent,
-            watches: Default::default(),
-            active: [false; 2],
+            decide: Decide::new(model),
+            trust: Default::default(),
+            raised: [false; 2],
+            known: [false; 2],
             electrodes: Default::default(),
             verdict: Verdict::default(),
         }
@@ -79,8 +82,7 @@ impl Emg {
 
     /// From now on for this wearer. The hand rests first; what is known of the sensors stays.
     pub fn calibrate(&mut self, model: Option<&EmgModel>) {
-        self.intent = Intent::new(model);
-        self.expected = self.intent.expected();
+        self.decide = Decide::new(model);
         self.verdict = Verdict::default();
     }
 
@@ -95,35 +97,48 @@ impl Emg {
     /// and decided on. A reading that was missed is to be told too, as none.
     pub fn read(&mut self, channel: usize, uv: Option<i32>) {
         let n = channel.min(1);
-        self.watches[n].take(&self.expected[n], uv);
-        let good = self.watches[n].is_good();
-        let level = uv.map(level_of).filter(|_| good);
-        let Expected { active, inactive, .. } = self.expected[n];
-        let threshold = if self.active[n] { inactive } else { active };
-        self.active[n] = level.is_some_and(|level| level >= threshold);
+        let [active, inactive] = self.decide.active_levels(n);
+        let in_range = uv.filter(|&uv| uv < OVER_UV);
+        let bridged = self.trust[n].take(inactive, in_range);
+        let doubted = !self.trust[n].is_good();
         self.electrodes[n] = Electrode {
-            level,
-            proven: self.watches[n].is_proven(),
-            clipped: self.watches[n].is_clipped(),
-            turned: self.watches[n].has_turned(),
-            unmodulated: self.watches[n].is_unmodulated(),
+            uv: uv.or(bridged),
+            doubted,
+            still: self.trust[n].is_still(),
+            hums: self.trust[n].hums(),
         };
+        let threshold = if self.raised[n] { inactive } else { active };
+        let over = uv.is_some() && in_range.is_none();
+        self.raised[n] =
+            if over { self.raised[n] } else { bridged.is_some_and(|uv| level_of(uv) >= threshold) };
         // Silence does not wait for the other half of the pair.
-        self.verdict.active |= self.active[n];
-        self.verdict.known &= level.is_some();
+        self.verdict.active |= self.is_active(n);
+        self.known[n] = !doubted && in_range.is_some();
+        self.verdict.known &= self.known[n];
         if n == 1 {
             self.decide();
         }
     }
 
     fn decide(&mut self) {
-        let wish = self.intent.take(&self.electrodes);
+        let wish = self.decide.take(&self.electrodes);
         self.verdict = Verdict {
             wish,
-            strength_permille: if wish == Wish::Rest { 0 } else { self.intent.strength_permille() },
-            active: self.active[0] || self.active[1] || wish != Wish::Rest,
-            known: self.electrodes.iter().all(|electrode| electrode.level.is_some()),
+            strength_permille: self.decide.strength_permille(),
+            proven: wish != Wish::Rest && self.is_proven(),
+            active: self.is_active(0) || self.is_active(1) || wish != Wish::Rest,
+            known: self.known[0] && self.known[1],
         };
+    }
+
+    /// A fault lies under one electrode, a contraction is heard by both; closing needs no more than that.
+    fn is_proven(&self) -> bool {
+        let turns = self.trust[self.decide.mover()].is_proven();
+        match (self.decide.is_heard(), self.decide.wish()) {
+            (Some(heard), Wish::Close) => heard || turns,
+            (Some(heard), _) => heard && turns,
+            (None, _) => turns,
+        }
     }
 
     /// The last verdict.
@@ -135,24 +150,30 @@ impl Emg {
     /// Whether a channel is active: 0 the flexor's, others the extensor's.
     #[must_use]
     pub fn is_active(&self, channel: usize) -> bool {
-        self.active[channel.min(1)]
+        self.is_raised(channel) && !self.electrodes[channel.min(1)].doubted
+    }
+
+    /// Whether a channel stands above where it is active, doubted or not.
+    #[must_use]
+    pub fn is_raised(&self, channel: usize) -> bool {
+        self.raised[channel.min(1)]
     }
 
     /// What a channel's envelope is: 0 the flexor's, others the extensor's.
     #[must_use]
     pub fn quality(&self, channel: usize) -> Quality {
-        self.watches[channel.min(1)].quality()
+        self.trust[channel.min(1)].quality()
     }
 
     /// A full window of a channel, for [`mains::mains_of`] outside the tick.
     #[must_use]
     pub fn window(&self, channel: usize) -> Option<&[i16; WINDOW]> {
-        self.watches[channel.min(1)].window()
+        self.trust[channel.min(1)].window()
     }
 
     /// Takes what the window said, and begins the next one.
     pub const fn hear(&mut self, channel: usize, mains: Mains) {
         let channel = if channel == 0 { 0 } else { 1 };
-        self.watches[channel].hear(mains);
+        self.trust[channel].hear(mains);
     }
 }

@@ -1,0 +1,372 @@
+//! What the wearer wants: rest, close or open, from both envelopes.
+//!
+//! Four numbers a reading: each site's *share* of the rise that calibration found there, and the *place* of the electrodes'
+//! ratio between calibrated closing and opening; averaged over 0.13 s. The place says which way, the share of that way's site
+//! says whether; both with hysteresis and dwell. A wish ends when its site falls from its own crest, and begins by a rise, so
+//! that tone is none. Rest is followed while nothing is wished: what has been added to it (hum, tone) is subtracted.
+//! A reading above all that was calibrated opens at once: what it may move before it is proven is the gate's business.
+
+use super::fitted::*;
+use super::level::{level_of, uv_of};
+use super::model::EmgModel;
+
+/// An envelope above this is out of the sensor's range, uV: it begins nothing, and what it began goes on.
+pub const OVER_UV: i32 = 2_950_000;
+/// Share of opening that opens whatever is thought of either sensor, per mille.
+const STRONG: i32 = 1_000;
+/// Share of closing that closes though nothing is known of the opening site.
+const ALONE: i32 = 900;
+/// Who lets go of a contraction makes the opposite one for a while, somewhat weaker. So within 0.5 s of activity of another
+/// direction opening does not begin, within 1.5 s only a strong one does; closing as soon after opening has to stand longer.
+const SOON_READINGS: u16 = 120;
+const LATER_READINGS: u16 = 360;
+const SOON_DWELL: u16 = 36;
+/// Above the calibrated opening by this, Q10 octaves, nothing is a relaxing muscle: 20 %.
+const FIRMER: i32 = 270;
+/// Both muscles contract when the other site has a share above what calibration found beside the contraction, and this.
+const BOTH: i32 = 300;
+/// Share of either site that is activity.
+const BUSY: i32 = 350;
+/// Readings without a wish after which rest is followed.
+const CALM_READINGS: u16 = 120;
+/// Readings over which what stands still is subtracted: 0.3 s.
+const HUM_READINGS: i32 = 64;
+/// The most that is subtracted as hum or tone, uV.
+const MOST_DRIFT_UV: i32 = 1_500_000;
+/// A muscle is active from this share on, and not any more below that; never above 159 mV, which is activity for everybody.
+const ACTIVE: [i32; 2] = [350, 250];
+const ACTIVE_UV: [i32; 2] = [159_000, 112_000];
+/// Readings over which each site's level before a wish is known: 0.5 s.
+const BEFORE_READINGS: i32 = 128;
+/// The other electrode hears a contraction when it rises by half of what calibration found. Contractions that it hears less than
+/// this, Q10 octaves, are proven by their own electrode alone.
+const HEARS_AT_ALL: i32 = 300;
+/// Without calibration: where closing and opening begin, and how far the other electrode is below.
+const DEFAULT_BEGINS_UV: [i32; 2] = [600_000, 1_500_000];
+const DEFAULT_OVER: [i32; 2] = [1_322, 2_900];
+const DEFAULT_READINGS: u16 = 72;
+
+/// What the wearer wants of the hand.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Wish {
+    /// Nothing, or nothing clear.
+    #[default]
+    Rest,
+    /// To close it.
+    Close,
+    /// To open it.
+    Open,
+}
+
+/// One electrode now.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Electrode {
+    /// Envelope above the live zero, uV; none without a number.
+    pub uv: Option<i32>,
+    /// Whether it is taken for a fault: it then vetoes nothing, and begins only what is strong.
+    pub doubted: bool,
+    /// Whether it has stood still for a while, and for so long that what it stands at is taken for hum.
+    pub still: bool,
+    /// See above.
+    pub hums: bool,
+}
+
+/// A wearer's levels by site: 0 closes, 1 opens.
+#[derive(Clone, Copy, Debug)]
+struct Sites {
+    /// Electrode of each.
+    electrode: [usize; 2],
+    rest: [i32; 2],
+    rest_uv: [i32; 2],
+    /// Rise of each site in its own contraction.
+    span: [i32; 2],
+    begins: [i32; 2],
+    ends: [i32; 2],
+    /// How far a wish may fall from its crest.
+    fall: [i32; 2],
+    /// Share of the other site with each wish from which both contract: that asks for nothing.
+    both: [i32; 2],
+    /// How far the other electrode rises with each wish; none if it hears too little.
+    hears: [Option<i32>; 2],
+    close_ratio: i32,
+    turn: i32,
+    active: [[i32; 2]; 2],
+}
+
+impl Sites {
+    fn of(model: &EmgModel) -> Self {
+        let electrode = [model.closing_site(), model.opening_site()];
+        let by_site = |point: [i32; 2]| electrode.map(|n| point[n]);
+        let (rest, close, open) = (by_site(model.rest()), by_site(model.close()), by_site(model.open()));
+        let spread = by_site(model.spread());
+        let span = [(close[0] - rest[0]).max(512), (open[1] - rest[1]).max(512)];
+        let begins = [0, 1].map(|n| {
+            let least = LEAST_RISE.max(LEAST_SPREADS * spread[n]) * 1_000 / span[n];
+            BEGINS[n].max(least).min(850)
+        });
+        let ends = [0, 1].map(|n| ENDS[n].min(begins[n] - HYSTERESIS * 1_000 / span[n]).max(LEAST_END));
+        let fall = [0, 1].map(|n| FALL.max(LEAST_FALL * 1_000 / span[n]));
+        let hears = [close[1] - rest[1], open[0] - rest[0]];
+        let both = [hears[0] * 1_000 / span[1], hears[1] * 1_000 / span[0]].map(|share| share.max(0) + BOTH);
+        let active = [0, 1].map(|k: usize| {
+            [0, 1].map(|n: usize| (rest[n] + span[n] * ACTIVE[k] / 1_000).min(level_of(ACTIVE_UV[k])))
+        });
+        Self {
+            electrode,
+            rest,
+            rest_uv: rest.map(uv_of),
+            span,
+            begins,
+            ends,
+            fall,
+            both,
+            hears: hears.map(|rise| (rise >= HEARS_AT_ALL).then_some(rise / 2)),
+            close_ratio: close[1] - close[0],
+            turn: ((open[1] - open[0]) - (close[1] - close[0])).max(256),
+            active: [0, 1].map(|n: usize| [active[0][n].max(rest[n] + 300), active[1][n].max(rest[n] + 200)]),
+        }
+    }
+}
+
+/// Decides from reading to reading.
+#[derive(Clone, Debug, Default)]
+pub struct Decide {
+    sites: Option<Sites>,
+    wish: Wish,
+    /// What is wished now, and for how many readings it has been.
+    next: Wish,
+    stands: u16,
+    strong: u16,
+    /// Readings since activity that is no opening, and since opening.
+    since: [u16; 2],
+    calm: u16,
+    /// Shares of both sites and the place, averaged, Q4.
+    mean: [i32; 3],
+    crest: i32,
+    trough: [i32; 2],
+    /// What is added to rest, uV, Q8.
+    drift: [i32; 2],
+    /// Level of each site before the wish, Q7.
+    before: [i32; 2],
+    heard: bool,
+}
+
+impl Decide {
+    /// For a wearer, or for nobody in particular.
+    #[must_use]
+    pub fn new(model: Option<&EmgModel>) -> Self {
+        let sites = model.map(Sites::of);
+        let before = sites.map_or([0; 2], |sites| sites.rest.map(|level| level * BEFORE_READINGS));
+        Self { sites, before, since: [u16::MAX; 2], ..Self::default() }
+    }
+
+    /// From which level on an electrode is active, and below which not any more.
+    #[must_use]
+    pub fn active_levels(&self, electrode: usize) -> [i32; 2] {
+        match &self.sites {
+            Some(sites) => sites.active[usize::from(sites.electrode[1] == electrode)],
+            None => ACTIVE_UV.map(level_of),
+        }
+    }
+
+    /// What is wished.
+    #[must_use]
+    pub const fn wish(&self) -> Wish {
+        self.wish
+    }
+
+    /// The electrode whose contraction is wished; at rest the opening one.
+    #[must_use]
+    pub fn mover(&self) -> usize {
+        let site = usize::from(self.wish != Wish::Close);
+        self.sites.map_or(site, |sites| sites.electrode[site])
+    }
+
+    /// Whether the other electrode hears the contraction; none for a wearer of whom it never does.
+    #[must_use]
+    pub fn is_heard(&self) -> Option<bool> {
+        let site = usize::from(self.wish == Wish::Open);
+        self.sites.and_then(|sites| sites.hears[site]).map(|_| self.heard)
+    }
+
+    /// How strongly the last wish is meant, per mille: for the speed.
+    #[must_use]
+    pub fn strength_permille(&self) -> u16 {
+        let site = match self.wish {
+            Wish::Rest => return 0,
+            Wish::Close => 0,
+            Wish::Open => 1,
+        };
+        let above = self.mean[site] / 16 - ENDS[site];
+        (above.min(STRONG - ENDS[site]).max(0) * 1_000 / (STRONG - ENDS[site])) as u16
+    }
+
+    /// Takes both electrodes, flexor first: what the wearer wants.
+    pub fn take(&mut self, electrodes: &[Electrode; 2]) -> Wish {
+        match self.sites {
+            Some(sites) => self.calibrated(&sites, sites.electrode.map(|n| electrodes[n])),
+            None => self.uncalibrated(electrodes),
+        }
+        self.wish
+    }
+
+    fn calibrated(&mut self, sites: &Sites, electrodes: [Electrode; 2]) {
+        let uv = electrodes.map(|electrode| electrode.uv);
+        let over = uv.map(|uv| uv.is_some_and(|uv| uv >= OVER_UV));
+        // What gives no number stands at rest; what that means for the other is decided below.
+        let level = [0, 1].map(|n: usize| {
+            let subtracted = uv[n].map(|uv| uv.min(OVER_UV) - (self.drift[n] >> 8));
+            subtracted.map_or(sites.rest[n], level_of)
+        });
+        let share = [0, 1].map(|n: usize| (level[n] - sites.rest[n]) * 1_000 / sites.span[n]);
+        let place = (level[1] - level[0] - sites.close_ratio) * 1_000 / sites.turn;
+        let now = [share[0].min(1_300), share[1].min(1_300), place.clamp(-1_000, 2_000)];
+        for (mean, now) in self.mean.iter_mut().zip(now) {
+            *mean += (now * 16 - *mean) / MEAN_READINGS;
+        }
+        let blind = [0, 1].map(|n: usize| uv[n].is_none() || electrodes[n].doubted);
+        let wish = self.wanted(sites, blind, over);
+        // A doubted closing electrode says nothing about the ratio. Soon after other activity it takes more.
+        let lately = !blind[0] && self.since[0] < SOON_READINGS;
+        let strong = level[1] - sites.rest[1] - sites.span[1] >= if lately { FIRMER } else { 0 };
+        let alone = share[0] < sites.both[1] + BOTH || electrodes[0].still;
+        let apart = (place >= PLACE_BEGINS && alone) || blind[0];
+        let opens = apart && strong && uv[1].is_some() && !over[1];
+        self.strong = if opens { self.strong.saturating_add(1) } else { 0 };
+        let was = self.wish;
+        self.settle(wish, now);
+        self.hear(sites, level, was);
+        self.follow(sites, electrodes, wish);
+    }
+
+    /// What the averages say.
+    fn wanted(&mut self, sites: &Sites, blind: [bool; 2], over: [bool; 2]) -> Wish {
+        let [closes, opens, place] = self.mean.map(|mean| mean / 16);
+        let own = match self.wish {
+            Wish::Rest => None,
+            Wish::Close => Some(0),
+            Wish::Open => Some(1),
+        };
+        for (n, share) in [closes, opens].into_iter().enumerate() {
+            if own == Some(n) {
+                self.crest = (self.crest + (share * 256 - self.crest) / CREST_READINGS).max(share * 256);
+                self.trough[n] = share;
+            }
+            self.trough[n] = self.trough[n].min(share);
+        }
+        if own.is_none() {
+            self.crest = 0;
+        }
+        let ends = |n: usize| sites.ends[n].max(self.crest / 256 - sites.fall[n]);
+        let begins = |n: usize| sites.begins[n].max(self.trough[n] + RISE);
+        let busy = !blind[0] && place < PLACE_BEGINS && (closes >= BUSY || opens >= BUSY);
+        self.since[0] = if busy { 0 } else { self.since[0].saturating_add(1) };
+        self.since[1] = if self.wish == Wish::Open { 0 } else { self.since[1].saturating_add(1) };
+        let calm = self.since[0] >= LATER_READINGS || (self.since[0] >= SOON_READINGS && opens >= STRONG);
+        let may_open = calm && !blind[0] && !blind[1] && closes < sites.both[1];
+        let may_close = !over[1] && !blind[0] && (!blind[1] || closes >= ALONE);
+        match self.wish {
+            Wish::Open if over[1] => Wish::Open,
+            Wish::Open if (place >= PLACE_STAYS[1] || blind[0]) && opens >= ends(1) => Wish::Open,
+            Wish::Close
+                if may_close
+                    && place <= PLACE_STAYS[0]
+                    && opens < sites.both[0] + BOTH / 2
+                    && closes >= ends(0) =>
+            {
+                Wish::Close
+            }
+            Wish::Rest | Wish::Close if may_open && place >= PLACE_BEGINS && opens >= begins(1) => Wish::Open,
+            Wish::Rest | Wish::Open
+                if may_close && place <= PLACE_BEGINS && opens < sites.both[0] && closes >= begins(0) =>
+            {
+                Wish::Close
+            }
+            _ => Wish::Rest,
+        }
+    }
+
+    /// A wish has to stand for a while, soon after the opposite one for longer.
+    fn settle(&mut self, wish: Wish, now: [i32; 3]) {
+        let dwell = match wish {
+            Wish::Rest => DWELL[0],
+            Wish::Close if self.since[1] < SOON_READINGS => SOON_DWELL,
+            Wish::Close => DWELL[1],
+            Wish::Open => DWELL[2],
+        };
+        self.stands = if wish == self.next { self.stands.saturating_add(1) } else { 1 };
+        self.next = wish;
+        if self.stands >= dwell {
+            self.wish = wish;
+        }
+        if self.strong >= AT_ONCE_READINGS && self.wish != Wish::Open {
+            (self.wish, self.next, self.stands) = (Wish::Open, Wish::Open, 0);
+            self.mean = now.map(|value| value * 16);
+        }
+    }
+
+    /// Whether the other site has risen with this wish. Its level before the wish is what it was lately.
+    fn hear(&mut self, sites: &Sites, level: [i32; 2], was: Wish) {
+        let began = self.wish != was;
+        let other = match self.wish {
+            Wish::Rest => {
+                for (before, level) in self.before.iter_mut().zip(level) {
+                    *before += level - *before / BEFORE_READINGS;
+                }
+                self.heard = false;
+                return;
+            }
+            Wish::Close => 1,
+            Wish::Open => 0,
+        };
+        if began {
+            self.heard = false;
+        }
+        if began && was != Wish::Rest {
+            self.before = level.map(|level| level * BEFORE_READINGS);
+        }
+        let rise = sites.hears[1 - other].unwrap_or(0);
+        self.heard |= level[other] >= self.before[other] / BEFORE_READINGS + rise;
+    }
+
+    /// Follows rest while nothing is wished. What stands still is hum, whatever its level.
+    fn follow(&mut self, sites: &Sites, electrodes: [Electrode; 2], wish: Wish) {
+        let calm = self.wish == Wish::Rest
+            && wish == Wish::Rest
+            && self.mean[0] < 16 * ENDS[0]
+            && self.mean[1] < 16 * ENDS[1];
+        self.calm = if calm { self.calm.saturating_add(1) } else { 0 };
+        for (n, Electrode { uv, hums, .. }) in electrodes.into_iter().enumerate() {
+            let Some(uv) = uv.filter(|_| self.calm >= CALM_READINGS || hums) else { continue };
+            let added = (uv - sites.rest_uv[n]).min(MOST_DRIFT_UV) * 256;
+            self.drift[n] += (added - self.drift[n]) / if hums { HUM_READINGS } else { REST_READINGS };
+        }
+    }
+
+    /// Only what nobody can mistake, and only if it lasts. Opening does not need the flexor.
+    fn uncalibrated(&mut self, electrodes: &[Electrode; 2]) {
+        let level = electrodes.map(|electrode| electrode.uv.map(|uv| level_of(uv.min(OVER_UV))));
+        let is_over = electrodes[1].uv.is_some_and(|uv| uv >= OVER_UV);
+        let wants = |n: usize, wish: Wish| {
+            let slack = if self.wish == wish { 512 } else { 0 };
+            let stands_out = |own: i32| {
+                let over = level[1 - n].is_none_or(|other| own - other >= DEFAULT_OVER[n] - slack);
+                own >= level_of(DEFAULT_BEGINS_UV[n]) - slack && over
+            };
+            level[n].is_some_and(stands_out)
+        };
+        let wish = if self.wish == Wish::Open && is_over || !is_over && wants(1, Wish::Open) {
+            Wish::Open
+        } else if level[1].is_some() && !is_over && wants(0, Wish::Close) {
+            Wish::Close
+        } else {
+            Wish::Rest
+        };
+        self.stands = if wish == self.next { self.stands.saturating_add(1) } else { 1 };
+        self.next = wish;
+        if wish == Wish::Rest || self.stands >= DEFAULT_READINGS {
+            self.wish = wish;
+        }
+        self.mean = [16 * 750; 3];
+    }
+}

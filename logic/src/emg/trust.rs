@@ -1,0 +1,333 @@
+//! Whether a myosensor's envelope is one of a muscle: whether it is doubted, and whether a contraction is proven.
+//!
+//! Each doubt has a time that no sound recording reaches (`docs/emg.md`). A doubt takes an electrode's weight; it vetoes nothing
+//! of the other one. Proof is what no single fault does: the envelope turns or curves again and again; that the other electrode
+//! hears it too is asked for in [`decide`](super::decide).
+
+use super::decide::OVER_UV;
+use super::level::level_of;
+use super::mains::{Mains, UNIT_UV, WINDOW};
+
+/// From here an envelope above the live zero is at the top of its range, uV: 3.15 V at the pin.
+pub const TOP_UV: i32 = 2_850_000;
+/// Readings without a number that are bridged: 50 ms.
+const BRIDGED_READINGS: u8 = 12;
+/// An envelope stands still while it is within 1 % and this of where it stood, uV.
+const STILL_UV: i32 = 1_500;
+/// Slow frames of standing still that no sound recording has: 1 s, of 0.77 s in 45 minutes of contractions.
+const FLAT_FRAMES: u16 = 80;
+/// Of climbing without falling back by 3 %: 2.5 s, passed for 2 s in those 45 minutes.
+const CREEP_FRAMES: u16 = 200;
+/// At the top: 1.5 s. Recordings have 0.35 s.
+const TOP_FRAMES: u16 = 120;
+/// Of activity without a pause: 30 s.
+const ENDLESS_FRAMES: u16 = 2_400;
+/// Over which unrest is judged: 2.5 s; and of them, so many curve by more than a fifth: a loose contact.
+const UNREST_FRAMES: u16 = 200;
+const UNREST_MANY: u16 = UNREST_FRAMES * 2 / 5;
+/// Weaker envelopes are compared with this, uV, and stronger ones than that are not judged.
+const UNREST_UV: [i32; 2] = [75_000, 300_000];
+/// Good slow frames after which an electrode is believed again: 1 s.
+const BACK_FRAMES: u16 = 80;
+/// Slow frames between the points of a curve, 50 ms, and before its first one counts.
+const LAG: usize = 4;
+const FIRST_PROOF_FRAMES: u16 = 12;
+/// The part of its level by which a proof curves, and slow frames between two proofs: 0.15 s, more than one jump takes. Two
+/// make a muscle.
+const PROOF_PART: i32 = 12;
+const PROOF_APART: u16 = 12;
+/// Slow frames without a proof after which a contraction has to prove itself again: 1 s.
+const PROOF_LASTS: u16 = 80;
+
+/// What an envelope is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Quality {
+    /// A muscle's.
+    #[default]
+    Good,
+    /// No contact: out of range, or as restless as a loose electrode.
+    LeadOff,
+    /// It stands still and mains is in it.
+    Hum,
+    /// It climbs and climbs.
+    Creep,
+    /// It stands still.
+    Flat,
+    /// It has been active for longer than anybody keeps up.
+    Endless,
+    /// It stays at the top of its range.
+    Saturated,
+}
+
+impl Quality {
+    /// What reports call it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Good => "good",
+            Self::LeadOff => "no contact",
+            Self::Hum => "mains hum",
+            Self::Creep => "creep",
+            Self::Flat => "stands still",
+            Self::Endless => "endless activity",
+            Self::Saturated => "saturated",
+        }
+    }
+}
+
+impl core::fmt::Display for Quality {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// Watches one electrode.
+#[derive(Clone, Debug)]
+pub struct Trust {
+    lost: Option<Quality>,
+    good: u16,
+    last_uv: Option<i32>,
+    missing: u8,
+    /// Of the slow frame under way.
+    sum_uv: i32,
+    count: u8,
+    /// Means of the last slow frames, in a ring.
+    past_uv: [i32; 2 * LAG],
+    place: u8,
+    anchor_uv: i32,
+    flat: u16,
+    active_for: u16,
+    foot_uv: i32,
+    crest_uv: i32,
+    climbing: u16,
+    at_top: u16,
+    restless: u16,
+    unrest_frames: u16,
+    loose: bool,
+    /// Proofs of this contraction, two at most, and slow frames since the last.
+    proofs: u8,
+    since_proof: u16,
+    window: [i16; WINDOW],
+    filled: u8,
+    mains: bool,
+}
+
+impl Default for Trust {
+    fn default() -> Self {
+        Self {
+            lost: None,
+            good: 0,
+            last_uv: None,
+            missing: 0,
+            sum_uv: 0,
+            count: 0,
+            past_uv: [0; 2 * LAG],
+            place: 0,
+            anchor_uv: i32::MIN / 2,
+            flat: 0,
+            active_for: 0,
+            foot_uv: 0,
+            crest_uv: 0,
+            climbing: 0,
+            at_top: 0,
+            restless: 0,
+            unrest_frames: 0,
+            loose: false,
+            proofs: 0,
+            since_proof: 0,
+            window: [0; WINDOW],
+            filled: 0,
+            mains: false,
+        }
+    }
+}
+
+impl Trust {
+    /// Takes a reading above the live zero, uV, none where the sensor gives no number; `active` is the level from which it is
+    /// active. Gives what is to be decided on: a gap is bridged.
+    pub fn take(&mut self, active: i32, uv: Option<i32>) -> Option<i32> {
+        let Some(uv) = uv else {
+            self.missing = self.missing.saturating_add(1);
+            if self.missing > BRIDGED_READINGS {
+                self.last_uv = None;
+                self.proofs = 0;
+                self.lose(Quality::LeadOff);
+            }
+            return self.last_uv;
+        };
+        self.missing = 0;
+        self.last_uv = Some(uv);
+        if self.count == 0 && usize::from(self.filled) < WINDOW {
+            self.window[usize::from(self.filled)] = (uv / UNIT_UV).clamp(-32_768, 32_767) as i16;
+            self.filled += 1;
+        }
+        self.sum_uv += uv.min(OVER_UV);
+        self.count += 1;
+        if self.count == 3 {
+            let mean_uv = self.sum_uv / 3;
+            (self.sum_uv, self.count) = (0, 0);
+            self.judge(active, mean_uv);
+        }
+        Some(uv)
+    }
+
+    /// Takes the mean of a slow frame.
+    fn judge(&mut self, active: i32, uv: i32) {
+        let (middle, far) = (self.before(LAG), self.before(2 * LAG));
+        let curve_uv = (uv - 2 * middle + far).abs();
+        if let Some(oldest) = self.past_uv.get_mut(usize::from(self.place)) {
+            *oldest = uv;
+        }
+        self.place = (self.place + 1) % (2 * LAG) as u8;
+
+        let is_active = level_of(uv) >= active;
+        self.active_for = if is_active { self.active_for.saturating_add(1) } else { 0 };
+        let is_top = uv >= TOP_UV;
+        self.at_top = if is_top { self.at_top.saturating_add(1) } else { 0 };
+        self.stand(uv);
+        let turned = self.climb(uv);
+        self.count_unrest(uv, curve_uv);
+        let curves = curve_uv > uv.max(1) / PROOF_PART && !is_top && uv.max(middle).max(far) < TOP_UV;
+        self.prove(turned || curves);
+
+        let climbs = is_active && self.climbing >= CREEP_FRAMES;
+        let bad = if self.at_top >= TOP_FRAMES {
+            Some(Quality::Saturated)
+        } else if is_active && self.flat >= FLAT_FRAMES {
+            Some(if self.mains { Quality::Hum } else { Quality::Flat })
+        } else if climbs {
+            let creeps = self.crest_uv - self.foot_uv > self.foot_uv / 16;
+            Some(if creeps {
+                Quality::Creep
+            } else if self.mains {
+                Quality::Hum
+            } else {
+                Quality::Flat
+            })
+        } else if self.active_for >= ENDLESS_FRAMES {
+            Some(Quality::Endless)
+        } else if self.loose {
+            Some(Quality::LeadOff)
+        } else {
+            None
+        };
+        match bad {
+            Some(quality) => self.lose(quality),
+            None => self.good = self.good.saturating_add(1),
+        }
+        // A fault may end in another: nothing is good again before a muscle has been seen at rest or at work.
+        if self.good >= BACK_FRAMES && (!is_active || self.is_proven()) {
+            self.lost = None;
+        }
+    }
+
+    fn lose(&mut self, quality: Quality) {
+        self.good = 0;
+        // The first reason stays, but a still envelope may later turn out to be mains.
+        if self.lost.is_none() || (self.lost == Some(Quality::Flat) && quality == Quality::Hum) {
+            self.lost = Some(quality);
+        }
+    }
+
+    /// The mean of this many slow frames ago, 1 to 2 [`LAG`].
+    fn before(&self, frames: usize) -> i32 {
+        self.past_uv[(usize::from(self.place) + 2 * LAG - frames) % (2 * LAG)]
+    }
+
+    /// A working muscle turns again and again. One jump from a fault to another does so once.
+    fn prove(&mut self, turns: bool) {
+        self.since_proof = self.since_proof.saturating_add(1);
+        if self.active_for < FIRST_PROOF_FRAMES || self.since_proof > PROOF_LASTS {
+            self.proofs = 0;
+        }
+        if turns
+            && self.active_for >= FIRST_PROOF_FRAMES
+            && (self.proofs == 0 || self.since_proof >= PROOF_APART)
+        {
+            self.proofs = (self.proofs + 1).min(2);
+            self.since_proof = 0;
+        }
+    }
+
+    fn stand(&mut self, uv: i32) {
+        if (uv - self.anchor_uv).abs() > self.anchor_uv / 100 + STILL_UV {
+            (self.anchor_uv, self.flat) = (uv, 0);
+        } else if uv < TOP_UV {
+            // At the top of its range a contraction stands still too.
+            self.flat = self.flat.saturating_add(1);
+        }
+    }
+
+    /// Whether it has just fallen back by 3 %.
+    fn climb(&mut self, uv: i32) -> bool {
+        let turned = self.active_for > 0 && uv < self.crest_uv - self.crest_uv / 32 - STILL_UV;
+        if self.active_for == 0 || uv >= TOP_UV || turned {
+            (self.crest_uv, self.climbing) = (uv, 0);
+        } else {
+            if self.climbing <= CREEP_FRAMES / 2 {
+                self.foot_uv = uv;
+            }
+            self.crest_uv = self.crest_uv.max(uv);
+            self.climbing = self.climbing.saturating_add(1);
+        }
+        turned
+    }
+
+    fn count_unrest(&mut self, uv: i32, curve_uv: i32) {
+        if uv > UNREST_UV[1] {
+            (self.restless, self.unrest_frames, self.loose) = (0, 0, false);
+            return;
+        }
+        self.restless += u16::from(curve_uv > uv.max(UNREST_UV[0]) / 5);
+        self.unrest_frames += 1;
+        if self.unrest_frames == UNREST_FRAMES {
+            self.loose = self.restless >= UNREST_MANY;
+            (self.restless, self.unrest_frames) = (0, 0);
+        }
+    }
+
+    /// What it is.
+    #[must_use]
+    pub fn quality(&self) -> Quality {
+        self.lost.unwrap_or_default()
+    }
+
+    /// Whether it is taken for a muscle's.
+    #[must_use]
+    pub fn is_good(&self) -> bool {
+        self.lost.is_none()
+    }
+
+    /// Whether it has stood still for 0.2 s.
+    #[must_use]
+    pub const fn is_still(&self) -> bool {
+        self.flat >= FLAT_FRAMES / 5
+    }
+
+    /// Whether it is doubted because it stands still: what it stands at is hum.
+    #[must_use]
+    pub fn hums(&self) -> bool {
+        matches!(self.lost, Some(Quality::Flat | Quality::Hum)) && self.flat >= FLAT_FRAMES
+    }
+
+    /// Whether a contraction has turned twice as only a muscle does.
+    #[must_use]
+    pub const fn is_proven(&self) -> bool {
+        self.proofs >= 2
+    }
+
+    /// A full window for [`mains_of`](super::mains::mains_of), until [`hear`](Self::hear) begins the next one.
+    #[must_use]
+    pub fn window(&self) -> Option<&[i16; WINDOW]> {
+        (usize::from(self.filled) == WINDOW).then_some(&self.window)
+    }
+
+    /// Takes what the window said.
+    pub const fn hear(&mut self, mains: Mains) {
+        self.mains = mains.is_heard();
+        self.filled = 0;
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,397 @@
+//! What the wearer wants, scored on recorded envelopes of people: right, wrong way, missed, false and late.
+//!
+//! A folder holds `personP_dayD_postureQ.csv` at 100 Hz: `t_s`, four electrodes (`ecu`, `edc`, `fcr`, `fcu`, 32767 is 2.8 V), `label`:
+//! 1 rest, 3 close, 4 open, others nothing. Scored as `baseline.py` of that data set does, so that figures compare.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::Path;
+
+use anyhow::{Context, bail};
+use serde::Serialize;
+use tenax_hal_shim::words::CalibrationRefusal;
+use tenax_logic::emg::Emg;
+use tenax_logic::emg::calibration::{Calibration, PROMPT_FRAMES, Progress};
+use tenax_logic::emg::decide::Wish;
+use tenax_logic::emg::level::level_of;
+use tenax_logic::emg::mains::mains_of;
+use tenax_logic::emg::model::EmgModel;
+use tenax_logic::emg::trust::Quality;
+
+/// Rows a second of a recording.
+const HZ: f64 = 100.0;
+/// Readings of a pair in a slow frame of 12.5 ms, s after its begin, and pairs a second.
+const AT_S: [f64; 3] = [0.005, 0.008, 0.011];
+const PAIRS_HZ: f64 = 240.0;
+/// uV of a count.
+const UV: f64 = 2.8e6 / 32_767.0;
+const REST: u8 = 1;
+const CLOSE: u8 = 3;
+const OPEN: u8 = 4;
+/// Columns of the flexors and of the extensors: a pair is one of each.
+const FLEXORS: [usize; 2] = [2, 3];
+const EXTENSORS: [usize; 2] = [0, 1];
+
+/// One recording.
+#[derive(Debug)]
+struct Recording {
+    uv: Vec<[f64; 4]>,
+    labels: Vec<u8>,
+}
+
+impl Recording {
+    fn read(path: &Path) -> anyhow::Result<Self> {
+        let mut reader = csv::Reader::from_path(path)?;
+        let (mut uv, mut labels) = (Vec::new(), Vec::new());
+        for row in reader.records() {
+            let row = row?;
+            let number = |n: usize| -> anyhow::Result<f64> {
+                let field = row.get(n).with_context(|| format!("{}: column {n} is missing", path.display()))?;
+                field.trim().parse().with_context(|| format!("{}: `{field}` is no number", path.display()))
+            };
+            uv.push([number(1)? * UV, number(2)? * UV, number(3)? * UV, number(4)? * UV]);
+            labels.push(number(5)? as u8);
+        }
+        Ok(Self { uv, labels })
+    }
+
+    /// Rows of each repetition of a label.
+    fn repetitions(&self, label: u8) -> Vec<Range<usize>> {
+        let mut all: Vec<Range<usize>> = Vec::new();
+        for (row, _) in self.labels.iter().enumerate().filter(|(_, own)| **own == label) {
+            match all.last_mut() {
+                Some(last) if last.end == row => last.end += 1,
+                _ => all.push(row..row + 1),
+            }
+        }
+        all
+    }
+
+    /// Contractions that are long enough to count.
+    fn contractions(&self, label: u8) -> Vec<Range<usize>> {
+        self.repetitions(label).into_iter().filter(|rows| rows.len() > 100).collect()
+    }
+
+    /// Where the wearer surely rests: from 1 s after the label's start to 0.3 s before its end.
+    fn rests(&self) -> Vec<Range<usize>> {
+        let inner = |rows: Range<usize>| rows.start + 100..rows.end.saturating_sub(30);
+        self.repetitions(REST).into_iter().map(inner).filter(|rows| !rows.is_empty()).collect()
+    }
+
+    /// The pair as the board reads it in these rows: time in rows, and uV.
+    fn pairs(&self, rows: Range<usize>, sites: [usize; 2]) -> Vec<(f64, [i32; 2])> {
+        let mut all = Vec::new();
+        for slow in 0.. {
+            for at in AT_S {
+                let at = rows.start as f64 + (f64::from(slow) / 80.0 + at) * HZ;
+                let (row, part) = (at as usize, at.fract());
+                if row + 1 >= rows.end {
+                    return all;
+                }
+                let between = |n: usize| self.uv[row][n] * (1.0 - part) + self.uv[row + 1][n] * part;
+                all.push((at, sites.map(|n| between(n) as i32)));
+            }
+        }
+        all
+    }
+
+    /// Calibrates as the hand does: each prompt is answered with what is given, over and over for its 5 s.
+    fn calibrate(&self, sites: [usize; 2]) -> Result<EmgModel, CalibrationRefusal> {
+        let unrest = |rows: &Range<usize>| {
+            let pairs = self.pairs(rows.clone(), sites);
+            let mean = |n: usize| pairs.iter().map(|(_, uv)| f64::from(level_of(uv[n]))).sum::<f64>() / pairs.len() as f64;
+            let deviation = |n: usize| {
+                let mean = mean(n);
+                pairs.iter().map(|(_, uv)| (f64::from(level_of(uv[n])) - mean).powi(2)).sum::<f64>() / pairs.len() as f64
+            };
+            mean(0) + mean(1) + deviation(0).sqrt() + deviation(1).sqrt()
+        };
+        let rests = self.rests();
+        let rests = rests.iter().filter(|rows| rows.len() >= 50).take(4);
+        let quietest = rests.min_by(|a, b| unrest(a).total_cmp(&unrest(b))).cloned();
+        let held = |label: u8| -> Vec<Range<usize>> {
+            self.contractions(label).into_iter().take(2).map(|rows| rows.start + 50..rows.end - 20).collect()
+        };
+        let mut calibration = Calibration::begin(0);
+        for (phase, rows) in (0..).zip([quietest.into_iter().collect(), held(CLOSE), held(OPEN)]) {
+            let shown: Vec<_> = rows.into_iter().flat_map(|rows| self.pairs(rows, sites)).collect();
+            let readings = (f64::from(PROMPT_FRAMES) / 2_000.0 * PAIRS_HZ) as u32;
+            for (n, (_, uv)) in (0..readings).zip(shown.iter().cycle()) {
+                calibration.take(phase * PROMPT_FRAMES + n * 25 / 3, uv.map(Some));
+            }
+        }
+        match calibration.take(3 * PROMPT_FRAMES, [None; 2]) {
+            Progress::Done(result) => result,
+            Progress::Asks(..) => unreachable!("three prompts are over"),
+        }
+    }
+
+    /// By how much the ratio of two electrodes differs between the contractions that a calibration would see.
+    fn turn(&self, [flexor, extensor]: [usize; 2]) -> f64 {
+        let ratio = |label: u8| {
+            let rows = self.contractions(label).into_iter().take(2).flat_map(|rows| rows.start + 50..rows.end - 20);
+            let levels: Vec<f64> = rows
+                .map(|row| f64::from(level_of(self.uv[row][extensor] as i32) - level_of(self.uv[row][flexor] as i32)))
+                .collect();
+            quantile(&levels, 0.5)
+        };
+        (ratio(OPEN) - ratio(CLOSE)).abs()
+    }
+
+    /// What the hand says in each row, and whether it doubts a sensor.
+    fn play(&self, model: &EmgModel, sites: [usize; 2]) -> Vec<(Wish, bool)> {
+        let mut emg = Emg::new(Some(model));
+        let mut said = Vec::with_capacity(self.uv.len());
+        let mut last = (Wish::Rest, false);
+        for (at, uv) in self.pairs(0..self.uv.len(), sites) {
+            while said.len() < at.ceil() as usize {
+                said.push(last);
+            }
+            let wish = emg.take(uv.map(Some)).wish;
+            for channel in 0..2 {
+                if let Some(window) = emg.window(channel).copied() {
+                    emg.hear(channel, mains_of(&window));
+                }
+            }
+            last = (wish, (0..2).any(|channel| emg.quality(channel) != Quality::Good));
+        }
+        said.resize(self.uv.len(), last);
+        said
+    }
+}
+
+/// Counts of one or more recordings.
+#[derive(Clone, Debug, Default)]
+struct Count {
+    rest_h: f64,
+    false_motions: u32,
+    /// Of closing and of opening: windows, those right, those the wrong way.
+    windows: [[u32; 3]; 2],
+    repetitions: u32,
+    missed: u32,
+    latencies_s: Vec<f64>,
+    rows: usize,
+    doubted: usize,
+}
+
+impl Count {
+    /// Scores what was said, less the repetitions that were calibrated from.
+    fn add(&mut self, recording: &Recording, said: &[(Wish, bool)], skip: usize) {
+        self.rows += said.len();
+        self.doubted += said.iter().filter(|(_, doubted)| *doubted).count();
+        for rows in recording.rests() {
+            self.rest_h += rows.len() as f64 / HZ / 3_600.0;
+            let mut before = Wish::Rest;
+            for &(wish, _) in &said[rows] {
+                self.false_motions += u32::from(wish != before && wish != Wish::Rest);
+                before = wish;
+            }
+        }
+        let kinds = [(CLOSE, Wish::Close, Wish::Open), (OPEN, Wish::Open, Wish::Close)];
+        for (windows, (label, right, wrong)) in self.windows.iter_mut().zip(kinds) {
+            for rows in recording.contractions(label).into_iter().skip(skip) {
+                let mut from = rows.start + 40;
+                while from + 25 <= rows.end - 10 {
+                    let most = |wish: Wish| said[from..from + 25].iter().filter(|own| own.0 == wish).count() > 12;
+                    windows[0] += 1;
+                    windows[1] += u32::from(most(right));
+                    windows[2] += u32::from(most(wrong));
+                    from += 25;
+                }
+                self.repetitions += 1;
+                let begun = rows.start.saturating_sub(20);
+                match said[begun..rows.end].iter().position(|own| own.0 == right) {
+                    Some(n) => self.latencies_s.push(n as f64 / HZ - 0.2),
+                    None => self.missed += 1,
+                }
+            }
+        }
+    }
+
+    fn score(&self) -> Option<Score> {
+        let part = |n: u32, of: u32| f64::from(n) / f64::from(of.max(1));
+        let [close, open] = self.windows;
+        (self.rows > 0).then(|| Score {
+            close_right: part(close[1], close[0]),
+            close_wrong_way: part(close[2], close[0]),
+            open_right: part(open[1], open[0]),
+            open_wrong_way: part(open[2], open[0]),
+            missed: part(self.missed, self.repetitions),
+            false_per_hour: f64::from(self.false_motions) / self.rest_h.max(1e-9),
+            latency_s_p50: quantile(&self.latencies_s, 0.5),
+            latency_s_p95: quantile(&self.latencies_s, 0.95),
+            doubted_part: self.doubted as f64 / self.rows as f64,
+        })
+    }
+}
+
+/// How well the wearer's wish was understood.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Score {
+    /// Windows of 0.25 s of held closing that close.
+    pub close_right: f64,
+    /// And that open.
+    pub close_wrong_way: f64,
+    /// Windows of held opening that open.
+    pub open_right: f64,
+    /// And that close.
+    pub open_wrong_way: f64,
+    /// Repetitions that were never answered.
+    pub missed: f64,
+    /// Motions that began in an hour of rest.
+    pub false_per_hour: f64,
+    /// From the label's start to the wish, s: negative where the wearer was earlier.
+    pub latency_s_p50: f64,
+    /// The same of the slowest 5 %.
+    pub latency_s_p95: f64,
+    /// Part of the time in which a sensor was doubted.
+    pub doubted_part: f64,
+}
+
+impl Score {
+    fn values(&self) -> [f64; 9] {
+        let Self { close_right, close_wrong_way, open_right, open_wrong_way, missed, .. } = *self;
+        let Self { false_per_hour, latency_s_p50, latency_s_p95, doubted_part, .. } = *self;
+        [
+            close_right,
+            close_wrong_way,
+            open_right,
+            open_wrong_way,
+            missed,
+            false_per_hour,
+            latency_s_p50,
+            latency_s_p95,
+            doubted_part,
+        ]
+    }
+
+    /// The median of each number over people.
+    fn median(scores: &[Self]) -> Option<Self> {
+        let all: Vec<[f64; 9]> = scores.iter().map(Self::values).collect();
+        let median = |n: usize| quantile(&all.iter().map(|values| values[n]).collect::<Vec<_>>(), 0.5);
+        (!scores.is_empty()).then(|| Self {
+            close_right: median(0),
+            close_wrong_way: median(1),
+            open_right: median(2),
+            open_wrong_way: median(3),
+            missed: median(4),
+            false_per_hour: median(5),
+            latency_s_p50: median(6),
+            latency_s_p95: median(7),
+            doubted_part: median(8),
+        })
+    }
+}
+
+/// One person.
+#[derive(Clone, Debug, Serialize)]
+pub struct Person {
+    /// Its number in the file names.
+    pub person: u32,
+    /// Calibrated in the session that is scored; none where every calibration was refused.
+    pub same_session: Option<Score>,
+    /// Calibrated in another posture of the same day.
+    pub other_posture: Option<Score>,
+    /// Calibrated on the first day, scored on the others.
+    pub first_day_kept: Option<Score>,
+    /// Calibrations that were refused, and why, by day.
+    pub refused: BTreeMap<u32, String>,
+    /// Calibrations that were tried.
+    pub sessions: usize,
+}
+
+/// The whole folder: medians over people.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// See [`Person`].
+    pub same_session: Option<Score>,
+    /// See [`Person`].
+    pub other_posture: Option<Score>,
+    /// See [`Person`].
+    pub first_day_kept: Option<Score>,
+    /// Part of the calibrations that were refused.
+    pub refused_part: f64,
+    /// Each by itself.
+    pub persons: Vec<Person>,
+}
+
+/// Linear between the ranks; 0 of nothing.
+fn quantile(values: &[f64], part: f64) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let at = (sorted.len().max(1) - 1) as f64 * part;
+    let (low, high) = (sorted.get(at.floor() as usize), sorted.get(at.ceil() as usize));
+    low.zip(high).map_or(0.0, |(low, high)| low + (high - low) * at.fract())
+}
+
+/// `personP_dayD_postureQ`: the three numbers.
+fn numbers(stem: &str) -> Option<[u32; 3]> {
+    let rest = stem.strip_prefix("person")?;
+    let (person, rest) = rest.split_once("_day")?;
+    let (day, posture) = rest.split_once("_posture")?;
+    Some([person.parse().ok()?, day.parse().ok()?, posture.parse().ok()?])
+}
+
+/// Scores everybody in a folder, or one person.
+///
+/// # Errors
+/// If nothing is there or a recording cannot be read.
+pub fn evaluate(folder: &Path, only: Option<u32>) -> anyhow::Result<Report> {
+    let mut people: BTreeMap<u32, BTreeMap<u32, BTreeMap<u32, Recording>>> = BTreeMap::new();
+    for entry in std::fs::read_dir(folder).with_context(|| folder.display().to_string())? {
+        let path = entry?.path();
+        let stem = path.file_stem().and_then(|stem| stem.to_str()).and_then(numbers);
+        let Some([person, day, posture]) = stem.filter(|[person, ..]| only.is_none_or(|only| only == *person)) else {
+            continue;
+        };
+        let recording = Recording::read(&path)?;
+        people.entry(person).or_default().entry(day).or_default().insert(posture, recording);
+    }
+    if people.is_empty() {
+        bail!("{}: no recording is called personP_dayD_postureQ.csv, with P as asked for", folder.display());
+    }
+    let persons: Vec<Person> = people.iter().map(|(&number, days)| person(number, days)).collect();
+    let of = |kind: fn(&Person) -> Option<Score>| Score::median(&persons.iter().filter_map(kind).collect::<Vec<_>>());
+    let refused: usize = persons.iter().map(|person| person.refused.len()).sum();
+    let sessions: usize = persons.iter().map(|person| person.sessions).sum();
+    Ok(Report {
+        same_session: of(|person| person.same_session),
+        other_posture: of(|person| person.other_posture),
+        first_day_kept: of(|person| person.first_day_kept),
+        refused_part: refused as f64 / sessions as f64,
+        persons,
+    })
+}
+
+fn person(number: u32, days: &BTreeMap<u32, BTreeMap<u32, Recording>>) -> Person {
+    let mut counts: [Count; 3] = Default::default();
+    let mut refused = BTreeMap::new();
+    let mut first_day = None;
+    let mut sites = None;
+    for (&day, postures) in days {
+        let Some((_, first)) = postures.first_key_value() else { continue };
+        let sites = *sites.get_or_insert_with(|| {
+            let pairs = FLEXORS.into_iter().flat_map(|flexor| EXTENSORS.map(|extensor| [flexor, extensor]));
+            pairs.max_by(|a, b| first.turn(*a).total_cmp(&first.turn(*b))).unwrap_or([FLEXORS[0], EXTENSORS[0]])
+        });
+        let model = first.calibrate(sites);
+        match &model {
+            Ok(model) => {
+                for (n, recording) in postures.values().enumerate() {
+                    let said = recording.play(model, sites);
+                    counts[n.min(1)].add(recording, &said, if n == 0 { 2 } else { 0 });
+                }
+            }
+            Err(refusal) => {
+                refused.insert(day, refusal.to_string());
+            }
+        }
+        match &first_day {
+            None => first_day = Some(model),
+            Some(Ok(kept)) => counts[2].add(first, &first.play(kept, sites), 0),
+            Some(Err(_)) => {}
+        }
+    }
+    let [same_session, other_posture, first_day_kept] = counts.map(|count| count.score());
+    Person { person: number, same_session, other_posture, first_day_kept, refused, sessions: days.len() }
+}
