@@ -64,6 +64,47 @@ fn a_quadrant_that_drifts_in_a_grasp_closes_nothing_and_is_told() {
 }
 
 #[test]
+fn what_cannot_slip_at_any_friction_closes_nothing_however_loud_it_is() {
+    // Unless the array feels it, too: then it is the force sensor that is wrong.
+    for (shear_n, sliding_mv, closes) in [(0.2, 0.0, false), (0.4, 0.0, true), (0.2, 60.0, true)] {
+        let mut bench = Bench::holding(34);
+        bench.load(4.0, shear_n);
+        bench.press(700.0);
+        bench.run(2_000);
+        bench.sliding_mv = sliding_mv;
+        bench.vibration_mv = 400.0;
+        bench.run(2_000);
+        assert!(bench.slows.iter().flat_map(|slow| &slow.ticks).any(|tick| !tick.said.is_empty()));
+        assert_eq!(reflex_ticks(&bench) > 0, closes, "{shear_n} N of shear on 4 N, {sliding_mv} mV");
+    }
+}
+
+/// The duties of the reflex's pulses at this load, whose shear S2 warns of, per mille. `raises_n` is what a tick of closing adds.
+fn duties(load_n: f64, raises_n: f64) -> Vec<u16> {
+    let mut bench = Bench::holding(35);
+    let mut load_n = load_n;
+    let mut duties = Vec::new();
+    for _ in 0..2_000 {
+        bench.load(load_n, 0.35 * load_n);
+        if let MotorDrive::Close(duty) = bench.step() {
+            duties.push(duty.as_per_mille());
+            load_n += raises_n;
+        }
+    }
+    duties
+}
+
+#[test]
+fn small_pulses_that_stall_grow() {
+    let stalled = duties(20.0, 0.0);
+    assert_eq!((stalled.first(), stalled.last()), (Some(&400), Some(&1_000)), "{stalled:?}");
+    // Those that raise the load do not, nor those at a load at which no motor stalls.
+    for all in [duties(20.0, 0.01), duties(4.0, 0.0)] {
+        assert!(all.len() > 100 && all.iter().all(|&duty| duty == 400), "{all:?}");
+    }
+}
+
+#[test]
 fn slip_while_an_s2_pulse_settles_is_answered() {
     let mut bench = Bench::holding(32);
     bench.load(4.0, 1.6);

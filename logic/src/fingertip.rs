@@ -25,6 +25,7 @@ use crate::arming::{Arming, STEP_FRAMES};
 use crate::behaviours::Running;
 use crate::config::Config;
 use crate::detectors::{Detectors, Said};
+use crate::force::friction;
 use crate::grip::{Grip, Reflex};
 use crate::journal::Journal;
 use crate::mode;
@@ -201,7 +202,9 @@ impl Fingertip {
             let striking = matches!(self.mode, GripMode::Slip | GripMode::Settle);
             self.senses.driven(self.drive, striking, STEP_FRAMES);
         }
-        let verdicts = Verdicts::of(&self.detectors, self.acting.but(self.config.detectors_off));
+        let ratio = self.senses.forces.and_then(|forces| forces.ratio_permille);
+        let cannot = ratio.is_some_and(|ratio| ratio < friction::LEAST_PERMILLE);
+        let verdicts = Verdicts::of(&self.detectors, self.acting.but(self.config.detectors_off), cannot);
         let behaviour = self.behave(verdicts);
         let grip = self.senses.grip(&self.config);
         self.step_mode(verdicts, grip);
@@ -209,7 +212,7 @@ impl Fingertip {
             wearer_active: self.senses.gate.is_active(),
             wearer: self.senses.gate.wish(&self.config.gate),
             link: self.link_drive(),
-            reflex: Reflex::drive(&self.config.grip, self.mode),
+            reflex: self.reflex.drive(&self.config.grip, self.mode),
             behaviour,
         };
         // A lost frame says nothing about anybody's wish, so nobody's is carried out.
@@ -278,7 +281,7 @@ impl Fingertip {
     #[inline(never)]
     fn change(&mut self, to: GripMode, cause: Cause) {
         let from = core::mem::replace(&mut self.mode, to);
-        self.reflex.enter(to);
+        self.reflex.enter(&self.config.grip, to, self.senses.grip(&self.config));
         if matches!(cause, Cause::Incipient(DetectorId::S2)) {
             self.detectors.tightened();
         }
@@ -306,7 +309,7 @@ impl Fingertip {
             ticks,
             mode: self.mode,
             forces: self.senses.forces,
-            s2_permille: self.config.friction.s2_permille,
+            s2_permille: self.detectors.s2.s2_permille(&self.config.friction),
             flexor_mv: self.senses.gate.flexor_mv(),
             extensor_mv: self.senses.gate.extensor_mv(),
             wearer_active: self.senses.gate.is_active(),

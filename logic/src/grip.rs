@@ -23,6 +23,9 @@ pub enum Grip {
     Holds(i32),
 }
 
+/// The part of a load by which a pulse that is not in vain changes it: beyond the force sensor's noise.
+const RAISES_PART: i32 = 200;
+
 /// The reflex's memory.
 #[derive(Clone, Copy, Debug)]
 pub struct Reflex {
@@ -30,11 +33,14 @@ pub struct Reflex {
     /// Frames since the last pulse that answered incipient slip, saturating.
     since_incipient: u32,
     blind: u32,
+    /// The load as the last pulse began, mN, and the pulses in a row that raised nothing.
+    began_mn: Option<i32>,
+    in_vain: u16,
 }
 
 impl Default for Reflex {
     fn default() -> Self {
-        Self { elapsed: 0, since_incipient: u32::MAX, blind: 0 }
+        Self { elapsed: 0, since_incipient: u32::MAX, blind: 0, began_mn: None, in_vain: 0 }
     }
 }
 
@@ -56,8 +62,18 @@ impl Reflex {
     }
 
     /// The mode has changed: what is timed begins now.
-    pub fn enter(&mut self, mode: GripMode) {
+    pub fn enter(&mut self, config: &GripConfig, mode: GripMode, grip: Grip) {
         self.elapsed = 0;
+        if crate::mode::closes(mode)
+            && let Grip::Holds(mn) = grip
+        {
+            let raised = self.began_mn.is_none_or(|began| (mn - began).abs() > began / RAISES_PART);
+            // A motor that reaches the ceiling at full duty stalls at no less than so much.
+            let stalls_mn = config.ceiling_mn / 1_000 * i32::from(config.incipient_duty_permille);
+            let raised = raised || mn < stalls_mn;
+            self.in_vain = if raised { 0 } else { self.in_vain.saturating_add(1) };
+            self.began_mn = Some(mn);
+        }
         if mode == GripMode::Incipient {
             self.since_incipient = 0;
         }
@@ -65,7 +81,7 @@ impl Reflex {
 
     /// A muscle is active: whoever sees the hand has taken over, and the budget of the blind begins anew.
     pub const fn renew(&mut self) {
-        self.blind = 0;
+        (self.blind, self.began_mn, self.in_vain) = (0, None, 0);
     }
 
     /// A drive command closes in this frame: without a known force it spends the same budget.
@@ -115,12 +131,17 @@ impl Reflex {
         self.elapsed >= config.settle_frames
     }
 
-    /// How the reflex drives the motor in this mode.
+    /// How the reflex drives the motor in this mode. A small pulse that raised nothing has stalled: the next is stronger by as much.
     #[must_use]
-    pub const fn drive(config: &GripConfig, mode: GripMode) -> MotorDrive {
+    pub fn drive(&self, config: &GripConfig, mode: GripMode) -> MotorDrive {
         match mode {
             GripMode::Slip => MotorDrive::Close(Duty::per_mille(config.slip_duty_permille)),
-            GripMode::Incipient => MotorDrive::Close(Duty::per_mille(config.incipient_duty_permille)),
+            GripMode::Incipient => {
+                let stronger = config.incipient_duty_permille.saturating_mul(self.in_vain.saturating_add(1));
+                // Never stronger than what answers slip, unless it is set so.
+                let most = config.slip_duty_permille.max(config.incipient_duty_permille);
+                MotorDrive::Close(Duty::per_mille(stronger.min(most)))
+            }
             _ => MotorDrive::Coast,
         }
     }
@@ -134,7 +155,7 @@ mod tests {
     fn pulse_frames(mode: GripMode, slips: bool, grip: Grip) -> u32 {
         let config = Config::default().grip;
         let mut reflex = Reflex::default();
-        reflex.enter(mode);
+        reflex.enter(&config, mode, grip);
         (0..10_000)
             .take_while(|_| {
                 let over = reflex.pulse_over(&config, mode, slips, grip);
@@ -163,7 +184,7 @@ mod tests {
             reflex.tick(GripMode::Slip, Grip::Unknown);
         }
         assert!(!reflex.may_close(&config, Grip::Unknown));
-        reflex.enter(GripMode::Slip);
+        reflex.enter(&config, GripMode::Slip, Grip::Unknown);
         assert!(!reflex.may_close(&config, Grip::Unknown) && !reflex.link_may_close(&config, Grip::Unknown));
         reflex.renew();
         assert!(reflex.may_close(&config, Grip::Unknown));

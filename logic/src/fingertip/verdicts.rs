@@ -1,6 +1,6 @@
 //! What the fingertip makes of its detectors' verdicts: said, believed, acted on.
 
-use tenax_hal_shim::detector::DetectorSet;
+use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 
 use crate::detectors::Detectors;
 
@@ -33,9 +33,20 @@ pub(super) struct Verdicts {
 }
 
 impl Verdicts {
-    pub fn of(detectors: &Detectors, Acting(acting): Acting) -> Self {
+    /// `cannot`: by the force sensor no friction is so low that the object could slip. One sense alone is not believed against it.
+    pub fn of(detectors: &Detectors, Acting(acting): Acting, cannot: bool) -> Self {
         let (slip, incipient) = (detectors.slip(), detectors.incipient());
-        let verdicts = |said: DetectorSet| said.without(detectors.ignored()).and(acting);
+        let heard = |said: DetectorSet| said.without(detectors.ignored());
+        let verdicts = |said: DetectorSet| {
+            if cannot && !by_two_senses(heard(slip)) { DetectorSet::NONE } else { heard(said).and(acting) }
+        };
         Self { said: slip.or(incipient), slip: verdicts(slip), incipient: verdicts(incipient) }
     }
+}
+
+/// Whether films, array, head and whoever is outside agree, at least two of them.
+fn by_two_senses(slip: DetectorSet) -> bool {
+    let films = slip.contains(DetectorId::S1) || slip.contains(DetectorId::Hebbian);
+    let others = [DetectorId::Mlp, DetectorId::Photoelastic, DetectorId::Injected];
+    u8::from(films) + others.into_iter().map(|id| u8::from(slip.contains(id))).sum::<u8>() >= 2
 }

@@ -14,6 +14,7 @@
 use tenax_hal_shim::wire::Forces;
 
 use super::Asked;
+use super::friction::FOUND_PERMILLE;
 
 /// The part of the learned ratio that is close, per mille.
 const CLOSE_PERMILLE: i32 = 850;
@@ -27,8 +28,6 @@ const READING_US: i32 = 12_500;
 const AGREEING: u8 = 2;
 /// The learned ratio follows the lessons over `2^FOLLOWS` readings, 0.4 s.
 const FOLLOWS: u32 = 5;
-/// The smallest ratio that is taken for friction, per mille, as S2's stroke does.
-const LEAST_PERMILLE: i32 = 100;
 /// Fraction bits of the learned ratio.
 const FRACTION: u32 = 8;
 
@@ -62,7 +61,7 @@ impl Ahead {
         // A ratio is below 2^16 and the look ahead below 2^8 ms, so the product is below 2^31 in ms.
         let ahead = risen * i32::from(ahead_ms) / (SPAN as i32 * READING_US / 1_000);
         let limit = (self.slips_at >> FRACTION) * if self.says { FAR_PERMILLE } else { CLOSE_PERMILLE };
-        let close = self.slips_at >> FRACTION >= LEAST_PERMILLE
+        let close = self.slips_at >> FRACTION >= i32::from(FOUND_PERMILLE)
             && i64::from(ratio + ahead) * 1_000 >= i64::from(limit)
             && !self.asked.in_vain(forces);
         self.agreeing = if close { self.agreeing.saturating_add(1) } else { 0 };
@@ -141,8 +140,8 @@ mod tests {
 
     #[test]
     fn what_is_no_friction_is_not_believed() {
-        assert_eq!(warns_at(taught(LEAST_PERMILLE as u16 - 1), 50, 10), None);
-        assert!(warns_at(taught(LEAST_PERMILLE as u16), 50, 10).is_some());
+        assert_eq!(warns_at(taught(FOUND_PERMILLE - 1), 50, 10), None);
+        assert!(warns_at(taught(FOUND_PERMILLE), 50, 10).is_some());
     }
 
     #[test]

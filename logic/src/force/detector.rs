@@ -11,6 +11,9 @@ impl Detector for FrictionDetector {
     type Config = FrictionConfig;
 
     fn step(&mut self, config: &FrictionConfig, sensed: &Sensed<'_>) -> Option<Said> {
+        if sensed.wearer {
+            self.renew();
+        }
         let ratio = match sensed.forces {
             Some(_) if !sensed.forces_are_new => return None,
             Some(forces) => forces.ratio_permille,
