@@ -53,7 +53,7 @@ pub fn bars(outcome: &Outcome, run: Option<&Run>) -> Vec<Bar> {
 fn slid(run: Option<f64>, bound: Option<f64>) -> Bar {
     let goal = Goal::of("glass-slid");
     match (run, bound) {
-        (Some(run), Some(bound)) => Bar::short_of(goal, run, &format!("the bound {bound:.2} mm")),
+        (Some(run), Some(bound)) => Bar::short_of(goal, run, format!("the bound {bound:.2} mm")),
         _ => Bar::new(&goal.what, "nothing was held", false),
     }
 }
