@@ -12,13 +12,13 @@ pub const BEGINS: [i32; 2] = [450, 600];
 /// And below which each ends.
 pub const ENDS: [i32; 2] = [450, 500];
 /// A wish ends at least this far below where it begins, Q10 octaves; and no lower than this share.
-pub const HYSTERESIS: i32 = 500;
+pub const HYSTERESIS: i32 = 250;
 /// See above.
 pub const LEAST_END: i32 = 200;
 /// It also ends this far below its own crest, per mille of the calibrated rise: a muscle that relaxes slowly has let go.
 pub const FALL: i32 = 300;
 /// But never for a fall of less than this, Q10 octaves: a contraction fluctuates.
-pub const LEAST_FALL: i32 = 1_500;
+pub const LEAST_FALL: i32 = 1_200;
 /// The crest is forgotten over so many readings: 4 s.
 pub const CREST_READINGS: i32 = 960;
 /// And begins again this far above the lowest point since: tone that stays is no new wish.
