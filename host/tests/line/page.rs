@@ -69,8 +69,11 @@ fn a_person_sees_the_board_beside_the_truth_zooms_pauses_and_sets_a_setting() {
     until(&mut page, "at('mode').textContent !== '-' && points.length > 40");
     let settings = format!("document.querySelectorAll('#settings tr').length === {}", SettingId::ALL.len());
     until(&mut page, &settings);
-    let first = page.value("document.querySelector('#settings tr').innerText");
-    assert!(first.as_str().unwrap().contains("mV, 20 to 250, default 100"), "{first}");
+    // The wider range is in force as soon as the board has said that its line is trusted.
+    until(
+        &mut page,
+        "document.querySelector('#settings tr').innerText.includes('mV, 20 to 1500, default 100')",
+    );
     assert_eq!(page.value("document.querySelectorAll('#detectors tr').length"), 5);
 
     page.value(
