@@ -10,8 +10,8 @@ use tenax_logic::arming::DEBOUNCE_FRAMES;
 use tenax_logic::device::Device;
 
 use crate::board::agreement::{presses, slow_difference};
-use tenax_serial::captured::line_of;
 use tenax_serial::link::Inbox;
+use tenax_serial::link::captured::line_of;
 
 /// What a recording holds.
 #[derive(Debug, Default)]

@@ -187,10 +187,6 @@ impl<P: Plant> Plant for Served<P> {
     fn streams_at_start(&self) -> bool {
         self.streams_at_start || self.plant.streams_at_start()
     }
-
-    fn duration_s(&self) -> f64 {
-        self.plant.duration_s()
-    }
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::path::Path;
 
+use anyhow::bail;
 use serde::de::DeserializeOwned;
 use thiserror::Error;
 use toml::Spanned;
@@ -22,29 +23,78 @@ pub struct RecipeError {
 /// What a check finds: the place in the text, and what is wrong there.
 pub type Checked = Result<(), (Range<usize>, String)>;
 
-/// Reads a recipe file; `parse` is told its text and what errors call it.
-pub fn read<R>(path: &Path, parse: impl FnOnce(&str, &str) -> Result<R, RecipeError>) -> anyhow::Result<R> {
-    let file = path.display().to_string();
-    let text =
-        crate::input::text(path).map_err(|error| anyhow::anyhow!("{file}: cannot be read: {error}"))?;
-    Ok(parse(&text, &file)?)
+/// A kind of recipe.
+pub trait Kind: DeserializeOwned + 'static {
+    /// Name and text of every one in `recipes/`, built in, so that the tool finds them wherever it is run. A test holds them
+    /// against the folder.
+    const BUILTIN: &'static [(&'static str, &'static str)];
+
+    /// Names of the files that it is taken for when no recipe is given; `*` and `?` match as in a shell.
+    fn applies_to(&self) -> &[Spanned<String>];
+
+    /// Whether it means something.
+    fn check(&self) -> Checked;
+
+    /// Reads and checks one; `file` is what errors call it. An error says in which line and what is allowed.
+    fn parse(text: &str, file: &str) -> Result<Self, RecipeError> {
+        let at = |span: Range<usize>, what: String| RecipeError {
+            file: file.to_owned(),
+            line: text.bytes().take(span.start).filter(|&byte| byte == b'\n').count() + 1,
+            what,
+        };
+        let recipe: Self = toml::from_str(text)
+            .map_err(|error| at(error.span().unwrap_or(0..0), error.message().trim().replace('\n', "; ")))?;
+        recipe.check().map_err(|(span, what)| at(span, what))?;
+        Ok(recipe)
+    }
+
+    /// The one that was asked for, by file or by name.
+    fn asked(asked: &str) -> anyhow::Result<Named<Self>> {
+        let name = asked.to_owned();
+        if let Some((_, text)) = Self::BUILTIN.iter().find(|(name, _)| *name == asked) {
+            return Ok(Named { name, recipe: Self::parse(text, &format!("recipes/{asked}.toml"))? });
+        }
+        let file = Path::new(asked);
+        if !file.exists() {
+            bail!(
+                "--recipe {asked}: no such file, and no recipe for this is called that; those are {}",
+                Self::names()
+            );
+        }
+        let text =
+            crate::input::text(file).map_err(|error| anyhow::anyhow!("{asked}: cannot be read: {error}"))?;
+        Ok(Named { name, recipe: Self::parse(&text, asked)? })
+    }
+
+    /// The built-in one that is for files of this name, if there is one.
+    fn for_file(path: &Path) -> Result<Option<Named<Self>>, RecipeError> {
+        let file_name = path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
+        for (name, text) in Self::BUILTIN {
+            let recipe = Self::parse(text, &format!("recipes/{name}.toml"))?;
+            if recipe.is_for(&file_name) {
+                return Ok(Some(Named { name: (*name).to_owned(), recipe }));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Whether it is for files of this name.
+    fn is_for(&self, file_name: &str) -> bool {
+        matches(self.applies_to(), file_name)
+    }
+
+    /// What the built-in ones are called.
+    fn names() -> String {
+        Self::BUILTIN.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ")
+    }
 }
 
-/// Reads and checks a recipe; `file` is what errors call it.
-pub fn parse<R: DeserializeOwned>(
-    text: &str,
-    file: &str,
-    check: impl FnOnce(&R) -> Checked,
-) -> Result<R, RecipeError> {
-    let at = |span: Range<usize>, what: String| RecipeError {
-        file: file.to_owned(),
-        line: text.bytes().take(span.start).filter(|&byte| byte == b'\n').count() + 1,
-        what,
-    };
-    let recipe: R = toml::from_str(text)
-        .map_err(|error| at(error.span().unwrap_or(0..0), error.message().trim().replace('\n', "; ")))?;
-    check(&recipe).map_err(|(span, what)| at(span, what))?;
-    Ok(recipe)
+/// A recipe and what it is called.
+#[derive(Clone, Debug)]
+pub struct Named<R> {
+    /// Its name in `recipes/`, or its file.
+    pub name: String,
+    pub recipe: R,
 }
 
 /// Whether any of these patterns is of this name; `*` and `?` match as in a shell.

@@ -4,6 +4,7 @@
 //! those sensors and this board's pins. Nothing here knows what a detector is.
 //!
 //! ```
+//! use tenax_bench::recipe::Kind;
 //! use tenax_bench::replay::{Recipe, Recording, ReplayPlant};
 //! use tenax_scene::plant::Plant;
 //!

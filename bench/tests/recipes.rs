@@ -7,8 +7,9 @@ use std::fs;
 use std::path::Path;
 
 use common::{recipe, with_head};
-use tenax_bench::labelled::{self, ArrayRecipe};
-use tenax_bench::replay::{Recipe, library};
+use tenax_bench::labelled::ArrayRecipe;
+use tenax_bench::recipe::Kind;
+use tenax_bench::replay::Recipe;
 
 const MAP: &str = "[[map]]\ncolumn = 'a'\nchannels = ['pvdf_1']\ngain = 1.0\n";
 
@@ -65,18 +66,15 @@ fn every_recipe_in_the_folder_is_built_in_and_good() {
         .unwrap()
         .map(|entry| entry.unwrap().path().file_stem().unwrap().to_string_lossy().into_owned())
         .collect();
-    let names =
-        |list: &[(&str, &str)]| -> BTreeSet<String> { list.iter().map(|(name, _)| (*name).into()).collect() };
-    let (builtin, labelled) = (names(&library::BUILTIN), names(&labelled::library::BUILTIN));
-    assert_eq!(files, builtin.union(&labelled).cloned().collect());
-    for (name, text) in labelled::library::BUILTIN {
-        let recipe = ArrayRecipe::parse(text, name).unwrap();
-        assert!(!recipe.applies_to.is_empty(), "{name} is for no recording");
+    let builtin = Recipe::BUILTIN.iter().chain(ArrayRecipe::BUILTIN);
+    assert_eq!(files, builtin.map(|(name, _)| (*name).to_owned()).collect());
+    fn all_good<R: Kind>() {
+        for (name, text) in R::BUILTIN {
+            assert!(!R::parse(text, name).unwrap().applies_to().is_empty(), "{name} is for no recording");
+        }
     }
-    for name in &builtin {
-        let named = library::builtin(name).unwrap().unwrap();
-        assert!(!named.recipe.applies_to.is_empty(), "{name} is for no recording");
-    }
+    all_good::<Recipe>();
+    all_good::<ArrayRecipe>();
 }
 
 #[test]
@@ -88,9 +86,8 @@ fn every_shared_recording_has_exactly_one_recipe() {
         ("emg_two_channel_rest0.csv", "emg_two_channel"),
         ("emg_bursts_1khz.csv", "emg_bursts"),
     ] {
-        let all = library::BUILTIN.map(|(name, _)| library::builtin(name).unwrap().unwrap());
-        let names: Vec<String> =
-            all.into_iter().filter(|named| named.recipe.is_for(file)).map(|named| named.name).collect();
+        let is_for = |(_, text): &&(&str, &str)| Recipe::parse(text, "r.toml").unwrap().is_for(file);
+        let names: Vec<&str> = Recipe::BUILTIN.iter().filter(is_for).map(|(name, _)| *name).collect();
         assert_eq!(names, [expected], "{file}");
     }
 }

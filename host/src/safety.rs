@@ -107,7 +107,8 @@ impl Matrix {
         for Requirement { id, hazards, .. } in &self.requirements {
             let mut named = named.remove(id).unwrap_or_default();
             let mut own = hazards.clone();
-            (named.sort(), own.sort());
+            named.sort();
+            own.sort();
             if own != named {
                 self.problems.push(format!("{id} names the hazards {own:?}, and {named:?} name it"));
             }

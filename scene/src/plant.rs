@@ -114,8 +114,10 @@ pub trait Plant: Send {
         self.within()?.calibrated()
     }
 
-    /// How long it lasts, s.
-    fn duration_s(&self) -> f64;
+    /// How long it lasts, s. A plant by itself says it.
+    fn duration_s(&self) -> f64 {
+        self.within().map_or(0.0, Plant::duration_s)
+    }
 }
 
 #[cfg(test)]
@@ -185,10 +187,6 @@ mod tests {
 
         fn scan(&mut self, drive: MotorDrive) -> &Pins {
             self.0.scan(drive)
-        }
-
-        fn duration_s(&self) -> f64 {
-            self.0.duration_s()
         }
     }
 

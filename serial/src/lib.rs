@@ -8,7 +8,6 @@
 #![forbid(unsafe_code)]
 #![allow(missing_docs, reason = "a part of the tool: where a name says it all, nothing repeats it")]
 
-pub mod captured;
 pub mod cli;
 pub mod guide;
 pub mod link;

@@ -2,6 +2,7 @@
 //!
 //! [`Target`] opens it, whatever it is; [`Inbox`] takes what comes up, [`Outbox`] sends commands, and [`Client`] does both.
 
+pub mod captured;
 mod client;
 mod encoder;
 mod holder;

@@ -16,8 +16,8 @@ use anyhow::{Context, bail};
 use tenax_hal_shim::wire::{About, Answer, FRAME_MAX, Received, Up, encode};
 
 use self::topics::{Topic, rows, seconds};
-use crate::captured::is_recording;
 use crate::link::Inbox;
+use crate::link::captured::is_recording;
 use crate::mcap::Writer;
 use crate::protobuf::{self, PACKAGE, Value};
 use crate::settings;

@@ -4,6 +4,7 @@
 #[cfg(feature = "emulator")]
 pub mod core;
 pub mod draws;
+pub mod emg;
 pub mod failures;
 pub mod online;
 pub mod ran;

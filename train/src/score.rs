@@ -1,6 +1,7 @@
 //! How good a detector's logits are.
 
 use serde::Serialize;
+use tenax_bench::array::real;
 
 /// Logits and what was so, step by step.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -73,23 +74,14 @@ pub fn score(judged: &Judged, threshold: f64) -> Score {
     Score { steps, missed, false_alarms, accuracy, balanced, auc: auc(judged) }
 }
 
-/// Area under the ROC curve: the Mann-Whitney statistic, ties counting half.
+/// Area under the ROC curve; a half where there is only one kind of step.
 pub fn auc(judged: &Judged) -> f64 {
-    let (positives, negatives) = (judged.of(true) as f64, judged.of(false) as f64);
-    if positives == 0.0 || negatives == 0.0 {
+    if judged.of(true) == 0 || judged.of(false) == 0 {
         return 0.5;
     }
-    let mut order: Vec<(f64, bool)> =
+    let mut scored: Vec<(f64, bool)> =
         judged.logits.iter().copied().zip(judged.slips.iter().copied()).collect();
-    order.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let (mut below, mut won) = (0.0, 0.0);
-    for tied in order.chunk_by(|a, b| a.0 == b.0) {
-        let slips = tied.iter().filter(|step| step.1).count() as f64;
-        let rest = tied.len() as f64 - slips;
-        won += slips * (below + rest / 2.0);
-        below += rest;
-    }
-    won / (positives * negatives)
+    real::auc(&mut scored)
 }
 
 /// The best threshold: the middle of the widest gap between logits that serves the aim best.

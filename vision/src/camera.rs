@@ -53,7 +53,6 @@ pub struct Camera {
 
 impl Camera {
     /// One that has seen nothing. Its first pictures calibrate the markers: the skin must be unloaded.
-    #[must_use]
     pub fn new(config: Config) -> Self {
         Self {
             grey: plane(),
@@ -73,13 +72,11 @@ impl Camera {
     }
 
     /// Its markers, none until they are calibrated.
-    #[must_use]
     pub fn markers(&self) -> Option<&Markers> {
         self.markers.as_ref()
     }
 
     /// What follows the object, for whoever draws it.
-    #[must_use]
     pub const fn object(&self) -> &Tracker<Running> {
         &self.object
     }
@@ -135,7 +132,6 @@ impl Camera {
     }
 
     /// What is to be thought of the camera while no picture comes.
-    #[must_use]
     pub fn silence(&self, now_ms: u32) -> Option<Blind> {
         self.watch.silence(now_ms)
     }
@@ -174,7 +170,6 @@ pub const HAND_FLOW_MIN_PX: f32 = 0.1;
 impl Summary {
     /// Whether the object slips: it moves otherwise than the skin under it does, or, where neither move can be seen, enough
     /// of it moves.
-    #[must_use]
     pub fn slips(&self) -> bool {
         let Some(object) = self.object.filter(|_| self.blind.is_none()) else { return false };
         match self.slip_px() {
@@ -184,7 +179,6 @@ impl Summary {
     }
 
     /// How fast the object moves against the skin under it, px a picture. None where that cannot be seen.
-    #[must_use]
     pub fn slip_px(&self) -> Option<f32> {
         self.flow.map(|flow| flow.slip_on(self.skin_flow.unwrap_or_default()))
     }
@@ -192,7 +186,6 @@ impl Summary {
     /// The teacher's words (Tada 2006, equations 1 and 2). v1: -1 if the object moves against the hand, 1 if both move as
     /// one, 0 if nothing moves. v2: 1 if the hand moves up (the background down), -1 if down, 0 if not. None of a camera
     /// that is not to be believed, and while there is no object.
-    #[must_use]
     pub fn codes(&self) -> Option<(i8, i8)> {
         self.object.filter(|_| self.blind.is_none())?;
         let y = self.background_flow.map_or(0.0, |flow| flow.y);

@@ -30,7 +30,6 @@ pub struct Forces {
 
 impl Forces {
     /// The means over the markers that are known. None if there are fewer than `least`.
-    #[must_use]
     pub fn of(markers: &[Marker], least: usize) -> Option<Self> {
         let mut sum = Self::default();
         for marker in markers.iter().filter(|marker| marker.known()) {
@@ -59,48 +58,6 @@ impl Forces {
             markers: sum.markers,
         })
     }
-}
-
-/// How a marker's move is scored for a gentle grasp (FingerVision 2017, section II A).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scores {
-    /// Moves above which a marker scores 1, 3 and 5, px.
-    pub above_px: [f32; 3],
-}
-
-impl Default for Scores {
-    /// The thresholds of the author's software.
-    fn default() -> Self {
-        Self { above_px: [0.8, 1.8, 2.5] }
-    }
-}
-
-impl Scores {
-    /// The sum over the markers: above 7 the object is held.
-    #[must_use]
-    pub fn sum(&self, markers: &[Marker]) -> u32 {
-        let score = |marker: &Marker| {
-            let (x, y) = marker.moved();
-            let far = libm::hypotf(x, y);
-            match self.above_px.iter().filter(|&&above| far > above).count() {
-                0 => 0,
-                1 => 1,
-                2 => 3,
-                _ => 5,
-            }
-        };
-        markers.iter().filter(|marker| marker.known()).map(score).sum()
-    }
-}
-
-/// How many markers have moved by more than `apart_px` since `before`: above 5 of them, somebody pulls (section II C).
-#[must_use]
-pub fn changed(markers: &[Marker], before: &[(f32, f32)], apart_px: f32) -> usize {
-    let moved = markers.iter().zip(before).filter(|(marker, before)| {
-        let (x, y) = marker.moved();
-        marker.known() && libm::hypotf(x - before.0, y - before.1) > apart_px
-    });
-    moved.count()
 }
 
 #[cfg(test)]
@@ -138,16 +95,5 @@ mod tests {
         let turned = Forces::of(&markers(|x, y| (-0.05 * y, 0.05 * x)), 5).unwrap();
         assert!(turned.twist > 100.0 && turned.spread.abs() < 1e-3);
         assert_eq!(Forces::of(&[], 1), None);
-    }
-
-    #[test]
-    fn scores_are_the_papers() {
-        let scores = Scores::default();
-        assert_eq!(scores.sum(&markers(|_, _| (0.5, 0.0))), 0);
-        assert_eq!(scores.sum(&markers(|_, _| (0.0, 1.0))), 25);
-        assert_eq!(scores.sum(&markers(|x, _| (if x > 1.0 { 2.0 } else { 0.0 }, 0.0))), 30);
-        assert_eq!(scores.sum(&markers(|x, y| (if x * x + y * y < 1.0 { 9.0 } else { 0.0 }, 0.0))), 5);
-        let before: Vec<(f32, f32)> = (0..25).map(|_| (0.0, 0.0)).collect();
-        assert_eq!(changed(&markers(|x, _| (if x > 1.0 { 2.0 } else { 0.0 }, 0.0)), &before, 1.0), 10);
     }
 }

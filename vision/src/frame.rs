@@ -13,7 +13,6 @@ pub const FRAME_BYTES: usize = 3 * PIXELS;
 pub type Plane = [u8; PIXELS];
 
 /// A black plane on the heap, which was never on the stack.
-#[must_use]
 pub fn plane() -> alloc::boxed::Box<Plane> {
     match alloc::vec![0; PIXELS].into_boxed_slice().try_into() {
         Ok(plane) => plane,
@@ -34,7 +33,6 @@ pub struct Frame<'a> {
 
 impl<'a> Frame<'a> {
     /// The picture in `bytes`, planes in the order green, blue, red: ffmpeg's raw `gbrp`. None if the length is another.
-    #[must_use]
     pub fn from_gbrp(bytes: &'a [u8]) -> Option<Self> {
         let (green, rest) = bytes.split_first_chunk::<PIXELS>()?;
         let (blue, rest) = rest.split_first_chunk::<PIXELS>()?;
@@ -73,7 +71,6 @@ pub struct Point {
 
 impl Point {
     /// How far it is from another, px.
-    #[must_use]
     pub fn distance(self, other: Self) -> f32 {
         libm::hypotf(self.x - other.x, self.y - other.y)
     }

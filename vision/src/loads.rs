@@ -42,7 +42,6 @@ struct Plane3([f32; 3]);
 impl Features {
     /// Of a skin's markers. Those that were not found are taken to move as the others around them do: by the best
     /// plane. None if too few were found.
-    #[must_use]
     pub fn of(markers: &[Marker]) -> Option<Self> {
         let known = || markers.iter().filter(|marker| marker.found.is_ok() && marker.known());
         if known().count() < MARKERS_MIN {
@@ -110,7 +109,6 @@ pub struct Loads {
 
 impl Loads {
     /// The force that the features mean.
-    #[must_use]
     pub fn newtons(&self, features: &Features) -> Newtons {
         let mut force = Newtons::default();
         for (weight, feature) in self.shear.iter().zip(features.shear) {

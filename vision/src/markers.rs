@@ -67,7 +67,6 @@ pub struct Shape {
 
 impl Shape {
     /// The mean of its radii, px.
-    #[must_use]
     pub fn radius(&self) -> f32 {
         self.radii.iter().sum::<f32>() / RAYS as f32
     }
@@ -92,19 +91,16 @@ pub struct Marker {
 
 impl Marker {
     /// One that lies as it was calibrated.
-    #[must_use]
     pub fn new(rest: Shape) -> Self {
         Self { rest, at: rest.at, growth: 0.0, found: Ok(()), failures: 0, probation: 0, failed_share: 0 }
     }
 
     /// How far it has moved since it was calibrated, px: to the right, down.
-    #[must_use]
     pub fn moved(&self) -> (f32, f32) {
         (self.at.x - self.rest.at.x, self.at.y - self.rest.at.y)
     }
 
     /// Whether its place is known well enough for a force: found in one of the last few frames, and not on probation.
-    #[must_use]
     pub fn known(&self) -> bool {
         self.failures <= FAILURES_MAX && self.probation == 0 && self.failed_share >> 8 <= FAILED_SHARE_MAX
     }
@@ -161,7 +157,6 @@ pub struct Markers {
 
 impl Markers {
     /// The markers that a calibration found.
-    #[must_use]
     pub fn new(calibration: &Calibration) -> Self {
         let nothing = Shape { at: Point::default(), radii: [0.0; RAYS], area: 0, dark_pixels: 0 };
         let mut markers = [Marker::new(nothing); MARKERS_MAX];

@@ -24,7 +24,6 @@ impl Mask {
     pub const EMPTY: Self = Self { rows: [[0; WORDS]; HEIGHT] };
 
     /// Its rows, the leftmost pixel of a word in the lowest bit.
-    #[must_use]
     pub const fn rows(&self) -> &[[u64; WORDS]; HEIGHT] {
         &self.rows
     }
@@ -61,13 +60,11 @@ impl Mask {
     }
 
     /// Whether a pixel is in it.
-    #[must_use]
     pub const fn contains(&self, x: usize, y: usize) -> bool {
         self.rows[y][x / 64] >> (x % 64) & 1 != 0
     }
 
     /// The pixels whose place is inside a polygon of these corners, px.
-    #[must_use]
     pub fn of_outline(corners: &[(f32, f32)]) -> Self {
         let mut mask = Self::EMPTY;
         for (x, y) in (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (x, y))) {
@@ -84,7 +81,6 @@ impl Mask {
     }
 
     /// How well two sets agree: pixels in both, for each that is in one of them, 0 to 1.
-    #[must_use]
     pub fn overlap(&self, other: &Self) -> f32 {
         let words = || self.rows.iter().flatten().zip(other.rows.iter().flatten());
         let both: u32 = words().map(|(own, other)| (own & other).count_ones()).sum();
@@ -93,7 +89,6 @@ impl Mask {
     }
 
     /// How many pixels are in it.
-    #[must_use]
     pub fn count(&self) -> u32 {
         self.rows.iter().flatten().map(|word| word.count_ones()).sum()
     }
@@ -226,7 +221,6 @@ impl Mask {
     }
 
     /// How it lies. None of an empty set.
-    #[must_use]
     pub fn moments(&self) -> Option<Moments> {
         let (mut n, mut sx, mut sy, mut sxx, mut sxy, mut syy) = (0u64, 0, 0, 0, 0, 0);
         for (y, row) in self.rows.iter().enumerate() {
@@ -347,13 +341,11 @@ pub struct Moments {
 
 impl Moments {
     /// The direction of its long axis, radians from -pi/2 to pi/2, from x towards y (down).
-    #[must_use]
     pub fn angle_rad(&self) -> f32 {
         0.5 * libm::atan2f(2.0 * self.xy, self.xx - self.yy)
     }
 
     /// How much longer it is than wide, 0 for a disc and 1 for a line: below 0.3 its angle says little.
-    #[must_use]
     pub fn eccentricity(&self) -> f32 {
         let both = self.xx + self.yy;
         let apart = libm::hypotf(self.xx - self.yy, 2.0 * self.xy);

@@ -37,7 +37,6 @@ const PIVOT_MIN: f32 = 0.02;
 
 impl Flow {
     /// How fast what moves so slips on skin that moves as `skin` says, px: what the skin cannot have carried it.
-    #[must_use]
     pub fn slip_on(self, skin: Self) -> f32 {
         let size = skin.x * skin.x + skin.y * skin.y;
         let along = self.x * skin.x + self.y * skin.y;
@@ -48,7 +47,6 @@ impl Flow {
 
 /// The move that best explains how the pixels of `object` changed, about `middle`. None if they are too plain for that. Right for
 /// moves of a pixel or two; larger ones come out too small, with the right sign.
-#[must_use]
 pub fn flow(before: &Plane, now: &Plane, object: &Mask, middle: Point) -> Option<Flow> {
     let mut found = [0.0; UNKNOWNS];
     for round in 0..ROUNDS {

@@ -117,7 +117,6 @@ pub struct Tracker<M> {
 
 impl<M: Movement> Tracker<M> {
     /// One that has seen nothing.
-    #[must_use]
     pub fn new(config: Config, movement: M) -> Self {
         Self {
             config,
@@ -145,25 +144,21 @@ impl<M: Movement> Tracker<M> {
     }
 
     /// The object's pixels in the last frame.
-    #[must_use]
     pub const fn object(&self) -> &Mask {
         &self.object
     }
 
     /// The object's pixels and those of the hand that brings it.
-    #[must_use]
     pub const fn near(&self) -> &Mask {
         &self.near
     }
 
     /// The moving pixels of the last frame, the object's and others.
-    #[must_use]
     pub const fn moving(&self) -> &Mask {
         &self.moving
     }
 
     /// The moving pixels on the object.
-    #[must_use]
     pub const fn slip(&self) -> &Mask {
         &self.slip
     }

@@ -63,7 +63,6 @@ impl Watch {
     }
 
     /// What is to be thought of the camera while no picture comes.
-    #[must_use]
     pub fn silence(&self, now_ms: u32) -> Option<Blind> {
         let silent = self.last_ms.map_or(now_ms, |last| now_ms.wrapping_sub(last));
         (silent >= LOST_MS).then_some(Blind::Lost(silent))

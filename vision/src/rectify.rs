@@ -22,7 +22,6 @@ pub struct Rectifier {
 
 impl Rectifier {
     /// A lens of this focal length, px.
-    #[must_use]
     pub fn new(focal_px: f32) -> Self {
         let lens = Self { focal_px, places: Box::default() };
         let places: Vec<_> = (0..PIXELS)
@@ -41,7 +40,6 @@ impl Rectifier {
     }
 
     /// Where a place of the picture is in the flat world, px.
-    #[must_use]
     pub fn flat(&self, seen: Point) -> Point {
         let r = seen.distance(MIDDLE);
         if r < 1e-6 {
@@ -53,14 +51,12 @@ impl Rectifier {
 
     /// Where a pixel of the picture is in the flat world, px.
     #[inline]
-    #[must_use]
     pub fn place(&self, at: usize) -> Point {
         let (x, y, _) = self.places[at];
         Point { x: MIDDLE.x + x, y: MIDDLE.y + y }
     }
 
     /// How a set of pixels lies in the flat world. None of an empty set.
-    #[must_use]
     pub fn moments(&self, mask: &Mask) -> Option<Moments> {
         let mut sums = [0.0f64; 6];
         mask.for_each(|at| {

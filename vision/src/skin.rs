@@ -26,7 +26,6 @@ impl Default for Skin {
 
 impl Skin {
     /// One that has seen no picture.
-    #[must_use]
     pub const fn new() -> Self {
         Self { before: [None; MARKERS_MAX] }
     }
@@ -39,7 +38,6 @@ impl Skin {
     }
 
     /// How the skin at `middle` has moved since. None where no marker near it was found in both pictures.
-    #[must_use]
     pub fn flow(&self, markers: &[Marker], middle: Point) -> Option<Flow> {
         let (mut w, mut x, mut y, mut turn, mut arm) = (0.0, 0.0, 0.0, 0.0, 0.0);
         let mut moves = [(0.0, Point::default(), Point::default()); MARKERS_MAX];

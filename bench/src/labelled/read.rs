@@ -307,6 +307,7 @@ fn from_csv(file: &str, error: csv::Error) -> LabelledError {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::recipe::Kind;
 
     const RECIPE: &str = "\
 title = 't'

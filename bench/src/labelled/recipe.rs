@@ -2,14 +2,11 @@
 //!
 //! `docs/training.md` is the page for people who write one.
 
-use std::ops::Range;
-use std::path::Path;
-
 use serde::Deserialize;
 use tenax_hal_shim::channel::ARRAY_COUNT;
 use toml::Spanned;
 
-use crate::recipe::{self, RecipeError};
+use crate::recipe::{self, Checked, Kind};
 
 /// A recipe, checked.
 #[derive(Clone, Debug, Deserialize)]
@@ -102,22 +99,17 @@ fn one() -> Spanned<f64> {
     Spanned::new(0..0, 1.0)
 }
 
-impl ArrayRecipe {
-    /// Reads a recipe file. Fails if it cannot be read or is wrong; says in which line and what is allowed.
-    pub fn read(path: &Path) -> anyhow::Result<Self> {
-        recipe::read(path, Self::parse)
+impl Kind for ArrayRecipe {
+    const BUILTIN: &'static [(&'static str, &'static str)] = &[
+        ("array", include_str!("../../../recipes/array.toml")),
+        ("biotac", include_str!("../../../recipes/biotac.toml")),
+    ];
+
+    fn applies_to(&self) -> &[Spanned<String>] {
+        &self.applies_to
     }
 
-    /// Reads and checks a recipe; `file` is what errors call it. An error says in which line and what is allowed.
-    pub fn parse(text: &str, file: &str) -> Result<Self, RecipeError> {
-        recipe::parse(text, file, Self::check)
-    }
-
-    pub fn is_for(&self, file_name: &str) -> bool {
-        recipe::matches(&self.applies_to, file_name)
-    }
-
-    fn check(&self) -> Result<(), (Range<usize>, String)> {
+    fn check(&self) -> Checked {
         recipe::check_patterns(&self.applies_to)?;
         self.array.check()?;
         self.labels.check()?;
@@ -134,7 +126,7 @@ impl ArrayRecipe {
 }
 
 impl Array {
-    fn check(&self) -> Result<(), (Range<usize>, String)> {
+    fn check(&self) -> Checked {
         let columns = self.columns.get_ref();
         if columns.len() != ARRAY_COUNT {
             let what = format!("{} columns; the array has {ARRAY_COUNT} elements", columns.len());
@@ -164,7 +156,7 @@ impl Array {
 }
 
 impl Labels {
-    fn check(&self) -> Result<(), (Range<usize>, String)> {
+    fn check(&self) -> Checked {
         for (name, values) in [("slip", &self.slip), ("no_slip", &self.no_slip)] {
             if values.get_ref().is_empty() {
                 return Err((

@@ -2,15 +2,12 @@
 //!
 //! `docs/recipes.md` is the page for people who write one.
 
-use std::ops::Range;
-use std::path::Path;
-
 use serde::Deserialize;
 use tenax_hal_shim::channel;
 use toml::Spanned;
 
 use super::meaning::Meaning;
-use crate::recipe::{self, RecipeError};
+use crate::recipe::{self, Checked, Kind};
 
 /// A recipe, checked.
 #[derive(Clone, Debug, Deserialize)]
@@ -159,21 +156,6 @@ fn default_clip_v() -> Spanned<[f64; 2]> {
 }
 
 impl Recipe {
-    /// Reads a recipe file.
-    pub fn read(path: &Path) -> anyhow::Result<Self> {
-        recipe::read(path, Self::parse)
-    }
-
-    /// Reads and checks a recipe; `file` is what errors call it.
-    pub fn parse(text: &str, file: &str) -> Result<Self, RecipeError> {
-        recipe::parse(text, file, Self::check)
-    }
-
-    /// Whether it is for recordings of this name.
-    pub fn is_for(&self, file_name: &str) -> bool {
-        recipe::matches(&self.applies_to, file_name)
-    }
-
     /// What a recording of this name means for the hand.
     pub fn meaning_of(&self, file_name: &str) -> Option<&Meaning> {
         self.meaning.iter().find(|meaning| meaning.is_for(file_name))
@@ -192,8 +174,21 @@ impl Recipe {
     pub fn maps_a_muscle(&self) -> bool {
         self.map.iter().any(Map::is_muscle)
     }
+}
 
-    fn check(&self) -> Result<(), (Range<usize>, String)> {
+impl Kind for Recipe {
+    const BUILTIN: &'static [(&'static str, &'static str)] = &[
+        ("emg_bursts", include_str!("../../../recipes/emg_bursts.toml")),
+        ("emg_two_channel", include_str!("../../../recipes/emg_two_channel.toml")),
+        ("friction_rig", include_str!("../../../recipes/friction_rig.toml")),
+        ("pvdf", include_str!("../../../recipes/pvdf.toml")),
+    ];
+
+    fn applies_to(&self) -> &[Spanned<String>] {
+        &self.applies_to
+    }
+
+    fn check(&self) -> Checked {
         let named = self.meaning.iter().map(|meaning| &meaning.named);
         recipe::check_patterns(self.applies_to.iter().chain(named))?;
         within(&self.lead_in_s, "lead_in_s", 0.0, 60.0)?;
@@ -234,7 +229,7 @@ impl Map {
         indices.into_iter().any(|index| muscles.contains(&index))
     }
 
-    fn check(&self) -> Result<(), (Range<usize>, String)> {
+    fn check(&self) -> Checked {
         corner(&self.high_pass_hz, "high_pass_hz")?;
         corner(&self.low_pass_hz, "low_pass_hz")?;
         corner(&self.envelope_hz, "envelope_hz")?;
@@ -271,22 +266,19 @@ impl HoldForce {
     }
 }
 
-fn within(value: &Spanned<f64>, name: &str, low: f64, high: f64) -> Result<(), (Range<usize>, String)> {
+fn within(value: &Spanned<f64>, name: &str, low: f64, high: f64) -> Checked {
     if (low..=high).contains(value.get_ref()) {
         return Ok(());
     }
     Err((value.span(), format!("{name} is {}; {low} to {high} is allowed", value.get_ref())))
 }
 
-fn corner(value: &Option<Spanned<f64>>, name: &str) -> Result<(), (Range<usize>, String)> {
+fn corner(value: &Option<Spanned<f64>>, name: &str) -> Checked {
     value.as_ref().map_or(Ok(()), |value| within(value, name, 0.01, 3_000.0))
 }
 
 /// Every channel must exist and be claimed once.
-fn claim<'a>(
-    taken: &mut Vec<&'a str>,
-    channels: &'a [Spanned<String>],
-) -> Result<(), (Range<usize>, String)> {
+fn claim<'a>(taken: &mut Vec<&'a str>, channels: &'a [Spanned<String>]) -> Checked {
     for name in channels {
         let known = channel::by_name(name.get_ref()).is_some();
         if !known {

@@ -9,8 +9,8 @@ use tenax_hal_shim::wire::Slow;
 
 use super::wearer::Wearer;
 use crate::board::Recorder;
+use crate::recipe::Named;
 use crate::replay::facts::{Crest, crest, muscle_onset_s};
-use crate::replay::library::Named;
 use crate::replay::meaning::{Meaning, Motion};
 use crate::replay::{Recipe, Recording};
 use crate::timeline::{Timeline, frame_end_s};
@@ -137,7 +137,7 @@ impl Replay {
     /// Holds a run's detections against its recording.
     pub fn new(
         recording: &Recording,
-        named: Option<&Named>,
+        named: Option<&Named<Recipe>>,
         lead_in_s: f64,
         timeline: &Timeline,
         active: &ActivePart,

@@ -3,6 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
+use tenax_bench::recipe::Kind;
 use tenax_bench::replay::{Recipe, Recording};
 use tenax_bench::session::{self, Board, Outcome};
 

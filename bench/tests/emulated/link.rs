@@ -168,10 +168,6 @@ impl Plant for Typed {
     fn line_bytes(&mut self) -> Vec<u8> {
         if self.0.t_s() < 0.2 { Vec::new() } else { std::mem::take(&mut self.1) }
     }
-
-    fn duration_s(&self) -> f64 {
-        self.0.duration_s()
-    }
 }
 
 #[test]

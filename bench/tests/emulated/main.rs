@@ -127,10 +127,6 @@ impl Plant for Rest {
         self.0.scan(drive);
         &self.1
     }
-
-    fn duration_s(&self) -> f64 {
-        self.0.duration_s
-    }
 }
 
 /// A finger that holds something from the start: that it was switched on is no consent.
@@ -148,10 +144,6 @@ impl Plant for Loaded {
     fn scan(&mut self, drive: MotorDrive) -> &Pins {
         self.0.1.0[FSR..FSR + FSR_COUNT].fill(1.2);
         self.0.scan(drive)
-    }
-
-    fn duration_s(&self) -> f64 {
-        self.0.duration_s()
     }
 }
 

@@ -67,10 +67,6 @@ impl<P: Plant> Plant for Asked<P> {
     fn streams_at_start(&self) -> bool {
         self.streams
     }
-
-    fn duration_s(&self) -> f64 {
-        self.plant.duration_s()
-    }
 }
 
 /// How many messages of frames and of readings came up, and that no frame is missing between the first and the last.

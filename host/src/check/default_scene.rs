@@ -1,14 +1,13 @@
 //! The default scene on a board: nothing lost, the glass kept, close to the bound, in budget.
 
 use super::{Bar, agreement};
+use tenax_bench::bars::Goal;
 use tenax_bench::board::Run;
 use tenax_bench::report::CYCLES_PER_INSTRUCTION;
 use tenax_bench::session::Outcome;
 
 /// Peak force may be so many times the bound's.
 const OF_BOUND: f64 = 2.0;
-/// It may slide half the pad, mm: the bound, which knows when the glass gets wet, does not let it slide at all.
-const SLIDES_MM: f64 = 9.0;
 /// The ticks may take so much of the core, per cent.
 const LOAD_PERCENT: f64 = 20.0;
 
@@ -34,7 +33,7 @@ pub fn bars(outcome: &Outcome, run: Option<&Run>) -> Vec<Bar> {
             },
             report.slip.dropped == Some(false),
         ),
-        slid(name, report.slip.distance_mm, report.bound.distance_mm),
+        slid(report.slip.distance_mm, report.bound.distance_mm),
         pressed(name, report.grip.peak_force_n, report.bound.peak_force_n),
     ];
     let Some(run) = run else {
@@ -50,13 +49,12 @@ pub fn bars(outcome: &Outcome, run: Option<&Run>) -> Vec<Bar> {
     bars
 }
 
-fn slid(scene: &str, run: Option<f64>, bound: Option<f64>) -> Bar {
-    let promise = format!("{scene}: it slides by at most {SLIDES_MM} mm, half the pad");
+/// Half the pad: the bound, which knows when the glass gets wet, does not let it slide at all.
+fn slid(run: Option<f64>, bound: Option<f64>) -> Bar {
+    let goal = Goal::of("glass-slid");
     match (run, bound) {
-        (Some(run), Some(bound)) => {
-            Bar::new(promise, format!("{run:.2} mm, the bound {bound:.2} mm"), run <= SLIDES_MM)
-        }
-        _ => Bar::new(promise, "nothing was held", false),
+        (Some(run), Some(bound)) => Bar::short_of(goal, run, format!("the bound {bound:.2} mm")),
+        _ => Bar::new(&goal.what, "nothing was held", false),
     }
 }
 

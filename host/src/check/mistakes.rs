@@ -3,13 +3,13 @@
 use tenax_scene::{SceneFile, builtin};
 
 use super::Bar;
-use tenax_bench::replay::library::BUILTIN;
+use tenax_bench::recipe::Kind;
 use tenax_bench::replay::{Recipe, Recording};
 
 /// The bars: one mistake of each kind.
 pub fn bars() -> Vec<Bar> {
     let scene = builtin().first().map_or(String::new(), |(_, text)| format!("durations = 3\n{text}"));
-    let recipe = BUILTIN.first().map_or(String::new(), |(_, text)| text.replace("\"myo_", "\"mio_"));
+    let recipe = Recipe::BUILTIN.first().map_or(String::new(), |(_, text)| text.replace("\"myo_", "\"mio_"));
     let csv = "t,pvdf_1\n0.0,1.65\n0.001,1,65\n";
     let scene = SceneFile::parse(&scene, "my.toml").map(|_| ()).map_err(|error| error.to_string());
     let recipe = Recipe::parse(&recipe, "my.toml").map(|_| ()).map_err(|error| error.to_string());

@@ -1,7 +1,7 @@
 //! `tenax chart`: the charts behind the pages in `docs/`.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Context;
@@ -15,6 +15,9 @@ use super::workspace;
 use tenax_plot::png;
 use tenax_studies::chart;
 
+/// Where the recordings are, beside the checkout.
+const RECORDINGS: &str = "../shared/data";
+
 /// Draw charts.
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -24,13 +27,6 @@ pub struct Args {
     /// Where they are written: SVG, PNG and CSV
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
-    /// The detectors' scores [default: docs/figures/detectors.csv of the scenes and detectors-real.csv of a real array, which `tenax
-    /// train --compare` writes]
-    #[arg(long, value_name = "CSV")]
-    scores: Option<PathBuf>,
-    /// Where the recordings are [default: shared/data beside the checkout]
-    #[arg(long, value_name = "DIR")]
-    recordings: Option<PathBuf>,
     /// Of photoelastic: how its figures are printed
     #[arg(long, value_enum, default_value_t = Format::Text)]
     report: Format,
@@ -70,7 +66,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             vec![front, with_bar("delay", |progress| chart::delay::map(progress))?]
         }
         Subject::Sensors => {
-            let recordings = recordings(args)?;
+            let recordings = workspace::root()?.join(RECORDINGS);
             vec![with_bar("sensors", |progress| chart::sensors::chart(&recordings, progress))?]
         }
         Subject::Onset => {
@@ -79,14 +75,14 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             vec![chart]
         }
         Subject::Vision => {
-            let folder = recordings(args)?.join("fingervision");
+            let folder = workspace::root()?.join(RECORDINGS).join("fingervision");
             let video = folder.join("skin_video_54fps.m4v");
             vec![
                 with_bar("loads", |progress| chart::loads::chart(&folder.join("loads.csv"), progress))?,
                 with_bar("choices", |progress| chart::vision::choices(&video, progress))?,
             ]
         }
-        Subject::Detectors => vec![detectors(args.scores.as_deref())?],
+        Subject::Detectors => vec![detectors()?],
         Subject::Photoelastic => {
             let (chart, measured) =
                 with_bar("photoelastic", |progress| chart::photoelastic::chart(progress))?;
@@ -111,29 +107,15 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn recordings(args: &Args) -> anyhow::Result<PathBuf> {
-    match &args.recordings {
-        Some(folder) => Ok(folder.clone()),
-        None => Ok(workspace::root()?.join("../shared/data")),
-    }
-}
-
-fn detectors(scores: Option<&Path>) -> anyhow::Result<chart::Chart> {
-    let figures = workspace::root()?.join("docs/figures");
-    let files = scores.map_or_else(
-        || {
-            vec![
-                ("pours of the scenes", figures.join("detectors.csv")),
-                ("a real array", figures.join("detectors-real.csv")),
-            ]
-        },
-        |own| vec![("scores", own.to_owned())],
-    );
-    let text = |file: &Path| {
-        fs::read_to_string(file).with_context(|| format!("cannot read the table {}", file.display()))
+/// Each kind of data with its classifiers' scores, which `tenax train --compare` writes, and what their kernels took.
+fn detectors() -> anyhow::Result<chart::Chart> {
+    let table = |name: &str| {
+        let file = workspace::root()?.join("docs/figures").join(name);
+        fs::read_to_string(&file).with_context(|| format!("cannot read the table {}", file.display()))
     };
-    let read = |(data, file): &(&'static str, PathBuf)| anyhow::Ok((*data, text(file)?));
-    let tables: Vec<(&str, String)> = files.iter().map(read).collect::<Result<_, _>>()?;
-    let tables: Vec<(&str, &str)> = tables.iter().map(|(data, table)| (*data, table.as_str())).collect();
-    chart::detectors::chart(&tables, &text(&figures.join("kernels.csv"))?)
+    let (scenes, real) = (table("detectors.csv")?, table("detectors-real.csv")?);
+    chart::detectors::chart(
+        &[("pours of the scenes", &scenes), ("a real array", &real)],
+        &table("kernels.csv")?,
+    )
 }

@@ -1,4 +1,4 @@
-//! `tenax evaluate`: the force array's network, scored.
+//! `tenax evaluate`: the force array's network, scored; and what the wearer wants.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -23,7 +23,7 @@ use tenax_studies::dataset::{Dataset, Label, Plan};
 use tenax_studies::evaluate::report::Report;
 use tenax_studies::evaluate::roc::Roc;
 use tenax_studies::evaluate::text::Text;
-use tenax_studies::evaluate::{draws, failures, online, test_split};
+use tenax_studies::evaluate::{draws, emg, failures, online, test_split};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -35,12 +35,15 @@ Examples:
   tenax evaluate --dataset my.csv --network out/train
                                                    the network that `tenax train` has made of one's own
   tenax evaluate --online --host                   the paper's two tasks, ten times with each of four materials
-  tenax evaluate --failures --host                 the scenes where it may fail, and what the hand does then";
+  tenax evaluate --failures --host                 the scenes where it may fail, and what the hand does then
+  tenax evaluate emg --recordings FOLDER           what the wearer wants, on envelopes of people";
 
 /// Score the force array's network on what it never saw.
 #[derive(Debug, clap::Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
 pub struct Args {
+    #[command(subcommand)]
+    what: Option<What>,
     /// A labelled recording (CSV) instead of the built-in data set
     #[arg(long, value_name = "FILE.csv")]
     dataset: Option<PathBuf>,
@@ -82,7 +85,32 @@ pub struct Args {
     report: Format,
 }
 
+/// What is scored instead of the force array's network.
+#[derive(Debug, clap::Subcommand)]
+enum What {
+    /// Score what the wearer wants on recorded envelopes of two muscles, calibrated as the hand does
+    Emg(EmgArgs),
+}
+
+#[derive(Debug, clap::Args)]
+struct EmgArgs {
+    /// Folder of personP_dayD_postureQ.csv: t_s, ecu, edc, fcr, fcu (32767 is 2.8 V), label (1 rest, 3 close, 4 open)
+    #[arg(long, value_name = "FOLDER")]
+    recordings: PathBuf,
+    /// Only this person
+    #[arg(long, value_name = "N")]
+    person: Option<u32>,
+    /// How to print the scores
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    report: Format,
+}
+
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
+    if let Some(What::Emg(emg)) = &args.what {
+        let report = emg::evaluate(&emg.recordings, emg.person)?;
+        out::unless_closed(emg.report.print(&emg::Text(&report), &report))?;
+        return Ok(ExitCode::SUCCESS);
+    }
     if args.online {
         return online_tasks(args);
     }

@@ -8,7 +8,7 @@ use anyhow::Context;
 use super::out;
 use tenax_bench::session;
 use tenax_plot::{draw, png};
-use tenax_serial::captured::line_of;
+use tenax_serial::link::captured::line_of;
 
 /// Draw a recording.
 #[derive(Debug, clap::Args)]

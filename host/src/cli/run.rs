@@ -22,7 +22,7 @@ use tenax_bench::replay::{self, calibrate};
 use tenax_bench::report::text::Text;
 use tenax_bench::session::{self, Board, Outcome};
 use tenax_plot::{draw, png};
-use tenax_serial::captured::is_recording;
+use tenax_serial::link::captured::is_recording;
 use tenax_serial::record::Recording;
 use tenax_serial::serve::{self, Down, Server};
 

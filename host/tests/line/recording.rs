@@ -13,7 +13,7 @@ use tenax_bench::session::{Board, load_scene};
 use tenax_hal_shim::wire::{Answer, Down, FRAME_MAX, Last, PIECE_MAX, Raw, Receiver, Up, encode};
 use tenax_hal_shim::words::Fault;
 use tenax_scene::World;
-use tenax_serial::captured::line_of;
+use tenax_serial::link::captured::line_of;
 use tenax_serial::record::Recording;
 
 use crate::serving::Serving;

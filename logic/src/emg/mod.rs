@@ -99,7 +99,7 @@ impl Emg {
         let n = channel.min(1);
         let [active, inactive] = self.decide.active_levels(n);
         let in_range = uv.filter(|&uv| uv < OVER_UV);
-        let bridged = self.trust[n].take(inactive, in_range);
+        let bridged = self.trust[n].take(active, in_range);
         let doubted = !self.trust[n].is_good();
         self.electrodes[n] = Electrode {
             uv: uv.or(bridged),

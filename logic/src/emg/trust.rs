@@ -20,8 +20,8 @@ const FLAT_FRAMES: u16 = 80;
 const CREEP_FRAMES: u16 = 200;
 /// At the top: 1.5 s. Recordings have 0.35 s.
 const TOP_FRAMES: u16 = 120;
-/// Of activity without a pause: 30 s.
-const ENDLESS_FRAMES: u16 = 2_400;
+/// Of activity without a pause: 60 s; one person holds a tone for more than 30 s.
+const ENDLESS_FRAMES: u16 = 4_800;
 /// Over which unrest is judged: 2.5 s; and of them, so many curve by more than a fifth: a loose contact.
 const UNREST_FRAMES: u16 = 200;
 const UNREST_MANY: u16 = UNREST_FRAMES * 2 / 5;

@@ -35,8 +35,6 @@ impl Pad {
 /// One ring of the patch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Element {
-    /// Where it is, as a part of the contact's radius: the root mean square of its edges.
-    radius_part: f64,
     area_part: f64,
     load_part: f64,
     /// Of the ring while it sticks, N/m.
@@ -47,11 +45,6 @@ pub struct Element {
 }
 
 impl Element {
-    /// Distance from the centre as a part of the contact's radius.
-    pub const fn radius_part(&self) -> f64 {
-        self.radius_part
-    }
-
     /// Whether it sticks.
     pub const fn sticks(&self) -> bool {
         self.sticks
@@ -96,7 +89,6 @@ impl BrushPatch {
         let ring = |n: u16| {
             let (low, high) = (edge(n), edge(n + 1));
             Element {
-                radius_part: (1.0 - (low * low + high * high) / 2.0).sqrt(),
                 area_part: high * high - low * low,
                 load_part: high * high * high - low * low * low,
                 stiffness_n_per_m: (high * high - low * low) * pad.stiffness_n_per_m(),

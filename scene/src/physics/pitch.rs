@@ -101,12 +101,6 @@ impl Pitch {
         }
     }
 
-    /// The least force of each pad that would keep this weight from turning as it hangs now, N, if nothing slid.
-    pub fn holds_n(&self, weight_n: f64, mu: f64) -> f64 {
-        let (sin, cos) = (libm::sin(self.angle_rad), libm::cos(self.angle_rad));
-        (weight_n * (self.offset_m * cos - self.hang_m * sin)).abs() / (2.0 * TORSION * self.radius_m * mu)
-    }
-
     /// The friction along the pad that torsion leaves.
     pub fn leaves(&self, friction: Friction) -> Friction {
         Friction { mu_s: friction.mu_s * self.slide_part, mu_d: friction.mu_d * self.slide_part }
@@ -143,11 +137,6 @@ impl Pitch {
     /// How far it has turned, rad, positive towards the load.
     pub const fn angle_rad(&self) -> f64 {
         self.angle_rad
-    }
-
-    /// How fast it turns, rad/s.
-    pub const fn speed_rad_s(&self) -> f64 {
-        self.speed_rad_s
     }
 }
 

@@ -10,7 +10,7 @@ use tenax_hal_shim::wire::{Answer, Down, Refusal, SETTINGS_PER_ANSWER, Setting};
 use tenax_logic::setting::SettingId;
 
 use super::{out, port};
-use crate::captured::line_of;
+use crate::link::captured::line_of;
 use crate::link::{Client, Target};
 use crate::settings;
 use crate::suggest::{Suggestion, Suggestions};

@@ -9,7 +9,7 @@ use anyhow::bail;
 use tenax_hal_shim::wire::Up;
 
 use super::out;
-use crate::captured::line_of;
+use crate::link::captured::line_of;
 use crate::link::{Encoder, Inbox};
 use crate::record::csv;
 use crate::record::topics::seconds;

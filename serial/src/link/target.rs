@@ -11,7 +11,7 @@ use anyhow::{Context, anyhow, bail};
 use tenax_hal_shim::wire::BAUD;
 
 use super::holder;
-use crate::captured::line_of;
+use crate::link::captured::line_of;
 
 /// How long a read waits for bytes before it returns, so that whoever reads can look at something else meanwhile.
 const READ_TIMEOUT: Duration = Duration::from_millis(100);

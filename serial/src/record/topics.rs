@@ -6,7 +6,7 @@ use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{About, Answer, Counters, Setting, Slow, TickRecord, Up};
 use tenax_logic::setting::SettingId;
 
-use crate::captured;
+use crate::link::captured;
 use crate::protobuf::{Kind, Value};
 use crate::words::Words;
 

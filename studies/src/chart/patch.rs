@@ -75,10 +75,6 @@ pub fn chart() -> anyhow::Result<Chart> {
     Chart::new("brush-patch", &sheet, csv)
 }
 
-fn parts() -> impl Iterator<Item = f64> {
-    (0..=40).map(|n| f64::from(n) / 40.0)
-}
-
 /// A few of the sum's points: so many that the curve under them is still seen.
 fn sum(point: impl Fn(&(f64, f64, f64)) -> (f64, f64)) -> Series {
     let rings = dragged(ELEMENTS);
@@ -87,43 +83,34 @@ fn sum(point: impl Fn(&(f64, f64, f64)) -> (f64, f64)) -> Series {
 }
 
 fn shear() -> Panel {
-    let brush = parts().map(|s| (s, closed_form::shear(s)));
-    let half_space = parts().map(|s| (s, closed_form::half_space_shear(s)));
-    Panel::new(
-        "shear on the way to macro slip",
-        Axis::even("s = k delta / (mu p0)", 0.0, 1.0),
-        Axis::even("Q / (mu P)", 0.0, 1.05),
-        vec![
-            Series::new("brush: (3 s - s³) / 2", colour::BLUE, Mark::Line, brush),
-            Series::new(
-                "elastic half-space (Cattaneo, Mindlin)",
-                colour::VERMILLION,
-                Mark::Dashes,
-                half_space,
-            ),
-            sum(|&(s, shear, _)| (s, shear)),
-        ],
-    )
+    let brush = |s| (s, closed_form::shear(s));
+    let half_space = |s| (s, closed_form::half_space_shear(s));
+    let x = Axis::even("s = k delta / (mu p0)", 0.0, 1.0);
+    let sum = sum(|&(s, shear, _)| (s, shear));
+    beside("shear on the way to macro slip", x, Axis::even("Q / (mu P)", 0.0, 1.05), brush, half_space, sum)
 }
 
 fn stick_zone() -> Panel {
-    let brush = parts().map(|s| (closed_form::shear(s), closed_form::stick_radius(s)));
-    let half_space = parts().map(|q| (q, closed_form::half_space_stick_radius(q)));
-    Panel::new(
-        "what still sticks",
-        Axis::even("Q / (mu P)", 0.0, 1.0),
-        Axis::even("c / a", 0.0, 1.05),
-        vec![
-            Series::new("brush: (3 s - s³) / 2", colour::BLUE, Mark::Line, brush),
-            Series::new(
-                "elastic half-space (Cattaneo, Mindlin)",
-                colour::VERMILLION,
-                Mark::Dashes,
-                half_space,
-            ),
-            sum(|&(_, shear, radius)| (shear, radius)),
-        ],
-    )
+    let brush = |s| (closed_form::shear(s), closed_form::stick_radius(s));
+    let half_space = |q| (q, closed_form::half_space_stick_radius(q));
+    let (x, y) = (Axis::even("Q / (mu P)", 0.0, 1.0), Axis::even("c / a", 0.0, 1.05));
+    beside("what still sticks", x, y, brush, half_space, sum(|&(_, shear, radius)| (shear, radius)))
+}
+
+/// The brush in closed form, the half-space, and the sum of the rings.
+fn beside(
+    title: &str,
+    x: Axis,
+    y: Axis,
+    brush: impl Fn(f64) -> (f64, f64),
+    half_space: impl Fn(f64) -> (f64, f64),
+    sum: Series,
+) -> Panel {
+    let parts = || (0..=40).map(|n| f64::from(n) / 40.0);
+    let brush = Series::new("brush: (3 s - s³) / 2", colour::BLUE, Mark::Line, parts().map(brush));
+    let name = "elastic half-space (Cattaneo, Mindlin)";
+    let half_space = Series::new(name, colour::VERMILLION, Mark::Dashes, parts().map(half_space));
+    Panel::new(title, x, y, vec![brush, half_space, sum])
 }
 
 fn convergence(measured: &[(u16, f64, f64)]) -> Panel {

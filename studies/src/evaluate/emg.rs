@@ -4,6 +4,7 @@
 //! 1 rest, 3 close, 4 open, others nothing. Scored as `baseline.py` of that data set does, so that figures compare.
 
 use std::collections::BTreeMap;
+use std::fmt;
 use std::ops::Range;
 use std::path::Path;
 
@@ -46,7 +47,8 @@ impl Recording {
         for row in reader.records() {
             let row = row?;
             let number = |n: usize| -> anyhow::Result<f64> {
-                let field = row.get(n).with_context(|| format!("{}: column {n} is missing", path.display()))?;
+                let field =
+                    row.get(n).with_context(|| format!("{}: column {n} is missing", path.display()))?;
                 field.trim().parse().with_context(|| format!("{}: `{field}` is no number", path.display()))
             };
             uv.push([number(1)? * UV, number(2)? * UV, number(3)? * UV, number(4)? * UV]);
@@ -99,10 +101,13 @@ impl Recording {
     fn calibrate(&self, sites: [usize; 2]) -> Result<EmgModel, CalibrationRefusal> {
         let unrest = |rows: &Range<usize>| {
             let pairs = self.pairs(rows.clone(), sites);
-            let mean = |n: usize| pairs.iter().map(|(_, uv)| f64::from(level_of(uv[n]))).sum::<f64>() / pairs.len() as f64;
+            let mean = |n: usize| {
+                pairs.iter().map(|(_, uv)| f64::from(level_of(uv[n]))).sum::<f64>() / pairs.len() as f64
+            };
             let deviation = |n: usize| {
                 let mean = mean(n);
-                pairs.iter().map(|(_, uv)| (f64::from(level_of(uv[n])) - mean).powi(2)).sum::<f64>() / pairs.len() as f64
+                pairs.iter().map(|(_, uv)| (f64::from(level_of(uv[n])) - mean).powi(2)).sum::<f64>()
+                    / pairs.len() as f64
             };
             mean(0) + mean(1) + deviation(0).sqrt() + deviation(1).sqrt()
         };
@@ -129,9 +134,12 @@ impl Recording {
     /// By how much the ratio of two electrodes differs between the contractions that a calibration would see.
     fn turn(&self, [flexor, extensor]: [usize; 2]) -> f64 {
         let ratio = |label: u8| {
-            let rows = self.contractions(label).into_iter().take(2).flat_map(|rows| rows.start + 50..rows.end - 20);
+            let rows =
+                self.contractions(label).into_iter().take(2).flat_map(|rows| rows.start + 50..rows.end - 20);
             let levels: Vec<f64> = rows
-                .map(|row| f64::from(level_of(self.uv[row][extensor] as i32) - level_of(self.uv[row][flexor] as i32)))
+                .map(|row| {
+                    f64::from(level_of(self.uv[row][extensor] as i32) - level_of(self.uv[row][flexor] as i32))
+                })
                 .collect();
             quantile(&levels, 0.5)
         };
@@ -192,7 +200,8 @@ impl Count {
             for rows in recording.contractions(label).into_iter().skip(skip) {
                 let mut from = rows.start + 40;
                 while from + 25 <= rows.end - 10 {
-                    let most = |wish: Wish| said[from..from + 25].iter().filter(|own| own.0 == wish).count() > 12;
+                    let most =
+                        |wish: Wish| said[from..from + 25].iter().filter(|own| own.0 == wish).count() > 12;
                     windows[0] += 1;
                     windows[1] += u32::from(most(right));
                     windows[2] += u32::from(most(wrong));
@@ -341,7 +350,9 @@ pub fn evaluate(folder: &Path, only: Option<u32>) -> anyhow::Result<Report> {
     for entry in std::fs::read_dir(folder).with_context(|| folder.display().to_string())? {
         let path = entry?.path();
         let stem = path.file_stem().and_then(|stem| stem.to_str()).and_then(numbers);
-        let Some([person, day, posture]) = stem.filter(|[person, ..]| only.is_none_or(|only| only == *person)) else {
+        let Some([person, day, posture]) =
+            stem.filter(|[person, ..]| only.is_none_or(|only| only == *person))
+        else {
             continue;
         };
         let recording = Recording::read(&path)?;
@@ -351,7 +362,9 @@ pub fn evaluate(folder: &Path, only: Option<u32>) -> anyhow::Result<Report> {
         bail!("{}: no recording is called personP_dayD_postureQ.csv, with P as asked for", folder.display());
     }
     let persons: Vec<Person> = people.iter().map(|(&number, days)| person(number, days)).collect();
-    let of = |kind: fn(&Person) -> Option<Score>| Score::median(&persons.iter().filter_map(kind).collect::<Vec<_>>());
+    let of = |kind: fn(&Person) -> Option<Score>| {
+        Score::median(&persons.iter().filter_map(kind).collect::<Vec<_>>())
+    };
     let refused: usize = persons.iter().map(|person| person.refused.len()).sum();
     let sessions: usize = persons.iter().map(|person| person.sessions).sum();
     Ok(Report {
@@ -372,7 +385,9 @@ fn person(number: u32, days: &BTreeMap<u32, BTreeMap<u32, Recording>>) -> Person
         let Some((_, first)) = postures.first_key_value() else { continue };
         let sites = *sites.get_or_insert_with(|| {
             let pairs = FLEXORS.into_iter().flat_map(|flexor| EXTENSORS.map(|extensor| [flexor, extensor]));
-            pairs.max_by(|a, b| first.turn(*a).total_cmp(&first.turn(*b))).unwrap_or([FLEXORS[0], EXTENSORS[0]])
+            pairs
+                .max_by(|a, b| first.turn(*a).total_cmp(&first.turn(*b)))
+                .unwrap_or([FLEXORS[0], EXTENSORS[0]])
         });
         let model = first.calibrate(sites);
         match &model {
@@ -394,4 +409,102 @@ fn person(number: u32, days: &BTreeMap<u32, BTreeMap<u32, Recording>>) -> Person
     }
     let [same_session, other_posture, first_day_kept] = counts.map(|count| count.score());
     Person { person: number, same_session, other_posture, first_day_kept, refused, sessions: days.len() }
+}
+
+/// A table for people.
+#[derive(Debug)]
+pub struct Text<'a>(pub &'a Report);
+
+impl fmt::Display for Text<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(report) = self;
+        writeln!(
+            f,
+            "{:28} {:>17} {:>17} {:>7} {:>8} {:>15} {:>8}",
+            "", "closes right/wrong", "opens right/wrong", "missed", "false/h", "late p50, p95 s", "doubted"
+        )?;
+        let row = |f: &mut fmt::Formatter<'_>, name: &str, score: Option<Score>| {
+            let Some(s) = score else { return writeln!(f, "{name:28} {:>17}", "-") };
+            writeln!(
+                f,
+                "{name:28} {:>10.3} {:.3} {:>11.3} {:.3} {:>8.3} {:>8.1} {:>8.3} {:>6.3} {:>8.4}",
+                s.close_right,
+                s.close_wrong_way,
+                s.open_right,
+                s.open_wrong_way,
+                s.missed,
+                s.false_per_hour,
+                s.latency_s_p50,
+                s.latency_s_p95,
+                s.doubted_part
+            )
+        };
+        for person in &report.persons {
+            let name = |what: &str| format!("person {}, {what}", person.person);
+            row(f, &name("same session"), person.same_session)?;
+            row(f, &name("other posture"), person.other_posture)?;
+            row(f, &name("first day kept"), person.first_day_kept)?;
+            for (day, why) in &person.refused {
+                writeln!(f, "  day {day}'s calibration is refused: {why}")?;
+            }
+        }
+        row(f, "median, same session", report.same_session)?;
+        row(f, "median, other posture", report.other_posture)?;
+        row(f, "median, first day kept", report.first_day_kept)?;
+        writeln!(f, "{:.1} % of the calibrations are refused", 100.0 * report.refused_part)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn file_names_say_who_and_when() {
+        assert_eq!(numbers("person5_day12_posture3"), Some([5, 12, 3]));
+        assert_eq!(numbers("person5_day12"), None);
+    }
+
+    /// A person of made-up envelopes: 3 s of each of three states in turn.
+    fn made_up() -> Recording {
+        let (mut uv, mut labels) = (Vec::new(), Vec::new());
+        for turn in 0..12 {
+            for (label, mv) in
+                [(REST, [50.0, 50.0]), (CLOSE, [90.0, 800.0]), (REST, [50.0, 50.0]), (OPEN, [700.0, 80.0])]
+            {
+                for row in 0..300 {
+                    let lively = |n: u32| {
+                        1.0 + 0.1 * (f64::from(row + 300 * turn) * (0.13 + 0.04 * f64::from(n))).sin()
+                    };
+                    uv.push([mv[0] * 1e3 * lively(0), 0.0, mv[1] * 1e3 * lively(1), 0.0]);
+                    labels.push(label);
+                }
+            }
+        }
+        Recording { uv, labels }
+    }
+
+    #[test]
+    fn clear_contractions_are_right_and_swapped_labels_are_not() {
+        let mut recording = made_up();
+        let model = recording.calibrate([2, 0]).expect("it separates");
+        let said = recording.play(&model, [2, 0]);
+        let score = |recording: &Recording| {
+            let mut count = Count::default();
+            count.add(recording, &said, 2);
+            count.score().expect("it has rows")
+        };
+        let right = score(&recording);
+        assert!(right.close_right > 0.95 && right.open_right > 0.95 && right.missed == 0.0, "{right:?}");
+        assert!(right.false_per_hour == 0.0 && right.latency_s_p50 < 0.2, "{right:?}");
+        for label in &mut recording.labels {
+            *label = match *label {
+                CLOSE => OPEN,
+                OPEN => CLOSE,
+                other => other,
+            };
+        }
+        let swapped = score(&recording);
+        assert!(swapped.close_wrong_way > 0.95 && swapped.open_right == 0.0, "{swapped:?}");
+    }
 }

@@ -55,7 +55,6 @@ impl Default for Calibration {
 
 impl Calibration {
     /// One that has seen nothing.
-    #[must_use]
     pub const fn new() -> Self {
         Self { candidates: [None; MARKERS_MAX], frames: 0 }
     }

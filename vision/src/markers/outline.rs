@@ -70,7 +70,6 @@ pub struct Fit {
 
 impl Outline {
     /// Looks from `middle` for edges near `radii`.
-    #[must_use]
     pub fn look(grey: &Plane, middle: Point, radii: &[f32; RAYS]) -> Self {
         let mut edges = [Edge::default(); RAYS];
         for ((edge, &radius), direction) in edges.iter_mut().zip(radii).zip(DIRECTIONS) {
@@ -80,7 +79,6 @@ impl Outline {
     }
 
     /// Moves and grows `radii` until they lie on the edges, those left out that no move explains. None if too few agree.
-    #[must_use]
     pub fn fit(&self, radii: &[f32; RAYS]) -> Option<Fit> {
         let mut used = self.edges.map(|edge| edge.contrast >= CONTRAST_MIN);
         let mut fit = None;
@@ -105,7 +103,6 @@ impl Outline {
 }
 
 /// The rms distance of radii from the ellipse that fits them best, as a share of their mean.
-#[must_use]
 pub fn irregularity(radii: &[f32; RAYS]) -> f32 {
     let n = RAYS as f32;
     let mean = radii.iter().sum::<f32>() / n;

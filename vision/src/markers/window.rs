@@ -42,7 +42,6 @@ pub struct Levels {
 
 impl Levels {
     /// The level that is `eighths` of the way from dark to usual.
-    #[must_use]
     pub const fn cut(self, eighths: u16) -> u8 {
         (self.dark as u16 + (self.surround.saturating_sub(self.dark) as u16 * eighths) / 8) as u8
     }
@@ -50,7 +49,6 @@ impl Levels {
 
 impl Window {
     /// The window whose middle is `at`, moved inside the picture where it would stick out.
-    #[must_use]
     pub fn around(grey: &Plane, at: Point) -> Self {
         let corner = |middle: f32, end: usize| (middle as usize).saturating_sub(SIDE / 2).min(end - SIDE);
         let (left, top) = (corner(at.x + 0.5, WIDTH), corner(at.y + 0.5, HEIGHT));
@@ -63,7 +61,6 @@ impl Window {
     }
 
     /// Its dark and its usual level.
-    #[must_use]
     pub fn levels(&self) -> Levels {
         // Steps of 4: finer than the noise, and four times fewer to add up.
         let mut counts = [0u16; 64];
@@ -83,7 +80,6 @@ impl Window {
     }
 
     /// The pixels that are below `threshold`, a word a row.
-    #[must_use]
     pub fn below(&self, threshold: u8) -> [u32; SIDE] {
         self.levels.map(|row| {
             let mut bits = 0;

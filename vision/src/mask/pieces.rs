@@ -76,7 +76,6 @@ impl Mask {
     }
 
     /// Whether a pixel is this near to the border, px below 64.
-    #[must_use]
     pub fn comes_within(&self, px: usize) -> bool {
         let ends = self.rows[..px].iter().chain(&self.rows[HEIGHT - px..]).flatten().any(|&word| word != 0);
         let (left, right) = ((1 << px) - 1, u64::MAX << (64 - px));

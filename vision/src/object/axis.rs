@@ -44,7 +44,6 @@ struct Line {
 
 /// The direction of the long axis, radians from -pi/2 to pi/2, from x towards y (down): that of the long rims if there are such,
 /// else that of `moments`. Behind a lens it is that of the flat world, as the moments are.
-#[must_use]
 pub fn angle_rad(object: &Mask, moments: &Moments, lens: Option<&Rectifier>) -> f32 {
     let coarse = moments.angle_rad();
     if moments.eccentricity() < ECCENTRICITY_MIN {

@@ -15,7 +15,6 @@ pub const BINS: usize = VALUES * HUES * SATURATIONS;
 const BITS: u32 = 6;
 
 /// The bin of a colour.
-#[must_use]
 pub fn bin(red: u8, green: u8, blue: u8) -> u16 {
     let (red, green, blue) = (i32::from(red), i32::from(green), i32::from(blue));
     let (value, least) = (red.max(green).max(blue), red.min(green).min(blue));
@@ -49,7 +48,6 @@ impl Default for Bins {
 
 impl Bins {
     /// Computes the table.
-    #[must_use]
     pub fn new() -> Self {
         let mut table = vec![0; 1 << (3 * BITS)].into_boxed_slice();
         for (at, entry) in table.iter_mut().enumerate() {
@@ -61,7 +59,6 @@ impl Bins {
 
     /// The bin of a colour.
     #[inline]
-    #[must_use]
     pub fn of(&self, red: u8, green: u8, blue: u8) -> usize {
         let level = |colour: u8| usize::from(colour >> (8 - BITS));
         usize::from(self.table[level(red) << (2 * BITS) | level(green) << BITS | level(blue)])

@@ -34,7 +34,6 @@ impl Default for ObjectModel {
 
 impl ObjectModel {
     /// One that knows no object.
-    #[must_use]
     pub fn new() -> Self {
         Self { added: vec![[0; BINS]; FRAMES].into_boxed_slice(), sums: Box::new([0; BINS]), next: 0 }
     }
@@ -54,7 +53,6 @@ impl ObjectModel {
 
     /// The model's value at a bin, 0 to 255: the back projection of a pixel of this colour.
     #[inline]
-    #[must_use]
     pub fn value(&self, bin: usize) -> u8 {
         self.sums[bin].min(FULL) as u8
     }

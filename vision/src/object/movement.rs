@@ -23,7 +23,6 @@ pub struct Running {
 
 impl Running {
     /// A pixel moves if it is more than `apart` grey levels from the mean of the last 2^`rate` frames or so.
-    #[must_use]
     pub fn new(apart: u8, rate: u32) -> Self {
         Self { mean: levels(), started: false, apart: i16::from(apart), rate }
     }
@@ -79,7 +78,6 @@ pub struct Mixture {
 
 impl Mixture {
     /// One that remembers some `history` frames.
-    #[must_use]
     pub fn new(history: u32) -> Self {
         Self {
             pixels: vec![[Component::default(); COMPONENTS]; PIXELS].into_boxed_slice(),

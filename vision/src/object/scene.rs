@@ -53,7 +53,6 @@ impl Default for Scene {
 
 impl Scene {
     /// One that has seen nothing.
-    #[must_use]
     pub fn new() -> Self {
         Self { red: levels(), green: levels(), blue: levels(), varies: levels(), frames: 0 }
     }
@@ -127,7 +126,6 @@ impl Scene {
     }
 
     /// Its mean colour: red, green, blue.
-    #[must_use]
     pub fn mean_colour(&self) -> [u8; 3] {
         // Every 61st pixel stands for all.
         [&self.red, &self.green, &self.blue].map(|plane| {
@@ -138,7 +136,6 @@ impl Scene {
 
     /// The scene's colour at a pixel.
     #[inline]
-    #[must_use]
     pub fn colour(&self, at: usize) -> (u8, u8, u8) {
         let level = |plane: &Levels| (plane[at] >> FRACTION) as u8;
         (level(&self.red), level(&self.green), level(&self.blue))

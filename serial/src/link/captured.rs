@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::{Context, ensure};
 use tenax_hal_shim::wire::{BadFrame, VERSION};
 
-use crate::link::Inbox;
+use super::Inbox;
 use crate::{mcap, protobuf};
 
 /// The topic of a recording that holds them.
