@@ -25,7 +25,6 @@ use crate::arming::{Arming, STEP_FRAMES};
 use crate::behaviours::Running;
 use crate::config::Config;
 use crate::detectors::{Detectors, Said};
-use crate::force::friction;
 use crate::grip::{Grip, Reflex};
 use crate::journal::Journal;
 use crate::mode;
@@ -147,7 +146,7 @@ impl Fingertip {
 
     /// What about muscles and films takes too long for a tick. Call it once a slow frame, always after the same tick.
     pub fn think(&mut self) {
-        self.senses.think(&self.config);
+        self.senses.think(&self.config, &mut self.journal);
         if self.senses.muscles_mut().think(&mut self.journal) {
             self.calibrated = self.calibrated.wrapping_add(1);
         }
@@ -202,9 +201,8 @@ impl Fingertip {
             let striking = matches!(self.mode, GripMode::Slip | GripMode::Settle);
             self.senses.driven(self.drive, striking, STEP_FRAMES);
         }
-        let ratio = self.senses.forces.and_then(|forces| forces.ratio_permille);
-        let cannot = ratio.is_some_and(|ratio| ratio < friction::LEAST_PERMILLE);
-        let verdicts = Verdicts::of(&self.detectors, self.acting.but(self.config.detectors_off), cannot);
+        let acting = self.acting.but(self.config.detectors_off);
+        let verdicts = Verdicts::of(&self.detectors, acting, self.senses.cannot_slip());
         let behaviour = self.behave(verdicts);
         let grip = self.senses.grip(&self.config);
         self.step_mode(verdicts, grip);

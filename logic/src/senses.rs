@@ -58,6 +58,10 @@ pub struct Senses {
     fsr_missed: [u8; FSR_COUNT],
     fsr_seen: bool,
     pressed: bool,
+    /// The quadrant that was told to contradict the others.
+    blamed: Option<u8>,
+    /// Ft/Fn is below the least friction.
+    cannot_slip: bool,
     force_sensor: ForceSensor,
     detector: VibrationDetector,
     gauges: Gauges,
@@ -251,6 +255,12 @@ impl Senses {
         }
     }
 
+    /// Whether there is a force, and by it no friction is so low that the object could slip.
+    #[must_use]
+    pub const fn cannot_slip(&self) -> bool {
+        self.cannot_slip && self.forces.is_some()
+    }
+
     /// Known to touch nothing at all: far below where a finger counts as loaded.
     #[must_use]
     pub fn is_unloaded(&self, config: &Config) -> bool {
@@ -287,7 +297,8 @@ impl Senses {
 
     /// Listens for steady sliding. Call it once a slow frame, always after the same tick.
     #[inline(never)]
-    pub fn think(&mut self, config: &Config) {
+    pub fn think(&mut self, config: &Config, journal: &mut Journal) {
+        self.blame(config, journal);
         let forces = self.forces.filter(|_| matches!(self.grip(config), Grip::Holds(_)));
         self.detector.slow(&Hand { forces, wearer: self.gate.is_active(), striking: self.striking });
     }

@@ -63,7 +63,7 @@ impl Ahead {
         let limit = (self.slips_at >> FRACTION) * if self.says { FAR_PERMILLE } else { CLOSE_PERMILLE };
         let close = self.slips_at >> FRACTION >= i32::from(FOUND_PERMILLE)
             && i64::from(ratio + ahead) * 1_000 >= i64::from(limit)
-            && !self.asked.in_vain(forces);
+            && !self.asked.in_vain(forces, 0);
         self.agreeing = if close { self.agreeing.saturating_add(1) } else { 0 };
         self.says = close && (self.says || self.agreeing >= AGREEING);
         if self.says {

@@ -11,7 +11,7 @@ const GROWTH_PART: i32 = 2;
 /// The growth of the load that shows what is held, as a part of it: several times what hysteresis makes of it.
 const SHOWS_PART: i32 = 8;
 /// Ft of what is held grows by less than this part of what it would if it slid.
-const HELD_PART: i64 = 2;
+const HELD_PART: i64 = 4;
 
 /// Load and shear when a warning began.
 #[derive(Clone, Copy, Debug, Default)]
@@ -42,20 +42,20 @@ impl Asked {
         self.0 = None;
     }
 
-    /// Whether it has had all that it may ask for.
+    /// Whether it has had all that it may ask for, and so much on top, mN.
     #[must_use]
-    pub fn in_vain(&self, forces: &Forces) -> bool {
-        self.0.is_some_and(|began| forces.load_mn > began.load_mn + began.load_mn / GROWTH_PART)
+    pub fn in_vain(&self, forces: &Forces, on_top_mn: i32) -> bool {
+        self.0.is_some_and(|began| forces.load_mn > began.load_mn + began.load_mn / GROWTH_PART + on_top_mn)
     }
 
-    /// Whether the hand has closed since and the shear has not grown with it, as it does where something slides.
+    /// Whether the hand has closed since, by so much on top, mN, and the shear has not grown with it, as it does where something slides.
     #[must_use]
-    pub fn is_held(&self, forces: &Forces) -> bool {
+    pub fn is_held(&self, forces: &Forces, on_top_mn: i32) -> bool {
         let (Some(began), now) = (self.0, at(forces)) else { return false };
         let (Some(began_mn), Some(now_mn)) = (began.ft_mn, now.ft_mn) else { return false };
         let grown_mn = now.load_mn - began.load_mn;
         // Forces are below 2^17 mN.
-        grown_mn > began.load_mn / SHOWS_PART
+        grown_mn > began.load_mn / SHOWS_PART + on_top_mn
             && i64::from(now_mn - began_mn) * HELD_PART * i64::from(began.load_mn)
                 < i64::from(began_mn) * i64::from(grown_mn)
     }
@@ -79,22 +79,22 @@ mod tests {
     #[test]
     fn half_as_much_again_and_no_more_until_something_is_known() {
         let mut asked = Asked::default();
-        assert!(!asked.in_vain(&forces(9_000, 100)), "it asked for nothing");
+        assert!(!asked.in_vain(&forces(9_000, 100), 0), "it asked for nothing");
         for (load_mn, vain) in [(2_000, false), (3_000, false), (3_001, true)] {
             asked.begin(&forces(load_mn, 100));
-            assert_eq!(asked.in_vain(&forces(load_mn, 100)), vain, "{load_mn}");
+            assert_eq!(asked.in_vain(&forces(load_mn, 100), 0), vain, "{load_mn}");
         }
         asked.renew();
-        assert!(!asked.in_vain(&forces(3_001, 100)));
+        assert!(!asked.in_vain(&forces(3_001, 100), 0));
     }
 
     #[test]
     fn what_slides_carries_more_as_the_hand_closes_and_what_is_held_does_not() {
         let mut asked = Asked::default();
         asked.begin(&forces(4_000, 1_000));
-        assert!(!asked.is_held(&forces(4_400, 1_000)), "hysteresis could do that");
-        assert!(asked.is_held(&forces(4_600, 1_000)));
-        assert!(!asked.is_held(&forces(4_600, 1_150)), "it slides");
-        assert!(!asked.is_held(&Forces { ratio_permille: None, ..forces(4_600, 1_000) }), "nobody knows");
+        assert!(!asked.is_held(&forces(4_400, 1_000), 0), "hysteresis could do that");
+        assert!(asked.is_held(&forces(4_600, 1_000), 0));
+        assert!(!asked.is_held(&forces(4_600, 1_150), 0), "it slides");
+        assert!(!asked.is_held(&Forces { ratio_permille: None, ..forces(4_600, 1_000) }, 0), "nobody knows");
     }
 }

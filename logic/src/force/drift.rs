@@ -28,9 +28,10 @@ const GAIN_Q: u32 = 12;
 const ANCHOR_SHIFT: u32 = 8;
 const VOTES_SHIFT: u32 = 9;
 /// A cell is blamed in place of another one when it has so many times as many votes.
-const CLEARLY: i64 = 2;
-/// Votes that are no noise, mN^2: a few mN for as long as votes are kept.
-const HEARD: i64 = 100_000;
+const CLEARLY: i32 = 2;
+/// Votes that are no noise: a few mN for as long as votes are kept. A vote is in 2^VOTE_SHIFT mN^2.
+const HEARD: i32 = 200;
+const VOTE_SHIFT: u32 = 8;
 /// A drift is followed by this in a reading, mN: 0.24 N/s of one cell, 0.5 N/s of all.
 const CELL_FOLLOWS_MN: i32 = 3;
 const ALL_FOLLOWS_MN: i32 = 6;
@@ -48,20 +49,11 @@ pub enum Cells {
     Sunk,
 }
 
-/// What the motor does to the grip.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Motor {
-    /// Readings since it was driven.
-    pub still: u32,
-    /// It has opened the hand since it last closed it.
-    pub opened: bool,
-}
-
 /// The drift of all four cells.
 #[derive(Clone, Debug, Default)]
 pub struct Drift {
     /// The cell that is blamed.
-    blamed: Option<usize>,
+    blamed: Option<u8>,
     /// How far the cells contradict each other beyond their gains: SIGNS times the drift of the blamed one, mN.
     off_mn: i32,
     contradicts: u8,
@@ -70,7 +62,7 @@ pub struct Drift {
     gain: i32,
     /// Each cell's reading of late, with [`ANCHOR_SHIFT`] fraction bits, and how much of the contradiction it explains.
     anchors: [i32; FSR_COUNT],
-    votes: [i64; FSR_COUNT],
+    votes: [i32; FSR_COUNT],
     /// What all of them have sunk by together, mN, and the load that they stood still at.
     sunk_mn: i32,
     stood_at_mn: Option<i32>,
@@ -78,30 +70,43 @@ pub struct Drift {
 
 impl Drift {
     /// The cell that is blamed.
-    pub const fn blamed(&self) -> Option<usize> {
-        self.blamed
+    pub fn blamed(&self) -> Option<usize> {
+        self.blamed.map(usize::from)
     }
 
-    /// Takes a reading of all cells, mN. `loaded_mn` is the load of a grasp.
-    pub fn step(&mut self, read_mn: [i32; FSR_COUNT], loaded_mn: i32, motor: Motor) -> Cells {
-        self.let_go(read_mn, motor.opened);
+    /// Takes a reading of all cells, mN. `loaded_mn` is the load of a grasp; `opened`: the motor has opened the
+    /// hand since it last closed it.
+    pub fn step(&mut self, read_mn: [i32; FSR_COUNT], loaded_mn: i32, opened: bool) -> Cells {
+        self.let_go(read_mn, opened);
         let cells = self.corrected(read_mn);
-        let load_mn: i32 = cells.iter().sum();
-        let carry = read_mn.iter().filter(|&&mn| mn >= CARRIES_MN).count();
-        if load_mn < loaded_mn {
-            (self.learned, self.contradicts, self.sunk_mn, self.stood_at_mn) = (0, 0, 0, None);
-        } else if self.sunk_mn > 0 && carry + 1 < FSR_COUNT {
-            return Cells::Sunk;
-        } else {
-            self.contradict(read_mn, load_mn);
-            self.sink(load_mn, motor.still);
+        if self.sunk_mn > 0 {
+            if cells.iter().sum::<i32>() < loaded_mn {
+                self.sunk_mn = 0;
+                return Cells::Known(self.corrected(read_mn));
+            }
+            if read_mn.iter().filter(|&&mn| mn >= CARRIES_MN).count() + 1 < FSR_COUNT {
+                return Cells::Sunk;
+            }
         }
-        Cells::Known(self.corrected(read_mn))
+        Cells::Known(cells)
+    }
+
+    /// Finds out what the cells of this reading have drifted. `still`: readings since the motor was driven. Call it once after
+    /// each reading; a tick has no time for it.
+    pub fn think(&mut self, read_mn: [i32; FSR_COUNT], loaded_mn: i32, still: u32) {
+        let load_mn: i32 = self.corrected(read_mn).iter().sum();
+        if load_mn < loaded_mn {
+            (self.learned, self.contradicts, self.stood_at_mn) = (0, 0, None);
+        } else if self.sunk_mn == 0 || read_mn.iter().filter(|&&mn| mn >= CARRIES_MN).count() + 1 >= FSR_COUNT
+        {
+            self.contradict(read_mn, load_mn);
+            self.sink(load_mn, still);
+        }
     }
 
     /// What the cells carry, if they have drifted as far as is known.
     fn corrected(&self, mut cells: [i32; FSR_COUNT]) -> [i32; FSR_COUNT] {
-        if let Some(blamed) = self.blamed {
+        if let Some(blamed) = self.blamed() {
             cells[blamed] -= SIGNS[blamed] * self.off_mn;
         }
         // No cell pulls.
@@ -111,7 +116,7 @@ impl Drift {
     /// Where no cell carries anything but the blamed one, nothing is held: what is read is drift.
     fn let_go(&mut self, read_mn: [i32; FSR_COUNT], opened: bool) {
         let carries = |n: usize| read_mn[n] >= CARRIES_MN;
-        if let Some(blamed) = self.blamed
+        if let Some(blamed) = self.blamed()
             && (0..FSR_COUNT).all(|n| n == blamed || !carries(n))
             && (opened || self.sunk_mn == 0)
         {
@@ -127,7 +132,7 @@ impl Drift {
 
     /// Holds the cells against each other.
     fn contradict(&mut self, read_mn: [i32; FSR_COUNT], load_mn: i32) {
-        if (0..FSR_COUNT).any(|n| read_mn[n] < CARRIES_MN && self.blamed != Some(n)) {
+        if (0..FSR_COUNT).any(|n| read_mn[n] < CARRIES_MN && self.blamed() != Some(n)) {
             // A shear that lifts the element off a cell breaks the rule, too.
             self.contradicts = 0;
             return;
@@ -151,18 +156,20 @@ impl Drift {
             self.anchors[n] += lacks >> ANCHOR_SHIFT;
             lacks >> ANCHOR_SHIFT
         });
-        let all_moved = i64::from(of(&moved));
+        let all_moved = of(&moved);
         for ((votes, moved), sign) in self.votes.iter_mut().zip(moved).zip(SIGNS) {
-            *votes += all_moved * i64::from(moved * sign) - (*votes >> VOTES_SHIFT);
+            // A cell moves by less than 2^15 mN, all of them by less than 2^17.
+            let vote = (i64::from(all_moved) * i64::from(moved * sign)) >> VOTE_SHIFT;
+            *votes = votes.saturating_add(vote as i32).saturating_sub(*votes >> VOTES_SHIFT);
         }
         let excess = now - ((i64::from(load_mn) * i64::from(self.gain)) >> GAIN_Q) as i32;
         let beyond = excess.abs() > TOLERATED_MN + load_mn / TOLERATED_PART;
         self.contradicts = if beyond { self.contradicts.saturating_add(1) } else { 0 };
         let most = (0..FSR_COUNT).max_by_key(|&n| self.votes[n]);
-        match (self.blamed, most) {
-            (None, Some(most)) if self.contradicts >= CONTRADICTS_FOR => self.blamed = Some(most),
-            (Some(blamed), Some(most)) if self.votes[most] > CLEARLY * self.votes[blamed].max(0) + HEARD => {
-                self.blamed = Some(most);
+        match (self.blamed(), most) {
+            (None, Some(most)) if self.contradicts >= CONTRADICTS_FOR => self.blamed = Some(most as u8),
+            (Some(blamed), Some(most)) if self.votes[most] / CLEARLY > self.votes[blamed].max(0) + HEARD => {
+                self.blamed = Some(most as u8);
             }
             _ => {}
         }
@@ -194,6 +201,12 @@ mod tests {
     use super::*;
     use std::vec::Vec;
 
+    #[derive(Clone, Copy)]
+    struct Motor {
+        still: u32,
+        opened: bool,
+    }
+
     const LOADED_MN: i32 = 600;
     const STILL: Motor = Motor { still: 1_000, opened: false };
     const MOVES: Motor = Motor { still: 0, opened: false };
@@ -201,6 +214,12 @@ mod tests {
     /// Cells under a load and a shear along both axes, mN.
     fn cells(load: f64, x: f64, y: f64) -> [f64; FSR_COUNT] {
         [load + x + y, load + x - y, load - x - y, load - x + y].map(|four| four / 4.0)
+    }
+
+    fn step(drift: &mut Drift, read_mn: [i32; FSR_COUNT], loaded_mn: i32, motor: Motor) -> Cells {
+        let cells = drift.step(read_mn, loaded_mn, motor.opened);
+        drift.think(read_mn, loaded_mn, motor.still);
+        cells
     }
 
     fn read(cells: [f64; FSR_COUNT]) -> [i32; FSR_COUNT] {
@@ -217,8 +236,8 @@ mod tests {
     /// Taken, and held for a second.
     fn holding(cells: [f64; FSR_COUNT]) -> Drift {
         let mut drift = Drift::default();
-        (0..40).for_each(|_| _ = drift.step(read(cells), LOADED_MN, MOVES));
-        (0..40).for_each(|_| _ = drift.step(read(cells), LOADED_MN, STILL));
+        (0..40).for_each(|_| _ = step(&mut drift, read(cells), LOADED_MN, MOVES));
+        (0..40).for_each(|_| _ = step(&mut drift, read(cells), LOADED_MN, STILL));
         drift
     }
 
@@ -234,7 +253,7 @@ mod tests {
                 let x = 1_200.0 + pours * 70.0 * t_s.min(7.0);
                 let mut true_cells = cells(6_500.0, x, 0.0);
                 true_cells[cell] += way * 100.0 * t_s;
-                let [a, b, c, d] = known(drift.step(read(true_cells), LOADED_MN, STILL));
+                let [a, b, c, d] = known(step(&mut drift, read(true_cells), LOADED_MN, STILL));
                 let (fx, fy) = (f64::from(a + b - c - d), f64::from(a + d - b - c));
                 let off = (fx - x).hypot(fy);
                 assert!(off < 750.0, "cell {cell}, {way}, {pours}: {off} mN after {t_s} s, {drift:?}");
@@ -255,7 +274,7 @@ mod tests {
             let turn = f64::from(n) / 80.0;
             let load = 4_000.0 + f64::from(n) * 2.0;
             let now = with(cells(load, 0.3 * load * turn.sin(), 0.3 * load * turn.cos()));
-            assert_eq!(known(drift.step(read(now), LOADED_MN, MOVES)), read(now));
+            assert_eq!(known(step(&mut drift, read(now), LOADED_MN, MOVES)), read(now));
         }
         assert_eq!(drift.blamed(), None);
     }
@@ -266,15 +285,18 @@ mod tests {
         let mut seen = Vec::new();
         for n in 0..80 * 30 {
             let sunk = f64::from(n) / 80.0 * 100.0;
-            match drift.step(read(cells(6_500.0, 1_200.0, 0.0).map(|mn| mn - sunk)), LOADED_MN, STILL) {
+            match step(&mut drift, read(cells(6_500.0, 1_200.0, 0.0).map(|mn| mn - sunk)), LOADED_MN, STILL) {
                 Cells::Known(cells) => seen.push(cells.iter().sum::<i32>()),
                 Cells::Sunk => break,
             }
         }
         assert!((80 * 12..80 * 16).contains(&seen.len()), "{}", seen.len());
         assert!(seen.iter().all(|load| (5_100..=6_500).contains(load)), "{:?}", seen.last());
-        assert_eq!(drift.step([0; FSR_COUNT], LOADED_MN, STILL), Cells::Sunk);
-        assert_eq!(known(drift.step([0; FSR_COUNT], LOADED_MN, Motor { still: 0, opened: true })), [0; 4]);
+        assert_eq!(step(&mut drift, [0; FSR_COUNT], LOADED_MN, STILL), Cells::Sunk);
+        assert_eq!(
+            known(step(&mut drift, [0; FSR_COUNT], LOADED_MN, Motor { still: 0, opened: true })),
+            [0; 4]
+        );
     }
 
     #[test]
@@ -284,9 +306,9 @@ mod tests {
             let mut load = 6_500.0;
             while load > 0.0 {
                 load -= falls_mn;
-                drift.step(read(cells(load, 0.0, 0.0)), LOADED_MN, motor);
+                step(&mut drift, read(cells(load, 0.0, 0.0)), LOADED_MN, motor);
             }
-            assert_eq!(known(drift.step([0; FSR_COUNT], LOADED_MN, motor)), [0; FSR_COUNT]);
+            assert_eq!(known(step(&mut drift, [0; FSR_COUNT], LOADED_MN, motor)), [0; FSR_COUNT]);
         }
     }
 
@@ -299,12 +321,12 @@ mod tests {
                 off += way * 1.25;
                 let mut now = cells(6_500.0, 0.0, 0.0);
                 now[2] += off;
-                drift.step(read(now), LOADED_MN, STILL);
+                step(&mut drift, read(now), LOADED_MN, STILL);
             }
             assert_eq!(drift.blamed(), Some(2));
             let mut empty = [0.0; FSR_COUNT];
             empty[2] += off;
-            let cells = known(drift.step(read(empty), LOADED_MN, MOVES));
+            let cells = known(step(&mut drift, read(empty), LOADED_MN, MOVES));
             assert!(cells.iter().all(|&mn| mn <= CARRIES_MN), "{cells:?}");
         }
     }

@@ -13,7 +13,7 @@
 use tenax_hal_shim::channel::FSR_COUNT;
 use tenax_hal_shim::wire::Forces;
 
-use super::drift::{Cells, Drift, Motor};
+use super::drift::{Cells, Drift};
 use super::fsr::{force_mn, uv_above_rest};
 
 /// How far a quadrant's zero may be moved, uV: more is a load, not an offset.
@@ -41,14 +41,9 @@ pub struct ForceSensor {
 impl ForceSensor {
     /// Forces from one sample of each quadrant A, B, C, D. `loaded_mn` is the Fn from which the ratio means something. None once the
     /// quadrants have sunk so far that they tell nothing.
-    pub fn process(&mut self, samples: [u16; FSR_COUNT], loaded_mn: i32, motor: Motor) -> Option<Forces> {
+    pub fn process(&mut self, samples: [u16; FSR_COUNT], loaded_mn: i32, opened: bool) -> Option<Forces> {
         self.last_uv = samples.map(uv_above_rest);
-        let mut quadrant_mn = [0; FSR_COUNT];
-        let zeros = self.zero_uv.iter().zip(&self.drift_uv).map(|(zero, drift)| zero + drift);
-        for ((mn, uv), zero) in quadrant_mn.iter_mut().zip(self.last_uv).zip(zeros) {
-            *mn = force_mn(uv - zero);
-        }
-        match self.drift.step(quadrant_mn, loaded_mn, motor) {
+        match self.drift.step(self.quadrants(), loaded_mn, opened) {
             Cells::Known(quadrant_mn) => Some(forces(quadrant_mn, loaded_mn)),
             Cells::Sunk => None,
         }
@@ -56,8 +51,18 @@ impl ForceSensor {
 
     /// The quadrant whose reading contradicts the other three.
     #[must_use]
-    pub const fn blamed(&self) -> Option<usize> {
+    pub fn blamed(&self) -> Option<usize> {
         self.drift.blamed()
+    }
+
+    /// Finds out what has drifted, once after each reading. `still`: readings since the motor was driven.
+    pub fn think(&mut self, loaded_mn: i32, still: u32) {
+        self.drift.think(self.quadrants(), loaded_mn, still);
+    }
+
+    /// What the quadrants read last, mN.
+    fn quadrants(&self) -> [i32; FSR_COUNT] {
+        core::array::from_fn(|n| force_mn(self.last_uv[n] - self.zero_uv[n] - self.drift_uv[n]))
     }
 
     /// Takes the last readings as zero; false, and nothing changed, if a quadrant is further from its calibrated zero
@@ -145,11 +150,7 @@ mod tests {
             let samples = fsr_quadrants_n(normal, shear, 0.0)
                 .map(|f| sample_from_mv(fsr_mv(f, f64::powf).round() as u32));
             let read = f64::from(
-                ForceSensor::default()
-                    .process(samples, 600, Motor::default())
-                    .unwrap()
-                    .ratio_permille
-                    .unwrap(),
+                ForceSensor::default().process(samples, 600, false).unwrap().ratio_permille.unwrap(),
             ) / 1e3;
             let true_ratio: f64 = shear / normal;
             let expected = true_ratio / true_ratio.hypot(1.0);
@@ -177,15 +178,15 @@ mod tests {
             let mut sensor = ForceSensor::default();
             let offset = sample_from_mv((FSR_REST_MV as i32 + mv) as u32);
             for _ in 0..80 * 6 {
-                sensor.process([offset; 4], 600, Motor::default());
+                sensor.process([offset; 4], 600, false);
                 sensor.follow();
             }
-            assert!(sensor.process([offset; 4], 600, Motor::default()).unwrap().load_mn <= 8, "{mv} mV");
+            assert!(sensor.process([offset; 4], 600, false).unwrap().load_mn <= 8, "{mv} mV");
             assert_eq!(sensor.zero_uv(), &[0; 4], "what is kept stays as it was calibrated");
             let pressed = sample_from_mv((FSR_REST_MV as i32 + mv + 200) as u32);
-            let before = sensor.process([pressed; 4], 600, Motor::default());
+            let before = sensor.process([pressed; 4], 600, false);
             (0..800).for_each(|_| sensor.follow());
-            assert_eq!(sensor.process([pressed; 4], 600, Motor::default()), before);
+            assert_eq!(sensor.process([pressed; 4], 600, false), before);
         }
     }
 
@@ -194,10 +195,10 @@ mod tests {
     fn only_an_unloaded_finger_is_zeroed() {
         let mut sensor = ForceSensor::default();
         let offset = sample_from_mv(FSR_REST_MV + 30);
-        assert!(sensor.process([offset; 4], 600, Motor::default()).unwrap().fn_mn > 0);
+        assert!(sensor.process([offset; 4], 600, false).unwrap().fn_mn > 0);
         assert!(sensor.zero());
-        assert_eq!(sensor.process([offset; 4], 600, Motor::default()).unwrap().fn_mn, 0);
-        sensor.process([sample_from_mv(FSR_REST_MV + 300); 4], 600, Motor::default());
+        assert_eq!(sensor.process([offset; 4], 600, false).unwrap().fn_mn, 0);
+        sensor.process([sample_from_mv(FSR_REST_MV + 300); 4], 600, false);
         assert!(!sensor.zero());
     }
 }

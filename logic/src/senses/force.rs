@@ -5,7 +5,7 @@ use tenax_hal_shim::words::{Fault, Reason};
 
 use super::{DOUBTED_AFTER, FSR_LIMITS, OPEN_FRAMES, PRESSED_UV, Senses, report};
 use crate::config::Config;
-use crate::force::drift::Motor;
+use crate::force::friction::LEAST_PERMILLE;
 use crate::force::fsr;
 use crate::health::Change;
 use crate::journal::Journal;
@@ -43,15 +43,10 @@ impl Senses {
         }
         // Once it has been seen unloaded, its zero is known again.
         self.pressed &= samples.into_iter().any(is_pressed);
-        let blamed = self.force_sensor.blamed();
-        let motor = Motor {
-            still: self.still_frames / u32::from(FRAMES_PER_SLOW_FRAME),
-            opened: self.open_frames > 0,
-        };
-        let forces = self.force_sensor.process(samples, config.friction.loaded_mn, motor);
-        self.blame(blamed, journal);
+        let opened = self.open_frames > 0;
+        let forces = self.force_sensor.process(samples, config.friction.loaded_mn, opened);
         let Some(mut forces) = forces else {
-            self.forces = None;
+            (self.forces, self.cannot_slip) = (None, false);
             return;
         };
         if self.pressed {
@@ -59,14 +54,22 @@ impl Senses {
             forces.ratio_permille = None;
         }
         self.forces = Some(forces);
+        self.cannot_slip = forces.ratio_permille.is_some_and(|ratio| ratio < LEAST_PERMILLE);
         if self.open_frames >= OPEN_FRAMES {
             self.force_sensor.follow();
             self.doubt_load(config, journal);
         }
     }
 
-    /// Tells which quadrant contradicts the others now, and did not.
-    fn blame(&self, before: Option<usize>, journal: &mut Journal) {
+    /// Finds out what the quadrants have drifted, and tells which contradicts the others now and did not.
+    pub(super) fn blame(&mut self, config: &Config, journal: &mut Journal) {
+        if self.fsr_readings.contains(&None) {
+            return;
+        }
+        let before = self.blamed.map(usize::from);
+        let still = self.still_frames / u32::from(FRAMES_PER_SLOW_FRAME);
+        self.force_sensor.think(config.friction.loaded_mn, still);
+        self.blamed = self.force_sensor.blamed().map(|blamed| blamed as u8);
         let blamed = self.force_sensor.blamed();
         if blamed != before {
             report(journal, FSR + before.unwrap_or(0), before.map(|_| Change::Back));

@@ -33,6 +33,8 @@ const FILMS: u32 = 3;
 const LOUD: i32 = 6;
 const LOUD_TOGETHER: i32 = 2;
 const LOUD_ABOVE: i32 = 3;
+/// What it may ask for on top of what any warning may, mN: the rig's load swings by that as it slides.
+const ON_TOP_MN: i32 = 1_000;
 /// Slow frames in which it must be so, 0.2 s: the longest impact is over before. And of silence after which it is over.
 const BEGIN_FRAMES: u8 = 16;
 const END_FRAMES: u8 = 8;
@@ -137,7 +139,8 @@ impl Sliding {
             self.asked.renew();
             self.asked.begin(&forces);
         }
-        self.in_vain |= self.said && (self.asked.in_vain(&forces) || self.asked.is_held(&forces));
+        self.in_vain |=
+            self.said && (self.asked.in_vain(&forces, ON_TOP_MN) || self.asked.is_held(&forces, ON_TOP_MN));
         self.quiet = if sounds { 0 } else { self.quiet.saturating_add(1) };
         self.in_vain &= self.quiet < QUIET_FRAMES;
         self.said && !self.in_vain
