@@ -96,7 +96,7 @@ struct Sites {
 impl Sites {
     fn of(model: &EmgModel) -> Self {
         let electrode = [model.closing_site(), model.opening_site()];
-        let by_site = |point: [i32; 2]| electrode.map(|n| point[n]);
+        let by_site = |point: [i32; 2]| electrode.map(|n| point[n & 1]);
         let (rest, close, open) = (by_site(model.rest()), by_site(model.close()), by_site(model.open()));
         let spread = by_site(model.spread());
         let span = [(close[0] - rest[0]).max(512), (open[1] - rest[1]).max(512)];
@@ -179,7 +179,8 @@ impl Decide {
     #[must_use]
     pub fn mover(&self) -> usize {
         let site = usize::from(self.wish != Wish::Close);
-        self.sites.map_or(site, |sites| sites.electrode[site])
+        // The compiler is to see that it is one of two, here and below.
+        self.sites.map_or(site, |sites| sites.electrode[site]) & 1
     }
 
     /// Whether the other electrode hears the contraction; none for a wearer of whom it never does.
@@ -204,7 +205,7 @@ impl Decide {
     /// Takes both electrodes, flexor first: what the wearer wants.
     pub fn take(&mut self, electrodes: &[Electrode; 2]) -> Wish {
         match self.sites {
-            Some(sites) => self.calibrated(&sites, sites.electrode.map(|n| electrodes[n])),
+            Some(sites) => self.calibrated(&sites, sites.electrode.map(|n| electrodes[n & 1])),
             None => self.uncalibrated(electrodes),
         }
         self.wish
@@ -213,13 +214,14 @@ impl Decide {
     fn calibrated(&mut self, sites: &Sites, electrodes: [Electrode; 2]) {
         let uv = electrodes.map(|electrode| electrode.uv);
         let over = uv.map(|uv| uv.is_some_and(|uv| uv >= OVER_UV));
+        // The least of spans and turn is far above 1, which the compiler is to see.
         // What gives no number stands at rest; what that means for the other is decided below.
         let level = [0, 1].map(|n: usize| {
             let subtracted = uv[n].map(|uv| uv.min(OVER_UV) - (self.drift[n] >> 8));
             subtracted.map_or(sites.rest[n], level_of)
         });
-        let share = [0, 1].map(|n: usize| (level[n] - sites.rest[n]) * 1_000 / sites.span[n]);
-        let place = (level[1] - level[0] - sites.close_ratio) * 1_000 / sites.turn;
+        let share = [0, 1].map(|n: usize| (level[n] - sites.rest[n]) * 1_000 / sites.span[n].max(1));
+        let place = (level[1] - level[0] - sites.close_ratio) * 1_000 / sites.turn.max(1);
         let now = [share[0].min(1_300), share[1].min(1_300), place.clamp(-1_000, 2_000)];
         for (mean, now) in self.mean.iter_mut().zip(now) {
             *mean += (now * 16 - *mean) / MEAN_READINGS;

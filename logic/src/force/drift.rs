@@ -71,7 +71,8 @@ pub struct Drift {
 impl Drift {
     /// The cell that is blamed.
     pub fn blamed(&self) -> Option<usize> {
-        self.blamed.map(usize::from)
+        // The compiler is to see that it is one of them.
+        self.blamed.map(|cell| usize::from(cell) % FSR_COUNT)
     }
 
     /// Takes a reading of all cells, mN. `loaded_mn` is the load of a grasp; `opened`: the motor has opened the
@@ -165,12 +166,15 @@ impl Drift {
         let excess = now - ((i64::from(load_mn) * i64::from(self.gain)) >> GAIN_Q) as i32;
         let beyond = excess.abs() > TOLERATED_MN + load_mn / TOLERATED_PART;
         self.contradicts = if beyond { self.contradicts.saturating_add(1) } else { 0 };
-        let most = (0..FSR_COUNT).max_by_key(|&n| self.votes[n]);
-        match (self.blamed(), most) {
-            (None, Some(most)) if self.contradicts >= CONTRADICTS_FOR => self.blamed = Some(most as u8),
-            (Some(blamed), Some(most)) if self.votes[most] / CLEARLY > self.votes[blamed].max(0) + HEARD => {
-                self.blamed = Some(most as u8);
+        let (mut most, mut votes) = (0, self.votes[0]);
+        for (cell, &own) in (0..).zip(&self.votes) {
+            if own >= votes {
+                (most, votes) = (cell, own);
             }
+        }
+        match self.blamed() {
+            None if self.contradicts >= CONTRADICTS_FOR => self.blamed = Some(most),
+            Some(blamed) if votes / CLEARLY > self.votes[blamed].max(0) + HEARD => self.blamed = Some(most),
             _ => {}
         }
         if self.blamed.is_some() {

@@ -66,7 +66,7 @@ impl Senses {
         if self.fsr_readings.contains(&None) {
             return;
         }
-        let before = self.blamed.map(usize::from);
+        let before = self.blamed.map(|cell| usize::from(cell) % FSR_COUNT);
         let still = self.still_frames / u32::from(FRAMES_PER_SLOW_FRAME);
         self.force_sensor.think(config.friction.loaded_mn, still);
         self.blamed = self.force_sensor.blamed().map(|blamed| blamed as u8);
