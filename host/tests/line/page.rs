@@ -80,7 +80,7 @@ fn a_person_sees_the_board_beside_the_truth_zooms_pauses_and_sets_a_setting() {
         "(() => { const input = document.querySelector('#settings input'); input.value = 120; \
          input.dispatchEvent(new Event('change')); return true; })()",
     );
-    until(&mut page, "at('log').textContent.includes('set s1-mv = 120') && last.s1_mv === 120");
+    until(&mut page, "at('log').textContent.includes('> s1-mv = 120 mV') && last.s1_mv === 120");
 
     // What is drawn is of now: traces of the board, and of the truth in its own colour.
     until(
