@@ -128,13 +128,11 @@ impl Control {
     }
 }
 
-/// A tick in which frames or readings may be sent, that judges the array, that is followed by thought, or that ends a slow frame
-/// has no room for a command and its answer as well, streamed or not. A thousand a second remain, of which 500 are taken.
+/// A tick in which frames or readings may be sent, or that ends a slow frame, has no room for a command and its answer as well,
+/// streamed or not.
 fn has_room_for_command(frame: &Frame) -> bool {
     let slot = frame.slot();
-    let judges = (slot_of(Job::ArrayBegins)..=slot_of(Job::MlpDecides)).contains(&slot);
-    let sends = usize::from(slot).is_multiple_of(FRAMES_PER_RAW) || slot == SENSES_SLOT;
-    !sends && !judges && slot != slot_of(Job::Save) && !frame.ends_slow_frame()
+    !usize::from(slot).is_multiple_of(FRAMES_PER_RAW) && slot != SENSES_SLOT && !frame.ends_slow_frame()
 }
 
 /// One tick of the logic. Not inlined, so that the emulated board can count its instructions by this name.
