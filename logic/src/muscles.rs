@@ -195,6 +195,12 @@ impl Muscles {
         false
     }
 
+    /// Whether [`think`](Self::think) has a spectrum to compute.
+    #[must_use]
+    pub fn has_window(&self) -> bool {
+        self.lesson.is_none() && (0..2).any(|n| self.emg.window(n).is_some())
+    }
+
     fn conclude(
         &mut self,
         result: Result<EmgModel, words::CalibrationRefusal>,

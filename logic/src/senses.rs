@@ -298,7 +298,10 @@ impl Senses {
     /// Listens for steady sliding. Call it once a slow frame, always after the same tick.
     #[inline(never)]
     pub fn think(&mut self, config: &Config, journal: &mut Journal) {
-        self.blame(config, journal);
+        // A muscle's spectrum, twice in 64 cycles, leaves no time for the quadrants as well.
+        if !self.muscles().has_window() {
+            self.blame(config, journal);
+        }
         let forces = self.forces.filter(|_| matches!(self.grip(config), Grip::Holds(_)));
         self.detector.slow(&Hand { forces, wearer: self.gate.is_active(), striking: self.striking });
     }
