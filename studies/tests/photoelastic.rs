@@ -14,18 +14,19 @@ use tenax_studies::photoelastic::{balance, region};
 
 const SEEDS: [u64; 3] = [2_001, 2_002, 2_003];
 
-/// Heads of seeds 2001 to 2060 are scored by `tenax chart photoelastic` on others and by hand on all (`docs/photoelastic.md`); here a few.
+/// The logic was written on heads 1 to 6.
+const HEADS: std::ops::RangeInclusive<u64> = 2_001..=2_060;
+
 #[test]
 fn force_is_certain_only_where_it_is_right_whatever_the_shear() {
-    println!("seeds {SEEDS:?}");
     for sheared in [false, true] {
-        let runs = force::sessions(SEEDS, 8, sheared);
+        let runs = force::sessions(HEADS, 6, sheared);
         let score = Score::of(runs.iter().map(Vec::as_slice));
-        println!("sheared {sheared}: {score:?}");
+        println!("heads {HEADS:?}, sheared {sheared}: {score:?}");
         assert!(score.rms_pct_fs < 1.0 && score.max_pct_fs <= 3.0, "{score:?}");
-        // A head that is never certain is never wrong: some must be, on 60 heads 2.5 to 3.4 %.
+        // A head that is never certain is never wrong: some must be.
         assert!(score.certain_part > 0.01 && score.certain_off_part <= 0.01, "{score:?}");
-        assert!(score.load_below_part <= 0.01 && score.least_above_part <= 0.01, "{score:?}");
+        assert!(score.load_below_part <= 0.001 && score.least_above_part <= 0.001, "{score:?}");
         // The control: the shear is there, and the light means another force by it.
         let most = runs.iter().flatten().map(|point| point.shear).fold(0.0, f64::max);
         assert_eq!(most > 0.4, sheared, "{most}");
@@ -60,9 +61,9 @@ fn a_rate_is_told_within_25_percent_on_days_that_were_not_calibrated_on() {
 }
 
 #[test]
-fn slip_is_seen_at_a_tenth_of_a_millimetre_a_second() {
-    let floor_mm_s = region::floor_mm_s(SEEDS);
-    assert!(floor_mm_s <= 0.1, "{floor_mm_s} mm/s");
+fn slip_is_seen_at_half_a_tenth_of_a_millimetre_a_second() {
+    let floor_mm_s = region::floor_mm_s(2_001..2_021);
+    assert!(floor_mm_s <= 0.05, "{floor_mm_s} mm/s");
 }
 
 #[test]
@@ -75,11 +76,11 @@ fn the_strip_vibrates_by_itself_exactly_where_theory_says() {
     assert_eq!(region::measured_mm_s(0.01), None);
 }
 
-fn head_alone(change: impl Fn(&str) -> String) -> (Outcome, Run) {
+fn head_alone(seed: u64, change: impl Fn(&str) -> String) -> (Outcome, Run) {
     let (_, text) = tenax_scene::builtin().iter().find(|(name, _)| *name == "head-alone").expect("the scene");
     let scene = SceneFile::parse(&change(text), "head-alone").unwrap_or_else(|error| panic!("{error}"));
     let mut run = Run::default();
-    let outcome = session::scene_with(&scene, 1, &Board::Host, &mut run, &mut |_| {}).unwrap();
+    let outcome = session::scene_with(&scene, seed, &Board::Host, &mut run, &mut |_| {}).unwrap();
     (outcome, run)
 }
 
@@ -89,7 +90,16 @@ fn acted(slows: &[Slow], id: DetectorId) -> usize {
 
 #[test]
 fn a_pulled_block_is_held_by_the_head_alone() {
-    let (outcome, run) = head_alone(str::to_owned);
+    let slid_mm = |seed| {
+        let (outcome, _) = head_alone(seed, str::to_owned);
+        assert!(!outcome.report.slip.dropped.unwrap(), "seed {seed}");
+        outcome.report.slip.distance_mm.unwrap()
+    };
+    let slid_mm: Vec<f64> = (1..=20).map(slid_mm).collect();
+    println!("slid, mm: {slid_mm:.2?}");
+    assert!(slid_mm.iter().all(|mm| *mm <= 0.5), "{slid_mm:.2?}");
+
+    let (outcome, run) = head_alone(1, str::to_owned);
     assert!(acted(&run.slows, DetectorId::Photoelastic) > 0);
     let others = DetectorId::ALL.into_iter().filter(|id| *id != DetectorId::Photoelastic);
     assert_eq!(others.map(|id| acted(&run.slows, id)).sum::<usize>(), 0);
@@ -102,7 +112,7 @@ fn a_pulled_block_is_held_by_the_head_alone() {
     // The control: a film that is dead as well in its place. Nothing is left to feel with, and the reflex stands by.
     let dead = "fault = [{ at_s = 0.0, channel = \"pvdf_12\", kind = \"dead\", reason = \"the control\" },";
     let (outcome, run) =
-        head_alone(|text| text.replace("value = 1  ", "value = 0  ").replace("fault = [", dead));
+        head_alone(1, |text| text.replace("value = 1  ", "value = 0  ").replace("fault = [", dead));
     assert!(outcome.report.slip.dropped.unwrap() || outcome.report.slip.distance_mm.unwrap() > 1.5);
     assert!(run.slows.iter().skip(800).all(|slow| slow.mode != GripMode::Slip), "{:?}", Cause::SensorsLost);
 }
@@ -123,7 +133,7 @@ fn knocks_and_swings_are_no_slip_for_the_head() {
         }
         scene + "\n[[swing]]\nat_s = 9.5\ncycles = 6\nrate_hz = 1.5\npeak_m_s2 = 3.0\n"
     };
-    let (outcome, run) = head_alone(held);
+    let (outcome, run) = head_alone(1, held);
     let said = outcome.report.detectors.of_id(DetectorId::Photoelastic).said;
     assert_eq!((said, acted(&run.slows, DetectorId::Photoelastic)), (0, 0));
 }

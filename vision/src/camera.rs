@@ -1,12 +1,13 @@
 //! One camera of a fingertip: from a picture to what it says about skin and object. Nothing is allocated after `new`.
 
 use alloc::boxed::Box;
+use core::f32::consts::PI;
 
 use crate::force::{Forces, MIDDLE};
 use crate::frame::{Frame, HEIGHT, PIXELS, Plane, WIDTH, plane};
 use crate::markers::{Calibration, Marker, Markers};
 use crate::mask::Mask;
-use crate::motion::{self, Flow};
+use crate::motion::{self, ARM_PX, Flow};
 use crate::object::{Config, Running, Sighting, Tracker};
 use crate::quality::{Blind, Watch};
 use crate::rectify::Rectifier;
@@ -45,10 +46,41 @@ pub struct Camera {
     before: Box<Plane>,
     calibration: Calibration,
     markers: Option<Markers>,
-    object: Tracker<Running>,
+    object: Tracker,
     watch: Watch,
     skin: Skin,
+    heading: Heading,
     frames: u32,
+}
+
+/// The angle of a held object: turned by what its brightness says from picture to picture, and slowly drawn to where its rims lie.
+/// Rims shake when a part of the object has the colours of the wall.
+#[derive(Clone, Copy, Debug, Default)]
+struct Heading {
+    rad: f32,
+    /// Pictures that it is the mean of.
+    pictures: f32,
+}
+
+impl Heading {
+    /// Takes what is seen and the turn since the picture before. None before it has seen rims.
+    fn follow(&mut self, seen: &Sighting, turned_rad: Option<f32>) -> Option<f32> {
+        match turned_rad {
+            Some(turned) => self.rad += turned,
+            None => self.pictures = 0.0,
+        }
+        if !seen.cut {
+            self.pictures = (self.pictures + 1.0).min(HEADING_PICTURES);
+            self.rad += half_turn(seen.angle_rad - self.rad) / self.pictures;
+        }
+        self.rad = half_turn(self.rad);
+        (self.pictures > 0.0).then_some(self.rad)
+    }
+}
+
+/// The same direction of a line, from -pi/2 to pi/2.
+fn half_turn(rad: f32) -> f32 {
+    rad - PI * libm::roundf(rad / PI)
 }
 
 impl Camera {
@@ -62,6 +94,7 @@ impl Camera {
             object: Tracker::new(config, Running::default()),
             watch: Watch::default(),
             skin: Skin::new(),
+            heading: Heading::default(),
             frames: 0,
         }
     }
@@ -77,7 +110,7 @@ impl Camera {
     }
 
     /// What follows the object, for whoever draws it.
-    pub const fn object(&self) -> &Tracker<Running> {
+    pub const fn object(&self) -> &Tracker {
         &self.object
     }
 
@@ -99,7 +132,7 @@ impl Camera {
         let blind = self.watch.picture(&self.grey, (found, markers.len()), taken_ms, now_ms);
         let forces = Forces::of(markers, MARKERS_MIN);
         let skin = skin_of(markers);
-        let object = self.object.step(frame, &self.grey, &skin, learn);
+        let mut object = self.object.step(frame, &self.grey, &skin, learn);
         let (mut flow, mut skin_flow, mut background_flow) = (None, None, None);
         if self.frames > 0 {
             if let Some(middle) = self.object.object().moments().map(|moments| moments.middle) {
@@ -114,6 +147,12 @@ impl Camera {
             background.invert();
             background.thin(BACKGROUND_ROWS);
             background_flow = motion::flow(&self.before, &self.grey, &background, MIDDLE);
+        }
+        if learn {
+            self.heading = Heading::default();
+        } else if let Some(object) = &mut object {
+            let turned = flow.map(|flow: Flow| flow.turn / ARM_PX);
+            object.angle_rad = self.heading.follow(object, turned).unwrap_or(object.angle_rad);
         }
         self.skin.remember(markers);
         let number = self.frames;
@@ -137,6 +176,8 @@ impl Camera {
     }
 }
 
+/// Pictures from which the angle of a held object is made.
+const HEADING_PICTURES: f32 = 40.0;
 /// Rows of the object that are looked at for its move.
 const OBJECT_ROWS: usize = 2;
 /// Rows of the background that are looked at: one of so many is enough for one move.

@@ -48,8 +48,11 @@ impl Mask {
     /// 1 for a pixel that is in the set, 0 for another.
     pub fn unpack(&self, bytes: &mut [u8; PIXELS]) {
         for (word, bytes) in self.rows.iter().flatten().zip(bytes.chunks_exact_mut(64)) {
-            for (bit, byte) in bytes.iter_mut().enumerate() {
-                *byte = (word >> bit & 1) as u8;
+            for (eight, bits) in bytes.chunks_exact_mut(8).zip(word.to_le_bytes()) {
+                // Byte n keeps bit n of eight copies, and becomes 1 if it is set.
+                let bits = u64::from(bits).wrapping_mul(0x0101_0101_0101_0101) & 0x8040_2010_0804_0201;
+                let ones = (bits + 0x7f7f_7f7f_7f7f_7f7f) >> 7 & 0x0101_0101_0101_0101;
+                eight.copy_from_slice(&ones.to_le_bytes());
             }
         }
     }
@@ -114,20 +117,25 @@ impl Mask {
         }
     }
 
-    /// Grows it by a pixel in all eight directions, `times` over.
+    /// Grows it by a pixel in all eight directions, `times` over. What has grown by r pixels and is laid beside itself at most 2 r + 1
+    /// away has no gap, so that few steps are needed.
     pub fn dilate(&mut self, times: usize) {
-        for _ in 0..times {
+        let mut grown = 0;
+        while grown < times {
+            let step = (2 * grown + 1).min(times - grown).min(63);
             for row in &mut self.rows {
-                *row = wider(row);
+                *row = wider(row, step);
             }
-            let mut above = [0; WORDS];
+            // The rows so far above are those from before this step.
+            let mut above = [[0; WORDS]; 64];
             for y in 0..HEIGHT {
-                let (row, below) = (self.rows[y], self.rows.get(y + 1).copied().unwrap_or_default());
+                let (row, below) = (self.rows[y], self.rows.get(y + step).copied().unwrap_or_default());
+                let above = core::mem::replace(&mut above[y % step], row);
                 for word in 0..WORDS {
                     self.rows[y][word] = above[word] | row[word] | below[word];
                 }
-                above = row;
             }
+            grown += step;
         }
     }
 
@@ -257,13 +265,13 @@ impl Mask {
     }
 }
 
-/// A row and its neighbours to the left and right.
-fn wider(row: &[u64; WORDS]) -> [u64; WORDS] {
+/// A row and what is `by` pixels to the left and right, less than 64.
+fn wider(row: &[u64; WORDS], by: usize) -> [u64; WORDS] {
     let mut wide = *row;
     for word in 0..WORDS {
-        let from_left = if word > 0 { row[word - 1] >> 63 } else { 0 };
-        let from_right = if word + 1 < WORDS { row[word + 1] << 63 } else { 0 };
-        wide[word] |= row[word] << 1 | row[word] >> 1 | from_left | from_right;
+        let from_left = if word > 0 { row[word - 1] >> (64 - by) } else { 0 };
+        let from_right = if word + 1 < WORDS { row[word + 1] << (64 - by) } else { 0 };
+        wide[word] |= row[word] << by | row[word] >> by | from_left | from_right;
     }
     wide
 }

@@ -23,7 +23,11 @@ pub const ARM_PX: f32 = 60.0;
 /// Slope below which a pixel is noise, grey levels over two pixels.
 const SLOPE_MIN: i32 = 8;
 /// Pixels with a slope that are needed.
-const PIXELS_MIN: u32 = 60;
+const PIXELS_MIN: usize = 60;
+/// Pixels that are looked at: of more, every second, third, ... one.
+const SAMPLES_MAX: usize = 4096;
+/// Of which so many are reckoned with at once.
+const LANES: usize = 8;
 /// Rounds of the fit.
 const ROUNDS: usize = 3;
 /// A change that is not explained and is less than this counts as the rest does, grey levels.
@@ -48,49 +52,88 @@ impl Flow {
 /// The move that best explains how the pixels of `object` changed, about `middle`. None if they are too plain for that. Right for
 /// moves of a pixel or two; larger ones come out too small, with the right sign.
 pub fn flow(before: &Plane, now: &Plane, object: &Mask, middle: Point) -> Option<Flow> {
+    let mut samples = Samples::EMPTY;
+    let every = object.count() as usize / SAMPLES_MAX + 1;
+    let mut number = 0;
+    object.for_each(|at| {
+        number += 1;
+        if number % every == 0 {
+            samples.take(before, now, at, middle);
+        }
+    });
+    if samples.count < PIXELS_MIN {
+        return None;
+    }
     let mut found = [0.0; UNKNOWNS];
     for round in 0..ROUNDS {
-        let (mut a, mut b) = ([[0.0; UNKNOWNS]; UNKNOWNS], [0.0; UNKNOWNS]);
-        let mut count = 0;
-        object.for_each(|at| {
-            let (x, y) = (at % WIDTH, at / WIDTH);
-            if x == 0 || y == 0 || x == WIDTH - 1 || y == HEIGHT - 1 {
-                return;
-            }
-            let sum = |at: usize| i32::from(now[at]) + i32::from(before[at]);
-            // The slope of both pictures: of one alone it would be off by half the move. Over two pixels, of two pictures.
-            let (gx, gy) = (sum(at + 1) - sum(at - 1), sum(at + WIDTH) - sum(at - WIDTH));
-            if gx.abs() + gy.abs() < 2 * SLOPE_MIN {
-                return;
-            }
-            count += 1;
-            let (gx, gy) = (gx as f32 / 4.0, gy as f32 / 4.0);
-            let (dx, dy) = ((x as f32 - middle.x) / ARM_PX, (y as f32 - middle.y) / ARM_PX);
-            let row = [-gx, -gy, gx * dy - gy * dx, sum(at) as f32 / 512.0];
-            let change = f32::from(now[at]) - f32::from(before[at]);
-            let weight = if round == 0 {
-                1.0
-            } else {
-                let off = (change - dot(&row, &found)) / NOISE;
-                1.0 / (1.0 + off * off)
-            };
-            for i in 0..UNKNOWNS {
-                let own = weight * row[i];
-                (0..=i).for_each(|j| a[i][j] += own * row[j]);
-                b[i] += own * change;
-            }
-        });
-        if count < PIXELS_MIN {
-            return None;
-        }
+        let (a, b) = samples.normal_equations((round > 0).then_some(&found));
         found = solve(a, b)?;
     }
     let [x, y, turn, _] = found;
     Some(Flow { x, y, turn })
 }
 
-fn dot(a: &[f32; UNKNOWNS], b: &[f32; UNKNOWNS]) -> f32 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+/// What each pixel says of the move: `row * unknowns = change`, a column each.
+struct Samples {
+    rows: [[f32; SAMPLES_MAX]; UNKNOWNS],
+    changes: [f32; SAMPLES_MAX],
+    count: usize,
+}
+
+impl Samples {
+    const EMPTY: Self = Self { rows: [[0.0; SAMPLES_MAX]; UNKNOWNS], changes: [0.0; SAMPLES_MAX], count: 0 };
+
+    /// Takes a pixel, unless it is plain or at the border.
+    #[inline]
+    fn take(&mut self, before: &Plane, now: &Plane, at: usize, middle: Point) {
+        let (x, y) = (at % WIDTH, at / WIDTH);
+        if x == 0 || y == 0 || x == WIDTH - 1 || y == HEIGHT - 1 || self.count == SAMPLES_MAX {
+            return;
+        }
+        let sum = |at: usize| i32::from(now[at]) + i32::from(before[at]);
+        // The slope of both pictures: of one alone it would be off by half the move. Over two pixels, of two pictures.
+        let (gx, gy) = (sum(at + 1) - sum(at - 1), sum(at + WIDTH) - sum(at - WIDTH));
+        if gx.abs() + gy.abs() < 2 * SLOPE_MIN {
+            return;
+        }
+        let (gx, gy) = (gx as f32 / 4.0, gy as f32 / 4.0);
+        let (dx, dy) = ((x as f32 - middle.x) / ARM_PX, (y as f32 - middle.y) / ARM_PX);
+        let row = [-gx, -gy, gx * dy - gy * dx, sum(at) as f32 / 512.0];
+        self.rows.iter_mut().zip(row).for_each(|(column, value)| column[self.count] = value);
+        self.changes[self.count] = f32::from(now[at]) - f32::from(before[at]);
+        self.count += 1;
+    }
+
+    /// The sums of the least squares; what `found` does not explain counts less. Lanes are added up apart, for the compiler's vectors.
+    fn normal_equations(
+        &self,
+        found: Option<&[f32; UNKNOWNS]>,
+    ) -> ([[f32; UNKNOWNS]; UNKNOWNS], [f32; UNKNOWNS]) {
+        let (mut a, mut b) = ([[[0.0f32; LANES]; UNKNOWNS]; UNKNOWNS], [[0.0f32; LANES]; UNKNOWNS]);
+        // What is past the last sample is 0 and adds nothing.
+        for first in (0..self.count).step_by(LANES) {
+            let lanes = |column: &[f32; SAMPLES_MAX]| -> [f32; LANES] {
+                core::array::from_fn(|lane| column[first + lane])
+            };
+            let (rows, change) = (self.rows.each_ref().map(lanes), lanes(&self.changes));
+            let mut weight = [1.0; LANES];
+            if let Some(found) = found {
+                for lane in 0..LANES {
+                    let told = (0..UNKNOWNS).map(|i| rows[i][lane] * found[i]).sum::<f32>();
+                    let off = (change[lane] - told) / NOISE;
+                    weight[lane] = 1.0 / (1.0 + off * off);
+                }
+            }
+            for i in 0..UNKNOWNS {
+                for lane in 0..LANES {
+                    let own = weight[lane] * rows[i][lane];
+                    (0..=i).for_each(|j| a[i][j][lane] += own * rows[j][lane]);
+                    b[i][lane] += own * change[lane];
+                }
+            }
+        }
+        (a.map(|row| row.map(|lanes| lanes.iter().sum())), b.map(|lanes| lanes.iter().sum()))
+    }
 }
 
 /// Solves the normal equations by Cholesky's factors. None if the unknowns cannot be told apart.

@@ -22,7 +22,7 @@ use crate::rectify::Rectifier;
 
 use self::colour::{BINS, Bins};
 pub use self::model::{Histogram, ObjectModel};
-pub use self::movement::{Mixture, Movement, Running};
+pub use self::movement::Running;
 pub use self::scene::Scene;
 
 /// What differs from the scene while there is an object is believed to be the scene in one frame of so many.
@@ -39,6 +39,10 @@ const LEAP_PX: usize = 3;
 const PIECES_PERCENT: u32 = 25;
 /// How far apart they are at most, px: what is further away is a spot of the background.
 const APART_PX: usize = 32;
+/// How many times the least area of an object is halved for what the hand holds.
+const HELD_HALVED: u32 = 3;
+/// One of which less than the first of these is seen, of what was, is seen in part, until more than the second is; per cent.
+const WHOLE_PERCENT: (u32, u32) = (60, 90);
 /// Moving pixels below which an object is still.
 const STILL_PX: u32 = 150;
 /// Frames after which what looks like a ghost is one.
@@ -86,18 +90,18 @@ pub struct Sighting {
     pub area: f32,
     /// Moving pixels on it.
     pub slip_px: u32,
-    /// Whether it goes on beyond the picture's border, where nobody knows how: its middle and its angle are those of the part
-    /// that is seen.
+    /// Whether a part of it is seen: it goes on beyond the picture's border, or most of what was seen of a held one has the wall's
+    /// colours now. Middle and angle are those of the part.
     pub cut: bool,
 }
 
 /// Follows an object. Nothing is allocated after `new`.
 #[derive(Clone, Debug)]
-pub struct Tracker<M> {
+pub struct Tracker {
     config: Config,
     bins: Bins,
     scene: Scene,
-    movement: M,
+    movement: Running,
     model: ObjectModel,
     object: Mask,
     /// The object and the hand that brings it.
@@ -111,13 +115,17 @@ pub struct Tracker<M> {
     lens: Option<Rectifier>,
     frames: u32,
     seen: bool,
+    /// The most pixels of it that were seen since the hand has closed on it; 0: it has not.
+    grasped: u32,
+    /// Whether so much of that is missing that the rest is a part.
+    is_part: bool,
     /// Frames in a row in which the object looked like a ghost.
     ghosts: u32,
 }
 
-impl<M: Movement> Tracker<M> {
+impl Tracker {
     /// One that has seen nothing.
-    pub fn new(config: Config, movement: M) -> Self {
+    pub fn new(config: Config, movement: Running) -> Self {
         Self {
             config,
             bins: Bins::new(),
@@ -134,6 +142,8 @@ impl<M: Movement> Tracker<M> {
             lens: None,
             frames: 0,
             seen: false,
+            grasped: 0,
+            is_part: false,
             ghosts: 0,
         }
     }
@@ -167,7 +177,7 @@ impl<M: Movement> Tracker<M> {
     /// closes. What moves in `skin`, where the markers are, is no slip. None while there is no object.
     pub fn step(&mut self, frame: &Frame, grey: &Plane, skin: &Mask, learn: bool) -> Option<Sighting> {
         self.frames = self.frames.saturating_add(1);
-        self.movement.step(frame, grey, &mut self.bytes);
+        self.movement.step(grey, &mut self.bytes);
         self.moving.pack(&self.bytes);
         if self.frames == 1 {
             self.scene.follow(frame, &self.held, 0);
@@ -211,8 +221,15 @@ impl<M: Movement> Tracker<M> {
         }
 
         let part = |pixels: u32| pixels as f32 / PIXELS as f32;
-        // What was an object a moment ago is one still, if half as much of it is seen.
-        let area_min = if self.seen { self.config.area_min / 2.0 } else { self.config.area_min };
+        // What was an object a moment ago is one still, if half as much of it is seen; what the hand has closed on is one, however
+        // little of it differs from the wall behind it.
+        if learn || !(self.seen || self.grasped > 0) {
+            self.grasped = 0;
+        } else {
+            self.grasped = self.grasped.max(self.object.count());
+        }
+        let halved = if self.grasped > 0 { HELD_HALVED } else { u32::from(self.seen) };
+        let area_min = self.config.area_min / (1 << halved) as f32;
         let moments = self.object.moments().filter(|moments| part(moments.area) >= area_min);
         self.seen = moments.is_some();
         if !self.seen {
@@ -239,7 +256,9 @@ impl<M: Movement> Tracker<M> {
         let mut unknown = apart;
         unknown.unite(skin);
         unknown.unite(&self.object);
-        let cut = cut::is_cut(&self.object, learn.then_some(&unknown));
+        let whole_percent = if self.is_part { WHOLE_PERCENT.1 } else { WHOLE_PERCENT.0 };
+        self.is_part = 100 * self.object.count() < whole_percent * self.grasped;
+        let cut = self.is_part || cut::is_cut(&self.object, learn.then_some(&unknown));
         Some(Sighting { moments, angle_rad, area, slip_px, cut })
     }
 

@@ -49,7 +49,7 @@ impl World {
 
 struct Camera {
     world: World,
-    tracker: Tracker<Running>,
+    tracker: Tracker,
     grey: Box<Plane>,
 }
 

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use common::{for_each_frame, plane, recording};
 use tenax_vision::mask::Mask;
-use tenax_vision::object::{Config, Mixture, Movement, Running, Tracker};
+use tenax_vision::object::{Config, Running, Tracker};
 
 /// Frames without card or hand; a person walks about behind the skin in the first and in the last.
 const EMPTY: [Range<usize>; 3] = [0..260, 1540..1640, 2660..2932];
@@ -22,11 +22,11 @@ fn outlines() -> BTreeMap<usize, Vec<(f32, f32)>> {
 }
 
 /// Follows the object through the video.
-fn follow(name: &str, movement: impl Movement) -> (f32, f32, f32) {
+fn follow() -> (f32, f32, f32) {
     let video = recording("skin_video_54fps.m4v");
     let outlines = outlines();
     assert_eq!(outlines.len(), 20);
-    let (mut grey, mut tracker) = (plane(0), Tracker::new(Config::default(), movement));
+    let (mut grey, mut tracker) = (plane(0), Tracker::new(Config::default(), Running::default()));
     let (mut empty, mut wrong, mut slips, mut held) = (0, 0, 0, 0);
     let mut overlaps = Vec::new();
     for_each_frame(&video, |number, frame| {
@@ -48,7 +48,7 @@ fn follow(name: &str, movement: impl Movement) -> (f32, f32, f32) {
     let mean = overlaps.iter().map(|(_, overlap)| overlap).sum::<f32>() / overlaps.len() as f32;
     let worst = overlaps.iter().map(|(_, overlap)| *overlap).fold(1.0, f32::min);
     println!(
-        "{name}: something seen in {wrong} of {empty} empty frames; outlines: {mean:.2} mean, {worst:.2} worst {overlaps:.2?}; \
+        "something seen in {wrong} of {empty} empty frames; outlines: {mean:.2} mean, {worst:.2} worst {overlaps:.2?}; \
          moving points in {slips} of {held} frames in which a card is moved"
     );
     assert!(slips * 100 > held * 85, "{slips} of {held}");
@@ -58,10 +58,7 @@ fn follow(name: &str, movement: impl Movement) -> (f32, f32, f32) {
 #[test]
 #[cfg_attr(not(videos), ignore = "no video in ../shared/data, or no ffmpeg")]
 fn both_cards_are_outlined_and_the_empty_scene_is_empty() {
-    let (mean, worst, wrong) = follow("running mean", Running::default());
+    let (mean, worst, wrong) = follow();
     assert!(wrong <= 0.01, "{wrong}");
     assert!(mean >= 0.75 && worst >= 0.6, "{mean} {worst}");
-    // A mixture costs ten times as much, and is no better here.
-    let (of_mixture, ..) = follow("mixture", Mixture::default());
-    assert!(of_mixture <= mean + 0.02, "{of_mixture} {mean}: choose again which is the default");
 }

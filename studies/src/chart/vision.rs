@@ -8,7 +8,7 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use tenax_vision::frame::{Frame, Plane, plane};
 use tenax_vision::mask::Mask;
-use tenax_vision::object::{Config, Mixture, Movement, Running, Tracker};
+use tenax_vision::object::{Config, Running, Tracker};
 
 use super::{Chart, Progress, csv};
 use crate::vision::feed::{Feed, Next};
@@ -24,14 +24,14 @@ const EMPTY: [std::ops::Range<usize>; 3] = [0..260, 1540..1640, 2660..2932];
 /// A choice that goes on, and how it does.
 struct Choice {
     name: &'static str,
-    tracker: Tracker<Way>,
+    tracker: Tracker,
     times_s: Vec<f64>,
     overlaps: Vec<f64>,
     empty_false: u32,
 }
 
 impl Choice {
-    fn new(name: &'static str, config: Config, way: Way) -> Self {
+    fn new(name: &'static str, config: Config, way: Running) -> Self {
         let tracker = Tracker::new(config, way);
         Self { name, tracker, times_s: Vec::new(), overlaps: Vec::new(), empty_false: 0 }
     }
@@ -66,17 +66,15 @@ impl Choice {
 /// does slows all alike. Fails if the video cannot be read.
 pub fn choices(video: &Path, progress: Progress) -> Result<Chart> {
     let usual = Config::default;
-    let running = |apart, rate| Way::Running(Running::new(apart, rate));
     let mut choices = [
-        Choice::new("running mean (default)", usual(), Way::Running(Running::default())),
-        Choice::new("mean of 2 frames", usual(), running(14, 1)),
-        Choice::new("mean of 8 frames", usual(), running(14, 3)),
-        Choice::new("8 grey levels", usual(), running(8, 2)),
-        Choice::new("24 grey levels", usual(), running(24, 2)),
-        Choice::new("mixture as MOG2", usual(), Way::Mixture(Mixture::default())),
-        Choice::new("colour from 15", Config { colour_min: 15, ..usual() }, running(14, 2)),
-        Choice::new("colour from 120", Config { colour_min: 120, ..usual() }, running(14, 2)),
-        Choice::new("hand not left out", Config { skip_hand: false, ..usual() }, running(14, 2)),
+        Choice::new("running mean (default)", usual(), Running::default()),
+        Choice::new("mean of 2 frames", usual(), Running::new(14, 1)),
+        Choice::new("mean of 8 frames", usual(), Running::new(14, 3)),
+        Choice::new("8 grey levels", usual(), Running::new(8, 2)),
+        Choice::new("24 grey levels", usual(), Running::new(24, 2)),
+        Choice::new("colour from 15", Config { colour_min: 15, ..usual() }, Running::new(14, 2)),
+        Choice::new("colour from 120", Config { colour_min: 120, ..usual() }, Running::new(14, 2)),
+        Choice::new("hand not left out", Config { skip_hand: false, ..usual() }, Running::new(14, 2)),
     ];
     let outlines = outlines()?;
     let mut feed = Feed::open(&Source::Video(video.to_owned()), 54.0, None, false)?;
@@ -125,20 +123,6 @@ pub fn choices(video: &Path, progress: Progress) -> Result<Chart> {
 /// Colours of the choices, with dots and then with rings.
 const COLOURS: [plotters::style::RGBColor; 6] =
     [colour::BLUE, colour::ORANGE, colour::GREEN, colour::PURPLE, colour::SKY, colour::VERMILLION];
-
-enum Way {
-    Running(Running),
-    Mixture(Mixture),
-}
-
-impl Movement for Way {
-    fn step(&mut self, frame: &Frame, grey: &Plane, into: &mut Plane) {
-        match self {
-            Self::Running(running) => running.step(frame, grey, into),
-            Self::Mixture(mixture) => mixture.step(frame, grey, into),
-        }
-    }
-}
 
 /// Pixels inside the outlines, by frame.
 fn outlines() -> Result<BTreeMap<usize, Mask>> {

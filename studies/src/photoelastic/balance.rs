@@ -1,9 +1,10 @@
 //! Calibration of the head's curve: known weights on a balance, one after the other.
 
 use serde::Serialize;
-use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, mv_from_sample};
+use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, mv_from_sample, sample_from_mv};
 use tenax_logic::photoelastic::HeadConfig;
 use tenax_logic::photoelastic::curve::{Curve, HALF_TURN, KNOTS, phase_of};
+use tenax_logic::photoelastic::split::Q;
 use tenax_logic::setting::SettingId;
 use tenax_scene::Seeds;
 use tenax_scene::sensor::photoelastic::curve::{Day, Making, receiver_mv};
@@ -17,6 +18,8 @@ const GRAM_N: f64 = 9.806_65e-3;
 /// Grams from one weight to the next, up to the first of them, and beyond.
 const FINE: (f64, f64) = (20.0, 2.0);
 const STEP: f64 = 10.0;
+/// The ac part of slip is so many times the largest that was read while nothing slipped.
+const SLIP_TIMES: i32 = 2;
 /// Cycles that are read of each.
 const CYCLES: usize = 40;
 
@@ -38,6 +41,8 @@ pub struct Calibration {
     pub curve: Curve,
     /// Every weight up to the curve's end.
     pub weighed: Vec<Weighed>,
+    /// The mean size of the ac part that means slip, mV, where the ac part was read as well.
+    pub slip_mv: Option<u16>,
 }
 
 impl Calibration {
@@ -56,12 +61,15 @@ impl Calibration {
             Id::HeadForce8,
         ];
         let levels = [(Id::HeadDark, mv(self.curve.dark_q4)), (Id::HeadBright, mv(self.curve.bright_q4))];
-        levels.into_iter().chain(forces.into_iter().zip(self.curve.force_mn)).collect()
+        let slip = self.slip_mv.map(|mv| (Id::HeadSlip, mv.into()));
+        levels.into_iter().chain(forces.into_iter().zip(self.curve.force_mn)).chain(slip).collect()
     }
 
     /// The configuration of a head with this calibration.
     pub fn config(&self) -> HeadConfig {
-        HeadConfig { curve: self.curve, ..mean_head() }
+        let mean = mean_head();
+        let slip = self.slip_mv.map_or(mean.slip, |mv| sample_from_mv(mv.into()));
+        HeadConfig { curve: self.curve, slip, ..mean }
     }
 
     /// The largest residual, % of the curve's end.
@@ -74,12 +82,17 @@ impl Calibration {
 /// Puts weight after weight on a head, up to 20 % beyond where its curve should end.
 pub fn weigh(making: &Making, day: &Day, seeds: Seeds) -> Calibration {
     let mut bench = Bench::new(mean_head(), seeds.noise);
-    let read = |force_n: f64, bench: &mut Bench| {
+    let mut loudest = 0;
+    let mut read = |force_n: f64, bench: &mut Bench| {
         let mut sum = 0.0;
         let mut pin_v = |t_s: f64| receiver_mv(&Layer::DUBEY, making, day, t_s, force_n, 0.0) / 1e3;
         let frames = CYCLES * usize::from(FRAMES_PER_SLOW_FRAME);
-        for _ in 0..frames {
+        for frame in 0..frames {
             sum += f64::from(bench.frame(&mut pin_v));
+            // Each weight is put on with a jerk.
+            if frame > frames / 2 {
+                loudest = loudest.max(bench.head.split().envelope());
+            }
         }
         sum / frames as f64 * 16.0
     };
@@ -87,7 +100,9 @@ pub fn weigh(making: &Making, day: &Day, seeds: Seeds) -> Calibration {
     let coarse = ((1.2 * making.back_n / GRAM_N - FINE.0) / STEP) as usize;
     let grams = (0..fine).map(|n| n as f64 * FINE.1).chain((0..coarse).map(|n| FINE.0 + n as f64 * STEP));
     let forces = grams.map(|grams| grams * GRAM_N);
-    fit(&forces.map(|force_n| (force_n, read(force_n, &mut bench))).collect::<Vec<_>>())
+    let levels: Vec<_> = forces.map(|force_n| (force_n, read(force_n, &mut bench))).collect();
+    let slip_mv = mv_from_sample(((SLIP_TIMES * loudest) >> Q) as u16).max(1) as u16;
+    Calibration { slip_mv: Some(slip_mv), ..fit(&levels) }
 }
 
 /// The curve through forces and levels (1/16 of a sample), in rising order of force, the first without load.
@@ -124,7 +139,7 @@ pub fn fit(levels: &[(f64, f64)]) -> Calibration {
             .min_by(|a, b| (a - force_n).abs().total_cmp(&(b - force_n).abs()))
             .unwrap_or(0.0),
     });
-    Calibration { curve, weighed: weighed.collect() }
+    Calibration { curve, weighed: weighed.collect(), slip_mv: None }
 }
 
 /// The top of the parabola through three levels at even distances.

@@ -18,11 +18,12 @@ pub fn leave_out(object: &mut Mask, frame: &Frame, white: [u8; 3], least: u32) {
         return;
     }
     let white = white.map(|level| u32::from(level.max(1)));
+    // Each as bright as green, were it grey; 1/256.
+    let [red_gain, blue_gain] = [white[0], white[2]].map(|own| (white[1] << 8) / own);
     let mut skin = Mask::EMPTY;
     object.for_each(|at| {
-        // Each as bright as green, were it grey.
-        let red = u32::from(frame.red[at]) * white[1] / white[0];
-        let blue = u32::from(frame.blue[at]) * white[1] / white[2];
+        let red = (u32::from(frame.red[at]) * red_gain) >> 8;
+        let blue = (u32::from(frame.blue[at]) * blue_gain) >> 8;
         let green = u32::from(frame.green[at]);
         let redder = 64 * red > REDDER.0 * green && 64 * red < REDDER.1 * green;
         if redder && 64 * red > WARMER * blue {
