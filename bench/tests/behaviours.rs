@@ -1,5 +1,5 @@
-//! The behaviours in their scenes, each of the paper's results beside its control. Eight seeds each;
-//! `TENAX_SEEDS=100 cargo test ... --test behaviours` runs more.
+//! The behaviours in their scenes, each of the paper's results beside its control, with a camera that errs as the vision crate does and
+//! with one of whose pictures 5 % are wrong, three in a row. Eight seeds each; `TENAX_SEEDS=100 cargo test ... --test behaviours` runs more.
 
 use tenax_bench::report::text::Text;
 use tenax_bench::session::{self, Board};
@@ -13,19 +13,52 @@ fn seeds() -> std::ops::RangeInclusive<u64> {
 /// What really happened in each seed, with `more` added to the scene's file.
 fn fates(name: &str, more: &str) -> Vec<Truth> {
     let (_, text) = builtin().iter().find(|(known, _)| *known == name).expect("a scene");
-    let scene = SceneFile::parse(&format!("{text}\n{more}"), name).expect("it parses");
+    run(name, &format!("{text}\n{more}"))
+}
+
+fn run(name: &str, text: &str) -> Vec<Truth> {
+    let scene = SceneFile::parse(text, name).expect("it parses");
     let run =
         |seed| Board::Host.run(World::new(&scene, seed), &mut |_| {}).expect("it runs").1.truth().clone();
     seeds().map(run).collect()
 }
 
+/// Wrong pictures in bursts, some twenty times as many as the vision crate has.
+const BURSTS: &str = "[skin]\nwrong_part = 0.05\nwrong_pictures = 3";
+
+/// With the camera's own errors nothing is lost or crushed. With bursts nothing is lost, and at most one seed in eight is crushed: of 100
+/// seeds one crane and two cups are, and the goal is none. Wrong pictures come while the object hangs at the limit of its friction.
 fn unharmed(name: &str) -> Vec<Truth> {
-    let fates = fates(name, "");
-    for (seed, truth) in seeds().zip(&fates) {
-        assert!(!truth.dropped && !truth.left_behind, "{name}, seed {seed}: lost");
-        assert!(truth.dent_mm == 0.0 && truth.broken_at_s.is_none(), "{name}, seed {seed}: crushed");
-    }
+    let harmed = |more: &str| {
+        let fates = fates(name, more);
+        let crushed: Vec<_> = seeds().zip(&fates).filter(|(_, truth)| truth.dent_mm > 0.0).collect();
+        println!("{name}: slid {:.2} mm, pressed by {:.2} N, {more:?}", slid_mm(&fates), pressed_n(&fates));
+        for (seed, truth) in seeds().zip(&fates) {
+            assert!(!truth.dropped && !truth.left_behind, "{name}, seed {seed}: lost, {more}");
+            assert!(truth.broken_at_s.is_none(), "{name}, seed {seed}: broken, {more}");
+        }
+        let seeds: Vec<u64> = crushed.iter().map(|(seed, _)| *seed).collect();
+        (fates, seeds)
+    };
+    let (fates_of_bursts, crushed) = harmed(BURSTS);
+    assert!(8 * crushed.len() <= fates_of_bursts.len(), "{name}: crushed in bursts, seeds {crushed:?}");
+    let (fates, crushed) = harmed("");
+    assert!(crushed.is_empty(), "{name}: crushed, seeds {crushed:?}");
     fates
+}
+
+/// A control fails: the object is lost, crushed, or slides by 5 mm, in at least half of the seeds.
+fn fails(name: &str, fates: &[Truth]) {
+    let fail = |truth: &&Truth| truth.dropped || truth.dent_mm > 0.0 || truth.slip_distance_mm > 5.0;
+    let failed = fates.iter().filter(fail).count();
+    println!("{name}, the control: fails in {failed} of {}", fates.len());
+    assert!(2 * failed >= fates.len(), "{name}: the control fails in {failed} of {} only", fates.len());
+}
+
+/// The scene with nobody who holds.
+fn not_held(name: &str, more: &str) -> Vec<Truth> {
+    let (_, text) = builtin().iter().find(|(known, _)| *known == name).expect("a scene");
+    run(name, &format!("{}\n{more}", text.replace("kind = \"hold\"", "kind = \"end\"")))
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> f64 {
@@ -37,33 +70,46 @@ fn slid_mm(fates: &[Truth]) -> f64 {
     mean(fates.iter().map(|truth| truth.slip_distance_mm))
 }
 
+fn pressed_n(fates: &[Truth]) -> f64 {
+    fates.iter().map(|truth| truth.peak_grip_n).fold(0.0, f64::max)
+}
+
 #[test]
-fn a_can_a_card_and_a_crane_are_taken_and_none_is_crushed() {
-    for name in ["gentle-can", "gentle-card", "hold-crane"] {
-        unharmed(name);
-    }
+fn a_can_and_a_card_are_taken_and_none_is_crushed() {
     // The control: fingers that come as far without feeling anything.
-    let blind = "[[command]]\nat_s = 2.0\nkind = \"close\"\nduty_permille = 100\nfor_s = 0.5\n";
-    assert!(fates("gentle-card", blind).iter().all(|truth| truth.dent_mm > 0.0));
+    let blind = "[[command]]\nat_s = 2.0\nkind = \"close\"\nduty_permille = 100\nfor_s = 0.7\n";
+    for name in ["gentle-can", "gentle-card"] {
+        unharmed(name);
+        fails(name, &fates(name, blind));
+    }
+}
+
+#[test]
+fn a_crane_is_held_against_a_pull_and_a_swing() {
+    let held = unharmed("hold-crane");
+    assert!(slid_mm(&held) < 0.5, "{} mm", slid_mm(&held));
+    fails("hold-crane", &not_held("hold-crane", ""));
 }
 
 #[test]
 fn holding_slips_less_than_a_gentle_grasp() {
     let (gentle, held) = (fates("push-gentle", ""), unharmed("push-hold"));
     assert!(slid_mm(&held) < 0.5 * slid_mm(&gentle), "{} mm of {}", slid_mm(&held), slid_mm(&gentle));
+    fails("push-gentle", &gentle);
 }
 
 #[test]
 fn what_is_soft_is_held_against_a_pull_and_a_swing() {
     for name in ["hold-marshmallow", "hold-toy"] {
         unharmed(name);
+        fails(name, &not_held(name, ""));
     }
 }
 
 /// Twenty times what the cup weighs comes in, and the hand follows.
 #[test]
 fn water_is_poured_into_a_cup_that_stays_where_it_is() {
-    // The control: neither behaviour nor reflex, but for what steady sliding says.
+    // The control: nobody holds it, and S1 and S2 are deaf. Warnings of Ft/Fn still hold the cup in most seeds.
     let nobody = "[[command]]\nat_s = 0.1\nkind = \"set-s1-mv\"\nvalue = 1500\n\
         [[command]]\nat_s = 0.12\nkind = \"set-s2-permille\"\nvalue = 1500\n\
         [[command]]\nat_s = 4.2\nkind = \"end\"\n";
@@ -90,15 +136,21 @@ fn a_pull_takes_the_object_and_without_one_it_stays() {
 
 /// FingerVision 2017, figure 19: in most runs the angle was exceeded. With foresight it is not.
 #[test]
-fn a_turn_comes_within_three_degrees_and_foresight_takes_the_overshoot_away() {
+fn a_turn_comes_within_two_degrees_and_foresight_takes_the_overshoot_away() {
     let paper = "[[command]]\nat_s = 0.2\nkind = \"set-turn-lead-ms\"\nvalue = 0\n";
     let error_deg = |truth: &Truth| truth.turned_rad.to_degrees() - 20.0;
+    let off_deg = |fates: &[Truth]| mean(fates.iter().map(|truth| error_deg(truth).abs()));
+    let worst_deg = |fates: &[Truth]| fates.iter().map(|truth| error_deg(truth).abs()).fold(0.0, f64::max);
     let (ours, papers) = (unharmed("turn-pen"), fates("turn-pen", paper));
-    let off = mean(ours.iter().map(|truth| error_deg(truth).abs()));
-    assert!(off <= 3.0, "{off} degrees");
-    let (over, papers_over) = (mean(ours.iter().map(error_deg)), mean(papers.iter().map(error_deg)));
-    println!("error {off:.2} degrees; too far on average {over:.2}, without foresight {papers_over:.2}");
-    assert!(papers_over > 0.0 && over < papers_over, "{over}, {papers_over}");
+    for fates in [&ours, &fates("turn-pen", BURSTS)] {
+        println!("off by {:.2} degrees on average, {:.2} at worst", off_deg(fates), worst_deg(fates));
+        assert!(off_deg(fates) <= 2.0, "{} degrees", off_deg(fates));
+    }
+    let over = |fates: &[Truth]| fates.iter().filter(|truth| error_deg(truth) > 0.0).count();
+    println!("too far in {} of {}, without foresight in {}", over(&ours), ours.len(), over(&papers));
+    assert!(2 * over(&papers) >= papers.len() && over(&ours) < over(&papers));
+    let (ours, papers) = (mean(ours.iter().map(error_deg)), mean(papers.iter().map(error_deg)));
+    assert!(papers > 0.0 && ours < papers, "{ours}, {papers}");
 }
 
 #[test]

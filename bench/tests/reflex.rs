@@ -114,17 +114,22 @@ fn answers_of_s2((outcome, run): &(Outcome, Run)) -> Vec<f64> {
 }
 
 #[test]
-fn a_warning_adds_no_more_than_it_asks_for() {
-    let (mut all, mut most) = (0, 0.0f64);
+fn a_warning_restores_a_margin_and_no_more() {
+    let (mut all, mut least, mut most) = (0, f64::INFINITY, 0.0f64);
     for seed in seeds(3) {
         for name in ["arm-swing", "glass-quiet"] {
             let answers = answers_of_s2(&run(text(name), seed));
             println!("{name}, seed {seed}: {answers:.2?}");
             all += answers.len();
+            least = answers.iter().copied().fold(least, f64::min);
             most = answers.into_iter().fold(most, f64::max);
         }
     }
-    assert!(all > 5 && most <= 1.15, "{all} answers, {most:.2} times what they ask for at most");
+    // A quarter more than S2 asks for, of a load that is extrapolated.
+    assert!(
+        all > 5 && least >= 1.05 && most <= 1.35,
+        "{all} answers, {least:.2} to {most:.2} times what they ask for"
+    );
 }
 
 /// Whether the reflex has answered slip before this frame.

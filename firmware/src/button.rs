@@ -1,20 +1,29 @@
-//! The blue button of the NUCLEO (B1, UM1724 section 6.5): somebody at the hand consents to what the serial line sends.
+//! The blue button of the NUCLEO (B1, UM1724 section 6.5), and a light: what somebody at the hand has without a PC.
 
 use embassy_stm32::Peri;
-use embassy_stm32::gpio::{Input, Pull};
-use embassy_stm32::peripherals::PC13;
+use embassy_stm32::gpio::{Input, Level, Output, Pull, Speed};
+use embassy_stm32::peripherals::{PC6, PC13};
 
-/// The button. It pulls its pin low.
-pub struct Button(Input<'static>);
+/// The button, which pulls its pin low, and an LED with its resistor from its pin to ground. The NUCLEO's own LED is on a
+/// film's pin.
+pub struct Button {
+    pin: Input<'static>,
+    light: Output<'static>,
+}
 
 impl Button {
-    /// Takes the pin. The board has a pull-up of its own; where there is none, no button is a released one.
-    pub fn new(pin: Peri<'static, PC13>) -> Self {
-        Self(Input::new(pin, Pull::Up))
+    /// Takes the pins. The board has a pull-up of its own; where there is none, no button is a released one.
+    pub fn new(pin: Peri<'static, PC13>, light: Peri<'static, PC6>) -> Self {
+        Self { pin: Input::new(pin, Pull::Up), light: Output::new(light, Level::Low, Speed::Low) }
     }
 
     /// Whether it is down. It may bounce: the logic waits until it does not.
     pub fn is_down(&self) -> bool {
-        self.0.is_low()
+        self.pin.is_low()
+    }
+
+    /// Switches the light.
+    pub fn light(&mut self, on: bool) {
+        self.light.set_level(Level::from(on));
     }
 }

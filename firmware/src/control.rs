@@ -89,6 +89,7 @@ impl Control {
     #[inline(never)]
     fn save(&mut self) {
         self.device.slow_frame_passed();
+        self.button.light(self.device.light());
         self.slow_frames = self.slow_frames.saturating_add(1);
         if self.slow_frames == LIVED_WELL {
             last_words::lived_well();

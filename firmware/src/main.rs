@@ -135,7 +135,7 @@ async fn main(spawner: Spawner) {
     let deadline = deadline::Deadline::new(p.TIM2);
     let scan = scan::Scan::new(p.ADC1, p.TIM3, p.DMA2_CH0, SCAN_RING.take(), deadline, pins);
     let switches = switches::Switches::new(p.PB12, p.PB13, p.PB14, p.PB15);
-    let button = button::Button::new(p.PC13);
+    let button = button::Button::new(p.PC13, p.PC6);
     let watchdog = IndependentWatchdog::new(p.IWDG, control::WATCHDOG_US);
 
     let mut line = usart::Config::default();

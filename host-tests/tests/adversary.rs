@@ -183,6 +183,12 @@ impl Adversary {
 
     /// One frame: what the motor does.
     fn step(&mut self, step: u32) -> MotorDrive {
+        // A fault on both at once is not told apart (docs/emg.md): the other one is a muscle's.
+        let is_fault = |pin: Pin| !matches!(pin, Pin::Muscle(_));
+        if self.pins.map(is_fault) == [true, true] {
+            self.pins[0] = Pin::Muscle(50.0);
+        }
+        self.bench.lifted = self.pins.iter().position(|pin| is_fault(*pin)).map(|n| MYO_FLEXOR + n);
         for (n, pin) in self.pins.iter_mut().enumerate() {
             let mv = &mut self.bench.pins_mv[MYO_FLEXOR + n];
             match pin {
@@ -190,12 +196,6 @@ impl Adversary {
                 Pin::Constant(at) => *mv = *at,
                 Pin::Creep(by) => *mv = (*mv + *by).min(3_300.0),
             }
-        }
-        // A fault on both at once is not told apart (docs/emg.md): the other one is a muscle's.
-        let faults = self.pins.map(|pin| !matches!(pin, Pin::Muscle(_)));
-        self.bench.lifted = faults.iter().position(|fault| *fault).map(|n| MYO_FLEXOR + n);
-        if faults == [true, true] {
-            self.pins[0] = Pin::Muscle(50.0);
         }
         if let Some(film) = self.humming {
             let phase = f64::from(step) * 50.0 / 2_000.0 * std::f64::consts::TAU;
@@ -231,6 +231,8 @@ struct Seen {
     /// Travel, mm, and at most, of openings that nobody at it or on the line had asked for: of a fault by itself, and beside
     /// another change of the muscles.
     stray_mm: f64,
+    /// Whether another change of the muscles came before or with it.
+    beside: bool,
     /// Whether the force sensor last said that nothing is touched.
     empty: bool,
     strayed_at: u32,
@@ -282,13 +284,15 @@ impl Adversary {
         let two_faults = two_faults.clone().any(|pin| two_faults.clone().any(|other| other != pin));
         let rises = lately.clone().any(|(_, pins)| !matches!(pins[0], Pin::Muscle(mv) if mv < 55.0));
         let lonely = !rises && !two_faults && matches!(self.pins[0], Pin::Muscle(mv) if mv < 55.0);
-        let kind = usize::from(!lonely);
+        // It is a fault by itself only if nothing else changed while it opened.
+        seen.beside = !lonely || seen.stray_mm > 0.0 && seen.beside;
+        let kind = usize::from(seen.beside);
         let before_mm = seen.stray_mm - if drive.opens() { 0.06 } else { 0.0 };
-        let longest = &mut seen.longest_stray_mm[kind];
-        *longest = longest.max(seen.stray_mm);
+        seen.longest_stray_mm[kind] = seen.longest_stray_mm[kind].max(seen.stray_mm);
         if seen.stray_mm > SAFE_MM && before_mm <= SAFE_MM && drive.opens() {
             seen.long_strays[kind] += 1;
-            println!("step {step}: opens {} mm, {:?}", seen.stray_mm, seen.history);
+            let kind = ["by itself", "beside another change"][kind];
+            println!("step {step}: {kind} opens {} mm, {:?}", seen.stray_mm, seen.history);
         }
         let Some(slow) = self.bench.slows.pop() else { return drive };
         self.bench.events.clear();

@@ -140,12 +140,13 @@ fn holding_never_silences_the_reflex() {
 
 #[test]
 fn holding_closes_a_little_for_what_only_the_camera_sees() {
-    for (moving_e4, closes) in [(5, false), (60, true)] {
+    // Without shear it sticks, whatever seems to move: the picture is wrong.
+    for (moving_e4, shear, closes) in [(5, 1, false), (60, 1, true), (60, 0, false)] {
         let mut bench = Bench::new(6);
         bench.run(600);
         watch(&mut bench, 100, &view(0, 1, 0));
         begin(&mut bench, Behaviour::Hold);
-        let drives = watch(&mut bench, 100, &view(moving_e4, 1, 0));
+        let drives = watch(&mut bench, 100, &view(moving_e4, 1, shear));
         assert_eq!(drives.iter().any(|drive| drive.closes()), closes);
     }
 }
@@ -231,13 +232,14 @@ fn lost_frames_move_nothing() {
 #[test]
 fn a_camera_that_sees_motion_for_ever_closes_the_hand_for_half_a_second() {
     let mut bench = Bench::holding(11);
-    watch(&mut bench, 200, &view(0, 20, 0));
+    watch(&mut bench, 200, &view(0, 20, 10));
     begin(&mut bench, Behaviour::Hold);
     let closing = |drives: &[MotorDrive]| drives.iter().filter(|drive| drive.closes()).count();
-    let closed = closing(&watch(&mut bench, 20_000, &view(200, 20, 0)));
-    assert!((900..=1_020).contains(&closed), "{closed} frames of 0.5 ms");
-    watch(&mut bench, 1_000, &view(0, 20, 0));
-    assert!(closing(&watch(&mut bench, 1_000, &view(200, 20, 0))) > 0, "it has been still");
+    // Ever faster, so for less than half of that: as far as half a second of usual closing.
+    let closed = closing(&watch(&mut bench, 20_000, &view(200, 20, 10)));
+    assert!((400..=460).contains(&closed), "{closed} frames of 0.5 ms");
+    watch(&mut bench, 1_000, &view(0, 20, 10));
+    assert!(closing(&watch(&mut bench, 1_000, &view(200, 20, 10))) > 0, "it has been still");
 }
 
 /// What a camera alone sees opens nothing: light changes too.

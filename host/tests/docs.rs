@@ -86,3 +86,88 @@ fn the_commands_page_is_the_tools() {
         "docs/commands.md is stale: run   cargo tenax commands > docs/commands.md"
     );
 }
+
+/// Pages of `docs/` and the README, all words together. The goal is 20 000.
+const WORDS_MAX: usize = 23_850;
+const SENTENCE_MAX: usize = 25;
+
+fn words(text: &str) -> usize {
+    text.split_whitespace().filter(|word| word.contains(char::is_alphanumeric)).count()
+}
+
+/// Paragraphs and entries of lists, without code, tables, headings and pictures; of a link its text alone.
+fn prose(page: &str) -> Vec<String> {
+    let mut paragraphs = vec![String::new()];
+    let mut is_code = false;
+    for line in page.lines() {
+        is_code ^= line.starts_with("```");
+        let is_prose = !is_code && !["```", "    ", "|", "#", "!["].iter().any(|mark| line.starts_with(mark));
+        if line.is_empty() || !is_prose || line.starts_with("- ") {
+            paragraphs.push(String::new());
+        }
+        if let (true, Some(paragraph)) = (is_prose && !line.is_empty(), paragraphs.last_mut()) {
+            *paragraph += line.trim_start_matches("- ");
+            paragraph.push(' ');
+        }
+    }
+    let without_addresses = |text: &str| {
+        let parts = text.split("](").enumerate();
+        parts
+            .map(|(n, part)| if n == 0 { part } else { part.split_once(')').map_or("", |rest| rest.1) })
+            .collect()
+    };
+    paragraphs.iter().filter(|text| !text.trim().is_empty()).map(|text| without_addresses(text)).collect()
+}
+
+/// The sentences of a paragraph that have more words than a reader takes in at once.
+fn long_sentences(paragraph: &str) -> Vec<String> {
+    let plain = paragraph.replace(['*', '['], "");
+    let ended = ["? ", "! "].iter().fold(plain, |text, end| text.replace(end, ". "));
+    ended.split(". ").filter(|sentence| words(sentence) > SENTENCE_MAX).map(str::to_owned).collect()
+}
+
+#[test]
+fn every_sentence_of_the_readme_is_short() {
+    let page = fs::read_to_string(root().join("README.md")).unwrap();
+    let long: Vec<String> = prose(&page).iter().flat_map(|paragraph| long_sentences(paragraph)).collect();
+    assert!(long.is_empty(), "more than {SENTENCE_MAX} words: {long:#?}");
+}
+
+/// A stranger knows after the first paragraph what a page is for and whether it is for him.
+#[test]
+fn every_page_opens_with_its_purpose_in_short_sentences() {
+    for (path, text) in pages() {
+        let name = path.file_name().unwrap().to_str().unwrap();
+        if ["README.md", "CHANGELOG.md"].contains(&name) {
+            continue;
+        }
+        let opening = prose(&text).into_iter().next().unwrap_or_default();
+        let long = long_sentences(&opening);
+        assert!(long.is_empty(), "{name}: more than {SENTENCE_MAX} words: {long:#?}");
+        let has_purpose = ["This page", "Short names", "One entry", "Printed", "Written"];
+        assert!(has_purpose.iter().any(|begin| opening.starts_with(begin)), "{name}: opens with `{opening}`");
+    }
+}
+
+#[test]
+fn all_pages_together_are_short() {
+    let counts: Vec<(String, usize)> = pages()
+        .into_iter()
+        .map(|(path, text)| (path.file_name().unwrap().to_str().unwrap().to_owned(), words(&text)))
+        .filter(|(name, _)| name != "CHANGELOG.md")
+        .collect();
+    let sum: usize = counts.iter().map(|count| count.1).sum();
+    println!("{counts:#?}\n{sum} words");
+    assert!(sum <= WORDS_MAX, "{sum} words, more than {WORDS_MAX}: {counts:?}");
+}
+
+#[test]
+fn a_long_sentence_is_found_where_it_is_prose_and_nowhere_else() {
+    let long = "word ".repeat(SENTENCE_MAX + 1);
+    let page = format!(
+        "# Title\n\n- {long}\n- [short](https://x.y)\n\n    {long}\n| {long} |\n```\n{long}\n```\nEnd. {long}"
+    );
+    let found = prose(&page).iter().flat_map(|paragraph| long_sentences(paragraph)).count();
+    assert_eq!(found, 2, "{:?}", prose(&page));
+    assert_eq!(words("a | -- `b_1` 0.5,"), 3);
+}

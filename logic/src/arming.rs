@@ -24,7 +24,8 @@ const CONSENT_STEPS: u32 = frames(60_000) / STEP_FRAMES;
 const CO_CONTRACTION_STEPS: u32 = frames(2_000) / STEP_FRAMES;
 /// How long the button is down, and was up before, to count as pressed: longer than its contacts bounce, in frames.
 pub const DEBOUNCE_FRAMES: u32 = frames(20);
-const DEBOUNCE_STEPS: u32 = DEBOUNCE_FRAMES / STEP_FRAMES;
+/// The same in steps.
+pub const DEBOUNCE_STEPS: u32 = DEBOUNCE_FRAMES / STEP_FRAMES;
 /// How long a hand that was switched on empty consents, in steps.
 const POWER_UP_STEPS: u32 = frames(10_000) / STEP_FRAMES;
 

@@ -121,6 +121,12 @@ impl Device {
         self.fingertip.button(is_down);
     }
 
+    /// Whether the light at the hand is on: it shows what a calibration asks for, and what came of it.
+    #[must_use]
+    pub fn light(&self) -> bool {
+        self.fingertip.light()
+    }
+
     /// This start was a reset, not somebody who switched the hand on. To be said before the first tick.
     pub const fn was_reset(&mut self) {
         self.fingertip.was_reset();

@@ -14,6 +14,7 @@ use crate::setting::SettingId;
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::wire::{EventKind, Slow, TickRecord};
 use tenax_hal_shim::words::{Cause, DriveSource, Fault, GripMode, Kept, Line};
 
@@ -23,6 +24,7 @@ use self::verdicts::{Acting, Verdicts};
 use crate::arbiter::{Wishes, arbitrate};
 use crate::arming::{Arming, STEP_FRAMES};
 use crate::behaviours::Running;
+use crate::button::Button;
 use crate::config::Config;
 use crate::detectors::{Detectors, Said};
 use crate::grip::{Grip, Reflex};
@@ -35,6 +37,9 @@ use crate::store::record::Record;
 
 /// Consent is looked for in this slot of each step: the array's heaviest share is in another.
 const CONSENT_SLOT: u32 = 0;
+/// One of these slots, after the force's: what the grip lacks. Thinking has no time left for it.
+const FEEL_SLOT: u8 = 20;
+const _: () = assert!(FEEL_SLOT > slot_of(Job::Forces) && FEEL_SLOT as u32 % STEP_FRAMES == CONSENT_SLOT);
 
 /// The fingertip's memory between ticks.
 #[derive(Clone, Debug, Default)]
@@ -54,7 +59,8 @@ pub struct Fingertip {
     eye: Eye,
     link: Link,
     arming: Arming,
-    button: bool,
+    button_is_down: bool,
+    button: Button,
     /// What was last told about the line, and about the wearer.
     line: Line,
     told_no_wearer: bool,
@@ -152,6 +158,14 @@ impl Fingertip {
         }
     }
 
+    /// What the grip lacks, for the pulse that is on or comes.
+    fn feel(&mut self) {
+        let held = self.senses.forces.filter(|_| matches!(self.senses.grip(&self.config), Grip::Holds(_)));
+        let slides = self.reflex.slides(self.mode);
+        let lacks = held.map(|forces| self.detectors.s2.lacks(&self.config.friction, &forces, slides));
+        self.reflex.feel(self.mode, held.map(|forces| forces.load_mn), lacks.unwrap_or_default());
+    }
+
     /// Evidence from outside, from the next frame on.
     pub const fn inject(&mut self, said: Said) {
         self.detectors.injected.inject(said);
@@ -197,6 +211,9 @@ impl Fingertip {
             {
                 self.senses.muscles_mut().give_up(&mut self.journal);
             }
+            if frame.slot() == FEEL_SLOT {
+                self.feel();
+            }
             // Before this frame drives: what the last ones did.
             let striking = matches!(self.mode, GripMode::Slip | GripMode::Settle);
             self.senses.driven(self.drive, striking, STEP_FRAMES);
@@ -217,6 +234,9 @@ impl Fingertip {
         let (drive, source) = if frame.valid { arbitrate(wishes) } else { Default::default() };
         self.drive = drive;
         self.reflex.tick(self.mode, grip);
+        if let MotorDrive::Close(duty) = drive {
+            self.reflex.closes(duty);
+        }
         if matches!(source, DriveSource::Link | DriveSource::Behaviour) && drive.closes() {
             self.reflex.spend(grip);
         }
@@ -255,8 +275,8 @@ impl Fingertip {
             self.cause(Cause::Slip(id));
         }
         if may_close
-            && self.reflex.may_tighten(&config)
             && let Some(id) = verdicts.incipient.first()
+            && self.reflex.may_tighten(&config, grip)
         {
             self.cause(Cause::Incipient(id));
         }
@@ -279,7 +299,7 @@ impl Fingertip {
     #[inline(never)]
     fn change(&mut self, to: GripMode, cause: Cause) {
         let from = core::mem::replace(&mut self.mode, to);
-        self.reflex.enter(&self.config.grip, to, self.senses.grip(&self.config));
+        self.reflex.enter(to, self.senses.grip(&self.config));
         if matches!(cause, Cause::Incipient(DetectorId::S2)) {
             self.detectors.tightened();
         }

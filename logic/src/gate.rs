@@ -15,6 +15,9 @@ use crate::emg::settings::GateConfig;
 const OPENS_AT_MOST: u32 = 11_600;
 /// Frames for which an unproven closing may: 92 ms.
 const CLOSES_AT_MOST: u32 = 184;
+/// Frames for which a release opens, at most, 4 s: at the slowest duty all of the range. And after nothing is felt any more.
+const RELEASE_FRAMES: u32 = 8_000;
+const RELEASED_FRAMES: u32 = 1_000;
 /// Frames of known rest that renew both: 4 s.
 const RENEWED_AFTER: u32 = 8_000;
 
@@ -32,6 +35,8 @@ pub struct Gate {
     closed: u32,
     /// The finger touches nothing.
     empty: bool,
+    /// Frames left of a release.
+    release: u32,
 }
 
 impl Gate {
@@ -46,9 +51,28 @@ impl Gate {
         self.mv[if muscle == 0 { 0 } else { 1 }] = mv;
     }
 
+    /// Opens slowly from now on, whatever the sensors say, until nothing is felt or a muscle closes the hand: somebody at the
+    /// hand has pressed its button.
+    pub const fn release(&mut self, on: bool) {
+        self.release = if on { RELEASE_FRAMES } else { 0 };
+    }
+
+    /// Goes on by so many frames of a release.
+    pub fn step_release(&mut self, frames: u32) {
+        let most = if self.empty { RELEASED_FRAMES } else { RELEASE_FRAMES };
+        let closes = matches!(self.verdict, Verdict { wish: Wish::Close, proven: true, .. });
+        self.release = if closes { 0 } else { self.release.saturating_sub(frames).min(most) };
+    }
+
+    /// Whether it opens after a release.
+    #[must_use]
+    pub const fn is_releasing(&self) -> bool {
+        self.release > 0
+    }
+
     /// Goes on by one frame. `empty`: the finger is known to touch nothing.
     pub fn tick(&mut self, config: &GateConfig, empty: bool) {
-        if self.verdict.active {
+        if self.verdict.active || self.release > 0 {
             self.hold = config.hold_frames;
         } else {
             self.hold = self.hold.saturating_sub(1);
@@ -115,6 +139,7 @@ impl Gate {
         let trusted = self.is_trusted();
         match self.verdict.wish {
             Wish::Open if trusted => MotorDrive::Open(duty(config, self.verdict.strength_permille)),
+            _ if self.release > 0 => MotorDrive::Open(duty(config, 0)),
             Wish::Open if self.opened < OPENS_AT_MOST => MotorDrive::Open(duty(config, 0)),
             Wish::Close if trusted || self.closed < CLOSES_AT_MOST => {
                 MotorDrive::Close(duty(config, self.verdict.strength_permille))

@@ -1,16 +1,25 @@
 //! The grip reflex: how much to close, once slip or incipient slip is known.
 //!
-//! Slip is answered by a short pulse at full speed, prolonged while a detector still says slip; incipient slip by a
-//! shorter, slower one. After each, the object settles for longer than the motor's dead time before the detectors are asked
-//! again. No pulse begins on a finger that is known to hold nothing or to press as hard as it may; without a known
+//! A pulse ends when the force that the grip lacks ([`Lacks`]) is there, by the force that is felt and by what the motor has travelled since
+//! at the stiffness that closing has shown ([`Stiffness`]). The lack is taken anew with each reading. Where it is not known, a pulse has
+//! the length that is set; in any case a slip's pulse, at full speed, lasts no longer than is set, and a warning's is slower. After each,
+//! the object settles for longer than the motor's dead time before the detectors are asked again. Slip that goes on is answered with pulses
+//! that grow, for force or stiffness may be wrong; warnings are answered no more once pulses have raised nothing.
+//!
+//! No pulse begins on a finger that is known to hold nothing or to press as hard as it may; without a known
 //! force, the pulses share a small budget that only the wearer can renew.
 
+pub mod lacks;
 pub mod settings;
+mod stiffness;
 
+use tenax_hal_shim::channel::frames;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::words::GripMode;
 
+use self::lacks::{Lacks, Slides};
 use self::settings::GripConfig;
+use self::stiffness::Stiffness;
 
 /// What the reflex knows about force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,6 +34,16 @@ pub enum Grip {
 
 /// The part of a load by which a pulse that is not in vain changes it: beyond the force sensor's noise.
 const RAISES_PART: i32 = 200;
+/// Pulses in a row that raised nothing, after which no warning is answered until the load changes or a muscle was active.
+const IN_VAIN_MAX: u16 = 8;
+
+/// A pulse is no shorter, frames: 3 ms.
+const LEAST_FRAMES: u32 = 6;
+/// Slip that is said again within this goes on, frames: its pulse is at least twice as long as the one before, up to 48 ms.
+const AT_ONCE_FRAMES: u32 = 60;
+const ROW_MAX: u8 = 5;
+/// The quadrants show the friction of what slides so long after slip was said, in frames: two readings.
+const SHOWS_FRAMES: u32 = frames(25);
 
 /// The reflex's memory.
 #[derive(Clone, Copy, Debug)]
@@ -36,11 +55,28 @@ pub struct Reflex {
     /// The load as the last pulse began, mN, and the pulses in a row that raised nothing.
     began_mn: Option<i32>,
     in_vain: u16,
+    stiffness: Stiffness,
+    /// The force that the grip lacked by the last reading.
+    lacks: Lacks,
+    /// What the pulse has still to travel, per mille of duty times frames. None where its length is the settings'.
+    left: Option<u32>,
+    /// Pulses that answered slip in a row, each as soon as the one before had settled.
+    row: u8,
 }
 
 impl Default for Reflex {
     fn default() -> Self {
-        Self { elapsed: 0, since_incipient: u32::MAX, blind: 0, began_mn: None, in_vain: 0 }
+        Self {
+            elapsed: 0,
+            since_incipient: u32::MAX,
+            blind: 0,
+            began_mn: None,
+            in_vain: 0,
+            stiffness: Stiffness::default(),
+            lacks: Lacks::default(),
+            left: None,
+            row: 0,
+        }
     }
 }
 
@@ -62,20 +98,71 @@ impl Reflex {
     }
 
     /// The mode has changed: what is timed begins now.
-    pub fn enter(&mut self, config: &GripConfig, mode: GripMode, grip: Grip) {
+    #[inline(never)]
+    pub fn enter(&mut self, mode: GripMode, grip: Grip) {
+        match mode {
+            GripMode::Slip if self.elapsed >= AT_ONCE_FRAMES => self.row = 1,
+            GripMode::Slip => self.row = self.row.saturating_add(1).min(ROW_MAX),
+            GripMode::Wearer | GripMode::Standby | GripMode::Incipient => self.row = 0,
+            GripMode::Watch | GripMode::Settle => {}
+        }
         self.elapsed = 0;
         if crate::mode::closes(mode)
             && let Grip::Holds(mn) = grip
         {
-            let raised = self.began_mn.is_none_or(|began| (mn - began).abs() > began / RAISES_PART);
-            // A motor that reaches the ceiling at full duty stalls at no less than so much.
-            let stalls_mn = config.ceiling_mn / 1_000 * i32::from(config.incipient_duty_permille);
-            let raised = raised || mn < stalls_mn;
-            self.in_vain = if raised { 0 } else { self.in_vain.saturating_add(1) };
+            self.in_vain = if self.has_changed(mn) { 0 } else { self.in_vain.saturating_add(1) };
             self.began_mn = Some(mn);
         }
-        if mode == GripMode::Incipient {
-            self.since_incipient = 0;
+        self.size(mode);
+    }
+
+    /// Whether the load is another one than when the last pulse began.
+    fn has_changed(&self, load_mn: i32) -> bool {
+        self.began_mn.is_none_or(|began| (load_mn - began).abs() > began / RAISES_PART)
+    }
+
+    /// Takes what the force sensor says of the load, mN, and of the force that the grip lacks. Call it once a slow frame.
+    #[inline(never)]
+    pub fn feel(&mut self, mode: GripMode, load_mn: Option<i32>, lacks: Lacks) {
+        self.stiffness.feel(load_mn);
+        if load_mn.is_none() {
+            // Another grasp begins.
+            (self.began_mn, self.in_vain) = (None, 0);
+        }
+        self.lacks = lacks;
+        self.size(mode);
+    }
+
+    /// What Ft/Fn tells of the friction of what slides.
+    #[must_use]
+    pub const fn slides(&self, mode: GripMode) -> Slides {
+        match mode {
+            GripMode::Slip if self.row > 1 => Slides::Again,
+            GripMode::Slip if self.elapsed >= SHOWS_FRAMES => Slides::Now,
+            GripMode::Settle if self.row > 0 => Slides::Again,
+            GripMode::Watch if self.row > 0 && self.elapsed < AT_ONCE_FRAMES => Slides::Again,
+            _ => Slides::Unknown,
+        }
+    }
+
+    /// Sizes the pulse by what the grip lacks and what closing has shown of the stiffness.
+    #[inline(never)]
+    fn size(&mut self, mode: GripMode) {
+        let lacks_mn = match mode {
+            GripMode::Slip => self.lacks.slip_mn,
+            GripMode::Incipient => self.lacks.warning_mn,
+            _ => None,
+        };
+        // No more than as much again as it pressed when the pulse began.
+        let most_mn = self.began_mn.unwrap_or(0);
+        self.left = lacks_mn.and_then(|lacks_mn| self.stiffness.travel_for(lacks_mn.min(most_mn)));
+    }
+
+    /// The motor closes in this frame, whoever asks for it.
+    pub const fn closes(&mut self, duty: Duty) {
+        self.stiffness.close(duty.as_per_mille());
+        if let Some(left) = self.left {
+            self.left = Some(left.saturating_sub(duty.as_per_mille() as u32));
         }
     }
 
@@ -101,6 +188,9 @@ impl Reflex {
     pub fn tick(&mut self, mode: GripMode, grip: Grip) {
         self.elapsed = self.elapsed.saturating_add(1);
         self.since_incipient = self.since_incipient.saturating_add(1);
+        if mode == GripMode::Incipient {
+            self.since_incipient = 0;
+        }
         if crate::mode::closes(mode) {
             self.spend(grip);
         }
@@ -112,17 +202,22 @@ impl Reflex {
         let length = match mode {
             GripMode::Slip if slips => config.slip_frames_max,
             GripMode::Slip => config.slip_frames,
+            GripMode::Incipient if self.left.is_some() && self.lacks.by_s2 => config.slip_frames_max,
             GripMode::Incipient => config.incipient_frames,
             _ => 0,
         };
-        self.elapsed >= length || !self.may_close(config, grip)
+        let least =
+            LEAST_FRAMES << if matches!(mode, GripMode::Slip) { self.row.saturating_sub(1) } else { 0 };
+        let done = matches!(self.left, Some(0)) && self.elapsed >= least;
+        done || self.elapsed >= length || !self.may_close(config, grip)
     }
 
-    /// Whether incipient slip may be answered again: the last answer has had its time to show in Ft/Fn. Slip itself is
-    /// answered meanwhile.
+    /// Whether incipient slip may be answered again: the last answer has had its time to show in Ft/Fn, and the last ones were not in
+    /// vain. Slip itself is answered meanwhile.
     #[must_use]
-    pub const fn may_tighten(&self, config: &GripConfig) -> bool {
-        self.since_incipient >= config.incipient_frames + config.settle_frames
+    pub fn may_tighten(&self, config: &GripConfig, grip: Grip) -> bool {
+        let changed = matches!(grip, Grip::Holds(mn) if self.has_changed(mn));
+        self.since_incipient >= config.settle_frames && (self.in_vain < IN_VAIN_MAX || changed)
     }
 
     /// Whether the object has had its time to settle.
@@ -137,7 +232,10 @@ impl Reflex {
         match mode {
             GripMode::Slip => MotorDrive::Close(Duty::per_mille(config.slip_duty_permille)),
             GripMode::Incipient => {
-                let stronger = config.incipient_duty_permille.saturating_mul(self.in_vain.saturating_add(1));
+                // A motor that reaches the ceiling at full duty stalls at no less than so much.
+                let stalls_mn = config.ceiling_mn / 1_000 * i32::from(config.incipient_duty_permille);
+                let stalled = if self.began_mn.is_some_and(|mn| mn >= stalls_mn) { self.in_vain } else { 0 };
+                let stronger = config.incipient_duty_permille.saturating_mul(stalled.saturating_add(1));
                 // Never stronger than what answers slip, unless it is set so.
                 let most = config.slip_duty_permille.max(config.incipient_duty_permille);
                 MotorDrive::Close(Duty::per_mille(stronger.min(most)))
@@ -155,7 +253,7 @@ mod tests {
     fn pulse_frames(mode: GripMode, slips: bool, grip: Grip) -> u32 {
         let config = Config::default().grip;
         let mut reflex = Reflex::default();
-        reflex.enter(&config, mode, grip);
+        reflex.enter(mode, grip);
         (0..10_000)
             .take_while(|_| {
                 let over = reflex.pulse_over(&config, mode, slips, grip);
@@ -175,6 +273,98 @@ mod tests {
         assert_eq!(pulse_frames(GripMode::Slip, true, Grip::Unloaded), 0);
     }
 
+    /// What a pulse adds to a load of 8 N, mN, where a frame at full duty adds this much 30 ms later, and so much is lacking.
+    fn raised_mn(mode: GripMode, mn_a_frame: i32, lacks_mn: i32) -> i32 {
+        let config = Config::default().grip;
+        let mut reflex = Reflex::default();
+        let mut drives = [0; 60];
+        let mut load_mn = 1_000;
+        let mut frame = |reflex: &mut Reflex, load_mn: &mut i32, duty: u16, mode: GripMode, aim_mn: i32| {
+            drives.rotate_right(1);
+            drives[0] = duty;
+            *load_mn += i32::from(drives[59]) * mn_a_frame / 1_000;
+            reflex.tick(mode, Grip::Holds(*load_mn));
+            if duty > 0 {
+                reflex.closes(Duty::per_mille(duty));
+            }
+            if reflex.elapsed().is_multiple_of(25) {
+                let lacks = Some(aim_mn - *load_mn);
+                reflex.feel(mode, Some(*load_mn), Lacks { slip_mn: lacks, warning_mn: lacks, by_s2: true });
+            }
+        };
+        // The wearer closes to 8 N, and stops.
+        let mut closes_mn = 1_000;
+        while closes_mn < 8_000 {
+            frame(&mut reflex, &mut load_mn, 500, GripMode::Wearer, 0);
+            closes_mn += mn_a_frame / 2;
+        }
+        (0..400).for_each(|_| frame(&mut reflex, &mut load_mn, 0, GripMode::Watch, 0));
+        let before_mn = load_mn;
+        (0..50).for_each(|_| frame(&mut reflex, &mut load_mn, 0, GripMode::Watch, before_mn + lacks_mn));
+        reflex.enter(mode, Grip::Holds(load_mn));
+        while !reflex.pulse_over(&config, mode, true, Grip::Holds(load_mn)) {
+            let MotorDrive::Close(duty) = reflex.drive(&config, mode) else { unreachable!() };
+            frame(&mut reflex, &mut load_mn, duty.as_per_mille(), mode, before_mn + lacks_mn);
+        }
+        (0..400).for_each(|_| frame(&mut reflex, &mut load_mn, 0, GripMode::Watch, 0));
+        load_mn - before_mn
+    }
+
+    // Shows R9.
+    #[test]
+    fn a_pulse_adds_what_is_lacking_whatever_the_stiffness() {
+        for mode in [GripMode::Slip, GripMode::Incipient] {
+            for mn_a_frame in [40, 90, 360] {
+                for lacks_mn in [800, 1_500] {
+                    let added = raised_mn(mode, mn_a_frame, lacks_mn);
+                    // No pulse is shorter than 3 ms.
+                    let least = 6 * mn_a_frame;
+                    assert!(
+                        (lacks_mn * 4 / 5..=(lacks_mn * 5 / 4).max(least) + mn_a_frame).contains(&added),
+                        "{mode:?} {mn_a_frame} {lacks_mn}: {added}"
+                    );
+                }
+            }
+        }
+        assert!(
+            raised_mn(GripMode::Slip, 90, 30_000) <= 9_000,
+            "never more than its longest, and than as much again"
+        );
+        assert!(raised_mn(GripMode::Slip, 360, 30_000) <= 8_000 + 3 * 360);
+    }
+
+    #[test]
+    fn slip_that_goes_on_is_answered_with_longer_pulses_even_if_nothing_lacks() {
+        let config = Config::default().grip;
+        let mut reflex = Reflex::default();
+        let lengths: [u32; 6] = core::array::from_fn(|_| {
+            reflex.enter(GripMode::Slip, Grip::Holds(5_000));
+            reflex.left = Some(0);
+            while !reflex.pulse_over(&config, GripMode::Slip, true, Grip::Holds(5_000)) {
+                reflex.tick(GripMode::Slip, Grip::Holds(5_000));
+            }
+            let length = reflex.elapsed();
+            reflex.enter(GripMode::Watch, Grip::Holds(5_000));
+            length
+        });
+        assert_eq!(lengths, [6, 12, 24, 48, 96, 96]);
+    }
+
+    #[test]
+    fn a_warning_whose_pulses_raise_nothing_is_answered_no_more_until_the_load_changes() {
+        let config = Config::default().grip;
+        let mut reflex = Reflex::default();
+        for _ in 0..=IN_VAIN_MAX {
+            reflex.since_incipient = u32::MAX;
+            assert!(reflex.may_tighten(&config, Grip::Holds(5_000)));
+            reflex.enter(GripMode::Incipient, Grip::Holds(5_000));
+        }
+        assert!(!reflex.may_tighten(&config, Grip::Holds(5_010)));
+        assert!(reflex.may_tighten(&config, Grip::Holds(5_100)));
+        reflex.renew();
+        assert!(reflex.may_tighten(&config, Grip::Holds(5_010)));
+    }
+
     #[test]
     fn without_a_force_the_budget_runs_out_and_the_wearer_renews_it() {
         let config = Config::default().grip;
@@ -184,7 +374,7 @@ mod tests {
             reflex.tick(GripMode::Slip, Grip::Unknown);
         }
         assert!(!reflex.may_close(&config, Grip::Unknown));
-        reflex.enter(&config, GripMode::Slip, Grip::Unknown);
+        reflex.enter(GripMode::Slip, Grip::Unknown);
         assert!(!reflex.may_close(&config, Grip::Unknown) && !reflex.link_may_close(&config, Grip::Unknown));
         reflex.renew();
         assert!(reflex.may_close(&config, Grip::Unknown));

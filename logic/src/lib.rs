@@ -26,6 +26,7 @@ pub mod arbiter;
 pub mod arming;
 pub mod array;
 pub mod behaviours;
+pub mod button;
 mod checksum;
 pub mod config;
 pub mod detectors;

@@ -1,6 +1,6 @@
 //! Both myosensors: which of them can be believed, what they mean, and their calibration to a wearer.
 
-use tenax_hal_shim::channel::{CHANNELS, MYO_EXTENSOR, MYO_FLEXOR, SLOW_HZ};
+use tenax_hal_shim::channel::{CHANNELS, MYO_EXTENSOR, MYO_FLEXOR, SLOW_HZ, frames};
 use tenax_hal_shim::wire::EventKind;
 use tenax_hal_shim::words::{self, Fault, Prompt, Reason};
 
@@ -45,7 +45,16 @@ pub struct Muscles {
     uv: [Option<i32>; 2],
     model: Option<EmgModel>,
     lesson: Option<Lesson>,
+    /// When the last calibration ended, in frames, and whether it was taken.
+    ended: Option<(u32, bool)>,
 }
+
+/// How long the light shows whether a calibration was taken, and how long it is on and off meanwhile if it was not; the same while the
+/// wearer is asked to open; and to rest, in frames.
+const RESULT_FRAMES: u32 = frames(2_000);
+const REFUSED_FRAMES: u32 = frames(50);
+const OPEN_FRAMES: u32 = frames(100);
+const REST_FRAMES: [u32; 2] = [frames(1_000), frames(100)];
 
 impl Muscles {
     /// Takes a sample: 0 the flexor's, others the extensor's. The envelope above the live zero, uV, none where the sensor
@@ -147,6 +156,23 @@ impl Muscles {
         self.lesson.is_some()
     }
 
+    /// Whether the light at the hand is on: a short flash a second asks for rest, on for closing, five flashes a second for opening.
+    /// Then on for 2 s: taken; ten flashes a second for 2 s: refused.
+    #[must_use]
+    pub fn light(&self, frame: u32) -> bool {
+        if let Some(lesson) = &self.lesson {
+            return match lesson.asked {
+                None | Some(Prompt::Rest) => frame % REST_FRAMES[0] < REST_FRAMES[1],
+                Some(Prompt::Close) => true,
+                Some(Prompt::Open) => frame % (2 * OPEN_FRAMES) < OPEN_FRAMES,
+            };
+        }
+        self.ended.is_some_and(|(at, taken)| {
+            let since = frame.wrapping_sub(at);
+            since < RESULT_FRAMES && (taken || since % (2 * REFUSED_FRAMES) < REFUSED_FRAMES)
+        })
+    }
+
     /// Ends a calibration without a result: the hand has come to hold something, and its muscles must be able to open it.
     #[inline(never)]
     pub fn give_up(&mut self, journal: &mut Journal) {
@@ -211,6 +237,7 @@ impl Muscles {
             Err(refusal) => words::Calibration::Refused(refusal),
         };
         journal.event(EventKind::Calibration(told));
+        self.ended = Some((journal.frame(), result.is_ok()));
         if let Ok(model) = result {
             self.calibrate(model);
         }

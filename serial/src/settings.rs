@@ -9,13 +9,11 @@ use tenax_logic::setting::SettingId;
 const HEAD: &str = "\
 # Settings
 
-Printed from the rows in `logic/src/*/settings.rs` by `cargo tenax settings`; do not edit.
+This page is for anybody who changes a number of the fingertip. Printed from `logic/src/*/settings.rs` by `cargo tenax settings`; do not edit.
 
-`cargo tenax monitor --port P --set NAME=VALUE` changes one, `--get NAME` and `--settings` show what is in force; a scene
-file uses `kind = \"set-NAME\"` with `value`. Refused are a value out of range, with the range, and a change that nobody at
-the hand consents to (`docs/safety.md`). No pair of values in the ranges crushes, opens or deafens
-(`host-tests/tests/ranges.rs`); the wider ones are a laboratory's. Changed settings outlive a power cut. The number is what
-the wire and the flash call the setting.
+`cargo tenax monitor --port P --set NAME=VALUE` changes one, `--get NAME` and `--settings` show them; a scene uses
+`kind = \"set-NAME\"` with `value`. A change needs [consent](safety.md#the-cable) at the hand and a value in range. No pair of values
+crushes, opens or deafens (`host-tests/tests/ranges.rs`). Settings outlive a power cut. The number is their name on wire and flash.
 
 | number | name | unit | range | default | meaning |
 |---|---|---|---|---|---|

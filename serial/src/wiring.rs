@@ -9,13 +9,16 @@ use tenax_hal_shim::channel::{
 const HEAD: &str = "\
 # Wiring
 
-Printed from `hal-shim/src/channel.rs` by `cargo tenax wiring`; do not edit.
+This page is for anybody who connects a sensor: which channel is on which pin, and its valid voltages. Circuits and values are in
+[hardware](hardware.md). Printed from `hal-shim/src/channel.rs` by `cargo tenax wiring`; do not edit.
 
-Board: NUCLEO-F411RE. Two CD74HC4067 switches share the select lines S0 to S3 on PB12 to PB15. The motor's bridge is on
-PA8 (TIM1 channel 1, close) and PA9 (TIM1 channel 2, open), 20 kHz. The serial line is USART2 on PA2 (to the PC) and PA3,
-through the ST-LINK's USB port.
+| other signals of the NUCLEO-F411RE | pins |
+|---|---|
+| select lines S0 to S3, shared by both CD74HC4067 switches | PB12 to PB15 |
+| motor bridge, 20 kHz: close, open | PA8 (TIM1 channel 1), PA9 (TIM1 channel 2) |
+| button to ground; light, an LED with its resistor to ground | PC13, PC6 |
+| serial line USART2 through the ST-LINK: to the PC, from it | PA2, PA3 |
 
-A voltage below `low` is a cut wire, above `high` a short or a sensor pressed out of range.
 ";
 
 /// The whole page.
@@ -24,31 +27,47 @@ pub fn markdown() -> String {
     // Writing into a String cannot fail.
     let _ = writeln!(
         page,
-        "Every pin is read {SCAN_HZ} times a second; direct pins give {FRAME_HZ} samples a second, switched signals \
-         {SLOW_HZ}.\n"
+        "Every pin is read {SCAN_HZ} times a second. Direct pins give {FRAME_HZ} samples a second, switched signals {SLOW_HZ}. \
+         A voltage\nbelow `low` is a cut wire, above `high` a short or a sensor out of range.\n"
     );
-    page += "| channel | pin | ADC1 input | switch, select | samples/s | rest mV | low mV | high mV |\n";
-    page += "|---|---|---|---|---|---|---|---|\n";
-    for channel in &CHANNELS {
-        let _ = writeln!(page, "{}", row(channel));
+    page += "| channel | pin | ADC1 input | switch, select | rest mV | low mV | high mV |\n";
+    page += "|---|---|---|---|---|---|---|\n";
+    for channels in CHANNELS.chunk_by(are_alike) {
+        let _ = writeln!(page, "{}", row(channels));
     }
     page
 }
 
-fn row(channel: &Channel) -> String {
-    let (rank, switch) = match channel.input {
-        Input::Direct { rank } => (usize::from(rank), String::from("-")),
-        Input::SwitchA { select } => (RANK_SWITCH_A, format!("A, {select}")),
-        Input::SwitchB { select } => (RANK_SWITCH_B, format!("B, {select}")),
+/// Neighbours on the same switch, of one kind of sensor, with the same voltages.
+fn are_alike(a: &Channel, b: &Channel) -> bool {
+    let kind = |channel: &Channel| channel.name.split('_').next().map(str::to_owned);
+    let voltages = |channel: &Channel| (channel.rest_mv, channel.low_mv, channel.high_mv);
+    let (a_rank, b_rank) = (place(a).0, place(b).0);
+    a_rank == b_rank && kind(a) == kind(b) && voltages(a) == voltages(b)
+}
+
+/// The rank in the scan, and the switch with its select.
+fn place(channel: &Channel) -> (usize, Option<(char, u8)>) {
+    match channel.input {
+        Input::Direct { rank } => (usize::from(rank), None),
+        Input::SwitchA { select } => (RANK_SWITCH_A, Some(('A', select))),
+        Input::SwitchB { select } => (RANK_SWITCH_B, Some(('B', select))),
+    }
+}
+
+/// The row of channels that are alike.
+fn row(channels: &[Channel]) -> String {
+    let (Some(first), Some(last)) = (channels.first(), channels.last()) else { return String::new() };
+    let (rank, from) = place(first);
+    let (names, selects) = match (from, place(last).1) {
+        (Some((switch, from)), Some((_, to))) if from != to => {
+            (format!("`{}` to `{}`", first.name, last.name), format!("{switch}, {from} to {to}"))
+        }
+        (Some((switch, from)), _) => (format!("`{}`", first.name), format!("{switch}, {from}")),
+        (None, _) => (format!("`{}`", first.name), String::from("-")),
     };
     format!(
-        "| `{}` | {} | IN{} | {switch} | {} | {} | {} | {} |",
-        channel.name,
-        SCAN[rank].pin,
-        SCAN[rank].adc,
-        channel.rate_hz(),
-        channel.rest_mv,
-        channel.low_mv,
-        channel.high_mv
+        "| {names} | {} | IN{} | {selects} | {} | {} | {} |",
+        SCAN[rank].pin, SCAN[rank].adc, first.rest_mv, first.low_mv, first.high_mv
     )
 }

@@ -6,6 +6,7 @@ pub mod core;
 pub mod draws;
 pub mod emg;
 pub mod failures;
+pub mod fit;
 pub mod online;
 pub mod ran;
 pub mod report;

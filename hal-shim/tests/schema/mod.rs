@@ -141,6 +141,18 @@ impl Types {
         self.0.iter().map(line).collect()
     }
 
+    /// Whether a field is of this type by name; the fields of others stand in a table above already.
+    fn is_referred_to(&self, name: &str) -> bool {
+        let all = self.0.iter().flat_map(|of| match of.ty {
+            Ty::Struct(values) => fields(values),
+            Ty::Enum(variants) => variants.iter().flat_map(|variant| fields_of(variant)).collect(),
+            _ => Vec::new(),
+        });
+        let is_tabled = matches!(name, "Up" | "Answer" | "Down");
+        let mut words = all.map(|(_, of)| of.words());
+        !is_tabled && words.any(|of| of.split(|c: char| !c.is_alphanumeric()).any(|word| word == name))
+    }
+
     /// The messages each way as tables, then the types in them.
     pub fn markdown(&self) -> String {
         let mut page = format!("Version {VERSION}, schema `{SCHEMA:016x}`.\n\n");
@@ -159,7 +171,7 @@ impl Types {
             page += "\n";
         }
         page += "### Types in them\n\n| type | fields, or variants from 0 on |\n|---|---|\n";
-        for of in self.0.iter().filter(|of| !matches!(of.name, "Up" | "Answer" | "Down")) {
+        for of in self.0.iter().filter(|of| self.is_referred_to(of.name)) {
             let what = match of.ty {
                 Ty::Struct(values) => list(fields(values)),
                 Ty::Enum(variants) => {

@@ -1,7 +1,7 @@
 //! The force array's network on a data set that nothing was learned or chosen from: no worse than when it was shipped.
 //!
 //! The paper's task is pours alone. What a reviewer asks for (balanced 0.95, nine slips in ten within 50 ms at 20 false alarms an
-//! hour) is not reached on honest draws: `docs/array-data.md` shows where it fails and why. `bars.toml` has each goal beside what is held.
+//! hour) is not reached on honest draws: `docs/array.md` shows where it fails and why. `bars.toml` has each goal beside what is held.
 
 use super::Bar;
 use tenax_bench::array::network::Network;

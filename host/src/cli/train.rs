@@ -1,4 +1,4 @@
-//! `tenax train`: learns the force array's detector, in a package of its own that nothing else compiles.
+//! `tenax train`: learns the force array's detector, in a package of its own that nothing else compiles; and fits the wearer's model.
 
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -7,25 +7,30 @@ use std::process::{Command, ExitCode};
 use anyhow::{Context, bail};
 
 use super::folder;
+use super::format::Format;
 use super::out;
 use super::progress::with_bar;
 use super::workspace;
 use tenax_bench::labelled::{self, library};
+use tenax_studies::evaluate::fit;
 
 const EXAMPLES: &str = "\
 Examples:
   tenax train                                     from the data set of `tenax dataset`, which is made if it is not there
   tenax train --compare                           the paper's five classifiers on it, and out/train/detectors.csv
   tenax train --dataset mine.csv --recipe r.toml  from recordings of your own; docs/training.md says how to write a recipe
-  tenax train --dataset basic.csv --recipe biotac --test solids.csv";
+  tenax train --dataset basic.csv --recipe biotac --test solids.csv
+  tenax train emg --recordings FOLDER             the constants of the wearer's model, each person held apart once";
 
 /// Where `tenax dataset` writes if nothing else is said.
 const DATASET: &str = "out/array_dataset.csv";
 
 /// Train the force array's slip detector from labelled recordings.
 #[derive(Debug, clap::Args)]
-#[command(after_help = EXAMPLES)]
+#[command(after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
 pub struct Args {
+    #[command(subcommand)]
+    what: Option<What>,
     /// Labelled recordings to learn from [default: what `tenax dataset` writes, out/array_dataset.csv]
     #[arg(long, value_name = "FILE.csv")]
     dataset: Option<PathBuf>,
@@ -58,6 +63,44 @@ pub struct Args {
     ship: bool,
 }
 
+/// What is fitted instead of the force array's network.
+#[derive(Debug, clap::Subcommand)]
+enum What {
+    /// Fit what the wearer wants to recorded envelopes of people
+    Emg(EmgArgs),
+}
+
+#[derive(Debug, clap::Args)]
+struct EmgArgs {
+    /// Folder of recordings, as for `tenax evaluate emg`
+    #[arg(long, value_name = "FOLDER")]
+    recordings: PathBuf,
+    /// Rounds of the search: a tenth of a second each for every person
+    #[arg(long, value_name = "N", default_value_t = 600)]
+    rounds: u32,
+    /// Seed of the search
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Put the constants where the firmware has them
+    #[arg(long)]
+    ship: bool,
+    /// How to print the report
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    report: Format,
+}
+
+fn emg(args: &EmgArgs) -> anyhow::Result<ExitCode> {
+    let report = with_bar("fitting", |part| fit::fit(&args.recordings, args.rounds, args.seed, part))?;
+    out::unless_closed(args.report.print(&fit::Text(&report), &report))?;
+    if args.ship {
+        let to = workspace::root()?.join("logic/src/emg/fitted.rs");
+        std::fs::write(&to, &report.file).with_context(|| format!("cannot write {}", to.display()))?;
+        workspace::run(Command::new("rustfmt").args(["--edition", "2024"]).arg(&to))?;
+        out::note!("  {:<14}{}", "shipped", to.display());
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
 /// What `--ship` puts where, if it was written.
 const SHIPPED: [(&str, &str); 3] = [
     ("network.rs", "logic/src/array/shipped.rs"),
@@ -66,6 +109,9 @@ const SHIPPED: [(&str, &str); 3] = [
 ];
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
+    if let Some(What::Emg(args)) = &args.what {
+        return emg(args);
+    }
     folder::made(&args.out)?;
     let dataset = match &args.dataset {
         Some(file) => file.clone(),

@@ -132,19 +132,19 @@ impl Felt<'_> {
         self.view_is_new || self.cycle_is_over
     }
 
-    /// Whether the object slips: moving points, or a detector (section II-B). `sensitively`: half as much is enough (section
-    /// II-D).
-    #[must_use]
-    pub fn is_slipping(&self, moving_e4: u16, sensitively: bool) -> bool {
-        self.is_moving(moving_e4, sensitively) || self.slips || (sensitively && self.stirs)
-    }
-
-    /// Whether the camera sees moving points.
+    /// Whether the camera sees moving points (section II-B). `sensitively`: half as many are enough (section II-D).
     #[must_use]
     pub fn is_moving(&self, moving_e4: u16, sensitively: bool) -> bool {
         let least = if sensitively { moving_e4 / 2 } else { moving_e4 };
         self.view.is_some_and(|view| view.moving_e4 > least)
     }
+}
+
+/// What all markers together feel: normal force and shear, mN.
+#[inline(never)]
+pub fn skin_mn(view: &CameraView) -> [i32; 2] {
+    let of = |n: usize| normal_mn(view, n).map(|mn| [i32::from(mn), shear_mn(view, n).into()]);
+    (0..MARKERS).filter_map(of).fold([0, 0], |sum, of| [sum[0] + of[0], sum[1] + of[1]])
 }
 
 fn normal_mn(view: &CameraView, n: usize) -> Option<i16> {

@@ -66,7 +66,7 @@ impl HandOver {
             self.pulled = self.skin.is_pulled(felt);
         }
         let changed = self.changed;
-        let slips = felt.is_slipping(config.moving_e4, false) && (changed > 0 || self.pulled);
+        let slips = (felt.slips || felt.is_moving(config.moving_e4, false)) && (changed > 0 || self.pulled);
         self.waited = self.waited.saturating_add(1);
         self.changed_for = if changed > config.changed_cells { self.changed_for + 1 } else { 0 };
         self.slips_for = if slips { self.slips_for + 1 } else { 0 };

@@ -3,22 +3,41 @@
 //! What the detectors report the reflex answers already. This adds what only a camera sees, an object so light that its slip
 //! makes no sound and its weight no force; and without a camera, slip at a force below which the reflex rests.
 //!
-//! What goes on to slip however far the fingers come is no slip, but a camera that sees motion for ever.
+//! A camera tells some pictures wrongly, several in a row. Nothing slides on skin that is hardly sheared, so a move is no slip while
+//! the markers' shear is less than a tenth of what presses on them: rubber on anything has several times that friction. What goes
+//! on to slip however far the fingers come is no slip either, but a camera that sees motion for ever.
 
-use super::{BehaviourConfig, Course, Felt, Movement};
+use super::felt::skin_mn;
+use super::{BehaviourConfig, Course, Felt, Movement, Wish};
 use crate::grip::Grip;
 use tenax_hal_shim::channel::frames;
+use tenax_hal_shim::motor::Duty;
 
 /// How far the fingers come for one slip, in frames of closing.
 const ANSWER_FRAMES_MAX: u32 = frames(500);
+/// After so many frames of closing the fingers come as fast again, up to so many times as fast, while it surely slides.
+const FASTER_FRAMES: u32 = frames(60);
+const FASTEST: u32 = 3;
 /// A slip is over when nothing has slipped for this long, in frames.
 const STILL_FRAMES: u32 = frames(200);
+
+/// With less shear than this part of the markers' normal force, the object sticks: over the last pictures, and in a single one, whose markers are less sure.
+const STICKS: [[i32; 2]; 2] = [[1, 10], [1, 3]];
+/// With more than this it surely slides, if it moves.
+const SLIDES: [i32; 2] = [1, 2];
+/// The markers' sums follow their last pictures by this power of two.
+const SUMS_RATE: u32 = 2;
 
 /// Small movements, one after the other while the object slips.
 #[derive(Clone, Debug, Default)]
 pub struct Hold {
     movement: Movement,
-    /// Frames of closing since nothing slipped last.
+    /// What all markers together feel, normal force and shear, mN in 1/16.
+    sums_q4: [i32; 2],
+    /// Whether they are sheared enough to slide, and so much that it surely does.
+    may_slide: bool,
+    slides: bool,
+    /// Frames of closing since nothing slipped last, times how much faster than usual.
     answered: u32,
     still: u32,
 }
@@ -26,17 +45,30 @@ pub struct Hold {
 impl Hold {
     pub fn step(&mut self, config: &BehaviourConfig, felt: &Felt<'_>) -> Course {
         let slips = match felt.view {
-            Some(_) => felt.is_moving(config.moving_e4, false),
+            Some(view) => {
+                if felt.view_is_new {
+                    let now = skin_mn(view).map(|mn| mn << 4);
+                    self.sums_q4.iter_mut().zip(now).for_each(|(sum, now)| *sum += (now - *sum) >> SUMS_RATE);
+                    let sheared = |[normal, shear]: [i32; 2], parts: [i32; 2]| {
+                        parts[1] * shear.abs() >= parts[0] * normal
+                    };
+                    self.may_slide = sheared(self.sums_q4, STICKS[0]) || sheared(now, STICKS[1]);
+                    self.slides = sheared(self.sums_q4, SLIDES);
+                }
+                self.may_slide && felt.is_moving(config.moving_e4, false)
+            }
             None => felt.slips && !matches!(felt.grip, Grip::Holds(_)),
         };
         self.still = if slips { 0 } else { self.still.saturating_add(1) };
         if self.still >= STILL_FRAMES {
             self.answered = 0;
         }
+        let times = if self.slides { (1 + self.answered / FASTER_FRAMES).min(FASTEST) } else { 1 };
         if slips && !self.movement.drives() && self.answered < ANSWER_FRAMES_MAX {
-            self.movement = Movement::tighten(config);
+            let duty = Duty::per_mille(config.duty_permille.saturating_mul(times as u16));
+            self.movement = Movement::lasting(config, Wish::Tighten(duty), config.movement_frames);
+            self.answered += times * config.movement_frames;
         }
-        self.answered += u32::from(self.movement.drives());
         Course::On(self.movement.step())
     }
 }

@@ -18,6 +18,15 @@ const FALLS_FRAMES: u32 = frames(300);
 /// The part of the first load that is left when it is loosened no further: whoever holds with three times what is needed holds
 /// firmly, and what slips at less should have slipped before.
 const LEAST_PART: i32 = 3;
+/// Pictures over which it is seen to turn.
+const TURNS_PICTURES: usize = 4;
+/// How far it turns in them when it surely does, and when it does if the camera sees it move as well; tenths of a degree. The angle's
+/// own error is 3 in that time.
+const TURNS_DDEG: [i32; 2] = [10, 3];
+/// Pictures in a row that see it move without a turn: it slides. Fewer may be wrong.
+const SLIDES_PICTURES: u32 = 6;
+/// For how long the camera may not see the angle, in frames.
+const UNSEEN_FRAMES: u32 = frames(200);
 /// Small movements that the grasp is kept away from where it slipped last; up to there it is loosened without waiting.
 const MARGIN_MOVEMENTS: i32 = 6;
 
@@ -45,6 +54,10 @@ pub struct Turn {
     phase: Phase,
     movement: Movement,
     angle_ddeg: i32,
+    /// The angles of the last pictures, the newest first.
+    last_ddeg: [i32; TURNS_PICTURES],
+    /// Pictures in a row that see it move.
+    moving_for: u32,
     /// How fast it turns, tenths of a degree a second.
     rate_ddeg_s: i32,
     /// Frames since the picture before.
@@ -74,6 +87,8 @@ impl Turn {
             phase: Phase::Loosens,
             movement: Movement::default(),
             angle_ddeg,
+            last_ddeg: [angle_ddeg; TURNS_PICTURES],
+            moving_for: 0,
             rate_ddeg_s: 0,
             since_view: 0,
             loosened_at_ddeg: angle_ddeg,
@@ -90,10 +105,10 @@ impl Turn {
     }
 
     pub fn step(&mut self, config: &BehaviourConfig, felt: &Felt<'_>) -> Course {
-        if let Err(ending) = self.look(felt) {
-            return Course::Ends(ending);
-        }
-        let slips = felt.is_slipping(config.moving_e4, true);
+        let slips = match self.look(config, felt) {
+            Ok(slips) => slips,
+            Err(ending) => return Course::Ends(ending),
+        };
         match self.phase {
             Phase::Loosens if slips || self.is_there(config) => {
                 self.slipped_at = Some(self.loosened);
@@ -134,21 +149,29 @@ impl Turn {
         Course::On(wish)
     }
 
-    /// Takes a picture in, if there is a new one.
-    fn look(&mut self, felt: &Felt<'_>) -> Result<(), Ending> {
+    /// Takes a picture in, if there is a new one. Whether it slips: by a detector, by the angle, or by what moves. One picture may be
+    /// wrong.
+    fn look(&mut self, config: &BehaviourConfig, felt: &Felt<'_>) -> Result<bool, Ending> {
         self.since_view = self.since_view.saturating_add(1);
-        let view = felt.view.ok_or(Ending::SensorLost)?;
+        let view = felt.view.filter(|_| self.since_view < UNSEEN_FRAMES).ok_or(Ending::SensorLost)?;
         let Grip::Holds(load_mn) = felt.grip else { return Err(Ending::Dropped) };
         self.load_mn = load_mn;
-        if !felt.view_is_new {
-            return Ok(());
+        let moves = felt.is_moving(config.moving_e4, true);
+        if felt.view_is_new {
+            self.moving_for = if moves { self.moving_for.saturating_add(1) } else { 0 };
+            if let Some(angle_ddeg) = view.angle_ddeg.map(i32::from) {
+                let turned_ddeg = angle_ddeg - self.angle_ddeg;
+                self.rate_ddeg_s = turned_ddeg * FRAME_HZ as i32 / self.since_view.clamp(1, FRAME_HZ) as i32;
+                self.angle_ddeg = angle_ddeg;
+                self.since_view = 0;
+                self.last_ddeg.rotate_right(1);
+                self.last_ddeg[0] = angle_ddeg;
+            }
         }
-        let angle_ddeg = i32::from(view.angle_ddeg.ok_or(Ending::SensorLost)?);
-        let turned_ddeg = angle_ddeg - self.angle_ddeg;
-        self.rate_ddeg_s = turned_ddeg * FRAME_HZ as i32 / self.since_view.clamp(1, FRAME_HZ) as i32;
-        self.angle_ddeg = angle_ddeg;
-        self.since_view = 0;
-        Ok(())
+        let turned_ddeg = (self.last_ddeg[0] - self.last_ddeg[TURNS_PICTURES - 1]).abs();
+        let [surely, perhaps] = TURNS_DDEG.map(|least_ddeg| turned_ddeg >= least_ddeg);
+        let seen = surely || moves && (perhaps || self.moving_for >= SLIDES_PICTURES);
+        Ok(seen || felt.slips || felt.stirs)
     }
 
     /// Whether it is much firmer than where it slipped last.

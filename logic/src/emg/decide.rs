@@ -6,7 +6,8 @@
 //! that tone is none. Rest is followed while nothing is wished: what has been added to it (hum, tone) is subtracted.
 //! A reading above all that was calibrated opens at once: what it may move before it is proven is the gate's business.
 
-use super::fitted::*;
+use super::constants::Fitted;
+use super::fitted::FITTED;
 use super::level::{level_of, uv_of};
 use super::model::EmgModel;
 
@@ -16,17 +17,6 @@ pub const OVER_UV: i32 = 2_950_000;
 const STRONG: i32 = 1_000;
 /// Share of closing that closes though nothing is known of the opening site.
 const ALONE: i32 = 900;
-/// Who lets go of a contraction makes the opposite one for a while, somewhat weaker. So within 0.5 s of activity of another
-/// direction opening does not begin, within 1.5 s only a strong one does; closing as soon after opening has to stand longer.
-const SOON_READINGS: u16 = 120;
-const LATER_READINGS: u16 = 360;
-const SOON_DWELL: u16 = 36;
-/// Above the calibrated opening by this, Q10 octaves, nothing is a relaxing muscle: 20 %.
-const FIRMER: i32 = 270;
-/// Both muscles contract when the other site has a share above what calibration found beside the contraction, and this.
-const BOTH: i32 = 300;
-/// Share of either site that is activity.
-const BUSY: i32 = 350;
 /// Readings without a wish after which rest is followed.
 const CALM_READINGS: u16 = 120;
 /// Readings over which what stands still is subtracted: 0.3 s.
@@ -36,15 +26,14 @@ const MOST_DRIFT_UV: i32 = 1_500_000;
 /// A muscle is active from this share on, and not any more below that; never above 159 mV, which is activity for everybody.
 const ACTIVE: [i32; 2] = [350, 250];
 const ACTIVE_UV: [i32; 2] = [159_000, 112_000];
-/// Readings over which each site's level before a wish is known: 0.5 s.
-const BEFORE_READINGS: i32 = 128;
-/// The other electrode hears a contraction when it rises by half of what calibration found. Contractions that it hears less than
-/// this, Q10 octaves, are proven by their own electrode alone.
+/// Contractions that the other electrode hears by less than this, Q10 octaves, are proven by their own electrode alone. It has
+/// heard one when it rises by so many standard deviations of its rest, and by no more than half of what calibration found.
 const HEARS_AT_ALL: i32 = 300;
+const HEARS_SPREADS: i32 = 1;
 /// Without calibration: where closing and opening begin, and how far the other electrode is below.
 const DEFAULT_BEGINS_UV: [i32; 2] = [600_000, 1_500_000];
 const DEFAULT_OVER: [i32; 2] = [1_322, 2_900];
-const DEFAULT_READINGS: u16 = 72;
+const DEFAULT_READINGS: i32 = 72;
 
 /// What the wearer wants of the hand.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -86,7 +75,7 @@ struct Sites {
     fall: [i32; 2],
     /// Share of the other site with each wish from which both contract: that asks for nothing.
     both: [i32; 2],
-    /// How far the other electrode rises with each wish; none if it hears too little.
+    /// How far the other electrode rises with each wish at least; none if it hears too little.
     hears: [Option<i32>; 2],
     close_ratio: i32,
     turn: i32,
@@ -94,20 +83,21 @@ struct Sites {
 }
 
 impl Sites {
-    fn of(model: &EmgModel) -> Self {
+    fn of(f: &Fitted, model: &EmgModel) -> Self {
         let electrode = [model.closing_site(), model.opening_site()];
         let by_site = |point: [i32; 2]| electrode.map(|n| point[n & 1]);
         let (rest, close, open) = (by_site(model.rest()), by_site(model.close()), by_site(model.open()));
         let spread = by_site(model.spread());
         let span = [(close[0] - rest[0]).max(512), (open[1] - rest[1]).max(512)];
         let begins = [0, 1].map(|n| {
-            let least = LEAST_RISE.max(LEAST_SPREADS * spread[n]) * 1_000 / span[n];
-            BEGINS[n].max(least).min(850)
+            let least = f.least_rise.max(f.least_spreads * spread[n]) * 1_000 / span[n];
+            f.begins[n].max(least).min(850)
         });
-        let ends = [0, 1].map(|n| ENDS[n].min(begins[n] - HYSTERESIS * 1_000 / span[n]).max(LEAST_END));
-        let fall = [0, 1].map(|n| FALL.max(LEAST_FALL * 1_000 / span[n]));
+        let ends = [0, 1].map(|n| f.ends[n].min(begins[n] - f.hysteresis * 1_000 / span[n]).max(f.least_end));
+        let fall = [0, 1].map(|n| f.fall.max(f.least_fall * 1_000 / span[n]));
         let hears = [close[1] - rest[1], open[0] - rest[0]];
-        let both = [hears[0] * 1_000 / span[1], hears[1] * 1_000 / span[0]].map(|share| share.max(0) + BOTH);
+        let both =
+            [hears[0] * 1_000 / span[1], hears[1] * 1_000 / span[0]].map(|share| share.max(0) + f.both);
         let active = [0, 1].map(|k: usize| {
             [0, 1].map(|n: usize| (rest[n] + span[n] * ACTIVE[k] / 1_000).min(level_of(ACTIVE_UV[k])))
         });
@@ -120,7 +110,10 @@ impl Sites {
             ends,
             fall,
             both,
-            hears: hears.map(|rise| (rise >= HEARS_AT_ALL).then_some(rise / 2)),
+            hears: [0, 1].map(|n: usize| {
+                let least = (HEARS_SPREADS * spread[1 - n]).min(hears[n] / 2);
+                (hears[n] >= HEARS_AT_ALL).then_some(least)
+            }),
             close_ratio: close[1] - close[0],
             turn: ((open[1] - open[0]) - (close[1] - close[0])).max(256),
             active: [0, 1].map(|n: usize| [active[0][n].max(rest[n] + 300), active[1][n].max(rest[n] + 200)]),
@@ -129,16 +122,17 @@ impl Sites {
 }
 
 /// Decides from reading to reading.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Decide {
+    fitted: &'static Fitted,
     sites: Option<Sites>,
     wish: Wish,
     /// What is wished now, and for how many readings it has been.
     next: Wish,
-    stands: u16,
-    strong: u16,
+    stands: i32,
+    strong: i32,
     /// Readings since activity that is no opening, and since opening.
-    since: [u16; 2],
+    since: [i32; 2],
     calm: u16,
     /// Shares of both sites and the place, averaged, Q4.
     mean: [i32; 3],
@@ -146,18 +140,32 @@ pub struct Decide {
     trough: [i32; 2],
     /// What is added to rest, uV, Q8.
     drift: [i32; 2],
-    /// Level of each site before the wish, Q7.
-    before: [i32; 2],
-    heard: bool,
 }
 
 impl Decide {
     /// For a wearer, or for nobody in particular.
     #[must_use]
     pub fn new(model: Option<&EmgModel>) -> Self {
-        let sites = model.map(Sites::of);
-        let before = sites.map_or([0; 2], |sites| sites.rest.map(|level| level * BEFORE_READINGS));
-        Self { sites, before, since: [u16::MAX; 2], ..Self::default() }
+        Self::with(&FITTED, model)
+    }
+
+    /// With other constants, to fit them.
+    #[must_use]
+    pub fn with(fitted: &'static Fitted, model: Option<&EmgModel>) -> Self {
+        Self {
+            fitted,
+            sites: model.map(|model| Sites::of(fitted, model)),
+            wish: Wish::Rest,
+            next: Wish::Rest,
+            stands: 0,
+            strong: 0,
+            since: [i32::MAX; 2],
+            calm: 0,
+            mean: [0; 3],
+            crest: 0,
+            trough: [0; 2],
+            drift: [0; 2],
+        }
     }
 
     /// From which level on an electrode is active, and below which not any more.
@@ -183,23 +191,25 @@ impl Decide {
         self.sites.map_or(site, |sites| sites.electrode[site]) & 1
     }
 
-    /// Whether the other electrode hears the contraction; none for a wearer of whom it never does.
+    /// Where the other electrode rests, and how far it rises at least with the contraction that is wished; none for a wearer
+    /// with whom it hardly does.
     #[must_use]
-    pub fn is_heard(&self) -> Option<bool> {
-        let site = usize::from(self.wish == Wish::Open);
-        self.sites.and_then(|sites| sites.hears[site]).map(|_| self.heard)
+    pub fn hears(&self) -> Option<[i32; 2]> {
+        let site = usize::from(self.wish != Wish::Close);
+        self.sites.and_then(|sites| Some([sites.rest[1 - site], sites.hears[site]?]))
     }
 
     /// How strongly the last wish is meant, per mille: for the speed.
     #[must_use]
     pub fn strength_permille(&self) -> u16 {
+        let f = self.fitted;
         let site = match self.wish {
             Wish::Rest => return 0,
             Wish::Close => 0,
             Wish::Open => 1,
         };
-        let above = self.mean[site] / 16 - ENDS[site];
-        (above.min(STRONG - ENDS[site]).max(0) * 1_000 / (STRONG - ENDS[site])) as u16
+        let above = self.mean[site] / 16 - f.ends[site];
+        (above.min(STRONG - f.ends[site]).max(0) * 1_000 / (STRONG - f.ends[site]).max(1)) as u16
     }
 
     /// Takes both electrodes, flexor first: what the wearer wants.
@@ -212,6 +222,7 @@ impl Decide {
     }
 
     fn calibrated(&mut self, sites: &Sites, electrodes: [Electrode; 2]) {
+        let f = self.fitted;
         let uv = electrodes.map(|electrode| electrode.uv);
         let over = uv.map(|uv| uv.is_some_and(|uv| uv >= OVER_UV));
         // The least of spans and turn is far above 1, which the compiler is to see.
@@ -224,25 +235,24 @@ impl Decide {
         let place = (level[1] - level[0] - sites.close_ratio) * 1_000 / sites.turn.max(1);
         let now = [share[0].min(1_300), share[1].min(1_300), place.clamp(-1_000, 2_000)];
         for (mean, now) in self.mean.iter_mut().zip(now) {
-            *mean += (now * 16 - *mean) / MEAN_READINGS;
+            *mean += (now * 16 - *mean) / f.mean_readings.max(1);
         }
         let blind = [0, 1].map(|n: usize| uv[n].is_none() || electrodes[n].doubted);
         let wish = self.wanted(sites, blind, over);
         // A doubted closing electrode says nothing about the ratio. Soon after other activity it takes more.
-        let lately = !blind[0] && self.since[0] < SOON_READINGS;
-        let strong = level[1] - sites.rest[1] - sites.span[1] >= if lately { FIRMER } else { 0 };
-        let alone = share[0] < sites.both[1] + BOTH || electrodes[0].still;
-        let apart = (place >= PLACE_BEGINS && alone) || blind[0];
+        let lately = !blind[0] && self.since[0] < f.after_readings[0];
+        let strong = level[1] - sites.rest[1] - sites.span[1] >= if lately { f.firmer } else { 0 };
+        let alone = share[0] < sites.both[1] + f.both || electrodes[0].still;
+        let apart = (place >= f.place_begins && alone) || blind[0];
         let opens = apart && strong && uv[1].is_some() && !over[1];
         self.strong = if opens { self.strong.saturating_add(1) } else { 0 };
-        let was = self.wish;
         self.settle(wish, now);
-        self.hear(sites, level, was);
         self.follow(sites, electrodes, wish);
     }
 
     /// What the averages say.
     fn wanted(&mut self, sites: &Sites, blind: [bool; 2], over: [bool; 2]) -> Wish {
+        let f = self.fitted;
         let [closes, opens, place] = self.mean.map(|mean| mean / 16);
         let own = match self.wish {
             Wish::Rest => None,
@@ -251,7 +261,8 @@ impl Decide {
         };
         for (n, share) in [closes, opens].into_iter().enumerate() {
             if own == Some(n) {
-                self.crest = (self.crest + (share * 256 - self.crest) / CREST_READINGS).max(share * 256);
+                self.crest =
+                    (self.crest + (share * 256 - self.crest) / f.crest_readings.max(1)).max(share * 256);
                 self.trough[n] = share;
             }
             self.trough[n] = self.trough[n].min(share);
@@ -260,27 +271,30 @@ impl Decide {
             self.crest = 0;
         }
         let ends = |n: usize| sites.ends[n].max(self.crest / 256 - sites.fall[n]);
-        let begins = |n: usize| sites.begins[n].max(self.trough[n] + RISE);
-        let busy = !blind[0] && place < PLACE_BEGINS && (closes >= BUSY || opens >= BUSY);
+        let begins = |n: usize| sites.begins[n].max(self.trough[n] + f.rise);
+        let busy = !blind[0] && place < f.place_begins && (closes >= f.busy || opens >= f.busy);
         self.since[0] = if busy { 0 } else { self.since[0].saturating_add(1) };
         self.since[1] = if self.wish == Wish::Open { 0 } else { self.since[1].saturating_add(1) };
-        let calm = self.since[0] >= LATER_READINGS || (self.since[0] >= SOON_READINGS && opens >= STRONG);
+        let calm =
+            self.since[0] >= f.after_readings[1] || (self.since[0] >= f.after_readings[0] && opens >= STRONG);
         let may_open = calm && !blind[0] && !blind[1] && closes < sites.both[1];
         let may_close = !over[1] && !blind[0] && (!blind[1] || closes >= ALONE);
         match self.wish {
             Wish::Open if over[1] => Wish::Open,
-            Wish::Open if (place >= PLACE_STAYS[1] || blind[0]) && opens >= ends(1) => Wish::Open,
+            Wish::Open if (place >= f.place_stays[1] || blind[0]) && opens >= ends(1) => Wish::Open,
             Wish::Close
                 if may_close
-                    && place <= PLACE_STAYS[0]
-                    && opens < sites.both[0] + BOTH / 2
+                    && place <= f.place_stays[0]
+                    && opens < sites.both[0] + f.both / 2
                     && closes >= ends(0) =>
             {
                 Wish::Close
             }
-            Wish::Rest | Wish::Close if may_open && place >= PLACE_BEGINS && opens >= begins(1) => Wish::Open,
+            Wish::Rest | Wish::Close if may_open && place >= f.place_begins && opens >= begins(1) => {
+                Wish::Open
+            }
             Wish::Rest | Wish::Open
-                if may_close && place <= PLACE_BEGINS && opens < sites.both[0] && closes >= begins(0) =>
+                if may_close && place <= f.place_begins && opens < sites.both[0] && closes >= begins(0) =>
             {
                 Wish::Close
             }
@@ -290,58 +304,37 @@ impl Decide {
 
     /// A wish has to stand for a while, soon after the opposite one for longer.
     fn settle(&mut self, wish: Wish, now: [i32; 3]) {
+        let f = self.fitted;
         let dwell = match wish {
-            Wish::Rest => DWELL[0],
-            Wish::Close if self.since[1] < SOON_READINGS => SOON_DWELL,
-            Wish::Close => DWELL[1],
-            Wish::Open => DWELL[2],
+            Wish::Rest => f.dwell[0],
+            Wish::Close if self.since[1] < f.after_readings[0] => f.after_dwell,
+            Wish::Close => f.dwell[1],
+            Wish::Open => f.dwell[2],
         };
         self.stands = if wish == self.next { self.stands.saturating_add(1) } else { 1 };
         self.next = wish;
         if self.stands >= dwell {
             self.wish = wish;
         }
-        if self.strong >= AT_ONCE_READINGS && self.wish != Wish::Open {
+        if self.strong >= f.at_once_readings && self.wish != Wish::Open {
             (self.wish, self.next, self.stands) = (Wish::Open, Wish::Open, 0);
             self.mean = now.map(|value| value * 16);
         }
     }
 
-    /// Whether the other site has risen with this wish. Its level before the wish is what it was lately.
-    fn hear(&mut self, sites: &Sites, level: [i32; 2], was: Wish) {
-        let began = self.wish != was;
-        let other = match self.wish {
-            Wish::Rest => {
-                for (before, level) in self.before.iter_mut().zip(level) {
-                    *before += level - *before / BEFORE_READINGS;
-                }
-                self.heard = false;
-                return;
-            }
-            Wish::Close => 1,
-            Wish::Open => 0,
-        };
-        if began {
-            self.heard = false;
-        }
-        if began && was != Wish::Rest {
-            self.before = level.map(|level| level * BEFORE_READINGS);
-        }
-        let rise = sites.hears[1 - other].unwrap_or(0);
-        self.heard |= level[other] >= self.before[other] / BEFORE_READINGS + rise;
-    }
-
     /// Follows rest while nothing is wished. What stands still is hum, whatever its level.
     fn follow(&mut self, sites: &Sites, electrodes: [Electrode; 2], wish: Wish) {
+        let f = self.fitted;
         let calm = self.wish == Wish::Rest
             && wish == Wish::Rest
-            && self.mean[0] < 16 * ENDS[0]
-            && self.mean[1] < 16 * ENDS[1];
+            && self.mean[0] < 16 * f.ends[0]
+            && self.mean[1] < 16 * f.ends[1];
         self.calm = if calm { self.calm.saturating_add(1) } else { 0 };
         for (n, Electrode { uv, hums, .. }) in electrodes.into_iter().enumerate() {
             let Some(uv) = uv.filter(|_| self.calm >= CALM_READINGS || hums) else { continue };
             let added = (uv - sites.rest_uv[n]).min(MOST_DRIFT_UV) * 256;
-            self.drift[n] += (added - self.drift[n]) / if hums { HUM_READINGS } else { REST_READINGS };
+            self.drift[n] +=
+                (added - self.drift[n]) / if hums { HUM_READINGS } else { f.rest_readings.max(1) };
         }
     }
 

@@ -6,12 +6,14 @@
 //! tick ([`mains`]). [`Emg`] is the whole. `docs/emg.md` has what was measured.
 
 pub mod calibration;
+pub mod constants;
 pub mod decide;
 pub mod fitted;
 pub mod level;
 pub mod log2;
 pub mod mains;
 pub mod model;
+pub mod proof;
 pub mod settings;
 pub mod trust;
 
@@ -24,6 +26,7 @@ use self::decide::{Decide, Electrode, OVER_UV, Wish};
 use self::level::level_of;
 use self::mains::{Mains, WINDOW};
 use self::model::EmgModel;
+use self::proof::Proof;
 use self::trust::{Quality, Trust};
 
 /// A reading above the live zero, uV, from its sample (14 bits): at most 60 uV from the true one.
@@ -32,6 +35,9 @@ pub const fn uv_of_sample(sample: u16) -> i32 {
     // 3.3 V over 16380 steps is 201.465 uV; 12894 / 64 is 201.469.
     ((sample as i32 * 12_894) >> 6) - MYO_REST_MV as i32 * 1_000
 }
+
+/// Pairs of readings in a slow frame.
+const PAIRS: u8 = 3;
 
 /// What the muscles say.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,6 +58,9 @@ pub struct Verdict {
 #[derive(Clone, Debug)]
 pub struct Emg {
     decide: Decide,
+    proof: Proof,
+    /// Pairs since the last proof.
+    pairs: u8,
     trust: [Trust; 2],
     raised: [bool; 2],
     known: [bool; 2],
@@ -70,8 +79,16 @@ impl Emg {
     /// For a wearer; without one only what cannot be mistaken moves the hand.
     #[must_use]
     pub fn new(model: Option<&EmgModel>) -> Self {
+        Self::of(Decide::new(model))
+    }
+
+    /// With a model that decides otherwise, to fit it.
+    #[must_use]
+    pub fn of(decide: Decide) -> Self {
         Self {
-            decide: Decide::new(model),
+            decide,
+            proof: Proof::default(),
+            pairs: 0,
             trust: Default::default(),
             raised: [false; 2],
             known: [false; 2],
@@ -120,25 +137,26 @@ impl Emg {
         }
     }
 
+    #[inline(never)]
     fn decide(&mut self) {
         let wish = self.decide.take(&self.electrodes);
+        self.pairs += 1;
+        let mut proven = self.verdict.proven && wish == self.verdict.wish;
+        // A proof takes tenths of a second: once a slow frame is enough.
+        if self.pairs >= PAIRS {
+            self.pairs = 0;
+            let mover = self.decide.mover();
+            let levels = self.electrodes.map(|electrode| electrode.uv.map(|uv| level_of(uv.min(OVER_UV))));
+            let over = self.electrodes[mover].uv.is_some_and(|uv| uv >= OVER_UV);
+            proven = self.proof.take(levels, wish, mover, &self.trust[mover], self.decide.hears(), over);
+        }
         self.verdict = Verdict {
             wish,
             strength_permille: self.decide.strength_permille(),
-            proven: wish != Wish::Rest && self.is_proven(),
+            proven,
             active: self.is_active(0) || self.is_active(1) || wish != Wish::Rest,
             known: self.known[0] && self.known[1],
         };
-    }
-
-    /// A fault lies under one electrode, a contraction is heard by both; closing needs no more than that.
-    fn is_proven(&self) -> bool {
-        let turns = self.trust[self.decide.mover()].is_proven();
-        match (self.decide.is_heard(), self.decide.wish()) {
-            (Some(heard), Wish::Close) => heard || turns,
-            (Some(heard), _) => heard && turns,
-            (None, _) => turns,
-        }
     }
 
     /// The last verdict.

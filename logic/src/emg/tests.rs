@@ -161,3 +161,23 @@ fn without_calibration_only_what_cannot_be_mistaken_moves_the_hand() {
         assert!((part(&verdicts, wish) > 0.5), "{pair:?}: {}", part(&verdicts, wish));
     }
 }
+
+#[test]
+fn both_electrodes_that_creep_together_are_never_proven() {
+    let model = EmgModel::of_uv([50_000; 2], [900_000, 95_000], [80_000, 560_000]).unwrap();
+    let mut opened = 0;
+    for flexor_part in [0.05, 0.1, 0.3, 1.0] {
+        for mv_per_s in [300.0, 500.0, 1_000.0, 3_000.0, 10_000.0, 30_000.0] {
+            let mut emg = Emg::new(Some(&model));
+            run(&mut emg, 2.0, |_| [50.0, 50.0]);
+            let creeps = |t: f64| [flexor_part, 1.0].map(|part| (50.0 + part * mv_per_s * t).min(3_000.0));
+            let verdicts = run(&mut emg, 12.0, creeps);
+            opened += verdicts.iter().filter(|v| v.wish == Wish::Open).count();
+            assert!(
+                verdicts.iter().all(|v| !v.proven || v.wish != Wish::Open),
+                "{flexor_part} {mv_per_s} mV/s"
+            );
+        }
+    }
+    assert!(opened > 1_000, "or it shows nothing: {opened}");
+}

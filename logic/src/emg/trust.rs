@@ -216,7 +216,7 @@ impl Trust {
             None => self.good = self.good.saturating_add(1),
         }
         // A fault may end in another: nothing is good again before a muscle has been seen at rest or at work.
-        if self.good >= BACK_FRAMES && (!is_active || self.is_proven()) {
+        if self.good >= BACK_FRAMES && (!is_active || self.has_turned_twice()) {
             self.lost = None;
         }
     }
@@ -310,10 +310,28 @@ impl Trust {
         matches!(self.lost, Some(Quality::Flat | Quality::Hum)) && self.flat >= FLAT_FRAMES
     }
 
-    /// Whether a contraction has turned twice as only a muscle does.
+    /// Whether a contraction has turned as a muscle does.
     #[must_use]
-    pub const fn is_proven(&self) -> bool {
+    pub const fn has_turned(&self) -> bool {
+        self.proofs >= 1
+    }
+
+    /// Whether it has done so twice: one jump from a fault to another turns once.
+    #[must_use]
+    pub const fn has_turned_twice(&self) -> bool {
         self.proofs >= 2
+    }
+
+    /// Whether it may still be a muscle's: not doubted, nor at the top of its range for 0.5 s, nor standing still for 0.6 s.
+    #[must_use]
+    pub const fn is_sound(&self) -> bool {
+        self.lost.is_none() && self.at_top < TOP_FRAMES / 3 && self.flat < 3 * FLAT_FRAMES / 5
+    }
+
+    /// Whether it has climbed for 1 s without a turn.
+    #[must_use]
+    pub const fn is_straight(&self) -> bool {
+        self.climbing >= PROOF_LASTS && self.since_proof >= PROOF_LASTS
     }
 
     /// A full window for [`mains_of`](super::mains::mains_of), until [`hear`](Self::hear) begins the next one.

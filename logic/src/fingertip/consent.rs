@@ -5,12 +5,14 @@ use tenax_hal_shim::wire::EventKind;
 use tenax_hal_shim::words::Line;
 
 use super::Fingertip;
-use crate::arming::Signs;
+use crate::arming::{STEP_FRAMES, Signs};
+use crate::button::Press;
+use crate::grip::Grip;
 
 impl Fingertip {
     /// Whether the button at the hand is down, until this says otherwise.
     pub const fn button(&mut self, is_down: bool) {
-        self.button = is_down;
+        self.button_is_down = is_down;
     }
 
     /// This start was a reset, not somebody who switched the hand on. To be said before the first tick.
@@ -29,12 +31,14 @@ impl Fingertip {
         let gate = &self.senses.gate;
         let consent = self.arming.tick(Signs {
             co_contraction: gate.is_co_contracted(&self.config.gate),
-            button: self.button,
+            button: self.button_is_down,
             unloaded: self.senses.forces.map(|_| self.senses.is_unloaded(&self.config)),
         });
         if gate.is_active() {
             self.reflex.renew();
         }
+        self.press();
+        let gate = &self.senses.gate;
         // Who trusts the line has consented for good.
         if gate.is_active() || consent.is_some() || self.config.line_trusted {
             self.link.renew();
@@ -55,6 +59,28 @@ impl Fingertip {
         }
         if core::mem::replace(&mut self.told_no_wearer, self.config.no_wearer) != self.config.no_wearer {
             self.journal.event(EventKind::NoWearer(self.config.no_wearer));
+        }
+    }
+
+    /// Whether the light at the hand is on: [`Muscles::light`](crate::muscles::Muscles::light).
+    #[must_use]
+    pub fn light(&self) -> bool {
+        self.senses.muscles().light(self.journal.frame())
+    }
+
+    /// What somebody at the hand asks for with its button.
+    #[inline(never)]
+    fn press(&mut self) {
+        let empty = matches!(self.senses.grip(&self.config), Grip::Unloaded);
+        let gate = &mut self.senses.gate;
+        if gate.is_releasing() {
+            gate.step_release(STEP_FRAMES);
+        }
+        match self.button.tick(self.button_is_down, empty, gate.is_releasing()) {
+            Some(Press::Release) => gate.release(true),
+            Some(Press::Stop) => gate.release(false),
+            Some(Press::Calibrate) => self.senses.muscles_mut().begin_calibration(self.journal.frame()),
+            None => {}
         }
     }
 

@@ -9,7 +9,10 @@
 //! that has stood for a moment. S2 is set below that as below a stroke's, if it is higher, until the finger lets go or a muscle is active.
 //! And nothing slips at a ratio below [`LEAST_PERMILLE`], whoever says so.
 
+use tenax_hal_shim::wire::Forces;
+
 use crate::force::settings::FrictionConfig;
+use crate::grip::lacks::{Lacks, Slides};
 
 /// Part of S2 below which the warning ends, per mille: beyond the ratio's noise, and not so far that a load which falls
 /// again is answered once more.
@@ -70,6 +73,15 @@ impl Shown {
     }
 }
 
+/// The grip that a pulse aims at, as a part of what friction needs, per mille: after a warning, and after slip, whose object has to be
+/// stopped, too. Chosen on the shipped scenes, seeds 1 to 3, and the default one, seeds 1 to 6.
+const WARNED_PERMILLE: i32 = 1_250;
+const SLIPPED_PERMILLE: i32 = 1_350;
+/// As long as the ratio does not show the friction of what slides, which may be lower by a sixth.
+const SLIPS_PERMILLE: i32 = SLIPPED_PERMILLE * 6 / 5;
+/// Readings over which a growing load is extrapolated: it is expected to grow as much again within the next 100 ms.
+const CARRIED_FOR: usize = 8;
+
 /// The detector.
 #[derive(Clone, Debug, Default)]
 pub struct FrictionDetector {
@@ -77,9 +89,56 @@ pub struct FrictionDetector {
     ratio_permille: Option<u16>,
     stroke: Option<Stroke>,
     shown: Shown,
+    /// Ft of late while nothing moved the hand, mN, the newest first. What slides carries less than its load.
+    carried: Option<[i32; CARRIED_FOR]>,
+    /// Readings since the hand moved.
+    still: u8,
 }
 
 impl FrictionDetector {
+    /// Takes a shear, mN, None while there is no ratio. `moves`: the hand itself does. Call it before the ratio is taken.
+    #[inline(never)]
+    pub fn carry(&mut self, ft_mn: Option<i32>, moves: bool) {
+        let Some(ft_mn) = ft_mn else {
+            self.carried = None;
+            return;
+        };
+        let carried = self.carried.get_or_insert([ft_mn; CARRIED_FOR]);
+        self.still = if moves { 0 } else { self.still.saturating_add(1) };
+        if self.still > 1 {
+            // Not `rotate_right`, whose memmove takes 1.6 kB of flash.
+            let [a, b, c, d, e, f, g, _] = *carried;
+            *carried = [ft_mn, a, b, c, d, e, f, g];
+        }
+    }
+
+    /// The force that the grip lacks by this reading.
+    #[must_use]
+    #[inline(never)]
+    pub fn lacks(&self, config: &FrictionConfig, forces: &Forces, slides: Slides) -> Lacks {
+        let (Some(ratio), Some(carried)) = (forces.ratio_permille, &self.carried) else {
+            return Lacks::default();
+        };
+        let ratio = i32::from(ratio.max(LEAST_PERMILLE));
+        let [.., oldest_mn] = *carried;
+        let most_mn = carried.iter().fold(0, |most, &ft_mn| most.max(ft_mn));
+        let grows_mn = |ft_mn: i32| (ft_mn - oldest_mn).max(0);
+        // Forces are below 2^17 mN, so that a product is below 2^31.
+        let lacks = |ft_mn: i32, permille: i32, friction: i32| {
+            Some(ft_mn.min(1 << 17) * permille / friction - forces.fn_mn)
+        };
+        let friction = ratio.min(self.s2_permille(config).max(1).into());
+        let of_late = self.shown.before.iter().fold(ratio, |most, &before| most.max(before.into()));
+        let (slipped, slides_at) = match slides {
+            Slides::Unknown => (SLIPS_PERMILLE, ratio),
+            Slides::Now => (SLIPPED_PERMILLE, ratio),
+            Slides::Again => (SLIPPED_PERMILLE, of_late),
+        };
+        let slip_mn = lacks(most_mn + grows_mn(most_mn), slipped, slides_at);
+        let warning_mn = lacks(forces.ft_mn + grows_mn(forces.ft_mn), WARNED_PERMILLE, friction);
+        Lacks { slip_mn, warning_mn, by_s2: self.s2 }
+    }
+
     /// Takes a ratio, None while there is none. Gives whether it warns.
     pub fn process(&mut self, config: &FrictionConfig, ratio_permille: Option<u16>) -> bool {
         self.ratio_permille = ratio_permille;
@@ -157,6 +216,62 @@ mod tests {
         after(&[Some(600); SHOWN_FOR]);
         detector.renew();
         assert_eq!(detector.s2_permille(&CONFIG), 300);
+    }
+
+    /// What is lacking after these readings of a load, mN, and their shear.
+    fn lacks_as(slides: Slides, load_mn: i32, shears_mn: &[i32]) -> Lacks {
+        let mut detector = FrictionDetector::default();
+        let mut lacks = Lacks::default();
+        for &ft_mn in shears_mn {
+            let ratio_permille = Some((ft_mn * 1_000 / load_mn) as u16);
+            detector.carry(Some(ft_mn), false);
+            detector.process(&CONFIG, ratio_permille);
+            let forces = Forces { fn_mn: load_mn, fx_mn: ft_mn, fy_mn: 0, ft_mn, load_mn, ratio_permille };
+            lacks = detector.lacks(&CONFIG, &forces, slides);
+        }
+        lacks
+    }
+
+    fn lacks(load_mn: i32, shears_mn: &[i32]) -> Lacks {
+        lacks_as(Slides::Now, load_mn, shears_mn)
+    }
+
+    #[test]
+    fn a_warning_lacks_what_brings_the_ratio_below_s2_by_its_margin() {
+        let held = lacks(10_000, &[3_100; 20]);
+        assert!(held.by_s2);
+        assert_eq!(held.warning_mn, Some(3_100 * WARNED_PERMILLE / 300 - 10_000));
+        // A load that grows by 0.2 N in 100 ms is expected to do so again.
+        let grows: [i32; 20] = core::array::from_fn(|n| 2_600 + n as i32 * 200 / 7);
+        let expected = (grows[19] + grows[19] - grows[12]) * WARNED_PERMILLE / 300 - 10_000;
+        assert!((expected - 10..=expected + 10).contains(&lacks(10_000, &grows).warning_mn.unwrap()));
+        assert!(!lacks(10_000, &[1_000; 20]).by_s2);
+    }
+
+    #[test]
+    fn slip_lacks_what_holds_the_load_before_it_at_the_friction_of_now() {
+        // Friction falls from above 0.27 to 0.2: what is carried falls, the load does not.
+        let shears: [i32; 20] = core::array::from_fn(|n| if n < 17 { 2_700 } else { 2_000 });
+        assert_eq!(lacks(10_000, &shears).slip_mn, Some(2_700 * SLIPPED_PERMILLE / 200 - 10_000));
+        // Before the quadrants show it, it may be lower still; what has come to rest carries less than it could.
+        let fresh = lacks_as(Slides::Unknown, 10_000, &shears).slip_mn;
+        assert_eq!(fresh, Some(2_700 * SLIPS_PERMILLE / 200 - 10_000));
+        let rests: [i32; 20] = core::array::from_fn(|n| if n < 19 { shears[n] } else { 1_800 });
+        assert_eq!(lacks_as(Slides::Again, 10_000, &rests).slip_mn, lacks(10_000, &shears).slip_mn);
+        // A load that comes at once may grow further.
+        let shears: [i32; 20] = core::array::from_fn(|n| if n < 17 { 2_700 } else { 3_000 });
+        assert_eq!(lacks(10_000, &shears).slip_mn, Some(3_300 * SLIPPED_PERMILLE / 300 - 10_000));
+    }
+
+    #[test]
+    fn a_hand_that_moves_shows_no_load() {
+        let mut detector = FrictionDetector::default();
+        detector.carry(Some(2_000), false);
+        (0..20).for_each(|_| detector.carry(Some(4_000), true));
+        detector.carry(Some(4_000), false);
+        assert_eq!(detector.carried, Some([2_000; CARRIED_FOR]));
+        detector.carry(None, false);
+        assert_eq!(detector.carried, None);
     }
 
     #[test]

@@ -57,6 +57,7 @@ impl Curve {
 
 /// The phase on the rising branch, 0 to [`PEAK`], that has this part of the span: `asin(sqrt(part))`.
 #[must_use]
+#[inline(never)]
 pub fn phase_of(part: i32) -> i32 {
     let part = part.clamp(0, ONE);
     // Near 1 the root's slope would be the arcsine's undoing; there the other leg of the triangle is small.

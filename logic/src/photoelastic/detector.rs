@@ -9,10 +9,15 @@ use tenax_hal_shim::channel::frames;
 /// After an impact or a fast run of the motor, in frames: the load still changes, and the filters ring.
 const AFTER_NOISE: u32 = frames(160);
 
+/// For how long slip that was said may go on to be said while the motor answers it, in frames: the strip still flickers because of it.
+const ANSWERED: u32 = frames(50);
+
 /// What it said last.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PhotoelasticDetector {
     quiet: u32,
+    loud: u32,
+    slips: bool,
     level: i32,
     rate_um_s: i32,
     health: DetectorHealth,
@@ -43,8 +48,12 @@ impl PhotoelasticDetector {
     #[inline(never)]
     fn judge(&mut self, config: &HeadConfig, sensed: &Sensed<'_>) -> Said {
         let head = sensed.head;
-        self.quiet = if sensed.noisy { 0 } else { self.quiet.saturating_add(1) };
-        let slips = sensed.valid && head.vibrates() && !sensed.unloaded && self.quiet >= AFTER_NOISE;
+        (self.quiet, self.loud) =
+            if sensed.noisy { (0, self.loud.saturating_add(1)) } else { (self.quiet.saturating_add(1), 0) };
+        let goes_on = self.slips && self.loud < ANSWERED;
+        let slips =
+            sensed.valid && head.vibrates() && !sensed.unloaded && (self.quiet >= AFTER_NOISE || goes_on);
+        self.slips = slips;
         if sensed.forces_are_new {
             self.level = head.level();
             self.rate_um_s = if slips { head.rate_um_s(config, &ALUMINIUM) } else { 0 };

@@ -25,6 +25,9 @@ const TEXTURE_PART: f64 = 0.02;
 const SLIPS_PX: f64 = 0.3;
 /// What is seen to move in a wrong picture, in 1/10,000 of it: from hardly said to be slip to what a fast slip moves.
 const WRONG_E4: (f64, f64) = (30.0, 200.0);
+/// How long an error of the angle lasts, s: where a part of the object has the wall's colours its rims are elsewhere. The crate's errors
+/// on drawn pictures differ by 0.1 degree in 33 ms, by 1.0 in 1 s and by 1.2 in 3 s (rms; docs/vision.md).
+const ANGLE_LASTS_S: f64 = 1.0;
 /// One pixel in the world, mm: 320 of them over 30 mm of skin.
 const PIXEL_MM: f64 = 0.094;
 
@@ -39,6 +42,8 @@ pub(crate) struct SkinCamera {
     /// What goes wrong is drawn apart, so that the rest is the same with and without.
     mistakes: Noise,
     is_wrong: bool,
+    /// How far the angle is off, in parts of its noise.
+    angle_off: f64,
     pictures: u64,
     /// How far the object has moved over the skin since the last picture, m.
     moved_m: f64,
@@ -62,6 +67,7 @@ impl SkinCamera {
             noise: Noise::new(seed, Source::Skin),
             mistakes: Noise::new(seed, Source::SkinMistakes),
             is_wrong: false,
+            angle_off: 0.0,
             pictures: 0,
             moved_m: 0.0,
             under_way: VecDeque::new(),
@@ -126,7 +132,9 @@ impl SkinCamera {
             }
             None => 1e4 * TEXTURE_PART * pixels.min(1.0),
         } + speckle_e4;
-        let degrees = pitch_rad.to_degrees() + self.parameters.angle_noise_deg.get() * self.noise.normal();
+        let stays = libm::exp(-1.0 / (ANGLE_LASTS_S * self.parameters.rate_hz.get()));
+        self.angle_off = stays * self.angle_off + libm::sqrt(1.0 - stays * stays) * self.noise.normal();
+        let degrees = pitch_rad.to_degrees() + self.parameters.angle_noise_deg.get() * self.angle_off;
         let sees = touch.normal_n > 0.0 && self.patch_m > 0.0;
         CameraView {
             age_ms: 0,

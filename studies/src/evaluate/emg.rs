@@ -9,15 +9,17 @@ use std::ops::Range;
 use std::path::Path;
 
 use anyhow::{Context, bail};
+use rayon::prelude::*;
 use serde::Serialize;
 use tenax_hal_shim::words::CalibrationRefusal;
-use tenax_logic::emg::Emg;
 use tenax_logic::emg::calibration::{Calibration, PROMPT_FRAMES, Progress};
-use tenax_logic::emg::decide::Wish;
+use tenax_logic::emg::constants::Fitted;
+use tenax_logic::emg::decide::{Decide, Wish};
+use tenax_logic::emg::fitted::FITTED;
 use tenax_logic::emg::level::level_of;
-use tenax_logic::emg::mains::mains_of;
 use tenax_logic::emg::model::EmgModel;
 use tenax_logic::emg::trust::Quality;
+use tenax_logic::emg::{Emg, Verdict};
 
 /// Rows a second of a recording.
 const HZ: f64 = 100.0;
@@ -35,7 +37,7 @@ const EXTENSORS: [usize; 2] = [0, 1];
 
 /// One recording.
 #[derive(Debug)]
-struct Recording {
+pub(super) struct Recording {
     uv: Vec<[f64; 4]>,
     labels: Vec<u8>,
 }
@@ -146,26 +148,32 @@ impl Recording {
         (ratio(OPEN) - ratio(CLOSE)).abs()
     }
 
-    /// What the hand says in each row, and whether it doubts a sensor.
-    fn play(&self, model: &EmgModel, sites: [usize; 2]) -> Vec<(Wish, bool)> {
-        let mut emg = Emg::new(Some(model));
+    /// What the hand says in each row.
+    fn play(&self, fitted: &'static Fitted, model: &EmgModel, sites: [usize; 2]) -> Vec<Said> {
+        let mut emg = Emg::of(Decide::with(fitted, Some(model)));
         let mut said = Vec::with_capacity(self.uv.len());
-        let mut last = (Wish::Rest, false);
+        let mut last = Said::default();
         for (at, uv) in self.pairs(0..self.uv.len(), sites) {
             while said.len() < at.ceil() as usize {
                 said.push(last);
             }
-            let wish = emg.take(uv.map(Some)).wish;
-            for channel in 0..2 {
-                if let Some(window) = emg.window(channel).copied() {
-                    emg.hear(channel, mains_of(&window));
-                }
-            }
-            last = (wish, (0..2).any(|channel| emg.quality(channel) != Quality::Good));
+            let Verdict { wish, proven, .. } = emg.take(uv.map(Some));
+            // What a spectrum would say names a doubt, and changes none.
+            let doubted = (0..2).any(|channel| emg.quality(channel) != Quality::Good);
+            last = Said { wish, proven, doubted };
         }
         said.resize(self.uv.len(), last);
         said
     }
+}
+
+/// What the hand says in a row.
+#[derive(Clone, Copy, Debug, Default)]
+struct Said {
+    wish: Wish,
+    /// The wish moves the hand at its speed, not gently and a little.
+    proven: bool,
+    doubted: bool,
 }
 
 /// Counts of one or more recordings.
@@ -178,19 +186,21 @@ struct Count {
     repetitions: u32,
     missed: u32,
     latencies_s: Vec<f64>,
+    /// The same to the wish that is proven.
+    full_s: Vec<f64>,
     rows: usize,
     doubted: usize,
 }
 
 impl Count {
     /// Scores what was said, less the repetitions that were calibrated from.
-    fn add(&mut self, recording: &Recording, said: &[(Wish, bool)], skip: usize) {
+    fn add(&mut self, recording: &Recording, said: &[Said], skip: usize) {
         self.rows += said.len();
-        self.doubted += said.iter().filter(|(_, doubted)| *doubted).count();
+        self.doubted += said.iter().filter(|own| own.doubted).count();
         for rows in recording.rests() {
             self.rest_h += rows.len() as f64 / HZ / 3_600.0;
             let mut before = Wish::Rest;
-            for &(wish, _) in &said[rows] {
+            for &Said { wish, .. } in &said[rows] {
                 self.false_motions += u32::from(wish != before && wish != Wish::Rest);
                 before = wish;
             }
@@ -201,7 +211,7 @@ impl Count {
                 let mut from = rows.start + 40;
                 while from + 25 <= rows.end - 10 {
                     let most =
-                        |wish: Wish| said[from..from + 25].iter().filter(|own| own.0 == wish).count() > 12;
+                        |wish: Wish| said[from..from + 25].iter().filter(|own| own.wish == wish).count() > 12;
                     windows[0] += 1;
                     windows[1] += u32::from(most(right));
                     windows[2] += u32::from(most(wrong));
@@ -209,10 +219,15 @@ impl Count {
                 }
                 self.repetitions += 1;
                 let begun = rows.start.saturating_sub(20);
-                match said[begun..rows.end].iter().position(|own| own.0 == right) {
-                    Some(n) => self.latencies_s.push(n as f64 / HZ - 0.2),
+                let since = |n: usize| n as f64 / HZ - 0.2;
+                let said = &said[begun..rows.end];
+                match said.iter().position(|own| own.wish == right) {
+                    Some(n) => self.latencies_s.push(since(n)),
                     None => self.missed += 1,
                 }
+                let full = said.iter().position(|own| own.wish == right && own.proven);
+                // Until the contraction is over, at least, if it never was.
+                self.full_s.push(since(full.unwrap_or(said.len())));
             }
         }
     }
@@ -229,6 +244,8 @@ impl Count {
             false_per_hour: f64::from(self.false_motions) / self.rest_h.max(1e-9),
             latency_s_p50: quantile(&self.latencies_s, 0.5),
             latency_s_p95: quantile(&self.latencies_s, 0.95),
+            full_s_p50: quantile(&self.full_s, 0.5),
+            full_s_p95: quantile(&self.full_s, 0.95),
             doubted_part: self.doubted as f64 / self.rows as f64,
         })
     }
@@ -253,14 +270,19 @@ pub struct Score {
     pub latency_s_p50: f64,
     /// The same of the slowest 5 %.
     pub latency_s_p95: f64,
+    /// From the label's start until the wish moves the hand at its speed, s: until then it moves gently and by little.
+    pub full_s_p50: f64,
+    /// The same of the slowest 5 %.
+    pub full_s_p95: f64,
     /// Part of the time in which a sensor was doubted.
     pub doubted_part: f64,
 }
 
 impl Score {
-    fn values(&self) -> [f64; 9] {
+    fn values(&self) -> [f64; 11] {
         let Self { close_right, close_wrong_way, open_right, open_wrong_way, missed, .. } = *self;
-        let Self { false_per_hour, latency_s_p50, latency_s_p95, doubted_part, .. } = *self;
+        let Self { false_per_hour, latency_s_p50, latency_s_p95, .. } = *self;
+        let Self { full_s_p50, full_s_p95, doubted_part, .. } = *self;
         [
             close_right,
             close_wrong_way,
@@ -270,13 +292,15 @@ impl Score {
             false_per_hour,
             latency_s_p50,
             latency_s_p95,
+            full_s_p50,
+            full_s_p95,
             doubted_part,
         ]
     }
 
     /// The median of each number over people.
     fn median(scores: &[Self]) -> Option<Self> {
-        let all: Vec<[f64; 9]> = scores.iter().map(Self::values).collect();
+        let all: Vec<[f64; 11]> = scores.iter().map(Self::values).collect();
         let median = |n: usize| quantile(&all.iter().map(|values| values[n]).collect::<Vec<_>>(), 0.5);
         (!scores.is_empty()).then(|| Self {
             close_right: median(0),
@@ -287,7 +311,9 @@ impl Score {
             false_per_hour: median(5),
             latency_s_p50: median(6),
             latency_s_p95: median(7),
-            doubted_part: median(8),
+            full_s_p50: median(8),
+            full_s_p95: median(9),
+            doubted_part: median(10),
         })
     }
 }
@@ -324,6 +350,25 @@ pub struct Report {
     pub persons: Vec<Person>,
 }
 
+impl Report {
+    /// The medians of these people.
+    #[must_use]
+    pub fn of(persons: Vec<Person>) -> Self {
+        let of = |kind: fn(&Person) -> Option<Score>| {
+            Score::median(&persons.iter().filter_map(kind).collect::<Vec<_>>())
+        };
+        let refused: usize = persons.iter().map(|person| person.refused.len()).sum();
+        let sessions: usize = persons.iter().map(|person| person.sessions).sum();
+        Report {
+            same_session: of(|person| person.same_session),
+            other_posture: of(|person| person.other_posture),
+            first_day_kept: of(|person| person.first_day_kept),
+            refused_part: refused as f64 / sessions as f64,
+            persons,
+        }
+    }
+}
+
 /// Linear between the ranks; 0 of nothing.
 fn quantile(values: &[f64], part: f64) -> f64 {
     let mut sorted = values.to_vec();
@@ -341,12 +386,12 @@ fn numbers(stem: &str) -> Option<[u32; 3]> {
     Some([person.parse().ok()?, day.parse().ok()?, posture.parse().ok()?])
 }
 
-/// Scores everybody in a folder, or one person.
-///
-/// # Errors
-/// If nothing is there or a recording cannot be read.
-pub fn evaluate(folder: &Path, only: Option<u32>) -> anyhow::Result<Report> {
-    let mut people: BTreeMap<u32, BTreeMap<u32, BTreeMap<u32, Recording>>> = BTreeMap::new();
+/// Recordings of a person, by day and posture.
+pub(super) type Days = BTreeMap<u32, BTreeMap<u32, Recording>>;
+
+/// Everybody in a folder, or one person.
+pub(super) fn people(folder: &Path, only: Option<u32>) -> anyhow::Result<BTreeMap<u32, Days>> {
+    let mut people: BTreeMap<u32, Days> = BTreeMap::new();
     for entry in std::fs::read_dir(folder).with_context(|| folder.display().to_string())? {
         let path = entry?.path();
         let stem = path.file_stem().and_then(|stem| stem.to_str()).and_then(numbers);
@@ -361,22 +406,21 @@ pub fn evaluate(folder: &Path, only: Option<u32>) -> anyhow::Result<Report> {
     if people.is_empty() {
         bail!("{}: no recording is called personP_dayD_postureQ.csv, with P as asked for", folder.display());
     }
-    let persons: Vec<Person> = people.iter().map(|(&number, days)| person(number, days)).collect();
-    let of = |kind: fn(&Person) -> Option<Score>| {
-        Score::median(&persons.iter().filter_map(kind).collect::<Vec<_>>())
-    };
-    let refused: usize = persons.iter().map(|person| person.refused.len()).sum();
-    let sessions: usize = persons.iter().map(|person| person.sessions).sum();
-    Ok(Report {
-        same_session: of(|person| person.same_session),
-        other_posture: of(|person| person.other_posture),
-        first_day_kept: of(|person| person.first_day_kept),
-        refused_part: refused as f64 / sessions as f64,
-        persons,
-    })
+    Ok(people)
 }
 
-fn person(number: u32, days: &BTreeMap<u32, BTreeMap<u32, Recording>>) -> Person {
+/// Scores everybody in a folder, or one person.
+///
+/// # Errors
+/// If nothing is there or a recording cannot be read.
+pub fn evaluate(folder: &Path, only: Option<u32>) -> anyhow::Result<Report> {
+    let people = people(folder, only)?;
+    let persons: Vec<Person> =
+        people.par_iter().map(|(&number, days)| person(&FITTED, number, days)).collect();
+    Ok(Report::of(persons))
+}
+
+pub(super) fn person(fitted: &'static Fitted, number: u32, days: &Days) -> Person {
     let mut counts: [Count; 3] = Default::default();
     let mut refused = BTreeMap::new();
     let mut first_day = None;
@@ -393,7 +437,7 @@ fn person(number: u32, days: &BTreeMap<u32, BTreeMap<u32, Recording>>) -> Person
         match &model {
             Ok(model) => {
                 for (n, recording) in postures.values().enumerate() {
-                    let said = recording.play(model, sites);
+                    let said = recording.play(fitted, model, sites);
                     counts[n.min(1)].add(recording, &said, if n == 0 { 2 } else { 0 });
                 }
             }
@@ -403,7 +447,7 @@ fn person(number: u32, days: &BTreeMap<u32, BTreeMap<u32, Recording>>) -> Person
         }
         match &first_day {
             None => first_day = Some(model),
-            Some(Ok(kept)) => counts[2].add(first, &first.play(kept, sites), 0),
+            Some(Ok(kept)) => counts[2].add(first, &first.play(fitted, kept, sites), 0),
             Some(Err(_)) => {}
         }
     }
@@ -420,14 +464,21 @@ impl fmt::Display for Text<'_> {
         let Self(report) = self;
         writeln!(
             f,
-            "{:28} {:>17} {:>17} {:>7} {:>8} {:>15} {:>8}",
-            "", "closes right/wrong", "opens right/wrong", "missed", "false/h", "late p50, p95 s", "doubted"
+            "{:28} {:>17} {:>17} {:>7} {:>8} {:>15} {:>15} {:>8}",
+            "",
+            "closes right/wrong",
+            "opens right/wrong",
+            "missed",
+            "false/h",
+            "late p50, p95 s",
+            "full p50, p95 s",
+            "doubted"
         )?;
         let row = |f: &mut fmt::Formatter<'_>, name: &str, score: Option<Score>| {
             let Some(s) = score else { return writeln!(f, "{name:28} {:>17}", "-") };
             writeln!(
                 f,
-                "{name:28} {:>10.3} {:.3} {:>11.3} {:.3} {:>8.3} {:>8.1} {:>8.3} {:>6.3} {:>8.4}",
+                "{name:28} {:>10.3} {:.3} {:>11.3} {:.3} {:>8.3} {:>8.1} {:>8.3} {:>6.3} {:>8.3} {:>6.3} {:>8.4}",
                 s.close_right,
                 s.close_wrong_way,
                 s.open_right,
@@ -436,6 +487,8 @@ impl fmt::Display for Text<'_> {
                 s.false_per_hour,
                 s.latency_s_p50,
                 s.latency_s_p95,
+                s.full_s_p50,
+                s.full_s_p95,
                 s.doubted_part
             )
         };
@@ -488,7 +541,7 @@ mod tests {
     fn clear_contractions_are_right_and_swapped_labels_are_not() {
         let mut recording = made_up();
         let model = recording.calibrate([2, 0]).expect("it separates");
-        let said = recording.play(&model, [2, 0]);
+        let said = recording.play(&FITTED, &model, [2, 0]);
         let score = |recording: &Recording| {
             let mut count = Count::default();
             count.add(recording, &said, 2);

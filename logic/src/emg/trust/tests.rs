@@ -53,23 +53,23 @@ fn each_fault_has_its_name() {
 #[test]
 fn a_contraction_proves_itself_and_a_step_of_the_front_end_does_not() {
     let settling = |t: f64| 500.0 * (1.0 - (-t / 0.027).exp());
-    assert!(!watch(0.24, settling).is_proven());
-    assert!(watch(0.40, muscle).is_proven());
+    assert!(!watch(0.24, settling).has_turned_twice());
+    assert!(watch(0.40, muscle).has_turned_twice());
 }
 
 #[test]
 fn a_jump_from_a_fault_to_another_proves_nothing() {
     let jump = |t: f64| if t < 0.24 { 500.0 } else { 1_400.0 };
-    (1..60).for_each(|n| assert!(!watch(f64::from(n) / 80.0, jump).is_proven(), "{n} slow frames"));
+    (1..60).for_each(|n| assert!(!watch(f64::from(n) / 80.0, jump).has_turned_twice(), "{n} slow frames"));
 }
 
 #[test]
 fn what_is_proven_must_prove_itself_again_once_it_no_longer_curves() {
     let mut watch = watch(1.0, muscle);
-    assert!(watch.is_proven());
+    assert!(watch.has_turned_twice());
     let level = muscle(1.0);
     go_on(&mut watch, 1.0, 1.2, |t| level + 1_000.0 * (t - 1.0));
-    assert!(!watch.is_proven(), "a straight line is no muscle");
+    assert!(!watch.has_turned_twice(), "a straight line is no muscle");
 }
 
 #[test]

@@ -1,0 +1,113 @@
+//! The button at the hand: what a wearer can do without a PC. Any press consents as well ([`arming`](crate::arming)).
+//!
+//! | the finger | pressed | the hand |
+//! |---|---|---|
+//! | holds something, or is not known not to | for 1 to 3 s, and let go | [`Press::Release`]: opens slowly |
+//! | opens after a release | again | [`Press::Stop`] |
+//! | holds nothing | for 3 s | [`Press::Calibrate`]: asks for rest, closing and opening |
+//!
+//! A release waits for the button to be let go: a button that is stuck or shorted opens nothing.
+
+use tenax_hal_shim::channel::frames;
+
+use crate::arming::{DEBOUNCE_STEPS, STEP_FRAMES};
+
+const RELEASE_STEPS: u32 = frames(1_000) / STEP_FRAMES;
+const CALIBRATE_STEPS: u32 = frames(3_000) / STEP_FRAMES;
+
+/// What a press asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Press {
+    /// To open a hand that holds.
+    Release,
+    /// To stop doing so.
+    Stop,
+    /// To learn the wearer's muscles anew.
+    Calibrate,
+}
+
+/// The button, from step to step.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Button {
+    /// Steps for which it is down, and up.
+    down: u32,
+    up: u32,
+    /// It was seen up before it went down, and has asked for nothing since.
+    fresh: bool,
+    held: bool,
+}
+
+impl Button {
+    /// Goes on by one step. `empty`: the finger is known to hold nothing; `releasing`: the hand opens after a release.
+    pub fn tick(&mut self, is_down: bool, empty: bool, releasing: bool) -> Option<Press> {
+        if !is_down {
+            self.up = self.up.saturating_add(1);
+            if self.up < DEBOUNCE_STEPS {
+                return None;
+            }
+            let down = core::mem::take(&mut self.down);
+            let long = (RELEASE_STEPS..CALIBRATE_STEPS).contains(&down);
+            let asks = self.fresh && self.held && long && self.up == DEBOUNCE_STEPS;
+            self.fresh = true;
+            return asks.then_some(Press::Release);
+        }
+        if self.down == 0 {
+            self.fresh &= self.up >= DEBOUNCE_STEPS;
+            self.held = !empty;
+        }
+        self.up = 0;
+        self.down = self.down.saturating_add(1);
+        let press = match self.down {
+            DEBOUNCE_STEPS if releasing => Press::Stop,
+            CALIBRATE_STEPS if !self.held && empty => Press::Calibrate,
+            _ => return None,
+        };
+        core::mem::take(&mut self.fresh).then_some(press)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::vec::Vec;
+
+    /// What so many ms down, then 100 ms up, ask for, after 100 ms up.
+    fn press(ms: u32, empty: bool, releasing: bool) -> Vec<Press> {
+        let mut button = Button::default();
+        let steps = |ms: u32| frames(ms) / STEP_FRAMES;
+        let mut all = Vec::new();
+        for (is_down, ms) in [(false, 100), (true, ms), (false, 100)] {
+            all.extend((0..steps(ms)).filter_map(|_| button.tick(is_down, empty, releasing)));
+        }
+        all
+    }
+
+    #[test]
+    fn each_press_asks_once_for_what_its_length_says() {
+        for (ms, empty, releasing, asks) in [
+            (200, false, false, None),
+            (1_100, false, false, Some(Press::Release)),
+            (2_900, false, false, Some(Press::Release)),
+            (3_100, false, false, None),
+            (60_000, false, false, None),
+            (1_100, true, false, None),
+            (3_100, true, false, Some(Press::Calibrate)),
+            (60_000, true, false, Some(Press::Calibrate)),
+            (200, false, true, Some(Press::Stop)),
+            (1_100, false, true, Some(Press::Stop)),
+            (5, false, true, None),
+        ] {
+            assert_eq!(press(ms, empty, releasing), Vec::from_iter(asks), "{ms} ms, {empty}, {releasing}");
+        }
+    }
+
+    // Shows W8.
+    #[test]
+    fn a_button_that_is_stuck_or_bounces_asks_for_nothing() {
+        let mut stuck = Button::default();
+        assert!((0..100_000).all(|_| stuck.tick(true, false, false).is_none()));
+        assert!((0..1_000).all(|_| stuck.tick(false, false, false).is_none()), "nor when it comes loose");
+        let mut bounces = Button::default();
+        assert!((0..100_000).all(|n| bounces.tick(n % 9 < 3, false, false).is_none()));
+    }
+}

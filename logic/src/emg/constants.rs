@@ -1,0 +1,103 @@
+//! The constants of the wearer's model: their meaning here, their values in [`fitted`](super::fitted).
+
+/// Shares and places are per mille of what was calibrated, levels Q10 octaves, times readings of a pair, 240 a second.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fitted {
+    /// Over which shares and ratio are averaged.
+    pub mean_readings: i32,
+    /// Share of the calibrated rise from which closing and opening begin.
+    pub begins: [i32; 2],
+    /// And below which each ends.
+    pub ends: [i32; 2],
+    /// A wish ends at least this far below where it begins.
+    pub hysteresis: i32,
+    /// And no lower than this share.
+    pub least_end: i32,
+    /// It also ends this far below its own crest, as a share: a muscle that relaxes slowly has let go.
+    pub fall: i32,
+    /// But never for a fall of less than this level: a contraction fluctuates.
+    pub least_fall: i32,
+    /// Over which the crest is forgotten.
+    pub crest_readings: i32,
+    /// A wish begins again this share above the lowest one since: tone that stays is no new wish.
+    pub rise: i32,
+    /// A wish begins at least this level above rest.
+    pub least_rise: i32,
+    /// And so many standard deviations of rest.
+    pub least_spreads: i32,
+    /// Place of the electrodes' ratio between calibrated closing (0) and opening (1000): closing begins below, opening above.
+    pub place_begins: i32,
+    /// Closing goes on below, opening above.
+    pub place_stays: [i32; 2],
+    /// For which rest, closing and opening stand before they are a wish.
+    pub dwell: [i32; 3],
+    /// Readings above all that was calibrated that open at once.
+    pub at_once_readings: i32,
+    /// Over which rest is followed.
+    pub rest_readings: i32,
+    /// Who lets go of a contraction makes the opposite one for a while, somewhat weaker. So for so long after activity of another
+    /// direction opening does not begin, for so long only a strong one does.
+    pub after_readings: [i32; 2],
+    /// For which closing stands as soon after opening.
+    pub after_dwell: i32,
+    /// Level above the calibrated opening from which nothing is a relaxing muscle.
+    pub firmer: i32,
+    /// Both muscles contract when the other site has a share above what calibration found beside the contraction, and this.
+    pub both: i32,
+    /// Share of either site that is activity.
+    pub busy: i32,
+}
+
+impl Fitted {
+    /// How many there are.
+    pub const COUNT: usize = 27;
+
+    /// Each of them, in the order of the fields: for who fits them.
+    pub fn all_mut(&mut self) -> [&mut i32; Self::COUNT] {
+        let Self { mean_readings, begins, ends, hysteresis, least_end, fall, least_fall, .. } = self;
+        let Self { crest_readings, rise, least_rise, least_spreads, place_begins, place_stays, .. } = self;
+        let Self {
+            dwell,
+            at_once_readings,
+            rest_readings,
+            after_readings,
+            after_dwell,
+            firmer,
+            both,
+            busy,
+            ..
+        } = self;
+        let ([close_begins, open_begins], [close_ends, open_ends]) = (begins, ends);
+        let ([close_stays, open_stays], [rest_dwell, close_dwell, open_dwell]) = (place_stays, dwell);
+        let [after, long_after] = after_readings;
+        [
+            mean_readings,
+            close_begins,
+            open_begins,
+            close_ends,
+            open_ends,
+            hysteresis,
+            least_end,
+            fall,
+            least_fall,
+            crest_readings,
+            rise,
+            least_rise,
+            least_spreads,
+            place_begins,
+            close_stays,
+            open_stays,
+            rest_dwell,
+            close_dwell,
+            open_dwell,
+            at_once_readings,
+            rest_readings,
+            after,
+            long_after,
+            after_dwell,
+            firmer,
+            both,
+            busy,
+        ]
+    }
+}

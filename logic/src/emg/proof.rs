@@ -1,0 +1,201 @@
+//! Whether a wish is a muscle's: what is not proven moves the hand gently ([`Gate`](crate::gate::Gate)).
+//!
+//! A fault lies under one electrode, and jumps or stands still; a contraction is heard by both, and rises over tenths of a
+//! second or turns. So an opening is proven when the other electrode has risen lately above all that it was just before, *and* its own
+//! envelope rose by degrees or has turned. Both are known as a rule when the wish begins: a wish takes longer than they do.
+
+use super::decide::Wish;
+use super::level::{TOP_LEVEL, level_of};
+use super::trust::{TOP_UV, Trust};
+
+/// Slow frames in a block, 0.1 s; the first five blocks that are kept are before.
+const BLOCK_FRAMES: u8 = 8;
+const BLOCKS: usize = 9;
+const BEFORE: usize = 5;
+/// The least rise of the other electrode that is one, Q10 octaves: 9 %. At rest 0.5 to 3 % of such times have one, of real
+/// openings 84 to 100 %; and so many standard deviations of its rest.
+const LEAST_HEARD: i32 = 123;
+/// Slow frames from the begin of a wish in which the other electrode has to rise: 1.5 s.
+const HEARD_FRAMES: u16 = 120;
+/// Slow frames in a row that make a rise: one is a glitch.
+const HEARD_FOR: u8 = 2;
+/// A rise by degrees: no block has more of it, per mille, and so many have at least the other part.
+const MOST_IN_BLOCK: i32 = 650;
+const PART_OF_BLOCK: i32 = 100;
+const BLOCKS_OF_RISE: usize = 3;
+/// And it is at least this, Q10 octaves.
+const LEAST_RISE: i32 = 512;
+/// And has slowed down to this part of its fastest, per mille.
+const SLOWER: i32 = 600;
+/// Slow frames within which the same wish is gone on with, and need not be heard again: 0.1 s.
+const GOES_ON_FRAMES: u16 = 8;
+/// Slow frames for which a proven opening above the sensor's range stays proven: 0.5 s.
+const OVER_FRAMES: u16 = 40;
+/// Each unproven opening makes the next harder to believe, this often at most, and so many slow frames of rest take one back: 10 s.
+const MOST_WARY: u8 = 3;
+const WARY_FRAMES: u16 = 800;
+
+/// Both electrodes' recent past, and what it proves.
+#[derive(Clone, Debug)]
+pub struct Proof {
+    /// Highest level of each block, oldest first, 0 before the first reading; the last is under way.
+    blocks: [[i16; BLOCKS]; 2],
+    frames: u8,
+    wish: Wish,
+    age: u16,
+    /// What each electrode stood at before the wish.
+    before: [i32; 2],
+    /// Slow frames in a row in which the other one is above that.
+    hears: u8,
+    heard: bool,
+    proven: bool,
+    over: u16,
+    /// The last wish that was proven, and slow frames since.
+    last: (Wish, u16),
+    wary: u8,
+    rest: u16,
+}
+
+impl Default for Proof {
+    fn default() -> Self {
+        Self {
+            blocks: [[0; BLOCKS]; 2],
+            frames: 0,
+            wish: Wish::Rest,
+            age: 0,
+            before: [0; 2],
+            hears: 0,
+            heard: false,
+            proven: false,
+            over: 0,
+            last: (Wish::Rest, u16::MAX),
+            wary: 0,
+            rest: 0,
+        }
+    }
+}
+
+impl Proof {
+    /// Takes a pair of levels of each slow frame, none without a number, and the wish that they make: whether it is proven. `mover` is the
+    /// electrode of the wish, `trust` what is thought of it, `hears` the other one's rest and how far above it rises at least, Q10
+    /// octaves, none if it hardly does: then turning twice is all there is.
+    #[inline(never)]
+    pub fn take(
+        &mut self,
+        levels: [Option<i32>; 2],
+        wish: Wish,
+        mover: usize,
+        trust: &Trust,
+        hears: Option<[i32; 2]>,
+        over: bool,
+    ) -> bool {
+        self.keep(levels);
+        self.begin(wish);
+        if wish == Wish::Rest {
+            return false;
+        }
+        self.over = if over { self.over.saturating_add(1) } else { 0 };
+        self.age = self.age.saturating_add(1);
+        let heard = hears.map(|[rest, rise]| {
+            self.rise(1 - mover, levels[(1 - mover) & 1], rest)
+                >= rise.max(LEAST_HEARD) * (1 + i32::from(self.wary))
+        });
+        self.hears = if heard == Some(true) { self.hears.saturating_add(1) } else { 0 };
+        self.heard |= self.age <= HEARD_FRAMES && self.hears >= HEARD_FOR;
+        self.proven |= match (heard, wish) {
+            (Some(_), Wish::Open) => self.heard && (trust.has_turned() || self.is_gradual(mover)),
+            _ => self.heard || trust.has_turned_twice(),
+        };
+        if self.over > OVER_FRAMES || !(over || trust.is_sound()) {
+            // Whatever follows is another contraction, which has to be heard.
+            (self.proven, self.heard, self.age) = (false, false, HEARD_FRAMES);
+        }
+        self.proven &= !trust.is_straight();
+        if self.proven {
+            self.wary = 0;
+        }
+        self.proven
+    }
+
+    fn keep(&mut self, levels: [Option<i32>; 2]) {
+        self.frames += 1;
+        let next = self.frames >= BLOCK_FRAMES;
+        if next {
+            self.frames = 0;
+        }
+        for (blocks, level) in self.blocks.iter_mut().zip(levels) {
+            if next {
+                // `rotate_left` would link a move of any length.
+                for n in 1..BLOCKS {
+                    blocks[n - 1] = blocks[n];
+                }
+            }
+            // What gives no number stands where it stood.
+            let Some(level) = level else { continue };
+            let level = level as i16;
+            let last = &mut blocks[BLOCKS - 1];
+            *last = if next { level } else { level.max(*last) };
+        }
+    }
+
+    fn begin(&mut self, wish: Wish) {
+        self.last.1 = if self.proven { 0 } else { self.last.1.saturating_add(1) };
+        if self.proven {
+            self.last.0 = self.wish;
+        }
+        if wish == self.wish {
+            self.rest = if wish == Wish::Rest { self.rest + 1 } else { 0 };
+            if self.rest >= WARY_FRAMES {
+                (self.rest, self.wary) = (0, self.wary.saturating_sub(1));
+            }
+            return;
+        }
+        if self.wish == Wish::Open && !self.proven {
+            self.wary = (self.wary + 1).min(MOST_WARY);
+        }
+        (self.wish, self.age, self.over) = (wish, 0, 0);
+        self.before = [0, 1].map(|n: usize| self.before(n));
+        self.heard = wish == self.last.0 && self.last.1 < GOES_ON_FRAMES && wish != Wish::Rest;
+        self.proven = false;
+    }
+
+    /// An electrode's highest level of 0.4 to 0.8 s ago.
+    fn before(&self, n: usize) -> i32 {
+        self.blocks[n & 1].iter().take(BEFORE).copied().max().map_or(0, i32::from)
+    }
+
+    /// How far it is above that now, or above what it was when the wish began, and above its rest.
+    fn rise(&self, n: usize, level: Option<i32>, rest: i32) -> i32 {
+        level.map_or(0, |level| level - self.before(n).min(self.before[n & 1]).max(rest))
+    }
+
+    /// Whether an electrode has risen over several blocks and slows down, as a muscle does: what creeps goes on as fast, and what
+    /// has come to the top of its range may have.
+    fn is_gradual(&self, n: usize) -> bool {
+        let blocks = self.blocks[n & 1].map(i32::from);
+        let [.., last_but_one, last, now] = blocks;
+        let steps = blocks.windows(2).map(|pair| (pair[1] - pair[0]).max(0));
+        let (all, most) = steps.clone().fold((0, 0), |(all, most), step| (all + step, step.max(most)));
+        let parts = steps.filter(|step| step * 1_000 >= all * PART_OF_BLOCK).count();
+        let fastest = blocks.windows(2).map(|pair| climbs(pair[0], pair[1])).max().unwrap_or(0);
+        let slows = climbs(last_but_one, last) * 1_000 <= fastest * SLOWER;
+        let is_top = now.max(last) >= const { level_of(TOP_UV) };
+        all >= LEAST_RISE
+            && most * 1_000 <= all * MOST_IN_BLOCK
+            && parts >= BLOCKS_OF_RISE
+            && slows
+            && !is_top
+    }
+}
+
+/// By how much the envelope climbs from a level to another, as a part of the highest there is, Q18; 0 if it falls.
+const fn climbs(from: i32, to: i32) -> i32 {
+    // 2 to the power of a level below the highest, to 0.2 %.
+    const fn envelope(level: i32) -> i32 {
+        let below = TOP_LEVEL - level;
+        let part = 1_023 - (below & 1_023);
+        let mantissa = 1_024 + ((part * (672 + ((352 * part) >> 10))) >> 10);
+        (mantissa << 7) >> ((below >> 10) & 31)
+    }
+    if to > from { envelope(to) - envelope(from) } else { 0 }
+}

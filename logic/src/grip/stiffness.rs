@@ -1,0 +1,148 @@
+//! What closing does to the force, as closing itself shows.
+//!
+//! Fingers that close at a steady speed raise the force at a steady rate, whatever the motor's dead time is: the stiffness of object, pad
+//! and linkage is that rate over the duty. The steepest rise of a closing is it; a rise that the dead time blurs is flatter.
+
+/// Readings over which a rise is taken, 37.5 ms: as long as a pulse, which a shorter span would see in parts.
+const SPAN: usize = 3;
+/// Readings back to which the motor's travel is known: 50 ms of dead time, and the span.
+const KEPT: usize = 7;
+/// Readings for which the force does not yet show what the motor has travelled: a dead time of 30 ms, and the time of a reading.
+const NOT_FELT: usize = 3;
+/// A rise below this is noise, mN.
+const NOISE_MN: i32 = 60;
+/// Travel below which no rise tells anything: 1.5 ms at full duty.
+const TRAVEL_MIN: u32 = 3_000;
+/// Fraction bits of a stiffness.
+const FRACTION: u32 = 4;
+/// The greatest that is believed, mN a frame at full duty: 4 N.
+const MOST: u32 = 4_000 << FRACTION;
+
+/// Stiffness by the motor's travel, in per mille of duty times frames.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Stiffness {
+    /// mN that a frame at full duty adds, with [`FRACTION`] bits; 0 before a closing has shown it.
+    mn_a_frame: u32,
+    /// The steepest of this closing.
+    steepest: u32,
+    /// Travel of this reading's time, and of those before, the newest first.
+    travel: u32,
+    before: [u32; KEPT],
+    loads_mn: [i32; SPAN],
+}
+
+impl Stiffness {
+    /// The motor closes in this frame, at this duty.
+    pub const fn close(&mut self, duty_permille: u16) {
+        self.travel += duty_permille as u32;
+    }
+
+    /// Takes a reading of the load, mN; None while nothing is held. Call it once a slow frame.
+    #[inline(never)]
+    pub fn feel(&mut self, load_mn: Option<i32>) {
+        let travel = core::mem::take(&mut self.travel);
+        // Not `rotate_right`, whose memmove takes 1.6 kB of flash.
+        let [a, b, c, d, e, f, _] = self.before;
+        self.before = [travel, a, b, c, d, e, f];
+        let Some(load_mn) = load_mn else {
+            // What is held next is something else.
+            (self.mn_a_frame, self.steepest, self.loads_mn) = (0, 0, [0; SPAN]);
+            return;
+        };
+        let [newest_mn, middle_mn, oldest_mn] = self.loads_mn;
+        self.loads_mn = [load_mn, newest_mn, middle_mn];
+        // Of three readings each, but not of the newest two: the motor has not moved yet, what changes the force is the object.
+        let most = (c + d + e).max(b + c + d).max(d + e + f);
+        let rise_mn = load_mn - oldest_mn;
+        if oldest_mn > 0 && rise_mn > NOISE_MN && most >= TRAVEL_MIN {
+            // A load is below 2^17 mN, the product below 2^31.
+            let shown = rise_mn.unsigned_abs() * (1_000 << FRACTION) / most;
+            self.steepest = self.steepest.max(shown.min(MOST));
+            self.mn_a_frame = self.mn_a_frame.max(self.steepest);
+        }
+        if self.before == [0; KEPT] && self.steepest > 0 {
+            // This closing is over: its own is the newest.
+            self.mn_a_frame = core::mem::take(&mut self.steepest);
+        }
+    }
+
+    /// The travel that is still to be asked of the motor for so much force, mN; what it has travelled and the force does not show yet is
+    /// taken off. None before a closing has shown the stiffness.
+    #[must_use]
+    pub fn travel_for(&self, lacks_mn: i32) -> Option<u32> {
+        let coming: u32 = self.before[..NOT_FELT].iter().sum::<u32>() + self.travel;
+        let lacks_mn = lacks_mn.clamp(0, 1 << 17).unsigned_abs();
+        (lacks_mn * (1_000 << FRACTION))
+            .checked_div(self.mn_a_frame)
+            .map(|travel| travel.saturating_sub(coming))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Closes at this duty for so many slow frames, each of which adds its part to the load `dead` slow frames later.
+    fn closing(
+        stiffness: &mut Stiffness,
+        load_mn: &mut f64,
+        duty_permille: u16,
+        frames: usize,
+        mn_a_frame: f64,
+        dead: usize,
+    ) {
+        for n in 0..frames + dead + KEPT {
+            if n < frames {
+                (0..25).for_each(|_| stiffness.close(duty_permille));
+            }
+            if (dead..dead + frames).contains(&n) {
+                *load_mn += 25.0 * mn_a_frame * f64::from(duty_permille) / 1e3;
+            }
+            stiffness.feel(Some(*load_mn as i32));
+        }
+    }
+
+    #[test]
+    fn closing_shows_the_stiffness_whatever_the_dead_time() {
+        for dead in 2..=4 {
+            for (duty, frames) in [(100, 40), (500, 10), (1_000, 4), (1_000, 3)] {
+                for mn_a_frame in [18.0, 90.0, 360.0] {
+                    let (mut stiffness, mut load_mn) = (Stiffness::default(), 700.0);
+                    assert_eq!(stiffness.travel_for(1_000), None);
+                    closing(&mut stiffness, &mut load_mn, duty, frames, mn_a_frame, dead);
+                    let shown = 1e6 / f64::from(stiffness.travel_for(1_000).unwrap());
+                    assert!(
+                        (shown / mn_a_frame - 1.0).abs() < 0.1,
+                        "{dead} {duty} {frames}: {shown} for {mn_a_frame}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_newest_closing_counts_and_another_object_is_another_stiffness() {
+        let (mut stiffness, mut load_mn) = (Stiffness::default(), 700.0);
+        closing(&mut stiffness, &mut load_mn, 500, 10, 90.0, 2);
+        closing(&mut stiffness, &mut load_mn, 500, 10, 45.0, 2);
+        let travel = stiffness.travel_for(900).unwrap();
+        assert!((19_000..=21_000).contains(&travel), "{travel}");
+        // What is on its way is taken off.
+        (0..10).for_each(|_| stiffness.close(1_000));
+        assert_eq!(stiffness.travel_for(900), Some(travel - 10_000));
+        stiffness.feel(None);
+        assert_eq!(stiffness.travel_for(900), None);
+    }
+
+    #[test]
+    fn a_load_that_jumps_as_the_motor_starts_is_the_objects() {
+        let (mut stiffness, mut load_mn) = (Stiffness::default(), 700.0);
+        closing(&mut stiffness, &mut load_mn, 100, 40, 18.0, 2);
+        let before = stiffness.travel_for(1_000);
+        (0..5).for_each(|_| stiffness.close(1_000));
+        stiffness.feel(Some(load_mn as i32 + 150));
+        stiffness.feel(Some(load_mn as i32 + 150));
+        assert!(stiffness.travel_for(1_000) <= before);
+        assert_eq!(stiffness.mn_a_frame, before.map(|travel| (1_000_000 << FRACTION) / travel).unwrap());
+    }
+}
