@@ -39,6 +39,7 @@ pub mod grip;
 pub mod health;
 pub mod hebbian;
 pub mod journal;
+mod latest;
 pub mod low_pass;
 pub mod mode;
 pub mod muscles;

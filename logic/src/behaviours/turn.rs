@@ -11,6 +11,7 @@ use tenax_hal_shim::motor::Duty;
 
 use super::{BehaviourConfig, Course, Felt, Movement, Wish};
 use crate::grip::Grip;
+use crate::latest;
 use tenax_hal_shim::channel::frames;
 
 /// What still slips after being tightened for this long falls, in frames: that is the reflex's.
@@ -164,8 +165,7 @@ impl Turn {
                 self.rate_ddeg_s = turned_ddeg * FRAME_HZ as i32 / self.since_view.clamp(1, FRAME_HZ) as i32;
                 self.angle_ddeg = angle_ddeg;
                 self.since_view = 0;
-                self.last_ddeg.rotate_right(1);
-                self.last_ddeg[0] = angle_ddeg;
+                latest::push(&mut self.last_ddeg, angle_ddeg);
             }
         }
         let turned_ddeg = (self.last_ddeg[0] - self.last_ddeg[TURNS_PICTURES - 1]).abs();

@@ -13,6 +13,7 @@ use tenax_hal_shim::wire::Forces;
 
 use crate::force::settings::FrictionConfig;
 use crate::grip::lacks::{Lacks, Slides};
+use crate::latest;
 
 /// Part of S2 below which the warning ends, per mille: beyond the ratio's noise, and not so far that a load which falls
 /// again is answered once more.
@@ -68,8 +69,7 @@ impl Shown {
     fn add(&mut self, ratio: u16) {
         let least = self.before.iter().fold(ratio, |least, &before| least.min(before));
         self.highest = self.highest.max(least);
-        self.before.rotate_right(1);
-        self.before[0] = ratio;
+        latest::push(&mut self.before, ratio);
     }
 }
 
@@ -106,9 +106,7 @@ impl FrictionDetector {
         let carried = self.carried.get_or_insert([ft_mn; CARRIED_FOR]);
         self.still = if moves { 0 } else { self.still.saturating_add(1) };
         if self.still > 1 {
-            // Not `rotate_right`, whose memmove takes 1.6 kB of flash.
-            let [a, b, c, d, e, f, g, _] = *carried;
-            *carried = [ft_mn, a, b, c, d, e, f, g];
+            latest::push(carried, ft_mn);
         }
     }
 

@@ -3,6 +3,8 @@
 //! Fingers that close at a steady speed raise the force at a steady rate, whatever the motor's dead time is: the stiffness of object, pad
 //! and linkage is that rate over the duty. The steepest rise of a closing is it; a rise that the dead time blurs is flatter.
 
+use crate::latest;
+
 /// Readings over which a rise is taken, 37.5 ms: as long as a pulse, which a shorter span would see in parts.
 const SPAN: usize = 3;
 /// Readings back to which the motor's travel is known: 50 ms of dead time, and the span.
@@ -41,18 +43,16 @@ impl Stiffness {
     #[inline(never)]
     pub fn feel(&mut self, load_mn: Option<i32>) {
         let travel = core::mem::take(&mut self.travel);
-        // Not `rotate_right`, whose memmove takes 1.6 kB of flash.
-        let [a, b, c, d, e, f, _] = self.before;
-        self.before = [travel, a, b, c, d, e, f];
+        latest::push(&mut self.before, travel);
         let Some(load_mn) = load_mn else {
             // What is held next is something else.
             (self.mn_a_frame, self.steepest, self.loads_mn) = (0, 0, [0; SPAN]);
             return;
         };
-        let [newest_mn, middle_mn, oldest_mn] = self.loads_mn;
-        self.loads_mn = [load_mn, newest_mn, middle_mn];
+        let [.., oldest_mn] = self.loads_mn;
+        latest::push(&mut self.loads_mn, load_mn);
         // Of three readings each, but not of the newest two: the motor has not moved yet, what changes the force is the object.
-        let most = (c + d + e).max(b + c + d).max(d + e + f);
+        let most = self.before[2..].windows(SPAN).map(|travel| travel.iter().sum()).max().unwrap_or(0);
         let rise_mn = load_mn - oldest_mn;
         if oldest_mn > 0 && rise_mn > NOISE_MN && most >= TRAVEL_MIN {
             // A load is below 2^17 mN, the product below 2^31.

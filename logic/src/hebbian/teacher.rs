@@ -11,6 +11,8 @@
 
 use tenax_hal_shim::words::{Code, Codes, NoLesson};
 
+use crate::latest;
+
 /// Messages that a code is the median of.
 const MEMORY: usize = 3;
 
@@ -57,8 +59,7 @@ impl Teacher {
         if self.heard > 0 && age_ms > self.age_ms {
             return;
         }
-        self.said.rotate_right(1);
-        self.said[0] = codes;
+        latest::push(&mut self.said, codes);
         self.heard = (self.heard + 1).min(MEMORY);
         self.age_ms = age_ms;
     }
