@@ -63,6 +63,9 @@ pub struct Report {
     pub margin: reflex::Margin,
     /// What the reflex did.
     pub reflex: reflex::Reflex,
+    /// Newtons that it added and took back: the same as below `reflex`.
+    #[serde(flatten)]
+    pub added: added::Sums,
     /// What became of the object.
     pub object: reflex::Object,
     /// What the hand did by itself because it was asked to.
@@ -195,6 +198,7 @@ impl Report {
     /// Makes a report; [`Report::replay`] is for whoever played a recording.
     pub fn new(subject: &Subject) -> Self {
         let (run, timeline) = (subject.run, subject.timeline);
+        let reflex = reflex::Reflex::of(subject.added, timeline, &run.events, subject.truth);
         Self {
             scene: subject.scene.to_owned(),
             board: subject.board,
@@ -209,7 +213,8 @@ impl Report {
             bound: bound::Bound::of(subject.truth, subject.bound),
             controls: Vec::new(),
             margin: reflex::Margin::of(subject.truth),
-            reflex: reflex::Reflex::of(subject.added, timeline, &run.events, subject.truth),
+            added: reflex.sums,
+            reflex,
             object: reflex::Object::of(subject.truth),
             behaviours: behaviours::of(&run.events, timeline),
             grip: subject.truth.map_or_else(Grip::default, |truth| Grip {

@@ -33,7 +33,7 @@ fn ran(file: &SceneFile) -> Report {
 fn the_bound_keeps_every_one_of_them_with_little_more_than_is_needed() {
     for (name, slips, bears_n) in SCENES {
         let report = ran(&scene(name));
-        let (bound, grip, reflex) = (&report.bound, &report.grip, &report.reflex);
+        let (bound, grip) = (&report.bound, &report.grip);
         println!(
             "| `{name}` | {} | {:.1} | {:.2} | {:.2} | {:.2} | {} | {:.2} |",
             if report.object.kept == Some(true) { "kept" } else { "LOST" },
@@ -41,8 +41,8 @@ fn the_bound_keeps_every_one_of_them_with_little_more_than_is_needed() {
             grip.peak_force_n.unwrap(),
             bound.peak_force_n.unwrap(),
             grip.needed_force_n.unwrap_or_default(),
-            reflex.pulses,
-            reflex.added_without_need_n.unwrap()
+            report.reflex.pulses,
+            report.added.added_without_need_n.unwrap()
         );
         assert_eq!(bound.kept, Some(true), "{name}");
         assert!(bound.distance_mm.unwrap() < SAME_MM, "{name}: {bound:?}");
@@ -60,7 +60,7 @@ fn cells_that_drift_add_nothing() {
     for name in ["drifting-quadrant", "drifting-quadrants"] {
         let report = ran(&scene(name));
         assert_eq!(report.object.kept, Some(true), "{name}");
-        let without_n = report.reflex.added_without_need_n.unwrap();
+        let without_n = report.added.added_without_need_n.unwrap();
         assert!(without_n < 0.1, "{name}: {without_n} N without need in {} pulses", report.reflex.pulses);
     }
 }
@@ -69,7 +69,7 @@ fn cells_that_drift_add_nothing() {
 #[test]
 fn hum_that_closing_does_not_change_is_not_answered_for_long() {
     let report = ran(&scene("hum-after-slip"));
-    let without_n = report.reflex.added_without_need_n.unwrap();
+    let without_n = report.added.added_without_need_n.unwrap();
     // 9.0 N while only half as much force again ended it. 2.3 N, and a peak of 17.7 N, while the slip before had twice the pulse: on a
     // tighter grip Ft/Fn fell below all friction at once.
     assert!(without_n < 3.5, "{without_n} N without need in {} pulses", report.reflex.pulses);
@@ -119,8 +119,8 @@ fn minutes_of_disturbances_slip_nowhere_and_drop_nothing() {
     println!(
         "{minutes} min: {} pulses, {:.2} N added, {:.2} N of them without need; {:?}",
         report.reflex.pulses,
-        report.reflex.added_n,
-        report.reflex.added_without_need_n.unwrap(),
+        report.added.added_n,
+        report.added.added_without_need_n.unwrap(),
         report.bound
     );
     assert_eq!((report.object.kept, report.slip.macro_slips), (Some(true), Some(0)));

@@ -22,14 +22,14 @@ fn twenty_seconds_after_a_wet_patch_the_grip_is_a_third_above_the_need_at_most()
         let report = ran("relax", seed);
         let needed_n = report.grip.needed_force_n.unwrap();
         let held_n = needed_n + report.margin.last_mn.unwrap() / 1e3 / MU_S;
-        let (peak_n, relaxed_n) = (report.grip.peak_force_n.unwrap(), report.reflex.relaxed_n);
+        let (peak_n, relaxed_n) = (report.grip.peak_force_n.unwrap(), report.added.relaxed_n);
         println!(
             "seed {seed}: {peak_n:.2} N, {relaxed_n:.2} N taken back, {:.2} of the need",
             held_n / needed_n
         );
         assert_eq!(report.object.kept, Some(true), "seed {seed}");
         assert!(relaxed_n > 1.0 && held_n < 1.35 * needed_n, "seed {seed}: {held_n} N for {needed_n} N");
-        assert!(relaxed_n <= report.reflex.added_n, "seed {seed}");
+        assert!(relaxed_n <= report.added.added_n, "seed {seed}");
     }
 }
 
@@ -52,6 +52,6 @@ fn a_pull_afterwards_is_answered() {
 fn who_has_not_chosen_it_keeps_what_was_added() {
     let file = session::load_scene("glass").unwrap();
     let outcome = session::scene(&file, 1, &Board::Host, &mut |_| {}).unwrap();
-    assert!(outcome.report.reflex.added_n > 1.0);
-    assert_eq!(outcome.report.reflex.relaxed_n, 0.0);
+    assert!(outcome.report.added.added_n > 1.0);
+    assert_eq!(outcome.report.added.relaxed_n, 0.0);
 }

@@ -18,7 +18,8 @@ const KEYS: &str = "
     wearer.none wearer.reflex_while_active wearer.open_latency_ms wearer.active_first_s wearer.active_permille wearer.reflex_ticks
     wearer.closing_s wearer.opening_s wearer.longest_open_ms wearer.longest_close_ms wearer.faults
     margin.least_mn margin.last_mn
-    reflex.pulses reflex.without_slip reflex.added_n reflex.added_without_need_n reflex.relaxed_n object.kept object.left_behind
+    reflex.pulses reflex.without_slip reflex.added_n reflex.added_without_need_n reflex.relaxed_n
+    added_n added_without_need_n relaxed_n object.kept object.left_behind
     object.handed_over object.turned_deg behaviours
 ";
 

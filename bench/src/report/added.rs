@@ -1,5 +1,6 @@
 //! What the reflex added to the grip, and how much of it without need.
 
+use serde::Serialize;
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::Slow;
@@ -21,12 +22,13 @@ const ABOUT_PART: f64 = 1.1;
 const ABOUT_S: f64 = 1.0;
 
 /// Newtons on a finger.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Sums {
-    /// Added by the reflex.
+    /// Added by the reflex: true ones, or its force sensor's where the truth is not known.
     pub added_n: f64,
-    /// Those of them that were added while nothing slipped or was about to. None where that is not known.
-    pub without_need_n: Option<f64>,
+    /// Those of them that were added while nothing slipped or was about to: no slip within 50 ms, and the grip at 1.1 times what is
+    /// needed within a second or above it. Null where nobody knows when it slipped.
+    pub added_without_need_n: Option<f64>,
     /// Taken back by it.
     pub relaxed_n: f64,
 }
@@ -154,13 +156,13 @@ fn slips(truth: &Fate, t_s: f64) -> bool {
 impl Added {
     /// The newtons of a run: true ones of a scene, those of the force sensor where nobody knows the truth.
     pub fn sums(&self, truth: Option<&Fate>) -> Sums {
-        let mut sums = Sums { without_need_n: truth.map(|_| 0.0), ..Sums::default() };
+        let mut sums = Sums { added_without_need_n: truth.map(|_| 0.0), ..Sums::default() };
         for stretch in self.stretches.iter().chain(&self.open) {
             match truth {
                 Some(truth) if stretch.closes => {
                     let [gained_n, without_n] = truth.grips.gained(stretch, truth);
                     sums.added_n += gained_n;
-                    *sums.without_need_n.get_or_insert_default() += without_n;
+                    *sums.added_without_need_n.get_or_insert_default() += without_n;
                 }
                 Some(truth) => sums.relaxed_n += truth.grips.lost(stretch),
                 None if stretch.closes => sums.added_n += stretch.of_sensor(),
@@ -192,7 +194,7 @@ mod tests {
     fn sums(needed_n: impl Fn(f64) -> f32, slips: Vec<SlipSpan>) -> [f64; 2] {
         let (added, truth) = pulse(needed_n, slips);
         let sums = added.sums(Some(&truth));
-        [sums.added_n, sums.without_need_n.unwrap()].map(|n| (n * 100.0).round() / 100.0)
+        [sums.added_n, sums.added_without_need_n.unwrap()].map(|n| (n * 100.0).round() / 100.0)
     }
 
     #[test]

@@ -4,7 +4,7 @@ use serde::Serialize;
 use tenax_hal_shim::wire::{Event, EventKind};
 use tenax_hal_shim::words::GripMode;
 
-use super::added::{Added, BEFORE_S};
+use super::added::{Added, BEFORE_S, Sums};
 use super::fate::Fate;
 use crate::scorer::SlipSpan;
 use crate::timeline::Timeline;
@@ -16,13 +16,9 @@ pub struct Reflex {
     pub pulses: usize,
     /// Those of them that began where nothing slipped, a warning's too. Null where nobody knows when it slipped.
     pub without_slip: Option<usize>,
-    /// Newtons that the reflex added on a finger: true ones, or its force sensor's where the truth is not known.
-    pub added_n: f64,
-    /// Those of them that were added while nothing slipped or was about to: no slip within 50 ms, and the grip at 1.1 times what is
-    /// needed within a second or above it. Null where nobody knows when it slipped.
-    pub added_without_need_n: Option<f64>,
-    /// Newtons that it took back.
-    pub relaxed_n: f64,
+    /// Newtons that it added and took back.
+    #[serde(flatten)]
+    pub sums: Sums,
 }
 
 impl Reflex {
@@ -41,14 +37,7 @@ impl Reflex {
         let without = |truth: &Fate| {
             pulses.iter().filter(|&&t_s| !truth.slips.iter().any(|slip| answers(t_s, slip))).count()
         };
-        let sums = added.sums(truth);
-        Self {
-            pulses: pulses.len(),
-            without_slip: truth.map(without),
-            added_n: sums.added_n,
-            added_without_need_n: sums.without_need_n,
-            relaxed_n: sums.relaxed_n,
-        }
+        Self { pulses: pulses.len(), without_slip: truth.map(without), sums: added.sums(truth) }
     }
 }
 

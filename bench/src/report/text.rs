@@ -122,9 +122,9 @@ fn slip(f: &mut fmt::Formatter<'_>, report: &Report) -> fmt::Result {
         "{} pulses, {} of them without slip; they added {:.2} N, without need {:.2}; it took back {:.2} N",
         report.reflex.pulses,
         report.reflex.without_slip.unwrap_or(0),
-        report.reflex.added_n,
-        Or(report.reflex.added_without_need_n, "N"),
-        report.reflex.relaxed_n
+        report.added.added_n,
+        Or(report.added.added_without_need_n, "N"),
+        report.added.relaxed_n
     )?;
     line!(
         f,

@@ -66,6 +66,17 @@ pub struct Slow {
     pub behaviour: Option<Behaviour>,
 }
 
+impl Slow {
+    /// The margin of the grip as the fingertip knows it, mN: the shear that the normal force bears by S2, less the shear that there is. None
+    /// while the finger is not loaded enough for a ratio.
+    #[must_use]
+    pub fn margin_mn(&self) -> Option<i32> {
+        let forces = self.forces.filter(|forces| forces.ratio_permille.is_some())?;
+        let bears = i64::from(self.s2_permille) * i64::from(forces.fn_mn) / 1_000;
+        Some(bears as i32 - forces.ft_mn)
+    }
+}
+
 /// What the network knows and feels (Tada 2006, equations 3 to 6).
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct NetworkState {
