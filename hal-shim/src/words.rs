@@ -163,6 +163,8 @@ pub enum MotorStop {
     OpeningStalled,
     /// It has carried too much current for too long: it closes no further before it has cooled. It may open the hand.
     Hot,
+    /// The bridge has switched itself off and says so: a short, too hot, or too low a supply of its own.
+    BridgeOff,
 }
 
 impl MotorStop {
@@ -173,6 +175,7 @@ impl MotorStop {
             Self::ClosingStalled => "it stalled as it closed",
             Self::OpeningStalled => "it stalled as it opened",
             Self::Hot => "it is hot; it does not close",
+            Self::BridgeOff => "its bridge reports a fault",
         }
     }
 }

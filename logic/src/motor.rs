@@ -86,6 +86,8 @@ pub struct Motor {
     /// The least duty that may close and open, per mille.
     least: [u16; 2],
     told: Option<MotorStop>,
+    /// The bridge says that it has switched itself off.
+    bridge_is_off: bool,
     /// Slow frames without a drive, and those of them with current.
     idle: u8,
     odd: u8,
@@ -109,6 +111,11 @@ impl Motor {
 
     const fn sensor(&mut self, channel: usize) -> &mut Sensor {
         if channel == OPENING { &mut self.opening } else { &mut self.current }
+    }
+
+    /// Whether the bridge says that it has switched itself off, until this says otherwise.
+    pub const fn bridge(&mut self, is_off: bool) {
+        self.bridge_is_off = is_off;
     }
 
     /// Whether it may be driven so.
@@ -204,7 +211,9 @@ impl Motor {
         let stop = match (self.stalled, self.opens) {
             (true, false) => Some(MotorStop::ClosingStalled),
             (true, true) => Some(MotorStop::OpeningStalled),
-            (false, _) => self.hot.then_some(MotorStop::Hot),
+            (false, _) if self.hot => Some(MotorStop::Hot),
+            // It protects itself: to be driven on does no harm, and shows when it is back.
+            (false, _) => self.bridge_is_off.then_some(MotorStop::BridgeOff),
         };
         if self.told != stop {
             self.told = stop;

@@ -92,6 +92,8 @@ pub enum Mishap {
         /// Words that are still programmed whole.
         words: u32,
     },
+    /// The motor's bridge pulls its nFAULT low (true), or lets it go.
+    BridgeIsOff(bool),
 }
 
 /// Why a run has no result.

@@ -8,6 +8,7 @@ use rigless::time::VirtualNanos;
 use tenax_hal_shim::channel::SCAN_HZ;
 
 use super::Mishap;
+use super::wires::Wires;
 use tenax_board_model::flash::FlashArray;
 use tenax_board_model::nucleo::Nucleo;
 use tenax_board_model::part::Part;
@@ -66,6 +67,7 @@ impl Mishaps {
                 }
                 Mishap::CoreHangs => host.hold(true),
                 Mishap::PowerFails { words } => flash.cut_power_after(words),
+                Mishap::BridgeIsOff(is_off) => Wires::new(mcu, now).bridge_fault(is_off),
             }
         }
     }
