@@ -4,7 +4,7 @@ use tenax_hal_shim::channel::{MOTOR_CURRENT, OPENING};
 use tenax_hal_shim::front_end::MOTOR_MV_PER_A;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::EventKind;
-use tenax_hal_shim::words::{DriveSource, MotorStop};
+use tenax_hal_shim::words::{DriveSource, Fault, MotorStop, Reason};
 use tenax_host_tests::Bench;
 use tenax_logic::detectors::Said;
 
@@ -133,4 +133,22 @@ fn what_stops_the_motor_is_nobodys_drive() {
     assert!(sources.iter().all(coasts));
     let driven = sources.iter().filter(|(drive, _)| drive.closes()).count();
     assert!((400..1_000).contains(&driven), "{driven} frames");
+}
+
+// Shows R5, B10.
+#[test]
+fn a_cut_wire_of_current_or_opening_is_told_within_50_ms_and_opens_nothing() {
+    for channel in [OPENING, MOTOR_CURRENT] {
+        let mut bench = Bench::holding(74);
+        let cut_at = bench.frames;
+        bench.pins_mv[channel] = 0.0;
+        assert!(bench.run(400).iter().all(|drive| *drive == MotorDrive::Coast));
+        let lost = EventKind::Fault(Fault::SensorLost { channel: channel as u8, reason: Reason::Dead });
+        let told = bench.events.iter().find(|event| event.kind == lost).map(|event| event.frame - cut_at);
+        assert!(told.is_some_and(|frames| frames <= 100), "{channel}: {told:?} frames");
+        bench.pins_mv[channel] = 300.0;
+        bench.run(4_000);
+        let back = EventKind::Fault(Fault::SensorBack { channel: channel as u8 });
+        assert!(bench.events.iter().any(|event| event.kind == back));
+    }
 }

@@ -232,7 +232,8 @@ impl Motor {
             };
             let channel = MOTOR_CURRENT as u8;
             if !self.contradicts && self.odd == ODD_CYCLES {
-                self.contradicts = true;
+                // Whatever it has said of the heat was wrong as well.
+                (self.contradicts, self.heat) = (true, self.heat / 16);
                 journal.fault(Fault::SensorLost { channel, reason: Reason::Creep });
             } else if self.contradicts && self.odd == 0 {
                 self.contradicts = false;

@@ -1,6 +1,6 @@
 //! What can go wrong with a board, done to the emulated one.
 
-use rigless::emulator::Host;
+use rigless::emulator::{Host, Stop};
 use rigless::mcu::Operate;
 use rigless::session::Session;
 use rigless::soc::Width;
@@ -40,14 +40,21 @@ impl Mishaps {
         &mut self,
         scan: usize,
         session: &mut Session<Nucleo>,
-        now: VirtualNanos,
+        stop: Stop,
         flash: &mut FlashArray,
         host: &mut dyn Host,
     ) {
         let due: Vec<_> = self.0.extract_if(.., |(at, _)| *at <= scan).collect();
-        let mcu = &mut session.board_mut().mcu;
+        let now = stop.at;
         for (_, mishap) in due {
+            if mishap == Mishap::BrownsOut {
+                session.reset_by_pin(now, stop.instruction_count, host);
+                session.board_mut().mcu.browned_out(now);
+                continue;
+            }
+            let mcu = &mut session.board_mut().mcu;
             match mishap {
+                Mishap::BrownsOut => {}
                 Mishap::DmaStalls => {
                     stop_stream(mcu, now);
                 }
