@@ -26,7 +26,9 @@ pub enum Job {
     ArrayBegins,
     /// The last of them: the MLP's verdict.
     MlpDecides,
-    /// The fingertip is asked for something to save: the lines rest, and the last slot, which has the most to do, is far.
+    /// Muscles and films are thought about: the lines rest, and the last slot, which has the most to do, is far.
+    Think,
+    /// The fingertip is asked for something to save: the lines rest, too.
     Save,
     /// The record of the cycle is closed.
     EndOfCycle,
@@ -109,7 +111,8 @@ pub const fn slot_of(job: Job) -> u8 {
         Job::Forces => last_reading(FSR, FSR_COUNT),
         Job::ArrayBegins => array,
         Job::MlpDecides => array + ARRAY_SHARES - 1,
-        Job::Save => 19,
+        Job::Think => 19,
+        Job::Save => 21,
         Job::EndOfCycle => FRAMES_PER_SLOW_FRAME - 1,
     }
 }
@@ -167,9 +170,11 @@ mod tests {
             !reads_after(Job::Forces, FSR, FSR_COUNT) && !reads_after(Job::ArrayBegins, ARRAY, ARRAY_COUNT)
         );
         assert!(
-            slot_of(Job::MlpDecides) < slot_of(Job::Save) && slot_of(Job::Save) < slot_of(Job::EndOfCycle)
+            slot_of(Job::MlpDecides) < slot_of(Job::Think) && slot_of(Job::Save) < slot_of(Job::EndOfCycle)
         );
         assert_eq!(usize::from(slot_of(Job::EndOfCycle)), SLOTS - 1);
-        assert_eq!(SCHEDULE[usize::from(slot_of(Job::Save))].switch_b, None);
+        for job in [Job::Think, Job::Save] {
+            assert_eq!(SCHEDULE[usize::from(slot_of(job))].switch_b, None);
+        }
     }
 }

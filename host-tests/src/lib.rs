@@ -187,7 +187,7 @@ impl Bench {
     pub fn give(&mut self, frame: &Frame) -> MotorDrive {
         let drive = self.fingertip.tick(frame);
         // As the device does.
-        if frame.slot() == slot_of(Job::Save) {
+        if frame.slot() == slot_of(Job::Think) {
             self.fingertip.think();
         }
         self.slows.extend(self.fingertip.take_slow());

@@ -131,7 +131,7 @@ pub trait Detector {
 }
 
 /// The slot in which the detectors are guarded that decide more often than once a cycle.
-const OTHERS_GUARDED: u8 = slot_of(Job::Save) + 1;
+const OTHERS_GUARDED: u8 = slot_of(Job::Think) + 1;
 
 /// Runs a piece of code with each detector and its configuration: the static list of them.
 macro_rules! for_each_detector {

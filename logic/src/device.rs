@@ -149,7 +149,7 @@ impl Device {
         self.samples.record(frame);
         self.stream.record(frame);
         // After the motor has been driven, so that nothing waits for it.
-        if frame.slot() == slot_of(Job::Save) {
+        if frame.slot() == slot_of(Job::Think) {
             self.fingertip.think();
         }
     }

@@ -15,7 +15,7 @@ use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::{Job, slot_of};
-use tenax_hal_shim::wire::{EventKind, Slow, TickRecord};
+use tenax_hal_shim::wire::{EventKind, Forces, Slow, TickRecord};
 use tenax_hal_shim::words::{Cause, DriveSource, Fault, GripMode, Kept, Line};
 
 use self::behave::Eye;
@@ -27,6 +27,7 @@ use crate::behaviours::Running;
 use crate::button::Button;
 use crate::config::Config;
 use crate::detectors::{Detectors, Said};
+use crate::grip::relax::Reading;
 use crate::grip::{Grip, Reflex};
 use crate::journal::Journal;
 use crate::mode;
@@ -169,8 +170,21 @@ impl Fingertip {
     fn feel(&mut self) {
         let held = self.senses.forces.filter(|_| matches!(self.senses.grip(&self.config), Grip::Holds(_)));
         let slides = self.reflex.slides(self.mode);
-        let lacks = held.map(|forces| self.detectors.s2.lacks(&self.config.friction, &forces, slides));
+        let s2 = &mut self.detectors.s2;
+        let lacks = held.map(|forces| s2.lacks(&self.config.friction, &forces, slides));
         self.reflex.feel(self.mode, held.map(|forces| forces.load_mn), lacks.unwrap_or_default());
+        let slid_permille = s2.slid_permille();
+        let reading = held.map(|Forces { load_mn, ft_mn, .. }| Reading { load_mn, ft_mn, slid_permille });
+        self.reflex.relax(self.mode, reading.filter(|_| self.may_relax()).as_ref());
+    }
+
+    /// Whether what the reflex added may be taken back: that was chosen, and nobody else moves the hand.
+    fn may_relax(&self) -> bool {
+        self.config.grip.may_relax(self.config.no_wearer)
+            && self.senses.ready(&self.config)
+            && !self.senses.gate.is_active()
+            && self.link_drive().is_none()
+            && self.behaviour.is_none()
     }
 
     /// Evidence from outside, from the next frame on.
@@ -223,8 +237,12 @@ impl Fingertip {
             }
             // Before this frame drives: what the last ones did.
             let striking = matches!(self.mode, GripMode::Slip | GripMode::Settle);
-            // A hand that stalls at its stop as it opens is open.
-            let did = if self.asked.opens() { self.asked } else { self.drive };
+            // A hand that takes back what the reflex added is not opened; one that stalls at its stop as it opens is open.
+            let did = match self.asked {
+                _ if self.reflex.is_relaxing() => MotorDrive::Coast,
+                MotorDrive::Open(_) => self.asked,
+                _ => self.drive,
+            };
             self.senses.driven(did, striking, STEP_FRAMES);
             self.senses.motor.step(self.asked, self.drive);
             if frame.slot() == MOTOR_SLOT {
@@ -233,7 +251,17 @@ impl Fingertip {
         }
         let acting = self.acting.but(self.config.detectors_off);
         let verdicts = Verdicts::of(&self.detectors, acting, self.senses.cannot_slip());
-        let behaviour = self.behave(verdicts);
+        if !verdicts.said.is_empty() {
+            self.reflex.hear();
+        }
+        let behaviour = match self.behave(verdicts) {
+            MotorDrive::Coast
+                if self.reflex.is_relaxing() && self.mode == GripMode::Watch && self.may_relax() =>
+            {
+                self.reflex.relaxes()
+            }
+            wish => wish,
+        };
         let grip = self.senses.grip(&self.config);
         self.step_mode(verdicts, grip);
         let wishes = Wishes {
@@ -246,6 +274,11 @@ impl Fingertip {
         // A lost frame says nothing about anybody's wish, so nobody's is carried out.
         let (asked, source) = if frame.valid { arbitrate(wishes) } else { Default::default() };
         self.asked = asked;
+        // The place of a behaviour, where none is: the reflex takes back.
+        let source = match source {
+            DriveSource::Behaviour if self.behaviour.is_none() => DriveSource::Reflex,
+            source => source,
+        };
         let allowed = self.senses.motor.allows(asked);
         let (drive, source) = if allowed { (asked, source) } else { Default::default() };
         self.drive = drive;
@@ -316,6 +349,9 @@ impl Fingertip {
     fn change(&mut self, to: GripMode, cause: Cause) {
         let from = core::mem::replace(&mut self.mode, to);
         self.reflex.enter(to, self.senses.grip(&self.config));
+        if to == GripMode::Slip {
+            self.detectors.s2.slips();
+        }
         if matches!(cause, Cause::Incipient(DetectorId::S2)) {
             self.detectors.tightened();
         }

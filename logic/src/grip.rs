@@ -10,6 +10,7 @@
 //! force, the pulses share a small budget that only the wearer can renew.
 
 pub mod lacks;
+pub mod relax;
 pub mod settings;
 mod stiffness;
 
@@ -18,6 +19,7 @@ use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::words::GripMode;
 
 use self::lacks::{Lacks, Slides};
+use self::relax::Relax;
 use self::settings::GripConfig;
 use self::stiffness::Stiffness;
 
@@ -56,6 +58,7 @@ pub struct Reflex {
     began_mn: Option<i32>,
     in_vain: u16,
     stiffness: Stiffness,
+    relax: Relax,
     /// The force that the grip lacked by the last reading.
     lacks: Lacks,
     /// What the pulse has still to travel, per mille of duty times frames. None where its length is the settings'.
@@ -73,6 +76,7 @@ impl Default for Reflex {
             began_mn: None,
             in_vain: 0,
             stiffness: Stiffness::default(),
+            relax: Relax::default(),
             lacks: Lacks::default(),
             left: None,
             row: 0,
@@ -161,8 +165,39 @@ impl Reflex {
     /// The motor closes in this frame, whoever asks for it.
     pub const fn closes(&mut self, duty: Duty) {
         self.stiffness.close(duty.as_per_mille());
+        self.relax.closes(duty.as_per_mille());
         if let Some(left) = self.left {
             self.left = Some(left.saturating_sub(duty.as_per_mille() as u32));
+        }
+    }
+
+    /// Takes back what the reflex added, if it may; else what may be taken back stands, or is forgotten where somebody else moves the hand or it
+    /// holds nothing. Call it once a slow frame, after [`feel`](Self::feel).
+    #[inline(never)]
+    pub fn relax(&mut self, mode: GripMode, held: Option<&relax::Reading>) {
+        match (mode, held) {
+            (GripMode::Watch, Some(reading)) => self.relax.feel(reading, &self.stiffness),
+            (GripMode::Slip | GripMode::Incipient | GripMode::Settle, Some(_)) => {}
+            _ => self.relax.forget(),
+        }
+    }
+
+    /// Whether it takes something back.
+    #[must_use]
+    pub const fn is_relaxing(&self) -> bool {
+        self.relax.is_on()
+    }
+
+    /// A detector says something.
+    pub fn hear(&mut self) {
+        self.relax.hear();
+    }
+
+    /// How the hand opens in this frame to take back what the reflex added.
+    pub fn relaxes(&mut self) -> MotorDrive {
+        match self.relax.opens() {
+            0 => MotorDrive::Coast,
+            duty => MotorDrive::Open(Duty::per_mille(duty)),
         }
     }
 

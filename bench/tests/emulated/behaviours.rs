@@ -48,8 +48,14 @@ fn a_pen_is_turned() {
     runs("turn-pen");
 }
 
+/// Of all scenes this one asks the most of a tick.
 #[test]
-#[ignore = "minutes: `cargo test ... --test emulated behaviours -- --ignored`"]
+fn a_push_is_held() {
+    runs("push-hold");
+}
+
+#[test]
+#[ignore = "a minute, the heaviest three run by themselves: `cargo test ... --test emulated behaviours -- --ignored`"]
 fn every_behaviour_of_the_image_is_that_of_the_host() {
     let scenes = scenes();
     assert!(scenes.len() >= 11 && scenes.contains(&"turn-pen"), "{scenes:?}");

@@ -89,6 +89,8 @@ pub struct FrictionDetector {
     ratio_permille: Option<u16>,
     stroke: Option<Stroke>,
     shown: Shown,
+    /// The ratio at which the object slid when slip was said last, None before.
+    slid: Option<u16>,
     /// Ft of late while nothing moved the hand, mN, the newest first. What slides carries less than its load.
     carried: Option<[i32; CARRIED_FOR]>,
     /// Readings since the hand moved.
@@ -113,7 +115,7 @@ impl FrictionDetector {
     /// The force that the grip lacks by this reading.
     #[must_use]
     #[inline(never)]
-    pub fn lacks(&self, config: &FrictionConfig, forces: &Forces, slides: Slides) -> Lacks {
+    pub fn lacks(&mut self, config: &FrictionConfig, forces: &Forces, slides: Slides) -> Lacks {
         let (Some(ratio), Some(carried)) = (forces.ratio_permille, &self.carried) else {
             return Lacks::default();
         };
@@ -132,6 +134,11 @@ impl FrictionDetector {
             Slides::Now => (SLIPPED_PERMILLE, ratio),
             Slides::Again => (SLIPPED_PERMILLE, of_late),
         };
+        self.slid = match slides {
+            Slides::Unknown => self.slid,
+            Slides::Now => Some(self.slid.map_or(ratio, |slid| ratio.min(slid.into())) as u16),
+            Slides::Again => Some(self.slid.unwrap_or(of_late as u16)),
+        };
         let slip_mn = lacks(most_mn + grows_mn(most_mn), slipped, slides_at);
         let warning_mn = lacks(forces.ft_mn + grows_mn(forces.ft_mn), WARNED_PERMILLE, friction);
         Lacks { slip_mn, warning_mn, by_s2: self.s2 }
@@ -142,7 +149,7 @@ impl FrictionDetector {
         self.ratio_permille = ratio_permille;
         let Some(ratio) = ratio_permille else {
             self.s2 = false;
-            self.shown = Shown::default();
+            self.renew();
             return false;
         };
         self.shown.add(ratio);
@@ -163,7 +170,18 @@ impl FrictionDetector {
 
     /// A muscle is active: what it does to the contact nobody knows.
     pub fn renew(&mut self) {
-        self.shown = Shown::default();
+        (self.shown, self.slid) = (Shown::default(), None);
+    }
+
+    /// Slip is answered: the friction of this slip is not known yet.
+    pub const fn slips(&mut self) {
+        self.slid = None;
+    }
+
+    /// The ratio at which the object slid in this grasp, per mille: friction is no lower, until slip is said again.
+    #[must_use]
+    pub const fn slid_permille(&self) -> Option<u16> {
+        self.slid
     }
 
     /// The last ratio, None while there is none.

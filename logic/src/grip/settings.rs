@@ -22,6 +22,16 @@ pub struct GripConfig {
     pub ceiling_mn: i32,
     /// How long the reflex may close altogether while no force is known, in frames, until the wearer takes over once.
     pub blind_frames: u32,
+    /// Whether it takes back what it added: 0 never, 1 where there is no wearer, 2 always.
+    pub relax: u16,
+}
+
+impl GripConfig {
+    /// Whether what the reflex added may be taken back.
+    #[must_use]
+    pub const fn may_relax(&self, no_wearer: bool) -> bool {
+        self.relax >= if no_wearer { 1 } else { 2 }
+    }
 }
 
 settings! {
@@ -42,4 +52,7 @@ settings! {
     28 Settle "settle-ms" "ms" [40, 150] = 80 => Ms(settle_frames);
     /// How long the reflex may close altogether while no force is known, until a muscle takes over once
     29 Blind "blind-ms" "ms" [0, 400] = 200 => Ms(blind_frames);
+    /// After 5 s without slip the reflex takes back what it added, down to what stops a sliding object: 0 never, 1 where there is no
+    /// wearer, 2 always
+    75 Relax "relax-choice" "choice" [0, 2] = 1 => Number(relax);
 }

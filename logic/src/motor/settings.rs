@@ -14,7 +14,7 @@ pub struct MotorConfig {
 settings! {
     MotorConfig:
     /// Motor current that may flow for ever; more stops closing until it has cooled
-    75 MotorLimit "motor-limit-ma" "mA" [300, 1_200] = 500 => Number(limit_ma);
+    76 MotorLimit "motor-limit-ma" "mA" [300, 1_200] = 500 => Number(limit_ma);
     /// Current of the blocked motor at full duty; half of it with still fingers is a stall
-    76 MotorStall "motor-stall-ma" "mA" [300, 1_200] = 1_000 => Number(stall_ma);
+    77 MotorStall "motor-stall-ma" "mA" [300, 1_200] = 1_000 => Number(stall_ma);
 }

@@ -1,0 +1,186 @@
+//! Taking back the force that the reflex added, where somebody has chosen that it may.
+//!
+//! Only while nobody moves the hand and no detector has said anything for [`QUIET_READINGS`]; only by the friction at which this object slid
+//! in this grasp; never below the load that the hand was closed to, and never by more travel than the reflex closed. A step is small and
+//! waits for its effect. Whatever a detector says ends it: the reflex answers as always, and the load of that moment is kept from then on.
+
+use super::stiffness::Stiffness;
+
+/// Readings of 12.5 ms without a word, 5 s.
+const QUIET_READINGS: u16 = 400;
+/// Readings between two steps, 0.25 s: a step's travel, the motor's dead time, and the force that follows.
+const STEP_READINGS: u16 = 20;
+/// The greatest step, mN, and the least that is worth one.
+const STEP_MN: i32 = 200;
+const LEAST_MN: i32 = 100;
+/// The load that is kept, as a part of what the friction of sliding needs, per mille: an object that is pulled loose comes to rest by itself.
+const KEPT_PERMILLE: i32 = 1_050;
+/// Duty at which the hand opens, per mille.
+const DUTY_PERMILLE: u16 = 100;
+
+/// What a reading tells.
+#[derive(Clone, Copy, Debug)]
+pub struct Reading {
+    /// The load, mN.
+    pub load_mn: i32,
+    /// The shear that it carries, mN.
+    pub ft_mn: i32,
+    /// The friction at which the object slid in this grasp, per mille. None: it has not.
+    pub slid_permille: Option<u16>,
+}
+
+/// What may be taken back, and what of a step is still to be opened.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Relax {
+    /// The load that the hand was closed to, or that it had before a step that was answered by a word, mN. None: nobody knows yet.
+    floor_mn: Option<i32>,
+    /// The load before the last step, mN.
+    before_mn: i32,
+    /// The greatest shear of the last seconds and of those before, mN.
+    most_mn: [i32; 2],
+    quiet: u16,
+    /// What the reflex has closed and nobody has opened, per mille of duty times frames.
+    closed: u32,
+    /// What this step has still to open.
+    left: u32,
+}
+
+impl Relax {
+    /// Somebody else moves the hand, or it holds nothing: what follows is another grasp.
+    pub fn forget(&mut self) {
+        *self = Self::default();
+    }
+
+    /// The reflex closes in this frame at this duty.
+    pub const fn closes(&mut self, duty_permille: u16) {
+        self.closed = self.closed.saturating_add(duty_permille as u32);
+        self.left = 0;
+    }
+
+    /// A detector says something, or the reflex is busy with it. A step that was heard has gone too far.
+    pub fn hear(&mut self) {
+        self.floor_mn = self.floor_mn.map(|floor_mn| floor_mn.max(self.before_mn));
+        (self.quiet, self.left) = (0, 0);
+    }
+
+    /// Takes a reading while nobody moves the hand. Call it once a slow frame.
+    #[inline(never)]
+    pub fn feel(&mut self, reading: &Reading, stiffness: &Stiffness) {
+        let Reading { load_mn, ft_mn, slid_permille } = *reading;
+        let [newest, before] = &mut self.most_mn;
+        *newest = ft_mn.max(*newest);
+        let most_mn = (*newest).max(*before);
+        if self.quiet.is_multiple_of(QUIET_READINGS) {
+            (*before, *newest) = (*newest, ft_mn);
+        }
+        let floor_mn = *self.floor_mn.get_or_insert(load_mn);
+        self.quiet = if self.quiet < 2 * QUIET_READINGS { self.quiet + 1 } else { QUIET_READINGS + 1 };
+        if self.quiet <= QUIET_READINGS || !self.quiet.is_multiple_of(STEP_READINGS) {
+            return;
+        }
+        let Some(slid) = slid_permille.filter(|&slid| slid > 0) else { return };
+        // A shear is below 2^17 mN, the product below 2^31.
+        let needed_mn = most_mn.clamp(0, 1 << 17) * KEPT_PERMILLE / i32::from(slid);
+        let step_mn = (load_mn - needed_mn.max(floor_mn)).min(STEP_MN);
+        if step_mn >= LEAST_MN {
+            self.before_mn = load_mn;
+            self.left = stiffness.travel_for(step_mn).unwrap_or(0).min(self.closed);
+        }
+    }
+
+    /// Whether a step goes on.
+    pub const fn is_on(&self) -> bool {
+        self.left > 0
+    }
+
+    /// The duty at which the hand opens in this frame, per mille; 0 if it does not.
+    pub fn opens(&mut self) -> u16 {
+        let duty = (self.left.min(DUTY_PERMILLE.into())) as u16;
+        self.left -= u32::from(duty);
+        self.closed = self.closed.saturating_sub(duty.into());
+        duty
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SILENT: usize = QUIET_READINGS as usize;
+
+    /// A hand that was closed to 6 N, then by the reflex to 16 N; 50 mN a frame at full duty.
+    struct Hand {
+        relax: Relax,
+        stiffness: Stiffness,
+        load_mn: i32,
+    }
+
+    impl Hand {
+        fn squeezed() -> Self {
+            let mut hand = Self { relax: Relax::default(), stiffness: Stiffness::default(), load_mn: 6_000 };
+            hand.feel(3_000, None, 1);
+            for n in 0..8 {
+                for _ in 0..25 {
+                    hand.stiffness.close(1_000);
+                    hand.relax.closes(1_000);
+                }
+                hand.load_mn += 1_250;
+                hand.stiffness.feel(Some(6_000 + 1_250 * (n - 2).max(0)));
+            }
+            hand.relax.hear();
+            (0..10).for_each(|_| hand.stiffness.feel(Some(16_000)));
+            hand
+        }
+
+        /// So many readings; gives the frames in which it opened.
+        fn feel(&mut self, ft_mn: i32, slid_permille: Option<u16>, readings: usize) -> usize {
+            let mut opened = 0;
+            for _ in 0..readings {
+                let reading = Reading { load_mn: self.load_mn, ft_mn, slid_permille };
+                self.relax.feel(&reading, &self.stiffness);
+                for _ in 0..25 {
+                    let duty = self.relax.opens();
+                    opened += usize::from(duty > 0);
+                    self.load_mn -= i32::from(duty) * 50 / 1_000;
+                }
+            }
+            opened
+        }
+    }
+
+    #[test]
+    fn after_silence_it_opens_to_what_stops_a_sliding_object() {
+        let mut hand = Hand::squeezed();
+        assert_eq!(hand.feel(2_000, Some(200), SILENT), 0, "5 s of silence");
+        assert!(hand.feel(2_000, Some(200), 10 * SILENT) > 0);
+        let needed_mn = 2_000 * KEPT_PERMILLE / 200;
+        assert!((needed_mn..needed_mn + STEP_MN).contains(&hand.load_mn), "{} mN", hand.load_mn);
+    }
+
+    #[test]
+    fn without_friction_it_opens_nothing_and_never_below_what_the_hand_was_closed_to() {
+        let mut hand = Hand::squeezed();
+        assert_eq!(hand.feel(2_000, None, 10 * SILENT), 0);
+        hand.feel(100, Some(200), 10 * SILENT);
+        assert!((6_000..6_000 + STEP_MN).contains(&hand.load_mn), "{} mN", hand.load_mn);
+    }
+
+    #[test]
+    fn a_word_ends_it_and_the_load_before_its_step_is_kept() {
+        let mut hand = Hand::squeezed();
+        while hand.feel(2_000, Some(200), 1) == 0 {}
+        let (heard_mn, before_mn) = (hand.load_mn, hand.relax.before_mn);
+        hand.relax.hear();
+        assert!(heard_mn < before_mn && !hand.relax.is_on());
+        hand.load_mn += 3_000;
+        hand.feel(100, Some(200), 10 * SILENT);
+        assert!(hand.load_mn >= before_mn, "{} mN", hand.load_mn);
+    }
+
+    #[test]
+    fn it_opens_no_more_than_the_reflex_closed() {
+        let mut hand = Hand::squeezed();
+        hand.relax.closed = 3_000;
+        assert_eq!(hand.feel(100, Some(200), 10 * SILENT), 3_000 / usize::from(DUTY_PERMILLE));
+    }
+}
