@@ -254,9 +254,11 @@ impl Motor {
     }
 
     /// Heats the winding for a cycle. Nobody knows its current: then it is that of a blocked motor, or half of it while the fingers move.
+    /// What is not driven cools, whatever the sensor's offset: nothing else could be done about it.
     fn warm(&mut self, limit_ma: u32, stall_ma: u32, ma: Option<u32>, moved: Option<bool>, duty: u32) {
         let blocked_ma = stall_ma * duty / 1_000;
         let warms = match (ma, moved) {
+            (Some(_), _) if self.idle >= IDLE_CYCLES => 0,
             (Some(ma), _) => ma * stall_ma,
             (None, Some(true)) => blocked_ma * blocked_ma / 4,
             (None, _) => blocked_ma * blocked_ma,

@@ -6,6 +6,7 @@ use tenax_hal_shim::motor::Duty;
 /// A motor whose fingers and current are set by hand: 14-bit samples with noise of +-2.
 struct Bench {
     motor: Motor,
+    config: MotorConfig,
     journal: Journal,
     cycle: u32,
     state: u32,
@@ -24,6 +25,7 @@ impl Bench {
     fn new(seed: u32) -> Self {
         Self {
             motor: Motor::default(),
+            config: Config::default().motor,
             journal: Journal::default(),
             cycle: 0,
             state: seed,
@@ -82,7 +84,7 @@ impl Bench {
         }
         self.cycle += 1;
         self.journal.begin(&Frame::lost(self.cycle));
-        self.motor.judge(&Config::default().motor, &mut self.journal);
+        self.motor.judge(&self.config, &mut self.journal);
         while let Some(event) = self.journal.next_event() {
             self.told.push((event.frame, event.kind));
         }
@@ -196,6 +198,22 @@ fn a_current_that_nobody_drives_is_the_sensors_fault_and_stops_nothing_for_ever(
     bench.driven(MotorDrive::Coast, 0.0, 80);
     let back = EventKind::Fault(Fault::SensorBack { channel: MOTOR_CURRENT as u8 });
     assert!(bench.told.iter().any(|(_, kind)| *kind == back));
+}
+
+// Shows B10.
+#[test]
+fn an_offset_too_small_to_be_noticed_heats_nothing_for_ever() {
+    let mut bench = Bench::new(11);
+    bench.config.limit_ma = 300;
+    // 0.11 A at rest.
+    let mut driven = 0;
+    for n in 0..60 * CYCLES_PER_S {
+        bench.current_pin_mv = Some(564.0 + f64::from(n % 3));
+        driven += u32::from(
+            bench.cycle(if n % 160 < 80 { close(600) } else { MotorDrive::Coast }, 0.9) != MotorDrive::Coast,
+        );
+    }
+    assert!(!bench.is_lost(MOTOR_CURRENT) && driven == 30 * CYCLES_PER_S, "{driven}");
 }
 
 // Shows W2, B9.
