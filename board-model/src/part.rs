@@ -3,6 +3,7 @@
 use rigless::device::{ErasedDevice, ResetCause};
 use rigless::mcu::{Mcu, Operate};
 use rigless::soc::stm32f427::Stm32f427;
+use rigless::soc::stm32f427::generated::rcc::{Register, csr};
 use rigless::soc::stm32f427::peripherals::adc::Channel;
 use rigless::soc::{Bus, Error, Width};
 use rigless::time::VirtualNanos;
@@ -127,6 +128,14 @@ impl Part {
                 let _ = self.chip.read(now, TIM3_CNT, Width::W32);
                 self.chip.tim[TIM3].trigger_output().1
             }
+        }
+    }
+
+    /// The reset that was the pin's was a brown-out's: its flag stands beside (RM0383, section 6.3.20). `rigless` draws no supply.
+    pub fn browned_out(&mut self, now: VirtualNanos) {
+        if let Ok(slot) = self.chip.bus().slot("RCC") {
+            let (registers, _) = self.chip.bus_mut().drive(now, slot);
+            registers.set(Register::Csr, registers.get(Register::Csr) | csr::BORRSTF.mask());
         }
     }
 

@@ -3,6 +3,7 @@
 use embassy_stm32::gpio::OutputType;
 use embassy_stm32::pac;
 use embassy_stm32::pac::gpio::vals::Moder;
+use embassy_stm32::pac::timer::vals::Ossi;
 use embassy_stm32::peripherals::{PA8, PA9, TIM1};
 use embassy_stm32::time::Hertz;
 use embassy_stm32::timer::low_level::CountingMode;
@@ -39,6 +40,11 @@ impl Bridge {
         let SimplePwmChannels { ch1, ch2, .. } = pwm.split();
         let mut sides = [ch1, ch2];
         let full = sides[0].max_duty_cycle();
+        // Where the timer's outputs are off they are low and not left to float. A debugger that halts the core stops this timer, and the
+        // chip then switches its outputs off (RM0090, section 38.16.2: "as if the MOE bit was reset"): a probe may stop the watchdog,
+        // too, and a halted core would drive the motor until somebody goes on.
+        pac::TIM1.bdtr().modify(|w| w.set_ossi(Ossi::IDLE_LEVEL));
+        pac::DBGMCU.apb2fzr().modify(|w| w.set_tim1(true));
         for side in &mut sides {
             side.set_duty_cycle_fully_off();
             side.enable();
@@ -51,6 +57,18 @@ impl Bridge {
         compare::<DRIVEN>(u32::from(duty.as_per_mille()) * self.full / u32::from(Duty::FULL.as_per_mille()));
     }
 }
+
+/// Gives the bridge's edges their place between the scans'. Call it where the scans' timer is started.
+///
+/// A scan lasts 2.5 periods, so a rising edge comes 13.6 us after the first code of one scan and 38.6 after that of the next: as the
+/// sixth film begins to be sampled, which has 2.2 us to settle, and after the last code. By chance, from one start to the next, it would
+/// fall into the end of some film's sampling.
+pub fn align() {
+    pac::TIM1.cnt().write(|w| w.set_cnt(PHASE));
+}
+
+/// Ticks of the timer's period that are over when the scans' timer starts, whose first trigger comes 125 us later.
+const PHASE: u16 = 5_000 - 1_360;
 
 /// Drives a side for so many ticks of each period. embassy's own function asserts what holds here by itself, and no tick may
 /// have a way to panic.

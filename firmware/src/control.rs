@@ -90,6 +90,7 @@ impl Control {
     fn save(&mut self) {
         self.device.slow_frame_passed();
         self.button.light(self.device.light());
+        self.device.bridge(self.button.bridge_is_off());
         self.slow_frames = self.slow_frames.saturating_add(1);
         if self.slow_frames == LIVED_WELL {
             last_words::lived_well();

@@ -44,6 +44,11 @@ impl Micros {
     }
 }
 
+/// The clock, us, for whoever compares two instants of the same half hour.
+pub fn clock_us() -> u32 {
+    pac::TIM2.cnt().read()
+}
+
 /// The clock and its compare register.
 pub struct Deadline {
     _timer: Timer<'static, TIM2>,

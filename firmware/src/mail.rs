@@ -6,7 +6,7 @@ use core::cell::Cell;
 use core::future::poll_fn;
 use core::mem::{MaybeUninit, forget};
 use core::ptr::copy_nonoverlapping;
-use core::sync::atomic::{AtomicBool, AtomicU16, Ordering::Relaxed};
+use core::sync::atomic::{AtomicBool, AtomicU16, AtomicU32, Ordering::Relaxed};
 use core::task::Poll;
 
 use embassy_sync::blocking_mutex::Mutex;
@@ -19,6 +19,7 @@ use tenax_logic::allowance::BURST;
 use tenax_logic::store::record::Record;
 
 use crate::counts;
+use crate::deadline::clock_us;
 
 /// A bounded queue that nobody waits to put something into.
 struct Mailbox<T, const N: usize>(Mutex<CriticalSectionRawMutex, Deque<T, N>>);
@@ -71,6 +72,8 @@ static RECORD_WAITING: AtomicWaker = AtomicWaker::new();
 /// Control has just ended a tick; signalled only while the store waits for one.
 static TICK: Signal<CriticalSectionRawMutex, ()> = Signal::new();
 static TICK_WANTED: AtomicBool = AtomicBool::new(false);
+/// When that was, us.
+static TICK_AT: AtomicU32 = AtomicU32::new(0);
 
 /// Hands a message to telemetry, numbered. Never waits: if the line is behind, the message is dropped and counted, and the
 /// other end sees the gap in the numbers.
@@ -157,8 +160,14 @@ async fn wait_for<T>(waiting: &AtomicWaker, take: impl Fn() -> Option<T>) -> T {
 /// Says that a tick has ended, if anybody waits for it.
 pub fn end_tick() {
     if TICK_WANTED.load(Relaxed) {
+        TICK_AT.store(clock_us(), Relaxed);
         TICK.signal(());
     }
+}
+
+/// How long ago the tick ended that was last waited for, us.
+pub fn since_tick_us() -> u32 {
+    clock_us().wrapping_sub(TICK_AT.load(Relaxed))
 }
 
 /// Waits for the end of the tick to come.

@@ -32,6 +32,7 @@ mod identity;
 mod last_words;
 mod mail;
 mod scan;
+mod stack;
 mod store;
 mod supply;
 mod switches;
@@ -85,6 +86,7 @@ static CONTROL: StaticCell<control::Control> = StaticCell::new();
 async fn main(spawner: Spawner) {
     // Before the clocks are waited for: until then the pins float.
     bridge::hold_low();
+    stack::guard();
     let Start { after, cause, stay_off, .. } = last_words::start();
     let switched_on = cause == ResetCause::PowerOn;
     if cause == ResetCause::Other && after.is_some() {
@@ -135,7 +137,7 @@ async fn main(spawner: Spawner) {
     let deadline = deadline::Deadline::new(p.TIM2);
     let scan = scan::Scan::new(p.ADC1, p.TIM3, p.DMA2_CH0, SCAN_RING.take(), deadline, pins);
     let switches = switches::Switches::new(p.PB12, p.PB13, p.PB14, p.PB15);
-    let button = button::Button::new(p.PC13, p.PC6);
+    let button = button::Button::new(p.PC13, p.PC6, p.PC8);
     let watchdog = IndependentWatchdog::new(p.IWDG, control::WATCHDOG_US);
 
     let mut line = usart::Config::default();

@@ -1,6 +1,6 @@
 //! The store task: what has to outlive a power cut goes into flash, a word every few ticks.
 //!
-//! Programming a word stalls the core, so each begins when a tick has just ended and the next frame is 0.4 ms away: even
+//! Programming a word stalls the core, so each begins within 0.25 ms after a tick's end, when the next frame is 0.1 ms away or more: even
 //! at its longest, 0.1 ms, it is over before control is needed again. Nothing is erased while the hand works.
 
 use tenax_hal_shim::flash::FlashFailed;
@@ -15,6 +15,8 @@ use crate::{counts, mail};
 
 /// Ticks from one word to the next: the network's 78 words take 0.16 s, and the serial line keeps its share of the core.
 const TICKS_PER_WORD: u32 = 4;
+/// A word is not begun later than this after a tick's end.
+const LATEST_US: u32 = 250;
 const _: () = assert!(PAYLOAD_BYTES <= KEPT_MAX);
 
 /// Hands over to the device what was kept.
@@ -65,6 +67,10 @@ async fn save(flash: &mut Flash, log: &mut Log, record: &Record) -> Result<(), R
     let mut saving = log.begin(record.kept(), record.payload(&mut buffer))?;
     loop {
         for _ in 0..TICKS_PER_WORD {
+            mail::tick_over().await;
+        }
+        // The serial line's tasks may have been in the middle of a message.
+        while mail::since_tick_us() > LATEST_US {
             mail::tick_over().await;
         }
         match saving.step(flash) {

@@ -154,6 +154,32 @@ pub enum Fault {
     NeverUnloaded,
 }
 
+/// Why the motor is not driven although somebody asks for it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
+pub enum MotorStop {
+    /// It stalled as it closed the hand. It may open it.
+    ClosingStalled,
+    /// It stalled as it opened the hand: at its stop, or the gear is jammed. To be asked for again, it is tried again.
+    OpeningStalled,
+    /// It has carried too much current for too long: it closes no further before it has cooled. It may open the hand.
+    Hot,
+    /// The bridge has switched itself off and says so: a short, too hot, or too low a supply of its own.
+    BridgeOff,
+}
+
+impl MotorStop {
+    /// For a person.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::ClosingStalled => "it stalled as it closed",
+            Self::OpeningStalled => "it stalled as it opened",
+            Self::Hot => "it is hot; it does not close",
+            Self::BridgeOff => "its bridge reports a fault",
+        }
+    }
+}
+
 /// What a teacher says about one output of the network (Tada 2006, equations 1 and 2).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Code {

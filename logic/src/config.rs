@@ -11,6 +11,7 @@ use crate::emg::settings::GateConfig;
 use crate::force::settings::FrictionConfig;
 use crate::grip::settings::GripConfig;
 use crate::hebbian::settings::HebbianConfig;
+use crate::motor::settings::MotorConfig;
 use crate::photoelastic::HeadConfig;
 use crate::setting::{Row, SettingId, Settings, settings};
 use crate::vibration::settings::VibrationConfig;
@@ -28,6 +29,8 @@ pub struct Config {
     pub gate: GateConfig,
     /// The reflex.
     pub grip: GripConfig,
+    /// What the motor bears.
+    pub motor: MotorConfig,
     /// What is above it.
     pub behaviour: BehaviourConfig,
     /// The photoelastic head.
@@ -55,12 +58,13 @@ settings! {
 }
 
 /// Every table of rows: a sense that joins adds its own here, and its part to what follows.
-const TABLES: [&[Row]; 8] = [
+const TABLES: [&[Row]; 9] = [
     VibrationConfig::ROWS,
     FrictionConfig::ROWS,
     HebbianConfig::ROWS,
     GateConfig::ROWS,
     GripConfig::ROWS,
+    MotorConfig::ROWS,
     BehaviourConfig::ROWS,
     HeadConfig::ROWS,
     Config::ROWS,
@@ -74,6 +78,7 @@ impl Default for Config {
             hebbian: HebbianConfig::default(),
             gate: GateConfig::default(),
             grip: GripConfig::default(),
+            motor: MotorConfig::default(),
             behaviour: BehaviourConfig::default(),
             head: HeadConfig::default(),
             line_trusted: false,
@@ -97,6 +102,7 @@ impl Config {
             &self.hebbian,
             &self.gate,
             &self.grip,
+            &self.motor,
             &self.behaviour,
             &self.head,
             self,
@@ -143,6 +149,7 @@ impl Config {
         self.hebbian.follow();
         self.gate.put(id, value);
         self.grip.put(id, value);
+        self.motor.put(id, value);
         self.behaviour.put(id, value);
         self.head.put(id, value);
         Settings::put(self, id, value);

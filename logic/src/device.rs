@@ -121,6 +121,11 @@ impl Device {
         self.fingertip.button(is_down);
     }
 
+    /// Whether the motor's bridge says that it has switched itself off, until this says otherwise. Say it once a slow frame.
+    pub const fn bridge(&mut self, is_off: bool) {
+        self.fingertip.bridge(is_off);
+    }
+
     /// Whether the light at the hand is on: it shows what a calibration asks for, and what came of it.
     #[must_use]
     pub fn light(&self) -> bool {

@@ -42,6 +42,11 @@ const CONSENT_SLOT: u32 = 0;
 const FEEL_SLOT: u8 = 20;
 const _: () = assert!(FEEL_SLOT > slot_of(Job::Forces) && FEEL_SLOT as u32 % STEP_FRAMES == CONSENT_SLOT);
 
+/// Another: what the motor bears. Neither the array nor the forces have work in it.
+const MOTOR_SLOT: u8 = 5;
+const _: () =
+    assert!(MOTOR_SLOT as u32 % STEP_FRAMES == CONSENT_SLOT && MOTOR_SLOT < slot_of(Job::ArrayBegins));
+
 /// The fingertip's memory between ticks.
 #[derive(Clone, Debug, Default)]
 pub struct Fingertip {
@@ -68,6 +73,8 @@ pub struct Fingertip {
     journal: Journal,
     slow: Option<Slow>,
     save_asked: bool,
+    /// What the last tick was asked for, and how it drove the motor.
+    asked: MotorDrive,
     drive: MotorDrive,
 }
 
@@ -230,9 +237,17 @@ impl Fingertip {
             }
             // Before this frame drives: what the last ones did.
             let striking = matches!(self.mode, GripMode::Slip | GripMode::Settle);
-            // A hand that takes back what the reflex added is not opened.
-            let drive = if self.reflex.is_relaxing() { MotorDrive::Coast } else { self.drive };
-            self.senses.driven(drive, striking, STEP_FRAMES);
+            // A hand that takes back what the reflex added is not opened; one that stalls at its stop as it opens is open.
+            let did = match self.asked {
+                _ if self.reflex.is_relaxing() => MotorDrive::Coast,
+                MotorDrive::Open(_) => self.asked,
+                _ => self.drive,
+            };
+            self.senses.driven(did, striking, STEP_FRAMES);
+            self.senses.motor.step(self.asked, self.drive);
+            if frame.slot() == MOTOR_SLOT {
+                self.senses.motor.judge(&self.config.motor, &mut self.journal);
+            }
         }
         let acting = self.acting.but(self.config.detectors_off);
         let verdicts = Verdicts::of(&self.detectors, acting, self.senses.cannot_slip());
@@ -257,12 +272,15 @@ impl Fingertip {
             behaviour,
         };
         // A lost frame says nothing about anybody's wish, so nobody's is carried out.
-        let (drive, source) = if frame.valid { arbitrate(wishes) } else { Default::default() };
+        let (asked, source) = if frame.valid { arbitrate(wishes) } else { Default::default() };
+        self.asked = asked;
         // The place of a behaviour, where none is: the reflex takes back.
         let source = match source {
             DriveSource::Behaviour if self.behaviour.is_none() => DriveSource::Reflex,
             source => source,
         };
+        let allowed = self.senses.motor.allows(asked);
+        let (drive, source) = if allowed { (asked, source) } else { Default::default() };
         self.drive = drive;
         self.reflex.tick(self.mode, grip);
         if let MotorDrive::Close(duty) = drive {

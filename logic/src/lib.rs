@@ -8,7 +8,7 @@
 //! | one sense each: readings, what they mean, its detector | [`vibration`], [`force`], [`strain`], [`mod@array`], [`hebbian`], [`photoelastic`]; [`emg`] and [`gate`] of the wearer |
 //! | a frame through all of them | [`senses`] |
 //! | whether the object slips | [`detectors`], the list of them; [`plausibility`] guards |
-//! | what to do | [`mode`] and [`grip`], the reflex; [`behaviours`] above it; [`arbiter`] |
+//! | what to do | [`mode`] and [`grip`], the reflex; [`behaviours`] above it; [`arbiter`]; [`motor`] stops what stalls |
 //! | the whole | [`fingertip`]; [`journal`] is what it reports |
 //! | a fingertip on a line | [`device`]: frames and commands in, drives and messages out. Begin there |
 //! | whose commands it carries out | [`session`], [`arming`] |
@@ -42,6 +42,7 @@ pub mod journal;
 mod latest;
 pub mod low_pass;
 pub mod mode;
+pub mod motor;
 pub mod muscles;
 pub mod photoelastic;
 pub mod plausibility;

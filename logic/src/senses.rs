@@ -3,8 +3,8 @@
 mod force;
 
 use tenax_hal_shim::channel::{
-    ARRAY, CHANNELS, FSR, FSR_COUNT, HEAD, MYO_EXTENSOR, MYO_FLEXOR, PVDF, PVDF_COUNT, Role, SAMPLE_MAX,
-    SLOW_HZ, STRAIN,
+    ARRAY, CHANNELS, COUNT, FSR, FSR_COUNT, HEAD, MYO_EXTENSOR, MYO_FLEXOR, OPENING, PVDF, PVDF_COUNT, Role,
+    SAMPLE_MAX, SLOW_HZ, STRAIN,
 };
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::front_end::FSR_REST_MV;
@@ -22,6 +22,7 @@ use crate::gate::Gate;
 use crate::grip::Grip;
 use crate::health::{Change, Limits, SensorHealth};
 use crate::journal::Journal;
+use crate::motor::Motor;
 use crate::muscles::Muscles;
 use crate::photoelastic::Head;
 use crate::photoelastic::track::Hints;
@@ -89,6 +90,8 @@ pub struct Senses {
     pub forces_are_new: bool,
     /// What the muscles say.
     pub gate: Gate,
+    /// What the motor bears.
+    pub motor: Motor,
 }
 
 impl Senses {
@@ -369,7 +372,10 @@ impl Senses {
                 report(journal, channel, change);
             }
             MYO_FLEXOR..=MYO_EXTENSOR => self.muscle(channel - MYO_FLEXOR, sample, journal),
-            _ => {}
+            _ => {
+                let change = self.motor.read(channel, sample);
+                report(journal, channel, change);
+            }
         }
     }
 
@@ -392,6 +398,7 @@ impl Senses {
                     self.gate.take(self.muscles.verdict());
                 }
             }
+            OPENING..COUNT => self.motor.miss(channel),
             _ => {}
         }
     }

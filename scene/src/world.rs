@@ -18,7 +18,7 @@ use crate::physics::wearer::{Effort, Wearer};
 use crate::physics::{TOUCH_N, Touch};
 use crate::plant::{Calibrated, Pins, Plant};
 use crate::random::Seeds;
-use crate::schedule::STEP_S;
+use crate::schedule::{STEP_S, Span};
 use crate::sensor::array::{Elements, Shakes};
 use crate::sensor::camera::{Eye, Seen};
 use crate::sensor::converter::Converter;
@@ -43,6 +43,7 @@ pub struct World {
     floor_mm_s: f64,
     wearer: Wearer,
     gripper: Gripper,
+    jams: Vec<Span>,
     task: Task,
     touch: Touch,
     films: Films,
@@ -100,6 +101,7 @@ impl World {
             floor_mm_s: scene.slip_floor_mm_s(),
             wearer: Wearer::new(&scene.muscle),
             gripper: Gripper::new(&scene.gripper),
+            jams: scene.jam.iter().map(|jam| Span::new(jam.at_s.get_ref().get(), jam.for_s.get())).collect(),
             task,
             touch: Touch::default(),
             films: Films::new(&scene.pvdf, (&scene.knock, &scene.hum), scene.contact.pitch_mm.get(), seeds),
@@ -180,6 +182,7 @@ impl World {
 
     /// Moves everything that moves.
     fn moves(&mut self, t_s: f64, drive: MotorDrive) -> State {
+        self.gripper.jam(self.jams.iter().any(|jam| jam.contains(t_s)));
         self.gripper.step(drive, self.touch.normal_n);
         match &mut self.task {
             Task::Grasp { grasp, hand, arm } => {

@@ -111,6 +111,10 @@ fn every_mistake_is_named_where_it_stands() {
         ("[[fault]]", "[strain]\ncreep = 2\n[[fault]]", 16, &["creep", "0..=1"]),
         ("[[fault]]", "[array]\ntilt = -0.1\n[[fault]]", 16, &["tilt", "0..=1"]),
         ("[[fault]]", "[camera]\nrate_hz = 0\n[[fault]]", 16, &["rate_hz", "0.01..=1000"]),
+        ("[[fault]]", "[[jam]]\nat_s = 1\nfor_s = 0\n[[fault]]", 17, &["for_s", "0 is outside"]),
+        ("[[fault]]", "[[jam]]\nat_s = 11\nfor_s = 1\n[[fault]]", 16, &["11 s", "duration_s = 10"]),
+        ("[[fault]]", "[[jam]]\nat_s = 1\n[[fault]]", 15, &["missing", "for_s"]),
+        ("[[fault]]", "[[jam]]\nat_s = 1\nfor_s = 1\nteeth = 3\n[[fault]]", 18, &["teeth", "at_s", "for_s"]),
         ("[[fault]]", "[gripper]\nstep_mm = 50\n[[fault]]", 16, &["step_mm", "0..=20"]),
         ("[[muscle]]", "[[fill]]\nat_s = 1\nfor_s = 1\nadd_kg = -1\n[[muscle]]", 27, &["add_kg", "above 0"]),
     ];

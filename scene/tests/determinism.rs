@@ -42,11 +42,11 @@ fn the_bytes_are_those_of_every_other_build() {
     assert_eq!(
         sums,
         [
-            0x1a60_ba24_1f39_8bac,
-            0xbaa8_d7d3_9cc7_b10c,
-            0x7a85_0f43_04a5_c67a,
+            0x3dbc_09d0_9202_2e5a,
+            0x230e_bba6_2da6_b054,
+            0xd3b5_0638_bc2b_cbe1,
             0x1d4c_9f18_dbfd_d9c9,
-            0x46b9_86c3_b680_7a40
+            0xfd88_9a00_ea04_04b8
         ],
         "{sums:#018x?}"
     );

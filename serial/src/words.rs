@@ -354,6 +354,8 @@ fn event_words(f: &mut fmt::Formatter<'_>, event: &Event) -> fmt::Result {
         EventKind::NoWearer(false) => f.write_str("a wearer: the reflex works with both myosensors only"),
         EventKind::LineTrusted(false) => f.write_str("the line is trusted no more"),
         EventKind::EventsLost(count) => write!(f, "{count} events lost"),
+        EventKind::Motor(Some(stop)) => write!(f, "motor: stopped, {}", stop.name()),
+        EventKind::Motor(None) => f.write_str("motor: free again"),
         EventKind::Behaviour(what, None) => write!(f, "behaviour: {} begins", what.name()),
         EventKind::Behaviour(what, Some(ending)) => {
             write!(f, "behaviour: {} ended, {}", what.name(), ending.name())

@@ -92,6 +92,10 @@ pub enum Mishap {
         /// Words that are still programmed whole.
         words: u32,
     },
+    /// The supply falls below the brown-out level for an instant: the chip is reset, RAM keeps what it held.
+    BrownsOut,
+    /// The motor's bridge pulls its nFAULT low (true), or lets it go.
+    BridgeIsOff(bool),
 }
 
 /// Why a run has no result.

@@ -69,6 +69,33 @@ fn three_quarters_as_fast_a_core_is_fast_enough() {
     assert!(Agreement::of(&run).holds());
 }
 
+/// From two cycles an instruction to one: the same codes, the same decisions, and what is late harms nothing.
+// Shows B7, B8.
+#[test]
+fn decisions_are_the_same_at_50_67_and_100_million_instructions_a_second() {
+    let runs = [50, 67, 100].map(|millions: u64| {
+        let instructions_per_second = NonZeroU64::new(millions * 1_000_000).expect("not zero");
+        let run = run(Swing::new(2.0), &Options { instructions_per_second, ..Options::default() });
+        let (counters, cost) = (run.counters, run.tick_cost.expect("ticks were counted"));
+        println!(
+            "{millions} M: {} of {} ticks late, longest {} us, {cost:?}",
+            counters.ticks_late, counters.ticks, counters.control_us_max
+        );
+        assert_eq!((counters.overruns, counters.frames_lost), (0, 0), "{millions} M");
+        assert_eq!((counters.telemetry_dropped, run.messages_missed), (0, 0), "{millions} M");
+        assert!(Agreement::of(&run).holds(), "{millions} M");
+        run
+    });
+    let late = runs.each_ref().map(|run| run.counters.ticks_late);
+    assert!(late[0] >= late[1] && late[1] >= late[2] && late[2] == 0, "{late:?}");
+    assert!(late[0] <= runs[0].counters.ticks / 5, "{late:?}");
+    for run in &runs[..2] {
+        assert!(run.scans == runs[2].scans);
+        assert_eq!(run.slows, runs[2].slows);
+        assert_eq!(run.drives, runs[2].drives, "a late tick drives in the same scan");
+    }
+}
+
 /// Commands sent at every scan of a frame, and some at once: a late one is taken a tick later, and the host's logic says
 /// the same if it is given each of them where the image took it.
 #[test]

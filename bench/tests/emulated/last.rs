@@ -2,11 +2,12 @@
 
 use tenax_bench::board::Run;
 use tenax_bench::board::emulated::{Mishap, Options};
+use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{Answer, Down, Last, PIECE_MAX, Received, Up};
 use tenax_hal_shim::words::Fault;
 use tenax_serial::link::Inbox;
 
-use crate::{Rest, Swing, run};
+use crate::{Rest, Swing, drives, run};
 
 /// Asks for pieces one after the other, no faster than they are earned.
 fn asking(mut swing: Swing, from_s: f64, pieces: u16) -> Swing {
@@ -87,4 +88,28 @@ fn the_seconds_before_a_hang_and_before_a_panic_are_there_at_the_next_start() {
     assert!(panicked[whole..].iter().all(|piece| piece.after.is_none()), "who asks from its end on has it");
     // With the box nothing is late.
     assert_eq!((run.counters.ticks_late, run.counters.frames_lost), (0, 0), "{:?}", run.counters);
+}
+
+/// RAM outlives a brown-out, which the chip tells from its reset button and from being switched on.
+// Shows B2.
+#[test]
+fn a_brown_out_is_told_keeps_what_was_said_and_counts_as_a_restart() {
+    let drive = MotorDrive::Close(Duty::per_mille(400));
+    let swing = asking(Swing::new(2.0).sending(0.5, Down::Drive { drive, hold_ms: 250 }), 1.2, 1);
+    let options = Options { mishaps: vec![(0.6, Mishap::BrownsOut)], ..Options::default() };
+    let run_of = run(Rest::new(swing), &options);
+    assert_eq!(run_of.starts, [None, Some(Fault::SupplySagged)]);
+    assert!(drives(&run_of, 0.55, 0.6).iter().all(|now| *now == drive), "it was driven before");
+    assert!(drives(&run_of, 0.601, 2.0).iter().all(|now| *now == MotorDrive::Coast));
+    let piece = &pieces(&run_of)[0];
+    assert_eq!((piece.after, &piece.why[..]), (Some(Fault::SupplySagged), &b"brown-out"[..]));
+    assert!(piece.length > 4_000, "{} bytes of 0.6 s", piece.length);
+
+    // A hand that browns out each time it closes stays off.
+    let mishaps = (1..=6).map(|n| (0.4 * f64::from(n), Mishap::BrownsOut)).collect();
+    let run_of = run(Rest::new(Swing::new(2.9)), &Options { mishaps, ..Options::default() });
+    let mut starts = vec![None];
+    starts.extend([Some(Fault::SupplySagged); 5]);
+    starts.push(Some(Fault::TooManyRestarts));
+    assert_eq!(run_of.starts, starts);
 }

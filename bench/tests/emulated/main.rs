@@ -8,6 +8,7 @@ mod faults;
 mod head;
 mod last;
 mod link;
+mod motor;
 #[path = "../../../host-tests/src/onsets.rs"]
 mod onsets;
 mod store;

@@ -104,6 +104,20 @@ fn sampling_loses_nothing_while_the_network_is_saved() {
     assert!(hopeless.counters.frames_lost > 0, "{:?}", hopeless.counters);
 }
 
+/// The same with everything on the line: the store's turn may come long after a tick's end, and then waits for another.
+// Shows B7.
+#[test]
+fn a_word_is_not_begun_just_before_a_frame_whatever_the_line_carries() {
+    let stream = Down::Stream { raw: true, senses: true, hold_s: 10 };
+    let plant = Swing::new(2.0).sending(0.2, stream).sending(0.5, Down::Save);
+    let run = run(plant, &Options { word_us: 100, ..Options::default() });
+    assert_eq!(kept(&run), [Kept::Network]);
+    let counters = run.counters;
+    println!("{counters:?}");
+    assert_eq!((counters.overruns, counters.frames_lost, counters.ticks_late), (0, 0, 0), "{counters:?}");
+    assert!(Agreement::of(&run).holds());
+}
+
 #[test]
 fn what_the_network_learned_is_used_and_saved_again() {
     let mut network = FingertipNetwork::default();

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{About, Answer, Down, Raw, Restored, Senses, Slow};
 use crate::behaviour::{Behaviour, Ending};
-use crate::words::{Calibration, Cause, Consent, Fault, GripMode, Kept};
+use crate::words::{Calibration, Cause, Consent, Fault, GripMode, Kept, MotorStop};
 
 /// What the board counted since it was switched on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
@@ -79,6 +79,8 @@ pub enum EventKind {
     NoWearer(bool),
     /// A behaviour began (None), or ended.
     Behaviour(Behaviour, Option<Ending>),
+    /// The motor is stopped, for this reason, or may be driven again (None).
+    Motor(Option<MotorStop>),
 }
 
 /// From the board.

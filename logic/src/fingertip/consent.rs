@@ -15,6 +15,11 @@ impl Fingertip {
         self.button_is_down = is_down;
     }
 
+    /// Whether the motor's bridge says that it has switched itself off, until this says otherwise.
+    pub const fn bridge(&mut self, is_off: bool) {
+        self.senses.motor.bridge(is_off);
+    }
+
     /// This start was a reset, not somebody who switched the hand on. To be said before the first tick.
     pub const fn was_reset(&mut self) {
         self.arming.was_reset();

@@ -97,6 +97,7 @@ fn instants(scene: &SceneFile) -> Checked {
     all.extend(scene.hum.iter().map(|hum| &hum.at_s));
     all.extend(scene.muscle.iter().map(|muscle| &muscle.at_s));
     all.extend(scene.electrode_lift.iter().map(|lift| &lift.at_s));
+    all.extend(scene.jam.iter().map(|jam| &jam.at_s));
     all.extend(scene.fault.iter().flat_map(|fault| [Some(&fault.at_s), fault.until_s.as_ref()]).flatten());
     all.extend(scene.command.iter().map(|command| &command.at_s));
     for instant in all {

@@ -21,9 +21,9 @@ pub use error::SceneError;
 pub use happening::Happening;
 use quantity::{Duration, Speed};
 use sections::{
-    Arm, Array, Camera, Command, CommandKind, Contact, ElectrodeLift, Fill, Fsr, Gripper, Hum, Knock, Move,
-    Muscle, Myo, Object, Photoelastic, Pitch, Press, Pull, Pvdf, Robot, SensorFault, Skin, Strain, Sweep,
-    Swing, Table, Wet,
+    Arm, Array, Camera, Command, CommandKind, Contact, ElectrodeLift, Fill, Fsr, Gripper, Hum, Jam, Knock,
+    Move, Muscle, Myo, Object, Photoelastic, Pitch, Press, Pull, Pvdf, Robot, SensorFault, Skin, Strain,
+    Sweep, Swing, Table, Wet,
 };
 
 /// A whole scene, every number in it checked.
@@ -86,6 +86,8 @@ pub struct SceneFile {
     pub(crate) muscle: Vec<Muscle>,
     #[serde(default)]
     pub(crate) electrode_lift: Vec<ElectrodeLift>,
+    #[serde(default)]
+    pub(crate) jam: Vec<Jam>,
     #[serde(default)]
     pub(crate) fault: Vec<SensorFault>,
     #[serde(default)]

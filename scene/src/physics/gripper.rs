@@ -13,7 +13,8 @@ use crate::schedule::STEP_S;
 /// The duty sets the finger speed, less what the load takes: `v = v_max (duty - F / F_max)`, so the fingers stall at
 /// `duty F_max`. The gear does not run backwards: a load never opens the hand, driven or not. What the bridge is told
 /// reaches the fingers one dead time later, starting and stopping alike (gear play, friction, the motor's inertia). A
-/// position-controlled gripper moves by whole steps, each as fast as it can.
+/// position-controlled gripper moves by whole steps, each as fast as it can. At the ends of its range and while its gear is jammed
+/// nothing moves, and the motor is blocked.
 #[derive(Clone, Debug)]
 pub struct Gripper {
     speed_max_mm_s: f64,
@@ -25,6 +26,7 @@ pub struct Gripper {
     opening_mm: f64,
     speed_mm_s: f64,
     current: f64,
+    is_jammed: bool,
 }
 
 impl Gripper {
@@ -40,7 +42,13 @@ impl Gripper {
             opening_mm: parameters.opening_mm.get_ref().get(),
             speed_mm_s: 0.0,
             current: 0.0,
+            is_jammed: false,
         }
+    }
+
+    /// Whether something between the gear's teeth blocks it from now on.
+    pub const fn jam(&mut self, is_jammed: bool) {
+        self.is_jammed = is_jammed;
     }
 
     /// Goes on by one scan under `drive`, while each finger presses with `grip_n`.
@@ -51,11 +59,16 @@ impl Gripper {
             MotorDrive::Coast => (0.0, 0.0),
             MotorDrive::Close(duty) => {
                 let duty = f64::from(duty.as_per_mille()) / 1e3;
-                let speed = (duty - load).max(0.0);
-                (-speed, duty - speed)
+                let is_blocked = self.is_jammed || self.aim_mm <= 0.0;
+                let speed = if is_blocked { 0.0 } else { (duty - load).max(0.0) };
+                (-speed, duty * (duty - speed))
             }
             // The load pushes the fingers the way they go; it takes nothing from their speed and adds nothing.
-            MotorDrive::Open(duty) => (f64::from(duty.as_per_mille()) / 1e3, 0.0),
+            MotorDrive::Open(duty) => {
+                let duty = f64::from(duty.as_per_mille()) / 1e3;
+                let is_blocked = self.is_jammed || self.aim_mm >= self.range_mm;
+                if is_blocked { (0.0, duty * duty) } else { (duty, 0.0) }
+            }
         };
         let before_mm = self.opening_mm;
         self.aim_mm = (self.aim_mm + speed * self.speed_max_mm_s * STEP_S).clamp(0.0, self.range_mm);
@@ -105,6 +118,9 @@ impl Gripper {
         if self.step_mm == 0.0 {
             return self.aim_mm;
         }
+        if self.is_jammed {
+            return self.opening_mm;
+        }
         let goal_mm = ((self.aim_mm / self.step_mm).round() * self.step_mm).clamp(0.0, self.range_mm);
         let closing_mm = (1.0 - load).max(0.0) * self.speed_max_mm_s * STEP_S;
         goal_mm.clamp(self.opening_mm - closing_mm, self.opening_mm + self.speed_max_mm_s * STEP_S)
@@ -130,7 +146,8 @@ impl Gripper {
         (self.speed_mm_s / self.speed_max_mm_s).abs()
     }
 
-    /// The motor's current that makes torque, as a part of the stall current at the whole supply.
+    /// The current that the bridge shows, as a part of the stall current at the whole supply: the motor's, which makes torque, while
+    /// the bridge drives it, so duty times as much (DRV8874, section 7.3.3).
     pub const fn current_part(&self) -> f64 {
         self.current
     }
@@ -195,6 +212,33 @@ mod tests {
         }
         let grip_n = gripper.grip_n(WIDTH_MM, STIFFNESS_N_PER_MM);
         assert!((12.0..12.1).contains(&grip_n), "{grip_n} N");
+    }
+
+    #[test]
+    fn a_blocked_motor_moves_nothing_and_draws_its_duty() {
+        let blocked = |gripper: &mut Gripper, drive, part: f64| {
+            run(gripper, drive, 0.1);
+            let opening_mm = gripper.opening_mm();
+            run(gripper, drive, 0.1);
+            assert_eq!(gripper.opening_mm(), opening_mm, "{drive:?}");
+            assert!((gripper.current_part() - part).abs() < 1e-9, "{drive:?}");
+        };
+        let half = Duty::per_mille(500);
+        for step_mm in [0.0, 0.5] {
+            let mut gripper = Gripper::new(&sections::Gripper {
+                step_mm: Play::of(step_mm),
+                ..sections::Gripper::default()
+            });
+            run(&mut gripper, MotorDrive::Open(Duty::FULL), 0.05);
+            assert_eq!(gripper.current_part(), 0.0, "the control: it moves");
+            gripper.jam(true);
+            blocked(&mut gripper, MotorDrive::Open(half), 0.25);
+            blocked(&mut gripper, MotorDrive::Close(Duty::FULL), 1.0);
+            gripper.jam(false);
+            run(&mut gripper, MotorDrive::Open(Duty::FULL), 1.0);
+            assert_eq!(gripper.opening_part(), 1.0);
+            blocked(&mut gripper, MotorDrive::Open(half), 0.25);
+        }
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! What can go wrong with a board, done to the emulated one.
 
-use rigless::emulator::Host;
+use rigless::emulator::{Host, Stop};
 use rigless::mcu::Operate;
 use rigless::session::Session;
 use rigless::soc::Width;
@@ -8,6 +8,7 @@ use rigless::time::VirtualNanos;
 use tenax_hal_shim::channel::SCAN_HZ;
 
 use super::Mishap;
+use super::wires::Wires;
 use tenax_board_model::flash::FlashArray;
 use tenax_board_model::nucleo::Nucleo;
 use tenax_board_model::part::Part;
@@ -39,14 +40,21 @@ impl Mishaps {
         &mut self,
         scan: usize,
         session: &mut Session<Nucleo>,
-        now: VirtualNanos,
+        stop: Stop,
         flash: &mut FlashArray,
         host: &mut dyn Host,
     ) {
         let due: Vec<_> = self.0.extract_if(.., |(at, _)| *at <= scan).collect();
-        let mcu = &mut session.board_mut().mcu;
+        let now = stop.at;
         for (_, mishap) in due {
+            if mishap == Mishap::BrownsOut {
+                session.reset_by_pin(now, stop.instruction_count, host);
+                session.board_mut().mcu.browned_out(now);
+                continue;
+            }
+            let mcu = &mut session.board_mut().mcu;
             match mishap {
+                Mishap::BrownsOut => {}
                 Mishap::DmaStalls => {
                     stop_stream(mcu, now);
                 }
@@ -66,6 +74,7 @@ impl Mishaps {
                 }
                 Mishap::CoreHangs => host.hold(true),
                 Mishap::PowerFails { words } => flash.cut_power_after(words),
+                Mishap::BridgeIsOff(is_off) => Wires::new(mcu, now).bridge_fault(is_off),
             }
         }
     }

@@ -81,7 +81,17 @@ impl<'a> Wires<'a> {
     /// Presses or releases the button on PC13. The model lets a peripheral's owner drive a pin and nobody else, but a pin
     /// that nothing drives reads its pull: the button is one.
     pub fn button(&mut self, is_down: bool) {
-        let pulls = self.peek(GPIOC_PUPDR) & !(0b11 << 26) | if is_down { PULL_DOWN } else { PULL_UP } << 26;
+        self.pull(13, is_down);
+    }
+
+    /// The bridge pulls its nFAULT on PC8 low, or lets it go.
+    pub fn bridge_fault(&mut self, is_low: bool) {
+        self.pull(8, is_low);
+    }
+
+    fn pull(&mut self, pin: u32, is_low: bool) {
+        let at = 2 * pin;
+        let pulls = self.peek(GPIOC_PUPDR) & !(0b11 << at) | if is_low { PULL_DOWN } else { PULL_UP } << at;
         if pulls != self.peek(GPIOC_PUPDR) {
             // Before the image has clocked the port nothing reads it either.
             let _ = self.mcu.write(self.now, GPIOC_PUPDR, Width::W32, u64::from(pulls));

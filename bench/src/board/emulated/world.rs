@@ -163,7 +163,7 @@ impl World {
             }
         }
         drop(plant);
-        self.mishaps.happen(scan, session, stop.at, &mut self.flash, host);
+        self.mishaps.happen(scan, session, stop, &mut self.flash, host);
         if scan.is_multiple_of(REPORT_SCANS) {
             self.report(session, stop.at);
         }

@@ -59,6 +59,16 @@ pub struct ElectrodeLift {
     pub pickup_mv: Millivolts,
 }
 
+/// Something between the gear's teeth: the motor is blocked, the fingers stand still.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Jam {
+    /// When.
+    pub at_s: Spanned<Instant>,
+    /// How long.
+    pub for_s: Duration,
+}
+
 /// What a broken sensor does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]

@@ -17,7 +17,7 @@ pub use arm::{Arm, Move, Press, Robot, Sweep, Swing};
 pub use contact::{Contact, Level, Wet};
 pub use gripper::Gripper;
 pub use head::Photoelastic;
-pub use mishap::{ElectrodeLift, FaultKind, Hum, Knock, SensorFault};
+pub use mishap::{ElectrodeLift, FaultKind, Hum, Jam, Knock, SensorFault};
 pub use object::{Fill, Object, Pitch, Table};
 pub use person::{Command, CommandKind, Intent, Muscle};
 pub use pull::Pull;

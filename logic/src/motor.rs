@@ -1,0 +1,274 @@
+//! The motor's limit: a stall stops it, and so does heat. What stops it leaves it undriven: the gear holds what is held.
+//!
+//! The bridge's mirror shows the current only while the bridge drives, so the filtered pin reads duty times the winding's current
+//! (DRV8874, section 7.3.3; docs/hardware.md). Of a blocked motor that is duty squared times the stall current.
+//!
+//! | judged once a slow frame | from | stops |
+//! |---|---|---|
+//! | stall: half of a blocked motor's current or more, and the fingers stand still | current and opening, or the one that is left | the way it was driven |
+//! | heat: the current shown times the stall current, which is the winding's squared if it is blocked and more if it turns | current, or else the duty | closing |
+//!
+//! A stalled way is free again once nobody has asked for it for 0.15 s, when somebody asks for the other one, or for a drive that is
+//! stronger by an eighth. So an opening always wins: over a stalled closing at once, over a stall of its own by being asked for again.
+//! Heat never stops an opening: a hand that cannot let go is worse than a hot motor, and a stall ends each try.
+
+pub mod settings;
+
+use core::mem::take;
+
+use tenax_hal_shim::channel::{
+    CHANNELS, FRAMES_PER_SLOW_FRAME, MOTOR_CURRENT, OPENING, REFERENCE_MV, SAMPLE_MAX, SLOW_HZ,
+    sample_from_mv,
+};
+use tenax_hal_shim::front_end::MOTOR_MV_PER_A;
+use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::wire::EventKind;
+use tenax_hal_shim::words::{Fault, MotorStop, Reason};
+
+use self::settings::MotorConfig;
+use crate::arming::STEP_FRAMES;
+use crate::health::{Change, Limits, SensorHealth};
+use crate::journal::Journal;
+
+/// Looks at the drive in a slow frame.
+const STEPS: u32 = FRAMES_PER_SLOW_FRAME as u32 / STEP_FRAMES;
+/// Slow frames of stall after which the motor stops: 0.3 s, so that 0.5 s are kept with the filter at the pin and the motor's dead time.
+const STALL_CYCLES: u8 = 24;
+/// A mean duty below this moves nothing, per mille.
+const LEAST_PERMILLE: u32 = 50;
+/// A drive stronger by this is tried on a stalled motor, per mille.
+const STRONGER_PERMILLE: u16 = 125;
+/// Fingers that move change the opening's reading by more than this: 8 mV, a third of a millimetre.
+const MOVED: u16 = sample_from_mv(8);
+/// The winding's time constant is `2^HEAT_SHIFT` slow frames: 6.4 s (small brushed motors: 5 to 15 s).
+const HEAT_SHIFT: u32 = 9;
+/// Slow frames without a drive after which no current flows: 0.2 s, with the motor's dead time.
+const IDLE_CYCLES: u8 = 16;
+/// So many more of them with current are the sensor's fault, or the bridge's.
+const ODD_CYCLES: u8 = 16;
+/// Milliamperes of a sample, 14 fraction bits.
+const MA_Q14: u32 =
+    (((REFERENCE_MV as u64 * 1_000) << 14) / (SAMPLE_MAX as u64 * MOTOR_MV_PER_A as u64)) as u32;
+
+static LIMITS: Limits = Limits::of(&CHANNELS[MOTOR_CURRENT], SLOW_HZ);
+const _: () = assert!(CHANNELS[MOTOR_CURRENT].low_mv == CHANNELS[OPENING].low_mv);
+const _: () = assert!(CHANNELS[MOTOR_CURRENT].high_mv == CHANNELS[OPENING].high_mv);
+const REST: u16 = sample_from_mv(CHANNELS[MOTOR_CURRENT].rest_mv);
+
+/// One of the hand's own sensors.
+#[derive(Clone, Debug, Default)]
+struct Sensor {
+    health: SensorHealth,
+    /// Of this cycle, None where there is none.
+    reading: Option<u16>,
+}
+
+/// What is known of the motor, and whether it may be driven.
+#[derive(Clone, Debug, Default)]
+pub struct Motor {
+    current: Sensor,
+    opening: Sensor,
+    /// The opening's reading when the fingers were last seen to move.
+    stood: u16,
+    /// What it was driven with in this cycle: the sum of [`STEPS`] looks; the most since it began to stall.
+    duty_sum: u16,
+    duty_most: u16,
+    /// Somebody asked for a drive in this cycle.
+    asked: bool,
+    /// The last one to be asked for opens.
+    opens: bool,
+    /// Slow frames of stall, less those without.
+    stall: u8,
+    stalled: bool,
+    /// mA squared times `2^HEAT_SHIFT` when it flows for ever.
+    heat: u32,
+    hot: bool,
+    /// The least duty that may close and open, per mille.
+    least: [u16; 2],
+    told: Option<MotorStop>,
+    /// The bridge says that it has switched itself off.
+    bridge_is_off: bool,
+    /// Slow frames without a drive, and those of them with current.
+    idle: u8,
+    odd: u8,
+    /// The sensor shows a current that cannot be.
+    contradicts: bool,
+}
+
+impl Motor {
+    /// Takes a reading of the motor's current or of the opening.
+    pub fn read(&mut self, channel: usize, sample: u16) -> Option<Change> {
+        let sensor = self.sensor(channel);
+        let (reading, change) = sensor.health.take(&LIMITS, sample);
+        sensor.reading = reading.ok();
+        change
+    }
+
+    /// The frame that shows this channel was lost.
+    pub const fn miss(&mut self, channel: usize) {
+        self.sensor(channel).reading = None;
+    }
+
+    const fn sensor(&mut self, channel: usize) -> &mut Sensor {
+        if channel == OPENING { &mut self.opening } else { &mut self.current }
+    }
+
+    /// Whether the bridge says that it has switched itself off, until this says otherwise.
+    pub const fn bridge(&mut self, is_off: bool) {
+        self.bridge_is_off = is_off;
+    }
+
+    /// Whether it may be driven so.
+    #[must_use]
+    pub const fn allows(&self, drive: MotorDrive) -> bool {
+        match drive {
+            MotorDrive::Coast => true,
+            MotorDrive::Close(duty) => duty.as_per_mille() >= self.least[0],
+            MotorDrive::Open(duty) => duty.as_per_mille() >= self.least[1],
+        }
+    }
+
+    /// What was asked for in the last frame, and how it was driven. Call it every [`STEP_FRAMES`].
+    pub const fn step(&mut self, asked: MotorDrive, drive: MotorDrive) {
+        let opens = match asked {
+            MotorDrive::Coast => return,
+            MotorDrive::Close(_) => false,
+            MotorDrive::Open(_) => true,
+        };
+        if self.opens != opens {
+            self.opens = opens;
+            self.free();
+        }
+        self.asked = true;
+        if let MotorDrive::Close(duty) | MotorDrive::Open(duty) = drive {
+            let duty = duty.as_per_mille();
+            self.duty_sum = self.duty_sum.saturating_add(duty);
+            if self.duty_most < duty {
+                self.duty_most = duty;
+            }
+        }
+    }
+
+    /// Judges a slow frame. Call it once in each, always in the same slot.
+    #[inline(never)]
+    pub fn judge(&mut self, config: &MotorConfig, journal: &mut Journal) {
+        let duty = u32::from(take(&mut self.duty_sum)) / STEPS;
+        let asked = take(&mut self.asked);
+        self.idle = if duty > 0 { 0 } else { self.idle.saturating_add(1) };
+        let stall_ma = u32::from(config.stall_ma);
+        let ma = self.current_ma(stall_ma, journal);
+        let moved = self.moved();
+        self.warm(u32::from(config.limit_ma), stall_ma, ma, moved, duty);
+
+        // Of a blocked motor the winding has this much, and the pin shows a part of it that is the duty.
+        let blocked_ma = stall_ma * duty / 1_000;
+        let draws = match ma {
+            Some(ma) => 2_000 * ma >= blocked_ma * duty,
+            None => moved.is_some(),
+        };
+        if self.stalled && duty > 0 {
+            // What it stalled at is not allowed: this is a stronger drive.
+            self.free();
+        }
+        if duty >= LEAST_PERMILLE && draws && moved != Some(true) {
+            self.stall = self.stall.saturating_add(1);
+        } else if duty > 0 && moved == Some(true) {
+            self.free();
+        } else if duty > 0 || !asked {
+            self.stall = self.stall.saturating_sub(1);
+        }
+        if self.stall >= STALL_CYCLES {
+            (self.stall, self.stalled) = (STALL_CYCLES, true);
+        } else if self.stall <= STALL_CYCLES / 2 {
+            self.stalled = false;
+        }
+        if self.stall == 0 {
+            self.duty_most = 0;
+        }
+        self.close_ways();
+        self.tell(journal);
+    }
+
+    /// The stall is over: somebody asks for another drive, or the fingers move.
+    const fn free(&mut self) {
+        (self.stall, self.stalled, self.duty_most) = (0, false, 0);
+        self.close_ways();
+    }
+
+    /// What may be driven.
+    const fn close_ways(&mut self) {
+        let stalled = if self.stalled { self.duty_most.saturating_add(STRONGER_PERMILLE) } else { 0 };
+        self.least = match self.opens {
+            true => [0, stalled],
+            false => [stalled, 0],
+        };
+        if self.hot {
+            self.least[0] = u16::MAX;
+        }
+    }
+
+    fn tell(&mut self, journal: &mut Journal) {
+        let stop = match (self.stalled, self.opens) {
+            (true, false) => Some(MotorStop::ClosingStalled),
+            (true, true) => Some(MotorStop::OpeningStalled),
+            (false, _) if self.hot => Some(MotorStop::Hot),
+            // It protects itself: to be driven on does no harm, and shows when it is back.
+            (false, _) => self.bridge_is_off.then_some(MotorStop::BridgeOff),
+        };
+        if self.told != stop {
+            self.told = stop;
+            journal.event(EventKind::Motor(stop));
+        }
+    }
+
+    /// The current that the pin shows, mA. None where the sensor gives no number, or one that cannot be.
+    fn current_ma(&mut self, stall_ma: u32, journal: &mut Journal) -> Option<u32> {
+        let ma = (u32::from(self.current.reading?.saturating_sub(REST)) * MA_Q14) >> 14;
+        if self.idle >= IDLE_CYCLES {
+            self.odd = if 8 * ma > stall_ma {
+                self.odd.saturating_add(1).min(ODD_CYCLES)
+            } else {
+                self.odd.saturating_sub(1)
+            };
+            let channel = MOTOR_CURRENT as u8;
+            if !self.contradicts && self.odd == ODD_CYCLES {
+                // Whatever it has said of the heat was wrong as well.
+                (self.contradicts, self.heat) = (true, self.heat / 16);
+                journal.fault(Fault::SensorLost { channel, reason: Reason::Creep });
+            } else if self.contradicts && self.odd == 0 {
+                self.contradicts = false;
+                journal.fault(Fault::SensorBack { channel });
+            }
+        }
+        (!self.contradicts).then_some(ma)
+    }
+
+    /// Whether the fingers have moved since the last cycle. None while the opening gives no number.
+    fn moved(&mut self) -> Option<bool> {
+        let opening = self.opening.reading?;
+        let moved = opening.abs_diff(self.stood) > MOVED;
+        if moved {
+            self.stood = opening;
+        }
+        Some(moved)
+    }
+
+    /// Heats the winding for a cycle. Nobody knows its current: then it is that of a blocked motor, or half of it while the fingers move.
+    /// What is not driven cools, whatever the sensor's offset: nothing else could be done about it.
+    fn warm(&mut self, limit_ma: u32, stall_ma: u32, ma: Option<u32>, moved: Option<bool>, duty: u32) {
+        let blocked_ma = stall_ma * duty / 1_000;
+        let warms = match (ma, moved) {
+            (Some(_), _) if self.idle >= IDLE_CYCLES => 0,
+            (Some(ma), _) => ma * stall_ma,
+            (None, Some(true)) => blocked_ma * blocked_ma / 4,
+            (None, _) => blocked_ma * blocked_ma,
+        };
+        // At most 1.5e6 times 2^9.
+        self.heat = self.heat - (self.heat >> HEAT_SHIFT) + warms;
+        let limit = (limit_ma * limit_ma) << HEAT_SHIFT;
+        self.hot = self.heat > limit || (self.hot && self.heat > limit / 2);
+    }
+}
+
+#[cfg(test)]
+mod tests;

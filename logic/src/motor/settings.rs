@@ -1,0 +1,20 @@
+//! What can be chosen about the motor's current.
+
+use crate::setting::settings;
+
+/// What the motor bears.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MotorConfig {
+    /// The current that it may carry for ever, mA.
+    pub limit_ma: u16,
+    /// The current of the blocked motor at full duty, mA.
+    pub stall_ma: u16,
+}
+
+settings! {
+    MotorConfig:
+    /// Motor current that may flow for ever; more stops closing until it has cooled
+    76 MotorLimit "motor-limit-ma" "mA" [300, 1_200] = 500 => Number(limit_ma);
+    /// Current of the blocked motor at full duty; half of it with still fingers is a stall
+    77 MotorStall "motor-stall-ma" "mA" [300, 1_200] = 1_000 => Number(stall_ma);
+}
