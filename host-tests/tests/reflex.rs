@@ -7,6 +7,7 @@ use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::EventKind;
 use tenax_hal_shim::words::{DriveSource, Fault, GripMode, Reason};
 use tenax_host_tests::Bench;
+use tenax_logic::mode;
 
 fn reflex_ticks(bench: &Bench) -> usize {
     let by_reflex = |source: DriveSource| source == DriveSource::Reflex;
@@ -120,6 +121,24 @@ fn slip_while_an_s2_pulse_settles_is_answered() {
     bench.run(60);
     let slip = bench.last_cause() == Some(tenax_hal_shim::words::Cause::Slip(DetectorId::S1));
     assert!(slip && bench.fingertip.mode() == GripMode::Slip, "{:?}", bench.last_cause());
+}
+
+#[test]
+fn every_pulse_says_why() {
+    let mut bench = Bench::holding(32);
+    bench.load(4.0, 1.6);
+    bench.run(400);
+    bench.load(4.0, 0.8);
+    bench.run(400);
+    bench.vibration_mv = 400.0;
+    bench.run(200);
+    let closing = |kind: &EventKind| matches!(kind, EventKind::Mode { to, .. } if mode::closes(*to));
+    let kinds: Vec<EventKind> = bench.events.iter().map(|event| event.kind).collect();
+    let why: Vec<_> = kinds.windows(2).filter(|two| closing(&two[0])).map(|two| two[1]).collect();
+    let warned = |why: &EventKind| matches!(why, EventKind::Pulse { margin_mn: Some(..0), believed, .. } if believed.contains(DetectorId::S2));
+    let heard = |why: &EventKind| matches!(why, EventKind::Pulse { margin_mn: Some(0..), said, .. } if said.contains(DetectorId::S1));
+    assert!(why.iter().all(|why| matches!(why, EventKind::Pulse { .. })), "{why:?}");
+    assert!(why.iter().any(warned) && why.iter().any(heard), "{why:?}");
 }
 
 // Shows R5.

@@ -315,6 +315,7 @@ impl Fingertip {
     fn step_mode(&mut self, verdicts: Verdicts, grip: Grip) {
         let config = self.config.grip;
         let answered = self.behaviour.as_ref().is_some_and(Running::answers_slip);
+        let before = self.mode;
         let taken_over = self.senses.gate.is_active() || self.link_drive().is_some() || answered;
         self.cause(if self.senses.ready(&self.config) { Cause::SensorsReady } else { Cause::SensorsLost });
         self.cause(if taken_over { Cause::TakenOver } else { Cause::Released });
@@ -335,6 +336,17 @@ impl Fingertip {
         if self.mode == GripMode::Settle && self.reflex.settled(&config) {
             self.cause(Cause::Settled);
         }
+        if self.mode != before && mode::closes(self.mode) {
+            self.explain(verdicts);
+        }
+    }
+
+    /// Says why a pulse begins.
+    #[inline(never)]
+    fn explain(&mut self, Verdicts { said, slip, incipient }: Verdicts) {
+        let s2_permille = self.detectors.s2.s2_permille(&self.config.friction);
+        let margin_mn = self.senses.forces.and_then(|forces| forces.margin_mn(s2_permille));
+        self.journal.event(EventKind::Pulse { margin_mn, said, believed: slip.or(incipient) });
     }
 
     /// Lets a cause do what the table says, if it says anything: nearly always it does not.

@@ -12,6 +12,14 @@ use tenax_hal_shim::wire::{
 use tenax_hal_shim::words::{Calibration, Fault, Kept, Line};
 use tenax_logic::setting::SettingId;
 
+/// The names of detectors, one blank between them.
+#[must_use]
+pub fn names(set: DetectorSet) -> String {
+    let names: Vec<&str> =
+        DetectorId::ALL.iter().filter(|id| set.contains(**id)).map(|id| id.name()).collect();
+    names.join(" ")
+}
+
 /// Why a frame is no message.
 pub fn why(bad: BadFrame) -> String {
     match bad {
@@ -356,6 +364,16 @@ fn event_words(f: &mut fmt::Formatter<'_>, event: &Event) -> fmt::Result {
         EventKind::EventsLost(count) => write!(f, "{count} events lost"),
         EventKind::Motor(Some(stop)) => write!(f, "motor: stopped, {}", stop.name()),
         EventKind::Motor(None) => f.write_str("motor: free again"),
+        EventKind::Pulse { margin_mn, said, believed } => {
+            f.write_str("pulse: margin ")?;
+            match margin_mn {
+                Some(mn) => write!(f, "{:.2} N", f64::from(mn) / 1e3)?,
+                None => f.write_str("unknown")?,
+            }
+            let doubted = said.without(believed);
+            write!(f, ", believed: {}", names(believed))?;
+            if doubted.is_empty() { Ok(()) } else { write!(f, ", not believed: {}", names(doubted)) }
+        }
         EventKind::Behaviour(what, None) => write!(f, "behaviour: {} begins", what.name()),
         EventKind::Behaviour(what, Some(ending)) => {
             write!(f, "behaviour: {} ended, {}", what.name(), ending.name())

@@ -32,6 +32,18 @@ pub struct Forces {
     pub ratio_permille: Option<u16>,
 }
 
+impl Forces {
+    /// The margin of the grip as the fingertip knows it, mN: the shear that the normal force bears by S2, less the shear that there is. None
+    /// while the finger is not loaded enough for a ratio.
+    #[must_use]
+    pub fn margin_mn(&self, s2_permille: u16) -> Option<i32> {
+        self.ratio_permille?;
+        // A force is below 2^17 mN.
+        let bears_mn = self.fn_mn.clamp(0, 1 << 17).unsigned_abs() * u32::from(s2_permille) / 1_000;
+        Some(bears_mn as i32 - self.ft_mn)
+    }
+}
+
 /// Detectors that a slow frame has room for.
 pub const DETECTORS_MAX: usize = 8;
 
@@ -64,17 +76,6 @@ pub struct Slow {
     pub line: Line,
     /// The behaviour that goes on.
     pub behaviour: Option<Behaviour>,
-}
-
-impl Slow {
-    /// The margin of the grip as the fingertip knows it, mN: the shear that the normal force bears by S2, less the shear that there is. None
-    /// while the finger is not loaded enough for a ratio.
-    #[must_use]
-    pub fn margin_mn(&self) -> Option<i32> {
-        let forces = self.forces.filter(|forces| forces.ratio_permille.is_some())?;
-        let bears = i64::from(self.s2_permille) * i64::from(forces.fn_mn) / 1_000;
-        Some(bears as i32 - forces.ft_mn)
-    }
 }
 
 /// What the network knows and feels (Tada 2006, equations 3 to 6).

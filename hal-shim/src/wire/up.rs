@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{About, Answer, Down, Raw, Restored, Senses, Slow};
 use crate::behaviour::{Behaviour, Ending};
+use crate::detector::DetectorSet;
 use crate::words::{Calibration, Cause, Consent, Fault, GripMode, Kept, MotorStop};
 
 /// What the board counted since it was switched on.
@@ -81,6 +82,15 @@ pub enum EventKind {
     Behaviour(Behaviour, Option<Ending>),
     /// The motor is stopped, for this reason, or may be driven again (None).
     Motor(Option<MotorStop>),
+    /// The reflex begins a pulse. Why:
+    Pulse {
+        /// The margin of the last slow frame, mN ([`Forces::margin_mn`](super::Forces::margin_mn)). None where there was no ratio.
+        margin_mn: Option<i32>,
+        /// The detectors that say slip or warn of it.
+        said: DetectorSet,
+        /// Those of them that are believed.
+        believed: DetectorSet,
+    },
 }
 
 /// From the board.

@@ -8,7 +8,7 @@ use tenax_logic::setting::SettingId;
 
 use crate::link::captured;
 use crate::protobuf::{Kind, Value};
-use crate::words::Words;
+use crate::words::{Words, names};
 
 /// Where values go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -217,7 +217,7 @@ fn slow_rows(slow: &Slow) -> Vec<(Topic, u32, Vec<Value>)> {
         force(|forces| forces.ft_mn),
         number(ratio),
         number(Some(f64::from(slow.s2_permille) / 1e3)),
-        number(slow.margin_mn().map(f64::from)),
+        number(slow.forces.and_then(|forces| forces.margin_mn(slow.s2_permille)).map(f64::from)),
         number(slow.flexor_mv.map(f64::from)),
         number(slow.extensor_mv.map(f64::from)),
         Value::Flag(slow.wearer_active),
@@ -242,11 +242,7 @@ fn slow_rows(slow: &Slow) -> Vec<(Topic, u32, Vec<Value>)> {
 }
 
 fn tick_values(tick: &TickRecord) -> Vec<Value> {
-    let names = |set: DetectorSet| {
-        let names: Vec<&str> =
-            DetectorId::ALL.iter().filter(|id| set.contains(**id)).map(|id| id.name()).collect();
-        Value::Text(names.join(" "))
-    };
+    let names = |set: DetectorSet| Value::Text(names(set));
     let drive = match tick.drive {
         MotorDrive::Coast => 0.0,
         MotorDrive::Close(duty) => f64::from(duty.as_per_mille()) / 1e3,
