@@ -27,7 +27,7 @@ pub struct Args {
     /// Where they are written: SVG, PNG and CSV
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
-    /// Of photoelastic: how its figures are printed
+    /// Of photoelastic and table: how its figures are printed
     #[arg(long, value_enum, default_value_t = Format::Text)]
     report: Format,
 }
@@ -49,6 +49,8 @@ enum Subject {
     Features,
     /// How soon the slip of a lift could be told, and from which sensors, beside what a camera sees
     Onset,
+    /// What each detector catches and costs, pairs, the hand and plain rivals beside it, on the same fingertips and hours
+    Table,
     /// What a photoelastic head tells of normal force and slip: its curve, force followed, rates, where slip is seen
     Photoelastic,
     /// What a camera behind the skin tells, on recordings: ways to find the object, speed against accuracy; known loads
@@ -83,6 +85,13 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             ]
         }
         Subject::Detectors => vec![detectors()?],
+        Subject::Table => {
+            let costs = chart::table::costs::Costs::default();
+            let options = chart::table::Options::default();
+            let table = with_bar("table", |progress| chart::table::table(&options, &costs, progress))?;
+            out::unless_closed(args.report.print(&table, &table))?;
+            vec![table.chart()?]
+        }
         Subject::Photoelastic => {
             let (chart, measured) =
                 with_bar("photoelastic", |progress| chart::photoelastic::chart(progress))?;

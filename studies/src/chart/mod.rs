@@ -11,6 +11,7 @@ pub mod onset;
 mod patch;
 pub mod photoelastic;
 pub mod sensors;
+pub mod table;
 pub mod vision;
 
 use tenax_plot::sheet::{Sheet, draw};

@@ -1,0 +1,1 @@
+//! A stranger's rows: what his detector said in his own recordings, as CSV.
