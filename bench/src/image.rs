@@ -5,6 +5,7 @@ pub mod kernels;
 pub mod panics;
 pub mod size;
 pub mod symbols;
+pub mod timing;
 
 use std::path::{Path, PathBuf};
 

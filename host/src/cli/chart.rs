@@ -1,7 +1,7 @@
 //! `tenax chart`: the charts behind the pages in `docs/`.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context;
@@ -30,6 +30,9 @@ pub struct Args {
     /// Of photoelastic and table: how its figures are printed
     #[arg(long, value_enum, default_value_t = Format::Text)]
     report: Format,
+    /// Of table: rows of your own, what a detector said in recordings of yours (docs/table.md)
+    #[arg(long, value_name = "CSV")]
+    decisions: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -86,9 +89,11 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         }
         Subject::Detectors => vec![detectors()?],
         Subject::Table => {
-            let costs = chart::table::costs::Costs::default();
+            let own = args.decisions.as_deref().map(decided).transpose()?.unwrap_or_default();
+            let costs = chart::table::costs::Costs::counted(&workspace::root()?)?;
             let options = chart::table::Options::default();
-            let table = with_bar("table", |progress| chart::table::table(&options, &costs, progress))?;
+            let mut table = with_bar("table", |progress| chart::table::table(&options, &costs, progress))?;
+            table.rows.extend(own);
             out::unless_closed(args.report.print(&table, &table))?;
             vec![table.chart()?]
         }
@@ -114,6 +119,13 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         }
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// A stranger's rows.
+fn decided(file: &Path) -> anyhow::Result<Vec<chart::table::Line>> {
+    let called = file.display().to_string();
+    let text = fs::read_to_string(file).with_context(|| format!("cannot read {called}"))?;
+    chart::table::decisions::rows(&text, &called)
 }
 
 /// Each kind of data with its classifiers' scores, which `tenax train --compare` writes, and what their kernels took.

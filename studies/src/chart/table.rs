@@ -19,11 +19,9 @@ use tenax_plot::sheet::{Axis, Mark, Panel, Series, Sheet};
 use super::{Chart, Progress, csv};
 use costs::Costs;
 use heard::{Heard, Judge, Kind, Plan};
-use rivals::{Rival, Row, learn};
+use rivals::{CAPS_PER_HOUR, Rival, Row, learn};
 use scored::{Between, SLID_MM, Scored};
 
-/// A rival's threshold catches the most that it can with no more false alarms an hour than this, of quiet and of disturbed minutes.
-const CAP_PER_HOUR: f64 = 60.0;
 /// Of a slow step of those that are learned from, quiet ones are so many times rarer than they were.
 const THINNED: usize = 4;
 
@@ -37,7 +35,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         let plan = |seed, fingers, minutes| Plan { seed, fingers, pours: 3, picks: 3, minutes };
-        Self { plans: [plan(25_001, 2, 1), plan(25_002, 2, 3), plan(25_003, 6, 3)] }
+        Self { plans: [plan(25_001, 3, 1), plan(25_002, 3, 3), plan(25_003, 8, 3)] }
     }
 }
 
@@ -52,6 +50,8 @@ pub struct Line {
     pub instructions_max: Option<u64>,
     /// Estimated (`docs/table.md`).
     pub cycles_mean: Option<f64>,
+    pub cycles_least: Option<f64>,
+    pub cycles_most: Option<f64>,
     pub flash_bytes: Option<u64>,
     pub ram_bytes: Option<u64>,
     /// The word less macro onset, ms, of slips of at least 1 mm that were caught; negative is early.
@@ -69,6 +69,8 @@ pub struct Line {
     pub recall_0_1mm: Option<Between>,
     pub recall_5mm: Option<Between>,
     pub slips_1mm: usize,
+    /// The part of these slips in which nothing began, but a word stood since before: said too early to be of this slip.
+    pub stood_before_1mm: Option<f64>,
     pub quiet: Option<Between>,
     pub disturbed: Option<Between>,
     /// False alarms an hour while balls are poured and boxes are lifted.
@@ -88,7 +90,9 @@ impl Line {
             data: data.to_owned(),
             instructions_mean: costs.map(|own| own.instructions_mean),
             instructions_max: costs.map(|own| own.instructions_max),
-            cycles_mean: costs.and_then(|own| own.cycles_mean),
+            cycles_mean: costs.and_then(|own| own.cycles).map(|[_, likely, _]| likely),
+            cycles_least: costs.and_then(|own| own.cycles).map(|[least, ..]| least),
+            cycles_most: costs.and_then(|own| own.cycles).map(|[.., most]| most),
             flash_bytes: costs.and_then(|own| own.flash_bytes),
             ram_bytes: costs.and_then(|own| own.ram_bytes),
             latency_ms_p50: scored.latency_ms(0.50),
@@ -103,6 +107,7 @@ impl Line {
             recall_0_1mm: scored.recall(SLID_MM[0]),
             recall_5mm: scored.recall(SLID_MM[2]),
             slips_1mm: scored.count(SLID_MM[1]),
+            stood_before_1mm: scored.stood_before(SLID_MM[1]),
             quiet,
             disturbed,
             false_per_hour_slips: value(slips),
@@ -142,13 +147,19 @@ pub fn table(options: &Options, costs: &Costs, progress: Progress) -> anyhow::Re
     let [learned, chosen, scored] = &options.plans;
     let jobs = Jobs::new(options.plans.iter().map(Plan::count).sum(), progress);
     let steps: Mutex<(usize, Vec<(Features, bool)>)> = Mutex::default();
-    hear(learned, false, &Vec::new, &|features, slips| {
-        let mut steps = steps.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        steps.0 += 1;
-        if slips || steps.0.is_multiple_of(THINNED) {
-            steps.1.push((*features, slips));
-        }
-    }, &jobs)?;
+    hear(
+        learned,
+        false,
+        &Vec::new,
+        &|features, slips| {
+            let mut steps = steps.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+            steps.0 += 1;
+            if slips || steps.0.is_multiple_of(THINNED) {
+                steps.1.push((*features, slips));
+            }
+        },
+        &jobs,
+    )?;
     let (_, mut steps) = steps.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
     // Fingertips are heard side by side: in which order is chance, and sums of floats depend on it.
     steps.sort_unstable();
@@ -159,28 +170,31 @@ pub fn table(options: &Options, costs: &Costs, progress: Progress) -> anyhow::Re
     let heard = hear(chosen, false, &tried, &|_, _| (), &jobs)?;
     let mut from = 0;
     let mut rows = rivals::rows();
-    let thresholds: Vec<i32> = rivals
-        .iter()
-        .map(|rival| {
-            from += rival.grid.len();
-            choose(rival, &heard, from - rival.grid.len())
-        })
-        .collect();
-    rows.extend(rivals.into_iter().zip(thresholds).map(|(rival, at)| rival.row(at)));
-    let judges = || rows.iter().map(|row| (row.make)()).collect();
-    let heard = hear(scored, true, &judges, &|_, _| (), &jobs)?;
+    for rival in &rivals {
+        for cap in CAPS_PER_HOUR {
+            rows.push(rival.row(choose(rival, &heard, from, cap), cap));
+        }
+        from += rival.grid.len();
+    }
+    let heard = hear(scored, true, &|| fresh(&rows), &|_, _| (), &jobs)?;
     Ok(Table::of(&rows, &heard, scored, costs))
 }
 
-/// The threshold that catches the most slips of a millimetre within the cap; if none is within it, the one with the fewest false alarms.
-fn choose(rival: &Rival, heard: &[Heard], from: usize) -> i32 {
+/// Judges for a recording, those of one row after those of another.
+fn fresh(rows: &[Row]) -> Vec<Box<dyn Judge>> {
+    rows.iter().flat_map(|row| (row.make)()).collect()
+}
+
+/// The threshold that catches the most slips of a millimetre with no more false alarms an hour than the cap, of quiet and of disturbed
+/// minutes; if there is none, the one with the fewest.
+fn choose(rival: &Rival, heard: &[Heard], from: usize, cap: f64) -> i32 {
     let mut best = None;
     for (n, &at) in rival.grid.iter().enumerate() {
-        let scored = Scored::of(heard, from + n);
+        let scored = Scored::of(heard, from + n..from + n + 1);
         let per_hour = |kind| scored.false_per_hour(kind).map_or(0.0, |own| own.value);
         let worst = per_hour(Kind::Quiet).max(per_hour(Kind::Disturbed));
         let caught = scored.recall(SLID_MM[1]).map_or(0.0, |own| own.value);
-        let rank = if worst <= CAP_PER_HOUR { (1, caught) } else { (0, -worst) };
+        let rank = if worst <= cap { (1, caught) } else { (0, -worst) };
         if best.is_none_or(|(other, _)| rank > other) {
             best = Some((rank, at));
         }
@@ -190,8 +204,11 @@ fn choose(rival: &Rival, heard: &[Heard], from: usize) -> i32 {
 
 impl Table {
     fn of(rows: &[Row], heard: &[Heard], plan: &Plan, costs: &Costs) -> Self {
-        let lines = rows.iter().enumerate().map(|(n, row)| {
-            let scored = Scored::of(heard, n);
+        let mut from = 0;
+        let lines = rows.iter().map(|row| {
+            let judges = (row.make)().len();
+            let scored = Scored::of(heard, from..from + judges);
+            from += judges;
             let data = format!(
                 "{} fingertips of seed {}: {} pours and picks, {:.1} h quiet, {:.1} h disturbed",
                 plan.count(),
@@ -200,7 +217,10 @@ impl Table {
                 scored.hours(Kind::Quiet),
                 scored.hours(Kind::Disturbed)
             );
-            Line { threshold: row.threshold, ..Line::new(&row.name, &data, &scored, costs.of(row.kernels).as_ref()) }
+            Line {
+                threshold: row.threshold,
+                ..Line::new(&row.name, &data, &scored, costs.of(row.kernels, row.per_s).as_ref())
+            }
         });
         Self { rows: lines.collect() }
     }
@@ -208,29 +228,67 @@ impl Table {
     /// Recall against cycles, the false alarms named. Fails if it cannot be drawn.
     pub fn chart(&self) -> anyhow::Result<Chart> {
         let header = [
-            "name", "instructions_mean", "instructions_max", "cycles_mean", "decisions_per_s", "flash_bytes", "ram_bytes",
-            "recall_1mm", "low", "high", "quiet_per_hour", "disturbed_per_hour",
+            "name",
+            "instructions_mean",
+            "instructions_max",
+            "cycles_mean",
+            "decisions_per_s",
+            "flash_bytes",
+            "ram_bytes",
+            "recall_1mm",
+            "low",
+            "high",
+            "quiet_per_hour",
+            "disturbed_per_hour",
         ];
         let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:.3}"));
         let whole = |value: Option<u64>| value.map_or(String::new(), |value| value.to_string());
-        let csv = csv(&header, self.rows.iter().map(|row| {
-            vec![
-                row.name.clone(), number(row.instructions_mean), whole(row.instructions_max), number(row.cycles_mean),
-                whole(row.decisions_per_s.map(u64::from)), whole(row.flash_bytes), whole(row.ram_bytes),
-                number(row.recall_1mm), number(row.recall_1mm_low), number(row.recall_1mm_high),
-                number(row.false_per_hour_quiet), number(row.false_per_hour_disturbed),
-            ]
-        }))?;
+        let csv = csv(
+            &header,
+            self.rows.iter().map(|row| {
+                vec![
+                    row.name.clone(),
+                    number(row.instructions_mean),
+                    whole(row.instructions_max),
+                    number(row.cycles_mean),
+                    whole(row.decisions_per_s.map(u64::from)),
+                    whole(row.flash_bytes),
+                    whole(row.ram_bytes),
+                    number(row.recall_1mm),
+                    number(row.recall_1mm_low),
+                    number(row.recall_1mm_high),
+                    number(row.false_per_hour_quiet),
+                    number(row.false_per_hour_disturbed),
+                ]
+            }),
+        )?;
         let colours = [
-            colour::BLUE, colour::ORANGE, colour::GREEN, colour::PURPLE, colour::SKY, colour::VERMILLION, colour::GREY, colour::YELLOW,
+            colour::BLUE,
+            colour::ORANGE,
+            colour::GREEN,
+            colour::PURPLE,
+            colour::SKY,
+            colour::VERMILLION,
+            colour::GREY,
+            colour::YELLOW,
         ];
         let mut series = Vec::new();
         for (n, row) in self.rows.iter().enumerate() {
-            let (Some(cycles), Some(per_s), Some(recall)) = (row.cycles_mean, row.decisions_per_s, row.recall_1mm) else { continue };
+            let (Some(cycles), Some(per_s), Some(recall)) =
+                (row.cycles_mean, row.decisions_per_s, row.recall_1mm)
+            else {
+                continue;
+            };
             let at = cycles * f64::from(per_s) / 1e6;
             let mark = if row.threshold.is_some() { Mark::Rings } else { Mark::Dots };
-            let whole = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.0}"));
-            let name = format!("{} ({}, {})", row.name, whole(row.false_per_hour_quiet), whole(row.false_per_hour_disturbed));
+            let whole =
+                |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.0}"));
+            let name = format!(
+                "{} ({}, {})",
+                row.name,
+                whole(row.false_per_hour_quiet),
+                whole(row.false_per_hour_disturbed)
+            );
             series.push(Series::new(name, colours[n % colours.len()], mark, [(at, recall)]));
             let ends = [row.recall_1mm_low, row.recall_1mm_high].map(|end| (at, end.unwrap_or(recall)));
             series.push(Series::new("95 %", colour::GREY, Mark::Line, ends));
@@ -256,25 +314,56 @@ impl fmt::Display for Table {
         if let Some(row) = self.rows.first() {
             writeln!(f, "{}; {} slips of at least 1 mm", row.data, row.slips_1mm)?;
         }
-        let head = ["", "caught, of 1 mm", "0.1", "5 mm", "ms p50", "p95", "lead", "quiet/h", "disturbed/h", "slipping/h"];
+        let head = [
+            "",
+            "caught, of 1 mm",
+            "0.1",
+            "5 mm",
+            "ms p50",
+            "p95",
+            "lead",
+            "quiet/h",
+            "disturbed/h",
+            "slipping/h",
+        ];
         let costs = ["instr.", "worst", "cycles", "at Hz", "flash", "RAM"];
         write!(f, "{:<26}{:>18}", head[0], head[1])?;
         head[2..].iter().chain(&costs).try_for_each(|word| write!(f, "{word:>12}"))?;
         writeln!(f)?;
         for row in &self.rows {
-            let number = |value: Option<f64>, places: usize| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.places$}"));
+            let number = |value: Option<f64>, places: usize| {
+                value.map_or_else(|| "-".to_owned(), |value| format!("{value:.places$}"))
+            };
             let whole = |value: Option<u64>| value.map_or_else(|| "-".to_owned(), |value| value.to_string());
             let part = |own: Option<Between>| number(own.map(|own| own.value), 2);
-            let rate = |own: Option<Between>| own.map_or_else(|| "-".to_owned(), |own| format!("{:.0} ({:.0}-{:.0})", own.value, own.low, own.high));
+            let rate = |own: Option<Between>| {
+                own.map_or_else(
+                    || "-".to_owned(),
+                    |own| format!("{:.0} ({:.0}-{:.0})", own.value, own.low, own.high),
+                )
+            };
             let recall = format!(
-                "{} ({}-{})", number(row.recall_1mm, 2), number(row.recall_1mm_low, 2), number(row.recall_1mm_high, 2)
+                "{} ({}-{})",
+                number(row.recall_1mm, 2),
+                number(row.recall_1mm_low, 2),
+                number(row.recall_1mm_high, 2)
             );
             write!(f, "{:<26}{recall:>18}", row.name)?;
             for word in [
-                part(row.recall_0_1mm), part(row.recall_5mm), number(row.latency_ms_p50, 0), number(row.latency_ms_p95, 0),
-                number(row.lead_ms_p50, 0), rate(row.quiet), rate(row.disturbed), number(row.false_per_hour_slips, 0),
-                number(row.instructions_mean, 0), whole(row.instructions_max), number(row.cycles_mean, 0),
-                whole(row.decisions_per_s.map(u64::from)), whole(row.flash_bytes), whole(row.ram_bytes),
+                part(row.recall_0_1mm),
+                part(row.recall_5mm),
+                number(row.latency_ms_p50, 0),
+                number(row.latency_ms_p95, 0),
+                number(row.lead_ms_p50, 0),
+                rate(row.quiet),
+                rate(row.disturbed),
+                number(row.false_per_hour_slips, 0),
+                number(row.instructions_mean, 0),
+                whole(row.instructions_max),
+                number(row.cycles_mean, 0),
+                whole(row.decisions_per_s.map(u64::from)),
+                whole(row.flash_bytes),
+                whole(row.ram_bytes),
             ] {
                 write!(f, "{word:>12}")?;
             }

@@ -34,6 +34,7 @@ pub fn ratio_permille(ft_mn: i32, fn_mn: i32) -> i32 {
 
 /// A logistic regression's logit, 8 fraction bits: weights have 16, features 9.
 pub fn logit(weights: &[i32], bias: i32, features: &[i16]) -> i32 {
-    let sum: i64 = weights.iter().zip(features).map(|(&weight, &feature)| i64::from(weight) * i64::from(feature)).sum();
+    let sum: i64 =
+        weights.iter().zip(features).map(|(&weight, &feature)| i64::from(weight) * i64::from(feature)).sum();
     (sum >> 17) as i32 + bias
 }

@@ -265,7 +265,14 @@ impl Ears {
             detectors.hebbian.restore(taught).ok().context("a snapshot that is damaged")?;
         }
         let (config, senses, journal) = Default::default();
-        Ok(Self { config, senses, detectors, journal, taxels: Reading::default(), features: Preprocessor::default() })
+        Ok(Self {
+            config,
+            senses,
+            detectors,
+            journal,
+            taxels: Reading::default(),
+            features: Preprocessor::default(),
+        })
     }
 
     fn take(&mut self, frame: &Frame, drive: MotorDrive, hear: &mut dyn FnMut(&Felt<'_>)) {
@@ -307,4 +314,34 @@ fn believed(detectors: &Detectors, cannot: bool) -> DetectorSet {
         return DetectorSet::NONE;
     }
     slip.or(heard(detectors.incipient()))
+}
+
+/// The last so many frames of a pour of the table's kind.
+#[cfg(feature = "emulator")]
+pub fn sampled(count: usize) -> anyhow::Result<Vec<Frame>> {
+    use std::sync::{Arc, Mutex, PoisonError};
+
+    struct Keeps(Arc<Mutex<Vec<Frame>>>);
+    impl Judge for Keeps {
+        fn hear(&mut self, felt: &Felt<'_>) -> bool {
+            self.0.lock().unwrap_or_else(PoisonError::into_inner).push(*felt.frame);
+            false
+        }
+    }
+    let plan = Plan { seed: 25_001, fingers: 1, pours: 1, picks: 0, minutes: 0 };
+    let kept = Arc::new(Mutex::new(Vec::new()));
+    let rows = || -> Vec<Box<dyn Judge>> { vec![Box::new(Keeps(Arc::clone(&kept)))] };
+    plan.fingertip(0, false)?.record(&plan, &rows, &mut |_, _| (), &mut || ())?;
+    let mut kept = std::mem::take(&mut *kept.lock().unwrap_or_else(PoisonError::into_inner));
+    // From the beginning of a cycle on: the image counts frames from 0.
+    let cycle = usize::from(FRAMES_PER_SLOW_FRAME);
+    let from = kept.len().saturating_sub(count) / cycle * cycle;
+    Ok(kept.split_off(from))
+}
+
+/// The array's readings in frames that begin with a cycle.
+#[cfg(feature = "emulator")]
+pub fn readings(frames: &[Frame]) -> Vec<Reading> {
+    let cycles = frames.chunks_exact(usize::from(FRAMES_PER_SLOW_FRAME));
+    cycles.map(|cycle| std::array::from_fn(|n| Some(cycle[n].switch_b))).collect()
 }

@@ -2,8 +2,10 @@
 //!
 //! **A detector of your own** is a [`Judge`] and one line in [`rows`].
 
-use tenax_hal_shim::channel::frames;
-use tenax_hal_shim::detector::{DetectorId, DetectorSet};
+use std::sync::Arc;
+
+use tenax_hal_shim::channel::{FRAME_HZ, SLOW_HZ, frames};
+use tenax_hal_shim::detector::DetectorId;
 use tenax_logic::array::{FEATURES, Features};
 
 use super::heard::{Felt, Judge};
@@ -15,6 +17,8 @@ mod plain;
 pub const OF_PAPER: usize = 76;
 /// A rival's word lasts until its score has been below the threshold for so long, frames.
 const HELD: u32 = frames(50);
+/// A rival's threshold catches the most that it can with no more false alarms an hour than this, of quiet and of disturbed minutes.
+pub const CAPS_PER_HOUR: [f64; 2] = [10.0, 60.0];
 /// Ft/Fn of the fixed ratio that nobody chose, per mille.
 const FIXED_PERMILLE: i32 = 300;
 
@@ -25,22 +29,20 @@ pub struct Row {
     pub kernels: &'static [&'static str],
     /// The threshold that was chosen, on fingertips that are not scored.
     pub threshold: Option<i32>,
-    /// Fresh for each recording.
-    pub make: Box<dyn Fn() -> Box<dyn Judge> + Send + Sync>,
+    /// How often it decides.
+    pub per_s: u32,
+    /// Fresh for each recording: whoever of them speaks first.
+    pub make: Make,
 }
 
-impl Row {
-    fn of(name: &str, kernels: &'static [&'static str], make: impl Fn() -> Box<dyn Judge> + Send + Sync + 'static) -> Self {
-        Self { name: name.to_owned(), kernels, threshold: None, make: Box::new(make) }
-    }
-}
+type Make = Box<dyn Fn() -> Vec<Box<dyn Judge>> + Send + Sync>;
 
-/// What ships says slip, or warns of it, and is believed: any of these detectors.
-struct Shipped(DetectorSet);
+/// What ships says slip, or warns of it, and is believed.
+struct Shipped(DetectorId);
 
 impl Judge for Shipped {
     fn hear(&mut self, felt: &Felt<'_>) -> bool {
-        !felt.believed.and(self.0).is_empty()
+        felt.believed.contains(self.0)
     }
 }
 
@@ -99,7 +101,8 @@ pub struct Rival {
     pub name: &'static str,
     pub kernels: &'static [&'static str],
     pub grid: Vec<i32>,
-    make: Box<dyn Fn(i32) -> Box<dyn Judge> + Send + Sync>,
+    per_s: u32,
+    make: Arc<dyn Fn(i32) -> Box<dyn Judge> + Send + Sync>,
 }
 
 impl Rival {
@@ -107,20 +110,31 @@ impl Rival {
         name: &'static str,
         kernels: &'static [&'static str],
         grid: Vec<i32>,
+        per_s: u32,
         score: S,
     ) -> Self {
-        let make = move |threshold| -> Box<dyn Judge> { Box::new(Above { threshold, score: score.clone(), left: 0 }) };
-        Self { name, kernels, grid, make: Box::new(make) }
+        let make = move |threshold| -> Box<dyn Judge> {
+            Box::new(Above { threshold, score: score.clone(), left: 0 })
+        };
+        Self { name, kernels, grid, per_s, make: Arc::new(make) }
     }
 
     pub fn judge(&self, threshold: i32) -> Box<dyn Judge> {
         (self.make)(threshold)
     }
 
-    /// Its row with this threshold.
-    pub fn row(self, threshold: i32) -> Row {
-        let Self { name, kernels, make, .. } = self;
-        Row { name: name.to_owned(), kernels, threshold: Some(threshold), make: Box::new(move || make(threshold)) }
+    /// Its row with this threshold, which was chosen within a cap.
+    pub fn row(&self, threshold: i32, cap: f64) -> Row {
+        let &Self { name, kernels, per_s, .. } = self;
+        let make = Arc::clone(&self.make);
+        let name = format!("{name}, {cap} false/h");
+        Row {
+            name,
+            kernels,
+            per_s,
+            threshold: Some(threshold),
+            make: Box::new(move || vec![make(threshold)]),
+        }
     }
 }
 
@@ -135,31 +149,51 @@ pub fn rivals(linear: &Logistic, paper: &Logistic) -> Vec<Rival> {
     let doubling = |n: i32| (16.0 * 2.0_f64.powf(f64::from(n) / 3.0)) as i32;
     let nats = || (-8..=40).map(|n| n * 64).collect();
     vec![
-        Rival::new("vibration threshold", &["loudness"], (0..30).map(doubling).collect(), plain::Loudness::default()),
-        Rival::new("Ft/Fn threshold", &["force"], (3..=40).map(|n| 50 * n).collect(), Ratio),
-        Rival::new("logistic, 112 features", &["features", "logistic_112"], nats(), linear.clone()),
-        Rival::new("logistic, the paper's 76", &["features", "logistic_76"], nats(), paper.clone()),
+        Rival::new(
+            "vibration threshold",
+            &["loudness"],
+            (15..43).map(doubling).collect(),
+            FRAME_HZ,
+            plain::Loudness::default(),
+        ),
+        Rival::new(
+            "Ft/Fn threshold",
+            &["force", "ratio"],
+            (3..=24).map(|n| 50 * n).collect(),
+            SLOW_HZ,
+            Ratio,
+        ),
+        Rival::new("logistic, 112 features", &["features", "logistic_112"], nats(), SLOW_HZ, linear.clone()),
+        Rival::new("logistic, the paper's 76", &["features", "logistic_76"], nats(), SLOW_HZ, paper.clone()),
     ]
 }
 
 /// The rows that need no threshold, in the table's order.
 pub fn rows() -> Vec<Row> {
     use DetectorId::{Hebbian, Mlp, S1, S2};
-    let shipped = |name, kernels, ids: &[DetectorId]| {
-        let set = ids.iter().fold(DetectorSet::NONE, |set, &id| set.with(id, true));
-        Row::of(name, kernels, move || Box::new(Shipped(set)))
+    let shipped = |name: &str, kernels, per_s, ids: &'static [DetectorId]| {
+        let make: Make =
+            Box::new(|| ids.iter().map(|&id| -> Box<dyn Judge> { Box::new(Shipped(id)) }).collect());
+        Row { name: name.to_owned(), kernels, threshold: None, per_s, make }
     };
+    let fixed: Make = Box::new(|| vec![Box::new(Above { threshold: FIXED_PERMILLE, score: Ratio, left: 0 })]);
     vec![
-        shipped("s1", &["films", "s1"], &[S1]),
-        shipped("s2", &["force", "s2"], &[S2]),
-        shipped("hebbian", &["films", "gauges", "hebbian"], &[Hebbian]),
-        shipped("mlp", &["slow_frame"], &[Mlp]),
-        shipped("s1 or s2", &["films", "s1", "force", "s2"], &[S1, S2]),
-        shipped("s1 or mlp", &["films", "s1", "slow_frame"], &[S1, Mlp]),
-        shipped("s2 or mlp", &["force", "s2", "slow_frame"], &[S2, Mlp]),
-        shipped("s1 or hebbian", &["films", "s1", "gauges", "hebbian"], &[S1, Hebbian]),
-        shipped("the hand: any", &["tick"], &[S1, S2, Hebbian, Mlp]),
-        Row::of("Ft/Fn above 0.3", &["force"], || Box::new(Above { threshold: FIXED_PERMILLE, score: Ratio, left: 0 })),
+        shipped("s1", &["films", "s1"], FRAME_HZ, &[S1]),
+        shipped("s2", &["force", "s2"], SLOW_HZ, &[S2]),
+        shipped("hebbian", &["films", "gauges", "hebbian"], FRAME_HZ, &[Hebbian]),
+        shipped("mlp", &["slow_frame"], SLOW_HZ, &[Mlp]),
+        shipped("s1 or s2", &["films", "s1", "force", "s2"], FRAME_HZ, &[S1, S2]),
+        shipped("s1 or mlp", &["films", "s1", "slow_frame"], FRAME_HZ, &[S1, Mlp]),
+        shipped("s2 or mlp", &["force", "s2", "slow_frame"], SLOW_HZ, &[S2, Mlp]),
+        shipped("s1 or hebbian", &["films", "s1", "gauges", "hebbian"], FRAME_HZ, &[S1, Hebbian]),
+        shipped("the hand: any of four", &["tick"], FRAME_HZ, &[S1, S2, Hebbian, Mlp]),
+        Row {
+            name: "Ft/Fn above 0.3".to_owned(),
+            kernels: &["force", "ratio"],
+            threshold: Some(FIXED_PERMILLE),
+            per_s: SLOW_HZ,
+            make: fixed,
+        },
     ]
 }
 
@@ -169,7 +203,8 @@ pub fn learn(steps: &[(Features, bool)], count: usize) -> Logistic {
     let total = steps.len().max(1) as f64;
     // In doublings (9 fraction bits) about their mean, so that the equations are well conditioned.
     let at = |features: &Features, k: usize| f64::from(features[k]) / 512.0;
-    let mean: Vec<f64> = (0..count).map(|k| steps.iter().map(|(own, _)| at(own, k)).sum::<f64>() / total).collect();
+    let mean: Vec<f64> =
+        (0..count).map(|k| steps.iter().map(|(own, _)| at(own, k)).sum::<f64>() / total).collect();
     let mut weights = vec![0.0; n];
     for _ in 0..ROUNDS {
         let (mut gradient, mut curve) = (vec![0.0; n], vec![0.0; n * n]);

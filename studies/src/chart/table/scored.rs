@@ -1,9 +1,11 @@
 //! From what was heard to the numbers of a row, with their intervals.
 
+use std::ops::Range;
+
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use serde::Serialize;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
-use tenax_bench::scorer::{Outcome, false_alarms_s, outcome};
+use tenax_bench::scorer::{CAUGHT_WITHIN_S, Outcome, false_alarms_s, outcome};
 
 use super::heard::{Heard, Kind};
 
@@ -39,20 +41,30 @@ pub struct Scored {
 }
 
 impl Scored {
-    /// The row at this place in what was heard.
-    pub fn of(heard: &[Heard], row: usize) -> Self {
+    /// A row whose judges have these places in what was heard: of each slip the first word counts, and words that begin within 50 ms of
+    /// each other are one false alarm.
+    pub fn of(heard: &[Heard], judges: Range<usize>) -> Self {
         let mut scored = Self::default();
         for own in heard {
             let (from_s, to_s) = own.span_s;
             let inside = |t_s: f64| (from_s..to_s).contains(&t_s);
-            let said = own.said.get(row).map_or(&[][..], Vec::as_slice);
+            let said = || own.said.get(judges.clone()).unwrap_or_default().iter();
             for slip in own.slips.iter().filter(|slip| !slip.meant) {
-                let Some(macro_s) = slip.macro_onset_s.filter(|&s| inside(s) && own.kind == Kind::Slips) else { continue };
-                let outcome = outcome(slip, macro_s, said);
+                let Some(macro_s) = slip.macro_onset_s.filter(|&s| inside(s) && own.kind == Kind::Slips)
+                else {
+                    continue;
+                };
+                let outcomes = said().map(|said| outcome(slip, macro_s, said));
+                let outcome =
+                    outcomes.min_by(|a, b| rank(*a).total_cmp(&rank(*b))).unwrap_or(Outcome::Missed);
                 scored.slips.push(Slip { finger: own.finger, mm: slip.distance_mm, outcome });
             }
             let (count, hours) = &mut scored.alarms[own.kind as usize];
-            *count += false_alarms_s(&own.slips, said).into_iter().filter(|&t_s| inside(t_s)).count() as u64;
+            let mut false_s: Vec<f64> =
+                said().flat_map(|said| false_alarms_s(&own.slips, said)).filter(|&t_s| inside(t_s)).collect();
+            false_s.sort_by(f64::total_cmp);
+            false_s.dedup_by(|next, last| *next - *last < CAUGHT_WITHIN_S);
+            *count += false_s.len() as u64;
             *hours += (to_s - from_s) / 3_600.0;
         }
         scored
@@ -106,13 +118,23 @@ impl Scored {
         Some(Between { value, low: low.min(value), high: high.max(value) })
     }
 
+    /// The part of the slips that slide so far in which nothing began and a word stood since before. None if there is no such slip.
+    pub fn stood_before(&self, mm: f64) -> Option<f64> {
+        let stood = self.at_least(mm).filter(|slip| slip.outcome == Outcome::SaidBefore).count();
+        (self.count(mm) > 0).then(|| stood as f64 / self.count(mm) as f64)
+    }
+
     /// False alarms an hour of this kind, as Poisson counts. None if nothing of it was heard.
     pub fn false_per_hour(&self, kind: Kind) -> Option<Between> {
         let (count, hours) = self.alarms[kind as usize];
         (hours > 0.0).then(|| {
             let n = count as f64;
             let quantile = |freedom: f64, part: f64| {
-                if freedom == 0.0 { 0.0 } else { ChiSquared::new(freedom).map_or(0.0, |chi| chi.inverse_cdf(part)) }
+                if freedom == 0.0 {
+                    0.0
+                } else {
+                    ChiSquared::new(freedom).map_or(0.0, |chi| chi.inverse_cdf(part))
+                }
             };
             Between {
                 value: n / hours,
@@ -146,6 +168,16 @@ impl Scored {
     }
 }
 
+/// The first word is best, however early; what is caught before what is late, and that before what nobody began to say.
+fn rank(outcome: Outcome) -> f64 {
+    match outcome {
+        Outcome::Caught(s) => s,
+        Outcome::Late(s) => 1e6 + s,
+        Outcome::SaidBefore => 2e6,
+        Outcome::Missed => 3e6,
+    }
+}
+
 fn ranked(mut all: Vec<f64>, part: f64) -> Option<f64> {
     all.sort_by(f64::total_cmp);
     let rank = (part * all.len() as f64).ceil() as usize;
@@ -174,27 +206,37 @@ mod tests {
             distance_mm,
             meant: false,
         };
-        let slips = if kind == Kind::Slips { vec![slip(1.0, 0.05), slip(3.0, 2.0), slip(5.0, 8.0)] } else { Vec::new() };
+        let slips = if kind == Kind::Slips {
+            vec![slip(1.0, 0.05), slip(3.0, 2.0), slip(5.0, 8.0)]
+        } else {
+            Vec::new()
+        };
         Heard { finger, kind, span_s: (0.0, 36.0), slips, said }
     }
 
     /// One that never says anything, one that never stops, one that begins anew every 10 ms, one that hears the slip of 8 mm 20 ms before
     /// it slides.
     fn words() -> Vec<Vec<Verdict>> {
-        let shouting = (0..3_600).map(|n| Verdict::new(f64::from(n) * 0.01, f64::from(n) * 0.01 + 0.005)).collect();
+        let shouting =
+            (0..3_600).map(|n| Verdict::new(f64::from(n) * 0.01, f64::from(n) * 0.01 + 0.005)).collect();
         vec![Vec::new(), vec![Verdict::new(0.0, f64::INFINITY)], shouting, vec![Verdict::new(5.08, 5.2)]]
     }
 
     #[test]
     fn one_that_is_deaf_one_that_never_stops_and_one_that_shouts_are_told_apart() {
         let all: Vec<Heard> = (0..4)
-            .flat_map(|finger| [Kind::Slips, Kind::Quiet, Kind::Disturbed].map(|kind| heard(finger, kind, words())))
+            .flat_map(|finger| {
+                [Kind::Slips, Kind::Quiet, Kind::Disturbed].map(|kind| heard(finger, kind, words()))
+            })
             .collect();
-        let of = |row: usize| Scored::of(&all, row);
+        let of = |row: usize| Scored::of(&all, row..row + 1);
         let recall = |row: usize, mm: f64| of(row).recall(mm).unwrap().value;
         let per_hour = |row: usize| of(row).false_per_hour(Kind::Quiet).unwrap();
         // Deaf: nothing caught, no false alarm, and no latency.
-        assert_eq!((recall(0, 1.0), per_hour(0).value, of(0).latency_ms(0.5), of(0).lead_ms()), (0.0, 0.0, None, None));
+        assert_eq!(
+            (recall(0, 1.0), per_hour(0).value, of(0).latency_ms(0.5), of(0).lead_ms()),
+            (0.0, 0.0, None, None)
+        );
         // It has been heard for 144 s without an alarm: fewer than 3.7 in that time, with 97.5 %.
         assert!((per_hour(0).high - 3.689 / 0.04).abs() < 0.1, "{:?}", per_hour(0));
         // What stands for ever began once, outside every slip: it has caught nothing.
@@ -209,20 +251,39 @@ mod tests {
     }
 
     #[test]
+    fn of_a_pair_the_first_word_counts_and_a_common_false_alarm_is_one() {
+        let words = vec![
+            vec![Verdict::new(0.5, 5.2)],
+            vec![Verdict::new(0.52, 0.6), Verdict::new(5.08, 5.2), Verdict::new(20.0, 20.1)],
+        ];
+        let own = [heard(1, Kind::Slips, words)];
+        let scored = |judges| Scored::of(&own, judges);
+        // What stands before hides nothing of the other.
+        assert_eq!(scored(0..1).stood_before(1.0), Some(1.0));
+        assert_eq!(scored(0..2).recall(5.0).map(|own| own.value), Some(1.0));
+        let alarms = |judges| scored(judges).false_per_hour(Kind::Slips).unwrap().value.round();
+        assert_eq!((alarms(0..1), alarms(1..2), alarms(0..2)), (100.0, 200.0, 200.0));
+    }
+
+    #[test]
     fn intervals_bracket_and_shrink_with_more_fingertips() {
         let some = |fingers: u64| -> Vec<Heard> {
             let said = |finger: u64| if finger % 3 == 0 { Vec::new() } else { vec![Verdict::new(5.08, 5.2)] };
             (0..fingers).map(|finger| heard(finger, Kind::Slips, vec![said(finger)])).collect()
         };
-        let recall = |fingers: u64| Scored::of(&some(fingers), 0).recall(5.0).unwrap();
+        let recall = |fingers: u64| Scored::of(&some(fingers), 0..1).recall(5.0).unwrap();
         for fingers in [3, 12, 48] {
             let Between { value, low, high } = recall(fingers);
-            assert!((value - 2.0 / 3.0).abs() < 1e-9 && low < value && value < high && high <= 1.0, "{low} {value} {high}");
+            assert!(
+                (value - 2.0 / 3.0).abs() < 1e-9 && low < value && value < high && high <= 1.0,
+                "{low} {value} {high}"
+            );
         }
         assert!(recall(48).high - recall(48).low < 0.6 * (recall(12).high - recall(12).low));
         // All of them caught is no proof that all will be.
-        let Between { value, low, high } = Scored::of(&[heard(1, Kind::Slips, words())], 2).recall(1.0).unwrap();
+        let Between { value, low, high } =
+            Scored::of(&[heard(1, Kind::Slips, words())], 2..3).recall(1.0).unwrap();
         assert!(value == 1.0 && high == 1.0 && low < 0.5, "{low}");
-        assert_eq!(Scored::of(&[heard(1, Kind::Quiet, words())], 2).recall(1.0), None);
+        assert_eq!(Scored::of(&[heard(1, Kind::Quiet, words())], 2..3).recall(1.0), None);
     }
 }
