@@ -41,8 +41,6 @@ enum Subject {
     Scenes,
     /// What the scenes' sensors say at the onset of slip, beside real recordings where they are present
     Sensors,
-    /// What detectors from normal force get wrong against the instructions that they take
-    Detectors,
     /// How the force array's network does against each quantity that sessions draw: where the method fails
     Array,
     /// What each grip pays in newtons beyond need for what it saves in millimetres: the hand, each detector alone, all but each, no
@@ -87,7 +85,6 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
                 with_bar("choices", |progress| chart::vision::choices(&video, progress))?,
             ]
         }
-        Subject::Detectors => vec![detectors()?],
         Subject::Table => {
             let own = args.decisions.as_deref().map(decided).transpose()?.unwrap_or_default();
             let costs = chart::table::costs::Costs::counted(&workspace::root()?)?;
@@ -126,17 +123,4 @@ fn decided(file: &Path) -> anyhow::Result<Vec<chart::table::Line>> {
     let called = file.display().to_string();
     let text = fs::read_to_string(file).with_context(|| format!("cannot read {called}"))?;
     chart::table::decisions::rows(&text, &called)
-}
-
-/// Each kind of data with its classifiers' scores, which `tenax train --compare` writes, and what their kernels took.
-fn detectors() -> anyhow::Result<chart::Chart> {
-    let table = |name: &str| {
-        let file = workspace::root()?.join("docs/figures").join(name);
-        fs::read_to_string(&file).with_context(|| format!("cannot read the table {}", file.display()))
-    };
-    let (scenes, real) = (table("detectors.csv")?, table("detectors-real.csv")?);
-    chart::detectors::chart(
-        &[("pours of the scenes", &scenes), ("a real array", &real)],
-        &table("kernels.csv")?,
-    )
 }

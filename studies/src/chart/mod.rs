@@ -2,7 +2,6 @@
 
 pub mod array;
 pub mod delay;
-pub mod detectors;
 pub mod features;
 pub mod front;
 mod growth;

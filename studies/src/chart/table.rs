@@ -7,7 +7,7 @@ pub mod rivals;
 pub mod scored;
 
 use std::fmt;
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -19,11 +19,11 @@ use tenax_plot::sheet::{Axis, Mark, Panel, Series, Sheet};
 use super::{Chart, Progress, csv};
 use costs::Costs;
 use heard::{Heard, Judge, Kind, Plan};
-use rivals::{CAPS_PER_HOUR, Rival, Row, learn};
+use rivals::{CAPS, Cap, Rival, Row, learn};
 use scored::{Between, SLID_MM, Scored};
 
-/// Of a slow step of those that are learned from, quiet ones are so many times rarer than they were.
-const THINNED: usize = 4;
+/// One in so many steps without slip is learned from.
+const THINNED: u32 = 4;
 
 /// How much is heard.
 #[derive(Clone, Copy, Debug)]
@@ -146,22 +146,17 @@ fn hear(
 pub fn table(options: &Options, costs: &Costs, progress: Progress) -> anyhow::Result<Table> {
     let [learned, chosen, scored] = &options.plans;
     let jobs = Jobs::new(options.plans.iter().map(Plan::count).sum(), progress);
-    let steps: Mutex<(usize, Vec<(Features, bool)>)> = Mutex::default();
-    hear(
-        learned,
-        false,
-        &Vec::new,
-        &|features, slips| {
-            let mut steps = steps.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-            steps.0 += 1;
-            if slips || steps.0.is_multiple_of(THINNED) {
-                steps.1.push((*features, slips));
-            }
-        },
-        &jobs,
-    )?;
-    let (_, mut steps) = steps.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-    // Fingertips are heard side by side: in which order is chance, and sums of floats depend on it.
+    let steps: Mutex<Vec<(Features, bool)>> = Mutex::default();
+    let keep = |features: &Features, slips: bool| {
+        // By what it holds, not by when it comes: fingertips are heard side by side.
+        let mark = features.iter().fold(0_u32, |mark, &own| mark.wrapping_mul(31).wrapping_add(own as u32));
+        if slips || mark.is_multiple_of(THINNED) {
+            steps.lock().unwrap_or_else(PoisonError::into_inner).push((*features, slips));
+        }
+    };
+    hear(learned, false, &Vec::new, &keep, &jobs)?;
+    let mut steps = steps.into_inner().unwrap_or_else(PoisonError::into_inner);
+    // Sums of floats depend on the order.
     steps.sort_unstable();
     let (linear, paper) = (learn(&steps, FEATURES), learn(&steps, rivals::OF_PAPER));
     drop(steps);
@@ -171,7 +166,7 @@ pub fn table(options: &Options, costs: &Costs, progress: Progress) -> anyhow::Re
     let mut from = 0;
     let mut rows = rivals::rows();
     for rival in &rivals {
-        for cap in CAPS_PER_HOUR {
+        for cap in &CAPS {
             rows.push(rival.row(choose(rival, &heard, from, cap), cap));
         }
         from += rival.grid.len();
@@ -185,16 +180,16 @@ fn fresh(rows: &[Row]) -> Vec<Box<dyn Judge>> {
     rows.iter().flat_map(|row| (row.make)()).collect()
 }
 
-/// The threshold that catches the most slips of a millimetre with no more false alarms an hour than the cap, of quiet and of disturbed
-/// minutes; if there is none, the one with the fewest.
-fn choose(rival: &Rival, heard: &[Heard], from: usize, cap: f64) -> i32 {
+/// The threshold that catches the most slips of a millimetre within the cap; if there is none, the one with the fewest false alarms.
+fn choose(rival: &Rival, heard: &[Heard], from: usize, cap: &Cap) -> i32 {
     let mut best = None;
     for (n, &at) in rival.grid.iter().enumerate() {
         let scored = Scored::of(heard, from + n..from + n + 1);
         let per_hour = |kind| scored.false_per_hour(kind).map_or(0.0, |own| own.value);
-        let worst = per_hour(Kind::Quiet).max(per_hour(Kind::Disturbed));
+        let worst = per_hour(Kind::Quiet).max(per_hour(Kind::Disturbed)) / cap.held;
+        let worst = worst.max(per_hour(Kind::Slips) / cap.slips);
         let caught = scored.recall(SLID_MM[1]).map_or(0.0, |own| own.value);
-        let rank = if worst <= cap { (1, caught) } else { (0, -worst) };
+        let rank = if worst <= 1.0 { (1, caught) } else { (0, -worst) };
         if best.is_none_or(|(other, _)| rank > other) {
             best = Some((rank, at));
         }

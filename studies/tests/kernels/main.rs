@@ -128,3 +128,24 @@ fn every_row_of_the_table_has_its_costs() {
     assert!(one.instructions_mean < both.instructions_mean && both.ram_bytes > one.ram_bytes);
     assert!(costs.of(&["no such kernel"], 2_000).is_none());
 }
+
+/// Cycles that others have published, beside the estimate. Their sources are not in this tree: `TENAX_PUBLISHED` names a CSV file
+/// (elf,kernel,waits,cycles) of images with the mailbox's symbols; without it this is skipped.
+#[test]
+fn published_cycles_are_met() {
+    let Some(table) = std::env::var_os("TENAX_PUBLISHED") else {
+        println!("skipped: TENAX_PUBLISHED is not set");
+        return;
+    };
+    for row in std::fs::read_to_string(table).unwrap().lines().skip(1) {
+        let [elf, kernel, waits, cycles] = row.split(',').collect::<Vec<_>>()[..] else { panic!("{row}") };
+        let published: f64 = cycles.parse().unwrap();
+        let all = kernels::cycles::of_image(Path::new(elf), waits.parse().unwrap()).unwrap();
+        let [least, likely, most] = all[kernel];
+        println!(
+            "{kernel}: {least:.0} to {most:.0}, likely {likely:.0}; published {published:.0}: {:+.1} %",
+            100.0 * (likely / published - 1.0)
+        );
+        assert!(least < likely && likely < most, "{kernel}");
+    }
+}

@@ -108,12 +108,12 @@ pub fn run_frames(
     followed(image, recordings, frames, None, kernels, progress)
 }
 
-/// The same; from so many readings and frames on, kernels are followed one instruction at a time.
+/// The same; from so many readings and frames on, kernels are followed one instruction at a time, in a flash with so many waits.
 fn followed(
     image: &Path,
     recordings: &[Vec<Reading>],
     frames: &[Frame],
-    from: Option<usize>,
+    from: Option<(usize, u64)>,
     kernels: Kernels,
     progress: &mut dyn FnMut(usize),
 ) -> Result<Outcome> {
@@ -121,7 +121,7 @@ fn followed(
     let images = [Image::read(image, None).context("reading the image")?];
     let (sender, reports) = mpsc::channel();
     let bench = Bench::new(&symbols, recordings, frames, kernels, sender).following(match from {
-        Some(from) => Some((from, Tracer::new(image, &symbols)?)),
+        Some((from, waits)) => Some((from, Tracer::new(image, &symbols, waits)?)),
         None => None,
     });
     // The emulator keeps its driver for itself, so it runs on a thread of its own and reports to this one.

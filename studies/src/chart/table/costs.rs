@@ -45,7 +45,10 @@ impl Costs {
         Some(Cost {
             per_s,
             instructions_mean: own.iter().map(|kernel| kernel.mean * share(kernel)).sum(),
-            instructions_max: own.iter().map(|kernel| kernel.max * share(kernel).round().max(1.0) as u64).sum(),
+            instructions_max: own
+                .iter()
+                .map(|kernel| kernel.max * share(kernel).round().max(1.0) as u64)
+                .sum(),
             cycles: own.iter().try_fold([0.0; 3], |sum, kernel| {
                 let more = kernel.cycles?.map(|cycles| cycles * share(kernel));
                 Some(std::array::from_fn(|n| sum[n] + more[n]))

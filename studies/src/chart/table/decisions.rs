@@ -87,7 +87,10 @@ mod tests {
         assert_eq!((mine.recall_1mm, mine.recall_0_1mm.map(|own| own.value)), (Some(1.0), Some(0.5)));
         assert_eq!((mine.false_per_hour_quiet, mine.false_per_hour_disturbed), (Some(2.0), Some(0.0)));
         assert_eq!(mine.latency_ms_p50.map(f64::round), Some(-20.0));
-        assert_eq!((other.recall_1mm, other.false_per_hour_quiet, other.instructions_mean), (Some(0.0), None, None));
+        assert_eq!(
+            (other.recall_1mm, other.false_per_hour_quiet, other.instructions_mean),
+            (Some(0.0), None, None)
+        );
     }
 
     #[test]

@@ -9,7 +9,8 @@ use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::Down;
 use tenax_logic::array::{Features, Preprocessor, Reading};
 use tenax_logic::config::Config;
-use tenax_logic::detectors::{Detectors, Sensed};
+use tenax_logic::detectors::{Detector, Detectors, Sensed};
+use tenax_logic::hebbian::HebbianDetector;
 use tenax_logic::journal::Journal;
 use tenax_logic::senses::Senses;
 use tenax_scene::plant::Plant;
@@ -19,6 +20,7 @@ use crate::dataset::operator::Operator;
 use crate::dataset::session::{self, Session, Sizes};
 use crate::dataset::story::Story;
 use crate::learn::bench::Bench;
+use crate::learn::control::Control;
 use crate::learn::finger::Finger;
 use crate::learn::trial::Setup;
 use crate::learn::{LESSONS, holding};
@@ -30,6 +32,10 @@ const LETS_GO_S: f64 = 7.3;
 /// The empty hand's forces are zeroed at this frame.
 const ZEROED_AT: u32 = frames(100);
 
+/// What of the network's learning is changed, for rows that say what it is worth.
+pub const CONTROLS: [Control; 4] =
+    [Control::EqualWeights, Control::ShuffledWeights, Control::ShearAlone, Control::Untaught];
+
 /// What a row judges by, in one frame (0.5 ms).
 pub struct Felt<'a> {
     /// As it was sampled.
@@ -38,6 +44,8 @@ pub struct Felt<'a> {
     pub sensed: &'a Sensed<'a>,
     /// The detectors of the image that say slip or warn of it, and are believed.
     pub believed: DetectorSet,
+    /// What the network with something of its learning changed says, in the order of [`CONTROLS`].
+    pub controls: [bool; CONTROLS.len()],
     /// The array's features, in the frames that bring new ones.
     pub features: Option<&'a Features>,
 }
@@ -90,7 +98,8 @@ pub struct Fingertip {
     number: u64,
     finger: Finger,
     session: Session,
-    taught: Option<Vec<u8>>,
+    /// What was learned, and then each control of it. Empty if nothing was asked of the network.
+    taught: Vec<Vec<u8>>,
 }
 
 impl Plan {
@@ -106,8 +115,14 @@ impl Plan {
         for lesson in 0..LESSONS * u64::from(taught) {
             bench.trial(Setup::new(&finger, number.wrapping_mul(100) + lesson, true)?);
         }
-        let taught = taught.then(|| bench.snapshot()).transpose()?;
-        Ok(Fingertip { number, finger, session, taught })
+        let mut kept = Vec::new();
+        if taught {
+            kept.push(bench.snapshot()?);
+            for control in CONTROLS {
+                kept.push(bench.controlled(Some(control))?.snapshot()?);
+            }
+        }
+        Ok(Fingertip { number, finger, session, taught: kept })
     }
 
     /// So many fingertips there are.
@@ -187,7 +202,7 @@ impl Fingertip {
         steps: &mut dyn FnMut(&Features, bool),
     ) -> anyhow::Result<Heard> {
         let mut world = World::seeded(scene, Seeds { making: self.finger.making, noise: seed });
-        let mut ears = Ears::new(self.taught.as_deref())?;
+        let mut ears = Ears::new(&self.taught)?;
         let mut said: Vec<Vec<Verdict>> = vec![Vec::new(); judges.len()];
         let (mut drive, mut slid) = (MotorDrive::Coast, 0);
         for sequence in 0.. {
@@ -253,30 +268,31 @@ struct Ears {
     config: Config,
     senses: Senses,
     detectors: Detectors,
+    controls: Vec<(HebbianDetector, bool)>,
     journal: Journal,
     taxels: Reading,
     features: Preprocessor,
 }
 
 impl Ears {
-    fn new(taught: Option<&[u8]>) -> anyhow::Result<Self> {
+    fn new(taught: &[Vec<u8>]) -> anyhow::Result<Self> {
         let mut detectors = Detectors::default();
-        if let Some(taught) = taught {
-            detectors.hebbian.restore(taught).ok().context("a snapshot that is damaged")?;
+        let damaged = "a snapshot that is damaged";
+        let mut controls = Vec::new();
+        if let [learned, changed @ ..] = taught {
+            detectors.hebbian.restore(learned).ok().context(damaged)?;
+            for own in changed {
+                let mut network = HebbianDetector::default();
+                network.restore(own).ok().context(damaged)?;
+                controls.push((network, false));
+            }
         }
-        let (config, senses, journal) = Default::default();
-        Ok(Self {
-            config,
-            senses,
-            detectors,
-            journal,
-            taxels: Reading::default(),
-            features: Preprocessor::default(),
-        })
+        let (config, senses, journal, taxels, features) = Default::default();
+        Ok(Self { config, senses, detectors, controls, journal, taxels, features })
     }
 
     fn take(&mut self, frame: &Frame, drive: MotorDrive, hear: &mut dyn FnMut(&Felt<'_>)) {
-        let Self { config, senses, detectors, journal, taxels, features } = self;
+        let Self { config, senses, detectors, controls, journal, taxels, features } = self;
         if frame.sequence == ZEROED_AT {
             // Refused while something is held, and then it follows by itself.
             let _is_zeroed = senses.zero();
@@ -289,13 +305,20 @@ impl Ears {
         };
         let sensed = senses.sensed(config, frame, duty, false);
         detectors.step(config, &sensed);
+        for (network, says) in &mut *controls {
+            if let Some(said) = network.step(&config.hebbian, &sensed) {
+                *says = said.slip || said.incipient;
+            }
+        }
         let slot = usize::from(frame.slot());
         if let Some(taxel) = taxels.get_mut(slot) {
             *taxel = Some(frame.switch_b);
         }
         let new = if slot == ARRAY_COUNT { features.push(taxels) } else { None };
-        let believed = believed(detectors, senses.cannot_slip());
-        hear(&Felt { frame, sensed: &sensed, believed, features: new });
+        let (believed, believes) = believed(detectors, senses.cannot_slip());
+        let says = |n: usize| believes && controls.get(n).is_some_and(|(_, says)| *says);
+        let controls = std::array::from_fn(says);
+        hear(&Felt { frame, sensed: &sensed, believed, controls, features: new });
         senses.driven(drive, false, 1);
         if frame.ends_slow_frame() {
             senses.think(config, journal);
@@ -306,14 +329,15 @@ impl Ears {
 }
 
 /// As the fingertip believes them: not those that report slip of an empty hand, and no single sense where by the forces nothing can slip.
-fn believed(detectors: &Detectors, cannot: bool) -> DetectorSet {
+/// Whether it would believe a control of the network, too.
+fn believed(detectors: &Detectors, cannot: bool) -> (DetectorSet, bool) {
     let heard = |said: DetectorSet| said.without(detectors.ignored());
     let slip = heard(detectors.slip());
     let films = slip.contains(DetectorId::S1) || slip.contains(DetectorId::Hebbian);
     if cannot && !(films && slip.contains(DetectorId::Mlp)) {
-        return DetectorSet::NONE;
+        return (DetectorSet::NONE, false);
     }
-    slip.or(heard(detectors.incipient()))
+    (slip.or(heard(detectors.incipient())), !detectors.ignored().contains(DetectorId::Hebbian))
 }
 
 /// The last so many frames of a pour of the table's kind.

@@ -8,7 +8,8 @@ use tenax_hal_shim::channel::{FRAME_HZ, SLOW_HZ, frames};
 use tenax_hal_shim::detector::DetectorId;
 use tenax_logic::array::{FEATURES, Features};
 
-use super::heard::{Felt, Judge};
+use super::heard::{CONTROLS, Felt, Judge};
+use crate::learn::control::Control;
 
 #[path = "../../../../firmware/src/bin/kernels/rivals.rs"]
 mod plain;
@@ -17,8 +18,22 @@ mod plain;
 pub const OF_PAPER: usize = 76;
 /// A rival's word lasts until its score has been below the threshold for so long, frames.
 const HELD: u32 = frames(50);
-/// A rival's threshold catches the most that it can with no more false alarms an hour than this, of quiet and of disturbed minutes.
-pub const CAPS_PER_HOUR: [f64; 2] = [10.0, 60.0];
+/// False alarms an hour that a rival's threshold may have on the fingertips that it is chosen on.
+#[derive(Clone, Copy, Debug)]
+pub struct Cap {
+    /// In quiet minutes, and in disturbed ones.
+    pub held: f64,
+    /// While balls are poured and boxes lifted.
+    pub slips: f64,
+    name: &'static str,
+}
+
+/// The last is about what the network that ships has.
+pub const CAPS: [Cap; 3] = [
+    Cap { held: 10.0, slips: f64::INFINITY, name: "10 false/h" },
+    Cap { held: 60.0, slips: f64::INFINITY, name: "60 false/h" },
+    Cap { held: 10.0, slips: 30.0, name: "10, slipping 30" },
+];
 /// Ft/Fn of the fixed ratio that nobody chose, per mille.
 const FIXED_PERMILLE: i32 = 300;
 
@@ -43,6 +58,15 @@ struct Shipped(DetectorId);
 impl Judge for Shipped {
     fn hear(&mut self, felt: &Felt<'_>) -> bool {
         felt.believed.contains(self.0)
+    }
+}
+
+/// The network with something of its learning changed.
+struct Changed(usize);
+
+impl Judge for Changed {
+    fn hear(&mut self, felt: &Felt<'_>) -> bool {
+        felt.controls.get(self.0).is_some_and(|says| *says)
     }
 }
 
@@ -124,10 +148,10 @@ impl Rival {
     }
 
     /// Its row with this threshold, which was chosen within a cap.
-    pub fn row(&self, threshold: i32, cap: f64) -> Row {
+    pub fn row(&self, threshold: i32, cap: &Cap) -> Row {
         let &Self { name, kernels, per_s, .. } = self;
         let make = Arc::clone(&self.make);
-        let name = format!("{name}, {cap} false/h");
+        let name = format!("{name}, {}", cap.name);
         Row {
             name,
             kernels,
@@ -177,7 +201,12 @@ pub fn rows() -> Vec<Row> {
         Row { name: name.to_owned(), kernels, threshold: None, per_s, make }
     };
     let fixed: Make = Box::new(|| vec![Box::new(Above { threshold: FIXED_PERMILLE, score: Ratio, left: 0 })]);
-    vec![
+    let control = |(n, what): (usize, &Control)| {
+        let make: Make = Box::new(move || vec![Box::new(Changed(n))]);
+        let name = format!("hebbian, {}", what.key().replace('_', " "));
+        Row { name, kernels: &["films", "gauges", "hebbian"], threshold: None, per_s: FRAME_HZ, make }
+    };
+    let mut rows = vec![
         shipped("s1", &["films", "s1"], FRAME_HZ, &[S1]),
         shipped("s2", &["force", "s2"], SLOW_HZ, &[S2]),
         shipped("hebbian", &["films", "gauges", "hebbian"], FRAME_HZ, &[Hebbian]),
@@ -194,7 +223,9 @@ pub fn rows() -> Vec<Row> {
             per_s: SLOW_HZ,
             make: fixed,
         },
-    ]
+    ];
+    rows.splice(3..3, CONTROLS.iter().enumerate().map(control));
+    rows
 }
 
 /// Learns a logistic regression of the first `count` features by Newton's method, with a little ridge. Labels are slip or not.

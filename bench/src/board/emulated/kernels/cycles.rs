@@ -20,11 +20,12 @@ pub struct Tracer {
     code: BTreeMap<u64, Instruction>,
     kernels: Vec<(Kernel, Option<Core>, u64, Cycles)>,
     last: Option<u64>,
+    waits: u64,
 }
 
 impl Tracer {
-    /// One for the kernels of an image. Fails if it is none.
-    pub fn new(elf: &Path, symbols: &KernelSymbols) -> Result<Self> {
+    /// One for the kernels of an image, whose flash takes so many cycles longer than the core. Fails if it is none.
+    pub fn new(elf: &Path, symbols: &KernelSymbols, waits: u64) -> Result<Self> {
         let bytes = std::fs::read(elf).with_context(|| format!("reading the image {}", elf.display()))?;
         let file = File::parse(&*bytes).context("not an ELF file")?;
         let text = file.section_by_name(".text").context("has no .text section")?;
@@ -42,7 +43,7 @@ impl Tracer {
             }
         }
         let kernels = symbols.kernels.iter().map(|own| (own.clone(), None, 0, Cycles::default())).collect();
-        Ok(Self { code, kernels, last: None })
+        Ok(Self { code, kernels, last: None, waits })
     }
 
     /// The instructions to be told about.
@@ -67,7 +68,7 @@ impl Tracer {
                 sum.most += core.cycles.most;
             }
             if address == kernel.entry {
-                *core = Some(Core::cold(WAITS));
+                *core = Some(Core::cold(self.waits));
             }
         }
         self.last = Some(address);
@@ -95,9 +96,15 @@ pub fn cycles(image: &Path, readings: &[Reading], frames: &[Frame]) -> Result<BT
     let readings = readings.get(..BEFORE + FOLLOWED).unwrap_or(readings).to_vec();
     let frames = frames.get(..(BEFORE + FOLLOWED) * per).unwrap_or(frames);
     let follow = |readings: &[Vec<Reading>], frames: &[Frame], from: usize| {
-        super::followed(image, readings, frames, Some(from), Kernels::Detector, &mut |_| {})
+        super::followed(image, readings, frames, Some((from, WAITS)), Kernels::Detector, &mut |_| {})
     };
     let mut all = follow(&[readings], &[], BEFORE)?.cycles;
     all.extend(follow(&[], frames, BEFORE * per)?.cycles);
     Ok(all)
+}
+
+/// Estimates the kernels of a stranger's image, called once each for the one reading that it is given.
+pub fn of_image(image: &Path, waits: u64) -> Result<BTreeMap<String, [f64; 3]>> {
+    let readings = [vec![Reading::default()]];
+    Ok(super::followed(image, &readings, &[], Some((0, waits)), Kernels::Detector, &mut |_| {})?.cycles)
 }
