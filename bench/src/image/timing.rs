@@ -181,12 +181,25 @@ fn floats(first: u16, second: u16, loads: bool) -> Instruction {
     }
 }
 
-/// Bytes of a line of the flash.
-const LINE: u64 = 16;
-/// Lines of instructions, and of literals, that are kept.
-const KEPT: [usize; 2] = [64, 8];
-/// Cycles that the flash takes longer than the core, at 100 MHz.
-pub const WAITS: u64 = 3;
+/// A flash and its caches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Flash {
+    /// Bytes that it gives at once.
+    pub line: u64,
+    /// Lines of instructions, and of literals, that are kept.
+    pub kept: [usize; 2],
+    /// Cycles that it takes longer than the core.
+    pub waits: u64,
+    /// Whether the next line is fetched ahead.
+    pub ahead: bool,
+}
+
+impl Flash {
+    /// The STM32F411's at 100 MHz.
+    pub const F411: Self = Self { line: 16, kept: [64, 8], waits: 3, ahead: true };
+    /// None: all is there at once.
+    pub const NONE: Self = Self { waits: 0, ..Self::F411 };
+}
 
 /// How much an estimate leaves open.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -208,7 +221,7 @@ impl Cycles {
 }
 
 /// Adds up what a core executes, instruction by instruction.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Core {
     /// Newest last.
     lines: [Vec<u64>; 2],
@@ -217,34 +230,35 @@ pub struct Core {
     since: u64,
     before: Option<Instruction>,
     pub cycles: Cycles,
-    /// What the flash does not hold up: in SRAM, or at so slow a clock.
-    pub waits: u64,
+    flash: Flash,
 }
 
 impl Core {
     /// One whose caches are empty.
-    pub fn cold(waits: u64) -> Self {
-        Self { line: u64::MAX, waits, ..Self::default() }
+    pub fn cold(flash: Flash) -> Self {
+        let lines = [Vec::new(), Vec::new()];
+        Self { lines, line: u64::MAX, since: 0, before: None, cycles: Cycles::default(), flash }
     }
 
     /// It executes `own` at an address and goes on at `next`.
     pub fn execute(&mut self, at: u64, own: Instruction, next: (u64, Option<Instruction>)) {
-        let line = at / LINE;
+        let Flash { line: bytes, waits, ahead, .. } = self.flash;
+        let line = at / bytes;
         if line != self.line {
             let hit = self.keeps(0, line);
-            let follows = line == self.line.wrapping_add(1);
+            let follows = ahead && line == self.line.wrapping_add(1);
             let stall = match (hit, follows) {
                 (true, _) => 0,
-                (false, true) => (self.waits + 1).saturating_sub(self.since).min(self.waits),
-                (false, false) => self.waits,
+                (false, true) => (waits + 1).saturating_sub(self.since).min(waits),
+                (false, false) => waits,
             };
-            self.cycles.add([0, stall, if hit { 0 } else { self.waits }]);
+            self.cycles.add([0, stall, if hit { 0 } else { waits }]);
             (self.line, self.since) = (line, 0);
         }
         if let Some(far) = own.literal
-            && !self.keeps(1, (at & !3).wrapping_add_signed(far) / LINE)
+            && !self.keeps(1, (at & !3).wrapping_add_signed(far) / bytes)
         {
-            self.cycles.add([0, self.waits, self.waits]);
+            self.cycles.add([0, waits, waits]);
         }
         let taken = next.0 != at + own.bytes();
         let spent = self.spent(own, taken, next);
@@ -285,7 +299,7 @@ impl Core {
         let at = lines.iter().position(|&kept| kept == line);
         if let Some(at) = at {
             lines.remove(at);
-        } else if lines.len() >= KEPT[which] {
+        } else if lines.len() >= self.flash.kept[which] {
             lines.remove(0);
         }
         lines.push(line);
@@ -334,19 +348,19 @@ mod tests {
     #[test]
     fn a_loop_costs_what_the_manual_says_and_the_flash_once() {
         let (subs, bne) = (Instruction::of(0x3801, 0), Instruction::of(0xD1FD, 0));
-        let mut core = Core::cold(WAITS);
+        let mut core = Core::cold(Flash::F411);
         for turn in (0..10).rev() {
             core.execute(0x100, subs, (0x102, Some(bne)));
             core.execute(0x102, bne, (if turn == 0 { 0x104 } else { 0x100 }, Some(subs)));
         }
-        assert_eq!(core.cycles, Cycles { least: 29, likely: 29 + WAITS, most: 29 + 9 * 2 + WAITS });
+        assert_eq!(core.cycles, Cycles { least: 29, likely: 29 + 3, most: 29 + 9 * 2 + 3 });
     }
 
     #[test]
     fn loads_that_follow_each_other_overlap_and_a_fresh_address_waits() {
         let (load, add) = (Instruction::of(0x6808, 0), Instruction::of(0x1849, 0));
         let run = |all: &[Instruction]| {
-            let mut core = Core::cold(0);
+            let mut core = Core::cold(Flash::NONE);
             for (n, own) in all.iter().enumerate() {
                 core.execute(2 * n as u64, *own, (2 * n as u64 + 2, None));
             }

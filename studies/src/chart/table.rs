@@ -9,6 +9,7 @@ pub mod scored;
 use std::fmt;
 use std::sync::{Mutex, PoisonError};
 
+use plotters::style::RGBColor;
 use rayon::prelude::*;
 use serde::Serialize;
 use tenax_bench::jobs::Jobs;
@@ -257,50 +258,86 @@ impl Table {
                 ]
             }),
         )?;
-        let colours = [
-            colour::BLUE,
-            colour::ORANGE,
-            colour::GREEN,
-            colour::PURPLE,
-            colour::SKY,
-            colour::VERMILLION,
-            colour::GREY,
-            colour::YELLOW,
+        let panels = vec![
+            self.panel("what ships, in pairs, and the hand", |group| {
+                matches!(group, Group::Ships | Group::Pair)
+            }),
+            self.panel("rivals, and the network with something of its learning changed", |group| {
+                matches!(group, Group::Rival | Group::Control)
+            }),
         ];
-        let mut series = Vec::new();
-        for (n, row) in self.rows.iter().enumerate() {
+        let sheet = Sheet::new(
+            "Slips caught against cycles spent",
+            "A word must begin between micro onset and 50 ms after macro onset. In brackets: false alarms in a quiet hour, in a disturbed one.",
+            1,
+            panels,
+        );
+        Chart::new("table", &sheet, csv)
+    }
+}
+
+/// How a row is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Group {
+    Ships,
+    Pair,
+    Control,
+    Rival,
+}
+
+impl Group {
+    fn of(row: &Line) -> Self {
+        match row.name.as_str() {
+            _ if row.threshold.is_some() => Self::Rival,
+            name if name.contains(',') => Self::Control,
+            name if name.contains(' ') => Self::Pair,
+            _ => Self::Ships,
+        }
+    }
+
+    const fn look(self) -> (&'static str, RGBColor, Mark) {
+        match self {
+            Self::Ships => ("ships", colour::VERMILLION, Mark::Dots),
+            Self::Pair => ("a pair, the hand", colour::BLUE, Mark::Dots),
+            Self::Control => ("the network, changed", colour::GREEN, Mark::Crosses),
+            Self::Rival => ("a rival, its threshold chosen on other fingertips", colour::PURPLE, Mark::Rings),
+        }
+    }
+}
+
+/// What a line of words takes of the panel's height.
+const WORD: f64 = 0.062;
+
+impl Table {
+    /// The rows of some groups, each with its name beside it.
+    fn panel(&self, title: &str, shows: impl Fn(Group) -> bool) -> Panel {
+        let (mut series, mut words) = (Vec::new(), Vec::new());
+        for row in self.rows.iter().filter(|row| shows(Group::of(row))) {
             let (Some(cycles), Some(per_s), Some(recall)) =
                 (row.cycles_mean, row.decisions_per_s, row.recall_1mm)
             else {
                 continue;
             };
             let at = cycles * f64::from(per_s) / 1e6;
-            let mark = if row.threshold.is_some() { Mark::Rings } else { Mark::Dots };
-            let whole =
-                |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.0}"));
-            let name = format!(
-                "{} ({}, {})",
-                row.name,
-                whole(row.false_per_hour_quiet),
-                whole(row.false_per_hour_disturbed)
-            );
-            series.push(Series::new(name, colours[n % colours.len()], mark, [(at, recall)]));
+            let (name, colour, mark) = Group::of(row).look();
+            series.push(Series::new(name, colour, mark, [(at, recall)]));
             let ends = [row.recall_1mm_low, row.recall_1mm_high].map(|end| (at, end.unwrap_or(recall)));
             series.push(Series::new("95 %", colour::GREY, Mark::Line, ends));
+            let whole =
+                |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.0}"));
+            let [quiet, disturbed] = [row.false_per_hour_quiet, row.false_per_hour_disturbed].map(whole);
+            words.push((1.06 * at, recall, format!("{} ({quiet}, {disturbed})", row.name)));
         }
-        let panel = Panel::new(
-            "in brackets: false alarms in a quiet hour, in a disturbed one",
-            Axis::log("million cycles a second, estimated; the core has 100", 0.01, 100.0),
-            Axis::even("slips of at least 1 mm caught", 0.0, 1.0),
-            series,
-        );
-        let sheet = Sheet::new(
-            "Slips caught against cycles spent",
-            "A word must begin between micro onset and 50 ms after macro onset. Rings: thresholds chosen on other fingertips.",
-            1,
-            vec![panel],
-        );
-        Chart::new("table", &sheet, csv)
+        // From the top down, each under the one before.
+        words.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let room = WORD * words.len() as f64;
+        let mut least = f64::INFINITY;
+        for (n, (_, y, _)) in words.iter_mut().enumerate() {
+            *y = y.min(least - WORD).max(room - WORD * (n + 1) as f64);
+            least = *y;
+        }
+        let x = Axis::log("million cycles a second, estimated; the core has 100", 0.1, 100.0);
+        Panel { words, ..Panel::new(title, x, Axis::even("slips of at least 1 mm caught", 0.0, 1.0), series) }
     }
 }
 

@@ -27,6 +27,7 @@ use self::bench::Bench;
 use self::cycles::Tracer;
 use self::meter::Meters;
 use crate::image::kernels::KernelSymbols;
+use crate::image::timing::Flash;
 use tenax_board_model::Models;
 use tenax_board_model::line::Line;
 use tenax_board_model::nucleo::Nucleo;
@@ -108,12 +109,12 @@ pub fn run_frames(
     followed(image, recordings, frames, None, kernels, progress)
 }
 
-/// The same; from so many readings and frames on, kernels are followed one instruction at a time, in a flash with so many waits.
+/// The same; from so many readings and frames on, kernels are followed one instruction at a time, in this flash.
 fn followed(
     image: &Path,
     recordings: &[Vec<Reading>],
     frames: &[Frame],
-    from: Option<(usize, u64)>,
+    from: Option<(usize, Flash)>,
     kernels: Kernels,
     progress: &mut dyn FnMut(usize),
 ) -> Result<Outcome> {
@@ -121,7 +122,7 @@ fn followed(
     let images = [Image::read(image, None).context("reading the image")?];
     let (sender, reports) = mpsc::channel();
     let bench = Bench::new(&symbols, recordings, frames, kernels, sender).following(match from {
-        Some((from, waits)) => Some((from, Tracer::new(image, &symbols, waits)?)),
+        Some((from, flash)) => Some((from, Tracer::new(image, &symbols, flash)?)),
         None => None,
     });
     // The emulator keeps its driver for itself, so it runs on a thread of its own and reports to this one.

@@ -65,6 +65,7 @@ impl Costs {
     #[cfg(feature = "emulator")]
     pub fn counted(root: &std::path::Path) -> anyhow::Result<Self> {
         use anyhow::Context;
+        use tenax_bench::board::emulated::Options;
         use tenax_bench::board::emulated::kernels::{self, Kernels};
         use tenax_bench::image::{self, kernels::memories, size::Size};
         use tenax_bench::session::{self, Board};
@@ -88,7 +89,8 @@ impl Costs {
             let kernel = Kernel { per_s, mean: cost.mean(), max: cost.most, cycles, code, constants, state };
             all.insert(cost.name, kernel);
         }
-        let board = Board::emulated(root)?;
+        let options = Options { followed_from: Some(FOLLOWED_FROM), ..Options::default() };
+        let board = Board::Emulated { image: image::build(root)?, options };
         let file = session::load_scene(session::DEFAULT_SCENE)?;
         let run = session::scene_alone(&file, 1, &board, &mut ())?.run;
         let tick = run.tick_cost.context("the emulated board counts its ticks")?;
@@ -97,7 +99,7 @@ impl Costs {
             per_s: f64::from(FRAME_HZ),
             mean: tick.instructions_mean,
             max: tick.instructions_max,
-            cycles: None,
+            cycles: run.tick_cycles,
             code: BTreeMap::from([("the image".to_owned(), size.flash)]),
             constants: 0,
             state: size.ram,
@@ -113,6 +115,9 @@ impl Costs {
     }
 }
 
+/// The glass is filled at 20 s: ticks that hold something are followed.
+#[cfg(feature = "emulator")]
+const FOLLOWED_FROM: u64 = 40_000;
 /// Frames that the kernels are counted on: 5 s.
 #[cfg(feature = "emulator")]
 const FRAMES: usize = 10_000;
