@@ -262,9 +262,8 @@ impl Table {
             self.panel("what ships, in pairs, and the hand", |group| {
                 matches!(group, Group::Ships | Group::Pair)
             }),
-            self.panel("rivals, and the network with something of its learning changed", |group| {
-                matches!(group, Group::Rival | Group::Control)
-            }),
+            self.panel("rivals", |group| group == Group::Rival),
+            self.panel("the network with something of its learning changed", |group| group == Group::Control),
         ];
         let sheet = Sheet::new(
             "Slips caught against cycles spent",
@@ -305,8 +304,9 @@ impl Group {
     }
 }
 
-/// What a line of words takes of the panel's height.
+/// What a line of words takes of the panel's height, and a name of its width, in decades.
 const WORD: f64 = 0.062;
+const NAME: f64 = 0.7;
 
 impl Table {
     /// The rows of some groups, each with its name beside it.
@@ -328,13 +328,16 @@ impl Table {
             let [quiet, disturbed] = [row.false_per_hour_quiet, row.false_per_hour_disturbed].map(whole);
             words.push((1.06 * at, recall, format!("{} ({quiet}, {disturbed})", row.name)));
         }
-        // From the top down, each under the one before.
         words.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let room = WORD * words.len() as f64;
-        let mut least = f64::INFINITY;
-        for (n, (_, y, _)) in words.iter_mut().enumerate() {
-            *y = y.min(least - WORD).max(room - WORD * (n + 1) as f64);
-            least = *y;
+        let apart = |a: &(f64, f64, String), b: &(f64, f64, String)| (a.0 / b.0).log10().abs() > NAME;
+        // From the top down each under those before it, then from the bottom up each above those below.
+        for n in 0..words.len() {
+            let above = words[..n].iter().filter(|own| !apart(own, &words[n]));
+            words[n].1 = above.map(|own| own.1 - WORD).fold(words[n].1, f64::min);
+        }
+        for n in (0..words.len()).rev() {
+            let below = words[n + 1..].iter().filter(|own| !apart(own, &words[n]));
+            words[n].1 = below.map(|own| own.1 + WORD).fold(words[n].1.max(WORD / 2.0), f64::max);
         }
         let x = Axis::log("million cycles a second, estimated; the core has 100", 0.1, 100.0);
         Panel { words, ..Panel::new(title, x, Axis::even("slips of at least 1 mm caught", 0.0, 1.0), series) }
@@ -402,5 +405,34 @@ impl fmt::Display for Table {
             writeln!(f)?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeMap;
+
+    #[test]
+    fn no_name_is_drawn_on_another() {
+        let rows = rivals::rows();
+        let kernels = rows.iter().flat_map(|row| row.kernels.iter().copied());
+        let kernel =
+            costs::Kernel { per_s: 80.0, mean: 10.0, max: 10, cycles: Some([10.0; 3]), ..Default::default() };
+        let costs = Costs(kernels.map(|name| (name.to_owned(), kernel.clone())).collect::<BTreeMap<_, _>>());
+        let plan = Options::default().plans[2];
+        let mut table = Table::of(&rows, &[], &plan, &costs);
+        for (n, row) in table.rows.iter_mut().enumerate() {
+            row.recall_1mm = Some(0.02 * (n % 3) as f64);
+        }
+        let panel = table.panel("all", |_| true);
+        assert_eq!(panel.words.len(), rows.len());
+        for (n, own) in panel.words.iter().enumerate() {
+            assert!(own.1 > 0.0, "{own:?}");
+            for other in &panel.words[n + 1..] {
+                let far = (own.0 / other.0).log10().abs() > NAME || (own.1 - other.1).abs() > 0.99 * WORD;
+                assert!(far, "{own:?} {other:?}");
+            }
+        }
     }
 }
