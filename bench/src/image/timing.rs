@@ -121,7 +121,7 @@ fn wide(first: u16, second: u16) -> Instruction {
             let many = Many(u64::from(second.count_ones()), loads && second & 0x8000 != 0);
             Instruction::memory(many, true, 0)
         }
-        0xEC | 0xED | 0xEE => floats(first, second, loads),
+        0xEC..=0xEE => floats(first, second, loads),
         0xEA | 0xEB => Instruction::plain(1, true, bit(d)),
         0xF0..=0xF7 if second & 0x8000 == 0 => Instruction::plain(1, true, bit(d)),
         0xF0..=0xF7 => {

@@ -268,7 +268,9 @@ mod tests {
     #[test]
     fn intervals_bracket_and_shrink_with_more_fingertips() {
         let some = |fingers: u64| -> Vec<Heard> {
-            let said = |finger: u64| if finger % 3 == 0 { Vec::new() } else { vec![Verdict::new(5.08, 5.2)] };
+            let said = |finger: u64| {
+                if finger.is_multiple_of(3) { Vec::new() } else { vec![Verdict::new(5.08, 5.2)] }
+            };
             (0..fingers).map(|finger| heard(finger, Kind::Slips, vec![said(finger)])).collect()
         };
         let recall = |fingers: u64| Scored::of(&some(fingers), 0..1).recall(5.0).unwrap();
