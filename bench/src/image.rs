@@ -19,6 +19,11 @@ pub fn build(root: &Path) -> Result<PathBuf> {
     tenax_launch::image::build(root, Binary::Image)
 }
 
+/// Builds the image of every detector's kernels, for [`run_frames`](crate::board::emulated::kernels::run_frames). Fails as [`build`] does.
+pub fn build_frames(root: &Path) -> Result<PathBuf> {
+    tenax_launch::image::build(root, Binary::Frames)
+}
+
 /// Builds the image of the array detector's kernels, for [`kernels`](crate::board::emulated::kernels). Fails as [`build`] does.
 pub fn build_kernels(root: &Path) -> Result<PathBuf> {
     tenax_launch::image::build(root, Binary::Kernels)

@@ -50,7 +50,7 @@ pub struct Memory {
     pub state: u64,
 }
 
-/// What each kernel takes whose state the image tells. Fails if it is not the kernels' image.
+/// What each kernel takes whose state the image tells. Fails if it is not the frames' image.
 pub fn memories(elf: &Path) -> Result<BTreeMap<&'static str, Memory>> {
     let bytes = std::fs::read(elf).with_context(|| format!("reading the image {}", elf.display()))?;
     let file = File::parse(&*bytes).context("not an ELF file")?;
@@ -79,8 +79,8 @@ pub struct KernelSymbols {
     pub orders: u64,
     /// The reading: ten half-words.
     pub reading: u64,
-    /// A frame: fourteen half-words.
-    pub frame: u64,
+    /// A frame: fourteen half-words, and whether there is one. Of the frames' image alone.
+    pub frame: Option<[u64; 2]>,
     /// The answer: its features, a half-word each.
     pub features: u64,
     /// The answer's logit.
@@ -114,7 +114,10 @@ impl KernelSymbols {
             next: address_of(&file, "tenax_kernels_next")? & !1,
             orders: address_of(&file, "TENAX_KERNELS_ORDERS")?,
             reading: address_of(&file, "TENAX_KERNELS_READING")?,
-            frame: address_of(&file, "TENAX_KERNELS_FRAME")?,
+            frame: match ["TENAX_KERNELS_FRAME", "TENAX_KERNELS_COMES"].map(|name| address_of(&file, name)) {
+                [Ok(frame), Ok(comes)] => Some([frame, comes]),
+                _ => None,
+            },
             features: address_of(&file, "TENAX_KERNELS_FEATURES")?,
             logit: address_of(&file, "TENAX_KERNELS_LOGIT")?,
             judged: address_of(&file, "TENAX_KERNELS_JUDGED")?,

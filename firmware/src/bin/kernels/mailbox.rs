@@ -2,7 +2,6 @@
 
 use core::sync::atomic::{AtomicI32, AtomicU16, AtomicU32, Ordering::Relaxed};
 
-use tenax_hal_shim::channel::SCAN_LEN;
 use tenax_logic::array::{ArrayVerdict, ELEMENTS, FEATURES, Reading};
 
 use crate::Detector;
@@ -15,18 +14,12 @@ const FORGET: u32 = 1;
 /// Orders from the host: run every kernel, not the detector only.
 const EVERYTHING: u32 = 2;
 
-/// Orders from the host: there is a frame and no reading.
-const FRAME: u32 = 4;
-
 /// From the host: what to do with the reading.
 #[unsafe(no_mangle)]
 static TENAX_KERNELS_ORDERS: AtomicU32 = AtomicU32::new(FORGET);
 /// From the host: one reading.
 #[unsafe(no_mangle)]
 static TENAX_KERNELS_READING: [AtomicU16; ELEMENTS] = [const { AtomicU16::new(NO_READING) }; ELEMENTS];
-/// From the host: one frame, the films and what both switches show.
-#[unsafe(no_mangle)]
-static TENAX_KERNELS_FRAME: [AtomicU16; SCAN_LEN] = [const { AtomicU16::new(0) }; SCAN_LEN];
 /// To the host: what the detector says, as [`verdict_bits`] packs it.
 #[unsafe(no_mangle)]
 static TENAX_KERNELS_VERDICT: AtomicU32 = AtomicU32::new(0);
@@ -50,12 +43,11 @@ pub extern "C" fn tenax_kernels_next() {
 pub struct Orders {
     pub forget: bool,
     pub everything: bool,
-    pub frame: bool,
 }
 
 pub fn orders() -> Orders {
     let orders = TENAX_KERNELS_ORDERS.load(Relaxed);
-    Orders { forget: orders & FORGET != 0, everything: orders & EVERYTHING != 0, frame: orders & FRAME != 0 }
+    Orders { forget: orders & FORGET != 0, everything: orders & EVERYTHING != 0 }
 }
 
 pub fn reading() -> Reading {
@@ -63,10 +55,6 @@ pub fn reading() -> Reading {
         let sample = TENAX_KERNELS_READING[n].load(Relaxed);
         (sample != NO_READING).then_some(sample)
     })
-}
-
-pub fn frame() -> [u16; SCAN_LEN] {
-    TENAX_KERNELS_FRAME.each_ref().map(|sample| sample.load(Relaxed))
 }
 
 pub fn answer(detector: &Detector, verdict: ArrayVerdict) {

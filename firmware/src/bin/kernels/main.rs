@@ -6,10 +6,8 @@
 #![no_std]
 #![no_main]
 
-mod frames;
 mod mailbox;
 mod parts;
-mod rivals;
 
 use core::hint::black_box;
 use core::panic::PanicInfo;
@@ -19,7 +17,6 @@ use cortex_m_rt::entry;
 use embassy_stm32 as _;
 use tenax_logic::array::{ArrayVerdict, Reading, ShippedDetector, shipped};
 
-use self::frames::Frames;
 use self::parts::Parts;
 
 type Detector = ShippedDetector;
@@ -30,14 +27,9 @@ fn main() -> ! {
     let model = black_box(&shipped::MODEL);
     let mut detector = Detector::new(model);
     let mut parts = Parts::default();
-    let mut frames = Frames::default();
     loop {
         mailbox::tenax_kernels_next();
         let orders = mailbox::orders();
-        if orders.frame {
-            frames.run(&mailbox::frame());
-            continue;
-        }
         let reading = mailbox::reading();
         if orders.forget {
             detector = Detector::new(model);

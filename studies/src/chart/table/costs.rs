@@ -73,7 +73,7 @@ impl Costs {
 
         let frames = super::heard::sampled(FRAMES)?;
         let readings = super::heard::readings(&frames);
-        let elf = image::build_kernels(root)?;
+        let elf = image::build_frames(root)?;
         let cycles = kernels::cycles::cycles(&elf, &readings, &frames)?;
         let outcome = kernels::run_frames(&elf, &[readings], &frames, Kernels::Detector, &mut |_| {})?;
         let memories = memories(&elf)?;

@@ -11,7 +11,7 @@ use tenax_logic::array::{FEATURES, Features};
 use super::heard::{CONTROLS, Felt, Judge};
 use crate::learn::control::Control;
 
-#[path = "../../../../firmware/src/bin/kernels/rivals.rs"]
+#[path = "../../../../firmware/src/bin/frames/rivals.rs"]
 mod plain;
 
 /// Features of the paper (Bamshad 2023): covariances and spectrum.

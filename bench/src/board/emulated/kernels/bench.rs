@@ -23,8 +23,6 @@ const EVERYTHING: u64 = 2;
 /// In the word of a verdict.
 const SLIP: u32 = 1 << 15;
 const CONFIDENCE: u32 = SLIP - 1;
-/// Orders to the core: there is a frame and no reading.
-const FRAME: u64 = 4;
 /// Between two looks at whether it is over: 100 000 instructions.
 const LOOK_NS: u64 = 1_000_000;
 /// Looks without a new reading after which the core is given up: a reading takes less than two.
@@ -129,15 +127,16 @@ impl Bench {
 
     /// Puts the next frame in; the core answers nothing to it.
     fn exchange_frame(&mut self, host: &mut dyn Host) -> Result<(), Error> {
-        let Some(frame) = self.frames.get(self.fed - self.readings.len()) else {
+        let next = self.frames.get(self.fed - self.readings.len());
+        let (Some(frame), Some([samples_at, comes])) = (next, self.symbols.frame) else {
             self.done = true;
             return Ok(());
         };
         let samples = frame.pvdf.into_iter().chain([frame.switch_a, frame.switch_b]);
         for (n, sample) in samples.enumerate() {
-            host.write(self.symbols.frame + 2 * n as u64, Width::W16, u64::from(sample))?;
+            host.write(samples_at + 2 * n as u64, Width::W16, u64::from(sample))?;
         }
-        host.write(self.symbols.orders, Width::W32, FRAME)?;
+        host.write(comes, Width::W32, 1)?;
         self.fed += 1;
         Ok(())
     }

@@ -1,6 +1,7 @@
 //! What each of the other detectors takes of the core in a frame: its sensors' conditioning, itself, and plain rivals.
 
 use core::hint::black_box;
+use core::sync::atomic::{AtomicU16, AtomicU32, Ordering::Relaxed};
 
 use tenax_hal_shim::channel::{FSR, FSR_COUNT, PVDF_COUNT, SCAN_LEN, STRAIN};
 use tenax_hal_shim::frame::Frame;
@@ -44,6 +45,19 @@ static TENAX_KERNELS_BYTES: [[u32; 2]; 12] = [
     [0, (4 * OF_PAPER + 4) as u32],
     [0, 0],
 ];
+
+/// From the host: whether there is a frame and no reading.
+#[unsafe(no_mangle)]
+static TENAX_KERNELS_COMES: AtomicU32 = AtomicU32::new(0);
+/// From the host: one frame, the films and what both switches show.
+#[unsafe(no_mangle)]
+static TENAX_KERNELS_FRAME: [AtomicU16; SCAN_LEN] = [const { AtomicU16::new(0) }; SCAN_LEN];
+
+/// The frame that the host has put there, if it has.
+pub fn comes() -> Option<[u16; SCAN_LEN]> {
+    let comes = TENAX_KERNELS_COMES.load(Relaxed) != 0;
+    comes.then(|| TENAX_KERNELS_FRAME.each_ref().map(|sample| sample.load(Relaxed)))
+}
 
 /// Their state.
 #[derive(Default)]
