@@ -64,6 +64,8 @@ pub struct Summary {
     pub line_bytes: usize,
     /// None where instructions cannot be counted.
     pub tick_cost: Option<TickCost>,
+    /// Least, likely and most cycles of the mean tick of those that were followed.
+    pub tick_cycles: Option<[f64; 3]>,
     /// The deepest that the stack was, bytes. None where it cannot be measured.
     pub stack_bytes: Option<u64>,
     /// What was done to the flash.

@@ -5,6 +5,7 @@ pub mod kernels;
 pub mod panics;
 pub mod size;
 pub mod symbols;
+pub mod timing;
 
 use std::path::{Path, PathBuf};
 
@@ -16,6 +17,11 @@ pub use tenax_launch::image::{TARGET, clippy, port};
 /// An error says what to install, or what the compiler said.
 pub fn build(root: &Path) -> Result<PathBuf> {
     tenax_launch::image::build(root, Binary::Image)
+}
+
+/// Builds the image of every detector's kernels, for [`run_frames`](crate::board::emulated::kernels::run_frames). Fails as [`build`] does.
+pub fn build_frames(root: &Path) -> Result<PathBuf> {
+    tenax_launch::image::build(root, Binary::Frames)
 }
 
 /// Builds the image of the array detector's kernels, for [`kernels`](crate::board::emulated::kernels). Fails as [`build`] does.

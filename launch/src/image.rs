@@ -27,6 +27,8 @@ pub enum Binary {
     Image,
     /// The array detector's arithmetic alone.
     Kernels,
+    /// Every detector's, frame by frame.
+    Frames,
 }
 
 impl Binary {
@@ -35,6 +37,7 @@ impl Binary {
         match self {
             Self::Image => PACKAGE,
             Self::Kernels => "tenax-kernels",
+            Self::Frames => "tenax-frames",
         }
     }
 }

@@ -110,7 +110,8 @@ pub fn image_of(arguments: &[OsString]) -> &'static [Binary] {
     let command = arguments.first().and_then(|command| command.to_str());
     match command {
         _ if has(&["--host", "--help", "-h"]) => &[],
-        Some("check" | "size" | "test") => &[Binary::Image, Binary::Kernels],
+        Some("check" | "size") => &[Binary::Image, Binary::Kernels],
+        Some("test") => &[Binary::Image, Binary::Kernels, Binary::Frames],
         Some("flash" | "learn" | "run") => &[Binary::Image],
         _ => &[],
     }

@@ -64,7 +64,7 @@ pub fn sizes(look_back: usize) -> String {
 /// A classifier's line.
 #[derive(Clone, Debug)]
 pub struct Line {
-    /// Which, as `tenax chart detectors` knows it.
+    /// Which, as `docs/figures/kernels.csv` names them.
     pub classifier: &'static str,
     /// `float`, or the bits of a weight.
     pub precision: &'static str,

@@ -237,7 +237,7 @@ impl Report {
             }
             let _ = writeln!(
                 text,
-                "\nIn 2800 steps {:.0} missed and {:.0} false (the paper: 103 and 36 with look-back, 162 and 47 without). \
+                "\nIn 2800 steps {:.0} missed and {:.0} false. \
                  Rounding to integers cost {:.2} points.",
                 quantised.missed_per_2800,
                 quantised.false_per_2800,

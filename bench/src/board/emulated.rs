@@ -26,6 +26,7 @@ use tenax_hal_shim::channel::SCAN_HZ;
 use tenax_scene::plant::Plant;
 
 use self::cost::CostMeter;
+use self::kernels::cycles::Followed;
 use self::mishaps::Mishaps;
 use self::world::{Stretch, World};
 use super::kept::{Provision, Sectors};
@@ -52,6 +53,8 @@ pub struct Options {
     pub models: Models,
     /// Who is told when each tick of the logic begins.
     pub ticks: Option<mpsc::Sender<Tick>>,
+    /// From which tick on 250 are followed instruction by instruction, for their cycles. None: none.
+    pub followed_from: Option<u64>,
 }
 
 impl Default for Options {
@@ -63,6 +66,7 @@ impl Default for Options {
             word_us: 16,
             models: Models::Quick,
             ticks: None,
+            followed_from: None,
         }
     }
 }
@@ -164,7 +168,8 @@ fn closed_loop(
     let mishaps = Mishaps::new(&options.mishaps);
     let flash = FlashArray::new(1_000 * options.word_us);
     let watched = [tick, after_tick, symbols.command];
-    let world = World::new(plant, frames, mishaps, cost, flash, &symbols, sender);
+    let mut world = World::new(plant, frames, mishaps, cost, flash, &symbols, sender);
+    world.followed = options.followed_from.map(|from| Followed::new(image, &symbols, from)).transpose()?;
     let mut images =
         vec![Image::read(image, None).context("reading the image")?, cost::paint(&symbols.stack)?];
     let kept = Sectors::provisioned(&provision).image();
@@ -201,6 +206,7 @@ fn closed_loop(
         trusts_line: provision.trusts_line,
         taken,
         tick_cost: world.tick_cost,
+        tick_cycles: world.followed.and_then(|followed| followed.mean()),
         stack_bytes: world.stack_bytes,
         flash: FlashUse { words: world.flash.words, erases: world.flash.erases },
         calibrated: provision.calibrated,

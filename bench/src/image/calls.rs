@@ -14,6 +14,10 @@ use object::{File, Object, ObjectSection, ObjectSymbol, SymbolKind};
 pub struct Function {
     /// Its name, as the linker knows it.
     pub name: String,
+    /// How long it is.
+    pub bytes: u64,
+    /// Where its instructions are.
+    pub instructions: Vec<u64>,
     /// Functions that it calls or goes on in, by their place.
     pub calls: BTreeSet<usize>,
     /// Calls whose target is in a register: nobody knows where they lead.
@@ -60,7 +64,7 @@ impl Calls {
             let next = places.get(place + 1).copied().unwrap_or(end);
             // The linker fills up to the next one with bytes that would read as branches. Assembler's symbols may have no size.
             let until = if *size == 0 { next } else { next.min(start + size) };
-            let mut function = Function { name: name.clone(), ..Function::default() };
+            let mut function = Function { name: name.clone(), bytes: until - start, ..Function::default() };
             let is_data = |at: u64| data.range(..=at).next_back().is_some_and(|(_, &is_data)| is_data);
             function.read(code, base, start..until, &places, is_data);
             calls.0.push(function);
@@ -137,6 +141,7 @@ impl Function {
                 continue;
             }
             let wide = first >> 11 >= 0b11101;
+            self.instructions.push(at);
             let step = if wide { step_wide(first, half(at + 2).unwrap_or(0)) } else { step_narrow(first) };
             match step {
                 Step::On => {}

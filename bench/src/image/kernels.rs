@@ -1,14 +1,16 @@
 //! What the symbol table of the kernels' image says.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
-use object::{File, Object, ObjectSymbol, SymbolKind};
+use object::{File, Object, ObjectSection, ObjectSymbol, SymbolKind};
 
+use super::calls::Calls;
 use super::symbols::{address_of, entry_and_return};
 
 /// What a kernel's name begins with in the image.
-const KERNEL: &str = "tenax_kernel_";
+pub const PREFIX: &str = "tenax_kernel_";
 
 /// A function whose instructions are counted.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -19,6 +21,51 @@ pub struct Kernel {
     pub entry: u64,
     /// The instruction that it returns to.
     pub after: u64,
+}
+
+/// The kernels whose state and constants the image tells, in its order.
+const TOLD: [&str; 12] = [
+    "films",
+    "gauges",
+    "force",
+    "s1",
+    "s2",
+    "hebbian",
+    "slow_frame",
+    "loudness",
+    "features",
+    "logistic_112",
+    "logistic_76",
+    "ratio",
+];
+
+/// What a kernel takes of the memories.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Memory {
+    /// Its code and all that it calls: functions, each with its bytes. Two kernels may share one.
+    pub code: BTreeMap<String, u64>,
+    /// Constants in flash, bytes.
+    pub constants: u64,
+    /// State in RAM, bytes.
+    pub state: u64,
+}
+
+/// What each kernel takes whose state the image tells. Fails if it is not the frames' image.
+pub fn memories(elf: &Path) -> Result<BTreeMap<&'static str, Memory>> {
+    let bytes = std::fs::read(elf).with_context(|| format!("reading the image {}", elf.display()))?;
+    let file = File::parse(&*bytes).context("not an ELF file")?;
+    let calls = Calls::of(&file)?;
+    let table = file.symbol_by_name("TENAX_KERNELS_BYTES").context("has no symbol `TENAX_KERNELS_BYTES`")?;
+    let section = file.section_by_index(table.section_index().context("has no place")?)?;
+    let at = (table.address() - section.address()) as usize;
+    let words = section.data()?.get(at..at + 8 * TOLD.len()).context("is too short")?.as_chunks::<4>().0;
+    let word = |n: usize| words.get(n).map_or(0, |word| u64::from(u32::from_le_bytes(*word)));
+    let memory = |(n, name): (usize, &&'static str)| {
+        let reached = calls.reached(&calls.named(|own| own == format!("{PREFIX}{name}")));
+        let code = reached.keys().map(|&place| (calls.0[place].name.clone(), calls.0[place].bytes)).collect();
+        (*name, Memory { code, state: word(2 * n), constants: word(2 * n + 1) })
+    };
+    Ok(TOLD.iter().enumerate().map(memory).collect())
 }
 
 /// Addresses in the kernels' image.
@@ -32,6 +79,8 @@ pub struct KernelSymbols {
     pub orders: u64,
     /// The reading: ten half-words.
     pub reading: u64,
+    /// A frame: fourteen half-words, and whether there is one. Of the frames' image alone.
+    pub frame: Option<[u64; 2]>,
     /// The answer: its features, a half-word each.
     pub features: u64,
     /// The answer's logit.
@@ -53,18 +102,22 @@ impl KernelSymbols {
         let file = File::parse(elf).context("not an ELF file")?;
         let mut kernels = Vec::new();
         for symbol in file.symbols().filter(|symbol| symbol.kind() == SymbolKind::Text) {
-            if let Some(name) = symbol.name()?.strip_prefix(KERNEL) {
+            if let Some(name) = symbol.name()?.strip_prefix(PREFIX) {
                 let (entry, after) = entry_and_return(&file, symbol.name()?)?;
                 kernels.push(Kernel { name: name.to_owned(), entry, after });
             }
         }
-        ensure!(!kernels.is_empty(), "has no function that begins with `{KERNEL}`");
+        ensure!(!kernels.is_empty(), "has no function that begins with `{PREFIX}`");
         kernels.sort_by_key(|kernel| kernel.entry);
         Ok(Self {
             kernels,
             next: address_of(&file, "tenax_kernels_next")? & !1,
             orders: address_of(&file, "TENAX_KERNELS_ORDERS")?,
             reading: address_of(&file, "TENAX_KERNELS_READING")?,
+            frame: match ["TENAX_KERNELS_FRAME", "TENAX_KERNELS_COMES"].map(|name| address_of(&file, name)) {
+                [Ok(frame), Ok(comes)] => Some([frame, comes]),
+                _ => None,
+            },
             features: address_of(&file, "TENAX_KERNELS_FEATURES")?,
             logit: address_of(&file, "TENAX_KERNELS_LOGIT")?,
             judged: address_of(&file, "TENAX_KERNELS_JUDGED")?,

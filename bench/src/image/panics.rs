@@ -162,6 +162,7 @@ mod tests {
             name: name.to_owned(),
             calls: calls.iter().copied().filter(|&place| place < 8 + more.len()).collect(),
             indirect,
+            ..Function::default()
         };
         Calls(shape.iter().chain(more).map(function).collect())
     }

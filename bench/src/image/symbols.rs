@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail, ensure};
 use object::{File, Object, ObjectSection, ObjectSymbol};
 
 /// The name of the tick of the logic in the image.
-pub(super) const TICK: &str = "tenax_control_tick";
+pub(crate) const TICK: &str = "tenax_control_tick";
 /// The name of what gives the logic a command.
 const COMMAND: &str = "tenax_control_command";
 

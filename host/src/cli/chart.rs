@@ -1,7 +1,7 @@
 //! `tenax chart`: the charts behind the pages in `docs/`.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context;
@@ -27,9 +27,12 @@ pub struct Args {
     /// Where they are written: SVG, PNG and CSV
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
-    /// Of photoelastic: how its figures are printed
+    /// Of photoelastic and table: how its figures are printed
     #[arg(long, value_enum, default_value_t = Format::Text)]
     report: Format,
+    /// Of table: rows of your own, what a detector said in recordings of yours (docs/table.md)
+    #[arg(long, value_name = "CSV")]
+    decisions: Option<PathBuf>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -38,8 +41,6 @@ enum Subject {
     Scenes,
     /// What the scenes' sensors say at the onset of slip, beside real recordings where they are present
     Sensors,
-    /// What detectors from normal force get wrong against the instructions that they take
-    Detectors,
     /// How the force array's network does against each quantity that sessions draw: where the method fails
     Array,
     /// What each grip pays in newtons beyond need for what it saves in millimetres: the hand, each detector alone, all but each, no
@@ -49,6 +50,8 @@ enum Subject {
     Features,
     /// How soon the slip of a lift could be told, and from which sensors, beside what a camera sees
     Onset,
+    /// What each detector catches and costs, pairs, the hand and plain rivals beside it, on the same fingertips and hours
+    Table,
     /// What a photoelastic head tells of normal force and slip: its curve, force followed, rates, where slip is seen
     Photoelastic,
     /// What a camera behind the skin tells, on recordings: ways to find the object, speed against accuracy; known loads
@@ -82,7 +85,15 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
                 with_bar("choices", |progress| chart::vision::choices(&video, progress))?,
             ]
         }
-        Subject::Detectors => vec![detectors()?],
+        Subject::Table => {
+            let own = args.decisions.as_deref().map(decided).transpose()?.unwrap_or_default();
+            let costs = chart::table::costs::Costs::counted(&workspace::root()?)?;
+            let options = chart::table::Options::default();
+            let mut table = with_bar("table", |progress| chart::table::table(&options, &costs, progress))?;
+            table.rows.extend(own);
+            out::unless_closed(args.report.print(&table, &table))?;
+            vec![table.chart()?]
+        }
         Subject::Photoelastic => {
             let (chart, measured) =
                 with_bar("photoelastic", |progress| chart::photoelastic::chart(progress))?;
@@ -107,15 +118,9 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Each kind of data with its classifiers' scores, which `tenax train --compare` writes, and what their kernels took.
-fn detectors() -> anyhow::Result<chart::Chart> {
-    let table = |name: &str| {
-        let file = workspace::root()?.join("docs/figures").join(name);
-        fs::read_to_string(&file).with_context(|| format!("cannot read the table {}", file.display()))
-    };
-    let (scenes, real) = (table("detectors.csv")?, table("detectors-real.csv")?);
-    chart::detectors::chart(
-        &[("pours of the scenes", &scenes), ("a real array", &real)],
-        &table("kernels.csv")?,
-    )
+/// A stranger's rows.
+fn decided(file: &Path) -> anyhow::Result<Vec<chart::table::Line>> {
+    let called = file.display().to_string();
+    let text = fs::read_to_string(file).with_context(|| format!("cannot read {called}"))?;
+    chart::table::decisions::rows(&text, &called)
 }

@@ -59,7 +59,7 @@ pub struct Args {
     /// Seed of everything
     #[arg(long, default_value_t = Options::default().seed)]
     seed: u64,
-    /// How to print the report; docs/hebbian.md lists the keys of json
+    /// How to print the report; studies/src/learn/report.rs lists the keys of json
     #[arg(long, value_enum, default_value_t = Format::Text)]
     report: Format,
     /// Where report and figures are written

@@ -2,7 +2,6 @@
 
 pub mod array;
 pub mod delay;
-pub mod detectors;
 pub mod features;
 pub mod front;
 mod growth;
@@ -11,6 +10,7 @@ pub mod onset;
 mod patch;
 pub mod photoelastic;
 pub mod sensors;
+pub mod table;
 pub mod vision;
 
 use tenax_plot::sheet::{Sheet, draw};

@@ -42,7 +42,18 @@ impl Story {
 
     /// The scene of this story in this session. Fails if a drawn number is none that a scene may have.
     pub fn scene_in(self, session: &Session, rng: &mut ChaCha8Rng) -> anyhow::Result<SceneFile> {
-        let (scene, duration_s) = self.told(session, rng)?;
+        self.edited_in(session, rng, |_| ())
+    }
+
+    /// The same, and whatever else `edit` does to the file. Fails if a number is none that a scene may have.
+    pub fn edited_in(
+        self,
+        session: &Session,
+        rng: &mut ChaCha8Rng,
+        edit: impl FnOnce(&mut Table),
+    ) -> anyhow::Result<SceneFile> {
+        let (mut scene, duration_s) = self.told(session, rng)?;
+        edit(&mut scene);
         finish(scene, duration_s, &format!("{} in {}", self.scene(), session.name))
     }
 

@@ -26,7 +26,7 @@ impl Display for Text<'_> {
             )?;
             writeln!(
                 f,
-                "  {:<20}{:.0} missed, {:.0} false (the paper: 103 and 36)",
+                "  {:<20}{:.0} missed, {:.0} false",
                 "in 2800 steps", pour.missed_2800, pour.false_2800
             )?;
             if let Some(caught) = pour.caught_50ms {

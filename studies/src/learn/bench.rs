@@ -156,6 +156,13 @@ impl Bench {
         Ok((normaliser, network.weights(), more))
     }
 
+    /// What it has learned, as the board keeps it. Fails by a bug alone.
+    pub fn snapshot(&self) -> anyhow::Result<Vec<u8>> {
+        let mut bytes = [0; hebbian::SNAPSHOT_LENGTH];
+        let kept = self.fingertip.learned();
+        Ok(kept.write(&mut bytes).context("a snapshot of another length")?.to_vec())
+    }
+
     /// How unlike the films are, standard deviation over mean: their maxima, and their weights of o1.
     /// Fails by a bug alone: what was learned can be restored.
     pub fn films_apart(&self) -> anyhow::Result<[f64; 2]> {

@@ -129,6 +129,20 @@ impl Finger {
         Ok(SceneFile::parse(&toml::to_string(&scene)?, name)?)
     }
 
+    /// Its friction, static and dynamic.
+    pub const fn friction(&self) -> [f64; 2] {
+        [self.mu_s, self.mu_d]
+    }
+
+    /// Puts its films, gauges, skin and friction in the place of a scene's.
+    pub fn put_on(&self, scene: &mut toml::Table) {
+        let friction = [("contact.mu_s", self.mu_s), ("contact.mu_d", self.mu_d)];
+        for (place, value) in self.changes.iter().chain(&friction) {
+            // Of two parts, so there is nothing that could be missing.
+            let _is_there = set(scene, place, *value);
+        }
+    }
+
     /// The same finger with one more number of its scenes changed.
     pub fn with(mut self, change: Change) -> Self {
         self.changes.retain(|(place, _)| *place != change.0);

@@ -15,7 +15,7 @@ use tenax_bench::scorer::{Card, Doing, Stretch};
 
 const SCENE: &str = "hold";
 /// The block is in the air and the hand still, s.
-const FROM_S: f64 = 4.0;
+pub const FROM_S: f64 = 4.0;
 /// What happens in a minute, and how often.
 const KNOCKS: u32 = 6;
 const SWINGS: u32 = 2;
@@ -88,7 +88,7 @@ pub fn hold(
 }
 
 fn one(finger: &Finger, learned: &Bench, seed: u64) -> anyhow::Result<Holding> {
-    let scene = minute(finger, seed)?;
+    let scene = minute(finger, seed, true)?;
     let mut bench = learned.clone();
     let mut trial = Trial::default();
     let world = World::seeded(&scene, Seeds { making: finger.making, noise: seed });
@@ -106,8 +106,8 @@ fn one(finger: &Finger, learned: &Bench, seed: u64) -> anyhow::Result<Holding> {
     })
 }
 
-/// A minute by chance.
-fn minute(finger: &Finger, seed: u64) -> anyhow::Result<SceneFile> {
+/// A minute by chance; without disturbances nothing happens in it. Fails if the scene cannot be made.
+pub fn minute(finger: &Finger, seed: u64, disturbed: bool) -> anyhow::Result<SceneFile> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut between = |low: f64, high: f64| rng.random_range(low..high);
     // One after the other, so that no two are on top of each other.
@@ -151,12 +151,12 @@ fn minute(finger: &Finger, seed: u64) -> anyhow::Result<SceneFile> {
         seed,
         &[("command.grip.for_s", (2.0 + 16.7 * finger.force()) / 24.0)],
         |scene| {
-            edited(scene, "knock", knocks);
-            edited(scene, "swing", swings);
+            edited(scene, "knock", if disturbed { knocks } else { Vec::new() });
+            edited(scene, "swing", if disturbed { swings } else { Vec::new() });
             let commands = scene.get_mut("command").and_then(toml::Value::as_array_mut);
             if let Some(commands) = commands {
                 commands.truncate(2);
-                commands.extend(runs.into_iter().map(Into::into));
+                commands.extend(runs.into_iter().filter(|_| disturbed).map(Into::into));
             }
         },
     )

@@ -109,7 +109,7 @@ impl Score {
     }
 }
 
-/// For programs: these keys, and no others (`docs/hebbian.md`).
+/// For programs: these keys, and no others.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// Held-out trials.

@@ -7,9 +7,12 @@ use std::sync::OnceLock;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use tenax_bench::board::emulated::kernels::{self, Answer, Cost, Kernels};
+use tenax_bench::image::timing::Flash;
 use tenax_bench::labelled::{self, Part, library};
 use tenax_hal_shim::channel::SAMPLE_MAX;
 use tenax_logic::array::{Reading, ShippedDetector};
+use tenax_studies::chart::table::costs::{Costs, Kernel};
+use tenax_studies::chart::table::rivals;
 use tenax_studies::dataset::{Dataset, Label, Plan};
 use tenax_studies::evaluate::core;
 
@@ -101,4 +104,50 @@ fn kernels_cost_no_more_than_promised() {
     assert!(most("head_sample") <= 150);
     // A hundredth of what the core executes in 12.5 ms, at one instruction a cycle.
     assert!(most("slow_frame") <= 12_500);
+}
+
+/// Prints what the table's kernels take. Their cycles lie where they must: at least one for an instruction.
+#[test]
+fn every_row_of_the_table_has_its_costs() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package is in the workspace");
+    let costs = Costs::counted(root).unwrap();
+    for (name, Kernel { per_s, mean, max, cycles, code, constants, state }) in &costs.0 {
+        let flash = code.values().sum::<u64>() + constants;
+        println!("{name:<14}{per_s:>8.0}/s{mean:>9.1}{max:>8} {cycles:.0?} flash {flash} RAM {state}");
+        if let Some([least, likely, most]) = *cycles {
+            assert!(0.8 * mean < least && least <= likely && likely <= most && most < 4.0 * mean, "{name}");
+        }
+    }
+    for row in rivals::rows() {
+        let cost = costs.of(row.kernels, row.per_s).expect(&row.name);
+        println!("{:<24}{cost:.0?}", row.name);
+        assert!(cost.instructions_mean > 1.0 && cost.instructions_max as f64 >= cost.instructions_mean);
+    }
+    let of = |kernels: &[&str]| costs.of(kernels, 2_000).unwrap();
+    // What two share is there once.
+    let (one, both) = (of(&["films", "s1"]), of(&["films", "s1", "gauges", "hebbian"]));
+    assert!(one.instructions_mean < both.instructions_mean && both.ram_bytes > one.ram_bytes);
+    assert!(costs.of(&["no such kernel"], 2_000).is_none());
+}
+
+/// Cycles that others have published, beside the estimate. Their sources are not in this tree: `TENAX_PUBLISHED` names a CSV file
+/// (elf,kernel,cycles, then the flash: line,lines,literals,waits,ahead) of images with the mailbox's symbols; without it this is skipped.
+#[test]
+fn published_cycles_are_met() {
+    let Some(table) = std::env::var_os("TENAX_PUBLISHED") else {
+        println!("skipped: TENAX_PUBLISHED is not set");
+        return;
+    };
+    for row in std::fs::read_to_string(table).unwrap().lines().skip(1) {
+        let [elf, kernel, numbers @ ..] = &row.split(',').collect::<Vec<_>>()[..] else { panic!("{row}") };
+        let numbers: Vec<u64> = numbers.iter().map(|number| number.parse().unwrap()).collect();
+        let [published, line, lines, literals, waits, ahead] = numbers[..] else { panic!("{row}") };
+        let flash = Flash { line, kept: [lines as usize, literals as usize], waits, ahead: ahead != 0 };
+        let [least, likely, most] = kernels::cycles::of_image(Path::new(elf), flash).unwrap()[*kernel];
+        let off = 100.0 * (likely / published as f64 - 1.0);
+        println!(
+            "{kernel}: {likely:.0} ({least:.0} to {most:.0}), published {published}: {off:+.1} %; {flash:?}"
+        );
+        assert!(least <= likely && likely <= most, "{kernel}");
+    }
 }

@@ -5,8 +5,10 @@
 //! watched, and the difference of the instruction counts there is what each cost ([`meter`]).
 
 mod bench;
+pub mod cycles;
 mod meter;
 
+use std::collections::BTreeMap;
 use std::num::NonZeroU64;
 use std::path::Path;
 use std::sync::mpsc;
@@ -18,11 +20,14 @@ use rigless::emulator::{self, Finished, Start, Watch};
 use rigless::image::Image;
 use rigless::session::Session;
 use rigless::time::VirtualNanos;
+use tenax_hal_shim::frame::Frame;
 use tenax_logic::array::{ArrayDetector, ArrayVerdict, Features, Reading};
 
 use self::bench::Bench;
+use self::cycles::Tracer;
 use self::meter::Meters;
 use crate::image::kernels::KernelSymbols;
+use crate::image::timing::Flash;
 use tenax_board_model::Models;
 use tenax_board_model::line::Line;
 use tenax_board_model::nucleo::Nucleo;
@@ -69,12 +74,14 @@ pub enum Kernels {
 }
 
 /// What a run gave.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outcome {
     /// For each recording, for each reading.
     pub answers: Vec<Vec<Answer>>,
     /// Every kernel that ran, by name.
     pub costs: Vec<Cost>,
+    /// Least, likely and most cycles of those that were followed.
+    pub cycles: BTreeMap<String, [f64; 3]>,
 }
 
 /// Puts recordings through the detector of the kernels' `image`
@@ -88,10 +95,36 @@ pub fn run(
     kernels: Kernels,
     progress: &mut dyn FnMut(usize),
 ) -> Result<Outcome> {
+    run_frames(image, recordings, &[], kernels, progress)
+}
+
+/// The same, and then `frames` through the other detectors' kernels, one after the other.
+pub fn run_frames(
+    image: &Path,
+    recordings: &[Vec<Reading>],
+    frames: &[Frame],
+    kernels: Kernels,
+    progress: &mut dyn FnMut(usize),
+) -> Result<Outcome> {
+    followed(image, recordings, frames, None, kernels, progress)
+}
+
+/// The same; from so many readings and frames on, kernels are followed one instruction at a time, in this flash.
+fn followed(
+    image: &Path,
+    recordings: &[Vec<Reading>],
+    frames: &[Frame],
+    from: Option<(usize, Flash)>,
+    kernels: Kernels,
+    progress: &mut dyn FnMut(usize),
+) -> Result<Outcome> {
     let symbols = KernelSymbols::read(image)?;
     let images = [Image::read(image, None).context("reading the image")?];
     let (sender, reports) = mpsc::channel();
-    let bench = Bench::new(&symbols, recordings, kernels, sender);
+    let bench = Bench::new(&symbols, recordings, frames, kernels, sender).following(match from {
+        Some((from, flash)) => Some((from, Tracer::new(image, &symbols, flash)?)),
+        None => None,
+    });
     // The emulator keeps its driver for itself, so it runs on a thread of its own and reports to this one.
     let finished = std::thread::scope(|scope| {
         let emulator = scope.spawn(|| execute(&images, &symbols, bench));

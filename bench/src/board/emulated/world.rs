@@ -17,6 +17,7 @@ use tenax_scene::plant::Plant;
 use super::Broken;
 use super::commands::Commands;
 use super::cost::{CostMeter, stack_used};
+use super::kernels::cycles::Followed;
 use super::mishaps::Mishaps;
 use super::wires::Wires;
 use crate::board::TickCost;
@@ -56,6 +57,8 @@ pub struct World {
     pub broken: Option<Broken>,
     /// What the ticks cost.
     pub cost: CostMeter,
+    /// Who follows some ticks instruction by instruction, if anybody does.
+    pub followed: Option<Followed>,
     /// What was sent, and when it was taken.
     pub commands: Commands,
     /// The flash's words.
@@ -97,6 +100,7 @@ impl World {
             stack_bytes: None,
             broken: None,
             cost,
+            followed: None,
             commands: Commands::default(),
             flash,
             scans: frames as usize * SCANS_PER_FRAME,
@@ -196,7 +200,14 @@ impl Driver<Nucleo> for World {
             Settled::Hit(hit) if hit.address == self.command_entry => {
                 self.commands.take(self.cost.ticks() as u32)
             }
-            Settled::Hit(hit) => self.cost.hit(hit),
+            Settled::Hit(hit) => {
+                if self.cost.watched().contains(&hit.address) {
+                    self.cost.hit(hit);
+                }
+                if let Some(followed) = &mut self.followed {
+                    followed.hit(hit.address, self.cost.ticks(), session);
+                }
+            }
             Settled::Access { access, .. } => self.flash.accessed(&access, session, host),
             Settled::Stop(stop) => self.flash.stopped(stop, session, host),
             _ => {}

@@ -2,12 +2,14 @@
 
 use std::sync::mpsc::Sender;
 
-use rigless::emulator::{Driver, Error, Host, Settled, Stop};
+use rigless::emulator::{Driver, Error, Host, Settled, Stop, Watch};
 use rigless::session::Session;
 use rigless::soc::Width;
 use rigless::time::VirtualNanos;
+use tenax_hal_shim::frame::Frame;
 use tenax_logic::array::{ArrayVerdict, FEATURES, Reading};
 
+use super::cycles::Tracer;
 use super::meter::Meters;
 use super::{Answer, Evidence, Kernels, Nucleo, Outcome};
 use crate::image::kernels::KernelSymbols;
@@ -35,6 +37,8 @@ pub struct Bench {
     /// Each with its recording, and whether it is the recording's first.
     readings: Vec<(usize, bool, Reading)>,
     everything: bool,
+    /// After the readings.
+    frames: Vec<Frame>,
     /// How many have been given to the core.
     fed: usize,
     outcome: Outcome,
@@ -42,12 +46,15 @@ pub struct Bench {
     done: bool,
     looks: u32,
     progress: Option<Sender<usize>>,
+    /// From when on it follows.
+    follow: Option<(usize, Tracer)>,
 }
 
 impl Bench {
     pub fn new(
         symbols: &KernelSymbols,
         recordings: &[Vec<Reading>],
+        frames: &[Frame],
         kernels: Kernels,
         progress: Sender<usize>,
     ) -> Self {
@@ -58,13 +65,20 @@ impl Bench {
             symbols: symbols.clone(),
             readings: readings.collect(),
             everything: kernels == Kernels::All,
+            frames: frames.to_vec(),
             fed: 0,
-            outcome: Outcome { answers: vec![Vec::new(); recordings.len()], costs: Vec::new() },
+            outcome: Outcome { answers: vec![Vec::new(); recordings.len()], ..Outcome::default() },
             meters: Meters::new(symbols),
             done: false,
             looks: 0,
             progress: Some(progress),
+            follow: None,
         }
+    }
+
+    /// The same, following the kernels from so many readings and frames on.
+    pub fn following(self, follow: Option<(usize, Tracer)>) -> Self {
+        Self { follow, ..self }
     }
 
     /// Whether every reading was answered.
@@ -82,7 +96,8 @@ impl Bench {
     }
 
     pub fn into_outcome(self) -> Outcome {
-        Outcome { costs: self.meters.into_costs(), ..self.outcome }
+        let cycles = self.follow.map(|(_, tracer)| tracer.means()).unwrap_or_default();
+        Outcome { costs: self.meters.into_costs(), cycles, ..self.outcome }
     }
 
     /// The core stands at the mailbox: takes the answer to the last reading out, puts the next one in.
@@ -94,8 +109,7 @@ impl Bench {
             self.outcome.answers[recording].push(answer);
         }
         let Some((_, first, reading)) = self.readings.get(self.fed) else {
-            self.done = true;
-            return Ok(());
+            return self.exchange_frame(host);
         };
         for (element, sample) in reading.iter().enumerate() {
             let at = self.symbols.reading + 2 * element as u64;
@@ -108,6 +122,22 @@ impl Bench {
             // Nobody listening is no reason to stop.
             let _ = progress.send(self.fed);
         }
+        Ok(())
+    }
+
+    /// Puts the next frame in; the core answers nothing to it.
+    fn exchange_frame(&mut self, host: &mut dyn Host) -> Result<(), Error> {
+        let next = self.frames.get(self.fed - self.readings.len());
+        let (Some(frame), Some([samples_at, comes])) = (next, self.symbols.frame) else {
+            self.done = true;
+            return Ok(());
+        };
+        let samples = frame.pvdf.into_iter().chain([frame.switch_a, frame.switch_b]);
+        for (n, sample) in samples.enumerate() {
+            host.write(samples_at + 2 * n as u64, Width::W16, u64::from(sample))?;
+        }
+        host.write(comes, Width::W32, 1)?;
+        self.fed += 1;
         Ok(())
     }
 
@@ -131,12 +161,18 @@ impl Bench {
 }
 
 impl Driver<Nucleo> for Bench {
-    fn on_settled(&mut self, _session: &mut Session<Nucleo>, host: &mut dyn Host, settled: Settled) {
+    fn on_settled(&mut self, session: &mut Session<Nucleo>, host: &mut dyn Host, settled: Settled) {
         let Settled::Hit(hit) = settled else { return };
         if self.done {
             return;
         }
         self.meters.hit(hit);
+        if let Some((from, tracer)) = self.follow.as_mut().filter(|(from, _)| self.fed >= *from) {
+            tracer.hit(hit.address);
+            if hit.address == self.symbols.next && self.fed == *from {
+                tracer.watched().for_each(|address| session.watch(Watch::Instruction(address)));
+            }
+        }
         if hit.address == self.symbols.next {
             self.exchange(host).expect("the mailbox is in the image's memory");
         }
