@@ -20,7 +20,7 @@ use tenax_hal_shim::wire::TickRecord;
 
 use self::channel_mask::ChannelMask;
 pub(crate) use self::film::Q;
-use self::film::{ENVELOPE, Film, Levels};
+use self::film::{Band, ENVELOPE, Film, Levels};
 use self::hum::{Mains, Turn};
 use self::sliding::{Hand, Sliding};
 use crate::vibration::settings::VibrationConfig;
@@ -61,6 +61,7 @@ pub struct Vibration {
 #[derive(Clone, Debug, Default)]
 pub struct VibrationDetector {
     films: [Film; PVDF_COUNT],
+    band: Band,
     mains: Mains,
     envelopes: [i32; PVDF_COUNT],
     /// Whether no film waits for its first sample.
@@ -133,7 +134,7 @@ impl VibrationDetector {
     fn process_all(&mut self, samples: &[u16; PVDF_COUNT], mains: Turn) -> Levels {
         let mut loudest = Levels::default();
         for ((film, own), &sample) in self.films.iter_mut().zip(&mut self.envelopes).zip(samples) {
-            let levels = film.process(sample, mains);
+            let levels = film.process(&self.band, sample, mains);
             *own = levels.envelope;
             loudest.raise(levels);
         }
@@ -161,7 +162,7 @@ impl VibrationDetector {
                 continue;
             }
             film.prime(sample);
-            let levels = film.process(sample, mains);
+            let levels = film.process(&self.band, sample, mains);
             if trust == Trust::Full {
                 *own = levels.envelope;
                 loudest.raise(levels);
