@@ -20,9 +20,9 @@ pub struct Pour {
     pub caught_50ms: Option<f64>,
     /// Detections that belong to no slip, an hour.
     pub false_per_hour: f64,
-    /// Missed steps in 2800 (the paper: 103 with look-back, 162 without).
+    /// Missed steps in 2800.
     pub missed_2800: f64,
-    /// False ones in 2800 (the paper: 36 with look-back, 47 without).
+    /// False ones in 2800.
     pub false_2800: f64,
     pub steps: usize,
     /// Macro slips.
