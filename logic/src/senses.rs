@@ -372,10 +372,7 @@ impl Senses {
                 report(journal, channel, change);
             }
             MYO_FLEXOR..=MYO_EXTENSOR => self.muscle(channel - MYO_FLEXOR, sample, journal),
-            _ => {
-                let change = self.motor.read(channel, sample);
-                report(journal, channel, change);
-            }
+            _ => self.motor.take(channel, Some(sample)),
         }
     }
 
@@ -398,7 +395,7 @@ impl Senses {
                     self.gate.take(self.muscles.verdict());
                 }
             }
-            OPENING..COUNT => self.motor.miss(channel),
+            OPENING..COUNT => self.motor.take(channel, None),
             _ => {}
         }
     }
@@ -433,7 +430,7 @@ impl Senses {
 }
 
 /// Says what changed with a sensor. A converter has far fewer channels than a `u8` has values.
-fn report(journal: &mut Journal, channel: usize, change: Option<Change>) {
+pub fn report(journal: &mut Journal, channel: usize, change: Option<Change>) {
     let channel = channel as u8;
     match change {
         Some(Change::Lost(reason)) => journal.fault(Fault::SensorLost { channel, reason }),
