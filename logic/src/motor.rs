@@ -28,8 +28,7 @@ use tenax_hal_shim::words::{MotorStop, Reason};
 use self::settings::MotorConfig;
 use crate::arming::STEP_FRAMES;
 use crate::health::{Change, Limits, SensorHealth};
-use crate::journal::Journal;
-use crate::senses::report;
+use crate::journal::{Journal, report};
 
 /// Looks at the drive in a slow frame.
 const STEPS: u32 = FRAMES_PER_SLOW_FRAME as u32 / STEP_FRAMES;

@@ -21,7 +21,7 @@ use crate::force::ForceSensor;
 use crate::gate::Gate;
 use crate::grip::Grip;
 use crate::health::{Change, Limits, SensorHealth};
-use crate::journal::Journal;
+use crate::journal::{Journal, report};
 use crate::motor::Motor;
 use crate::muscles::Muscles;
 use crate::photoelastic::Head;
@@ -426,16 +426,6 @@ impl Senses {
                 });
             }
         }
-    }
-}
-
-/// Says what changed with a sensor. A converter has far fewer channels than a `u8` has values.
-pub fn report(journal: &mut Journal, channel: usize, change: Option<Change>) {
-    let channel = channel as u8;
-    match change {
-        Some(Change::Lost(reason)) => journal.fault(Fault::SensorLost { channel, reason }),
-        Some(Change::Back) => journal.fault(Fault::SensorBack { channel }),
-        None => {}
     }
 }
 
