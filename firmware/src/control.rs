@@ -130,11 +130,14 @@ impl Control {
     }
 }
 
-/// A tick in which frames or readings may be sent, or that ends a slow frame, has no room for a command and its answer as well,
-/// streamed or not.
+/// A tick in which frames or readings may be sent, that ends a slow frame, or after which muscles and films are thought about (7000
+/// instructions where a spectrum is due) or a record is made (every setting), has no room for a command and its answer as well, streamed
+/// or not.
 fn has_room_for_command(frame: &Frame) -> bool {
     let slot = frame.slot();
-    !usize::from(slot).is_multiple_of(FRAMES_PER_RAW) && slot != SENSES_SLOT && !frame.ends_slow_frame()
+    !usize::from(slot).is_multiple_of(FRAMES_PER_RAW)
+        && ![SENSES_SLOT, slot_of(Job::Think), slot_of(Job::Save)].contains(&slot)
+        && !frame.ends_slow_frame()
 }
 
 /// One tick of the logic. Not inlined, so that the emulated board can count its instructions by this name.

@@ -5,6 +5,8 @@ use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::wire::{Event, EventKind, SamplesSum, TickRecord};
 use tenax_hal_shim::words::{Cause, Fault, GripMode};
 
+use crate::health::Change;
+
 /// Events kept until they are taken: more than all sensors failing at once.
 const EVENTS: usize = 32;
 
@@ -79,5 +81,15 @@ impl Journal {
             let lost = core::mem::take(&mut self.events_lost);
             (lost > 0).then_some(Event { frame: self.frame, kind: EventKind::EventsLost(lost) })
         })
+    }
+}
+
+/// Says what changed with a sensor. A converter has far fewer channels than a `u8` has values.
+pub fn report(journal: &mut Journal, channel: usize, change: Option<Change>) {
+    let channel = channel as u8;
+    match change {
+        Some(Change::Lost(reason)) => journal.fault(Fault::SensorLost { channel, reason }),
+        Some(Change::Back) => journal.fault(Fault::SensorBack { channel }),
+        None => {}
     }
 }

@@ -23,12 +23,12 @@ use tenax_hal_shim::channel::{
 use tenax_hal_shim::front_end::MOTOR_MV_PER_A;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::EventKind;
-use tenax_hal_shim::words::{Fault, MotorStop, Reason};
+use tenax_hal_shim::words::{MotorStop, Reason};
 
 use self::settings::MotorConfig;
 use crate::arming::STEP_FRAMES;
 use crate::health::{Change, Limits, SensorHealth};
-use crate::journal::Journal;
+use crate::journal::{Journal, report};
 
 /// Looks at the drive in a slow frame.
 const STEPS: u32 = FRAMES_PER_SLOW_FRAME as u32 / STEP_FRAMES;
@@ -59,8 +59,17 @@ const REST: u16 = sample_from_mv(CHANNELS[MOTOR_CURRENT].rest_mv);
 #[derive(Clone, Debug, Default)]
 struct Sensor {
     health: SensorHealth,
-    /// Of this cycle, None where there is none.
-    reading: Option<u16>,
+    /// Of this cycle, None where its frame was lost.
+    sample: Option<u16>,
+}
+
+impl Sensor {
+    /// The reading of this cycle, None where there is none.
+    fn reading(&mut self, channel: usize, journal: &mut Journal) -> Option<u16> {
+        let (reading, change) = self.health.take(&LIMITS, self.sample?);
+        report(journal, channel, change);
+        reading.ok()
+    }
 }
 
 /// What is known of the motor, and whether it may be driven.
@@ -85,6 +94,8 @@ pub struct Motor {
     hot: bool,
     /// The least duty that may close and open, per mille.
     least: [u16; 2],
+    /// Any of it is not 0: nearly never.
+    is_barred: bool,
     told: Option<MotorStop>,
     /// The bridge says that it has switched itself off.
     bridge_is_off: bool,
@@ -96,21 +107,11 @@ pub struct Motor {
 }
 
 impl Motor {
-    /// Takes a reading of the motor's current or of the opening.
-    pub fn read(&mut self, channel: usize, sample: u16) -> Option<Change> {
-        let sensor = self.sensor(channel);
-        let (reading, change) = sensor.health.take(&LIMITS, sample);
-        sensor.reading = reading.ok();
-        change
-    }
-
-    /// The frame that shows this channel was lost.
-    pub const fn miss(&mut self, channel: usize) {
-        self.sensor(channel).reading = None;
-    }
-
-    const fn sensor(&mut self, channel: usize) -> &mut Sensor {
-        if channel == OPENING { &mut self.opening } else { &mut self.current }
+    /// Takes a reading of the motor's current or of the opening, None if the frame that shows it was lost. Judged later: the array has work
+    /// in the same slots.
+    pub const fn take(&mut self, channel: usize, sample: Option<u16>) {
+        let sensor = if channel == OPENING { &mut self.opening } else { &mut self.current };
+        sensor.sample = sample;
     }
 
     /// Whether the bridge says that it has switched itself off, until this says otherwise.
@@ -120,7 +121,13 @@ impl Motor {
 
     /// Whether it may be driven so.
     #[must_use]
+    #[inline]
     pub const fn allows(&self, drive: MotorDrive) -> bool {
+        !self.is_barred || self.is_allowed(drive)
+    }
+
+    #[inline(never)]
+    const fn is_allowed(&self, drive: MotorDrive) -> bool {
         match drive {
             MotorDrive::Coast => true,
             MotorDrive::Close(duty) => duty.as_per_mille() >= self.least[0],
@@ -157,7 +164,7 @@ impl Motor {
         self.idle = if duty > 0 { 0 } else { self.idle.saturating_add(1) };
         let stall_ma = u32::from(config.stall_ma);
         let ma = self.current_ma(stall_ma, journal);
-        let moved = self.moved();
+        let moved = self.moved(journal);
         self.warm(u32::from(config.limit_ma), stall_ma, ma, moved, duty);
 
         // Of a blocked motor the winding has this much, and the pin shows a part of it that is the duty.
@@ -205,6 +212,7 @@ impl Motor {
         if self.hot {
             self.least[0] = u16::MAX;
         }
+        self.is_barred = self.hot || self.stalled;
     }
 
     fn tell(&mut self, journal: &mut Journal) {
@@ -223,29 +231,29 @@ impl Motor {
 
     /// The current that the pin shows, mA. None where the sensor gives no number, or one that cannot be.
     fn current_ma(&mut self, stall_ma: u32, journal: &mut Journal) -> Option<u32> {
-        let ma = (u32::from(self.current.reading?.saturating_sub(REST)) * MA_Q14) >> 14;
+        let reading = self.current.reading(MOTOR_CURRENT, journal)?;
+        let ma = (u32::from(reading.saturating_sub(REST)) * MA_Q14) >> 14;
         if self.idle >= IDLE_CYCLES {
             self.odd = if 8 * ma > stall_ma {
                 self.odd.saturating_add(1).min(ODD_CYCLES)
             } else {
                 self.odd.saturating_sub(1)
             };
-            let channel = MOTOR_CURRENT as u8;
             if !self.contradicts && self.odd == ODD_CYCLES {
                 // Whatever it has said of the heat was wrong as well.
                 (self.contradicts, self.heat) = (true, self.heat / 16);
-                journal.fault(Fault::SensorLost { channel, reason: Reason::Creep });
+                report(journal, MOTOR_CURRENT, Some(Change::Lost(Reason::Creep)));
             } else if self.contradicts && self.odd == 0 {
                 self.contradicts = false;
-                journal.fault(Fault::SensorBack { channel });
+                report(journal, MOTOR_CURRENT, Some(Change::Back));
             }
         }
         (!self.contradicts).then_some(ma)
     }
 
     /// Whether the fingers have moved since the last cycle. None while the opening gives no number.
-    fn moved(&mut self) -> Option<bool> {
-        let opening = self.opening.reading?;
+    fn moved(&mut self, journal: &mut Journal) -> Option<bool> {
+        let opening = self.opening.reading(OPENING, journal)?;
         let moved = opening.abs_diff(self.stood) > MOVED;
         if moved {
             self.stood = opening;

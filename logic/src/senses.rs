@@ -21,7 +21,7 @@ use crate::force::ForceSensor;
 use crate::gate::Gate;
 use crate::grip::Grip;
 use crate::health::{Change, Limits, SensorHealth};
-use crate::journal::Journal;
+use crate::journal::{Journal, report};
 use crate::motor::Motor;
 use crate::muscles::Muscles;
 use crate::photoelastic::Head;
@@ -372,10 +372,7 @@ impl Senses {
                 report(journal, channel, change);
             }
             MYO_FLEXOR..=MYO_EXTENSOR => self.muscle(channel - MYO_FLEXOR, sample, journal),
-            _ => {
-                let change = self.motor.read(channel, sample);
-                report(journal, channel, change);
-            }
+            _ => self.motor.take(channel, Some(sample)),
         }
     }
 
@@ -398,7 +395,7 @@ impl Senses {
                     self.gate.take(self.muscles.verdict());
                 }
             }
-            OPENING..COUNT => self.motor.miss(channel),
+            OPENING..COUNT => self.motor.take(channel, None),
             _ => {}
         }
     }
@@ -429,16 +426,6 @@ impl Senses {
                 });
             }
         }
-    }
-}
-
-/// Says what changed with a sensor. A converter has far fewer channels than a `u8` has values.
-fn report(journal: &mut Journal, channel: usize, change: Option<Change>) {
-    let channel = channel as u8;
-    match change {
-        Some(Change::Lost(reason)) => journal.fault(Fault::SensorLost { channel, reason }),
-        Some(Change::Back) => journal.fault(Fault::SensorBack { channel }),
-        None => {}
     }
 }
 

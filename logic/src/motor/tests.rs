@@ -2,6 +2,7 @@ use super::*;
 use crate::config::Config;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::Duty;
+use tenax_hal_shim::words::Fault;
 
 /// A motor whose fingers and current are set by hand: 14-bit samples with noise of +-2.
 struct Bench {
@@ -74,13 +75,8 @@ impl Bench {
             [(OPENING, self.opening_pin_mv, self.opening_mv), (MOTOR_CURRENT, self.current_pin_mv, shown_mv)]
         {
             let sample = self.sample(mv);
-            let change = self.motor.read(channel, pin_mv.map_or(sample, |mv| sample_from_mv(mv as u32)));
-            if let Some(Change::Lost(reason)) = change {
-                self.journal.fault(Fault::SensorLost { channel: channel as u8, reason });
-            }
-        }
-        if let Some(channel) = self.missed {
-            self.motor.miss(channel);
+            let sample = pin_mv.map_or(sample, |mv| sample_from_mv(mv as u32));
+            self.motor.take(channel, (self.missed != Some(channel)).then_some(sample));
         }
         self.cycle += 1;
         self.journal.begin(&Frame::lost(self.cycle));
