@@ -165,6 +165,12 @@ impl Emg {
         self.verdict
     }
 
+    /// Both electrodes as they were decided on, flexor first: for who fits what follows from them.
+    #[must_use]
+    pub const fn electrodes(&self) -> [Electrode; 2] {
+        self.electrodes
+    }
+
     /// Whether a channel is active: 0 the flexor's, others the extensor's.
     #[must_use]
     pub fn is_active(&self, channel: usize) -> bool {

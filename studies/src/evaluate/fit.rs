@@ -15,7 +15,8 @@ use serde::Serialize;
 use tenax_logic::emg::constants::Fitted;
 use tenax_logic::emg::fitted::FITTED;
 
-use super::emg::{self, Days, Person, Score, people, person};
+use super::emg::recordings::Days;
+use super::emg::{self, Person, Recordings, Score, person};
 
 /// What a person's scores cost: windows that are not right, and those the wrong way, unanswered and false motions, which annoy more
 /// than their share, and what is late.
@@ -94,7 +95,7 @@ fn search(
 /// # Errors
 /// If there are not at least two people, or a recording cannot be read.
 pub fn fit(folder: &Path, rounds: u32, seed: u64, part: &(dyn Fn(f64) + Sync)) -> anyhow::Result<Report> {
-    let people = people(folder, None)?;
+    let Recordings { people, .. } = Recordings::read(folder, None)?;
     ensure!(people.len() > 1, "{}: one person is not enough to hold one apart", folder.display());
     let all: Vec<(u32, &Days)> = people.iter().map(|(number, days)| (*number, days)).collect();
     let done = AtomicU32::new(0);
