@@ -2,6 +2,7 @@
 //!
 //! Two kinds of [recordings]: sessions of minutes with labels, and [short ones](two_channel) that are named by their movement.
 
+pub mod faults;
 pub(super) mod recordings;
 pub(super) mod score;
 pub(super) mod trial;
@@ -20,7 +21,7 @@ use tenax_logic::emg::fitted::FITTED;
 use self::recordings::{Days, Recording, numbers};
 pub use self::score::Score;
 use self::score::Count;
-use self::trial::{Kind, Trials};
+use self::trial::{Kind, Trial, Trials};
 use self::two_channel::Session;
 
 /// One person.
@@ -53,6 +54,8 @@ pub struct Report {
     pub refused_part: f64,
     /// Each by itself.
     pub persons: Vec<Person>,
+    /// Faults drawn over everybody, where that was asked for.
+    pub faults: Option<faults::Report>,
     /// Short recordings of a movement each.
     pub two_channel: Vec<two_channel::Report>,
 }
@@ -72,6 +75,7 @@ impl Report {
             first_day_kept: of(|person| person.first_day_kept),
             refused_part: refused as f64 / sessions.max(1) as f64,
             persons,
+            faults: None,
             two_channel: Vec::new(),
         }
     }
@@ -131,15 +135,19 @@ fn csv_files(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// Scores everybody in a folder, or one person.
+/// Scores everybody in a folder, or one person; and so many faults drawn over them.
 ///
 /// # Errors
 /// If nothing is there or a recording cannot be read.
-pub fn evaluate(folder: &Path, only: Option<u32>) -> anyhow::Result<Report> {
+pub fn evaluate(folder: &Path, only: Option<u32>, faults: u32, seed: u64) -> anyhow::Result<Report> {
     let all = Recordings::read(folder, only)?;
+    let trials: Vec<Trial> = all.people.values().flat_map(|days| Trials::of(days).all).collect();
+    let faults = (faults > 0).then(|| {
+        faults::draw(&FITTED, &trials.iter().collect::<Vec<_>>(), faults, seed)
+    });
     let persons = all.people.par_iter().map(|(&number, days)| person(&FITTED, number, days)).collect();
     let two_channel = all.sessions.par_iter().map(|session| session.score(&FITTED)).collect();
-    Ok(Report { two_channel, ..Report::of(persons) })
+    Ok(Report { two_channel, faults, ..Report::of(persons) })
 }
 
 pub(super) fn person(fitted: &'static Fitted, number: u32, days: &Days) -> Person {
@@ -170,6 +178,9 @@ impl fmt::Display for Text<'_> {
         let Self(report) = self;
         for session in &report.two_channel {
             writeln!(f, "{session}")?;
+        }
+        if let Some(faults) = &report.faults {
+            writeln!(f, "{faults}")?;
         }
         if report.persons.is_empty() {
             return Ok(());
@@ -245,3 +256,4 @@ mod tests {
         assert_eq!(wishes(&trial.decide(&FITTED, &trial.hear())), wishes(&said), "what is fitted is what is played");
     }
 }
+pub fn diagnose(folder: &Path) { for (n, days) in &Recordings::read(folder, None).unwrap().people { trial::diagnose(days, *n); } }

@@ -19,7 +19,7 @@ use super::score::quantile;
 pub(super) const HZ: f64 = 100.0;
 /// Readings of a pair in a slow frame of 12.5 ms, s after its begin, and pairs a second.
 const AT_S: [f64; 3] = [0.005, 0.008, 0.011];
-const PAIRS_HZ: f64 = 240.0;
+pub(super) const PAIRS_HZ: f64 = 240.0;
 /// uV of a count.
 const UV: f64 = 2.8e6 / 32_767.0;
 pub(super) const REST: u8 = 1;
@@ -134,6 +134,24 @@ impl Recording {
             }
         }
         all
+    }
+
+    /// What was said of each pair of the whole recording, in each row.
+    pub(super) fn by_row<S: Copy + Default>(&self, mut said: impl Iterator<Item = S>) -> Vec<S> {
+        let mut rows = Vec::with_capacity(self.uv.len());
+        let mut last = S::default();
+        for slow in 0.. {
+            for at in AT_S {
+                let at = (f64::from(slow) / 80.0 + at) * HZ;
+                rows.resize(rows.len().max(at.ceil() as usize), last);
+                let Some(next) = said.next() else {
+                    rows.resize(self.uv.len(), last);
+                    return rows;
+                };
+                last = next;
+            }
+        }
+        rows
     }
 
     /// Calibrates as the hand does: each prompt is answered with what is given, over and over for its 5 s.

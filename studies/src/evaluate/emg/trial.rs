@@ -23,56 +23,44 @@ pub(in crate::evaluate) enum Kind {
 #[derive(Debug)]
 pub(in crate::evaluate) struct Trial<'a> {
     pub kind: Kind,
-    recording: &'a Recording,
-    sites: [usize; 2],
-    model: EmgModel,
+    pub(super) recording: &'a Recording,
+    pub(super) sites: [usize; 2],
+    pub(super) model: EmgModel,
 }
 
 impl Trial<'_> {
     /// What the hand says in each row.
     pub fn play(&self, fitted: &'static Fitted) -> Vec<Said> {
         let mut emg = Emg::of(Decide::with(fitted, Some(&self.model)));
-        self.said(|uv| {
+        let said = self.pairs().map(|uv| {
             let Verdict { wish, proven, .. } = emg.take(uv.map(Some));
             // What a spectrum would say names a doubt, and changes none.
             let doubted = (0..2).any(|channel| emg.quality(channel) != Quality::Good);
             Said { wish, proven, doubted }
-        })
+        });
+        self.recording.by_row(said)
+    }
+
+    fn pairs(&self) -> impl Iterator<Item = [i32; 2]> {
+        self.recording.pairs(0..self.recording.rows(), self.sites).into_iter().map(|(_, uv)| uv)
     }
 
     /// Both electrodes as they are decided on. They do not depend on what is fitted.
     pub fn hear(&self) -> Vec<[Electrode; 2]> {
         let mut emg = Emg::new(Some(&self.model));
-        let pairs = self.recording.pairs(0..self.recording.rows(), self.sites);
-        let hear = |(_, uv): (f64, [i32; 2])| {
+        let hear = |uv: [i32; 2]| {
             emg.take(uv.map(Some));
             emg.electrodes()
         };
-        pairs.into_iter().map(hear).collect()
+        self.pairs().map(hear).collect()
     }
 
     /// As [`play`](Self::play), of what was [heard](Self::hear), and without proofs and doubts: to fit.
     pub fn decide(&self, fitted: &'static Fitted, heard: &[[Electrode; 2]]) -> Vec<Said> {
         let mut decide = Decide::with(fitted, Some(&self.model));
-        let mut heard = heard.iter();
-        self.said(|_| {
-            let wish = heard.next().map(|electrodes| decide.take(electrodes)).unwrap_or_default();
-            Said { wish, ..Said::default() }
-        })
-    }
-
-    fn said(&self, mut say: impl FnMut([i32; 2]) -> Said) -> Vec<Said> {
-        let rows = self.recording.rows();
-        let mut said = Vec::with_capacity(rows);
-        let mut last = Said::default();
-        for (at, uv) in self.recording.pairs(0..rows, self.sites) {
-            while said.len() < at.ceil() as usize {
-                said.push(last);
-            }
-            last = say(uv);
-        }
-        said.resize(rows, last);
-        said
+        self.recording.by_row(
+            heard.iter().map(|electrodes| Said { wish: decide.take(electrodes), ..Said::default() }),
+        )
     }
 
     /// Adds what was said.
@@ -116,5 +104,50 @@ impl<'a> Trials<'a> {
             kept = kept.or(Some(own));
         }
         Self { all, refused }
+    }
+}
+
+pub fn diagnose(days: &Days, number: u32) {
+    for trial in Trials::of(days).all {
+        if trial.kind == Kind::FirstDayKept { continue; }
+        let said = trial.play(&tenax_logic::emg::fitted::FITTED);
+        let heard = trial.hear();
+        let rest = trial.model.rest();
+        let site = [trial.model.closing_site(), trial.model.opening_site()];
+        let level = |row: usize, n: usize| {
+            let k = (row as f64 * 2.4) as usize;
+            tenax_logic::emg::level::level_of(heard[k.min(heard.len()-1)][n].uv.unwrap_or(0))
+        };
+        let (c, o) = (trial.model.close(), trial.model.open());
+        println!("person {number} {:?} rest {:?} close {:?} open {:?} spread {:?} sep {}", trial.kind, rest, [c[site[0]]-rest[site[0]], c[site[1]]-rest[site[1]]], [o[site[0]]-rest[site[0]], o[site[1]]-rest[site[1]]], trial.model.spread(), trial.model.separation_permille());
+        let cr = c[site[1]] - c[site[0]];
+        let or = o[site[1]] - o[site[0]];
+        let show = |row: usize| {
+            let l = [level(row, site[0]), level(row, site[1])];
+            let sc = (l[0] - rest[site[0]]) * 100 / (c[site[0]] - rest[site[0]]);
+            let so = (l[1] - rest[site[1]]) * 100 / (o[site[1]] - rest[site[1]]);
+            let p = (l[1] - l[0] - cr) * 100 / (or - cr);
+            format!("{}{:?}/{:?}/{:?}", match said[row].wish { tenax_logic::emg::decide::Wish::Rest => 'r', tenax_logic::emg::decide::Wish::Close => 'c', _ => 'o' }, sc, so, p)
+        };
+        for (label, right) in [(3u8, tenax_logic::emg::decide::Wish::Close), (4, tenax_logic::emg::decide::Wish::Open)] {
+            for rows in trial.recording.contractions(label) {
+                let good = said[rows.start + 40..rows.end - 10].iter().filter(|s| s.wish == right).count();
+                let of = rows.len() - 50;
+                if good * 10 < of * 9 {
+                    let line: Vec<String> = (rows.start.saturating_sub(60)..rows.end + 40).step_by(20).map(|r| format!("{}{}", if r < rows.start {"-"} else if r > rows.end {"+"} else {""}, show(r.min(said.len()-1)))).collect();
+                    println!("  label {label} at {} {}: {good}/{of} {}", rows.start, rows.len(), line.join(" "));
+                }
+            }
+        }
+        for rows in trial.recording.rests() {
+            let mut before = tenax_logic::emg::decide::Wish::Rest;
+            for row in rows.clone() {
+                let wish = said[row].wish;
+                if wish != before && wish != tenax_logic::emg::decide::Wish::Rest {
+                    println!("  FALSE {wish:?} at {row} ({} after its begin, of {}): {}", row - rows.start, rows.len(), (row.saturating_sub(100)..(row+60).min(said.len())).step_by(20).map(show).collect::<Vec<_>>().join(" "));
+                }
+                before = wish;
+            }
+        }
     }
 }

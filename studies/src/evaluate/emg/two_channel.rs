@@ -15,7 +15,7 @@ use tenax_logic::emg::constants::Fitted;
 use tenax_logic::emg::decide::{Decide, Wish};
 use tenax_logic::emg::level::level_of;
 use tenax_logic::emg::mains::mains_of;
-use tenax_logic::emg::model::EmgModel;
+use tenax_logic::emg::model::{EmgModel, Refusal};
 use tenax_logic::emg::trust::Quality;
 use tenax_logic::emg::{Emg, Verdict};
 
@@ -46,6 +46,17 @@ pub struct Session {
     pub name: String,
     /// What was recorded.
     pub movements: Vec<Movement>,
+    calibrations: Vec<Calibrated>,
+}
+
+/// A choice of repetitions to calibrate from: rest, close, open.
+#[derive(Clone, Debug)]
+pub struct Calibrated {
+    choice: [usize; 3],
+    /// What came of it.
+    pub model: Result<EmgModel, Refusal>,
+    /// Windows of other held movements that are nearest to the middle of what they mean.
+    nearest: u32,
 }
 
 const fn wish(motion: Motion) -> Wish {
@@ -72,6 +83,11 @@ impl Movement {
     /// Whether it is held, not repeated.
     fn is_held(&self) -> bool {
         !self.name.ends_with("dynamic")
+    }
+
+    /// Whether it is held and moves the hand.
+    fn is_scored(&self) -> bool {
+        self.is_held() && self.wants != Wish::Rest
     }
 
     /// Whether it is rest.
@@ -113,28 +129,26 @@ impl Movement {
         Played { movement: self, verdicts, doubts }
     }
 
-    /// Windows whose mean is nearest to the middle of what they mean in this calibration, and windows in all.
-    fn nearest(&self, model: &EmgModel) -> [u32; 2] {
+    /// Windows whose mean is nearest to the middle of what they mean in this calibration.
+    fn nearest(&self, model: &EmgModel) -> u32 {
         let middles = [(Wish::Rest, model.rest()), (Wish::Close, model.close()), (Wish::Open, model.open())];
-        let right = self.windows().filter(|&from_s| {
-            let own = self.muscles.pairs.iter().filter(|(t_s, _)| (from_s..from_s + WINDOW_S).contains(t_s));
-            let levels: Vec<[i32; 2]> =
-                own.map(|(_, pair)| pair.map(|uv| level_of(uv.unwrap_or(0)))).collect();
-            let mean = |n: usize| {
-                levels.iter().map(|level| f64::from(level[n])).sum::<f64>() / levels.len().max(1) as f64
-            };
-            let mean = [mean(0), mean(1)];
+        let is_right = |from_s: &f64| {
+            let own = self.muscles.pairs.iter().filter(|(t_s, _)| (*from_s..from_s + WINDOW_S).contains(t_s));
+            let levels: Vec<_> = own.map(|(_, pair)| pair.map(|uv| f64::from(level_of(uv.unwrap_or(0))))).collect();
+            let mean = [0, 1].map(|n: usize| {
+                levels.iter().map(|level| level[n]).sum::<f64>() / levels.len().max(1) as f64
+            });
             let distance = |middle: [i32; 2]| {
                 (f64::from(middle[0]) - mean[0]).hypot(f64::from(middle[1]) - mean[1])
             };
             let nearest = middles.iter().min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
             nearest.is_some_and(|(wish, _)| *wish == self.wants)
-        });
-        [right.count() as u32, self.windows().count() as u32]
+        };
+        self.windows().filter(is_right).count() as u32
     }
 
     /// Where its windows begin, s.
-    fn windows(&self) -> impl Iterator<Item = f64> {
+    fn windows(&self) -> impl Iterator<Item = f64> + Clone {
         let count = (self.muscles.duration_s / WINDOW_S + 0.01) as u32;
         (0..count).map(|n| FRONT_END_S + f64::from(n) * WINDOW_S)
     }
@@ -174,17 +188,18 @@ impl Played<'_> {
     #[must_use]
     pub fn windows(&self) -> Option<[u32; 2]> {
         let wants = self.movement.wants;
-        (self.movement.is_held() && wants != Wish::Rest).then(|| {
-            let right = self.movement.windows().filter(|&from_s| {
-                let own = self.verdicts.iter().filter(|(t_s, _)| (from_s..from_s + WINDOW_S).contains(t_s));
-                let (mut agreeing, mut all) = (0, 0);
-                for (_, verdict) in own {
-                    all += 1;
-                    agreeing += u32::from(verdict.wish == wants);
-                }
-                2 * agreeing > all
-            });
-            [right.count() as u32, self.movement.windows().count() as u32]
+        let is_right = |from_s: &f64| {
+            let own = self.verdicts.iter().filter(|(t_s, _)| (*from_s..from_s + WINDOW_S).contains(t_s));
+            let (mut agreeing, mut all) = (0, 0);
+            for (_, verdict) in own {
+                all += 1;
+                agreeing += u32::from(verdict.wish == wants);
+            }
+            2 * agreeing > all
+        };
+        self.movement.is_scored().then(|| {
+            let windows = self.movement.windows();
+            [windows.clone().filter(is_right).count() as u32, windows.count() as u32]
         })
     }
 }
@@ -203,7 +218,7 @@ pub(super) fn sessions(files: &[PathBuf]) -> anyhow::Result<Vec<Session>> {
         let movement = Movement::read(path, name).with_context(|| path.display().to_string())?;
         sessions.entry(session.to_owned()).or_default().push(movement);
     }
-    Ok(sessions.into_iter().map(|(name, movements)| Session { name, movements }).collect())
+    Ok(sessions.into_iter().map(|(name, movements)| Session::new(name, movements)).collect())
 }
 
 /// How a session was understood.
@@ -227,36 +242,51 @@ pub struct Report {
 }
 
 impl Session {
-    fn held(&self, is_one: impl Fn(&Movement) -> bool) -> Vec<&Movement> {
-        self.movements.iter().filter(|movement| movement.is_held() && is_one(movement)).collect()
-    }
-
-    /// Every choice of repetitions to calibrate from: rest, close, open.
-    #[must_use]
-    pub fn choices(&self) -> Vec<[&Movement; 3]> {
-        let mut all = Vec::new();
-        for rest in self.held(Movement::is_rest) {
-            for close in self.held(|movement| movement.wants == Wish::Close) {
-                for open in self.held(|movement| movement.wants == Wish::Open) {
-                    all.push([rest, close, open]);
+    fn new(name: String, movements: Vec<Movement>) -> Self {
+        let mut session = Self { name, movements, calibrations: Vec::new() };
+        let held = |is_one: fn(&Movement) -> bool| -> Vec<usize> {
+            let movements = session.movements.iter().enumerate();
+            movements.filter(|(_, own)| own.is_held() && is_one(own)).map(|(n, _)| n).collect()
+        };
+        let (closes, opens) = (held(|own| own.wants == Wish::Close), held(|own| own.wants == Wish::Open));
+        let mut calibrations = Vec::new();
+        for rest in held(Movement::is_rest) {
+            for &close in &closes {
+                for &open in &opens {
+                    calibrations.push(session.calibrated([rest, close, open]));
                 }
             }
         }
-        all
+        session.calibrations = calibrations;
+        session
     }
 
-    /// The wearer that a choice of repetitions gives.
+    fn calibrated(&self, choice: [usize; 3]) -> Calibrated {
+        let model = calibrate(choice.map(|n| &self.movements[n].muscles));
+        let nearest = model.map_or(0, |model| {
+            let others = self.others(choice).filter(|movement| movement.is_scored());
+            others.map(|movement| movement.nearest(&model)).sum()
+        });
+        Calibrated { choice, model, nearest }
+    }
+
+    /// Every calibration that there can be.
     #[must_use]
-    pub fn model(choice: [&Movement; 3]) -> Option<EmgModel> {
-        calibrate(choice.map(|movement| &movement.muscles)).ok()
+    pub fn calibrations(&self) -> &[Calibrated] {
+        &self.calibrations
     }
 
-    /// Scores every choice.
+    fn others(&self, choice: [usize; 3]) -> impl Iterator<Item = &Movement> {
+        let movements = self.movements.iter().enumerate();
+        movements.filter(move |(n, _)| !choice.contains(n)).map(|(_, movement)| movement)
+    }
+
+    /// Scores every calibration on what it was not taken from.
     #[must_use]
     pub fn score(&self, fitted: &'static Fitted) -> Report {
         let mut report = Report {
             session: self.name.clone(),
-            calibrations: 0,
+            calibrations: self.calibrations.len(),
             refused: 0,
             right: 0.0,
             worst_right: 1.0,
@@ -265,31 +295,25 @@ impl Session {
             doubts: 0,
         };
         let (mut right, mut nearest, mut all) = (0, 0, 0);
-        for choice in self.choices() {
-            report.calibrations += 1;
-            let Some(model) = Self::model(choice) else {
+        for calibrated in &self.calibrations {
+            let Ok(model) = &calibrated.model else {
                 report.refused += 1;
                 continue;
             };
-            let [mut own_right, mut own_all] = [0; 2];
-            for movement in &self.movements {
-                let own = choice.iter().any(|chosen| chosen.name == movement.name);
-                let played = movement.play(Emg::of(Decide::with(fitted, Some(&model))));
+            let (mut own_right, mut own_all) = (0, 0);
+            for movement in self.others(calibrated.choice) {
+                let played = movement.play(Emg::of(Decide::with(fitted, Some(model))));
                 report.doubts += played.doubts.len();
-                if own {
-                    continue;
-                }
                 if !movement.never.is_empty() {
                     let longest = report.wrong_ms.entry(movement.name.clone()).or_default();
                     *longest = played.wrong_ms().max(*longest);
                 }
                 if let Some([windows, of]) = played.windows() {
                     (own_right, own_all) = (own_right + windows, own_all + of);
-                    nearest += movement.nearest(&model)[0];
                 }
             }
             report.worst_right = report.worst_right.min(f64::from(own_right) / f64::from(own_all.max(1)));
-            (right, all) = (right + own_right, all + own_all);
+            (right, all, nearest) = (right + own_right, all + own_all, nearest + calibrated.nearest);
         }
         report.right = f64::from(right) / f64::from(all.max(1));
         report.nearest_right = f64::from(nearest) / f64::from(all.max(1));
