@@ -147,6 +147,12 @@ impl Emg {
             self.pairs = 0;
             let mover = self.decide.mover();
             let levels = self.electrodes.map(|electrode| electrode.uv.map(|uv| level_of(uv.min(OVER_UV))));
+            let lone = self.proof.lone(levels, self.raised);
+            for (trust, lone) in self.trust.iter_mut().zip(lone) {
+                if lone {
+                    trust.lose(Quality::LeadOff);
+                }
+            }
             let over = self.electrodes[mover].uv.is_some_and(|uv| uv >= OVER_UV);
             proven = self.proof.take(levels, wish, mover, &self.trust[mover], self.decide.hears(), over);
         }

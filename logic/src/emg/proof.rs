@@ -35,6 +35,55 @@ const OVER_FRAMES: u16 = 40;
 const MOST_WARY: u8 = 3;
 const WARY_FRAMES: u16 = 800;
 
+/// An envelope swings when it rises and falls by this, Q10 octaves, and is activity meanwhile; the other electrode hears a muscle that
+/// does, but rarely not. So many swings that it does not hear, none of them longer ago than this, in slow frames, 3 s, are no muscle's:
+/// an electrode that is loose, or hums with the arm's swing.
+const SWING: i32 = 1_024;
+const LONE_SWINGS: u8 = 2;
+const SWING_FRAMES: u16 = 240;
+
+/// An envelope that swings.
+#[derive(Clone, Copy, Debug, Default)]
+struct Swings {
+    low: i32,
+    /// The highest since, once it has risen.
+    high: Option<i32>,
+    was_active: bool,
+    /// What the other electrode had at the lowest, and at most since.
+    other: [i32; 2],
+    lone: u8,
+    since: u16,
+}
+
+impl Swings {
+    /// Takes its level and the other electrode's of a slow frame. Whether it swings alone.
+    fn take(&mut self, level: i32, other: i32, is_active: bool) -> bool {
+        self.since = self.since.saturating_add(1);
+        if self.since > SWING_FRAMES {
+            self.lone = 0;
+        }
+        self.other[1] = self.other[1].max(other);
+        match self.high {
+            Some(high) if level <= high - SWING => {
+                if self.other[1] - self.other[0] >= 2 * LEAST_HEARD {
+                    self.lone = 0;
+                } else if self.was_active {
+                    (self.lone, self.since) = ((self.lone + 1).min(LONE_SWINGS), 0);
+                }
+                (self.low, self.high, self.other) = (level, None, [other; 2]);
+            }
+            Some(high) => {
+                self.high = Some(high.max(level));
+                self.was_active |= is_active;
+            }
+            None if level <= self.low => (self.low, self.other) = (level, [other; 2]),
+            None if level >= self.low + SWING => (self.high, self.was_active) = (Some(level), is_active),
+            None => {}
+        }
+        self.lone >= LONE_SWINGS
+    }
+}
+
 /// Both electrodes' recent past, and what it proves.
 #[derive(Clone, Debug)]
 pub struct Proof {
@@ -54,6 +103,7 @@ pub struct Proof {
     last: (Wish, u16),
     wary: u8,
     rest: u16,
+    swings: [Swings; 2],
 }
 
 impl Default for Proof {
@@ -71,6 +121,7 @@ impl Default for Proof {
             last: (Wish::Rest, u16::MAX),
             wary: 0,
             rest: 0,
+            swings: Default::default(),
         }
     }
 }
@@ -115,6 +166,15 @@ impl Proof {
             self.wary = 0;
         }
         self.proven
+    }
+
+    /// Takes a pair of levels of each slow frame, as above, and whether each is activity: which electrodes swing and are not heard by
+    /// the other.
+    #[inline(never)]
+    pub fn lone(&mut self, levels: [Option<i32>; 2], active: [bool; 2]) -> [bool; 2] {
+        let [Some(flexor), Some(extensor)] = levels else { return [false; 2] };
+        let [own, other] = &mut self.swings;
+        [own.take(flexor, extensor, active[0]), other.take(extensor, flexor, active[1])]
     }
 
     fn keep(&mut self, levels: [Option<i32>; 2]) {

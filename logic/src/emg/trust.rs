@@ -31,7 +31,7 @@ const UNREST_UV: [i32; 2] = [75_000, 300_000];
 const BACK_FRAMES: u16 = 80;
 /// Slow frames between the points of a curve, 50 ms, and before its first one counts.
 const LAG: usize = 4;
-const FIRST_PROOF_FRAMES: u16 = 12;
+const FIRST_PROOF_FRAMES: u16 = 20;
 /// The part of its level by which a proof curves, and slow frames between two proofs: 0.15 s, more than one jump takes. Two
 /// make a muscle.
 const PROOF_PART: i32 = 12;
@@ -221,7 +221,8 @@ impl Trust {
         }
     }
 
-    fn lose(&mut self, quality: Quality) {
+    /// Doubts it from now on, for this reason.
+    pub(super) fn lose(&mut self, quality: Quality) {
         self.good = 0;
         // The first reason stays, but a still envelope may later turn out to be mains.
         if self.lost.is_none() || (self.lost == Some(Quality::Flat) && quality == Quality::Hum) {
