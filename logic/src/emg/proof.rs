@@ -27,6 +27,8 @@ const BLOCKS_OF_RISE: usize = 3;
 const LEAST_RISE: i32 = 512;
 /// And has slowed down to this part of its fastest, per mille.
 const SLOWER: i32 = 600;
+/// Rises whose parts of the whole differ by this part of their sum, 8 %, are not in proportion.
+const APART_PART: i32 = 12;
 /// Slow frames within which the same wish is gone on with, and need not be heard again: 0.1 s.
 const GOES_ON_FRAMES: u16 = 8;
 /// Slow frames for which a proven opening above the sensor's range stays proven: 0.5 s.
@@ -99,6 +101,8 @@ pub struct Proof {
     /// Slow frames in a row in which the other one is above that.
     hears: u8,
     heard: bool,
+    /// They have not risen in proportion.
+    apart: bool,
     proven: bool,
     over: u16,
     /// The last wish that was proven, and slow frames since.
@@ -118,6 +122,7 @@ impl Default for Proof {
             before: [0; 2],
             hears: 0,
             heard: false,
+            apart: false,
             proven: false,
             over: 0,
             last: (Wish::Rest, u16::MAX),
@@ -156,7 +161,10 @@ impl Proof {
         self.hears = if heard == Some(true) { self.hears.saturating_add(1) } else { 0 };
         self.heard |= self.age <= HEARD_FRAMES && self.hears >= HEARD_FOR;
         self.proven |= match (heard, wish) {
-            (Some(_), Wish::Open) => self.heard && (trust.has_turned() || self.is_gradual(mover)),
+            (Some(_), Wish::Open) => {
+                self.apart |= self.rise_apart();
+                self.heard && self.apart && (trust.has_turned() || self.is_gradual(mover))
+            }
             _ => self.heard || trust.has_turned_twice(),
         };
         if self.over > OVER_FRAMES || !(over || trust.is_sound()) {
@@ -218,6 +226,7 @@ impl Proof {
         (self.wish, self.age, self.over) = (wish, 0, 0);
         self.before = [0, 1].map(|n: usize| self.before(n));
         self.heard = wish == self.last.0 && self.last.1 < GOES_ON_FRAMES && wish != Wish::Rest;
+        self.apart = self.heard;
         self.proven = false;
     }
 
@@ -229,6 +238,21 @@ impl Proof {
     /// How far it is above that now, or above what it was when the wish began, and above its rest.
     fn rise(&self, n: usize, level: Option<i32>, rest: i32) -> i32 {
         level.map_or(0, |level| level - self.before(n).min(self.before[n & 1]).max(rest))
+    }
+
+    /// Whether both rise, but not in proportion: what reaches both electrodes at once does, or jumps.
+    fn rise_apart(&self) -> bool {
+        let low = self.blocks.map(|blocks| blocks.iter().copied().min().unwrap_or(0));
+        let rise = |n: usize, level: i16| climbs(low[n & 1].into(), level.into()) >> 3;
+        let most = [0, 1].map(|n: usize| rise(n, self.blocks[n & 1].iter().copied().max().unwrap_or(0)));
+        let [flexor, extensor] = &self.blocks;
+        flexor.iter().zip(extensor).any(|(&flexor, &extensor)| {
+            let own = [rise(0, flexor), rise(1, extensor)];
+            let parts = [own[0] * most[1] / 16, own[1] * most[0] / 16];
+            let whole = most[0] * most[1] / 16;
+            let is_between = parts.iter().any(|&part| (whole / 10..whole * 8 / 10).contains(&part));
+            is_between && (parts[0] - parts[1]).abs() > (parts[0] + parts[1]) / APART_PART
+        })
     }
 
     /// Whether an electrode has risen over several blocks and slows down, as a muscle does: what creeps goes on as fast, and what
@@ -251,6 +275,7 @@ impl Proof {
 }
 
 /// By how much the envelope climbs from a level to another, as a part of the highest there is, Q18; 0 if it falls.
+#[inline(never)]
 const fn climbs(from: i32, to: i32) -> i32 {
     // 2 to the power of a level below the highest, to 0.2 %.
     const fn envelope(level: i32) -> i32 {
