@@ -47,7 +47,7 @@ const SWING_FRAMES: u16 = 240;
 const AFTER_FRAMES: u16 = 20;
 
 /// An envelope that swings.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 struct Swings {
     low: i32,
     /// The highest since, once it has risen.
@@ -59,8 +59,16 @@ struct Swings {
     since: u16,
 }
 
+impl Default for Swings {
+    /// Nothing is low before the first level.
+    fn default() -> Self {
+        Self { low: i32::MAX, high: None, was_active: false, other: [0; 2], lone: 0, since: 0 }
+    }
+}
+
 impl Swings {
     /// Takes its level and the other electrode's of a slow frame. Whether it swings alone.
+    #[inline(never)]
     fn take(&mut self, level: i32, other: i32, is_active: bool) -> bool {
         self.since = self.since.saturating_add(1);
         if self.since > SWING_FRAMES {
@@ -180,7 +188,6 @@ impl Proof {
 
     /// Takes a pair of levels of each slow frame, as above, and whether each is activity: which electrodes swing and are not heard by
     /// the other.
-    #[inline(never)]
     pub fn lone(&mut self, levels: [Option<i32>; 2], active: [bool; 2]) -> [bool; 2] {
         let [Some(flexor), Some(extensor)] = levels else { return [false; 2] };
         let [own, other] = &mut self.swings;
@@ -241,18 +248,22 @@ impl Proof {
     }
 
     /// Whether both rise, but not in proportion: what reaches both electrodes at once does, or jumps.
+    #[inline(never)]
     fn rise_apart(&self) -> bool {
-        let low = self.blocks.map(|blocks| blocks.iter().copied().min().unwrap_or(0));
-        let rise = |n: usize, level: i16| climbs(low[n & 1].into(), level.into()) >> 3;
-        let most = [0, 1].map(|n: usize| rise(n, self.blocks[n & 1].iter().copied().max().unwrap_or(0)));
-        let [flexor, extensor] = &self.blocks;
-        flexor.iter().zip(extensor).any(|(&flexor, &extensor)| {
-            let own = [rise(0, flexor), rise(1, extensor)];
-            let parts = [own[0] * most[1] / 16, own[1] * most[0] / 16];
-            let whole = most[0] * most[1] / 16;
-            let is_between = parts.iter().any(|&part| (whole / 10..whole * 8 / 10).contains(&part));
-            is_between && (parts[0] - parts[1]).abs() > (parts[0] + parts[1]) / APART_PART
-        })
+        let low = self.blocks.map(least);
+        let most = [0, 1].map(|n: usize| {
+            climbs(low[n], self.blocks[n].iter().fold(0, |most, &level| most.max(level.into()))) >> 3
+        });
+        let whole = most[0] * most[1] / 16;
+        let mut apart = false;
+        for n in 0..BLOCKS {
+            let part = |own: usize| (climbs(low[own], self.blocks[own][n].into()) >> 3) * most[1 - own] / 16;
+            let parts = [part(0), part(1)];
+            let is_between = |part: i32| part > whole / 10 && part < whole / 10 * 8;
+            apart |= (is_between(parts[0]) || is_between(parts[1]))
+                && (parts[0] - parts[1]).abs() > (parts[0] + parts[1]) / APART_PART;
+        }
+        apart
     }
 
     /// Whether an electrode has risen over several blocks and slows down, as a muscle does: what creeps goes on as fast, and what
@@ -272,6 +283,12 @@ impl Proof {
             && slows
             && !is_top
     }
+}
+
+/// The lowest of them.
+#[inline(never)]
+fn least(blocks: [i16; BLOCKS]) -> i32 {
+    blocks.into_iter().fold(i32::from(i16::MAX), |least, level| least.min(level.into()))
 }
 
 /// By how much the envelope climbs from a level to another, as a part of the highest there is, Q18; 0 if it falls.

@@ -19,8 +19,8 @@ use tenax_logic::emg::constants::Fitted;
 use tenax_logic::emg::fitted::FITTED;
 
 use self::recordings::{Days, Recording, numbers};
-pub use self::score::Score;
 use self::score::Count;
+pub use self::score::Score;
 use self::trial::{Kind, Trial, Trials};
 use self::two_channel::Session;
 
@@ -142,9 +142,8 @@ fn csv_files(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
 pub fn evaluate(folder: &Path, only: Option<u32>, faults: u32, seed: u64) -> anyhow::Result<Report> {
     let all = Recordings::read(folder, only)?;
     let trials: Vec<Trial> = all.people.values().flat_map(|days| Trials::of(days).all).collect();
-    let faults = (faults > 0).then(|| {
-        faults::draw(&FITTED, &trials.iter().collect::<Vec<_>>(), faults, seed)
-    });
+    let faults =
+        (faults > 0).then(|| faults::draw(&FITTED, &trials.iter().collect::<Vec<_>>(), faults, seed));
     let persons = all.people.par_iter().map(|(&number, days)| person(&FITTED, number, days)).collect();
     let two_channel = all.sessions.par_iter().map(|session| session.score(&FITTED)).collect();
     Ok(Report { two_channel, faults, ..Report::of(persons) })
@@ -253,7 +252,15 @@ mod tests {
         let swapped = score(&swapped(made_up()));
         assert!(swapped.close_wrong_way > 0.95 && swapped.open_right == 0.0, "{swapped:?}");
         let wishes = |said: &[score::Said]| said.iter().map(|own| own.wish).collect::<Vec<_>>();
-        assert_eq!(wishes(&trial.decide(&FITTED, &trial.hear())), wishes(&said), "what is fitted is what is played");
+        assert_eq!(
+            wishes(&trial.decide(&FITTED, &trial.hear())),
+            wishes(&said),
+            "what is fitted is what is played"
+        );
     }
 }
-pub fn diagnose(folder: &Path) { for (n, days) in &Recordings::read(folder, None).unwrap().people { trial::diagnose(days, *n); } }
+pub fn diagnose(folder: &Path) {
+    for (n, days) in &Recordings::read(folder, None).unwrap().people {
+        trial::diagnose(days, *n);
+    }
+}

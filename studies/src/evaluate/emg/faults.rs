@@ -14,15 +14,15 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 use serde::Serialize;
+use tenax_hal_shim::motor::MotorDrive;
 use tenax_logic::config::Config;
+use tenax_logic::emg::Emg;
 use tenax_logic::emg::constants::Fitted;
 use tenax_logic::emg::decide::Decide;
-use tenax_logic::emg::Emg;
 use tenax_logic::emg::model::EmgModel;
 use tenax_logic::emg::settings::GateConfig;
 use tenax_logic::emg::trust::Quality;
 use tenax_logic::gate::Gate;
-use tenax_hal_shim::motor::MotorDrive;
 
 use super::recordings::{HZ, PAIRS_HZ};
 use super::trial::{Kind, Trial};
@@ -113,7 +113,8 @@ impl Drawn {
     fn of(rng: &mut ChaCha8Rng) -> Self {
         let fault = Fault::ALL[rng.random_range(0..Fault::ALL.len())];
         let place = [Where::Closing, Where::Opening, Where::Opening, Where::Both][rng.random_range(0..4)];
-        let level = |rng: &mut ChaCha8Rng, low: f64, high: f64| low * (high / low).powf(rng.random_range(0.0..1.0));
+        let level =
+            |rng: &mut ChaCha8Rng, low: f64, high: f64| low * (high / low).powf(rng.random_range(0.0..1.0));
         let mv = match fault {
             Fault::Lifted | Fault::Swinging => level(rng, 100.0, 2_800.0),
             Fault::Loose => level(rng, 100.0, 2_000.0),
@@ -151,7 +152,10 @@ impl Drawn {
             return muscle_mv;
         }
         if t_s >= self.loose.1 {
-            self.loose = ([0, 1].map(|n: usize| self.mv[n] * rng.random_range(0.0..1.0)), t_s + rng.random_range(0.02..0.3));
+            self.loose = (
+                [0, 1].map(|n: usize| self.mv[n] * rng.random_range(0.0..1.0)),
+                t_s + rng.random_range(0.02..0.3),
+            );
         }
         let mv = self.mv[site];
         let swing = 0.5 - 0.5 * (TAU * self.hz * t_s).cos();
@@ -237,7 +241,8 @@ fn case(fitted: &'static Fitted, trial: &Trial, wearer: usize, rng: &mut ChaCha8
     hand.opened_mm = 0.0;
     let mut alone = hand.clone();
     let mut active = [0; 2];
-    let mut dbg = Vec::new(); let mut dbg_first = 0.0;
+    let mut dbg = Vec::new();
+    let mut dbg_first = 0.0;
     let [mut lasting, mut reported] = [false; 2];
     let reported_within = (REPORTED_S * PAIRS_HZ) as u32;
     for (n, uv) in (0..((drawn.lasts_s + AFTER_S) * PAIRS_HZ) as u32).zip(resting) {
@@ -251,8 +256,22 @@ fn case(fitted: &'static Fitted, trial: &Trial, wearer: usize, rng: &mut ChaCha8
         }
         let was = hand.opened_mm;
         hand.take(pair);
-        if hand.opened_mm > SAFE_MM && was <= SAFE_MM { dbg_first = t_s; }
-        if n % 48 == 0 && dbg.len() < 60 { dbg.push(format!("{}{}{}/{}", if hand.emg.verdict().proven {"P"} else {""}, match hand.emg.verdict().wish { tenax_logic::emg::decide::Wish::Rest => "r", tenax_logic::emg::decide::Wish::Open => "o", _ => "c" }, pair[electrodes[0]].map_or(-1, |v| v/1000), pair[electrodes[1]].map_or(-1, |v| v/1000))); }
+        if hand.opened_mm > SAFE_MM && was <= SAFE_MM {
+            dbg_first = t_s;
+        }
+        if n % 48 == 0 && dbg.len() < 60 {
+            dbg.push(format!(
+                "{}{}{}/{}",
+                if hand.emg.verdict().proven { "P" } else { "" },
+                match hand.emg.verdict().wish {
+                    tenax_logic::emg::decide::Wish::Rest => "r",
+                    tenax_logic::emg::decide::Wish::Open => "o",
+                    _ => "c",
+                },
+                pair[electrodes[0]].map_or(-1, |v| v / 1000),
+                pair[electrodes[1]].map_or(-1, |v| v / 1000)
+            ));
+        }
         for (site, electrode) in electrodes.into_iter().enumerate().filter(|_| is_on) {
             if drawn.has(site) && (pair[electrode].is_none() || hand.emg.is_raised(electrode)) {
                 active[site] += 1;
@@ -262,7 +281,16 @@ fn case(fitted: &'static Fitted, trial: &Trial, wearer: usize, rng: &mut ChaCha8
         }
     }
     if alone.opened_mm == 0.0 && hand.opened_mm > SAFE_MM && std::env::var("DBG").is_ok() {
-        eprintln!("{:?} w{wearer} mv {:.0?} lasts {:.1} opened {:.1} at_begin {:?} first {:?} trail {:?}", (drawn.fault, drawn.place), drawn.mv, drawn.lasts_s, hand.opened_mm, model.map(|m| m.rest()), dbg_first, dbg);
+        eprintln!(
+            "{:?} w{wearer} mv {:.0?} lasts {:.1} opened {:.1} at_begin {:?} first {:?} trail {:?}",
+            (drawn.fault, drawn.place),
+            drawn.mv,
+            drawn.lasts_s,
+            hand.opened_mm,
+            model.map(|m| m.rest()),
+            dbg_first,
+            dbg
+        );
     }
     (alone.opened_mm == 0.0).then_some(Outcome {
         fault: drawn.fault,

@@ -58,9 +58,8 @@ impl Trial<'_> {
     /// As [`play`](Self::play), of what was [heard](Self::hear), and without proofs and doubts: to fit.
     pub fn decide(&self, fitted: &'static Fitted, heard: &[[Electrode; 2]]) -> Vec<Said> {
         let mut decide = Decide::with(fitted, Some(&self.model));
-        self.recording.by_row(
-            heard.iter().map(|electrodes| Said { wish: decide.take(electrodes), ..Said::default() }),
-        )
+        self.recording
+            .by_row(heard.iter().map(|electrodes| Said { wish: decide.take(electrodes), ..Said::default() }))
     }
 
     /// Adds what was said.
@@ -109,17 +108,27 @@ impl<'a> Trials<'a> {
 
 pub fn diagnose(days: &Days, number: u32) {
     for trial in Trials::of(days).all {
-        if trial.kind == Kind::FirstDayKept { continue; }
+        if trial.kind == Kind::FirstDayKept {
+            continue;
+        }
         let said = trial.play(&tenax_logic::emg::fitted::FITTED);
         let heard = trial.hear();
         let rest = trial.model.rest();
         let site = [trial.model.closing_site(), trial.model.opening_site()];
         let level = |row: usize, n: usize| {
             let k = (row as f64 * 2.4) as usize;
-            tenax_logic::emg::level::level_of(heard[k.min(heard.len()-1)][n].uv.unwrap_or(0))
+            tenax_logic::emg::level::level_of(heard[k.min(heard.len() - 1)][n].uv.unwrap_or(0))
         };
         let (c, o) = (trial.model.close(), trial.model.open());
-        println!("person {number} {:?} rest {:?} close {:?} open {:?} spread {:?} sep {}", trial.kind, rest, [c[site[0]]-rest[site[0]], c[site[1]]-rest[site[1]]], [o[site[0]]-rest[site[0]], o[site[1]]-rest[site[1]]], trial.model.spread(), trial.model.separation_permille());
+        println!(
+            "person {number} {:?} rest {:?} close {:?} open {:?} spread {:?} sep {}",
+            trial.kind,
+            rest,
+            [c[site[0]] - rest[site[0]], c[site[1]] - rest[site[1]]],
+            [o[site[0]] - rest[site[0]], o[site[1]] - rest[site[1]]],
+            trial.model.spread(),
+            trial.model.separation_permille()
+        );
         let cr = c[site[1]] - c[site[0]];
         let or = o[site[1]] - o[site[0]];
         let show = |row: usize| {
@@ -127,15 +136,47 @@ pub fn diagnose(days: &Days, number: u32) {
             let sc = (l[0] - rest[site[0]]) * 100 / (c[site[0]] - rest[site[0]]);
             let so = (l[1] - rest[site[1]]) * 100 / (o[site[1]] - rest[site[1]]);
             let p = (l[1] - l[0] - cr) * 100 / (or - cr);
-            format!("{}{:?}/{:?}/{:?}", match said[row].wish { tenax_logic::emg::decide::Wish::Rest => 'r', tenax_logic::emg::decide::Wish::Close => 'c', _ => 'o' }, sc, so, p)
+            format!(
+                "{}{:?}/{:?}/{:?}",
+                match said[row].wish {
+                    tenax_logic::emg::decide::Wish::Rest => 'r',
+                    tenax_logic::emg::decide::Wish::Close => 'c',
+                    _ => 'o',
+                },
+                sc,
+                so,
+                p
+            )
         };
-        for (label, right) in [(3u8, tenax_logic::emg::decide::Wish::Close), (4, tenax_logic::emg::decide::Wish::Open)] {
+        for (label, right) in
+            [(3u8, tenax_logic::emg::decide::Wish::Close), (4, tenax_logic::emg::decide::Wish::Open)]
+        {
             for rows in trial.recording.contractions(label) {
                 let good = said[rows.start + 40..rows.end - 10].iter().filter(|s| s.wish == right).count();
                 let of = rows.len() - 50;
                 if good * 10 < of * 9 {
-                    let line: Vec<String> = (rows.start.saturating_sub(60)..rows.end + 40).step_by(20).map(|r| format!("{}{}", if r < rows.start {"-"} else if r > rows.end {"+"} else {""}, show(r.min(said.len()-1)))).collect();
-                    println!("  label {label} at {} {}: {good}/{of} {}", rows.start, rows.len(), line.join(" "));
+                    let line: Vec<String> = (rows.start.saturating_sub(60)..rows.end + 40)
+                        .step_by(20)
+                        .map(|r| {
+                            format!(
+                                "{}{}",
+                                if r < rows.start {
+                                    "-"
+                                } else if r > rows.end {
+                                    "+"
+                                } else {
+                                    ""
+                                },
+                                show(r.min(said.len() - 1))
+                            )
+                        })
+                        .collect();
+                    println!(
+                        "  label {label} at {} {}: {good}/{of} {}",
+                        rows.start,
+                        rows.len(),
+                        line.join(" ")
+                    );
                 }
             }
         }
@@ -144,7 +185,16 @@ pub fn diagnose(days: &Days, number: u32) {
             for row in rows.clone() {
                 let wish = said[row].wish;
                 if wish != before && wish != tenax_logic::emg::decide::Wish::Rest {
-                    println!("  FALSE {wish:?} at {row} ({} after its begin, of {}): {}", row - rows.start, rows.len(), (row.saturating_sub(100)..(row+60).min(said.len())).step_by(20).map(show).collect::<Vec<_>>().join(" "));
+                    println!(
+                        "  FALSE {wish:?} at {row} ({} after its begin, of {}): {}",
+                        row - rows.start,
+                        rows.len(),
+                        (row.saturating_sub(100)..(row + 60).min(said.len()))
+                            .step_by(20)
+                            .map(show)
+                            .collect::<Vec<_>>()
+                            .join(" ")
+                    );
                 }
                 before = wish;
             }

@@ -134,13 +134,13 @@ impl Movement {
         let middles = [(Wish::Rest, model.rest()), (Wish::Close, model.close()), (Wish::Open, model.open())];
         let is_right = |from_s: &f64| {
             let own = self.muscles.pairs.iter().filter(|(t_s, _)| (*from_s..from_s + WINDOW_S).contains(t_s));
-            let levels: Vec<_> = own.map(|(_, pair)| pair.map(|uv| f64::from(level_of(uv.unwrap_or(0))))).collect();
+            let levels: Vec<_> =
+                own.map(|(_, pair)| pair.map(|uv| f64::from(level_of(uv.unwrap_or(0))))).collect();
             let mean = [0, 1].map(|n: usize| {
                 levels.iter().map(|level| level[n]).sum::<f64>() / levels.len().max(1) as f64
             });
-            let distance = |middle: [i32; 2]| {
-                (f64::from(middle[0]) - mean[0]).hypot(f64::from(middle[1]) - mean[1])
-            };
+            let distance =
+                |middle: [i32; 2]| (f64::from(middle[0]) - mean[0]).hypot(f64::from(middle[1]) - mean[1]);
             let nearest = middles.iter().min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)));
             nearest.is_some_and(|(wish, _)| *wish == self.wants)
         };
@@ -323,7 +323,8 @@ impl Session {
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { session, calibrations, refused, right, worst_right, nearest_right, wrong_ms, doubts } = self;
+        let Self { session, calibrations, refused, right, worst_right, nearest_right, wrong_ms, doubts } =
+            self;
         writeln!(
             f,
             "two channels, session `{session}`: {calibrations} calibrations, {refused} refused; windows right {right:.3}, worst \

@@ -3,11 +3,11 @@
 //! Short recordings of other people ([`two_channel`](super::super::emg::two_channel)); made-up muscles that contract both, open, and hold tone; and faults
 //! of one electrode, with what the hand then opens. The tests of `host-tests` hold the whole of it.
 
+use rayon::prelude::*;
 use tenax_logic::emg::constants::Fitted;
 use tenax_logic::emg::decide::{Decide, Wish};
 use tenax_logic::emg::model::EmgModel;
 use tenax_logic::emg::{Emg, Verdict};
-use rayon::prelude::*;
 
 use crate::evaluate::emg::two_channel::Session;
 
@@ -47,8 +47,11 @@ impl<'a> Promises<'a> {
 
     /// What is broken.
     pub fn cost(&self, fitted: &'static Fitted) -> f64 {
-        let muscles: f64 = self.wearers.iter().zip(WEARERS_MV).map(|(model, mv)| of_muscles(fitted, model, mv)).sum();
-        if muscles >= BROKEN { return muscles; }
+        let muscles: f64 =
+            self.wearers.iter().zip(WEARERS_MV).map(|(model, mv)| of_muscles(fitted, model, mv)).sum();
+        if muscles >= BROKEN {
+            return muscles;
+        }
         let costs = self.sessions.par_iter().map(|session| of_session(fitted, session));
         costs.sum::<f64>() + muscles
     }
@@ -75,7 +78,12 @@ fn of_session(fitted: &'static Fitted, session: &Session) -> f64 {
 }
 
 /// Plays made-up envelopes, mV, after a second of rest.
-fn play(fitted: &'static Fitted, model: &EmgModel, seconds: f64, of: impl Fn(f64) -> [f64; 2]) -> Vec<Verdict> {
+fn play(
+    fitted: &'static Fitted,
+    model: &EmgModel,
+    seconds: f64,
+    of: impl Fn(f64) -> [f64; 2],
+) -> Vec<Verdict> {
     let mut emg = Emg::of(Decide::with(fitted, Some(model)));
     (0..(seconds * HZ) as u32)
         .map(|n| emg.take(of(f64::from(n) / HZ).map(|mv| Some((mv.clamp(-300.0, 2_900.0) * 1e3) as i32))))
@@ -99,7 +107,9 @@ fn of_muscles(fitted: &'static Fitted, model: &EmgModel, [rest, close, open]: [[
         let open = open.map(f64::from);
         let up = |t: f64| ((t - 1.0) / rise_s).clamp(0.0, 1.0);
         let said = play(fitted, model, 3.0, |t| {
-            [0, 1].map(|n| resting(t)[n] + up(t) * ([1.0, 1.5][n] * open[n] - rest[n]) * alive(1.0, t, n).clamp(0.9, 1.2))
+            [0, 1].map(|n| {
+                resting(t)[n] + up(t) * ([1.0, 1.5][n] * open[n] - rest[n]) * alive(1.0, t, n).clamp(0.9, 1.2)
+            })
         });
         let supported = (1.0 + rise_s) * HZ;
         let opened = said.iter().position(|verdict| verdict.wish == Wish::Open).unwrap_or(said.len());
@@ -110,7 +120,11 @@ fn of_muscles(fitted: &'static Fitted, model: &EmgModel, [rest, close, open]: [[
         for rise_s in [0.05, 0.2] {
             let said = play(fitted, model, 8.0, |t| {
                 let since = (t - 1.0).rem_euclid(2.5);
-                let up = if t < 1.0 { 0.0 } else { (since / rise_s).min(1.0) * ((1.5 - since) / 0.1).clamp(0.0, 1.0) };
+                let up = if t < 1.0 {
+                    0.0
+                } else {
+                    (since / rise_s).min(1.0) * ((1.5 - since) / 0.1).clamp(0.0, 1.0)
+                };
                 [0, 1].map(|n| {
                     let over = 1.5 * f64::from(peak[n]);
                     resting(t)[n] + up * (alive(over, t, n) - rest[n]).max(0.0)
@@ -122,7 +136,8 @@ fn of_muscles(fitted: &'static Fitted, model: &EmgModel, [rest, close, open]: [[
                 t > 1.0 && since > rise_s + 0.1 && since < 1.4
             };
             let held: Vec<_> = said.iter().enumerate().filter(|(n, _)| held(*n)).collect();
-            let right = held.iter().filter(|(_, verdict)| verdict.wish == wish).count() as f64 / held.len() as f64;
+            let right =
+                held.iter().filter(|(_, verdict)| verdict.wish == wish).count() as f64 / held.len() as f64;
             let wrong = said.iter().filter(|verdict| verdict.wish == other).count() as f64 / HZ;
             cost += (0.95 - right).max(0.0) * BROKEN + wrong * BROKEN;
         }
