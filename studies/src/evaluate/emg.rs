@@ -259,8 +259,3 @@ mod tests {
         );
     }
 }
-pub fn diagnose(folder: &Path) {
-    for (n, days) in &Recordings::read(folder, None).unwrap().people {
-        trial::diagnose(days, *n);
-    }
-}

@@ -241,8 +241,6 @@ fn case(fitted: &'static Fitted, trial: &Trial, wearer: usize, rng: &mut ChaCha8
     hand.opened_mm = 0.0;
     let mut alone = hand.clone();
     let mut active = [0; 2];
-    let mut dbg = Vec::new();
-    let mut dbg_first = 0.0;
     let [mut lasting, mut reported] = [false; 2];
     let reported_within = (REPORTED_S * PAIRS_HZ) as u32;
     for (n, uv) in (0..((drawn.lasts_s + AFTER_S) * PAIRS_HZ) as u32).zip(resting) {
@@ -254,24 +252,7 @@ fn case(fitted: &'static Fitted, trial: &Trial, wearer: usize, rng: &mut ChaCha8
             let mv = drawn.read(site, f64::from(uv[electrode]) / 1e3, t_s, rng);
             pair[electrode] = (RANGE_MV[0]..RANGE_MV[1]).contains(&mv).then_some((mv * 1e3) as i32);
         }
-        let was = hand.opened_mm;
         hand.take(pair);
-        if hand.opened_mm > SAFE_MM && was <= SAFE_MM {
-            dbg_first = t_s;
-        }
-        if n % 48 == 0 && dbg.len() < 60 {
-            dbg.push(format!(
-                "{}{}{}/{}",
-                if hand.emg.verdict().proven { "P" } else { "" },
-                match hand.emg.verdict().wish {
-                    tenax_logic::emg::decide::Wish::Rest => "r",
-                    tenax_logic::emg::decide::Wish::Open => "o",
-                    _ => "c",
-                },
-                pair[electrodes[0]].map_or(-1, |v| v / 1000),
-                pair[electrodes[1]].map_or(-1, |v| v / 1000)
-            ));
-        }
         for (site, electrode) in electrodes.into_iter().enumerate().filter(|_| is_on) {
             if drawn.has(site) && (pair[electrode].is_none() || hand.emg.is_raised(electrode)) {
                 active[site] += 1;
@@ -279,18 +260,6 @@ fn case(fitted: &'static Fitted, trial: &Trial, wearer: usize, rng: &mut ChaCha8
                 reported |= active[site] <= reported_within && hand.emg.quality(electrode) != Quality::Good;
             }
         }
-    }
-    if alone.opened_mm == 0.0 && hand.opened_mm > SAFE_MM && std::env::var("DBG").is_ok() {
-        eprintln!(
-            "{:?} w{wearer} mv {:.0?} lasts {:.1} opened {:.1} at_begin {:?} first {:?} trail {:?}",
-            (drawn.fault, drawn.place),
-            drawn.mv,
-            drawn.lasts_s,
-            hand.opened_mm,
-            model.map(|m| m.rest()),
-            dbg_first,
-            dbg
-        );
     }
     (alone.opened_mm == 0.0).then_some(Outcome {
         fault: drawn.fault,

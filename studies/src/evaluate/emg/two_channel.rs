@@ -96,17 +96,6 @@ impl Movement {
         self.wants == Wish::Rest && self.never.len() == 2
     }
 
-    /// As electrodes hear it that have moved since.
-    #[must_use]
-    pub fn with_gains(mut self, gains: [f64; 2]) -> Self {
-        for (_, pair) in &mut self.muscles.pairs {
-            for (uv, gain) in pair.iter_mut().zip(gains) {
-                *uv = uv.map(|uv| (f64::from(uv) * gain) as i32);
-            }
-        }
-        self
-    }
-
     /// What a hand says of it.
     #[must_use]
     pub fn play(&self, mut emg: Emg) -> Played<'_> {
