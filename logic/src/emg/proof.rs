@@ -43,8 +43,6 @@ const WARY_FRAMES: u16 = 800;
 const SWING: i32 = 1_024;
 const LONE_SWINGS: u8 = 2;
 const SWING_FRAMES: u16 = 240;
-/// Slow frames after such a swing that are no rest: with the second that an electrode rests before it is believed again, a stride.
-const AFTER_FRAMES: u16 = 20;
 
 /// An envelope that swings.
 #[derive(Clone, Copy, Debug)]
@@ -92,7 +90,7 @@ impl Swings {
             None if level >= self.low + SWING => (self.high, self.was_active) = (Some(level), is_active),
             None => {}
         }
-        self.lone >= LONE_SWINGS && self.since <= AFTER_FRAMES
+        self.lone >= LONE_SWINGS
     }
 }
 

@@ -209,8 +209,8 @@ fn an_electrode_that_swings_and_is_not_heard_is_doubted() {
         run(&mut emg, 2.0, rest);
         run(&mut emg, 3.0, |t| [rest(t)[0], 50.0 + 800.0 * swing(t)]);
         assert_eq!([emg.quality(0), emg.quality(1)], [Quality::Good, Quality::LeadOff], "{hz} Hz");
-        // And believed again after a stride and a second of rest.
-        run(&mut emg, 1.5, rest);
+        // And believed again after 3 s of rest.
+        run(&mut emg, 3.5, rest);
         assert_eq!(emg.quality(1), Quality::Good);
         // A muscle that does the same is heard.
         run(&mut emg, 6.0, |t| [60.0 + 90.0 * swing(t), 50.0 + 800.0 * swing(t)]);

@@ -207,8 +207,7 @@ impl Trust {
         }
     }
 
-    /// Doubts it from now on, for this reason.
-    pub(super) fn lose(&mut self, quality: Quality) {
+    fn lose(&mut self, quality: Quality) {
         self.good = 0;
         // The first reason stays, but a still envelope may later turn out to be mains.
         if self.lost.is_none() || (self.lost == Some(Quality::Flat) && quality == Quality::Hum) {
