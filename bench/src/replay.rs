@@ -24,6 +24,7 @@ pub mod facts;
 pub mod filter;
 pub mod library;
 pub mod meaning;
+pub mod muscles;
 pub mod plant;
 pub mod recipe;
 pub mod recording;

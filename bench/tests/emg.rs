@@ -6,22 +6,17 @@ mod common;
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use tenax_bench::replay::calibrate::calibrate;
 use tenax_bench::replay::meaning::Motion;
-use tenax_bench::replay::{Recording, ReplayPlant, library};
+use tenax_bench::replay::muscles::{self, Muscles};
 use tenax_bench::session::{self, Board};
-use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ, MYO_EXTENSOR, MYO_FLEXOR, MYO_SELECT, SCANS_PER_FRAME};
-use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::schedule::select_of_slot;
-use tenax_logic::emg::calibration::{Calibration, PROMPT_FRAMES, Progress};
 use tenax_logic::emg::decide::Wish;
 use tenax_logic::emg::mains::mains_of;
 use tenax_logic::emg::model::EmgModel;
 use tenax_logic::emg::trust::Quality;
-use tenax_logic::emg::{Emg, Verdict, uv_of_sample};
-use tenax_scene::plant::Plant;
+use tenax_logic::emg::{Emg, Verdict};
 
 /// The window in which a decision is scored, s.
 const WINDOW_S: f64 = 0.25;
@@ -29,11 +24,10 @@ const WINDOW_S: f64 = 0.25;
 /// within a contraction, of which the front end has heard nothing before.
 const FRONT_END_S: f64 = 0.056;
 
-/// A recording as the board reads it: the recording's own time, s, and the pair above the live zero, uV.
+/// A recording and its name without the session's.
 struct Read {
     name: String,
-    duration_s: f64,
-    pairs: Vec<(f64, [Option<i32>; 2])>,
+    muscles: Muscles,
 }
 
 /// The two-channel recordings of a session: those that begin with its prefix, read once.
@@ -55,51 +49,16 @@ fn session(prefix: &str) -> Vec<Read> {
     reads
 }
 
-fn read(path: &std::path::Path, name: &str) -> Read {
-    let recording = Recording::read(path).expect("a shared recording is good");
-    let recipe = library::for_recording(path).expect("the recipes are good").expect("one is for it").recipe;
-    let mut plant = ReplayPlant::new(&recording, &recipe, 1).expect("they fit");
-    let from_s = plant.time_zero_s();
-    let frames = (plant.duration_s() * f64::from(FRAME_HZ)) as u32;
-    let mut pair = [None; 2];
-    let mut pairs = Vec::new();
-    for frame in 0..frames {
-        let mut samples = [0u16; 2];
-        for _ in 0..SCANS_PER_FRAME {
-            let codes = plant.scan(MotorDrive::Coast).codes();
-            samples[0] += codes[MYO_FLEXOR];
-            samples[1] += codes[MYO_EXTENSOR];
-        }
-        let Some(muscle @ 0..=1) = select_of_slot((frame % 25) as u8).checked_sub(MYO_SELECT) else {
-            continue;
-        };
-        let muscle = usize::from(muscle);
-        let uv = uv_of_sample(samples[muscle]);
-        let mv = uv / 1_000 + 300;
-        let channel = &CHANNELS[MYO_FLEXOR + muscle];
-        pair[muscle] = (channel.low_mv as i32..=channel.high_mv as i32).contains(&mv).then_some(uv);
-        if muscle == 1 {
-            pairs.push((f64::from(frame) / f64::from(FRAME_HZ) + from_s, pair));
-        }
-    }
-    Read { name: name.to_owned(), duration_s: recording.duration_s(), pairs }
+fn read(path: &Path, name: &str) -> Read {
+    let muscles = Muscles::read(path, None, 1).expect("a shared recording and its recipe are good");
+    Read { name: name.to_owned(), muscles }
 }
 
 /// Calibrates as the tool would: each prompt is answered with one recording.
 fn calibrated(phases: [&Read; 3]) -> EmgModel {
-    let mut calibration = Calibration::begin(0);
-    for (n, read) in phases.iter().enumerate() {
-        for &(t, pair) in read.pairs.iter().filter(|(t, _)| (0.0..5.0).contains(t)) {
-            let frame = n as u32 * PROMPT_FRAMES + (t * f64::from(FRAME_HZ)) as u32;
-            if let Progress::Done(result) = calibration.take(frame, pair) {
-                panic!("over in phase {n}: {result:?}");
-            }
-        }
-    }
-    match calibration.take(3 * PROMPT_FRAMES, [None; 2]) {
-        Progress::Done(Ok(model)) => model,
-        other => panic!("{} {} {}: {other:?}", phases[0].name, phases[1].name, phases[2].name),
-    }
+    let names = phases.map(|read| read.name.as_str());
+    muscles::calibrate(phases.map(|read| &read.muscles))
+        .unwrap_or_else(|refusal| panic!("{names:?}: {refusal}"))
 }
 
 /// What a recording made the module say.
@@ -114,6 +73,7 @@ fn play(model: Option<&EmgModel>, read: &Read) -> Played {
     let mut qualities = Vec::new();
     let mut was = [Quality::Good; 2];
     let verdicts = read
+        .muscles
         .pairs
         .iter()
         .map(|&(t, pair)| {
@@ -131,7 +91,7 @@ fn play(model: Option<&EmgModel>, read: &Read) -> Played {
             (t, verdict)
         })
         .collect();
-    Played { verdicts, duration_s: read.duration_s, qualities }
+    Played { verdicts, duration_s: read.muscles.duration_s, qualities }
 }
 
 impl Played {
@@ -314,15 +274,11 @@ fn an_electrode_that_moved_still_moves_nothing_at_rest() {
             let (mut right, mut all, mut worst) = (0, 0, BTreeMap::new());
             for read in &reads {
                 let heard = |uv: Option<i32>, gain: f64| uv.map(|uv| (f64::from(uv) * gain) as i32);
-                let moved = Read {
-                    name: read.name.clone(),
-                    duration_s: read.duration_s,
-                    pairs: read
-                        .pairs
-                        .iter()
-                        .map(|&(t, [f, e])| (t, [heard(f, gains[0]), heard(e, gains[1])]))
-                        .collect(),
-                };
+                let mut muscles = read.muscles.clone();
+                for (_, pair) in &mut muscles.pairs {
+                    *pair = [heard(pair[0], gains[0]), heard(pair[1], gains[1])];
+                }
+                let moved = Read { name: read.name.clone(), muscles };
                 let played = play(Some(&model), &moved);
                 let (held, wrong) = meaning(&read.name);
                 let wrong_ms = wrong.iter().map(|&wish| played.longest_ms(wish)).max().unwrap_or(0);

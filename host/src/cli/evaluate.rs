@@ -100,6 +100,12 @@ struct EmgArgs {
     /// Only this person
     #[arg(long, value_name = "N")]
     person: Option<u32>,
+    /// Draw so many faults of the electrodes over people at rest, too
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    faults: u32,
+    /// Seed of the faults
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
     /// How to print the scores
     #[arg(long, value_enum, default_value_t = Format::Text)]
     report: Format,
@@ -107,7 +113,7 @@ struct EmgArgs {
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some(What::Emg(emg)) = &args.what {
-        let report = emg::evaluate(&emg.recordings, emg.person)?;
+        let report = emg::evaluate(&emg.recordings, emg.person, emg.faults, emg.seed)?;
         out::unless_closed(emg.report.print(&emg::Text(&report), &report))?;
         return Ok(ExitCode::SUCCESS);
     }

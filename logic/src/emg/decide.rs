@@ -8,7 +8,7 @@
 
 use super::constants::Fitted;
 use super::fitted::FITTED;
-use super::level::{level_of, uv_of};
+use super::level::{FLOOR_LEVEL, level_of, uv_of};
 use super::model::EmgModel;
 
 /// An envelope above this is out of the sensor's range, uV: it begins nothing, and what it began goes on.
@@ -34,6 +34,8 @@ const HEARS_SPREADS: i32 = 1;
 const DEFAULT_BEGINS_UV: [i32; 2] = [600_000, 1_500_000];
 const DEFAULT_OVER: [i32; 2] = [1_322, 2_900];
 const DEFAULT_READINGS: i32 = 72;
+/// And how far it rises at least.
+const DEFAULT_HEARS: i32 = 256;
 
 /// What the wearer wants of the hand.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -111,7 +113,7 @@ impl Sites {
             fall,
             both,
             hears: [0, 1].map(|n: usize| {
-                let least = (HEARS_SPREADS * spread[1 - n]).min(hears[n] / 2);
+                let least = (HEARS_SPREADS * spread[1 - n]).min(hears[n] / 2).max(hears[n] / 4);
                 (hears[n] >= HEARS_AT_ALL).then_some(least)
             }),
             close_ratio: close[1] - close[0],
@@ -196,7 +198,10 @@ impl Decide {
     #[must_use]
     pub fn hears(&self) -> Option<[i32; 2]> {
         let site = usize::from(self.wish != Wish::Close);
-        self.sites.and_then(|sites| Some([sites.rest[1 - site], sites.hears[site]?]))
+        match &self.sites {
+            Some(sites) => Some([sites.rest[1 - site], sites.hears[site]?]),
+            None => Some([FLOOR_LEVEL, DEFAULT_HEARS]),
+        }
     }
 
     /// How strongly the last wish is meant, per mille: for the speed.

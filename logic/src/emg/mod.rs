@@ -64,6 +64,8 @@ pub struct Emg {
     trust: [Trust; 2],
     raised: [bool; 2],
     known: [bool; 2],
+    /// Which swing and are not heard by the other: reported, and no proof.
+    lone: [bool; 2],
     electrodes: [Electrode; 2],
     verdict: Verdict,
 }
@@ -92,6 +94,7 @@ impl Emg {
             trust: Default::default(),
             raised: [false; 2],
             known: [false; 2],
+            lone: [false; 2],
             electrodes: Default::default(),
             verdict: Verdict::default(),
         }
@@ -147,8 +150,10 @@ impl Emg {
             self.pairs = 0;
             let mover = self.decide.mover();
             let levels = self.electrodes.map(|electrode| electrode.uv.map(|uv| level_of(uv.min(OVER_UV))));
+            self.lone = self.proof.lone(levels, self.raised);
             let over = self.electrodes[mover].uv.is_some_and(|uv| uv >= OVER_UV);
-            proven = self.proof.take(levels, wish, mover, &self.trust[mover], self.decide.hears(), over);
+            proven = self.proof.take(levels, wish, mover, &self.trust[mover], self.decide.hears(), over)
+                && !self.lone[mover];
         }
         self.verdict = Verdict {
             wish,
@@ -163,6 +168,12 @@ impl Emg {
     #[must_use]
     pub const fn verdict(&self) -> Verdict {
         self.verdict
+    }
+
+    /// Both electrodes as they were decided on, flexor first: for who fits what follows from them.
+    #[must_use]
+    pub const fn electrodes(&self) -> [Electrode; 2] {
+        self.electrodes
     }
 
     /// Whether a channel is active: 0 the flexor's, others the extensor's.
@@ -180,7 +191,10 @@ impl Emg {
     /// What a channel's envelope is: 0 the flexor's, others the extensor's.
     #[must_use]
     pub fn quality(&self, channel: usize) -> Quality {
-        self.trust[channel.min(1)].quality()
+        match self.trust[channel.min(1)].quality() {
+            Quality::Good if self.lone[channel.min(1)] => Quality::LeadOff,
+            quality => quality,
+        }
     }
 
     /// A full window of a channel, for [`mains::mains_of`] outside the tick.

@@ -27,6 +27,8 @@ const BLOCKS_OF_RISE: usize = 3;
 const LEAST_RISE: i32 = 512;
 /// And has slowed down to this part of its fastest, per mille.
 const SLOWER: i32 = 600;
+/// Rises whose parts of the whole differ by this part of their sum, 8 %, are not in proportion.
+const APART_PART: i32 = 12;
 /// Slow frames within which the same wish is gone on with, and need not be heard again: 0.1 s.
 const GOES_ON_FRAMES: u16 = 8;
 /// Slow frames for which a proven opening above the sensor's range stays proven: 0.5 s.
@@ -34,6 +36,63 @@ const OVER_FRAMES: u16 = 40;
 /// Each unproven opening makes the next harder to believe, this often at most, and so many slow frames of rest take one back: 10 s.
 const MOST_WARY: u8 = 3;
 const WARY_FRAMES: u16 = 800;
+
+/// An envelope swings when it rises and falls by this, Q10 octaves, and is activity meanwhile; the other electrode hears a muscle that
+/// does, but rarely not. So many swings that it does not hear, none of them longer ago than this, in slow frames, 3 s, are no muscle's:
+/// an electrode that is loose, or hums with the arm's swing.
+const SWING: i32 = 1_024;
+const LONE_SWINGS: u8 = 2;
+const SWING_FRAMES: u16 = 240;
+
+/// An envelope that swings.
+#[derive(Clone, Copy, Debug)]
+struct Swings {
+    low: i32,
+    /// The highest since, once it has risen.
+    high: Option<i32>,
+    was_active: bool,
+    /// What the other electrode had at the lowest, and at most since.
+    other: [i32; 2],
+    lone: u8,
+    since: u16,
+}
+
+impl Default for Swings {
+    /// Nothing is low before the first level.
+    fn default() -> Self {
+        Self { low: i32::MAX, high: None, was_active: false, other: [0; 2], lone: 0, since: 0 }
+    }
+}
+
+impl Swings {
+    /// Takes its level and the other electrode's of a slow frame. Whether it swings alone.
+    #[inline(never)]
+    fn take(&mut self, level: i32, other: i32, is_active: bool) -> bool {
+        self.since = self.since.saturating_add(1);
+        if self.since > SWING_FRAMES {
+            self.lone = 0;
+        }
+        self.other[1] = self.other[1].max(other);
+        match self.high {
+            Some(high) if level <= high - SWING => {
+                if self.other[1] - self.other[0] >= 2 * LEAST_HEARD {
+                    self.lone = 0;
+                } else if self.was_active {
+                    (self.lone, self.since) = ((self.lone + 1).min(LONE_SWINGS), 0);
+                }
+                (self.low, self.high, self.other) = (level, None, [other; 2]);
+            }
+            Some(high) => {
+                self.high = Some(high.max(level));
+                self.was_active |= is_active;
+            }
+            None if level <= self.low => (self.low, self.other) = (level, [other; 2]),
+            None if level >= self.low + SWING => (self.high, self.was_active) = (Some(level), is_active),
+            None => {}
+        }
+        self.lone >= LONE_SWINGS
+    }
+}
 
 /// Both electrodes' recent past, and what it proves.
 #[derive(Clone, Debug)]
@@ -48,12 +107,15 @@ pub struct Proof {
     /// Slow frames in a row in which the other one is above that.
     hears: u8,
     heard: bool,
+    /// They have not risen in proportion.
+    apart: bool,
     proven: bool,
     over: u16,
     /// The last wish that was proven, and slow frames since.
     last: (Wish, u16),
     wary: u8,
     rest: u16,
+    swings: [Swings; 2],
 }
 
 impl Default for Proof {
@@ -66,11 +128,13 @@ impl Default for Proof {
             before: [0; 2],
             hears: 0,
             heard: false,
+            apart: false,
             proven: false,
             over: 0,
             last: (Wish::Rest, u16::MAX),
             wary: 0,
             rest: 0,
+            swings: Default::default(),
         }
     }
 }
@@ -103,7 +167,10 @@ impl Proof {
         self.hears = if heard == Some(true) { self.hears.saturating_add(1) } else { 0 };
         self.heard |= self.age <= HEARD_FRAMES && self.hears >= HEARD_FOR;
         self.proven |= match (heard, wish) {
-            (Some(_), Wish::Open) => self.heard && (trust.has_turned() || self.is_gradual(mover)),
+            (Some(_), Wish::Open) => {
+                self.apart |= self.rise_apart();
+                self.heard && self.apart && (trust.has_turned() || self.is_gradual(mover))
+            }
             _ => self.heard || trust.has_turned_twice(),
         };
         if self.over > OVER_FRAMES || !(over || trust.is_sound()) {
@@ -115,6 +182,14 @@ impl Proof {
             self.wary = 0;
         }
         self.proven
+    }
+
+    /// Takes a pair of levels of each slow frame, as above, and whether each is activity: which electrodes swing and are not heard by
+    /// the other.
+    pub fn lone(&mut self, levels: [Option<i32>; 2], active: [bool; 2]) -> [bool; 2] {
+        let [Some(flexor), Some(extensor)] = levels else { return [false; 2] };
+        let [own, other] = &mut self.swings;
+        [own.take(flexor, extensor, active[0]), other.take(extensor, flexor, active[1])]
     }
 
     fn keep(&mut self, levels: [Option<i32>; 2]) {
@@ -156,6 +231,7 @@ impl Proof {
         (self.wish, self.age, self.over) = (wish, 0, 0);
         self.before = [0, 1].map(|n: usize| self.before(n));
         self.heard = wish == self.last.0 && self.last.1 < GOES_ON_FRAMES && wish != Wish::Rest;
+        self.apart = self.heard;
         self.proven = false;
     }
 
@@ -167,6 +243,25 @@ impl Proof {
     /// How far it is above that now, or above what it was when the wish began, and above its rest.
     fn rise(&self, n: usize, level: Option<i32>, rest: i32) -> i32 {
         level.map_or(0, |level| level - self.before(n).min(self.before[n & 1]).max(rest))
+    }
+
+    /// Whether both rise, but not in proportion: what reaches both electrodes at once does, or jumps.
+    #[inline(never)]
+    fn rise_apart(&self) -> bool {
+        let low = self.blocks.map(least);
+        let most = [0, 1].map(|n: usize| {
+            climbs(low[n], self.blocks[n].iter().fold(0, |most, &level| most.max(level.into()))) >> 3
+        });
+        let whole = most[0] * most[1] / 16;
+        let mut apart = false;
+        for n in 0..BLOCKS {
+            let part = |own: usize| (climbs(low[own], self.blocks[own][n].into()) >> 3) * most[1 - own] / 16;
+            let parts = [part(0), part(1)];
+            let is_between = |part: i32| part > whole / 10 && part < whole / 10 * 8;
+            apart |= (is_between(parts[0]) || is_between(parts[1]))
+                && (parts[0] - parts[1]).abs() > (parts[0] + parts[1]) / APART_PART;
+        }
+        apart
     }
 
     /// Whether an electrode has risen over several blocks and slows down, as a muscle does: what creeps goes on as fast, and what
@@ -188,7 +283,14 @@ impl Proof {
     }
 }
 
+/// The lowest of them.
+#[inline(never)]
+fn least(blocks: [i16; BLOCKS]) -> i32 {
+    blocks.into_iter().fold(i32::from(i16::MAX), |least, level| least.min(level.into()))
+}
+
 /// By how much the envelope climbs from a level to another, as a part of the highest there is, Q18; 0 if it falls.
+#[inline(never)]
 const fn climbs(from: i32, to: i32) -> i32 {
     // 2 to the power of a level below the highest, to 0.2 %.
     const fn envelope(level: i32) -> i32 {

@@ -181,3 +181,39 @@ fn both_electrodes_that_creep_together_are_never_proven() {
     }
     assert!(opened > 1_000, "or it shows nothing: {opened}");
 }
+
+#[test]
+fn what_reaches_both_electrodes_in_proportion_is_never_proven() {
+    let model = EmgModel::of_uv([5_000; 2], [900_000, 95_000], [80_000, 560_000]).unwrap();
+    let lifts = |t: f64| 1.0 - (-(t - 0.3).max(0.0) / 0.027).exp();
+    let swings = |t: f64| 0.5 - 0.5 * (TAU * 0.9 * t).cos();
+    let mut opened = 0;
+    for flexor_part in [0.05, 0.1, 0.2] {
+        for of in [lifts as fn(f64) -> f64, swings] {
+            let mut emg = Emg::new(Some(&model));
+            run(&mut emg, 2.0, |_| [5.0, 5.0]);
+            let verdicts =
+                run(&mut emg, 8.0, |t| [flexor_part, 1.0].map(|part| 5.0 + part * 1_200.0 * of(t)));
+            opened += verdicts.iter().filter(|v| v.wish == Wish::Open).count();
+            assert!(verdicts.iter().all(|v| !v.proven || v.wish != Wish::Open), "{flexor_part}");
+        }
+    }
+    assert!(opened > 1_000, "or it shows nothing: {opened}");
+}
+
+#[test]
+fn an_electrode_that_swings_and_is_not_heard_is_doubted() {
+    for hz in [0.8, 1.3, 2.2, 7.0] {
+        let swing = |t: f64| 0.5 - 0.5 * (TAU * hz * t).cos();
+        let mut emg = wearer();
+        run(&mut emg, 2.0, rest);
+        run(&mut emg, 3.0, |t| [rest(t)[0], 50.0 + 800.0 * swing(t)]);
+        assert_eq!([emg.quality(0), emg.quality(1)], [Quality::Good, Quality::LeadOff], "{hz} Hz");
+        // And believed again after 3 s of rest.
+        run(&mut emg, 3.5, rest);
+        assert_eq!(emg.quality(1), Quality::Good);
+        // A muscle that does the same is heard.
+        run(&mut emg, 6.0, |t| [60.0 + 90.0 * swing(t), 50.0 + 800.0 * swing(t)]);
+        assert_eq!([emg.quality(0), emg.quality(1)], [Quality::Good; 2], "{hz} Hz");
+    }
+}

@@ -22,16 +22,11 @@ const CREEP_FRAMES: u16 = 200;
 const TOP_FRAMES: u16 = 120;
 /// Of activity without a pause: 60 s; one person holds a tone for more than 30 s.
 const ENDLESS_FRAMES: u16 = 4_800;
-/// Over which unrest is judged: 2.5 s; and of them, so many curve by more than a fifth: a loose contact.
-const UNREST_FRAMES: u16 = 200;
-const UNREST_MANY: u16 = UNREST_FRAMES * 2 / 5;
-/// Weaker envelopes are compared with this, uV, and stronger ones than that are not judged.
-const UNREST_UV: [i32; 2] = [75_000, 300_000];
 /// Good slow frames after which an electrode is believed again: 1 s.
 const BACK_FRAMES: u16 = 80;
 /// Slow frames between the points of a curve, 50 ms, and before its first one counts.
 const LAG: usize = 4;
-const FIRST_PROOF_FRAMES: u16 = 12;
+const FIRST_PROOF_FRAMES: u16 = 20;
 /// The part of its level by which a proof curves, and slow frames between two proofs: 0.15 s, more than one jump takes. Two
 /// make a muscle.
 const PROOF_PART: i32 = 12;
@@ -101,9 +96,6 @@ pub struct Trust {
     crest_uv: i32,
     climbing: u16,
     at_top: u16,
-    restless: u16,
-    unrest_frames: u16,
-    loose: bool,
     /// Proofs of this contraction, two at most, and slow frames since the last.
     proofs: u8,
     since_proof: u16,
@@ -130,9 +122,6 @@ impl Default for Trust {
             crest_uv: 0,
             climbing: 0,
             at_top: 0,
-            restless: 0,
-            unrest_frames: 0,
-            loose: false,
             proofs: 0,
             since_proof: 0,
             window: [0; WINDOW],
@@ -186,7 +175,6 @@ impl Trust {
         self.at_top = if is_top { self.at_top.saturating_add(1) } else { 0 };
         self.stand(uv);
         let turned = self.climb(uv);
-        self.count_unrest(uv, curve_uv);
         let curves = curve_uv > uv.max(1) / PROOF_PART && !is_top && uv.max(middle).max(far) < TOP_UV;
         self.prove(turned || curves);
 
@@ -206,8 +194,6 @@ impl Trust {
             })
         } else if self.active_for >= ENDLESS_FRAMES {
             Some(Quality::Endless)
-        } else if self.loose {
-            Some(Quality::LeadOff)
         } else {
             None
         };
@@ -271,19 +257,6 @@ impl Trust {
             self.climbing = self.climbing.saturating_add(1);
         }
         turned
-    }
-
-    fn count_unrest(&mut self, uv: i32, curve_uv: i32) {
-        if uv > UNREST_UV[1] {
-            (self.restless, self.unrest_frames, self.loose) = (0, 0, false);
-            return;
-        }
-        self.restless += u16::from(curve_uv > uv.max(UNREST_UV[0]) / 5);
-        self.unrest_frames += 1;
-        if self.unrest_frames == UNREST_FRAMES {
-            self.loose = self.restless >= UNREST_MANY;
-            (self.restless, self.unrest_frames) = (0, 0);
-        }
     }
 
     /// What it is.

@@ -1,0 +1,78 @@
+//! Both muscles of a recording, as the board reads them.
+
+use std::path::Path;
+
+use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ, MYO_EXTENSOR, MYO_FLEXOR, MYO_SELECT, SCANS_PER_FRAME};
+use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::schedule::select_of_slot;
+use tenax_logic::emg::calibration::{Calibration, PROMPT_FRAMES, Progress};
+use tenax_logic::emg::model::{EmgModel, Refusal};
+use tenax_logic::emg::uv_of_sample;
+use tenax_scene::plant::Plant;
+
+use super::{Recording, ReplayPlant, library};
+
+/// Both envelopes above the live zero.
+#[derive(Clone, Debug)]
+pub struct Muscles {
+    /// From the recording's first to its last row, s.
+    pub duration_s: f64,
+    /// Time since the recording's first row, s, negative while the front end settles; and both, uV, flexor first, none where a
+    /// sensor gives no number.
+    pub pairs: Vec<(f64, [Option<i32>; 2])>,
+}
+
+impl Muscles {
+    /// Reads a recording through its recipe's front end; `recipe` in place of the one that its name calls for.
+    pub fn read(path: &Path, recipe: Option<&str>, seed: u64) -> anyhow::Result<Self> {
+        let recording = Recording::read(path)?;
+        let mut plant = match library::choose(&recording, path, recipe)? {
+            Some(named) => ReplayPlant::new(&recording, &named.recipe, seed)?,
+            None => ReplayPlant::plain(&recording, seed)?,
+        };
+        let from_s = plant.time_zero_s() - recording.first_s();
+        let mut pair = [None; 2];
+        let mut pairs = Vec::new();
+        for frame in 0..(plant.duration_s() * f64::from(FRAME_HZ)) as u32 {
+            let mut samples = [0u16; 2];
+            for _ in 0..SCANS_PER_FRAME {
+                let codes = plant.scan(MotorDrive::Coast).codes();
+                samples[0] += codes[MYO_FLEXOR];
+                samples[1] += codes[MYO_EXTENSOR];
+            }
+            let Some(muscle @ 0..=1) = select_of_slot((frame % 25) as u8).checked_sub(MYO_SELECT) else {
+                continue;
+            };
+            let (muscle, channel) = (usize::from(muscle), &CHANNELS[MYO_FLEXOR + usize::from(muscle)]);
+            let uv = uv_of_sample(samples[muscle]);
+            let mv = uv / 1_000 + 300;
+            pair[muscle] = (channel.low_mv as i32..=channel.high_mv as i32).contains(&mv).then_some(uv);
+            if muscle == 1 {
+                pairs.push((f64::from(frame) / f64::from(FRAME_HZ) + from_s, pair));
+            }
+        }
+        Ok(Self { duration_s: recording.duration_s(), pairs })
+    }
+
+    /// What is within the recording: not the front end's settling, nor what follows its last row.
+    pub fn within(&self) -> impl Iterator<Item = (f64, [Option<i32>; 2])> {
+        self.pairs.iter().copied().filter(|(t_s, _)| (0.0..self.duration_s).contains(t_s))
+    }
+}
+
+/// The guided calibration: each prompt, rest, close and open, is answered with the first 5 s of a recording.
+pub fn calibrate(phases: [&Muscles; 3]) -> Result<EmgModel, Refusal> {
+    let mut calibration = Calibration::begin(0);
+    for (phase, muscles) in (0..).zip(phases) {
+        for (t_s, pair) in muscles.within() {
+            let frame = (t_s * f64::from(FRAME_HZ)) as u32;
+            if frame < PROMPT_FRAMES {
+                calibration.take(phase * PROMPT_FRAMES + frame, pair);
+            }
+        }
+    }
+    match calibration.take(3 * PROMPT_FRAMES, [None; 2]) {
+        Progress::Done(result) => result,
+        Progress::Asks(..) => unreachable!("three prompts are over"),
+    }
+}
