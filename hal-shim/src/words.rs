@@ -324,6 +324,8 @@ pub enum CalibrationRefusal {
     Damaged,
     /// The hand came to hold something, and whoever holds something must be able to let it go.
     Loaded,
+    /// Somebody pressed the button again.
+    Stopped,
 }
 
 impl CalibrationRefusal {
@@ -332,6 +334,7 @@ impl CalibrationRefusal {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Loaded => "something was held",
+            Self::Stopped => "the button stopped it",
             Self::RestNotQuiet => "rest was not quiet",
             Self::NoClosing => "closing did not stand out from rest",
             Self::NoOpening => "opening did not stand out from rest",

@@ -3,7 +3,7 @@
 use tenax_hal_shim::channel::{MYO_EXTENSOR, MYO_FLEXOR};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::EventKind;
-use tenax_hal_shim::words::{Calibration, DriveSource, Kept, Prompt};
+use tenax_hal_shim::words::{Calibration, CalibrationRefusal, DriveSource, Kept, Prompt};
 use tenax_host_tests::Bench;
 
 fn press(bench: &mut Bench, frames: u32) -> Vec<MotorDrive> {
@@ -107,4 +107,25 @@ fn an_empty_hand_calibrates_by_the_button_and_keeps_it() {
     let saved: Vec<Kept> =
         std::iter::from_fn(|| bench.fingertip.next_record(&mut keeper)).map(|record| record.kept()).collect();
     assert!(saved.contains(&Kept::Emg), "{saved:?}");
+}
+
+#[test]
+fn a_second_press_ends_a_calibration_and_the_old_one_stays() {
+    let mut bench = Bench::new(45);
+    bench.run(1_000);
+    let before = bench.fingertip.keeper();
+    press(&mut bench, 6_200);
+    bench.run(2_000);
+    bench.events.clear();
+    press(&mut bench, 200);
+    let kinds: Vec<EventKind> = bench.events.iter().map(|event| event.kind).collect();
+    let stopped = EventKind::Calibration(Calibration::Refused(CalibrationRefusal::Stopped));
+    assert!(kinds.contains(&stopped), "{kinds:?}");
+    // The muscles move the hand again, as before.
+    bench.muscles(900.0, 95.0);
+    assert!(bench.run(2_000).iter().any(|drive| drive.closes()));
+    let mut keeper = before;
+    let saved: Vec<Kept> =
+        std::iter::from_fn(|| bench.fingertip.next_record(&mut keeper)).map(|record| record.kept()).collect();
+    assert!(!saved.contains(&Kept::Emg), "{saved:?}");
 }

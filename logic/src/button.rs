@@ -3,8 +3,8 @@
 //! | the finger | pressed | the hand |
 //! |---|---|---|
 //! | holds something, or is not known not to | for 1 to 3 s, and let go | [`Press::Release`]: opens slowly |
-//! | opens after a release | again | [`Press::Stop`] |
 //! | holds nothing | for 3 s | [`Press::Calibrate`]: asks for rest, closing and opening |
+//! | opens after a release, or is calibrating | again | [`Press::Stop`] |
 //!
 //! A release waits for the button to be let go: a button that is stuck or shorted opens nothing.
 
@@ -20,10 +20,10 @@ const CALIBRATE_STEPS: u32 = frames(3_000) / STEP_FRAMES;
 pub enum Press {
     /// To open a hand that holds.
     Release,
-    /// To stop doing so.
-    Stop,
     /// To learn the wearer's muscles anew.
     Calibrate,
+    /// To stop doing so.
+    Stop,
 }
 
 /// The button, from step to step.
@@ -38,8 +38,9 @@ pub struct Button {
 }
 
 impl Button {
-    /// Goes on by one step. `empty`: the finger is known to hold nothing; `releasing`: the hand opens after a release.
-    pub fn tick(&mut self, is_down: bool, empty: bool, releasing: bool) -> Option<Press> {
+    /// Goes on by one step. `empty`: the finger is known to hold nothing; `busy`: it does what a press has
+    /// asked for.
+    pub fn tick(&mut self, is_down: bool, empty: bool, busy: bool) -> Option<Press> {
         if !is_down {
             self.up = self.up.saturating_add(1);
             if self.up < DEBOUNCE_STEPS {
@@ -58,7 +59,7 @@ impl Button {
         self.up = 0;
         self.down = self.down.saturating_add(1);
         let press = match self.down {
-            DEBOUNCE_STEPS if releasing => Press::Stop,
+            DEBOUNCE_STEPS if busy => Press::Stop,
             CALIBRATE_STEPS if !self.held && empty => Press::Calibrate,
             _ => return None,
         };
@@ -72,19 +73,19 @@ mod tests {
     use std::vec::Vec;
 
     /// What so many ms down, then 100 ms up, ask for, after 100 ms up.
-    fn press(ms: u32, empty: bool, releasing: bool) -> Vec<Press> {
+    fn press(ms: u32, empty: bool, busy: bool) -> Vec<Press> {
         let mut button = Button::default();
         let steps = |ms: u32| frames(ms) / STEP_FRAMES;
         let mut all = Vec::new();
         for (is_down, ms) in [(false, 100), (true, ms), (false, 100)] {
-            all.extend((0..steps(ms)).filter_map(|_| button.tick(is_down, empty, releasing)));
+            all.extend((0..steps(ms)).filter_map(|_| button.tick(is_down, empty, busy)));
         }
         all
     }
 
     #[test]
     fn each_press_asks_once_for_what_its_length_says() {
-        for (ms, empty, releasing, asks) in [
+        for (ms, empty, busy, asks) in [
             (200, false, false, None),
             (1_100, false, false, Some(Press::Release)),
             (2_900, false, false, Some(Press::Release)),
@@ -96,8 +97,9 @@ mod tests {
             (200, false, true, Some(Press::Stop)),
             (1_100, false, true, Some(Press::Stop)),
             (5, false, true, None),
+            (200, true, true, Some(Press::Stop)),
         ] {
-            assert_eq!(press(ms, empty, releasing), Vec::from_iter(asks), "{ms} ms, {empty}, {releasing}");
+            assert_eq!(press(ms, empty, busy), Vec::from_iter(asks), "{ms} ms, {empty}, {busy}");
         }
     }
 

@@ -16,7 +16,7 @@ use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::wire::{EventKind, Forces, Slow, TickRecord};
-use tenax_hal_shim::words::{Cause, DriveSource, Fault, GripMode, Kept, Line};
+use tenax_hal_shim::words::{CalibrationRefusal, Cause, DriveSource, Fault, GripMode, Kept, Line};
 
 use self::behave::Eye;
 use self::link::Link;
@@ -230,7 +230,8 @@ impl Fingertip {
             if self.senses.muscles().is_calibrating()
                 && matches!(self.senses.grip(&self.config), Grip::Holds(_))
             {
-                self.senses.muscles_mut().give_up(&mut self.journal);
+                // Its muscles must be able to open it.
+                self.senses.muscles_mut().give_up(CalibrationRefusal::Loaded, &mut self.journal);
             }
             if frame.slot() == FEEL_SLOT {
                 self.feel();

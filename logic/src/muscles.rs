@@ -173,11 +173,11 @@ impl Muscles {
         })
     }
 
-    /// Ends a calibration without a result: the hand has come to hold something, and its muscles must be able to open it.
+    /// Ends a calibration without a result.
     #[inline(never)]
-    pub fn give_up(&mut self, journal: &mut Journal) {
+    pub fn give_up(&mut self, why: words::CalibrationRefusal, journal: &mut Journal) {
         if self.lesson.take().is_some() {
-            let _nothing_new = self.conclude(Err(words::CalibrationRefusal::Loaded), journal);
+            let _nothing_new = self.conclude(Err(why), journal);
         }
     }
 

@@ -2,7 +2,7 @@
 
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::EventKind;
-use tenax_hal_shim::words::Line;
+use tenax_hal_shim::words::{CalibrationRefusal, Line};
 
 use super::Fingertip;
 use crate::arming::{STEP_FRAMES, Signs};
@@ -81,9 +81,14 @@ impl Fingertip {
         if gate.is_releasing() {
             gate.step_release(STEP_FRAMES);
         }
-        match self.button.tick(self.button_is_down, empty, gate.is_releasing()) {
+        let busy = gate.is_releasing() || self.senses.muscles().is_calibrating();
+        let gate = &mut self.senses.gate;
+        match self.button.tick(self.button_is_down, empty, busy) {
             Some(Press::Release) => gate.release(true),
-            Some(Press::Stop) => gate.release(false),
+            Some(Press::Stop) => {
+                gate.release(false);
+                self.senses.muscles_mut().give_up(CalibrationRefusal::Stopped, &mut self.journal);
+            }
             Some(Press::Calibrate) => self.senses.muscles_mut().begin_calibration(self.journal.frame()),
             None => {}
         }
