@@ -11,6 +11,7 @@ mod format;
 mod learn;
 mod line_file;
 mod lint_image;
+mod people;
 mod plot;
 mod progress;
 mod run;

@@ -9,6 +9,7 @@ use tenax_logic::array::{Reading, ShippedDetector};
 
 use super::format::Format;
 use super::out;
+use super::people::People;
 use super::progress::with_bar;
 use super::workspace;
 use tenax_bench::array::network::Network;
@@ -94,27 +95,21 @@ enum What {
 
 #[derive(Debug, clap::Args)]
 struct EmgArgs {
-    /// Folder of personP_dayD_postureQ.csv: t_s, ecu, edc, fcr, fcu (32767 is 2.8 V), label (1 rest, 3 close, 4 open)
-    #[arg(long, value_name = "FOLDER")]
-    recordings: PathBuf,
+    #[command(flatten)]
+    people: People,
     /// Only this person
     #[arg(long, value_name = "N")]
     person: Option<u32>,
     /// Draw so many faults of the electrodes over people at rest, too
     #[arg(long, value_name = "N", default_value_t = 0)]
     faults: u32,
-    /// Seed of the faults
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
-    /// How to print the scores
-    #[arg(long, value_enum, default_value_t = Format::Text)]
-    report: Format,
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some(What::Emg(emg)) = &args.what {
-        let report = emg::evaluate(&emg.recordings, emg.person, emg.faults, emg.seed)?;
-        out::unless_closed(emg.report.print(&emg::Text(&report), &report))?;
+        let People { recordings, seed, report: format } = &emg.people;
+        let report = emg::evaluate(recordings, emg.person, emg.faults, *seed)?;
+        out::unless_closed(format.print(&emg::Text(&report), &report))?;
         return Ok(ExitCode::SUCCESS);
     }
     if args.online {

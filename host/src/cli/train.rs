@@ -7,8 +7,8 @@ use std::process::{Command, ExitCode};
 use anyhow::{Context, bail};
 
 use super::folder;
-use super::format::Format;
 use super::out;
+use super::people::People;
 use super::progress::with_bar;
 use super::workspace;
 use tenax_bench::labelled::{self, library};
@@ -72,26 +72,20 @@ enum What {
 
 #[derive(Debug, clap::Args)]
 struct EmgArgs {
-    /// Folder of recordings, as for `tenax evaluate emg`
-    #[arg(long, value_name = "FOLDER")]
-    recordings: PathBuf,
+    #[command(flatten)]
+    people: People,
     /// Rounds of the search: a tenth of a second each for every person
     #[arg(long, value_name = "N", default_value_t = 600)]
     rounds: u32,
-    /// Seed of the search
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
     /// Put the constants where the firmware has them
     #[arg(long)]
     ship: bool,
-    /// How to print the report
-    #[arg(long, value_enum, default_value_t = Format::Text)]
-    report: Format,
 }
 
 fn emg(args: &EmgArgs) -> anyhow::Result<ExitCode> {
-    let report = with_bar("fitting", |part| fit::fit(&args.recordings, args.rounds, args.seed, part))?;
-    out::unless_closed(args.report.print(&fit::Text(&report), &report))?;
+    let People { recordings, seed, report: format } = &args.people;
+    let report = with_bar("fitting", |part| fit::fit(recordings, args.rounds, *seed, part))?;
+    out::unless_closed(format.print(&fit::Text(&report), &report))?;
     if args.ship {
         let to = workspace::root()?.join("logic/src/emg/fitted.rs");
         std::fs::write(&to, &report.file).with_context(|| format!("cannot write {}", to.display()))?;
