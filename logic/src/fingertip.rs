@@ -76,6 +76,8 @@ pub struct Fingertip {
     /// What the last tick was asked for, and how it drove the motor.
     asked: MotorDrive,
     drive: MotorDrive,
+    /// Since the last look at the drive it opened by what the reflex had added.
+    took_back: bool,
 }
 
 impl Fingertip {
@@ -183,7 +185,7 @@ impl Fingertip {
         self.config.grip.may_relax(self.config.no_wearer)
             && self.senses.ready(&self.config)
             && !self.senses.gate.is_active()
-            && self.link_drive().is_none()
+            && self.link.drive().is_none()
             && self.behaviour.is_none()
     }
 
@@ -238,13 +240,9 @@ impl Fingertip {
             }
             // Before this frame drives: what the last ones did.
             let striking = matches!(self.mode, GripMode::Slip | GripMode::Settle);
-            // A hand that takes back what the reflex added is not opened; one that stalls at its stop as it opens is open.
-            let did = match self.asked {
-                _ if self.reflex.is_relaxing() => MotorDrive::Coast,
-                MotorDrive::Open(_) => self.asked,
-                _ => self.drive,
-            };
-            self.senses.driven(did, striking, STEP_FRAMES);
+            // A hand that stalls at its stop as it opens is open.
+            let did = if self.asked.opens() { self.asked } else { self.drive };
+            self.senses.driven(did, core::mem::take(&mut self.took_back), striking, STEP_FRAMES);
             self.senses.motor.step(self.asked, self.drive);
             if frame.slot() == MOTOR_SLOT {
                 self.senses.motor.judge(&self.config.motor, &mut self.journal);
@@ -284,8 +282,9 @@ impl Fingertip {
         let (drive, source) = if allowed { (asked, source) } else { Default::default() };
         self.drive = drive;
         self.reflex.tick(self.mode, grip);
+        self.took_back |= source == DriveSource::Reflex && drive.opens();
         if let MotorDrive::Close(duty) = drive {
-            self.reflex.closes(duty);
+            self.reflex.closes(duty, source == DriveSource::Reflex);
         }
         if matches!(source, DriveSource::Link | DriveSource::Behaviour) && drive.closes() {
             self.reflex.spend(grip);

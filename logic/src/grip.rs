@@ -162,10 +162,14 @@ impl Reflex {
         self.left = lacks_mn.and_then(|lacks_mn| self.stiffness.travel_for(lacks_mn.min(most_mn)));
     }
 
-    /// The motor closes in this frame, whoever asks for it.
-    pub const fn closes(&mut self, duty: Duty) {
+    /// The motor closes in this frame. What somebody else closes is not to be taken back.
+    pub fn closes(&mut self, duty: Duty, by_reflex: bool) {
         self.stiffness.close(duty.as_per_mille());
-        self.relax.closes(duty.as_per_mille());
+        if by_reflex {
+            self.relax.closes(duty.as_per_mille());
+        } else {
+            self.relax.forget();
+        }
         if let Some(left) = self.left {
             self.left = Some(left.saturating_sub(duty.as_per_mille() as u32));
         }
@@ -320,7 +324,7 @@ mod tests {
             *load_mn += i32::from(drives[59]) * mn_a_frame / 1_000;
             reflex.tick(mode, Grip::Holds(*load_mn));
             if duty > 0 {
-                reflex.closes(Duty::per_mille(duty));
+                reflex.closes(Duty::per_mille(duty), true);
             }
             if reflex.elapsed().is_multiple_of(25) {
                 let lacks = Some(aim_mn - *load_mn);

@@ -165,12 +165,13 @@ impl Senses {
     }
 
     /// How the motor was driven in the last so many frames: what has been opened for a while, and not closed since, holds
-    /// nothing. `striking`: the reflex answers slip, or lets the object settle after it, and the hand itself is loud.
-    pub const fn driven(&mut self, drive: MotorDrive, striking: bool, frames: u32) {
+    /// nothing. `took_back`: it opened by what the reflex had added. `striking`: the reflex answers slip, or lets the object settle after it, and the hand itself is loud.
+    pub const fn driven(&mut self, drive: MotorDrive, took_back: bool, striking: bool, frames: u32) {
         self.striking = striking;
-        self.still_frames =
-            if matches!(drive, MotorDrive::Coast) { self.still_frames.saturating_add(frames) } else { 0 };
+        let still = !took_back && matches!(drive, MotorDrive::Coast);
+        self.still_frames = if still { self.still_frames.saturating_add(frames) } else { 0 };
         match drive {
+            MotorDrive::Open(_) if took_back => {}
             MotorDrive::Open(_) => self.open_frames = self.open_frames.saturating_add(frames),
             MotorDrive::Close(_) => self.open_frames = 0,
             MotorDrive::Coast => {}

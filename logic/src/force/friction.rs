@@ -137,7 +137,11 @@ impl FrictionDetector {
         self.slid = match slides {
             Slides::Unknown => self.slid,
             Slides::Now => Some(self.slid.map_or(ratio, |slid| ratio.min(slid.into())) as u16),
-            Slides::Again => Some(self.slid.unwrap_or(of_late as u16)),
+            // The pulse was over before the quadrants showed it. What breaks loose bears more than what slides.
+            Slides::Again => {
+                let least = self.shown.before.iter().fold(ratio, |least, &before| least.min(before.into()));
+                Some(self.slid.unwrap_or(least as u16))
+            }
         };
         let slip_mn = lacks(most_mn + grows_mn(most_mn), slipped, slides_at);
         let warning_mn = lacks(forces.ft_mn + grows_mn(forces.ft_mn), WARNED_PERMILLE, friction);
