@@ -319,7 +319,7 @@ impl Ears {
         let says = |n: usize| believes && controls.get(n).is_some_and(|(_, says)| *says);
         let controls = std::array::from_fn(says);
         hear(&Felt { frame, sensed: &sensed, believed, controls, features: new });
-        senses.driven(drive, false, 1);
+        senses.driven(drive, false, false, 1);
         if frame.ends_slow_frame() {
             senses.think(config, journal);
             let _told = journal.take_slow();
