@@ -322,7 +322,7 @@ pub enum CalibrationRefusal {
     SensorLost,
     /// The words are not those of a model.
     Damaged,
-    /// The hand came to hold something, and whoever holds something must be able to let it go.
+    /// The hand came to hold something, or its force sensor gave no number, and whoever holds something must be able to let it go.
     Loaded,
     /// Somebody pressed the button again.
     Stopped,
@@ -333,7 +333,7 @@ impl CalibrationRefusal {
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Loaded => "something was held",
+            Self::Loaded => "something was held, or may have been",
             Self::Stopped => "the button stopped it",
             Self::RestNotQuiet => "rest was not quiet",
             Self::NoClosing => "closing did not stand out from rest",

@@ -1,5 +1,6 @@
 //! The guided calibration over the line, from the command to the record that is kept.
 
+use tenax_hal_shim::channel::FSR;
 use tenax_hal_shim::wire::{Down, EventKind, Refusal};
 use tenax_hal_shim::words::{Calibration, CalibrationRefusal, Kept, Prompt};
 use tenax_host_tests::Bench;
@@ -69,6 +70,21 @@ fn what_does_not_separate_is_refused_and_a_hand_that_holds_is_not_calibrated() {
     assert!(bench.fingertip.next_record(&mut keeper).is_none());
     let mut bench = Bench::holding(33);
     assert_eq!(bench.fingertip.command(&Down::CalibrateEmg), Err(Refusal::Loaded));
+}
+
+// Shows W7.
+#[test]
+fn a_hand_that_may_hold_something_can_let_it_go() {
+    let mut bench = Bench::new(35);
+    bench.run(400);
+    bench.fingertip.command(&Down::CalibrateEmg).expect("nothing is held");
+    bench.run(1_000);
+    // Two quadrants are cut: nobody knows the force.
+    bench.pins_mv[FSR..FSR + 2].fill(0.0);
+    bench.run(400);
+    assert_eq!(bench.fingertip.command(&Down::CalibrateEmg), Err(Refusal::SensorLost));
+    bench.muscles(50.0, 900.0);
+    assert!(bench.run(200).iter().any(|drive| drive.opens()));
 }
 
 // Shows W7.

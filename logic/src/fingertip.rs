@@ -230,9 +230,9 @@ impl Fingertip {
         if u32::from(frame.slot()) % STEP_FRAMES == CONSENT_SLOT {
             self.consent();
             if self.senses.muscles().is_calibrating()
-                && matches!(self.senses.grip(&self.config), Grip::Holds(_))
+                && !matches!(self.senses.grip(&self.config), Grip::Unloaded)
             {
-                // Its muscles must be able to open it.
+                // The muscles must be able to open a hand that holds something, or may.
                 self.senses.muscles_mut().give_up(CalibrationRefusal::Loaded, &mut self.journal);
             }
             if frame.slot() == FEEL_SLOT {

@@ -77,13 +77,14 @@ impl Fingertip {
                 Ok(())
             }
             // The wearer's contractions move nothing meanwhile: they could not open a hand that holds something.
-            Down::CalibrateEmg if matches!(self.senses.grip(&self.config), Grip::Holds(_)) => {
-                Err(Refusal::Loaded)
-            }
-            Down::CalibrateEmg => {
-                self.senses.muscles_mut().begin_calibration(self.journal.frame());
-                Ok(())
-            }
+            Down::CalibrateEmg => match self.senses.grip(&self.config) {
+                Grip::Holds(_) => Err(Refusal::Loaded),
+                Grip::Unknown => Err(Refusal::SensorLost),
+                Grip::Unloaded => {
+                    self.senses.muscles_mut().begin_calibration(self.journal.frame());
+                    Ok(())
+                }
+            },
             Down::Zero if self.senses.forces.is_none() => Err(Refusal::SensorLost),
             Down::Zero => {
                 if self.senses.zero() {
