@@ -1,5 +1,6 @@
-//! Memory that the host writes and reads while the core stands still at [`tenax_kernels_next`].
+//! Memory that the host writes and reads while the core stands still at [`tenax_kernels_next`], and what every image that it drives has.
 
+use core::panic::PanicInfo;
 use core::sync::atomic::{AtomicI32, AtomicU16, AtomicU32, Ordering::Relaxed};
 
 use tenax_logic::array::{ArrayVerdict, ELEMENTS, FEATURES, Reading};
@@ -69,4 +70,19 @@ pub fn answer(detector: &Detector, verdict: ArrayVerdict) {
 /// Age in the upper half, slip in bit 15, confidence below.
 fn verdict_bits(verdict: ArrayVerdict) -> u32 {
     u32::from(verdict.age_ms) << 16 | u32::from(verdict.slip) << 15 | u32::from(verdict.confidence_permille)
+}
+
+/// All that the array costs in a slow frame.
+#[inline(never)]
+#[unsafe(no_mangle)]
+pub fn tenax_kernel_slow_frame(detector: &mut Detector, reading: &Reading) -> ArrayVerdict {
+    detector.push(reading)
+}
+
+#[panic_handler]
+fn on_panic(_: &PanicInfo) -> ! {
+    // The host notices that nobody comes for the next reading.
+    loop {
+        cortex_m::asm::nop();
+    }
 }

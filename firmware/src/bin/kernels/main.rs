@@ -10,12 +10,11 @@ mod mailbox;
 mod parts;
 
 use core::hint::black_box;
-use core::panic::PanicInfo;
 
 use cortex_m_rt::entry;
 // Brings the interrupt vectors that the linker's script asks for.
 use embassy_stm32 as _;
-use tenax_logic::array::{ArrayVerdict, Reading, ShippedDetector, shipped};
+use tenax_logic::array::{ShippedDetector, shipped};
 
 use self::parts::Parts;
 
@@ -34,25 +33,10 @@ fn main() -> ! {
         if orders.forget {
             detector = Detector::new(model);
         }
-        let verdict = tenax_kernel_slow_frame(&mut detector, &reading);
+        let verdict = mailbox::tenax_kernel_slow_frame(&mut detector, &reading);
         mailbox::answer(&detector, verdict);
         if orders.everything {
             parts.run(&reading, detector.features());
         }
-    }
-}
-
-/// All that the array costs in a slow frame.
-#[inline(never)]
-#[unsafe(no_mangle)]
-fn tenax_kernel_slow_frame(detector: &mut Detector, reading: &Reading) -> ArrayVerdict {
-    detector.push(reading)
-}
-
-#[panic_handler]
-fn on_panic(_: &PanicInfo) -> ! {
-    // The host notices that nobody comes for the next reading.
-    loop {
-        cortex_m::asm::nop();
     }
 }
