@@ -204,6 +204,7 @@ fn judged(
     let teller = line.live.as_ref().map(|live| live.teller().clone()).unwrap_or_default();
     let plant = line.of(Drawn::telling(world, span_s, teller));
     let mut witness = Witness::new(0.0, span_s, calibrated.as_ref());
+    witness.judge.deaf = file.lifts().collect();
     let (run, Served { mut plant, .. }) = board.record(plant, &mut (&mut witness, recorder), progress)?;
     plant.draw();
     let truth = Fate { grips: std::mem::take(&mut plant.grips), ..Fate::of(plant.world.truth(), file) };

@@ -10,7 +10,7 @@ use tenax_bench::session::{self, Board};
 use tenax_scene::SceneFile;
 
 /// Each with the seconds in which its object slips, if it does, and the force that it bears, N.
-const SCENES: [(&str, bool, f64); 7] = [
+const SCENES: [(&str, bool, f64); 10] = [
     ("drifting-quadrant", false, f64::INFINITY),
     ("drifting-quadrants", true, f64::INFINITY),
     ("hum-after-slip", true, f64::INFINITY),
@@ -18,6 +18,9 @@ const SCENES: [(&str, bool, f64); 7] = [
     ("egg", true, 25.0),
     ("egg-filled", true, 25.0),
     ("deaf-film", true, f64::INFINITY),
+    ("lifted-extensor", true, f64::INFINITY),
+    ("lifted-flexor", true, f64::INFINITY),
+    ("dead-extensor", true, f64::INFINITY),
 ];
 
 fn scene(name: &str) -> SceneFile {
@@ -75,6 +78,16 @@ fn hum_that_closing_does_not_change_is_not_answered_for_long() {
     assert!(without_n < 3.5, "{without_n} N without need in {} pulses", report.reflex.pulses);
     let peak_n = report.grip.peak_force_n.unwrap();
     assert!(peak_n < 16.0, "{peak_n} N");
+}
+
+// Shows R3, W1.
+#[test]
+fn one_sound_electrode_is_enough_to_save_a_glass() {
+    for name in ["lifted-extensor", "lifted-flexor", "dead-extensor"] {
+        let report = ran(&scene(name));
+        assert_eq!((report.object.kept, report.wearer.reflex_while_active), (Some(true), 0), "{name}");
+        assert!(report.wearer.faults > 0, "{name}: nobody is told");
+    }
 }
 
 // Shows R9.

@@ -309,17 +309,63 @@ fn a_dead_quadrant_leaves_the_films_with_a_budget_that_ends() {
     assert!(closing > 0 && closing <= budget + 1, "{closing} frames of closing, {budget} allowed");
 }
 
-// Shows W5.
-#[test]
-fn a_dead_myosensor_silences_the_reflex_and_the_other_still_commands() {
-    let mut bench = Bench::holding(6);
-    bench.pins_mv[MYO_FLEXOR] = 0.0;
-    bench.run(100);
-    assert_eq!(bench.fingertip.mode(), GripMode::Standby);
+fn closes_within_the_budget(bench: &mut Bench) {
     bench.vibration_mv = 800.0;
+    let closing = bench.run(20_000).iter().filter(|drive| drive.closes()).count();
+    let budget = Config::default().grip.blind_frames as usize;
+    assert!(closing > 20 && closing <= budget + 1, "{closing} frames of closing, {budget} allowed");
+}
+
+// Shows W5, R3.
+#[test]
+fn a_dead_myosensor_leaves_the_reflex_a_budget_and_the_other_still_commands() {
+    for dead in [MYO_FLEXOR, MYO_EXTENSOR] {
+        let mut bench = Bench::holding(6);
+        bench.pins_mv[dead] = 0.0;
+        bench.run(100);
+        closes_within_the_budget(&mut bench);
+        let other = MYO_FLEXOR + MYO_EXTENSOR - dead;
+        bench.pins_mv[other] = f64::from(MYO_REST_MV) + 800.0;
+        let commands =
+            |drive: &MotorDrive| if other == MYO_EXTENSOR { drive.opens() } else { drive.closes() };
+        assert!(bench.run(1_000).iter().any(commands));
+    }
+}
+
+// Shows W1, R3.
+#[test]
+fn a_myosensor_that_stands_still_is_no_muscle_and_one_that_moves_may_be() {
+    for lifted in [MYO_FLEXOR, MYO_EXTENSOR] {
+        for by_mv in [0.0, 40.0] {
+            let mut bench = Bench::holding(7);
+            bench.lifted = Some(lifted);
+            let stand = |bench: &mut Bench, frames: u32| {
+                for n in 0..frames / 100 {
+                    let mv = 400.0 + if n % 2 == 0 { by_mv } else { 0.0 };
+                    bench.pins_mv[lifted] = f64::from(MYO_REST_MV) + mv;
+                    bench.run(100);
+                }
+            };
+            stand(&mut bench, 100);
+            bench.vibration_mv = 800.0;
+            bench.slows.clear();
+            stand(&mut bench, 1_800);
+            assert_eq!(by_reflex(&bench), 0, "it may be a muscle for 1 s");
+            stand(&mut bench, 6_000);
+            assert_eq!(by_reflex(&bench) > 20, by_mv == 0.0);
+        }
+    }
+}
+
+// Shows R3.
+#[test]
+fn without_both_myosensors_the_reflex_stands_by() {
+    let mut bench = Bench::holding(6);
+    bench.pins_mv[MYO_FLEXOR..=MYO_EXTENSOR].fill(0.0);
+    bench.vibration_mv = 800.0;
+    bench.run(400);
+    assert_eq!(bench.fingertip.mode(), GripMode::Standby);
     assert!(bench.run(4_000).iter().all(|drive| *drive == MotorDrive::Coast));
-    bench.pins_mv[MYO_EXTENSOR] = f64::from(MYO_REST_MV) + 800.0;
-    assert!(bench.run(OPEN_WITHIN_FRAMES).iter().any(|drive| drive.opens()));
 }
 
 // Shows R5.

@@ -183,7 +183,7 @@ impl Fingertip {
     /// Whether what the reflex added may be taken back: that was chosen, and nobody else moves the hand.
     fn may_relax(&self) -> bool {
         self.config.grip.may_relax(self.config.no_wearer)
-            && self.senses.ready(&self.config)
+            && self.senses.all_ready(&self.config)
             && !self.senses.gate.is_active()
             && self.link.drive().is_none()
             && self.behaviour.is_none()
@@ -262,6 +262,7 @@ impl Fingertip {
             wish => wish,
         };
         let grip = self.senses.grip(&self.config);
+        self.reflex.bind(!self.config.no_wearer && !self.senses.gate.is_known());
         self.step_mode(verdicts, grip);
         let wishes = Wishes {
             wearer_active: self.senses.gate.is_active(),

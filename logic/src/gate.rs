@@ -28,6 +28,7 @@ pub struct Gate {
     mv: [Option<i16>; 2],
     hold: u32,
     known_frames: u32,
+    half_known_frames: u32,
     /// Frames of known rest in a row.
     rest_frames: u32,
     /// What unproven wishes have opened and closed since they were last renewed.
@@ -78,6 +79,8 @@ impl Gate {
             self.hold = self.hold.saturating_sub(1);
         }
         self.known_frames = if self.is_known() { self.known_frames.saturating_add(1) } else { 0 };
+        self.half_known_frames =
+            if self.verdict.half_known { self.half_known_frames.saturating_add(1) } else { 0 };
         self.rest_frames =
             if self.is_known() && !self.verdict.active { self.rest_frames.saturating_add(1) } else { 0 };
         self.empty = empty;
@@ -112,6 +115,12 @@ impl Gate {
     #[must_use]
     pub const fn is_certain(&self, config: &GateConfig) -> bool {
         self.known_frames >= config.hold_frames
+    }
+
+    /// The same where one of them is lost and can be no muscle at work.
+    #[must_use]
+    pub const fn is_half_certain(&self, config: &GateConfig) -> bool {
+        self.half_known_frames >= config.hold_frames
     }
 
     /// The flexor's envelope above rest, mV.
@@ -167,7 +176,7 @@ mod tests {
     fn says(wish: Wish, strength_permille: u16) -> Gate {
         let mut gate = Gate::default();
         let active = wish != Wish::Rest;
-        gate.take(Verdict { wish, strength_permille, proven: active, active, known: true });
+        gate.take(Verdict { wish, strength_permille, proven: active, active, known: true, half_known: true });
         gate.tick(&CONFIG, false);
         gate
     }
@@ -188,7 +197,7 @@ mod tests {
     #[test]
     fn activity_is_held() {
         let mut gate = says(Wish::Open, 100);
-        gate.take(Verdict { known: true, ..Verdict::default() });
+        gate.take(Verdict { known: true, half_known: true, ..Verdict::default() });
         assert_eq!(gate.wish(&CONFIG), MotorDrive::Coast);
         for _ in 0..399 {
             gate.tick(&CONFIG, false);
@@ -222,7 +231,7 @@ mod tests {
                     travel += u32::from(duty.as_per_mille());
                 }
             }
-            gate.take(Verdict { known: true, ..Verdict::default() });
+            gate.take(Verdict { known: true, half_known: true, ..Verdict::default() });
             travel
         };
         let first = opened(&mut gate, false);

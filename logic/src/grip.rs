@@ -54,6 +54,8 @@ pub struct Reflex {
     /// Frames since the last pulse that answered incipient slip, saturating.
     since_incipient: u32,
     blind: u32,
+    /// Whether closing spends the budget though the force is known.
+    bound: bool,
     /// The load as the last pulse began, mN, and the pulses in a row that raised nothing.
     began_mn: Option<i32>,
     in_vain: u16,
@@ -73,6 +75,7 @@ impl Default for Reflex {
             elapsed: 0,
             since_incipient: u32::MAX,
             blind: 0,
+            bound: false,
             began_mn: None,
             in_vain: 0,
             stiffness: Stiffness::default(),
@@ -89,16 +92,29 @@ impl Reflex {
     #[must_use]
     pub const fn may_close(&self, config: &GripConfig, grip: Grip) -> bool {
         match grip {
-            Grip::Unknown => self.blind < config.blind_frames,
+            Grip::Unknown => self.has_budget(config),
             Grip::Unloaded => false,
-            Grip::Holds(mn) => mn < config.ceiling_mn,
+            Grip::Holds(mn) => mn < config.ceiling_mn && (!self.bound || self.has_budget(config)),
         }
+    }
+
+    const fn has_budget(&self, config: &GripConfig) -> bool {
+        self.blind < config.blind_frames
+    }
+
+    /// From now on closing spends the budget, whatever is felt, or not: a muscle that wants otherwise might not be heard.
+    pub const fn bind(&mut self, bound: bool) {
+        self.bound = bound;
     }
 
     /// Whether a drive command may close: an empty hand, or one that the reflex might close.
     #[must_use]
     pub const fn link_may_close(&self, config: &GripConfig, grip: Grip) -> bool {
-        matches!(grip, Grip::Unloaded) || self.may_close(config, grip)
+        match grip {
+            Grip::Unknown => self.has_budget(config),
+            Grip::Unloaded => true,
+            Grip::Holds(mn) => mn < config.ceiling_mn,
+        }
     }
 
     /// The mode has changed: what is timed begins now.
@@ -231,7 +247,7 @@ impl Reflex {
             self.since_incipient = 0;
         }
         if crate::mode::closes(mode) {
-            self.spend(grip);
+            self.spend(if self.bound { Grip::Unknown } else { grip });
         }
     }
 

@@ -37,6 +37,8 @@ pub struct Muscles {
     emg: Emg,
     health: [SensorHealth; 2],
     missed: [u8; 2],
+    /// Which can be no muscle at work, by the last sample: it is below the range, below activity, or stands still.
+    idle: [bool; 2],
     /// Whether each has given two active readings in a row that differ: a glitch or a frozen sensor is not a wish.
     confirmed: [bool; 2],
     /// Why each is lost, as it was told.
@@ -68,6 +70,8 @@ impl Muscles {
         } else {
             self.health[n].take(&LIMITS, sample)
         };
+        let is_low = sample < LIMITS.low;
+        self.idle[n] = is_low || sample <= LIMITS.high && self.emg.is_idle(n, uv_of_sample(sample));
         let uv = reading.ok().map(uv_of_sample);
         // Above its range it is no number, but what it began goes on.
         self.read(n, uv.or_else(|| (sample > LIMITS.high).then(|| uv_of_sample(sample))), journal);
@@ -83,7 +87,7 @@ impl Muscles {
         self.missed[n] = self.missed[n].saturating_add(1);
         let gone = self.missed[n] >= MISSES;
         if gone {
-            self.confirmed[n] = false;
+            (self.confirmed[n], self.idle[n]) = (false, false);
         }
         self.read(n, self.uv[n].filter(|_| !gone), journal);
         gone
@@ -123,7 +127,14 @@ impl Muscles {
         let mut verdict = self.emg.verdict();
         // A wish is decided with the extensor's reading; the flexor's activity silences from its own on.
         verdict.active |= self.emg.is_active(0) || self.emg.is_active(1);
-        let at_rest = Verdict { active: true, known: verdict.known, ..Verdict::default() };
+        let [flexor, extensor] = [0, 1].map(|n: usize| self.emg.is_known(n));
+        verdict.half_known = verdict.known || flexor && self.idle[1] || extensor && self.idle[0];
+        let at_rest = Verdict {
+            active: true,
+            known: verdict.known,
+            half_known: verdict.half_known,
+            ..Verdict::default()
+        };
         let opens = self.model.as_ref().map_or(1, EmgModel::opening_site);
         match verdict.wish {
             _ if self.lesson.is_some() => at_rest,

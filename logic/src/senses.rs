@@ -240,12 +240,21 @@ impl Senses {
         self.films_usable
     }
 
-    /// Whether the reflex has all that it cannot do without: both muscles known, if there is a wearer, and a way to feel
-    /// slip.
+    /// Whether the reflex has all that it cannot do without: a muscle known, and the other if it can be at work, if there is a wearer;
+    /// and a way to feel slip.
     #[must_use]
     pub fn ready(&self, config: &Config) -> bool {
+        self.feels() && (config.no_wearer || self.gate.is_half_certain(&config.gate))
+    }
+
+    /// The same with both muscles known: for who moves the hand otherwise than by closing it a little.
+    #[must_use]
+    pub fn all_ready(&self, config: &Config) -> bool {
+        self.feels() && (config.no_wearer || self.gate.is_certain(&config.gate))
+    }
+
+    const fn feels(&self) -> bool {
         self.frames_seen >= WARM_UP_FRAMES
-            && (config.no_wearer || self.gate.is_certain(&config.gate))
             && (self.films_usable || self.forces.is_some() || self.head.is_usable())
     }
 

@@ -28,7 +28,8 @@ const ON_MV: i64 = 160;
 pub struct Wearer {
     /// Whether the board said that nobody wears the hand: its reflex works without myosensors.
     pub none: bool,
-    /// Ticks in which the reflex drove the motor while a myosensor's last reading at the pin was above its threshold.
+    /// Ticks in which the reflex drove the motor while a myosensor's last reading at the pin was above its threshold, and
+    /// its electrode not known to be off.
     pub reflex_while_active: u64,
     /// The longest time from an opening wish at the pins to the motor opening, ms: from the first reading that is a fifth
     /// above the calibrated opening, in its direction. Null where nobody wished to open, or nobody is calibrated.
@@ -67,8 +68,8 @@ impl Muscles {
         self.0[muscle] = i64::from(mv_from_sample(sample)) - i64::from(MYO_REST_MV);
     }
 
-    fn active(self, on_mv: [i64; 2]) -> bool {
-        self.0.iter().zip(on_mv).any(|(&mv, on_mv)| mv >= on_mv)
+    fn active(self, on_mv: [i64; 2], hears: impl Fn(usize) -> bool) -> bool {
+        (0..2).any(|n| self.0[n] >= on_mv[n] && hears(n))
     }
 
     /// Whether a pin is out of range: what it says is no wish.
@@ -117,6 +118,8 @@ pub struct Judge {
     on_mv: [i64; 2],
     opening: Option<Opening>,
     muscles: Muscles,
+    /// When which electrode is known to be off, s: what it gives is no activity.
+    pub deaf: Vec<(usize, Range<f64>)>,
     /// The scans of the frame that is not yet whole.
     scans: Vec<Scan>,
     frames: usize,
@@ -168,6 +171,7 @@ impl Judge {
             opening: calibrated.map(Opening::of),
             opened: false,
             muscles: Muscles::default(),
+            deaf: Vec::new(),
             scans: Vec::with_capacity(SCANS_PER_FRAME),
             frames: 0,
             active: Frames::default(),
@@ -215,7 +219,9 @@ impl Judge {
     fn frame(&mut self, opens: bool) {
         let frame = self.frames;
         self.frames += 1;
-        if self.muscles.active(self.on_mv) {
+        let t_s = frame as f64 / f64::from(FRAME_HZ);
+        let hears = |n: usize| !self.deaf.iter().any(|(deaf, s)| *deaf == n && s.contains(&t_s));
+        if self.muscles.active(self.on_mv, hears) {
             self.active.push(frame);
         }
         let wishes = self.opening.is_some_and(|opening| opening.is_wished(self.muscles));

@@ -52,6 +52,8 @@ pub struct Verdict {
     pub active: bool,
     /// Whether both sensors can be believed: if not, "not active" is not known.
     pub known: bool,
+    /// Whether one of them can, and the other, if not, can be no muscle at work. [`Muscles`](crate::muscles::Muscles) says so.
+    pub half_known: bool,
 }
 
 /// Both electrodes and what they mean.
@@ -161,7 +163,22 @@ impl Emg {
             proven,
             active: self.is_active(0) || self.is_active(1) || wish != Wish::Rest,
             known: self.known[0] && self.known[1],
+            half_known: false,
         };
+    }
+
+    /// Whether a channel can be believed.
+    #[must_use]
+    pub fn is_known(&self, channel: usize) -> bool {
+        self.known[channel.min(1)]
+    }
+
+    /// Whether a reading of a channel, uV, can be no muscle's at work: it is below activity, or stands where it has stood still.
+    #[must_use]
+    pub fn is_idle(&self, channel: usize, uv: i32) -> bool {
+        let n = channel.min(1);
+        let [_, inactive] = self.decide.active_levels(n);
+        level_of(uv) < inactive || self.trust[n].hums_at(uv)
     }
 
     /// The last verdict.

@@ -16,6 +16,8 @@ const BRIDGED_READINGS: u8 = 12;
 const STILL_UV: i32 = 1_500;
 /// Slow frames of standing still that no sound recording has: 1 s, of 0.77 s in 45 minutes of contractions.
 const FLAT_FRAMES: u16 = 80;
+/// The part of its level by which hum swells and ebbs.
+const HUM_PART: i32 = 16;
 /// Of climbing without falling back by 3 %: 2.5 s, passed for 2 s in those 45 minutes.
 const CREEP_FRAMES: u16 = 200;
 /// At the top: 1.5 s. Recordings have 0.35 s.
@@ -91,6 +93,8 @@ pub struct Trust {
     place: u8,
     anchor_uv: i32,
     flat: u16,
+    /// Where it stood when it last had for as long as no muscle does.
+    hum_uv: i32,
     active_for: u16,
     foot_uv: i32,
     crest_uv: i32,
@@ -117,6 +121,7 @@ impl Default for Trust {
             place: 0,
             anchor_uv: i32::MIN / 2,
             flat: 0,
+            hum_uv: 0,
             active_for: 0,
             foot_uv: 0,
             crest_uv: 0,
@@ -242,6 +247,9 @@ impl Trust {
             // At the top of its range a contraction stands still too.
             self.flat = self.flat.saturating_add(1);
         }
+        if self.flat >= FLAT_FRAMES {
+            self.hum_uv = self.anchor_uv;
+        }
     }
 
     /// Whether it has just fallen back by 3 %.
@@ -281,6 +289,13 @@ impl Trust {
     #[must_use]
     pub fn hums(&self) -> bool {
         matches!(self.lost, Some(Quality::Flat | Quality::Hum)) && self.flat >= FLAT_FRAMES
+    }
+
+    /// Whether this reading is where it stood still when it was doubted for that: a muscle that begins there moves it by more.
+    #[must_use]
+    pub fn hums_at(&self, uv: i32) -> bool {
+        matches!(self.lost, Some(Quality::Flat | Quality::Hum))
+            && (uv - self.hum_uv).abs() <= self.hum_uv / HUM_PART + STILL_UV
     }
 
     /// Whether a contraction has turned as a muscle does.

@@ -91,7 +91,7 @@ impl Fingertip {
             self.end(Ending::TakenOver);
             return MotorDrive::Coast;
         }
-        if !self.senses.ready(&self.config) {
+        if !self.senses.all_ready(&self.config) {
             self.end(Ending::SensorLost);
             return MotorDrive::Coast;
         }

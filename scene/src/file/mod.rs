@@ -12,6 +12,8 @@ mod step;
 
 use base::{Find, Sources};
 use serde::Deserialize;
+use std::ops::Range;
+use tenax_hal_shim::channel::MYO_FLEXOR;
 use tenax_logic::setting::SettingId;
 use toml::Spanned;
 
@@ -133,6 +135,14 @@ impl SceneFile {
                 && command.value.as_ref().is_some_and(|value| *value.get_ref() > 0)
         };
         self.command.iter().any(fits)
+    }
+
+    /// When which myosensor's electrode is off, and hears no muscle whatever it gives: 0 the flexor's, and s.
+    pub fn lifts(&self) -> impl Iterator<Item = (usize, Range<f64>)> + '_ {
+        self.electrode_lift.iter().map(|lift| {
+            let at_s = lift.at_s.get_ref().get();
+            (lift.channel.get_ref().index() - MYO_FLEXOR, at_s..at_s + lift.for_s.get())
+        })
     }
 
     /// How long it lasts, s.
