@@ -170,7 +170,7 @@ impl Fingertip {
 
     /// What the grip lacks, for the pulse that is on or comes.
     fn feel(&mut self) {
-        let held = self.senses.forces.filter(|_| matches!(self.senses.grip(&self.config), Grip::Holds(_)));
+        let held = self.senses.forces.filter(|_| matches!(self.senses.grip, Grip::Holds(_)));
         let slides = self.reflex.slides(self.mode);
         let s2 = &mut self.detectors.s2;
         let lacks = held.map(|forces| s2.lacks(&self.config.friction, &forces, slides));
@@ -229,9 +229,7 @@ impl Fingertip {
         self.link.tick();
         if u32::from(frame.slot()) % STEP_FRAMES == CONSENT_SLOT {
             self.consent();
-            if self.senses.muscles().is_calibrating()
-                && !matches!(self.senses.grip(&self.config), Grip::Unloaded)
-            {
+            if self.senses.muscles().is_calibrating() && !matches!(self.senses.grip, Grip::Unloaded) {
                 // The muscles must be able to open a hand that holds something, or may.
                 self.senses.muscles_mut().give_up(CalibrationRefusal::Loaded, &mut self.journal);
             }
@@ -261,7 +259,7 @@ impl Fingertip {
             }
             wish => wish,
         };
-        let grip = self.senses.grip(&self.config);
+        let grip = self.senses.grip;
         self.reflex.bind(!self.config.no_wearer && !self.senses.gate.is_known());
         self.step_mode(verdicts, grip);
         let wishes = Wishes {
@@ -361,7 +359,7 @@ impl Fingertip {
     #[inline(never)]
     fn change(&mut self, to: GripMode, cause: Cause) {
         let from = core::mem::replace(&mut self.mode, to);
-        self.reflex.enter(to, self.senses.grip(&self.config));
+        self.reflex.enter(to, self.senses.grip);
         if to == GripMode::Slip {
             self.detectors.s2.slips();
         }

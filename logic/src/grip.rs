@@ -24,9 +24,10 @@ use self::settings::GripConfig;
 use self::stiffness::Stiffness;
 
 /// What the reflex knows about force.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Grip {
     /// The force sensor gives no number.
+    #[default]
     Unknown,
     /// The finger touches nothing, or hardly.
     Unloaded,

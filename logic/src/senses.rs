@@ -92,6 +92,10 @@ pub struct Senses {
     pub gate: Gate,
     /// What the motor bears.
     pub motor: Motor,
+    /// What is known about force.
+    pub grip: Grip,
+    /// Known to touch nothing at all: far below where a finger counts as loaded.
+    pub unloaded: bool,
 }
 
 impl Senses {
@@ -111,7 +115,8 @@ impl Senses {
         if let Some(channel) = slot.switch_b {
             self.on_switch_b(usize::from(channel), frame.switch_b, journal);
         }
-        self.gate.tick(&config.gate, self.is_unloaded(config));
+        self.weigh(config);
+        self.gate.tick(&config.gate, self.unloaded);
         if frame.ends_slow_frame() {
             self.capabilities(journal);
         }
@@ -134,7 +139,8 @@ impl Senses {
             self.fsr_readings = [None; FSR_COUNT];
             self.films_usable = false;
         }
-        self.gate.tick(&config.gate, self.is_unloaded(config));
+        self.weigh(config);
+        self.gate.tick(&config.gate, self.unloaded);
         self.capabilities(journal);
     }
 
@@ -156,8 +162,8 @@ impl Senses {
             forces_are_new: self.forces_are_new,
             taxels: self.taxels(),
             head: self.head(),
-            unloaded: self.is_unloaded(config),
-            grasp: matches!(self.grip(config), Grip::Holds(_)),
+            unloaded: self.unloaded,
+            grasp: matches!(self.grip, Grip::Holds(_)),
             noisy: vibration.impact || duty_permille >= config.hebbian.loud_duty_permille,
             moves: moves || wearer,
             wearer,
@@ -258,26 +264,22 @@ impl Senses {
             && (self.films_usable || self.forces.is_some() || self.head.is_usable())
     }
 
-    /// What is known about force.
-    #[must_use]
-    pub fn grip(&self, config: &Config) -> Grip {
-        match self.forces {
-            None => Grip::Unknown,
-            Some(forces) if forces.load_mn < config.friction.loaded_mn => Grip::Unloaded,
-            Some(forces) => Grip::Holds(forces.load_mn),
-        }
+    /// What is known about force, once a tick: many ask.
+    fn weigh(&mut self, config: &Config) {
+        let loaded_mn = config.friction.loaded_mn;
+        (self.grip, self.unloaded) = match self.forces {
+            None => (Grip::Unknown, false),
+            Some(forces) if forces.load_mn < loaded_mn => {
+                (Grip::Unloaded, !self.pressed && forces.load_mn < loaded_mn / 4)
+            }
+            Some(forces) => (Grip::Holds(forces.load_mn), false),
+        };
     }
 
     /// Whether there is a force, and by it no friction is so low that the object could slip.
     #[must_use]
     pub const fn cannot_slip(&self) -> bool {
         self.cannot_slip && self.forces.is_some()
-    }
-
-    /// Known to touch nothing at all: far below where a finger counts as loaded.
-    #[must_use]
-    pub fn is_unloaded(&self, config: &Config) -> bool {
-        !self.pressed && self.forces.is_some_and(|forces| forces.load_mn < config.friction.loaded_mn / 4)
     }
 
     #[inline(always)]
@@ -315,7 +317,7 @@ impl Senses {
         if !self.muscles().has_window() {
             self.blame(config, journal);
         }
-        let forces = self.forces.filter(|_| matches!(self.grip(config), Grip::Holds(_)));
+        let forces = self.forces.filter(|_| matches!(self.grip, Grip::Holds(_)));
         self.detector.slow(&Hand { forces, wearer: self.gate.is_active(), striking: self.striking });
     }
 
@@ -369,8 +371,7 @@ impl Senses {
         if let Some(quadrant) = channel.checked_sub(FSR) {
             self.quadrant(config, quadrant, sample, journal);
         } else if let Some(gauge) = channel.checked_sub(STRAIN) {
-            let unloaded = self.is_unloaded(config);
-            let change = self.gauges.read(gauge, sample, unloaded);
+            let change = self.gauges.read(gauge, sample, self.unloaded);
             report(journal, channel, change);
         }
     }

@@ -50,6 +50,8 @@ enum Subject {
     Features,
     /// How soon the slip of a lift could be told, and from which sensors, beside what a camera sees
     Onset,
+    /// How well the wearer is understood on recorded people, and how late, against false motions: the hand and plain control
+    Emg,
     /// What each detector catches and costs, pairs, the hand and plain rivals beside it, on the same fingertips and hours
     Table,
     /// What a photoelastic head tells of normal force and slip: its curve, force followed, rates, where slip is seen
@@ -84,6 +86,10 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
                 with_bar("loads", |progress| chart::loads::chart(&folder.join("loads.csv"), progress))?,
                 with_bar("choices", |progress| chart::vision::choices(&video, progress))?,
             ]
+        }
+        Subject::Emg => {
+            let people = workspace::root()?.join(RECORDINGS).join("myobock");
+            vec![with_bar("emg", |progress| chart::emg::chart(&people, progress))?]
         }
         Subject::Table => {
             let own = args.decisions.as_deref().map(decided).transpose()?.unwrap_or_default();

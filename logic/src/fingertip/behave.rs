@@ -124,7 +124,7 @@ impl Fingertip {
             cycle_is_over: self.journal.frame() % u32::from(FRAMES_PER_SLOW_FRAME)
                 == u32::from(slot_of(Job::EndOfCycle)),
             taxels: self.senses.taxels(),
-            grip: self.senses.grip(&self.config),
+            grip: self.senses.grip,
             slips: verdicts.is_some_and(|verdicts| !verdicts.slip.is_empty()),
             stirs: !vibration.impact && vibration.level >= self.config.vibration.s1 / 2,
         }

@@ -77,7 +77,7 @@ impl Fingertip {
                 Ok(())
             }
             // The wearer's contractions move nothing meanwhile: they could not open a hand that holds something.
-            Down::CalibrateEmg => match self.senses.grip(&self.config) {
+            Down::CalibrateEmg => match self.senses.grip {
                 Grip::Holds(_) => Err(Refusal::Loaded),
                 Grip::Unknown => Err(Refusal::SensorLost),
                 Grip::Unloaded => {

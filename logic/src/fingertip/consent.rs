@@ -37,7 +37,7 @@ impl Fingertip {
         let consent = self.arming.tick(Signs {
             co_contraction: gate.is_co_contracted(&self.config.gate),
             button: self.button_is_down,
-            unloaded: self.senses.forces.map(|_| self.senses.is_unloaded(&self.config)),
+            unloaded: self.senses.forces.map(|_| self.senses.unloaded),
         });
         if gate.is_active() {
             self.reflex.renew();
@@ -76,7 +76,7 @@ impl Fingertip {
     /// What somebody at the hand asks for with its button.
     #[inline(never)]
     fn press(&mut self) {
-        let empty = matches!(self.senses.grip(&self.config), Grip::Unloaded);
+        let empty = matches!(self.senses.grip, Grip::Unloaded);
         let gate = &mut self.senses.gate;
         if gate.is_releasing() {
             gate.step_release(STEP_FRAMES);
@@ -97,7 +97,7 @@ impl Fingertip {
     /// What the line asks for and may have: it closes no harder than the reflex might.
     pub(super) fn link_drive(&self) -> Option<MotorDrive> {
         let drive = self.link.drive()?;
-        let grip = self.senses.grip(&self.config);
+        let grip = self.senses.grip;
         (drive.opens() || self.reflex.link_may_close(&self.config.grip, grip)).then_some(drive)
     }
 }

@@ -79,7 +79,8 @@ impl Senses {
 
     /// The hand is surely open: what it still reads after its zeros had time to follow is no load.
     fn doubt_load(&mut self, config: &Config, journal: &mut Journal) {
-        if self.is_unloaded(config) {
+        self.weigh(config);
+        if self.unloaded {
             self.open_and_loaded = 0;
             return;
         }

@@ -2,6 +2,7 @@
 
 pub mod array;
 pub mod delay;
+pub mod emg;
 pub mod features;
 pub mod front;
 mod growth;

@@ -2,6 +2,7 @@
 //!
 //! Two kinds of [recordings]: sessions of minutes with labels, and [short ones](two_channel) that are named by their movement.
 
+pub mod curves;
 pub mod faults;
 pub(super) mod recordings;
 pub(super) mod score;
@@ -133,6 +134,14 @@ fn csv_files(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
         }
     }
     Ok(files)
+}
+
+/// The two-channel sessions of a folder and its own folders.
+///
+/// # Errors
+/// If there is no recording, or one cannot be read.
+pub fn sessions(folder: &Path) -> anyhow::Result<Vec<Session>> {
+    Ok(Recordings::read(folder, None)?.sessions)
 }
 
 /// Scores everybody in a folder, or one person; and so many faults drawn over them.

@@ -119,6 +119,11 @@ impl Recording {
         self.repetitions(REST).into_iter().map(inner).filter(|rows| !rows.is_empty()).collect()
     }
 
+    /// Two electrodes in each row, uV.
+    pub(super) fn site_uv(&self, sites: [usize; 2]) -> impl Iterator<Item = [f64; 2]> + '_ {
+        self.uv.iter().map(move |uv| sites.map(|n| uv[n]))
+    }
+
     /// The pair as the board reads it in these rows: time in rows, and uV.
     pub(super) fn pairs(&self, rows: Range<usize>, sites: [usize; 2]) -> Vec<(f64, [i32; 2])> {
         let mut all = Vec::new();

@@ -96,6 +96,18 @@ impl Movement {
         self.wants == Wish::Rest && self.never.len() == 2
     }
 
+    /// As electrodes would hear it that hear so much more or less, flexor first.
+    #[must_use]
+    pub fn heard_with(&self, gains: [f64; 2]) -> Self {
+        let mut heard = self.clone();
+        for (_, pair) in &mut heard.muscles.pairs {
+            for (uv, gain) in pair.iter_mut().zip(gains) {
+                *uv = uv.map(|uv| (f64::from(uv) * gain) as i32);
+            }
+        }
+        heard
+    }
+
     /// What a hand says of it.
     #[must_use]
     pub fn play(&self, mut emg: Emg) -> Played<'_> {

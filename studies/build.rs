@@ -1,0 +1,7 @@
+//! Says whether the recordings are here.
+
+include!("../recordings.rs");
+
+fn main() {
+    recordings();
+}

@@ -1,0 +1,137 @@
+//! Speed and accuracy for the wearer: windows right, and how late, at each rate of false motions, of the hand and of the plain control that
+//! `baseline.py` of the data set is: a threshold on the site, the side by the ratio of both electrodes.
+//!
+//! Both are swept by how much of the calibrated contraction they ask for, and counted alike, over all people and sessions.
+
+use std::path::Path;
+
+use rayon::prelude::*;
+use serde::Serialize;
+use tenax_logic::emg::constants::Fitted;
+use tenax_logic::emg::decide::Wish;
+use tenax_logic::emg::fitted::FITTED;
+use tenax_logic::emg::level::level_of;
+
+use super::Recordings;
+use super::recordings::Recording;
+use super::score::{Count, Said, Score};
+use super::trial::{Kind, Trial, Trials};
+
+/// Parts of the calibrated rise that plain control asks for.
+const PLAIN: [f64; 9] = [0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0];
+/// And by how much more or less than it ships the hand does.
+const HAND: [f64; 9] = [0.5, 0.65, 0.8, 0.9, 1.0, 1.1, 1.25, 1.4, 1.6];
+/// Rows for which plain control waits.
+const PLAIN_DWELL: usize = 3;
+
+/// A point of a curve.
+#[derive(Clone, Debug, Serialize)]
+pub struct Point {
+    /// Who decides.
+    pub control: &'static str,
+    /// On which calibration.
+    pub calibration: &'static str,
+    /// What is asked for: a part of the calibrated rise, or times what ships.
+    pub asks: f64,
+    pub score: Score,
+}
+
+/// What plain control knows of a wearer: levels of both sites, Q10 octaves.
+struct Plain {
+    begins: [f64; 2],
+    /// The ratio between closing and opening.
+    middle: f64,
+}
+
+impl Plain {
+    /// Calibrated from what the hand was calibrated from. A rise is at least half an octave above nearly all of rest.
+    fn of(trial: &Trial, part: f64) -> Self {
+        let model = &trial.model;
+        let (closes, opens) = (model.closing_site(), model.opening_site());
+        let (rest, close, open) = (model.rest(), model.close(), model.open());
+        let begins = |site: usize, most: i32| {
+            let own = f64::from(rest[site]);
+            (own + part * (f64::from(most) - own)).max(own + 2.3 * f64::from(model.spread()[site]) + 512.0)
+        };
+        let ratio = |point: [i32; 2]| f64::from(point[opens] - point[closes]);
+        Self {
+            begins: [begins(closes, close[closes]), begins(opens, open[opens])],
+            middle: (ratio(close) + ratio(open)) / 2.0,
+        }
+    }
+
+    fn says(&self, recording: &Recording, sites: [usize; 2]) -> Vec<Said> {
+        let (mut last, mut stands, mut wish) = (Wish::Rest, 0, Wish::Rest);
+        let said = |uv: [f64; 2]| {
+            let [close, open] = uv.map(|uv| f64::from(level_of(uv as i32)));
+            let wanted = match open - close > self.middle {
+                true if open > self.begins[1] => Wish::Open,
+                false if close > self.begins[0] => Wish::Close,
+                _ => Wish::Rest,
+            };
+            stands = if wanted == last { stands + 1 } else { 1 };
+            last = wanted;
+            if stands >= PLAIN_DWELL {
+                wish = wanted;
+            }
+            Said { wish, ..Said::default() }
+        };
+        recording.site_uv(sites).map(said).collect()
+    }
+}
+
+/// The shipped constants, asking for so much more of a contraction.
+fn asking(times: f64) -> &'static Fitted {
+    let scaled = |share: i32| (f64::from(share) * times).round() as i32;
+    let mut fitted = FITTED.clone();
+    fitted.begins = fitted.begins.map(scaled);
+    fitted.ends = fitted.ends.map(scaled);
+    // A few for each curve.
+    Box::leak(Box::new(fitted))
+}
+
+/// Both curves of everybody in a folder.
+///
+/// # Errors
+/// If there is nobody, or a recording cannot be read.
+pub fn curves(folder: &Path) -> anyhow::Result<Vec<Point>> {
+    let Recordings { people, .. } = Recordings::read(folder, None)?;
+    let trials: Vec<Trial> = people.values().flat_map(|days| Trials::of(days).all).collect();
+    let heard: Vec<_> = trials.par_iter().map(Trial::hear).collect();
+    let kinds = [(Kind::SameSession, "same session"), (Kind::OtherPosture, "other posture")];
+    let mut points = Vec::new();
+    for (kind, calibration) in kinds {
+        let own = || trials.iter().zip(&heard).filter(move |(trial, _)| trial.kind == kind);
+        let mut add = |control, asks, play: &dyn Fn(&Trial, &[_]) -> Vec<Said>| {
+            let mut count = Count::default();
+            own().for_each(|(trial, heard)| trial.count(&play(trial, heard), &mut count));
+            points.extend(count.score().map(|score| Point { control, calibration, asks, score }));
+        };
+        for part in PLAIN {
+            // The sites of the wearer, flexor or extensor, as the calibration found them.
+            add("plain", part, &|trial, _| {
+                let sites = [trial.model.closing_site(), trial.model.opening_site()].map(|n| trial.sites[n]);
+                Plain::of(trial, part).says(trial.recording, sites)
+            });
+        }
+        for times in HAND {
+            let fitted = asking(times);
+            add("hand", times, &|trial, heard| trial.decide(fitted, heard));
+        }
+    }
+    Ok(points)
+}
+
+impl Point {
+    /// Mean of the windows right of closing and opening.
+    #[must_use]
+    pub fn right(&self) -> f64 {
+        f64::midpoint(self.score.close_right, self.score.open_right)
+    }
+
+    /// Whether the hand ships so.
+    #[must_use]
+    pub fn ships(&self) -> bool {
+        self.control == "hand" && self.asks == 1.0
+    }
+}
