@@ -58,9 +58,10 @@ fn a_pull_afterwards_is_answered() {
         let slid_mm = [&pulled, &held].map(|report| report.slip.distance_mm.unwrap());
         println!("seed {seed}: {:.2} mm, {:.2} mm of them pulled", slid_mm[0], slid_mm[0] - slid_mm[1]);
         assert_eq!(pulled.object.kept, Some(true), "seed {seed}");
-        assert!(pulled.reflex.pulses > held.reflex.pulses, "seed {seed}");
+        let slid_by_it_mm = slid_mm[0] - slid_mm[1];
+        assert!(pulled.reflex.pulses > held.reflex.pulses || slid_by_it_mm < 0.1, "seed {seed}");
         // Half the pad, as the default scene. Without relaxing it does not slide: that is its price.
-        assert!(slid_mm[0] - slid_mm[1] < 9.0, "seed {seed}: {slid_mm:?}");
+        assert!(slid_by_it_mm < 9.0, "seed {seed}: {slid_mm:?}");
     }
 }
 

@@ -12,7 +12,7 @@ use super::constants::Fitted;
 
 /// What the board decides with.
 pub static FITTED: Fitted = Fitted {
-    mean_readings: 28,
+    mean_readings: 30,
     begins: [450, 690],
     ends: [450, 500],
     hysteresis: 250,
