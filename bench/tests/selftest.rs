@@ -1,0 +1,191 @@
+//! The self-test of the wires on the host's board, in virtual time: somebody does what each prompt says, at once.
+//!
+//! `TENAX_SELFTEST=all` runs what the bar asks for: every channel dead and shorted, all pairs of the list, 20 good boards.
+
+use std::env;
+use std::sync::{Arc, Mutex};
+
+use rayon::prelude::*;
+use tenax_bench::board::Recorder;
+use tenax_bench::session::Board;
+use tenax_hal_shim::channel::{CHANNELS, COUNT, MOTOR_CURRENT, Role, by_name};
+use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::wire::{Down, Up};
+use tenax_scene::plant::{Pins, Plant};
+use tenax_scene::{Act, SceneFile, World};
+use tenax_serial::guide::selftest::{Selftest, Verdict, named};
+use tenax_serial::link::{Encoder, Inbox};
+
+/// What the test said, and what is to be done at the bench.
+#[derive(Default)]
+struct Talk {
+    said: Vec<String>,
+    acts: Vec<Act>,
+}
+
+/// A world at whose bench somebody does what is said; its board sends its readings.
+struct Bench {
+    world: World,
+    talk: Arc<Mutex<Talk>>,
+    encoder: Encoder,
+    scans: u32,
+}
+
+impl Plant for Bench {
+    fn within(&self) -> Option<&dyn Plant> {
+        Some(&self.world)
+    }
+
+    fn within_mut(&mut self) -> Option<&mut dyn Plant> {
+        Some(&mut self.world)
+    }
+
+    fn scan(&mut self, drive: MotorDrive) -> &Pins {
+        self.scans += 1;
+        let acts = std::mem::take(&mut self.talk.lock().unwrap().acts);
+        acts.into_iter().for_each(|act| self.world.act(act));
+        self.world.scan(drive)
+    }
+
+    fn line_bytes(&mut self) -> Vec<u8> {
+        let asks = self.scans.is_multiple_of(8 * 8_000) || self.scans == 8_000;
+        let stream = Down::Stream { raw: false, senses: true, hold_s: 10 };
+        if asks { self.encoder.frame(&stream).1.to_vec() } else { Vec::new() }
+    }
+}
+
+/// Hears the board and runs the test.
+struct Tester {
+    inbox: Inbox,
+    test: Selftest,
+    talk: Arc<Mutex<Talk>>,
+}
+
+impl Recorder for Tester {
+    fn line(&mut self, bytes: &[u8]) {
+        for heard in bytes.iter().filter_map(|&byte| self.inbox.push(byte)).flatten() {
+            let Up::Senses(senses) = heard.received.message else { continue };
+            let said = self.test.hear(&senses);
+            let mut talk = self.talk.lock().unwrap();
+            talk.acts.extend(said.iter().filter_map(|line| line.parse::<Act>().ok()));
+            talk.said.extend(said);
+        }
+    }
+}
+
+/// The bench with these faults, tested; and all that was said.
+fn tested(faults: &str, seed: u64) -> (Selftest, Vec<String>) {
+    let bench = include_str!("../../scenes/parts/bench.toml").replace("= 3600", "= 80");
+    let scene = SceneFile::parse(&(bench + faults), "bench").unwrap_or_else(|error| panic!("{error}"));
+    let talk = Arc::<Mutex<Talk>>::default();
+    let test = Selftest::new(named(&[]).unwrap(), false, 8);
+    let mut tester = Tester { inbox: Inbox::default(), test, talk: Arc::clone(&talk) };
+    let world = World::new(&scene, seed);
+    let bench = Bench { world, talk: Arc::clone(&talk), encoder: Encoder::default(), scans: 0 };
+    Board::Host.record(bench, &mut tester, &mut |_| {}).unwrap();
+    let said = std::mem::take(&mut talk.lock().unwrap().said);
+    assert!(tester.test.is_over(), "seed {seed}, {faults}: {said:#?}");
+    (tester.test, said)
+}
+
+fn fault(channel: &str, kind: &str, with: &str) -> String {
+    let with = if with.is_empty() { String::new() } else { format!("with = \"{with}\"\n") };
+    format!("\n[[fault]]\nat_s = 0\nchannel = \"{channel}\"\nkind = \"{kind}\"\n{with}reason = \"a test\"\n")
+}
+
+/// What is wrong with a board whose fault was not found, or that has others.
+fn wrong(faults: &str, seed: u64, expected: &[(usize, fn(Verdict) -> bool)]) -> Option<String> {
+    let (test, said) = tested(faults, seed);
+    let is_right = |channel: usize| {
+        let verdict = test.verdict(channel);
+        match expected.iter().find(|(own, _)| *own == channel) {
+            Some((_, is_it)) => verdict.is_some_and(is_it),
+            None => matches!(verdict, Some(Verdict::Pass(_))),
+        }
+    };
+    let wrong: Vec<_> = (0..COUNT)
+        .filter(|&channel| !is_right(channel))
+        .map(|channel| format!("{}: {:?}", CHANNELS[channel].name, test.verdict(channel)))
+        .collect();
+    (!wrong.is_empty()).then(|| format!("seed {seed}{faults}{wrong:?}\n{}", said.join("\n")))
+}
+
+/// All, or without `TENAX_SELFTEST` every so many-th of them.
+fn some<T>(all: Vec<T>, every: usize) -> Vec<T> {
+    let step = if env::var_os("TENAX_SELFTEST").is_some() { 1 } else { every };
+    all.into_iter().step_by(step).collect()
+}
+
+fn none_wrong(wrong: Vec<String>) {
+    assert!(wrong.is_empty(), "{} wrong\n{}", wrong.len(), wrong.join("\n\n"));
+}
+
+#[test]
+fn a_good_board_has_no_failure() {
+    let seeds = some((101..=120).collect(), 10);
+    none_wrong(seeds.into_par_iter().filter_map(|seed| wrong("", seed, &[])).collect());
+}
+
+#[test]
+fn each_dead_and_each_shorted_channel_is_found_and_no_other() {
+    let kinds: [(&str, fn(Verdict) -> bool); 2] =
+        [("dead", |own| matches!(own, Verdict::Dead(_))), ("saturated", |own| matches!(own, Verdict::Shorted(_)))];
+    let all = (0..COUNT).flat_map(|channel| kinds.map(|(kind, is_it)| (channel, kind, is_it)));
+    let found = |(channel, kind, is_it): (usize, &str, _)| {
+        wrong(&fault(CHANNELS[channel].name, kind, ""), 200 + channel as u64, &[(channel, is_it)])
+    };
+    none_wrong(some(all.collect(), 17).into_par_iter().filter_map(found).collect());
+}
+
+/// Neighbours, far ones, other kinds; on one pin, on both switches, and between pin and switch.
+const PAIRS: [(&str, &str); 20] = [
+    ("strain_1", "pvdf_2"),
+    ("pvdf_1", "pvdf_2"),
+    ("pvdf_3", "pvdf_12"),
+    ("fsr_a", "fsr_b"),
+    ("strain_1", "strain_2"),
+    ("strain_6", "strain_12"),
+    ("strain_12", "fsr_a"),
+    ("fsr_c", "fsr_d"),
+    ("array_1", "array_2"),
+    ("myo_flexor", "myo_extensor"),
+    ("array_5", "array_10"),
+    ("array_10", "myo_flexor"),
+    ("myo_extensor", "opening"),
+    ("opening", "motor_current"),
+    ("pvdf_5", "fsr_b"),
+    ("pvdf_7", "array_3"),
+    ("fsr_d", "array_1"),
+    ("strain_4", "array_4"),
+    ("pvdf_9", "myo_flexor"),
+    ("fsr_a", "opening"),
+];
+
+#[test]
+fn each_exchanged_pair_is_found_and_no_other() {
+    let found = |(n, (a, b)): (usize, (&str, &str))| {
+        let [own, other] = [a, b].map(|name| by_name(name).unwrap());
+        let (test, said) = tested(&fault(a, "swapped", b), 300 + n as u64);
+        // One side is enough: what the reflex does meanwhile may move a wrong wire, too.
+        let names = |asked, other| test.verdict(asked) == Some(Verdict::Moved(other));
+        let blames = |asked, other| matches!(test.verdict(asked), Some(Verdict::Moved(moved)) if moved != other);
+        let is_named = (names(own, other) || names(other, own)) && !blames(own, other) && !blames(other, own);
+        // What stands on a muscle's wire can drive the motor all the time.
+        let drives = [own, other].iter().any(|&n| Role::of(n, false) == Role::Muscle);
+        let others = (0..COUNT).filter(|n| ![own, other].contains(n) && !(drives && *n == MOTOR_CURRENT));
+        let all_pass = others.into_iter().all(|n| matches!(test.verdict(n), Some(Verdict::Pass(_))));
+        (!is_named || !all_pass).then(|| format!("{a} and {b}:\n{}", said.join("\n")))
+    };
+    none_wrong(some(PAIRS.into_iter().enumerate().collect(), 4).into_par_iter().filter_map(found).collect());
+}
+
+#[test]
+fn two_wires_that_touch_are_found() {
+    let pairs = [("pvdf_4", "pvdf_5"), ("strain_3", "strain_9"), ("fsr_a", "fsr_b"), ("array_7", "array_8")];
+    let found = |(n, (a, b)): (usize, (&str, &str))| {
+        let is_it: fn(Verdict) -> bool = |own| matches!(own, Verdict::Bridged(_));
+        let expected = [a, b].map(|name| (by_name(name).unwrap(), is_it));
+        wrong(&fault(a, "bridged", b), 400 + n as u64, &expected)
+    };
+    none_wrong(some(pairs.into_iter().enumerate().collect(), 2).into_par_iter().filter_map(found).collect());
+}
