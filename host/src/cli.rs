@@ -25,7 +25,9 @@ mod vision;
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
-use tenax_serial::cli::{config, exit, flash, monitor, out, play, record, selftest, settings, wiring, workspace};
+use tenax_serial::cli::{
+    config, exit, flash, monitor, out, play, record, selftest, settings, wiring, workspace,
+};
 
 const EXAMPLES: &str = "\
 Examples:

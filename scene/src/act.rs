@@ -4,8 +4,7 @@ use std::f64::consts::TAU;
 use std::str::FromStr;
 
 use tenax_hal_shim::channel::{
-    ARRAY, ARRAY_COUNT, CHANNELS, COUNT, FSR, FSR_COUNT, OPENING, PVDF, PVDF_COUNT,
-    Role, STRAIN, STRAIN_COUNT, by_name,
+    ARRAY, ARRAY_COUNT, COUNT, FSR, FSR_COUNT, OPENING, PVDF, PVDF_COUNT, Role, STRAIN, STRAIN_COUNT, by_name,
 };
 
 use crate::schedule::{Span, smooth};
@@ -57,7 +56,8 @@ impl FromStr for Act {
             return newtons.map(Self::Weight).ok_or(());
         }
         // In the place of a film there may be a head, which is pressed.
-        let asks = |channel: &usize| [false, true].iter().any(|&head| Role::of(*channel, head).verb() == first);
+        let asks =
+            |channel: &usize| [false, true].iter().any(|&head| Role::of(*channel, head).verb() == first);
         by_name(second).filter(asks).map(Self::Touch).ok_or(())
     }
 }
@@ -73,11 +73,11 @@ const NEIGHBOURS: f64 = 0.1;
 const TAP_V: f64 = 0.6;
 const TAP_HZ: f64 = 180.0;
 const TAP_S: f64 = 0.015;
-const TAPS_EACH_S: f64 = 0.15;
+const TAPS_EACH_S: f64 = 0.137;
 /// A bent gauge and a pressed taxel at the pin, V; a turned axle.
 const BENT_V: f64 = 0.25;
 const TAXEL_V: f64 = 0.4;
-const TURNED_V: f64 = -0.5;
+const TURNED_V: f64 = 0.5;
 /// A pressed quadrant, N.
 const QUADRANT_N: f64 = 3.0;
 
@@ -123,8 +123,8 @@ impl Touches {
             share(&mut pins_v[STRAIN..STRAIN + STRAIN_COUNT], channel, STRAIN, BENT_V * pushed);
             share(&mut pins_v[ARRAY..ARRAY + ARRAY_COUNT], channel, ARRAY, TAXEL_V * pushed);
             if channel == OPENING {
-                pins_v[OPENING] = (pins_v[OPENING] + TURNED_V * pushed)
-                    .max(f64::from(CHANNELS[OPENING].rest_mv) / 1e3);
+                // To where there is room.
+                pins_v[OPENING] += if pins_v[OPENING] > 1.5 { -TURNED_V } else { TURNED_V } * pushed;
             }
         }
     }
@@ -140,7 +140,8 @@ fn share(kind: &mut [f64], channel: usize, first: usize, adds: f64) {
 
 /// Comes and goes without a jerk.
 fn part(span: Span, t_s: f64) -> f64 {
-    smooth(((t_s - span.begin_s) / RAMP_S).clamp(0.0, 1.0)) * smooth(((span.end_s - t_s) / RAMP_S).clamp(0.0, 1.0))
+    smooth(((t_s - span.begin_s) / RAMP_S).clamp(0.0, 1.0))
+        * smooth(((span.end_s - t_s) / RAMP_S).clamp(0.0, 1.0))
 }
 
 /// A tap after the other.
@@ -155,7 +156,7 @@ fn rings(since_s: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tenax_hal_shim::channel::MYO_FLEXOR;
+    use tenax_hal_shim::channel::{CHANNELS, MYO_FLEXOR};
 
     #[test]
     fn keys_weights_and_prompts_are_read_and_nothing_else() {
@@ -165,7 +166,9 @@ mod tests {
             let prompt = format!("{} {}, once more (PA0)", Role::of(n, false).verb(), channel.name);
             assert_eq!(prompt.parse(), Ok(Act::Touch(n)), "{prompt}");
         }
-        for other in ["", "g g", "weight", "weight 500", "press pvdf_1", "tap", "   pvdf_1 412 mV", "FAIL tap pvdf_1"] {
+        for other in
+            ["", "g g", "weight", "weight 500", "press pvdf_1", "tap", "   pvdf_1 412 mV", "FAIL tap pvdf_1"]
+        {
             assert_eq!(other.parse::<Act>(), Err(()), "{other}");
         }
     }

@@ -1,7 +1,8 @@
 //! A whole world: everything that moves, everything that senses, and the line over which somebody types.
 
 use tenax_hal_shim::channel::{
-    ARRAY, COUNT, FSR, HEAD, MYO_EXTENSOR, MYO_FLEXOR, OPENING, PVDF, PVDF_COUNT, SCAN_HZ, SCANS_PER_FRAME, STRAIN,
+    ARRAY, COUNT, FSR, HEAD, MYO_EXTENSOR, MYO_FLEXOR, OPENING, PVDF, PVDF_COUNT, SCAN_HZ, SCANS_PER_FRAME,
+    STRAIN,
 };
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::Down;

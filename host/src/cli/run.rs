@@ -185,7 +185,10 @@ fn listen(person: &Person) {
     if is_typed {
         out::note!("Enter presses the board's blue button: consent to what the line sends, for a minute");
         let keys = KEYS.map(|(key, what, _)| format!("{key} {what}"));
-        out::note!("then Enter: {}; `weight 5` lays 5 N on the finger, `tap pvdf_3` taps it", keys.join(", "));
+        out::note!(
+            "then Enter: {}; `weight 5` lays 5 N on the finger, `tap pvdf_3` taps it",
+            keys.join(", ")
+        );
     }
     let person = person.clone();
     let does = move |line: String| match line.parse() {

@@ -20,6 +20,8 @@ mod reconnect;
 mod recording;
 mod screen;
 #[cfg(unix)]
+mod selftest;
+#[cfg(unix)]
 mod served;
 mod served_noise;
 #[cfg(unix)]

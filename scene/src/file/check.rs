@@ -169,7 +169,13 @@ fn fault(fault: &SensorFault) -> Checked {
     let drift = fault.drift_per_s.as_ref().map(Spanned::span);
     only(kind == FaultKind::Drift, drift, fault, "drift", "drift_per_s")?;
     let with = fault.with.as_ref().map(Spanned::span);
-    only([FaultKind::Swapped, FaultKind::Bridged].contains(&kind), with, fault, "swapped\" or \"bridged", "with")
+    only(
+        [FaultKind::Swapped, FaultKind::Bridged].contains(&kind),
+        with,
+        fault,
+        "swapped\" or \"bridged",
+        "with",
+    )
 }
 
 /// A key that faults of one kind need, and no other takes.

@@ -30,6 +30,7 @@ pub struct Args {
 
 /// Tests the wires. 1: not all of them are right.
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    let all_pass = selftest::run(&mut args.line.open()?, &args.channels, args.within, &mut |text| out::say!("{text}"))?;
+    let all_pass =
+        selftest::run(&mut args.line.open()?, &args.channels, args.within, &mut |text| out::say!("{text}"))?;
     Ok(ExitCode::from(u8::from(!all_pass)))
 }
