@@ -63,9 +63,9 @@ impl FromStr for Act {
 }
 
 /// How soon a person does what they are told, s (all here assumed).
-pub(crate) const REACTS_S: f64 = 0.3;
+pub(crate) const REACTS_S: f64 = 0.2;
 /// How long they touch a sensor, and how long that comes and goes, s.
-const TOUCHES_S: f64 = 0.6;
+const TOUCHES_S: f64 = 0.5;
 const RAMP_S: f64 = 0.05;
 /// A finger that touches one sensor moves its neighbours by this part.
 const NEIGHBOURS: f64 = 0.1;

@@ -309,7 +309,8 @@ impl Plant for World {
         let at_s = self.now_s() + REACTS_S;
         match act {
             Act::Touch(MYO_FLEXOR) => self.wearer.contract(at_s, 0.4, Intent::Close, f64::INFINITY),
-            Act::Touch(MYO_EXTENSOR) => self.wearer.contract(at_s, 0.4, Intent::Open, f64::INFINITY),
+            // Long enough to let go of what the other muscle has gripped.
+            Act::Touch(MYO_EXTENSOR) => self.wearer.contract(at_s, 1.2, Intent::Open, f64::INFINITY),
             Act::Touch(channel) => self.touches.touch(at_s, channel),
             Act::Weight(newtons) => self.touches.weigh(at_s, newtons),
             Act::Close => self.wearer.contract(at_s, 5.0, Intent::Close, f64::INFINITY),

@@ -193,7 +193,7 @@ fn listen(person: &Person) {
     let person = person.clone();
     let does = move |line: String| match line.parse() {
         Ok(act) => person.act(act),
-        Err(()) if is_typed && line.is_empty() => person.press(),
+        Err(()) if line == "button" || is_typed && line.is_empty() => person.press(),
         Err(()) if is_typed => out::note!("no key: {line}"),
         // A program says other things, too.
         Err(()) => {}

@@ -10,6 +10,8 @@ mod calibrate;
 mod config;
 mod host_line;
 #[cfg(unix)]
+mod journey;
+#[cfg(unix)]
 mod monitor;
 #[cfg(unix)]
 mod page;
