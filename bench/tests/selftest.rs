@@ -100,8 +100,11 @@ fn fault(channel: &str, kind: &str, with: &str) -> String {
     format!("\n[[fault]]\nat_s = 0\nchannel = \"{channel}\"\nkind = \"{kind}\"\n{with}reason = \"a test\"\n")
 }
 
+/// Whether a verdict is the expected one.
+type Is = fn(Verdict) -> bool;
+
 /// What is wrong with a board whose fault was not found, or that has others.
-fn wrong(faults: &str, seed: u64, expected: &[(usize, fn(Verdict) -> bool)]) -> Option<String> {
+fn wrong(faults: &str, seed: u64, expected: &[(usize, Is)]) -> Option<String> {
     let (test, said) = tested(faults, seed);
     let is_right = |channel: usize| {
         let verdict = test.verdict(channel);
@@ -140,7 +143,7 @@ fn a_good_board_has_no_failure() {
 
 #[test]
 fn each_dead_and_each_shorted_channel_is_found_and_no_other() {
-    let kinds: [(&str, fn(Verdict) -> bool); 2] = [
+    let kinds: [(&str, Is); 2] = [
         ("dead", |own| matches!(own, Verdict::Dead(_))),
         ("saturated", |own| matches!(own, Verdict::Shorted(_))),
     ];
@@ -192,7 +195,7 @@ fn each_exchanged_pair_is_found_and_no_other() {
         let is_named = (names(own, other) || names(other, own)) && !blames(own, other) && !blames(other, own);
         // What stands on a muscle's wire can drive the motor all the time.
         let drives = [own, other].iter().any(|&n| Role::of(n, false) == Role::Muscle);
-        let others = (0..COUNT).filter(|n| ![own, other].contains(n) && !(drives && *n == MOTOR_CURRENT));
+        let others = (0..COUNT).filter(|n| !([own, other].contains(n) || drives && *n == MOTOR_CURRENT));
         let all_pass = others.into_iter().all(|n| matches!(test.verdict(n), Some(Verdict::Pass(_))));
         (!is_named || !all_pass).then(|| format!("seed {seed}, {a} and {b}:\n{}", said.join("\n")))
     };
@@ -204,7 +207,7 @@ fn each_exchanged_pair_is_found_and_no_other() {
 fn two_wires_that_touch_are_found() {
     let pairs = [("pvdf_4", "pvdf_5"), ("strain_3", "strain_9"), ("fsr_a", "fsr_b"), ("array_7", "array_8")];
     let found = |(seed, (a, b)): (u64, (&str, &str))| {
-        let is_it: fn(Verdict) -> bool = |own| matches!(own, Verdict::Bridged(_));
+        let is_it: Is = |own| matches!(own, Verdict::Bridged(_));
         let expected = [a, b].map(|name| (by_name(name).unwrap(), is_it));
         wrong(&fault(a, "bridged", b), seed, &expected)
     };
