@@ -11,7 +11,7 @@ use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 use tenax_bench::board::Recorder;
 use tenax_bench::session::Board;
-use tenax_hal_shim::channel::{CHANNELS, COUNT, MOTOR_CURRENT, Role, by_name};
+use tenax_hal_shim::channel::{CHANNELS, COUNT, MOTOR_CURRENT, Role, STRAIN, by_name};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Down, Up};
 use tenax_scene::plant::{Pins, Plant};
@@ -212,4 +212,19 @@ fn two_wires_that_touch_are_found() {
         wrong(&fault(a, "bridged", b), seed, &expected)
     };
     none_wrong(some(pairs, 2).into_par_iter().filter_map(found).collect());
+}
+
+#[test]
+fn a_switch_that_is_dead_and_exchanged_select_lines_are_named_as_such() {
+    let all = |kind| (0..16).map(|n| fault(CHANNELS[STRAIN + n].name, kind, "")).collect::<String>();
+    let (_, said) = tested(&all("dead"), 1);
+    assert!(said.iter().any(|line| line.starts_with("All of switch A fails")), "{said:#?}");
+    // The lowest line is inverted.
+    let pair = |n: usize| fault(CHANNELS[STRAIN + 2 * n].name, "swapped", CHANNELS[STRAIN + 2 * n + 1].name);
+    let (_, said) = tested(&(0..4).map(pair).collect::<String>(), 1);
+    assert!(said.iter().any(|line| line.starts_with("8 of switch A are exchanged")), "{said:#?}");
+    assert!(
+        said.iter().any(|line| line.ends_with("strain_2 (switch A, 1): exchange their wires")),
+        "{said:#?}"
+    );
 }
