@@ -183,12 +183,10 @@ fn live_of(down: &Down, person: &Person) -> Live {
 fn listen(person: &Person) {
     let is_typed = io::stdin().is_terminal();
     if is_typed {
-        out::note!("Enter presses the board's blue button: consent to what the line sends, for a minute");
+        out::note!("Enter presses the blue button: consent to what the line sends, for a minute");
         let keys = KEYS.map(|(key, what, _)| format!("{key} {what}"));
-        out::note!(
-            "then Enter: {}; `weight 5` lays 5 N on the finger, `tap pvdf_3` taps it",
-            keys.join(", ")
-        );
+        out::note!("with Enter: {},\n{}", keys[..4].join(", "), keys[4..].join(", "));
+        out::note!("`weight 5` lays 5 N on the finger, `tap pvdf_3` taps a film");
     }
     let person = person.clone();
     let does = move |line: String| match line.parse() {

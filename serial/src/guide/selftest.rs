@@ -340,17 +340,11 @@ impl Selftest {
         let wire = |other: usize| format!("{} ({})", CHANNELS[other].name, input(other));
         match verdict {
             Verdict::Pass(mv) => format!("{name}: {mv:.0} mV"),
-            Verdict::Dead(mv) => {
-                format!("{mv:.0} mV: a cut wire, a short to ground, or no supply at its amplifier")
-            }
-            Verdict::Shorted(mv) => format!("{mv:.0} mV: a short to the supply, or a sensor out of range"),
-            Verdict::Stuck(mv) => {
-                format!("always {mv:.0} mV, without noise: an open switch, or a wrong select line")
-            }
-            Verdict::Off(mv) => {
-                format!("rests at {mv:.0} mV, not at {rest_mv}: another sensor's wire, or a wrong reference")
-            }
-            Verdict::Silent => "nothing moves: a wire cut before the amplifier, or a deaf sensor".to_owned(),
+            Verdict::Dead(mv) => format!("{mv:.0} mV: a cut wire, a short to ground, or no supply"),
+            Verdict::Shorted(mv) => format!("{mv:.0} mV: a short to the supply, or out of range"),
+            Verdict::Stuck(mv) => format!("always {mv:.0} mV: an open switch, or a select line"),
+            Verdict::Off(mv) => format!("rests at {mv:.0} mV, not {rest_mv}: another's wire, or reference"),
+            Verdict::Silent => "nothing moves: wire cut at the sensor, or deaf".to_owned(),
             Verdict::Moved(other) => format!("{} moves in its place", wire(other)),
             Verdict::Bridged(other) => format!("{} does the same: the two wires touch", wire(other)),
         }
@@ -434,10 +428,8 @@ pub fn run(client: &mut Client, words: &[String], limit_s: u32, say: Say<'_>) ->
         channels.retain(|&channel| Role::of(channel, head) != Role::Muscle);
     }
     let mut test = Selftest::new(channels, head, limit_s);
-    say(&format!(
-        "The hand is empty: what is pressed may make the reflex close it. Touch nothing and relax for {} s.",
-        REST / FRAME_HZ
-    ))?;
+    say("The hand is empty: the reflex may close it on what is pressed.")?;
+    say(&format!("Touch nothing and relax for {} s.", REST / FRAME_HZ))?;
     let stream = Down::Stream { raw: false, senses: true, hold_s: 10 };
     let (mut asked, mut heard) = (None::<Instant>, Instant::now());
     while !test.is_over() {
