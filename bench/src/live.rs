@@ -1,12 +1,14 @@
 //! What a plant is put into while its board's line is served: real time goes by, and clients' bytes come down.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use tenax_hal_shim::channel::SCAN_HZ;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::BAUD;
+use tenax_scene::Act;
 use tenax_scene::plant::{Pins, Plant};
 
 use tenax_serial::serve::{Down, Teller};
@@ -31,21 +33,36 @@ pub struct Live {
     /// What the real line could have carried by now and did not, in bytes times [`SCAN_HZ`]: below 0 it is busy.
     room: i64,
     pace: Pace,
-    button: Button,
+    person: Person,
 }
 
-/// The board's button, which a person presses at the keyboard.
+/// Who sits at the bench: what they type is done there.
 #[derive(Clone, Default)]
-pub struct Button(Arc<Mutex<Option<Instant>>>);
+pub struct Person(Arc<Mutex<Hands>>);
 
-impl Button {
-    /// Presses it, as long as a finger does.
+#[derive(Default)]
+struct Hands {
+    pressed: Option<Instant>,
+    acts: VecDeque<Act>,
+}
+
+impl Person {
+    /// Presses the board's button, as long as a finger does.
     pub fn press(&self) {
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(Instant::now());
+        self.hands().pressed = Some(Instant::now());
     }
 
-    fn is_down(&self) -> bool {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).is_some_and(|at| at.elapsed() < PRESSED)
+    /// Does it at the next instant of the scene.
+    pub fn act(&self, act: Act) {
+        self.hands().acts.push_back(act);
+    }
+
+    fn hands(&self) -> MutexGuard<'_, Hands> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn is_pressing(&self) -> bool {
+        self.hands().pressed.is_some_and(|at| at.elapsed() < PRESSED)
     }
 }
 
@@ -53,13 +70,13 @@ impl Live {
     /// What clients send comes down; `behind` is told once, if at all, that the board is slower than real time, and at which
     /// part of it it runs.
     pub fn new(down: Down, behind: fn(f64)) -> Self {
-        Self { down, room: 0, pace: Pace::new(behind), button: Button::default() }
+        Self { down, room: 0, pace: Pace::new(behind), person: Person::default() }
     }
 
-    /// The same with this button.
+    /// The same with this person at the bench.
     #[must_use]
-    pub fn with_button(self, button: Button) -> Self {
-        Self { button, ..self }
+    pub fn with_person(self, person: Person) -> Self {
+        Self { person, ..self }
     }
 
     /// Tells what really happens.
@@ -168,6 +185,8 @@ impl<P: Plant> Plant for Served<P> {
     fn scan(&mut self, drive: MotorDrive) -> &Pins {
         if let Some(live) = &mut self.live {
             live.pace.wait();
+            let act = live.person.hands().acts.pop_front();
+            act.into_iter().for_each(|act| self.plant.act(act));
         }
         self.plant.scan(drive)
     }
@@ -181,7 +200,7 @@ impl<P: Plant> Plant for Served<P> {
     }
 
     fn button(&self) -> bool {
-        self.plant.button() || self.live.as_ref().is_some_and(|live| live.button.is_down())
+        self.plant.button() || self.live.as_ref().is_some_and(|live| live.person.is_pressing())
     }
 
     fn streams_at_start(&self) -> bool {

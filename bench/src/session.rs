@@ -125,7 +125,7 @@ pub struct Outcome {
 
 /// A scene by its name in the repository, or by its file.
 pub fn load_scene(asked: &str) -> anyhow::Result<SceneFile> {
-    if let Some((name, text)) = builtin().iter().find(|(name, _)| *name == asked) {
+    if let Some((name, text)) = builtin().iter().chain(builtin::parts()).find(|(name, _)| *name == asked) {
         return Ok(SceneFile::parse(text, &format!("scenes/{name}.toml"))?);
     }
     let path = Path::new(asked);
@@ -166,14 +166,15 @@ pub fn scene_with(
     scene_served(file, seed, board, Use::default(), recorder, progress)
 }
 
-/// As [`scene_with`], without the bound, whose search takes up to ten times as long as the run.
+/// As [`scene_served`], without the bound, whose search takes up to ten times as long as the run.
 pub fn scene_alone(
     file: &SceneFile,
     seed: u64,
     board: &Board,
+    line: Use,
     recorder: &mut dyn Recorder,
 ) -> anyhow::Result<Outcome> {
-    judged(file, seed, board, Use::default(), recorder, &mut |_| {}, &|_| None)
+    judged(file, seed, board, line, recorder, &mut |_| {}, &|_| None)
 }
 
 /// As [`scene_with`], with the board's line used so.

@@ -6,6 +6,7 @@
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use tenax_bench::board::Run;
+use tenax_bench::live::Use;
 use tenax_bench::session::{self, Board, Outcome};
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::detector::DetectorId;
@@ -24,7 +25,7 @@ fn text(name: &str) -> &'static str {
 fn run(scene: &str, seed: u64) -> (Outcome, Run) {
     let scene = SceneFile::parse(scene, "scene").unwrap_or_else(|error| panic!("{error}"));
     let mut run = Run::default();
-    let outcome = session::scene_alone(&scene, seed, &Board::Host, &mut run).unwrap();
+    let outcome = session::scene_alone(&scene, seed, &Board::Host, Use::default(), &mut run).unwrap();
     (outcome, run)
 }
 

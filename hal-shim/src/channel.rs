@@ -124,6 +124,18 @@ impl Role {
             _ => Self::Hand,
         }
     }
+
+    /// How a person makes such a sensor move: the first word of what `tenax selftest` asks for.
+    #[must_use]
+    pub const fn verb(self) -> &'static str {
+        match self {
+            Self::Vibration => "tap",
+            Self::Strain => "bend",
+            Self::Force | Self::Taxel | Self::Photoelastic => "press",
+            Self::Muscle => "contract",
+            Self::Hand => "move",
+        }
+    }
 }
 
 /// Number of PVDF films.

@@ -25,7 +25,9 @@ mod vision;
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
-use tenax_serial::cli::{config, exit, flash, monitor, out, play, record, settings, wiring, workspace};
+use tenax_serial::cli::{
+    config, exit, flash, monitor, out, play, record, selftest, settings, wiring, workspace,
+};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -83,6 +85,8 @@ enum Command {
     Vision(vision::Args),
     /// Flash a NUCLEO-F411RE through probe-rs
     Flash(flash::Args),
+    /// Touch every sensor in turn; say which wire is wrong
+    Selftest(selftest::Args),
     /// Watch a board: a screen, or one line a message
     Monitor(monitor::Args),
     /// Record a board's line
@@ -121,6 +125,7 @@ pub fn main() -> ExitCode {
         Command::Evaluate(args) => evaluate::main(&args),
         Command::Vision(args) => vision::main(&args),
         Command::Flash(args) => flash::main(&args),
+        Command::Selftest(args) => selftest::main(&args),
         Command::Monitor(args) => monitor::main(&args),
         Command::Record(args) => record::main(&args),
         Command::Play(args) => play::main(&args),

@@ -26,10 +26,12 @@
 //! | [`physics`] | contact at three levels, gripper, grasped object, stroked surface, hand, wearer |
 //! | [`sensor`] | PVDF, strain, FSR, force array, myoelectric, camera, photoelastic head, opening, motor current, and the faults of all of them |
 //! | [`picture`] | what a camera behind a clear skin sees, drawn pixel by pixel |
+//! | [`act`] | what a person at the bench does meanwhile |
 //! | [`bound`] | the least force that holds, planned ahead |
 //! | [`truth`] | nothing of the world: it writes down what really happened |
 #![forbid(unsafe_code)]
 
+pub mod act;
 pub mod bound;
 pub mod bounds;
 pub mod builtin;
@@ -46,6 +48,7 @@ pub mod stepping;
 pub mod truth;
 pub mod world;
 
+pub use act::Act;
 pub use builtin::builtin;
 pub use file::{SceneError, SceneFile};
 pub use random::Seeds;

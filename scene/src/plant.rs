@@ -4,6 +4,8 @@ use tenax_hal_shim::channel::{CHANNELS, CODE_MAX, COUNT, REFERENCE_MV};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::Down;
 
+use crate::act::Act;
+
 /// Voltages at the pins, V, in the order of [`CHANNELS`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pins(pub [f64; COUNT]);
@@ -75,6 +77,13 @@ pub trait Plant: Send {
     /// Bytes that somebody sends down the serial line at this instant, whatever they are.
     fn line_bytes(&mut self) -> Vec<u8> {
         self.within_mut().map_or_else(Vec::new, Plant::line_bytes)
+    }
+
+    /// Somebody at the bench does something, from now on. A recording takes no notice.
+    fn act(&mut self, act: Act) {
+        if let Some(within) = self.within_mut() {
+            within.act(act);
+        }
     }
 
     /// Whether the board trusts whoever sends them (the setting `line-trusted-flag`, kept in its flash from before).

@@ -1,15 +1,17 @@
 //! A whole world: everything that moves, everything that senses, and the line over which somebody types.
 
 use tenax_hal_shim::channel::{
-    ARRAY, COUNT, FSR, HEAD, MYO_FLEXOR, OPENING, PVDF, PVDF_COUNT, SCAN_HZ, SCANS_PER_FRAME, STRAIN,
+    ARRAY, COUNT, FSR, HEAD, MYO_EXTENSOR, MYO_FLEXOR, OPENING, PVDF, PVDF_COUNT, SCAN_HZ, SCANS_PER_FRAME,
+    STRAIN,
 };
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::Down;
 
+use crate::act::{Act, REACTS_S, Touches};
 use crate::bound::Plan;
 use crate::commands::Script;
 use crate::file::SceneFile;
-use crate::file::sections::Arm;
+use crate::file::sections::{Arm, Intent};
 use crate::physics::grasp::Grasp;
 use crate::physics::gripper::Gripper;
 use crate::physics::hand::Hand;
@@ -58,6 +60,7 @@ pub struct World {
     released_n: f64,
     slow_v: [f64; COUNT],
     faults: Faults,
+    touches: Touches,
     converter: Converter,
     script: Script,
     trusts_line: bool,
@@ -118,6 +121,7 @@ impl World {
             released_n: 0.0,
             slow_v: Pins::default().0,
             faults: Faults::new(&scene.fault),
+            touches: Touches::default(),
             converter: Converter::new(seed),
             script: Script::new(&scene.command, scene.trusts_line()),
             trusts_line: scene.trusts_line(),
@@ -172,12 +176,31 @@ impl World {
         let released_n = std::mem::take(&mut self.released_n);
         let pins_v = &mut self.slow_v;
         pins_v[STRAIN..FSR].copy_from_slice(&self.gauges.step(&self.touch));
-        pins_v[FSR..ARRAY].copy_from_slice(&self.quadrants.step(&self.touch, self.faults.pressed_n(t_s)));
+        let (mut pressed_n, touched_n) = (self.faults.pressed_n(t_s), self.touches.pressed_n(t_s));
+        pressed_n.iter_mut().zip(touched_n).for_each(|(pressed_n, touched_n)| *pressed_n += touched_n);
+        pins_v[FSR..ARRAY].copy_from_slice(&self.quadrants.step(&self.touch, pressed_n));
         let shakes = Shakes { t_s, released_n, motor_speed: self.gripper.speed_part() };
         pins_v[ARRAY..MYO_FLEXOR].copy_from_slice(&self.elements.step(&self.touch, shakes));
         pins_v[MYO_FLEXOR..OPENING].copy_from_slice(&self.envelopes.step(t_s, effort));
         pins_v[OPENING..COUNT].copy_from_slice(&hand::pins_v(&self.gripper));
         self.truth.wearer(t_s, effort.intent, pins_v);
+    }
+
+    /// Somebody handles the object, if there is one.
+    fn handle(&mut self, at_s: f64, act: Act) {
+        let Task::Grasp { grasp, hand, .. } = &mut self.task else { return };
+        match act {
+            Act::Grip => {
+                self.wearer.contract(at_s, 4.0, Intent::Close, 1.0);
+                hand.reach(at_s + 1.5, 1.5, 0.1);
+            }
+            Act::PutDown => {
+                hand.reach(at_s, 1.5, 0.0);
+                self.wearer.contract(at_s + 2.0, 1.0, Intent::Open, f64::INFINITY);
+            }
+            Act::Pull => grasp.pull(at_s, 1.5),
+            _ => grasp.wet(at_s),
+        }
     }
 
     /// Moves everything that moves.
@@ -264,6 +287,7 @@ impl Plant for World {
         if let Some(head) = &mut self.head {
             pins_v[HEAD] = head.step(t_s, &self.touch);
         }
+        self.touches.apply(t_s, pins_v);
         self.converter.step(pins_v);
         self.faults.apply(t_s, pins_v);
         &self.pins
@@ -279,6 +303,20 @@ impl Plant for World {
         commands.extend(self.eye.teach(t_s));
         commands.extend(self.skin.as_mut().and_then(|skin| skin.take(t_s)).map(Down::View));
         commands
+    }
+
+    fn act(&mut self, act: Act) {
+        let at_s = self.now_s() + REACTS_S;
+        match act {
+            Act::Touch(MYO_FLEXOR) => self.wearer.contract(at_s, 0.4, Intent::Close, f64::INFINITY),
+            // Long enough to let go of what the other muscle has gripped.
+            Act::Touch(MYO_EXTENSOR) => self.wearer.contract(at_s, 1.2, Intent::Open, f64::INFINITY),
+            Act::Touch(channel) => self.touches.touch(at_s, channel),
+            Act::Weight(newtons) => self.touches.weigh(at_s, newtons),
+            Act::Close => self.wearer.contract(at_s, 5.0, Intent::Close, f64::INFINITY),
+            Act::Open => self.wearer.contract(at_s, 5.0, Intent::Open, f64::INFINITY),
+            Act::Grip | Act::PutDown | Act::Pull | Act::Wet => self.handle(at_s, act),
+        }
     }
 
     fn trusts_line(&self) -> bool {

@@ -68,6 +68,7 @@ fn every_mistake_is_named_where_it_stands() {
         ("\"fsr_a\"", "\"fsr_e\"", 17, &["fsr_e", "fsr_a", "fsr_b"]),
         ("\"dead\"", "\"gone\"", 18, &["gone", "dead", "stuck"]),
         ("\"dead\"", "\"pressed\"", 17, &["press_n"]),
+        ("\"dead\"", "\"swapped\"", 17, &["with"]),
         ("value = 300", "value = 9000", 23, &["9000", "50..=1500", "s2-permille"]),
         ("value = 300", "value = -1", 23, &["value"]),
         ("value = 300\n", "", 22, &["needs value"]),

@@ -8,6 +8,7 @@ pub mod out;
 pub mod play;
 pub mod port;
 pub mod record;
+pub mod selftest;
 pub mod settings;
 pub mod wiring;
 pub mod workspace;
@@ -30,6 +31,8 @@ enum Command {
     Calibrate(calibrate::Args),
     /// Flash a NUCLEO-F411RE through probe-rs
     Flash(flash::Args),
+    /// Touch every sensor in turn; say which wire is wrong
+    Selftest(selftest::Args),
     /// Watch a board: a screen, or one line a message
     Monitor(monitor::Args),
     /// Record a board's line
@@ -49,6 +52,7 @@ pub fn main() -> ExitCode {
     exit(match Cli::parse().command {
         Command::Calibrate(args) => calibrate::main(&args),
         Command::Flash(args) => flash::main(&args),
+        Command::Selftest(args) => selftest::main(&args),
         Command::Monitor(args) => monitor::main(&args),
         Command::Record(args) => record::main(&args),
         Command::Play(args) => play::main(&args),

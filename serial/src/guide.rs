@@ -5,6 +5,7 @@
 pub mod emg;
 pub mod force;
 pub mod friction;
+pub mod selftest;
 
 use std::time::{Duration, Instant};
 

@@ -55,6 +55,14 @@ fn place(channel: &Channel) -> (usize, Option<(char, u8)>) {
     }
 }
 
+/// Where a channel's wire ends: `PA0`, or `switch A, 3`.
+pub fn input(channel: usize) -> String {
+    match place(&CHANNELS[channel]) {
+        (rank, None) => SCAN[rank].pin.to_owned(),
+        (_, Some((switch, select))) => format!("switch {switch}, {select}"),
+    }
+}
+
 /// The row of channels that are alike.
 fn row(channels: &[Channel]) -> String {
     let (Some(first), Some(last)) = (channels.first(), channels.last()) else { return String::new() };

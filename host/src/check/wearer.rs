@@ -5,6 +5,7 @@ use std::process::Command;
 use tenax_scene::builtin;
 
 use super::Bar;
+use tenax_bench::live::Use;
 use tenax_bench::session::{self, Board};
 
 /// Two slow frames, ms.
@@ -14,7 +15,8 @@ const TWO_SLOW_FRAMES_MS: f64 = 25.0;
 pub fn scenes() -> anyhow::Result<Vec<Bar>> {
     let (mut while_active, mut elsewhere, mut slowest_ms, mut opened) = (0, 0, 0f64, 0);
     for (name, _) in builtin() {
-        let outcome = session::scene_alone(&session::load_scene(name)?, 1, &Board::Host, &mut ())?;
+        let outcome =
+            session::scene_alone(&session::load_scene(name)?, 1, &Board::Host, Use::default(), &mut ())?;
         let wearer = &outcome.report.wearer;
         while_active += wearer.reflex_while_active;
         elsewhere += wearer.reflex_ticks - wearer.reflex_while_active;

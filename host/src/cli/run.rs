@@ -9,6 +9,7 @@ use std::thread;
 use anyhow::Context;
 use clap::ArgGroup;
 use tenax_scene::SceneFile;
+use tenax_scene::act::KEYS;
 
 use super::folder;
 use super::format::Format;
@@ -17,7 +18,7 @@ use super::out;
 use super::progress::Progress;
 use super::workspace;
 use tenax_bench::again;
-use tenax_bench::live::{Button, Live, Use};
+use tenax_bench::live::{Live, Person, Use};
 use tenax_bench::replay::{self, calibrate};
 use tenax_bench::report::text::Text;
 use tenax_bench::session::{self, Board, Outcome};
@@ -104,15 +105,15 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let board = if args.host { Board::Host } else { Board::emulated(&workspace::root()?)? };
     let mut line = LineFile::new(path("line.bin"));
     let (mut server, down) = served(args)?.unzip();
-    let button = Button::default();
+    let person = Person::default();
     if down.is_some() {
-        listen(&button);
+        listen(&person);
     }
-    let live = down.as_ref().map(|down| live_of(down, &button));
+    let live = down.as_ref().map(|down| live_of(down, &person));
     if let (true, Subject::Scene(file), Some(server), Some(down)) =
         (args.repeat, &subject, &mut server, &down)
     {
-        return again_and_again(file, args.seed, &board, server, &|| live_of(down, &button));
+        return again_and_again(file, args.seed, &board, server, &|| live_of(down, &person));
     }
     let mut recording = args.record.as_deref().map(Recording::create).transpose()?;
     let line_use = Use { live, streams_at_start: recording.is_some() };
@@ -172,21 +173,31 @@ fn served(args: &Args) -> anyhow::Result<Option<(Server, Down)>> {
     Ok(Some((server, down)))
 }
 
-fn live_of(down: &Down, button: &Button) -> Live {
+fn live_of(down: &Down, person: &Person) -> Live {
     let slow =
         |part| out::note!("the board is slower than real time: it runs, and is served, at {part:.2} of it");
-    Live::new(down.clone(), slow).with_button(button.clone())
+    Live::new(down.clone(), slow).with_person(person.clone())
 }
 
-/// Lets a person at the keyboard press the board's button.
-fn listen(button: &Button) {
-    if !io::stdin().is_terminal() {
-        return;
+/// Does what a person at the keyboard types, or what a program pipes, such as the prompts of `tenax selftest`.
+fn listen(person: &Person) {
+    let is_typed = io::stdin().is_terminal();
+    if is_typed {
+        out::note!("Enter presses the blue button: consent to what the line sends, for a minute");
+        let keys = KEYS.map(|(key, what, _)| format!("{key} {what}"));
+        out::note!("with Enter: {},\n{}", keys[..4].join(", "), keys[4..].join(", "));
+        out::note!("`weight 5` lays 5 N on the finger, `tap pvdf_3` taps a film");
     }
-    out::note!("Enter presses the board's blue button: consent to what the line sends, for a minute");
-    let button = button.clone();
+    let person = person.clone();
+    let does = move |line: String| match line.parse() {
+        Ok(act) => person.act(act),
+        Err(()) if line == "button" || is_typed && line.is_empty() => person.press(),
+        Err(()) if is_typed => out::note!("no key: {line}"),
+        // A program says other things, too.
+        Err(()) => {}
+    };
     // It ends with the process.
-    thread::spawn(move || io::stdin().lines().map_while(Result::ok).for_each(|_| button.press()));
+    thread::spawn(move || io::stdin().lines().map_while(Result::ok).for_each(does));
 }
 
 /// One run after the other on the same served line, until somebody ends the process.
@@ -199,7 +210,7 @@ fn again_and_again(
 ) -> anyhow::Result<ExitCode> {
     for seed in seed.. {
         let line = Use { live: Some(live()), streams_at_start: false };
-        let outcome = session::scene_served(file, seed, board, line, server, &mut |_| {})?;
+        let outcome = session::scene_alone(file, seed, board, line, server)?;
         let fate = if outcome.truth.dropped { "DROPPED" } else { "kept" };
         out::note!("{}, seed {seed}: {fate}; the board is switched on anew", file.name);
     }

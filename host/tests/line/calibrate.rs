@@ -1,11 +1,8 @@
-//! `tenax calibrate` on served scenes, in which weights are put on, surfaces are stroked and muscles contract at known
-//! instants: nobody presses a key.
+//! `tenax calibrate` on served scenes, in which weights are put on and surfaces are stroked at known instants: nobody presses a
+//! key. The muscles are calibrated in `journey.rs`.
 
 use std::process::{Command, Output};
 use std::thread;
-
-use tenax_hal_shim::wire::Up;
-use tenax_serial::link::{Client, Target};
 
 use crate::serving::Serving;
 
@@ -46,19 +43,6 @@ fn calibrate(place: &str, args: &[&str]) -> (bool, String, String) {
 fn number(text: &str, after: &str) -> f64 {
     let rest = text.split(after).nth(1).unwrap_or_else(|| panic!("no '{after}': {text}"));
     rest.split_whitespace().next().unwrap().parse().unwrap()
-}
-
-/// Waits for an instant of the scene's own time.
-fn until(place: &str, t_s: f64) {
-    let mut client = Client::open(&place.parse::<Target>().unwrap()).unwrap();
-    loop {
-        let heard = client.next_message().unwrap();
-        if let Some(Up::Slow(slow)) = heard.map(|heard| heard.received.message)
-            && f64::from(slow.frame) / 2_000.0 >= t_s
-        {
-            return;
-        }
-    }
 }
 
 fn known_weights_show_how_far_the_force_sensor_is_off() {
@@ -105,33 +89,12 @@ fn strokes_measure_friction_and_set_s2() {
     served.kill();
 }
 
-fn the_wearers_muscles_are_calibrated_as_the_board_asks() {
-    // Of a hand that holds nothing. The prompts come at 1.3, 6.3 and 11.3 s or a little later.
-    let scene = format!(
-        "{HEAD}duration_s = 18\n[contact]\nmu_s = 0.5\nmu_d = 0.4\npad_length_mm = 18\npitch_mm = 1.0\n\
-         [object]\nmass_kg = 0.3\nwidth_mm = 60\nstiffness_n_per_mm = 3.0\n[table]\nmat_n_per_mm = 2.0\ndamping = 0.7\n\
-         [gripper]\nspeed_mm_s = 120\nforce_n = 140\ndead_time_ms = 30\nrange_mm = 100\nopening_mm = 90\n\
-         [[muscle]]\nat_s = 6.6\nfor_s = 4.7\nintent = \"close\"\nlevel_mv = 700\n\
-         [[muscle]]\nat_s = 11.7\nfor_s = 5.2\nintent = \"open\"\nlevel_mv = 900\n"
-    );
-    let mut served = Serving::start(&scene, &[]);
-    until(&served.places[0], 1.0);
-    let (done, out, error) = calibrate(&served.places[0], &["emg"]);
-    println!("{out}{error}");
-    assert!(
-        done && out.contains("1 of 3") && out.contains("3 of 3") && out.contains("Taken, and kept"),
-        "{out}{error}"
-    );
-    served.kill();
-}
-
 /// All at once: each waits for its scene nearly all the time.
 #[test]
 fn a_person_who_does_what_is_said_calibrates_the_hand() {
     thread::scope(|scope| {
         scope.spawn(known_weights_show_how_far_the_force_sensor_is_off);
         scope.spawn(strokes_measure_friction_and_set_s2);
-        scope.spawn(the_wearers_muscles_are_calibrated_as_the_board_asks);
     });
 }
 

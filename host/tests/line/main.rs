@@ -10,6 +10,8 @@ mod calibrate;
 mod config;
 mod host_line;
 #[cfg(unix)]
+mod journey;
+#[cfg(unix)]
 mod monitor;
 #[cfg(unix)]
 mod page;
@@ -19,6 +21,8 @@ mod python;
 mod reconnect;
 mod recording;
 mod screen;
+#[cfg(unix)]
+mod selftest;
 #[cfg(unix)]
 mod served;
 mod served_noise;

@@ -106,6 +106,24 @@ fn a_setting_is_set_and_read_back_on_a_pty_on_its_symlink_and_on_tcp() {
     assert!(fs::symlink_metadata(&at).is_err(), "the symlink is gone");
 }
 
+/// Somebody who runs one command after the other: no writer of the client before is left to double what the next one hears.
+#[test]
+fn clients_that_follow_each_other_at_once_hear_everything_once() {
+    let (run, _) = serve(&Options { pty: true, at: None, tcp: None, truth: None }, 8.0, |places| {
+        for wait_ms in (0..30).map(|n| 11 + n % 5) {
+            let mut client = Client::open(&places[0]).unwrap();
+            let began = Instant::now();
+            while began.elapsed() < Duration::from_millis(150) {
+                client.next_message().unwrap();
+            }
+            assert_eq!(client.counts().missed, 0, "after {wait_ms} ms: {}", client.counts());
+            drop(client);
+            thread::sleep(Duration::from_millis(wait_ms));
+        }
+    });
+    assert!(run.slows.len() > 500);
+}
+
 /// With a client that never reads on each, far more comes up than any of them has room for.
 #[test]
 fn a_client_that_never_reads_holds_up_nothing() {

@@ -1,6 +1,6 @@
 //! A scene that the tool serves, as a person starts it.
 
-use std::io::{BufRead, BufReader, Read};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::process::{Child, ChildStderr, Command, Stdio};
 
 use serde_json::Value;
@@ -37,6 +37,7 @@ impl Serving {
             .args(more)
             .arg("--out")
             .arg(folder.path())
+            .stdin(Stdio::piped())
             .stdout(Stdio::null())
             .stderr(Stdio::piped())
             .spawn()
@@ -56,6 +57,11 @@ impl Serving {
     pub fn trusting() -> Self {
         let rig = include_str!("../../../scenes/rig.toml");
         Self::start(&rig.replacen("\n[contact]", "\nline_trusted = true\n\n[contact]", 1), &[])
+    }
+
+    /// Somebody at the bench does this.
+    pub fn tell(&mut self, line: &str) {
+        writeln!(self.run.stdin.as_mut().unwrap(), "{line}").unwrap();
     }
 
     /// Ends the run now.

@@ -167,7 +167,15 @@ fn fault(fault: &SensorFault) -> Checked {
     let press = fault.press_n.as_ref().map(Spanned::span);
     only(kind == FaultKind::Pressed, press, fault, "pressed", "press_n")?;
     let drift = fault.drift_per_s.as_ref().map(Spanned::span);
-    only(kind == FaultKind::Drift, drift, fault, "drift", "drift_per_s")
+    only(kind == FaultKind::Drift, drift, fault, "drift", "drift_per_s")?;
+    let with = fault.with.as_ref().map(Spanned::span);
+    only(
+        [FaultKind::Swapped, FaultKind::Bridged].contains(&kind),
+        with,
+        fault,
+        "swapped\" or \"bridged",
+        "with",
+    )
 }
 
 /// A key that faults of one kind need, and no other takes.

@@ -31,6 +31,9 @@ impl Friction {
     }
 }
 
+/// How long somebody takes to wet or dry it, s (assumed).
+const WETS_S: f64 = 0.02;
+
 /// Friction over time: dry, with wet patches.
 #[derive(Clone, Debug)]
 pub struct Surface {
@@ -59,6 +62,19 @@ impl Surface {
             dry: Friction { mu_s: contact.mu_s.get(), mu_d: contact.mu_d.get_ref().get() },
             patches: patches.collect(),
         }
+    }
+
+    /// Somebody wets it, which halves friction; or dries what is wet.
+    pub(crate) fn wet(&mut self, t_s: f64) {
+        let dried = Span::new(t_s, WETS_S);
+        if let Some(patch) = self.patches.iter_mut().find(|patch| patch.drying.begin_s > t_s) {
+            patch.drying = dried;
+            return;
+        }
+        let Friction { mu_s, mu_d } = self.dry;
+        let friction = Friction { mu_s: mu_s / 2.0, mu_d: mu_d / 2.0 };
+        let drying = Span { begin_s: f64::INFINITY, end_s: f64::INFINITY };
+        self.patches.push(Patch { wetting: dried, drying, friction });
     }
 
     /// The coefficients at `t_s`.

@@ -103,6 +103,16 @@ impl Grasp {
         }
     }
 
+    /// Somebody pulls the object down for a second.
+    pub(crate) fn pull(&mut self, at_s: f64, force_n: f64) {
+        self.pulls.push(at_s, 1.0, -force_n, 0.1);
+    }
+
+    /// The surface gets wet, or dry again.
+    pub(crate) fn wet(&mut self, at_s: f64) {
+        self.surface.wet(at_s);
+    }
+
     /// Goes on by one scan to `t_s`, pressed by each finger with `grip_n`.
     pub fn step(&mut self, t_s: f64, hand: &Hand, grip_n: f64) -> Touch {
         let poured_kg = self.fills.iter().map(|(span, kg)| kg * span.progress(t_s)).sum::<f64>();

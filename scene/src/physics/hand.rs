@@ -43,6 +43,12 @@ impl Hand {
         }
     }
 
+    /// The arm moves to `to_m` over where the hand grasped.
+    pub(crate) fn reach(&mut self, at_s: f64, for_s: f64, to_m: f64) {
+        let from_m: f64 = self.moves.iter().map(|(_, by_m)| by_m).sum();
+        self.moves.push((Span::new(at_s, for_s), to_m - from_m));
+    }
+
     /// Goes on by one scan to `t_s`. `table_part` is the part of the object's weight that stands on the table: a person
     /// who puts something down slows as they feel it touch, and does not push it through the table.
     pub fn step(&mut self, t_s: f64, table_part: f64) {

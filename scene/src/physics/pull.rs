@@ -29,6 +29,12 @@ impl Pulls {
         Self(pulls.iter().map(pull).collect())
     }
 
+    /// One more.
+    pub(crate) fn push(&mut self, at_s: f64, for_s: f64, force_n: f64, ramp_s: f64) {
+        let (comes, goes) = (Span::new(at_s, ramp_s), Span::new(at_s + for_s, ramp_s));
+        self.0.push(Pull { comes, goes, force_n, takes: false });
+    }
+
     /// On the object at `t_s`, N, upwards.
     pub(crate) fn force_n(&self, t_s: f64) -> f64 {
         let part = |pull: &Pull| smooth(pull.comes.progress(t_s)) - smooth(pull.goes.progress(t_s));

@@ -14,6 +14,7 @@ struct Fault {
     span: Span,
     channel: usize,
     kind: FaultKind,
+    with: usize,
     press_n: f64,
     drift_per_s: f64,
     stuck_v: Option<f64>,
@@ -28,6 +29,7 @@ impl Faults {
                 span: Span { begin_s, end_s },
                 channel: fault.channel.get_ref().index(),
                 kind: fault.kind,
+                with: fault.with.as_ref().unwrap_or(&fault.channel).get_ref().index(),
                 press_n: fault.press_n.as_ref().map_or(0.0, |press| press.get_ref().get()),
                 drift_per_s: fault.drift_per_s.as_ref().map_or(0.0, |drift| drift.get_ref().get()),
                 stuck_v: None,
@@ -54,12 +56,20 @@ impl Faults {
     /// Puts on the pins what broken sensors put there. After the noise: a dead or stuck pin has none.
     pub(crate) fn apply(&mut self, t_s: f64, pins_v: &mut [f64; COUNT]) {
         for fault in self.0.iter_mut().filter(|fault| fault.span.contains(t_s)) {
+            match fault.kind {
+                FaultKind::Swapped => pins_v.swap(fault.channel, fault.with),
+                FaultKind::Bridged => {
+                    let both_v = (pins_v[fault.channel] + pins_v[fault.with]) / 2.0;
+                    (pins_v[fault.channel], pins_v[fault.with]) = (both_v, both_v);
+                }
+                _ => {}
+            }
             let pin_v = &mut pins_v[fault.channel];
             *pin_v = match fault.kind {
                 FaultKind::Dead => 0.0,
                 FaultKind::Saturated => f64::from(REFERENCE_MV) / 1e3,
                 FaultKind::Stuck => *fault.stuck_v.get_or_insert(*pin_v),
-                FaultKind::Pressed => *pin_v,
+                FaultKind::Pressed | FaultKind::Swapped | FaultKind::Bridged => *pin_v,
                 FaultKind::Drift if (FSR..FSR + FSR_COUNT).contains(&fault.channel) => *pin_v,
                 FaultKind::Drift => *pin_v + fault.drifted(t_s) / 1e3,
             };

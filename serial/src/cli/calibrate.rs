@@ -59,7 +59,8 @@ pub struct Line {
 }
 
 impl Line {
-    fn open(&self) -> anyhow::Result<Client> {
+    /// Opens it.
+    pub fn open(&self) -> anyhow::Result<Client> {
         Client::open(&port::or_found(self.port.as_ref())?)
     }
 }

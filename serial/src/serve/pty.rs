@@ -4,10 +4,12 @@
 //! Who opens it then hears the line from the next message on, and nothing that is old.
 
 use std::fs;
-use std::io::{ErrorKind, Read};
+use std::io::{self, ErrorKind, Read, Write};
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
-use std::thread::{self, JoinHandle};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::thread;
 use std::time::Duration;
 
 use anyhow::{Context, bail};
@@ -49,18 +51,18 @@ impl Pty {
 
     /// Serves one client after the other until nobody is served any more.
     pub fn serve(mut self, ends: &Ends) {
-        let mut client: Option<JoinHandle<()>> = None;
+        let mut client: Option<Arc<AtomicBool>> = None;
         let (mut framer, mut buffer) = (Framer::default(), [0; 4096]);
         while !ends.hub.is_closed() {
             let read = self.near.read(&mut buffer);
             if matches!(&read, Err(error) if error.kind() == ErrorKind::BrokenPipe) {
-                if let Some(writer) = client.take() {
-                    // It fails now, if it has not yet: nobody is at the far end.
-                    drop(writer);
+                thread::sleep(LOOK_EVERY);
+                if let Some(gone) = client.take() {
+                    // Its writer may be waiting for a frame: the next client would hear each one twice.
+                    gone.store(true, Relaxed);
                     framer.clear();
                     self.forget();
                 }
-                thread::sleep(LOOK_EVERY);
                 continue;
             }
             if client.is_none() {
@@ -75,12 +77,13 @@ impl Pty {
         }
     }
 
-    fn write(&self, ends: &Ends) -> Option<JoinHandle<()>> {
-        let mut near = self.near.try_clone_native().ok()?;
+    /// Writes to a client from now on, until it is told that the client is gone.
+    fn write(&self, ends: &Ends) -> Option<Arc<AtomicBool>> {
+        let gone = Arc::<AtomicBool>::default();
+        let mut near = Near { near: self.near.try_clone_native().ok()?, gone: Arc::clone(&gone) };
         let (frames, ends) = (ends.hub.join(), ends.clone());
-        Some(thread::spawn(move || {
-            let _left = ends.write(&frames, &mut near);
-        }))
+        thread::spawn(move || ends.write(&frames, &mut near));
+        Some(gone)
     }
 
     /// Reads what the last client has not read, so that the next does not take it for new.
@@ -90,6 +93,25 @@ impl Pty {
             let mut buffer = [0; 4096];
             while far.read(&mut buffer).is_ok_and(|count| count > 0) {}
         }
+    }
+}
+
+/// The near end for one client.
+struct Near {
+    near: TTYPort,
+    gone: Arc<AtomicBool>,
+}
+
+impl Write for Near {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.gone.load(Relaxed) {
+            return Err(ErrorKind::BrokenPipe.into());
+        }
+        self.near.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.near.flush()
     }
 }
 

@@ -83,6 +83,10 @@ pub enum FaultKind {
     Pressed,
     /// A reading that runs away by `drift_per_s`: a cell that creeps or warms, an amplifier whose offset wanders.
     Drift,
+    /// Its wire and that of `with` have changed places.
+    Swapped,
+    /// Its wire and that of `with` touch each other.
+    Bridged,
 }
 
 /// A sensor breaks.
@@ -101,6 +105,8 @@ pub struct SensorFault {
     pub press_n: Option<Spanned<Newtons>>,
     /// The rate of `drift`: of a quadrant of the force sensor N/s, of any other channel mV/s at the pin.
     pub drift_per_s: Option<Spanned<Drift>>,
+    /// The other channel of `swapped` and `bridged`.
+    pub with: Option<Spanned<ChannelName>>,
     /// The physical reason.
     pub reason: String,
 }

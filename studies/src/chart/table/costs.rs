@@ -68,6 +68,7 @@ impl Costs {
         use tenax_bench::board::emulated::Options;
         use tenax_bench::board::emulated::kernels::{self, Kernels};
         use tenax_bench::image::{self, kernels::memories, size::Size};
+        use tenax_bench::live::Use;
         use tenax_bench::session::{self, Board};
         use tenax_hal_shim::channel::{FRAME_HZ, SLOW_HZ};
 
@@ -92,7 +93,7 @@ impl Costs {
         let options = Options { followed_from: Some(FOLLOWED_FROM), ..Options::default() };
         let board = Board::Emulated { image: image::build(root)?, options };
         let file = session::load_scene(session::DEFAULT_SCENE)?;
-        let run = session::scene_alone(&file, 1, &board, &mut ())?.run;
+        let run = session::scene_alone(&file, 1, &board, Use::default(), &mut ())?.run;
         let tick = run.tick_cost.context("the emulated board counts its ticks")?;
         let size = Size::read(&image::build(root)?)?;
         let tick = Kernel {

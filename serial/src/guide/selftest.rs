@@ -1,0 +1,449 @@
+//! Every sensor's wire, one after the other: at rest each has its level, and what is touched is what moves.
+//!
+//! [`Selftest`] only hears readings and says lines, so a test can run it beside a board that knows no real time. A prompt
+//! begins with what is to be done and the channel's name: whoever serves a scene can pipe it to the bench (`tenax run --serve`).
+
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, bail};
+use tenax_hal_shim::channel::{
+    CHANNELS, COUNT, Channel, FRAME_HZ, Input, MOTOR_CURRENT, OPENING, PVDF, PVDF_COUNT, REFERENCE_MV, Role,
+    SAMPLE_MAX, by_name,
+};
+use tenax_hal_shim::wire::{Answer, Down, Senses, Up};
+use tenax_logic::setting::SettingId;
+
+use super::{ANSWER_WITHIN, Say, ask};
+use crate::link::Client;
+use crate::wiring::input;
+
+/// How long the hand is watched at rest, and how long a touch is watched once something moves, in frames.
+const REST: u32 = 2 * FRAME_HZ;
+const WATCHED: u32 = FRAME_HZ / 2;
+/// Before the next prompt nothing may move for so many readings; but nobody waits longer than so, in frames.
+const STILL: usize = 20;
+const STILL_WITHIN: u32 = 3 * FRAME_HZ;
+/// Below this no wire works, and above that none that is not shorted, mV: films have no narrower range of their own.
+const DEAD_MV: f64 = 45.0;
+const SHORT_MV: f64 = 3_255.0;
+/// A channel moves if it moves by so many times what it does at rest.
+const OVER_NOISE: f64 = 3.0;
+/// Two wires touch if their readings differ by less than this part of their move,
+const ALIKE: f64 = 0.25;
+/// And both move by this part of what moves most.
+const ALIKE_LOUD: f64 = 0.7;
+/// Who moved in the place of another is one of its kind if that moved by this part of the loudest.
+const BROTHERS: f64 = 0.5;
+/// So many exchanged wires of one switch are its select lines.
+const SELECT_LINES: usize = 3;
+
+/// What a sensor moves at least when it is touched; and how far below and above its rest it may stand, mV.
+const fn demands(role: Role) -> (f64, [f64; 2]) {
+    match role {
+        Role::Vibration => (60.0, [150.0, 150.0]),
+        // A bridge's offset; a cell's null.
+        Role::Strain => (40.0, [700.0, 700.0]),
+        Role::Force => (60.0, [80.0, 200.0]),
+        Role::Taxel => (60.0, [80.0, 250.0]),
+        // The other muscle's crosstalk is less; the tone of a muscle at rest.
+        Role::Muscle => (150.0, [60.0, 300.0]),
+        Role::Photoelastic => (60.0, [f64::INFINITY; 2]),
+        Role::Hand => (150.0, [60.0, 60.0]),
+    }
+}
+
+/// What came of a channel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Verdict {
+    /// It moved by this, mV; or stands right and cannot be touched.
+    Pass(f64),
+    /// Its voltage is none of a working sensor, mV.
+    Dead(f64),
+    Shorted(f64),
+    /// It never changes.
+    Stuck(f64),
+    /// It does not stand where its kind does, mV.
+    Off(f64),
+    /// Nothing moved.
+    Silent,
+    /// This one moved in its place.
+    Moved(usize),
+    /// This one does all that it does.
+    Bridged(usize),
+}
+
+/// Readings of all channels, mV, and the films' envelopes behind them.
+type Row = [f64; COUNT + PVDF_COUNT];
+
+fn row(senses: &Senses) -> Row {
+    let mut row = [0.0; COUNT + PVDF_COUNT];
+    for (mv, sample) in row.iter_mut().zip(senses.samples.iter().chain(&senses.films)) {
+        *mv = f64::from(*sample) * f64::from(REFERENCE_MV) / f64::from(SAMPLE_MAX);
+    }
+    row
+}
+
+fn mean(rows: &[Row]) -> Row {
+    std::array::from_fn(|n| rows.iter().map(|row| row[n]).sum::<f64>() / rows.len() as f64)
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Step {
+    Rest,
+    /// This place of the channels to be asked for; whether it is asked for again; the frame in which something began to move.
+    Asked(usize, bool, Option<u32>),
+    /// Until nothing moves; then this place is asked for.
+    Stills(usize, bool),
+    Over,
+}
+
+/// The test as it goes.
+pub struct Selftest {
+    roles: [Role; COUNT],
+    channels: Vec<usize>,
+    limit: u32,
+    step: Step,
+    began: Option<u32>,
+    rows: Vec<Row>,
+    /// Of the last readings in which nothing moved: what is held, creeps or drifts is no touch.
+    rest_mv: Row,
+    noise_mv: Row,
+    verdicts: [Option<Verdict>; COUNT],
+}
+
+impl Selftest {
+    /// Of these channels, each touched within so many seconds. `head_is_fitted`: a photoelastic head is in the place of a film.
+    pub fn new(channels: Vec<usize>, head_is_fitted: bool, limit_s: u32) -> Self {
+        Self {
+            roles: std::array::from_fn(|channel| Role::of(channel, head_is_fitted)),
+            channels,
+            limit: limit_s * FRAME_HZ,
+            step: Step::Rest,
+            began: None,
+            rows: Vec::new(),
+            rest_mv: [0.0; COUNT + PVDF_COUNT],
+            noise_mv: [0.0; COUNT + PVDF_COUNT],
+            verdicts: [None; COUNT],
+        }
+    }
+
+    /// Whether it is over.
+    pub fn is_over(&self) -> bool {
+        self.step == Step::Over
+    }
+
+    /// What came of a channel; None of one that was not asked for.
+    pub fn verdict(&self, channel: usize) -> Option<Verdict> {
+        self.verdicts[channel]
+    }
+
+    /// Takes readings; what a person is told then.
+    pub fn hear(&mut self, senses: &Senses) -> Vec<String> {
+        let since = senses.frame.wrapping_sub(*self.began.get_or_insert(senses.frame));
+        let row = row(senses);
+        self.rows.push(row);
+        match self.step {
+            Step::Rest if since >= REST => {
+                self.judge_rest();
+                self.ask(0, false, senses.frame)
+            }
+            Step::Asked(n, again, moved) => {
+                let moved = moved.or_else(|| self.moves(&row).then_some(senses.frame));
+                self.step = Step::Asked(n, again, moved);
+                let watched = moved.is_some_and(|at| senses.frame.wrapping_sub(at) >= WATCHED);
+                if watched || since >= self.limit { self.touched(n, again, senses.frame) } else { Vec::new() }
+            }
+            Step::Stills(n, again) => {
+                let last = self.rows.len().saturating_sub(STILL);
+                self.rows.drain(..last);
+                if self.rows.len() < STILL || (!self.is_still() && since < STILL_WITHIN) {
+                    return Vec::new();
+                }
+                self.rest_mv = mean(&self.rows);
+                self.ask(n, again, senses.frame)
+            }
+            Step::Rest | Step::Over => Vec::new(),
+        }
+    }
+
+    fn begin(&mut self, step: Step, frame: u32) {
+        (self.step, self.began) = (step, Some(frame));
+        self.rows.clear();
+    }
+
+    /// Judges what needs no touch.
+    fn judge_rest(&mut self) {
+        // Of its first half nothing is taken: whoever read the prompt may still move.
+        let half = self.rows.len() / 2;
+        self.rows.drain(..half);
+        self.rest_mv = mean(&self.rows);
+        self.noise_mv = std::array::from_fn(|n| self.most_mv(n));
+        for &channel in &self.channels {
+            let (rest_mv, Channel { low_mv, high_mv, .. }) = (self.rest_mv[channel], &CHANNELS[channel]);
+            self.verdicts[channel] = if rest_mv < f64::from(*low_mv).max(DEAD_MV) {
+                Some(Verdict::Dead(rest_mv))
+            } else if rest_mv > f64::from(*high_mv).min(SHORT_MV) {
+                Some(Verdict::Shorted(rest_mv))
+            } else if self.noise_mv[channel] < 1e-6 {
+                Some(Verdict::Stuck(rest_mv))
+            } else if self.is_off(channel) {
+                Some(Verdict::Off(rest_mv))
+            } else {
+                (channel == MOTOR_CURRENT).then_some(Verdict::Pass(rest_mv))
+            };
+        }
+    }
+
+    /// Whether it stands where no sensor of its kind does. The fingers may stand anywhere.
+    fn is_off(&self, channel: usize) -> bool {
+        let (_, [below, above]) = demands(self.roles[channel]);
+        let off_mv = self.rest_mv[channel] - f64::from(CHANNELS[channel].rest_mv);
+        channel != OPENING && !(-below..=above).contains(&off_mv)
+    }
+
+    /// Asks for the channel in this place, or for the next that a touch can say something of.
+    fn ask(&mut self, n: usize, again: bool, frame: u32) -> Vec<String> {
+        let can_be_touched = |channel: &usize| {
+            *channel != MOTOR_CURRENT
+                && matches!(self.verdicts[*channel], None | Some(Verdict::Off(_) | Verdict::Moved(_)))
+        };
+        let Some(n) = (n..self.channels.len()).find(|&n| can_be_touched(&self.channels[n])) else {
+            self.begin(Step::Over, frame);
+            self.compare();
+            return self.summary();
+        };
+        self.begin(Step::Asked(n, again, None), frame);
+        let channel = self.channels[n];
+        let (name, of) = (CHANNELS[channel].name, self.channels.len());
+        let hint = match channel {
+            OPENING => ": turn the fingers' axle",
+            _ if self.roles[channel] == Role::Muscle => ", and relax",
+            _ => "",
+        };
+        let again = if again { ", once more" } else { "" };
+        vec![format!(
+            "{} {name}{hint}{again} ({}; {} of {of})",
+            self.roles[channel].verb(),
+            input(channel),
+            n + 1
+        )]
+    }
+
+    /// Holds the sides of exchanged wires against each other. What passes, or was not asked, has moved in no other's place: then the
+    /// channel in whose place this one moved is the right one.
+    fn compare(&mut self) {
+        for channel in 0..COUNT {
+            let Some(Verdict::Moved(other)) = self.verdicts[channel] else { continue };
+            if matches!(self.verdicts[other], Some(Verdict::Moved(_))) {
+                continue;
+            }
+            let swapped = (0..COUNT).find(|&n| self.verdicts[n] == Some(Verdict::Moved(channel)));
+            if let Some(swapped) = swapped {
+                self.verdicts[channel] = Some(Verdict::Moved(swapped));
+            }
+        }
+    }
+
+    /// How far a channel is from its rest, in what makes it a move.
+    fn moved(&self, row: &Row, channel: usize) -> f64 {
+        let (least_mv, _) = demands(self.roles[channel]);
+        let part = |n: usize| {
+            let off_mv = (row[n] - self.rest_mv[n]).abs();
+            off_mv / least_mv.max(OVER_NOISE * self.noise_mv[n])
+        };
+        let envelope = if channel < PVDF + PVDF_COUNT { part(COUNT + channel) } else { 0.0 };
+        part(channel).max(envelope)
+    }
+
+    fn moves(&self, row: &Row) -> bool {
+        (0..COUNT).any(|channel| self.moved(row, channel) >= 1.0)
+    }
+
+    /// Whether nothing moved in the last readings.
+    fn is_still(&self) -> bool {
+        let mean = mean(&self.rows);
+        let from_mean = |row: &Row| std::array::from_fn(|n| self.rest_mv[n] + row[n] - mean[n]);
+        self.rows.iter().all(|row| !self.moves(&from_mean(row)))
+    }
+
+    /// Judges a touch.
+    fn touched(&mut self, n: usize, again: bool, frame: u32) -> Vec<String> {
+        let asked = self.channels[n];
+        let peak = |channel: usize| self.rows.iter().map(|row| self.moved(row, channel)).fold(0.0, f64::max);
+        let peaks: [f64; COUNT] = std::array::from_fn(peak);
+        let role = self.roles[asked];
+        let stands_off = matches!(self.verdicts[asked], Some(Verdict::Off(_)));
+        // A muscle moves the hand: that is no wrong wire.
+        let may_be_it = |n: usize| stands_off || role != Role::Muscle || self.roles[n] != Role::Hand;
+        let loudest = |all: &dyn Fn(usize) -> bool| {
+            (0..COUNT).filter(|&n| all(n)).max_by(|&a, &b| peaks[a].total_cmp(&peaks[b])).unwrap_or(asked)
+        };
+        let (of_kind, of_all) = (loudest(&|n| self.roles[n] == role), loudest(&may_be_it));
+        let bridged = (0..COUNT).find(|&other| {
+            let loud = ALIKE_LOUD * peaks[of_kind].max(1.0);
+            other != asked && peaks[asked].min(peaks[other]) >= loud && self.is_bridged(asked, other)
+        });
+        // Brothers hear a little of each other, and what a finger presses moves other kinds, too.
+        let other = if peaks[of_kind] >= BROTHERS * peaks[of_all] { of_kind } else { of_all };
+        let verdict = match bridged {
+            Some(other) => Verdict::Bridged(other),
+            None if peaks[asked] >= 1.0 && of_kind == asked => Verdict::Pass(self.most_mv(asked)),
+            None if peaks[other] >= 1.0 => Verdict::Moved(other),
+            None => Verdict::Silent,
+        };
+        // The wrong sensor may have been touched.
+        let repeats = matches!(verdict, Verdict::Moved(_)) && !again;
+        // Whoever finds less the second time has found something before.
+        let keeps = match verdict {
+            Verdict::Silent => stands_off || again,
+            Verdict::Pass(_) => stands_off,
+            _ => false,
+        };
+        if !keeps {
+            self.verdicts[asked] = Some(verdict);
+        }
+        let said = match verdict {
+            Verdict::Pass(_) if stands_off => "   moves".to_owned(),
+            Verdict::Pass(mv) => format!("   pass, {mv:.0} mV"),
+            other => format!("   FAIL: {}", self.words(asked, other)),
+        };
+        self.begin(Step::Stills(if repeats { n } else { n + 1 }, repeats), frame);
+        vec![said]
+    }
+
+    /// The farthest that a channel was from its rest, mV.
+    fn most_mv(&self, n: usize) -> f64 {
+        self.rows.iter().map(|row| (row[n] - self.rest_mv[n]).abs()).fold(0.0, f64::max)
+    }
+
+    /// Whether two channels read the same all the time, at rest and now.
+    fn is_bridged(&self, asked: usize, other: usize) -> bool {
+        let (rest, mut moved, mut apart) = (self.rest_mv[asked], 0.0, 0.0);
+        let (least_mv, _) = demands(self.roles[asked]);
+        for row in self.rows.iter().filter(|row| (row[asked] - rest).abs() > least_mv / 2.0) {
+            moved += (row[asked] - rest).abs();
+            apart += (row[asked] - row[other]).abs();
+        }
+        moved > 0.0 && apart < ALIKE * moved && self.moved(&self.rest_row(asked, other), other) < 1.0
+    }
+
+    /// The rest, with the reading of `other` in the place of `asked`'s.
+    fn rest_row(&self, asked: usize, other: usize) -> Row {
+        let mut row = self.rest_mv;
+        row[other] = self.rest_mv[asked];
+        row
+    }
+
+    /// A verdict for a person.
+    fn words(&self, channel: usize, verdict: Verdict) -> String {
+        let Channel { rest_mv, name, .. } = CHANNELS[channel];
+        let wire = |other: usize| format!("{} ({})", CHANNELS[other].name, input(other));
+        match verdict {
+            Verdict::Pass(mv) => format!("{name}: {mv:.0} mV"),
+            Verdict::Dead(mv) => format!("{mv:.0} mV: a cut wire, a short to ground, or no supply"),
+            Verdict::Shorted(mv) => format!("{mv:.0} mV: a short to the supply, or out of range"),
+            Verdict::Stuck(mv) => format!("always {mv:.0} mV: an open switch, or a select line"),
+            Verdict::Off(mv) => format!("rests at {mv:.0} mV, not {rest_mv}: another's wire, or reference"),
+            Verdict::Silent => "nothing moves: wire cut at the sensor, or deaf".to_owned(),
+            Verdict::Moved(other) => format!("{} moves in its place", wire(other)),
+            Verdict::Bridged(other) => format!("{} does the same: the two wires touch", wire(other)),
+        }
+    }
+
+    /// What is wrong, a line each, and the count.
+    fn summary(&self) -> Vec<String> {
+        let mut lines = vec![String::new()];
+        let bad = |channel: &usize| !matches!(self.verdicts[*channel], Some(Verdict::Pass(_)));
+        let switches: [fn(&Input) -> bool; 2] =
+            [|input| matches!(input, Input::SwitchA { .. }), |input| matches!(input, Input::SwitchB { .. })];
+        for (switch, is_on) in ["A", "B"].into_iter().zip(switches) {
+            let on: Vec<usize> =
+                self.channels.iter().copied().filter(|&n| is_on(&CHANNELS[n].input)).collect();
+            let exchanged =
+                on.iter().filter(|&&n| matches!(self.verdicts[n], Some(Verdict::Moved(_)))).count();
+            if on.len() > 1 && on.iter().all(bad) {
+                lines.push(format!(
+                    "All of switch {switch} fails: its supply, its enable, its output's wire."
+                ));
+            } else if exchanged >= 2 * SELECT_LINES {
+                lines.push(format!(
+                    "{exchanged} of switch {switch} are exchanged: look at the select lines, PB12 to PB15."
+                ));
+            }
+        }
+        for &channel in self.channels.iter().filter(|channel| bad(channel)) {
+            let Some(verdict) = self.verdicts[channel] else { continue };
+            let place = format!("{} ({})", CHANNELS[channel].name, input(channel));
+            match verdict {
+                // The other side may have been said already.
+                Verdict::Moved(other)
+                    if self.verdicts[other] == Some(Verdict::Moved(channel)) && other < channel => {}
+                Verdict::Moved(other) => {
+                    lines.push(format!(
+                        "{place} and {} ({}): exchange their wires",
+                        CHANNELS[other].name,
+                        input(other)
+                    ));
+                }
+                other => lines.push(format!("{place}: {}", self.words(channel, other))),
+            }
+        }
+        let all = self.channels.len();
+        lines.push(format!(
+            "{} of {all} channels pass",
+            all - self.channels.iter().filter(|n| bad(n)).count()
+        ));
+        lines
+    }
+
+    /// Whether all pass.
+    pub fn passes(&self) -> bool {
+        self.channels.iter().all(|&channel| matches!(self.verdicts[channel], Some(Verdict::Pass(_))))
+    }
+}
+
+/// The channels that are called so, or whose names begin so; without any word, all. Fails on a word that fits none.
+pub fn named(words: &[String]) -> anyhow::Result<Vec<usize>> {
+    let fits = |n: usize, word: &String| match by_name(word) {
+        Some(only) => n == only,
+        None => CHANNELS[n].name.starts_with(word.as_str()),
+    };
+    if let Some(word) = words.iter().find(|word| !(0..COUNT).any(|n| fits(n, word))) {
+        bail!("no channel begins with `{word}`: docs/wiring.md has them");
+    }
+    Ok((0..COUNT).filter(|&n| words.is_empty() || words.iter().any(|word| fits(n, word))).collect())
+}
+
+/// Runs the test to its end; whether all pass. A gripper without a wearer has no muscles to contract.
+pub fn run(client: &mut Client, words: &[String], limit_s: u32, say: Say<'_>) -> anyhow::Result<bool> {
+    let mut flag = |id: SettingId| -> anyhow::Result<bool> {
+        match client.ask(&Down::Get(id.number()), ANSWER_WITHIN)? {
+            Answer::Setting(own) => Ok(own.value != 0),
+            other => bail!("the board does not say its settings: {other:?}"),
+        }
+    };
+    let (head, no_wearer) = (flag(SettingId::Head)?, flag(SettingId::NoWearer)?);
+    let mut channels = named(words)?;
+    if words.is_empty() && no_wearer {
+        channels.retain(|&channel| Role::of(channel, head) != Role::Muscle);
+    }
+    let mut test = Selftest::new(channels, head, limit_s);
+    say("The hand is empty: the reflex may close it on what is pressed.")?;
+    say(&format!("Touch nothing and relax for {} s.", REST / FRAME_HZ))?;
+    let stream = Down::Stream { raw: false, senses: true, hold_s: 10 };
+    let (mut asked, mut heard) = (None::<Instant>, Instant::now());
+    while !test.is_over() {
+        if asked.is_none_or(|at| at.elapsed() > Duration::from_secs(4)) {
+            ask(client, stream)?;
+            asked = Some(Instant::now());
+        }
+        let message = client.next_message().context("the line ended")?.map(|heard| heard.received.message);
+        if let Some(Up::Senses(senses)) = message {
+            heard = Instant::now();
+            test.hear(&senses).iter().try_for_each(|line| say(line))?;
+        } else if heard.elapsed() > 2 * ANSWER_WITHIN {
+            bail!("the board sends no readings");
+        }
+    }
+    Ok(test.passes())
+}
