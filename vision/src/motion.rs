@@ -4,7 +4,7 @@
 //! The light may change meanwhile, so a common gain is a fourth unknown. Pixels that the move does not explain (a spot of the
 //! background, a reflection) count less and less in each round.
 
-use crate::frame::{HEIGHT, Plane, Point, WIDTH};
+use crate::frame::{HEIGHT, PIXELS, Plane, Point, WIDTH};
 use crate::mask::Mask;
 
 /// A move, px a frame.
@@ -25,7 +25,7 @@ const SLOPE_MIN: i32 = 8;
 /// Pixels with a slope that are needed.
 const PIXELS_MIN: usize = 60;
 /// Pixels that are looked at: of more, every second, third, ... one.
-const SAMPLES_MAX: usize = 4096;
+const SAMPLES_MAX: usize = PIXELS * 4 / 75;
 /// Of which so many are reckoned with at once.
 const LANES: usize = 8;
 /// Rounds of the fit.
@@ -51,6 +51,7 @@ impl Flow {
 
 /// The move that best explains how the pixels of `object` changed, about `middle`. None if they are too plain for that. Right for
 /// moves of a pixel or two; larger ones come out too small, with the right sign.
+#[inline(never)]
 pub fn flow(before: &Plane, now: &Plane, object: &Mask, middle: Point) -> Option<Flow> {
     let mut samples = Samples::EMPTY;
     let every = object.count() as usize / SAMPLES_MAX + 1;

@@ -17,7 +17,7 @@ mod scene;
 use alloc::boxed::Box;
 
 use crate::frame::{Frame, PIXELS, Plane, WIDTH, plane};
-use crate::mask::{Mask, Moments};
+use crate::mask::{BITS, Mask, Moments, Word};
 use crate::rectify::Rectifier;
 
 use self::colour::{BINS, Bins};
@@ -175,6 +175,7 @@ impl Tracker {
 
     /// Takes a frame and its grey plane. With `learn`, the object's colours are learned from what moves: until the hand
     /// closes. What moves in `skin`, where the markers are, is no slip. None while there is no object.
+    #[inline(never)]
     pub fn step(&mut self, frame: &Frame, grey: &Plane, skin: &Mask, learn: bool) -> Option<Sighting> {
         self.frames = self.frames.saturating_add(1);
         self.movement.step(grey, &mut self.bytes);
@@ -288,9 +289,10 @@ impl Tracker {
         new.intersect(differs);
         let (mut moving, mut hidden): (Histogram, Histogram) = ([0; BINS], [0; BINS]);
         new.for_each(|at| {
-            moving[self.bins.of(frame.red[at], frame.green[at], frame.blue[at])] += 1;
+            let count = |count: &mut u16| *count = count.saturating_add(1);
+            count(&mut moving[self.bins.of(frame.red[at], frame.green[at], frame.blue[at])]);
             let (red, green, blue) = self.scene.colour(at);
-            hidden[self.bins.of(red, green, blue)] += 1;
+            count(&mut hidden[self.bins.of(red, green, blue)]);
         });
         // Where the background moves it hides colours behind other ones of its own: half of its usual share is taken away too.
         let mut scene: Histogram = [0; BINS];
@@ -300,7 +302,7 @@ impl Tracker {
         });
         let count = new.count();
         for (hidden, scene) in hidden.iter_mut().zip(scene) {
-            *hidden = (*hidden).max(scene * count / (2 * PIXELS / SAMPLE) as u32);
+            *hidden = (*hidden).max((u32::from(scene) * count / (2 * PIXELS / SAMPLE) as u32) as u16);
         }
         self.model.learn(&moving, &hidden);
     }
@@ -312,10 +314,10 @@ impl Tracker {
             while left != 0 {
                 let bit = left.trailing_zeros();
                 left &= left - 1;
-                let at = 64 * number + bit as usize;
+                let at = BITS * number + bit as usize;
                 let bin = self.bins.of(frame.red[at], frame.green[at], frame.blue[at]);
                 let has = self.model.value(bin) >= self.config.colour_min;
-                *word &= !(u64::from(!has) << bit);
+                *word &= !(Word::from(!has) << bit);
             }
         }
     }
