@@ -91,17 +91,28 @@ impl Samples {
         if x == 0 || y == 0 || x == WIDTH - 1 || y == HEIGHT - 1 || self.count == SAMPLES_MAX {
             return;
         }
-        let sum = |at: usize| i32::from(now[at]) + i32::from(before[at]);
-        // The slope of both pictures: of one alone it would be off by half the move. Over two pixels, of two pictures.
-        let (gx, gy) = (sum(at + 1) - sum(at - 1), sum(at + WIDTH) - sum(at - WIDTH));
-        if gx.abs() + gy.abs() < 2 * SLOPE_MIN {
+        // Three rows of three pixels, each of both pictures: the slope of one alone would be off by half the move.
+        let rows = [at - WIDTH - 1, at - 1, at + WIDTH - 1].map(|first| {
+            let three = |plane: &Plane| [0, 1, 2].map(|step| i32::from(plane[first + step]));
+            (three(now), three(before))
+        });
+        let sums = rows.map(|(now, before)| [0, 1, 2].map(|step| now[step] + before[step]));
+        // Neighbours count, too: noise in the slope makes a move look small.
+        let smooth = |a: i32, b: i32, c: i32| a + 2 * b + c;
+        let gx = smooth(sums[0][2], sums[1][2], sums[2][2]) - smooth(sums[0][0], sums[1][0], sums[2][0]);
+        let gy = smooth(sums[2][0], sums[2][1], sums[2][2]) - smooth(sums[0][0], sums[0][1], sums[0][2]);
+        if gx.abs() + gy.abs() < 8 * SLOPE_MIN {
             return;
         }
-        let (gx, gy) = (gx as f32 / 4.0, gy as f32 / 4.0);
+        let (gx, gy) = (gx as f32 / 16.0, gy as f32 / 16.0);
+        let [top, middle_row, bottom] = rows.map(|(now, before)| {
+            smooth(now[0] - before[0], now[1] - before[1], now[2] - before[2])
+        });
+        let change = smooth(top, middle_row, bottom) as f32 / 16.0;
         let (dx, dy) = ((x as f32 - middle.x) / ARM_PX, (y as f32 - middle.y) / ARM_PX);
-        let row = [-gx, -gy, gx * dy - gy * dx, sum(at) as f32 / 512.0];
+        let row = [-gx, -gy, gx * dy - gy * dx, sums[1][1] as f32 / 512.0];
         self.rows.iter_mut().zip(row).for_each(|(column, value)| column[self.count] = value);
-        self.changes[self.count] = f32::from(now[at]) - f32::from(before[at]);
+        self.changes[self.count] = change;
         self.count += 1;
     }
 
