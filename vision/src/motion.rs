@@ -105,9 +105,8 @@ impl Samples {
             return;
         }
         let (gx, gy) = (gx as f32 / 16.0, gy as f32 / 16.0);
-        let [top, middle_row, bottom] = rows.map(|(now, before)| {
-            smooth(now[0] - before[0], now[1] - before[1], now[2] - before[2])
-        });
+        let [top, middle_row, bottom] =
+            rows.map(|(now, before)| smooth(now[0] - before[0], now[1] - before[1], now[2] - before[2]));
         let change = smooth(top, middle_row, bottom) as f32 / 16.0;
         let (dx, dy) = ((x as f32 - middle.x) / ARM_PX, (y as f32 - middle.y) / ARM_PX);
         let row = [-gx, -gy, gx * dy - gy * dx, sums[1][1] as f32 / 512.0];

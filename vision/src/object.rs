@@ -86,6 +86,8 @@ pub struct Sighting {
     pub moments: Moments,
     /// The direction of its long axis, radians from -pi/2 to pi/2, from x towards y (down): by its long rims if it has such.
     pub angle_rad: f32,
+    /// The share of its outline that lies on the long rims. 0: it has none, and the angle is that of the second moments.
+    pub rims: f32,
     /// Part of the picture that it covers.
     pub area: f32,
     /// Moving pixels on it.
@@ -252,7 +254,7 @@ impl Tracker {
         let area = part(moments?.area);
         let lens = self.lens.as_ref();
         let moments = lens.and_then(|lens| lens.moments(&self.object)).or(moments)?;
-        let angle_rad = axis::angle_rad(&self.object, &moments, lens);
+        let rims = axis::find(&self.object, &moments, lens);
         // A marker hides what is behind it.
         let mut unknown = apart;
         unknown.unite(skin);
@@ -260,7 +262,7 @@ impl Tracker {
         let whole_percent = if self.is_part { WHOLE_PERCENT.1 } else { WHOLE_PERCENT.0 };
         self.is_part = 100 * self.object.count() < whole_percent * self.grasped;
         let cut = self.is_part || cut::is_cut(&self.object, learn.then_some(&unknown));
-        Some(Sighting { moments, angle_rad, area, slip_px, cut })
+        Some(Sighting { moments, angle_rad: rims.angle, rims: rims.share, area, slip_px, cut })
     }
 
     /// Takes what is seen now for the scene, and forgets the object.
