@@ -74,6 +74,32 @@ pub fn flow(before: &Plane, now: &Plane, object: &Mask, middle: Point) -> Option
     Some(Flow { x, y, turn })
 }
 
+/// Sums over nine pixels, the nearer ones counting twice.
+struct Sums {
+    middle: i32,
+    all: i32,
+    gx: i32,
+    gy: i32,
+}
+
+impl Sums {
+    #[inline]
+    fn around(plane: &Plane, at: usize) -> Self {
+        let row = |first: usize| {
+            let row = &plane[first..first + 3];
+            (i32::from(row[0]), i32::from(row[1]), i32::from(row[2]))
+        };
+        let (top, own, bottom) = (row(at - WIDTH - 1), row(at - 1), row(at + WIDTH - 1));
+        let sum = |(left, middle, right): (i32, i32, i32)| left + 2 * middle + right;
+        Self {
+            middle: own.1,
+            all: sum(top) + 2 * sum(own) + sum(bottom),
+            gx: sum((top.2, own.2, bottom.2)) - sum((top.0, own.0, bottom.0)),
+            gy: sum(bottom) - sum(top),
+        }
+    }
+}
+
 /// What each pixel says of the move: `row * unknowns = change`, a column each.
 struct Samples {
     rows: [[f32; SAMPLES_MAX]; UNKNOWNS],
@@ -91,25 +117,17 @@ impl Samples {
         if x == 0 || y == 0 || x == WIDTH - 1 || y == HEIGHT - 1 || self.count == SAMPLES_MAX {
             return;
         }
-        // Three rows of three pixels, each of both pictures: the slope of one alone would be off by half the move.
-        let rows = [at - WIDTH - 1, at - 1, at + WIDTH - 1].map(|first| {
-            let three = |plane: &Plane| [0, 1, 2].map(|step| i32::from(plane[first + step]));
-            (three(now), three(before))
-        });
-        let sums = rows.map(|(now, before)| [0, 1, 2].map(|step| now[step] + before[step]));
-        // Neighbours count, too: noise in the slope makes a move look small.
-        let smooth = |a: i32, b: i32, c: i32| a + 2 * b + c;
-        let gx = smooth(sums[0][2], sums[1][2], sums[2][2]) - smooth(sums[0][0], sums[1][0], sums[2][0]);
-        let gy = smooth(sums[2][0], sums[2][1], sums[2][2]) - smooth(sums[0][0], sums[0][1], sums[0][2]);
+        // Of both pictures: the slope of one alone would be off by half the move. Neighbours count, too: noise in the slope makes a move
+        // look small.
+        let (now, before) = (Sums::around(now, at), Sums::around(before, at));
+        let (gx, gy) = (now.gx + before.gx, now.gy + before.gy);
         if gx.abs() + gy.abs() < 8 * SLOPE_MIN {
             return;
         }
         let (gx, gy) = (gx as f32 / 16.0, gy as f32 / 16.0);
-        let [top, middle_row, bottom] =
-            rows.map(|(now, before)| smooth(now[0] - before[0], now[1] - before[1], now[2] - before[2]));
-        let change = smooth(top, middle_row, bottom) as f32 / 16.0;
+        let change = (now.all - before.all) as f32 / 16.0;
         let (dx, dy) = ((x as f32 - middle.x) / ARM_PX, (y as f32 - middle.y) / ARM_PX);
-        let row = [-gx, -gy, gx * dy - gy * dx, sums[1][1] as f32 / 512.0];
+        let row = [-gx, -gy, gx * dy - gy * dx, (now.middle + before.middle) as f32 / 512.0];
         self.rows.iter_mut().zip(row).for_each(|(column, value)| column[self.count] = value);
         self.changes[self.count] = change;
         self.count += 1;
