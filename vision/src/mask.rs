@@ -46,9 +46,7 @@ impl Mask {
         for (word, bytes) in self.words_mut().zip(bytes.chunks_exact(BITS)) {
             *word = 0;
             for (place, eight) in bytes.chunks_exact(8).enumerate() {
-                let eight = eight.try_into().map_or(0, u64::from_le_bytes);
-                // Eight bytes of one bit each slide into the top byte.
-                *word |= Word::from((eight.wrapping_mul(0x0102_0408_1020_4080) >> 56) as u8) << (8 * place);
+                *word |= Word::from(eight_bits(eight.try_into().unwrap_or_default())) << (8 * place);
             }
         }
     }
@@ -271,6 +269,13 @@ impl Mask {
             yy: yy as f32,
         })
     }
+}
+
+/// Eight bytes that are 0 or 1 as the bits of one, the first in the lowest bit.
+#[inline]
+pub fn eight_bits(bytes: [u8; 8]) -> u8 {
+    // They slide into the top byte.
+    (u64::from_le_bytes(bytes).wrapping_mul(0x0102_0408_1020_4080) >> 56) as u8
 }
 
 /// A row and what is `by` pixels to the left and right, fewer than a word has.

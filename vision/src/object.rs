@@ -312,15 +312,16 @@ impl Tracker {
     /// Keeps of a mask the pixels that have the object's colours.
     fn project(&self, frame: &Frame, mask: &mut Mask) {
         for (number, word) in mask.words_mut().enumerate() {
-            let mut left = *word;
+            let (mut left, mut kept) = (*word, 0);
             while left != 0 {
                 let bit = left.trailing_zeros();
                 left &= left - 1;
                 let at = BITS * number + bit as usize;
                 let bin = self.bins.of(frame.red[at], frame.green[at], frame.blue[at]);
                 let has = self.model.value(bin) >= self.config.colour_min;
-                *word &= !(Word::from(!has) << bit);
+                kept |= Word::from(has) << bit;
             }
+            *word = kept;
         }
     }
 
