@@ -24,6 +24,11 @@ pub fn build_frames(root: &Path) -> Result<PathBuf> {
     tenax_launch::image::build(root, Binary::Frames)
 }
 
+/// Builds the image of a small camera, for [`pictures`](crate::board::emulated::kernels::pictures). Fails as [`build`] does.
+pub fn build_pictures(root: &Path) -> Result<PathBuf> {
+    tenax_launch::image::build(root, Binary::Pictures)
+}
+
 /// Builds the image of the array detector's kernels, for [`kernels`](crate::board::emulated::kernels). Fails as [`build`] does.
 pub fn build_kernels(root: &Path) -> Result<PathBuf> {
     tenax_launch::image::build(root, Binary::Kernels)

@@ -109,13 +109,13 @@ fn what_is_soft_is_held_against_a_pull_and_a_swing() {
 /// Twenty times what the cup weighs comes in, and the hand follows.
 #[test]
 fn water_is_poured_into_a_cup_that_stays_where_it_is() {
-    // The control: nobody holds it, and S1 and S2 are deaf. Warnings of Ft/Fn still hold the cup in most seeds.
-    let nobody = "[[command]]\nat_s = 0.1\nkind = \"set-s1-mv\"\nvalue = 1500\n\
-        [[command]]\nat_s = 0.12\nkind = \"set-s2-permille\"\nvalue = 1500\n\
+    // The control: nobody holds it, and the reflex acts on no detector.
+    let nobody = "[[command]]\nat_s = 0.1\nkind = \"set-detectors-off-mask\"\nvalue = 31\n\
         [[command]]\nat_s = 4.2\nkind = \"end\"\n";
     let (ours, theirs) = (unharmed("fill-cup"), fates("fill-cup", nobody));
     println!("slid {:.2} mm, the control {:.2} mm", slid_mm(&ours), slid_mm(&theirs));
     assert!(slid_mm(&ours) < 0.2 * slid_mm(&theirs), "{} mm of {}", slid_mm(&ours), slid_mm(&theirs));
+    fails("fill-cup", &theirs);
 }
 
 #[test]

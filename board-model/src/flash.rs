@@ -54,15 +54,19 @@ static MEMORY: [Region; 3] = [
     Region::ram("sram", 0x2000_0000, 128 << 10),
 ];
 
+/// The same beside the largest RAM of a chip with a camera port (STM32H743: RM0433, section 2.4), for what is only counted.
+static WITH_AXI: [Region; 4] =
+    [MEMORY[0], MEMORY[1], MEMORY[2], Region::ram("axi_sram", 0x2400_0000, 512 << 10)];
+
 /// The chip's memories as the emulator is to lay them out. It looks at nothing else of it.
 #[derive(Debug)]
 pub struct MemoryMap(Bus);
 
 impl MemoryMap {
-    /// The F411's, beside the peripherals of `mcu`.
-    pub fn new(mcu: &Part) -> Result<Self, Error> {
+    /// The F411's, beside the peripherals of `mcu`; `axi`: and a larger chip's RAM.
+    pub fn new(mcu: &Part, axi: bool) -> Result<Self, Error> {
         let peripherals: Vec<_> = mcu.bus().peripherals().copied().collect();
-        Ok(Self(Bus::builder(CPU, &MEMORY, peripherals).build()?))
+        Ok(Self(Bus::builder(CPU, if axi { &WITH_AXI } else { &MEMORY[..] }, peripherals).build()?))
     }
 }
 

@@ -41,12 +41,17 @@ impl Nucleo {
     /// The board out of its box, its serial line in the hands of `line`.
     pub fn new(models: Models, instructions_per_second: NonZeroU64, line: Line) -> Result<Self, Error> {
         let mut mcu = Part::new(models, line)?;
-        let memory = MemoryMap::new(&mcu)?;
+        let memory = MemoryMap::new(&mcu, false)?;
         mcu.chip.rcc.attach_crystals(HSE_HZ, 0);
         mcu.chip.set_supply(SUPPLY_MV);
         // The model's word is `input * 4095 / reference`: with this reference, an input is a code and nothing is rounded.
         mcu.chip.adc[0].set_reference(u32::from(CODE_MAX));
         Ok(Self { mcu, memory, instructions_per_second })
+    }
+
+    /// The same with 512 KiB more of RAM at 0x2400_0000.
+    pub fn with_axi(self) -> Result<Self, Error> {
+        Ok(Self { memory: MemoryMap::new(&self.mcu, true)?, ..self })
     }
 }
 

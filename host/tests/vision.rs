@@ -11,14 +11,16 @@ fn vision(args: &[&str]) -> Value {
     serde_json::from_slice(&output.stdout).expect("JSON")
 }
 
-/// Seed 78 draws an object as bright as the wall behind it, and 87 one with the colour of skin: both vanished at the grip.
+/// Seed 78 draws an object as bright as the wall behind it, and 87 one with the colour of skin: both vanished at the grip. 901 draws one so
+/// plain that noise looked like slip, and 948 one with a spot of the wall at its end.
 #[test]
-fn an_object_in_plain_view_does_not_vanish_at_the_grip() {
-    for (seed, sessions) in [("77", "2"), ("87", "1")] {
+fn a_held_object_is_seen_and_slips_only_when_it_does() {
+    for (seed, sessions) in [("77", "2"), ("87", "1"), ("901", "1"), ("948", "1")] {
         let report = vision(&["--sessions", sessions, "--seed", seed, "--report", "json"]);
         let worst = |key: &str| report["worst"][key].as_f64().unwrap_or_else(|| panic!("no {key}: {report}"));
         assert!(worst("seen") >= 0.95 && worst("recall") >= 0.75, "{report}");
-        assert!(worst("false_rate") <= 0.06, "{report}");
+        assert!(worst("false_rate") <= 0.02, "{report}");
+        assert!(report["angle_deg_rms"].as_f64().is_some_and(|angle| angle <= 1.0), "{report}");
         assert_eq!(report["by_session"].as_array().map(Vec::len), sessions.parse().ok());
     }
 }
@@ -43,9 +45,9 @@ fn drawn_scenes_are_seen_as_they_are() {
     let number = |value: &Value| value.as_f64().unwrap_or_else(|| panic!("no number in {report}"));
     assert!(number(&report["marker_px_rms"]) <= 0.1, "{report}");
     assert!(number(&report["force_deg_rms"]) <= 5.0, "{report}");
-    assert!(number(&report["angle_deg_rms"]) <= 2.0, "{report}");
-    assert!(number(&report["slip"]["recall"]) >= 0.8, "{report}");
-    assert!(number(&report["slip"]["false_rate"]) <= 0.1, "{report}");
+    assert!(number(&report["angle_deg_rms"]) <= 1.0, "{report}");
+    assert!(number(&report["slip"]["recall"]) >= 0.92, "{report}");
+    assert!(number(&report["slip"]["false_rate"]) <= 0.02, "{report}");
     assert!(number(&report["object_seen"]) >= 0.95, "{report}");
 }
 

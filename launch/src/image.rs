@@ -29,6 +29,8 @@ pub enum Binary {
     Kernels,
     /// Every detector's, frame by frame.
     Frames,
+    /// A small camera's, picture by picture.
+    Pictures,
 }
 
 impl Binary {
@@ -38,6 +40,7 @@ impl Binary {
             Self::Image => PACKAGE,
             Self::Kernels => "tenax-kernels",
             Self::Frames => "tenax-frames",
+            Self::Pictures => "tenax-pictures",
         }
     }
 }

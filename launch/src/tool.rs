@@ -111,7 +111,7 @@ pub fn image_of(arguments: &[OsString]) -> &'static [Binary] {
     match command {
         _ if has(&["--host", "--help", "-h"]) => &[],
         Some("check" | "size") => &[Binary::Image, Binary::Kernels],
-        Some("test") => &[Binary::Image, Binary::Kernels, Binary::Frames],
+        Some("test") => &[Binary::Image, Binary::Kernels, Binary::Frames, Binary::Pictures],
         Some("flash" | "learn" | "run") => &[Binary::Image],
         _ => &[],
     }

@@ -5,18 +5,19 @@ use std::fs;
 use std::path::Path;
 
 /// Each member, and those that it may take from. Its head says what may live in it.
-const STANDS_ON: [(&str, &[&str]); 14] = [
+const STANDS_ON: [(&str, &[&str]); 15] = [
     ("hal-shim", &[]),
     ("logic", &["hal-shim"]),
-    ("firmware", &["hal-shim", "logic"]),
     ("scene", &["hal-shim", "logic"]),
     ("vision", &[]),
+    ("vision/quarter", &[]),
+    ("firmware", &["hal-shim", "logic", "vision/quarter"]),
     ("launch", &[]),
     ("serial", &["hal-shim", "launch", "logic"]),
     ("plot", &[]),
     ("board-model", &["hal-shim"]),
     ("bench", &["board-model", "hal-shim", "launch", "logic", "plot", "scene", "serial"]),
-    ("studies", &["bench", "hal-shim", "logic", "plot", "scene", "serial", "vision"]),
+    ("studies", &["bench", "hal-shim", "logic", "plot", "scene", "serial", "vision", "vision/quarter"]),
     ("host", &["bench", "hal-shim", "launch", "logic", "plot", "scene", "serial", "studies", "vision"]),
     ("host-tests", &["hal-shim", "logic", "scene"]),
     ("train", &["bench", "logic"]),
@@ -56,7 +57,10 @@ fn no_crate_takes_from_one_that_stands_on_it() {
         let manifest = fs::read_to_string(root().join(member).join("Cargo.toml")).unwrap();
         for taken in manifest.lines().filter_map(|line| line.strip_prefix("tenax-")) {
             let taken = taken.split(['.', ' ']).next().unwrap_or(taken);
-            assert!(below.contains(&taken), "{member} takes from {taken}");
+            assert!(
+                below.iter().any(|below| below.replace('/', "-") == taken),
+                "{member} takes from {taken}"
+            );
         }
         for next in below {
             let place = |name: &str| STANDS_ON.iter().position(|(own, _)| *own == name);

@@ -58,7 +58,7 @@ pub struct Camera {
 #[derive(Clone, Copy, Debug, Default)]
 struct Heading {
     rad: f32,
-    /// Pictures that it is the mean of.
+    /// What it is the mean of: pictures, each by how much of the outline lay on the rims.
     pictures: f32,
 }
 
@@ -70,8 +70,9 @@ impl Heading {
             None => self.pictures = 0.0,
         }
         if !seen.cut {
-            self.pictures = (self.pictures + 1.0).min(HEADING_PICTURES);
-            self.rad += half_turn(seen.angle_rad - self.rad) / self.pictures;
+            let weight = (seen.rims * seen.rims).max(MOMENTS_WEIGHT);
+            self.pictures = (self.pictures + weight).min(HEADING_PICTURES);
+            self.rad += half_turn(seen.angle_rad - self.rad) * weight / self.pictures;
         }
         self.rad = half_turn(self.rad);
         (self.pictures > 0.0).then_some(self.rad)
@@ -178,6 +179,8 @@ impl Camera {
 
 /// Pictures from which the angle of a held object is made.
 const HEADING_PICTURES: f32 = 40.0;
+/// What a picture of an object without long rims counts.
+const MOMENTS_WEIGHT: f32 = 0.01;
 /// Rows of the object that are looked at for its move.
 const OBJECT_ROWS: usize = 2;
 /// Rows of the background that are looked at: one of so many is enough for one move.

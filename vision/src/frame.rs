@@ -1,9 +1,9 @@
 //! A picture as planes of bytes: every loop over one is a loop over a whole slice, which the compiler vectorises.
 
 /// Columns of a picture.
-pub const WIDTH: usize = 320;
+pub const WIDTH: usize = if cfg!(feature = "quarter") { 160 } else { 320 };
 /// Rows of a picture.
-pub const HEIGHT: usize = 240;
+pub const HEIGHT: usize = WIDTH / 4 * 3;
 /// Pixels of a picture.
 pub const PIXELS: usize = WIDTH * HEIGHT;
 /// Bytes of a picture of three planes.

@@ -178,6 +178,8 @@ impl Markers {
     }
 
     /// Looks for each in a frame.
+    // By itself in the program, so that its instructions can be counted; so are the object and the moves.
+    #[inline(never)]
     pub fn follow(&mut self, grey: &Plane) {
         let count = self.count;
         for marker in &mut self.markers[..count] {

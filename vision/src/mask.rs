@@ -4,13 +4,21 @@ mod pieces;
 
 use crate::frame::{HEIGHT, PIXELS, Point, WIDTH};
 
+/// Pixels in a word of a row.
+#[cfg(not(feature = "quarter"))]
+pub type Word = u64;
+/// Pixels in a word of a row: a row is a whole number of them.
+#[cfg(feature = "quarter")]
+pub type Word = u32;
+/// Pixels of a word.
+pub const BITS: usize = Word::BITS as usize;
 /// Words of a row.
-pub const WORDS: usize = WIDTH / 64;
+pub const WORDS: usize = WIDTH / BITS;
 
 /// A set of pixels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mask {
-    rows: [[u64; WORDS]; HEIGHT],
+    rows: [[Word; WORDS]; HEIGHT],
 }
 
 impl Default for Mask {
@@ -24,30 +32,28 @@ impl Mask {
     pub const EMPTY: Self = Self { rows: [[0; WORDS]; HEIGHT] };
 
     /// Its rows, the leftmost pixel of a word in the lowest bit.
-    pub const fn rows(&self) -> &[[u64; WORDS]; HEIGHT] {
+    pub const fn rows(&self) -> &[[Word; WORDS]; HEIGHT] {
         &self.rows
     }
 
     /// Its words, row by row.
-    pub fn words_mut(&mut self) -> impl Iterator<Item = &mut u64> {
+    pub fn words_mut(&mut self) -> impl Iterator<Item = &mut Word> {
         self.rows.iter_mut().flatten()
     }
 
     /// The pixels whose byte is 1 and not 0.
     pub fn pack(&mut self, bytes: &[u8; PIXELS]) {
-        for (word, bytes) in self.words_mut().zip(bytes.chunks_exact(64)) {
+        for (word, bytes) in self.words_mut().zip(bytes.chunks_exact(BITS)) {
             *word = 0;
             for (place, eight) in bytes.chunks_exact(8).enumerate() {
-                let eight = eight.try_into().map_or(0, u64::from_le_bytes);
-                // Eight bytes of one bit each slide into the top byte.
-                *word |= (eight.wrapping_mul(0x0102_0408_1020_4080) >> 56) << (8 * place);
+                *word |= Word::from(eight_bits(eight.try_into().unwrap_or_default())) << (8 * place);
             }
         }
     }
 
     /// 1 for a pixel that is in the set, 0 for another.
     pub fn unpack(&self, bytes: &mut [u8; PIXELS]) {
-        for (word, bytes) in self.rows.iter().flatten().zip(bytes.chunks_exact_mut(64)) {
+        for (word, bytes) in self.rows.iter().flatten().zip(bytes.chunks_exact_mut(BITS)) {
             for (eight, bits) in bytes.chunks_exact_mut(8).zip(word.to_le_bytes()) {
                 // Byte n keeps bit n of eight copies, and becomes 1 if it is set.
                 let bits = u64::from(bits).wrapping_mul(0x0101_0101_0101_0101) & 0x8040_2010_0804_0201;
@@ -59,12 +65,12 @@ impl Mask {
 
     /// Puts a pixel in.
     pub fn insert(&mut self, x: usize, y: usize) {
-        self.rows[y][x / 64] |= 1 << (x % 64);
+        self.rows[y][x / BITS] |= 1 << (x % BITS);
     }
 
     /// Whether a pixel is in it.
     pub const fn contains(&self, x: usize, y: usize) -> bool {
-        self.rows[y][x / 64] >> (x % 64) & 1 != 0
+        self.rows[y][x / BITS] >> (x % BITS) & 1 != 0
     }
 
     /// The pixels whose place is inside a polygon of these corners, px.
@@ -122,12 +128,12 @@ impl Mask {
     pub fn dilate(&mut self, times: usize) {
         let mut grown = 0;
         while grown < times {
-            let step = (2 * grown + 1).min(times - grown).min(63);
+            let step = (2 * grown + 1).min(times - grown).min(BITS - 1);
             for row in &mut self.rows {
                 *row = wider(row, step);
             }
             // The rows so far above are those from before this step.
-            let mut above = [[0; WORDS]; 64];
+            let mut above = [[0; WORDS]; BITS];
             for y in 0..HEIGHT {
                 let (row, below) = (self.rows[y], self.rows.get(y + step).copied().unwrap_or_default());
                 let above = core::mem::replace(&mut above[y % step], row);
@@ -187,7 +193,7 @@ impl Mask {
         for (y, (row, free)) in outside.rows.iter_mut().zip(&free.rows).enumerate() {
             *row = if y == 0 || y == HEIGHT - 1 { *free } else { [0; WORDS] };
             row[0] |= free[0] & 1;
-            row[WORDS - 1] |= free[WORDS - 1] & 1 << 63;
+            row[WORDS - 1] |= free[WORDS - 1] & 1 << (BITS - 1);
             *row = flood(row, free);
         }
         let mut grown = true;
@@ -222,7 +228,7 @@ impl Mask {
         for (number, &word) in self.rows.iter().flatten().enumerate() {
             let mut left = word;
             while left != 0 {
-                each(64 * number + left.trailing_zeros() as usize);
+                each(BITS * number + left.trailing_zeros() as usize);
                 left &= left - 1;
             }
         }
@@ -239,7 +245,7 @@ impl Mask {
                     let (ones, bit_sum, bit_squares) = BYTES[usize::from(bits)];
                     let (ones, bit_sum, bit_squares) =
                         (u64::from(ones), u64::from(bit_sum), u64::from(bit_squares));
-                    let left = (64 * place + 8 * byte) as u64;
+                    let left = (BITS * place + 8 * byte) as u64;
                     count += ones;
                     sum += ones * left + bit_sum;
                     squares += ones * left * left + 2 * left * bit_sum + bit_squares;
@@ -265,47 +271,54 @@ impl Mask {
     }
 }
 
-/// A row and what is `by` pixels to the left and right, less than 64.
-fn wider(row: &[u64; WORDS], by: usize) -> [u64; WORDS] {
+/// Eight bytes that are 0 or 1 as the bits of one, the first in the lowest bit.
+#[inline]
+pub fn eight_bits(bytes: [u8; 8]) -> u8 {
+    // They slide into the top byte.
+    (u64::from_le_bytes(bytes).wrapping_mul(0x0102_0408_1020_4080) >> 56) as u8
+}
+
+/// A row and what is `by` pixels to the left and right, fewer than a word has.
+fn wider(row: &[Word; WORDS], by: usize) -> [Word; WORDS] {
     let mut wide = *row;
     for word in 0..WORDS {
-        let from_left = if word > 0 { row[word - 1] >> (64 - by) } else { 0 };
-        let from_right = if word + 1 < WORDS { row[word + 1] << (64 - by) } else { 0 };
+        let from_left = if word > 0 { row[word - 1] >> (BITS - by) } else { 0 };
+        let from_right = if word + 1 < WORDS { row[word + 1] << (BITS - by) } else { 0 };
         wide[word] |= row[word] << by | row[word] >> by | from_left | from_right;
     }
     wide
 }
 
 /// How many of each pixel and its neighbours to the left and right are set: the bits of one and of two.
-fn three(row: &[u64; WORDS]) -> ([u64; WORDS], [u64; WORDS]) {
+fn three(row: &[Word; WORDS]) -> ([Word; WORDS], [Word; WORDS]) {
     let (mut ones, mut twos) = ([0; WORDS], [0; WORDS]);
     for word in 0..WORDS {
-        let left = row[word] << 1 | if word > 0 { row[word - 1] >> 63 } else { 0 };
-        let right = row[word] >> 1 | if word + 1 < WORDS { row[word + 1] << 63 } else { 0 };
+        let left = row[word] << 1 | if word > 0 { row[word - 1] >> (BITS - 1) } else { 0 };
+        let right = row[word] >> 1 | if word + 1 < WORDS { row[word + 1] << (BITS - 1) } else { 0 };
         (ones[word], twos[word]) = full_adder(left, row[word], right);
     }
     (ones, twos)
 }
 
-/// The sum of three bits, 64 times: bit of one, bit of two.
-const fn full_adder(a: u64, b: u64, c: u64) -> (u64, u64) {
+/// The sum of three bits, for each pixel of a word: bit of one, bit of two.
+const fn full_adder(a: Word, b: Word, c: Word) -> (Word, Word) {
     (a ^ b ^ c, a & b | c & (a ^ b))
 }
 
 /// The runs of `free` that hold a pixel of `seed`. An addition carries from the seed to the end of its run.
-fn flood(seed: &[u64; WORDS], free: &[u64; WORDS]) -> [u64; WORDS] {
-    let up = |seed: &[u64; WORDS], free: &[u64; WORDS]| {
+fn flood(seed: &[Word; WORDS], free: &[Word; WORDS]) -> [Word; WORDS] {
+    let up = |seed: &[Word; WORDS], free: &[Word; WORDS]| {
         let (mut filled, mut carried) = ([0; WORDS], 0);
         for word in 0..WORDS {
             let start = (seed[word] | carried) & free[word];
             let (sum, over) = free[word].overflowing_add(start);
             filled[word] = free[word] & (free[word] ^ sum) | start;
-            carried = u64::from(over);
+            carried = Word::from(over);
         }
         filled
     };
-    let mirrored = |row: &[u64; WORDS]| {
-        let mut mirror = row.map(u64::reverse_bits);
+    let mirrored = |row: &[Word; WORDS]| {
+        let mut mirror = row.map(Word::reverse_bits);
         mirror.reverse();
         mirror
     };

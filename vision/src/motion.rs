@@ -4,7 +4,7 @@
 //! The light may change meanwhile, so a common gain is a fourth unknown. Pixels that the move does not explain (a spot of the
 //! background, a reflection) count less and less in each round.
 
-use crate::frame::{HEIGHT, Plane, Point, WIDTH};
+use crate::frame::{HEIGHT, PIXELS, Plane, Point, WIDTH};
 use crate::mask::Mask;
 
 /// A move, px a frame.
@@ -25,7 +25,7 @@ const SLOPE_MIN: i32 = 8;
 /// Pixels with a slope that are needed.
 const PIXELS_MIN: usize = 60;
 /// Pixels that are looked at: of more, every second, third, ... one.
-const SAMPLES_MAX: usize = 4096;
+const SAMPLES_MAX: usize = PIXELS * 4 / 75;
 /// Of which so many are reckoned with at once.
 const LANES: usize = 8;
 /// Rounds of the fit.
@@ -51,6 +51,7 @@ impl Flow {
 
 /// The move that best explains how the pixels of `object` changed, about `middle`. None if they are too plain for that. Right for
 /// moves of a pixel or two; larger ones come out too small, with the right sign.
+#[inline(never)]
 pub fn flow(before: &Plane, now: &Plane, object: &Mask, middle: Point) -> Option<Flow> {
     let mut samples = Samples::EMPTY;
     let every = object.count() as usize / SAMPLES_MAX + 1;
@@ -73,6 +74,32 @@ pub fn flow(before: &Plane, now: &Plane, object: &Mask, middle: Point) -> Option
     Some(Flow { x, y, turn })
 }
 
+/// Sums over nine pixels, the nearer ones counting twice.
+struct Sums {
+    middle: i32,
+    all: i32,
+    gx: i32,
+    gy: i32,
+}
+
+impl Sums {
+    #[inline]
+    fn around(plane: &Plane, at: usize) -> Self {
+        let row = |first: usize| {
+            let row = &plane[first..first + 3];
+            (i32::from(row[0]), i32::from(row[1]), i32::from(row[2]))
+        };
+        let (top, own, bottom) = (row(at - WIDTH - 1), row(at - 1), row(at + WIDTH - 1));
+        let sum = |(left, middle, right): (i32, i32, i32)| left + 2 * middle + right;
+        Self {
+            middle: own.1,
+            all: sum(top) + 2 * sum(own) + sum(bottom),
+            gx: sum((top.2, own.2, bottom.2)) - sum((top.0, own.0, bottom.0)),
+            gy: sum(bottom) - sum(top),
+        }
+    }
+}
+
 /// What each pixel says of the move: `row * unknowns = change`, a column each.
 struct Samples {
     rows: [[f32; SAMPLES_MAX]; UNKNOWNS],
@@ -90,17 +117,19 @@ impl Samples {
         if x == 0 || y == 0 || x == WIDTH - 1 || y == HEIGHT - 1 || self.count == SAMPLES_MAX {
             return;
         }
-        let sum = |at: usize| i32::from(now[at]) + i32::from(before[at]);
-        // The slope of both pictures: of one alone it would be off by half the move. Over two pixels, of two pictures.
-        let (gx, gy) = (sum(at + 1) - sum(at - 1), sum(at + WIDTH) - sum(at - WIDTH));
-        if gx.abs() + gy.abs() < 2 * SLOPE_MIN {
+        // Of both pictures: the slope of one alone would be off by half the move. Neighbours count, too: noise in the slope makes a move
+        // look small.
+        let (now, before) = (Sums::around(now, at), Sums::around(before, at));
+        let (gx, gy) = (now.gx + before.gx, now.gy + before.gy);
+        if gx.abs() + gy.abs() < 8 * SLOPE_MIN {
             return;
         }
-        let (gx, gy) = (gx as f32 / 4.0, gy as f32 / 4.0);
+        let (gx, gy) = (gx as f32 / 16.0, gy as f32 / 16.0);
+        let change = (now.all - before.all) as f32 / 16.0;
         let (dx, dy) = ((x as f32 - middle.x) / ARM_PX, (y as f32 - middle.y) / ARM_PX);
-        let row = [-gx, -gy, gx * dy - gy * dx, sum(at) as f32 / 512.0];
+        let row = [-gx, -gy, gx * dy - gy * dx, (now.middle + before.middle) as f32 / 512.0];
         self.rows.iter_mut().zip(row).for_each(|(column, value)| column[self.count] = value);
-        self.changes[self.count] = f32::from(now[at]) - f32::from(before[at]);
+        self.changes[self.count] = change;
         self.count += 1;
     }
 

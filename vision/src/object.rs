@@ -17,7 +17,7 @@ mod scene;
 use alloc::boxed::Box;
 
 use crate::frame::{Frame, PIXELS, Plane, WIDTH, plane};
-use crate::mask::{Mask, Moments};
+use crate::mask::{BITS, Mask, Moments, Word};
 use crate::rectify::Rectifier;
 
 use self::colour::{BINS, Bins};
@@ -86,6 +86,8 @@ pub struct Sighting {
     pub moments: Moments,
     /// The direction of its long axis, radians from -pi/2 to pi/2, from x towards y (down): by its long rims if it has such.
     pub angle_rad: f32,
+    /// The share of its outline that lies on the long rims. 0: it has none, and the angle is that of the second moments.
+    pub rims: f32,
     /// Part of the picture that it covers.
     pub area: f32,
     /// Moving pixels on it.
@@ -175,6 +177,7 @@ impl Tracker {
 
     /// Takes a frame and its grey plane. With `learn`, the object's colours are learned from what moves: until the hand
     /// closes. What moves in `skin`, where the markers are, is no slip. None while there is no object.
+    #[inline(never)]
     pub fn step(&mut self, frame: &Frame, grey: &Plane, skin: &Mask, learn: bool) -> Option<Sighting> {
         self.frames = self.frames.saturating_add(1);
         self.movement.step(grey, &mut self.bytes);
@@ -251,7 +254,7 @@ impl Tracker {
         let area = part(moments?.area);
         let lens = self.lens.as_ref();
         let moments = lens.and_then(|lens| lens.moments(&self.object)).or(moments)?;
-        let angle_rad = axis::angle_rad(&self.object, &moments, lens);
+        let rims = axis::find(&self.object, &moments, lens);
         // A marker hides what is behind it.
         let mut unknown = apart;
         unknown.unite(skin);
@@ -259,7 +262,7 @@ impl Tracker {
         let whole_percent = if self.is_part { WHOLE_PERCENT.1 } else { WHOLE_PERCENT.0 };
         self.is_part = 100 * self.object.count() < whole_percent * self.grasped;
         let cut = self.is_part || cut::is_cut(&self.object, learn.then_some(&unknown));
-        Some(Sighting { moments, angle_rad, area, slip_px, cut })
+        Some(Sighting { moments, angle_rad: rims.angle, rims: rims.share, area, slip_px, cut })
     }
 
     /// Takes what is seen now for the scene, and forgets the object.
@@ -288,9 +291,10 @@ impl Tracker {
         new.intersect(differs);
         let (mut moving, mut hidden): (Histogram, Histogram) = ([0; BINS], [0; BINS]);
         new.for_each(|at| {
-            moving[self.bins.of(frame.red[at], frame.green[at], frame.blue[at])] += 1;
+            let count = |count: &mut u16| *count = count.saturating_add(1);
+            count(&mut moving[self.bins.of(frame.red[at], frame.green[at], frame.blue[at])]);
             let (red, green, blue) = self.scene.colour(at);
-            hidden[self.bins.of(red, green, blue)] += 1;
+            count(&mut hidden[self.bins.of(red, green, blue)]);
         });
         // Where the background moves it hides colours behind other ones of its own: half of its usual share is taken away too.
         let mut scene: Histogram = [0; BINS];
@@ -300,7 +304,7 @@ impl Tracker {
         });
         let count = new.count();
         for (hidden, scene) in hidden.iter_mut().zip(scene) {
-            *hidden = (*hidden).max(scene * count / (2 * PIXELS / SAMPLE) as u32);
+            *hidden = (*hidden).max((u32::from(scene) * count / (2 * PIXELS / SAMPLE) as u32) as u16);
         }
         self.model.learn(&moving, &hidden);
     }
@@ -308,15 +312,16 @@ impl Tracker {
     /// Keeps of a mask the pixels that have the object's colours.
     fn project(&self, frame: &Frame, mask: &mut Mask) {
         for (number, word) in mask.words_mut().enumerate() {
-            let mut left = *word;
+            let (mut left, mut kept) = (*word, 0);
             while left != 0 {
                 let bit = left.trailing_zeros();
                 left &= left - 1;
-                let at = 64 * number + bit as usize;
+                let at = BITS * number + bit as usize;
                 let bin = self.bins.of(frame.red[at], frame.green[at], frame.blue[at]);
                 let has = self.model.value(bin) >= self.config.colour_min;
-                *word &= !(u64::from(!has) << bit);
+                kept |= Word::from(has) << bit;
             }
+            *word = kept;
         }
     }
 

@@ -1,13 +1,14 @@
 //! What the symbol table of the kernels' image says.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
 use object::{File, Object, ObjectSection, ObjectSymbol, SymbolKind};
 
 use super::calls::Calls;
-use super::symbols::{address_of, entry_and_return};
+use super::symbols::{address_of, entry_and_return, entry_and_returns};
 
 /// What a kernel's name begins with in the image.
 pub const PREFIX: &str = "tenax_kernel_";
@@ -19,8 +20,75 @@ pub struct Kernel {
     pub name: String,
     /// Its first instruction.
     pub entry: u64,
-    /// The instruction that it returns to.
-    pub after: u64,
+    /// The instructions that it returns to.
+    pub after: Vec<u64>,
+}
+
+impl Kernel {
+    /// Every function whose name begins with [`PREFIX`], by address.
+    fn all(file: &File<'_>) -> Result<Vec<Self>> {
+        let mut kernels = Vec::new();
+        for symbol in file.symbols().filter(|symbol| symbol.kind() == SymbolKind::Text) {
+            if let Some(name) = symbol.name()?.strip_prefix(PREFIX) {
+                let (entry, after) = entry_and_return(file, symbol.name()?)?;
+                kernels.push(Self { name: name.to_owned(), entry, after: vec![after] });
+            }
+        }
+        ensure!(!kernels.is_empty(), "has no function that begins with `{PREFIX}`");
+        kernels.sort_by_key(|kernel| kernel.entry);
+        Ok(kernels)
+    }
+}
+
+/// Addresses in the image of a small camera.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PictureSymbols {
+    /// The whole of a picture, and its parts.
+    pub kernels: Vec<Kernel>,
+    /// Where the core stands while the host uses its memory.
+    pub next: u64,
+    /// Where the addresses of the three planes are.
+    pub planes: u64,
+    /// When the picture was taken, and whether colours are learned.
+    pub orders: u64,
+    /// What was seen.
+    pub said: u64,
+    /// Bytes of the heap that are in use.
+    pub heap: u64,
+    /// RAM above the image's variables.
+    pub stack: Range<u64>,
+    /// Bytes of variables.
+    pub variables: u64,
+}
+
+impl PictureSymbols {
+    /// Parts of a picture, as they are called and as their mangled names end.
+    const PARTS: [(&str, &str); 3] =
+        [("markers", "7Markers6follow"), ("object", "7Tracker4step"), ("moves", "6motion4flow")];
+
+    /// Reads them from an ELF file. Fails if it is not that image.
+    pub fn read(elf: &Path) -> Result<Self> {
+        let bytes = std::fs::read(elf).with_context(|| format!("reading the image {}", elf.display()))?;
+        let file = File::parse(&*bytes).context("not an ELF file")?;
+        let mut kernels = Kernel::all(&file)?;
+        for (name, mangled) in Self::PARTS {
+            let names = || file.symbols().filter_map(|symbol| symbol.name().ok());
+            let symbol = names().find(|symbol| symbol.contains(mangled)).context(mangled)?;
+            let (entry, after) = entry_and_returns(&file, symbol)?;
+            kernels.push(Kernel { name: name.to_owned(), entry, after });
+        }
+        let stack = address_of(&file, "__sheap")?..address_of(&file, "_stack_start")?;
+        Ok(Self {
+            kernels,
+            next: address_of(&file, "tenax_kernels_next")? & !1,
+            planes: address_of(&file, "TENAX_KERNELS_PLANES")?,
+            orders: address_of(&file, "TENAX_KERNELS_ORDERS")?,
+            said: address_of(&file, "TENAX_KERNELS_SAID")?,
+            heap: address_of(&file, "TENAX_KERNELS_HEAP")?,
+            variables: stack.start - (stack.end & !0xFF_FFFF),
+            stack,
+        })
+    }
 }
 
 /// The kernels whose state and constants the image tells, in its order.
@@ -100,17 +168,8 @@ impl KernelSymbols {
 
     fn parse(elf: &[u8]) -> Result<Self> {
         let file = File::parse(elf).context("not an ELF file")?;
-        let mut kernels = Vec::new();
-        for symbol in file.symbols().filter(|symbol| symbol.kind() == SymbolKind::Text) {
-            if let Some(name) = symbol.name()?.strip_prefix(PREFIX) {
-                let (entry, after) = entry_and_return(&file, symbol.name()?)?;
-                kernels.push(Kernel { name: name.to_owned(), entry, after });
-            }
-        }
-        ensure!(!kernels.is_empty(), "has no function that begins with `{PREFIX}`");
-        kernels.sort_by_key(|kernel| kernel.entry);
         Ok(Self {
-            kernels,
+            kernels: Kernel::all(&file)?,
             next: address_of(&file, "tenax_kernels_next")? & !1,
             orders: address_of(&file, "TENAX_KERNELS_ORDERS")?,
             reading: address_of(&file, "TENAX_KERNELS_READING")?,

@@ -43,10 +43,19 @@ impl Symbols {
 
 /// Where a function begins, and the instruction that it returns to. It must be called from one place only.
 pub(super) fn entry_and_return(file: &File<'_>, name: &str) -> Result<(u64, u64)> {
+    let (entry, after) = entry_and_returns(file, name)?;
+    match after[..] {
+        [after] => Ok((entry, after)),
+        [] => bail!("{name} is never called"),
+        _ => bail!("{name} is called from more than one place: its cost cannot be told"),
+    }
+}
+
+/// Where a function begins, and every instruction that it returns to.
+pub(super) fn entry_and_returns(file: &File<'_>, name: &str) -> Result<(u64, Vec<u64>)> {
     let entry = entry(file, name)?;
     let text = file.section_by_name(".text").context("has no .text section")?;
-    let after = only_return_address(text.data()?, text.address(), entry).with_context(|| name.to_owned())?;
-    Ok((entry, after))
+    Ok((entry, return_addresses(text.data()?, text.address(), entry)))
 }
 
 /// Where a function begins.
@@ -62,20 +71,16 @@ pub(super) fn address_of(file: &File<'_>, name: &str) -> Result<u64> {
         .with_context(|| format!("has no symbol `{name}`"))
 }
 
-/// The address behind the only call of `target` in `text`, which begins at `base`.
-fn only_return_address(text: &[u8], base: u64, target: u64) -> Result<u64> {
-    let mut found = text.windows(4).enumerate().step_by(2).filter_map(|(offset, bytes)| {
+/// The addresses behind the calls of `target` in `text`, which begins at `base`.
+fn return_addresses(text: &[u8], base: u64, target: u64) -> Vec<u64> {
+    let found = text.windows(4).enumerate().step_by(2).filter_map(|(offset, bytes)| {
         let after = base + offset as u64 + 4;
         let first = u16::from_le_bytes([bytes[0], bytes[1]]);
         let second = u16::from_le_bytes([bytes[2], bytes[3]]);
         let reached = after.wrapping_add_signed(branch_with_link(first, second)?);
         (reached == target).then_some(after)
     });
-    match (found.next(), found.next()) {
-        (Some(after), None) => Ok(after),
-        (None, _) => bail!("is never called"),
-        (Some(_), Some(_)) => bail!("is called from more than one place: its cost cannot be told"),
-    }
+    found.collect()
 }
 
 /// The offset of a BL (immediate) in encoding T1, from the instruction behind it. (ARMv7-M manual, A7.7.18)
@@ -106,11 +111,11 @@ mod tests {
     }
 
     #[test]
-    fn only_one_call_will_do() {
+    fn every_call_is_found() {
         let call_next = [0x00, 0xF0, 0x00, 0xF8];
         let mut text = call_next.to_vec();
         text.extend([0x70, 0x47]);
-        assert_eq!(only_return_address(&text, 0x100, 0x104).unwrap(), 0x104);
-        assert!(only_return_address(&text, 0x100, 0x200).is_err());
+        assert_eq!(return_addresses(&text, 0x100, 0x104), [0x104]);
+        assert!(return_addresses(&text, 0x100, 0x200).is_empty());
     }
 }

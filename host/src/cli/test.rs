@@ -57,7 +57,10 @@ fn training() -> Command {
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     // Before the tests, so that its messages are seen and what is to be installed is said once.
-    jobs::run(vec![job(&workspace::root()?, &[Binary::Image, Binary::Kernels, Binary::Frames])])?;
+    jobs::run(vec![job(
+        &workspace::root()?,
+        &[Binary::Image, Binary::Kernels, Binary::Frames, Binary::Pictures],
+    )])?;
     let mut sum = Sum::default();
     for mut command in [logic(), tool(), training()] {
         // The next is run even if one fails: a person wants to know of all that is broken.

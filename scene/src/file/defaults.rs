@@ -153,9 +153,9 @@ impl Default for Skin {
             // Assumed, as the rest: a marker is found to a tenth of a pixel, and 1 N on it moves it by 10.
             force_noise_mn: Millinewtons::of(10.0),
             speckle_e4: Gain::of(4.0),
-            // On drawn pictures (docs/vision.md) the crate's angle is off by 0.8 degrees, and 0.3 % of its pictures are wrong, 1.5 in a row.
+            // On drawn pictures (docs/vision.md) the crate's angle is off by 0.33 degrees, and 0.05 % of its pictures are wrong.
             // These are worse.
-            angle_noise_deg: Degrees::of(0.85),
+            angle_noise_deg: Degrees::of(0.5),
             wrong_part: Part::of(0.01),
             wrong_pictures: Gain::of(3.0),
             dark_from_s: None,

@@ -16,9 +16,9 @@ const RATE_HZ: f64 = 30.0;
 /// A marker's place is that of the one that is drawn this near, px.
 const SAME_PX: f64 = 3.0;
 /// Faster than this, px a picture, it slips; slower than a sixth of it, it does not; between is not scored.
-const SLIPS_PX: f64 = 0.3;
+pub const SLIPS_PX: f64 = 0.3;
 /// Pictures after a slip in which what moved is still seen to have moved.
-const AFTER: u32 = 8;
+pub const AFTER: u32 = 8;
 /// Shear below which a force has no direction, px.
 const SHEAR_MIN_PX: f64 = 1.0;
 
@@ -274,7 +274,7 @@ fn far(at: tenax_vision::Point, (x, y): (f64, f64)) -> f64 {
 }
 
 /// How far the object moved against the skin from one picture to the next, px; of a turn, 60 px from the middle.
-fn moved(before: &State, now: &State) -> f64 {
+pub fn moved(before: &State, now: &State) -> f64 {
     let on_skin = |state: &State| (state.object.0 - state.shear_px.0, state.object.1 - state.shear_px.1);
     let ((ax, ay), (bx, by)) = (on_skin(before), on_skin(now));
     (bx - ax).hypot(by - ay) + 60.0 * (now.angle_rad - before.angle_rad).abs()

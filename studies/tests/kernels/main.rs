@@ -1,6 +1,8 @@
 //! The array detector on the emulated core against this machine's, and what it costs there. Builds its image first.
 #![cfg(feature = "emulator")]
 
+mod pictures;
+
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 

@@ -3,6 +3,7 @@
 //! A row of the window is a word of bits, so that growing a blob by one pixel in all directions is a few shifts.
 
 use crate::frame::{HEIGHT, Plane, Point, WIDTH};
+use crate::mask::eight_bits;
 
 /// Side of the window, px (FingerVision 2017, section IV).
 pub const SIDE: usize = 30;
@@ -81,13 +82,15 @@ impl Window {
 
     /// The pixels that are below `threshold`, a word a row.
     pub fn below(&self, threshold: u8) -> [u32; SIDE] {
-        self.levels.map(|row| {
-            let mut bits = 0;
-            for (column, &level) in row.iter().enumerate() {
-                bits |= u32::from(level < threshold) << column;
+        let mut rows = [0; SIDE];
+        for (bits, levels) in rows.iter_mut().zip(&self.levels) {
+            let mut below = [0u8; 32];
+            below.iter_mut().zip(levels).for_each(|(below, &level)| *below = u8::from(level < threshold));
+            for (place, eight) in below.as_chunks::<8>().0.iter().enumerate() {
+                *bits |= u32::from(eight_bits(*eight)) << (8 * place);
             }
-            bits
-        })
+        }
+        rows
     }
 
     /// The blobs of at least `area_min` pixels in `dark`; at most as many as `into` holds. Returns how many there are.

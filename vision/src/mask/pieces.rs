@@ -1,6 +1,6 @@
 //! The connected pieces of a set of pixels, and which of them to keep.
 
-use super::{Mask, WORDS, flood};
+use super::{BITS, Mask, WORDS, Word, flood};
 use crate::frame::HEIGHT;
 
 /// Pieces that [`Mask::keep_large`] tells apart.
@@ -75,10 +75,10 @@ impl Mask {
         }
     }
 
-    /// Whether a pixel is this near to the border, px below 64.
+    /// Whether a pixel is this near to the border, px, fewer than a word has.
     pub fn comes_within(&self, px: usize) -> bool {
         let ends = self.rows[..px].iter().chain(&self.rows[HEIGHT - px..]).flatten().any(|&word| word != 0);
-        let (left, right) = ((1 << px) - 1, u64::MAX << (64 - px));
+        let (left, right) = ((1 << px) - 1, Word::MAX << (BITS - px));
         ends || self.rows.iter().any(|row| row[0] & left != 0 || row[WORDS - 1] & right != 0)
     }
 

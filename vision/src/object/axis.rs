@@ -4,12 +4,12 @@
 //! the object. A straight rim does not turn: most of it is where it should be. Each rim is a row of points, the outermost
 //! pixels of slices across the axis, and the line is the one that most of them lie on.
 
-use crate::frame::{PIXELS, Point, WIDTH};
+use crate::frame::{Point, WIDTH};
 use crate::mask::{Mask, Moments};
 use crate::rectify::Rectifier;
 
 /// Below this eccentricity an object has no long rims.
-const ECCENTRICITY_MIN: f32 = 0.3;
+const ECCENTRICITY_MIN: f32 = 0.1;
 /// How long a slice is along the axis, px.
 const SLICE_PX: f32 = 2.0;
 /// Slices, from the middle half of them to each side.
@@ -23,7 +23,13 @@ const NEAR_PX: f32 = 2.5;
 /// Share of the slices that must lie on a line for it to be a rim.
 const SHARE_MIN: f32 = 0.25;
 /// How far a rim may be off the moments' direction, radians.
-const OFF_MAX: f32 = 0.5;
+const OFF_MAX: f32 = 1.0;
+/// Where less of the outline lies on the rims, something leans on the object and has turned the moments: ...
+const SHARE_CLEAR: f32 = 0.75;
+/// ... rims are looked for there, too, radians aside.
+const ASIDE: [f32; 2] = [-0.5, 0.5];
+/// Outermost pixels that are looked at.
+const PLACES_MAX: usize = 2048;
 /// Times that the slices are cut anew, across the axis that was found.
 const ROUNDS: usize = 3;
 /// Steps of the reweighted least squares.
@@ -35,63 +41,110 @@ struct Rim {
     count: usize,
 }
 
-/// A line: its slope, and how well that is known.
+/// A line: its slope, how well that is known, and the share of the points that lie on it.
 #[derive(Clone, Copy)]
 struct Line {
     slope: f32,
     weight: f32,
+    share: f32,
 }
 
 /// The direction of the long axis, radians from -pi/2 to pi/2, from x towards y (down): that of the long rims if there are such,
 /// else that of `moments`. Behind a lens it is that of the flat world, as the moments are.
-pub fn angle_rad(object: &Mask, moments: &Moments, lens: Option<&Rectifier>) -> f32 {
+pub fn find(object: &Mask, moments: &Moments, lens: Option<&Rectifier>) -> Rims {
     let coarse = moments.angle_rad();
+    let none = Rims { angle: coarse, share: 0.0 };
     if moments.eccentricity() < ECCENTRICITY_MIN {
-        return coarse;
+        return none;
     }
-    let mut angle = coarse;
-    for _ in 0..ROUNDS {
-        let Some(slope) = slope_of(object, moments.middle, angle, lens) else { return coarse };
-        angle += libm::atanf(slope);
+    let outline = Outline::of(object, moments.middle, lens);
+    let mut best = outline.rims(coarse);
+    if best.share < SHARE_CLEAR {
+        for aside in ASIDE {
+            let other = outline.rims(coarse + aside);
+            if other.share > best.share {
+                best = other;
+            }
+        }
     }
-    if (angle - coarse).abs() > OFF_MAX {
-        return coarse;
+    if best.share == 0.0 || (best.angle - coarse).abs() > OFF_MAX {
+        return none;
     }
     let half = core::f32::consts::FRAC_PI_2;
-    match angle {
-        _ if angle > half => angle - 2.0 * half,
-        _ if angle < -half => angle + 2.0 * half,
-        _ => angle,
-    }
+    let angle = match best.angle {
+        angle if angle > half => angle - 2.0 * half,
+        angle if angle < -half => angle + 2.0 * half,
+        angle => angle,
+    };
+    Rims { angle, ..best }
 }
 
-/// By how much both rims lean from the direction `angle`. None without rims.
-fn slope_of(object: &Mask, middle: Point, angle: f32, lens: Option<&Rectifier>) -> Option<f32> {
-    let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));
-    let (mut low, mut high) = ([f32::INFINITY; SLICES], [f32::NEG_INFINITY; SLICES]);
-    object.for_each(|at| {
-        let place = lens.map_or_else(|| place(at), |lens| lens.place(at));
-        let (dx, dy) = (place.x - middle.x, place.y - middle.y);
-        let (along, across) = (dx * cos + dy * sin, dy * cos - dx * sin);
-        let slice = along / SLICE_PX + SLICES as f32 / 2.0;
-        if (0.0..SLICES as f32).contains(&slice) {
-            let slice = slice as usize;
-            (low[slice], high[slice]) = (low[slice].min(across), high[slice].max(across));
+/// The places of an object's outermost pixels, from its middle.
+struct Outline {
+    places: [(f32, f32); PLACES_MAX],
+    count: usize,
+}
+
+/// The direction of both long rims, radians, and the share of the outline that lies on them.
+#[derive(Clone, Copy)]
+pub struct Rims {
+    pub angle: f32,
+    /// 0: there are none, and the direction is that of the moments.
+    pub share: f32,
+}
+
+impl Outline {
+    fn of(object: &Mask, middle: Point, lens: Option<&Rectifier>) -> Self {
+        let (mut inside, mut rim) = (object.clone(), object.clone());
+        inside.erode(1);
+        rim.subtract(&inside);
+        let mut outline = Self { places: [(0.0, 0.0); PLACES_MAX], count: 0 };
+        rim.for_each(|at| {
+            let place = lens.map_or_else(|| place(at), |lens| lens.place(at));
+            if let Some(slot) = outline.places.get_mut(outline.count) {
+                (*slot, outline.count) = ((place.x - middle.x, place.y - middle.y), outline.count + 1);
+            }
+        });
+        outline
+    }
+
+    /// The long rims near this direction; their share is 0 if there are none.
+    fn rims(&self, from: f32) -> Rims {
+        let mut rims = Rims { angle: from, share: 0.0 };
+        for _ in 0..ROUNDS {
+            let Some((slope, share)) = self.slope(rims.angle) else { return Rims { share: 0.0, ..rims } };
+            rims = Rims { angle: rims.angle + libm::atanf(slope), share };
         }
-    });
-    let (low, high) = (Rim::of(&low)?.line(), Rim::of(&high)?.line());
-    match (low, high) {
-        (Some(low), Some(high)) => {
-            // The straighter rim says more.
-            let (a, b) = (low.weight * low.weight, high.weight * high.weight);
-            Some((low.slope * a + high.slope * b) / (a + b))
+        rims
+    }
+
+    /// By how much both rims lean from the direction `angle`, and their share. None without rims.
+    fn slope(&self, angle: f32) -> Option<(f32, f32)> {
+        let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));
+        let (mut low, mut high) = ([f32::INFINITY; SLICES], [f32::NEG_INFINITY; SLICES]);
+        for (dx, dy) in &self.places[..self.count] {
+            let (along, across) = (dx * cos + dy * sin, dy * cos - dx * sin);
+            let slice = along / SLICE_PX + SLICES as f32 / 2.0;
+            if (0.0..SLICES as f32).contains(&slice) {
+                let slice = slice as usize;
+                (low[slice], high[slice]) = (low[slice].min(across), high[slice].max(across));
+            }
         }
-        (low, high) => low.or(high).map(|line| line.slope),
+        let (low, high) = (Rim::of(&low)?.line(), Rim::of(&high)?.line());
+        let share = [low, high].iter().flatten().map(|line| line.share).sum::<f32>() / 2.0;
+        let slope = match (low, high) {
+            (Some(low), Some(high)) => {
+                // The straighter rim says more.
+                let (a, b) = (low.weight * low.weight, high.weight * high.weight);
+                (low.slope * a + high.slope * b) / (a + b)
+            }
+            (low, high) => low.or(high)?.slope,
+        };
+        Some((slope, share))
     }
 }
 
 fn place(at: usize) -> Point {
-    debug_assert!(at < PIXELS);
     Point { x: (at % WIDTH) as f32, y: (at / WIDTH) as f32 }
 }
 
@@ -114,10 +167,7 @@ impl Rim {
     /// The line that most of the points lie on, None if they lie on none.
     fn line(&self) -> Option<Line> {
         let points = &self.points[..self.count];
-        let mut slope = self.coarse_slope();
-        let mut offsets = [0.0; SLICES];
-        offsets.iter_mut().zip(points).for_each(|(offset, (x, y))| *offset = y - slope * x);
-        let mut offset = median(&mut offsets[..self.count]);
+        let (mut slope, mut offset) = self.coarse();
         let (mut weight, mut near) = (0.0, 0);
         for _ in 0..STEPS {
             let (mut w, mut wx, mut wy, mut wxx, mut wxy) = (0.0, 0.0, 0.0, 0.0, 0.0);
@@ -140,32 +190,32 @@ impl Rim {
             offset = (wy - slope * wx) / w;
             weight = det / w;
         }
-        (near as f32 >= SHARE_MIN * points.len() as f32).then_some(Line { slope, weight })
+        let share = near as f32 / points.len() as f32;
+        (share >= SHARE_MIN).then_some(Line { slope, weight, share })
     }
 
-    /// The median slope between points that are far apart.
-    fn coarse_slope(&self) -> f32 {
-        let mut slopes = [0.0; 2 * SLICES];
-        let mut count = 0;
+    /// Slope and offset of the line through two points that are far apart near which most of the others lie.
+    fn coarse(&self) -> (f32, f32) {
+        let points = &self.points[..self.count];
+        let mut best = (0, 0.0, 0.0);
         for reach in [self.count / 3, self.count / 2, 2 * self.count / 3] {
-            for (&(ax, ay), &(bx, by)) in self.points.iter().zip(&self.points[reach..self.count]) {
-                slopes[count] = (by - ay) / (bx - ax);
-                count += 1;
+            for (&(ax, ay), &(bx, by)) in points.iter().zip(&points[reach..]).step_by(2) {
+                let slope = (by - ay) / (bx - ax);
+                let offset = ay - slope * ax;
+                let near = points.iter().filter(|(x, y)| (y - offset - slope * x).abs() < NEAR_PX).count();
+                if near > best.0 {
+                    best = (near, slope, offset);
+                }
             }
         }
-        median(&mut slopes[..count])
+        (best.1, best.2)
     }
-}
-
-/// The middle one of some values, which it sorts in part.
-fn median(values: &mut [f32]) -> f32 {
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f32::total_cmp).1
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::frame::PIXELS;
 
     fn bar(angle: f32, half: (f32, f32), more: impl Fn(f32, f32, bool) -> bool) -> Mask {
         let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));
@@ -185,7 +235,7 @@ mod tests {
         let moments = mask.moments().unwrap();
         let wrapped = |off: f32| off - core::f32::consts::PI * libm::roundf(off / core::f32::consts::PI);
         (
-            wrapped(angle_rad(mask, &moments, None) - angle).to_degrees().abs(),
+            wrapped(find(mask, &moments, None).angle - angle).to_degrees().abs(),
             wrapped(moments.angle_rad() - angle).to_degrees().abs(),
         )
     }
@@ -221,6 +271,6 @@ mod tests {
         assert!(off(0.4, &cone).0 < 0.7, "{:?}", off(0.4, &cone));
         let disc = bar(0.0, (0.0, 0.0), |along, across, _| along * along + across * across < 2_500.0);
         let moments = disc.moments().unwrap();
-        assert_eq!(angle_rad(&disc, &moments, None), moments.angle_rad());
+        assert_eq!(find(&disc, &moments, None).angle, moments.angle_rad());
     }
 }

@@ -13,6 +13,8 @@ pub const VALUES: usize = 6;
 pub const BINS: usize = VALUES * HUES * SATURATIONS;
 /// Bits of each colour that the table looks at: with 5 the hue of a nearly grey card falls into bins at random.
 const BITS: u32 = 6;
+/// Whether bins are looked up: the table takes half a megabyte, which a microcontroller does not have.
+const LOOKED_UP: bool = !cfg!(feature = "quarter");
 
 /// The bin of a colour.
 pub fn bin(red: u8, green: u8, blue: u8) -> u16 {
@@ -34,7 +36,12 @@ pub fn bin(red: u8, green: u8, blue: u8) -> u16 {
     (step + hue as usize * SATURATIONS + saturation as usize) as u16
 }
 
-/// The bins of all colours, looked up.
+/// The middle of the levels that the table does not tell apart.
+const fn coarse(level: u8) -> u8 {
+    level >> (8 - BITS) << (8 - BITS) | 1 << (7 - BITS)
+}
+
+/// The bins of all colours.
 #[derive(Clone, Debug)]
 pub struct Bins {
     table: Box<[u16]>,
@@ -49,10 +56,10 @@ impl Default for Bins {
 impl Bins {
     /// Computes the table.
     pub fn new() -> Self {
-        let mut table = vec![0; 1 << (3 * BITS)].into_boxed_slice();
+        let mut table = vec![0; if LOOKED_UP { 1 << (3 * BITS) } else { 0 }].into_boxed_slice();
         for (at, entry) in table.iter_mut().enumerate() {
-            let middle = |shift: u32| ((at >> shift << (8 - BITS)) as u8) | 1 << (7 - BITS);
-            *entry = bin(middle(2 * BITS), middle(BITS), middle(0));
+            let level = |shift: u32| coarse((at >> shift << (8 - BITS)) as u8);
+            *entry = bin(level(2 * BITS), level(BITS), level(0));
         }
         Self { table }
     }
@@ -60,6 +67,9 @@ impl Bins {
     /// The bin of a colour.
     #[inline]
     pub fn of(&self, red: u8, green: u8, blue: u8) -> usize {
+        if !LOOKED_UP {
+            return usize::from(bin(coarse(red), coarse(green), coarse(blue)));
+        }
         let level = |colour: u8| usize::from(colour >> (8 - BITS));
         usize::from(self.table[level(red) << (2 * BITS) | level(green) << BITS | level(blue)])
     }

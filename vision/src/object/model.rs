@@ -5,11 +5,11 @@ use alloc::vec;
 
 use super::colour::BINS;
 
-/// A count of pixels for each bin.
-pub type Histogram = [u32; BINS];
+/// A count of pixels for each bin: one colour covers less than 65 536 of them.
+pub type Histogram = [u16; BINS];
 
-/// Frames that the model is made of: the last ones in which something moved.
-pub const FRAMES: usize = 200;
+/// Frames that the model is made of: the last ones in which something moved. A microcontroller has no memory for the paper's 200.
+pub const FRAMES: usize = if cfg!(feature = "quarter") { 16 } else { 200 };
 /// How much of the background is taken away, in halves (f_bg = 1.5).
 const BACKGROUND_HALVES: u32 = 3;
 /// What is left counts half (f_gain = 0.5).
@@ -43,10 +43,11 @@ impl ObjectModel {
         let bins =
             self.added[self.next].iter_mut().zip(self.sums.iter_mut()).zip(moving.iter().zip(background));
         for ((slot, sum), (&moving, &background)) in bins {
-            let rest = (2 * moving).saturating_sub(BACKGROUND_HALVES * background) / 2;
-            let new = (rest * GAIN_HALVES / 2).min(FULL);
-            *sum = *sum + new - u32::from(*slot);
-            *slot = new as u8;
+            let rest = (2 * u32::from(moving)).saturating_sub(BACKGROUND_HALVES * u32::from(background)) / 2;
+            let new = (rest * GAIN_HALVES / 2).min(FULL) as u8;
+            // At most 200 times 255.
+            *sum = *sum - u16::from(*slot) + u16::from(new);
+            *slot = new;
         }
         self.next = (self.next + 1) % FRAMES;
     }
@@ -54,7 +55,7 @@ impl ObjectModel {
     /// The model's value at a bin, 0 to 255: the back projection of a pixel of this colour.
     #[inline]
     pub fn value(&self, bin: usize) -> u8 {
-        self.sums[bin].min(FULL) as u8
+        self.sums[bin].min(FULL as u16) as u8
     }
 
     /// Knows no object again.

@@ -7,6 +7,7 @@
 mod bench;
 pub mod cycles;
 mod meter;
+pub mod pictures;
 
 use std::collections::BTreeMap;
 use std::num::NonZeroU64;
@@ -154,7 +155,7 @@ pub fn costs(image: &Path) -> Result<Vec<Cost>> {
 fn execute(images: &[Image], symbols: &KernelSymbols, bench: Bench) -> Result<Finished<Nucleo, Bench>> {
     let board = Nucleo::new(Models::Quick, INSTRUCTIONS_PER_SECOND, Line::default())?;
     let mut session = Session::new(Box::new(board), 0, VirtualNanos(1))?;
-    for address in Meters::watched(symbols).chain([symbols.next]) {
+    for address in Meters::watched(&symbols.kernels).chain([symbols.next]) {
         session.watch(Watch::Instruction(address));
     }
     let mut finished = emulator::run(session, &Start::new(images), bench).context("the emulator")?;

@@ -8,6 +8,8 @@ mod frames;
 #[path = "../kernels/mailbox.rs"]
 mod mailbox;
 mod rivals;
+#[path = "../kernels/stand.rs"]
+mod stand;
 
 use core::hint::black_box;
 
@@ -28,7 +30,7 @@ fn main() -> ! {
     let mut detector = Detector::new(model);
     let mut frames = Frames::default();
     loop {
-        mailbox::tenax_kernels_next();
+        stand::tenax_kernels_next();
         if let Some(frame) = frames::comes() {
             frames.run(&frame);
             continue;

@@ -1,6 +1,5 @@
-//! Memory that the host writes and reads while the core stands still at [`tenax_kernels_next`], and what every image that it drives has.
+//! Memory that the host writes and reads while the core stands still at [`tenax_kernels_next`](crate::stand::tenax_kernels_next).
 
-use core::panic::PanicInfo;
 use core::sync::atomic::{AtomicI32, AtomicU16, AtomicU32, Ordering::Relaxed};
 
 use tenax_logic::array::{ArrayVerdict, ELEMENTS, FEATURES, Reading};
@@ -32,13 +31,6 @@ static TENAX_KERNELS_LOGIT: AtomicI32 = AtomicI32::new(0);
 /// To the host: the features that the logit is of.
 #[unsafe(no_mangle)]
 static TENAX_KERNELS_FEATURES: [AtomicU16; FEATURES] = [const { AtomicU16::new(0) }; FEATURES];
-
-/// Where the core stands while the host reads the last answer and writes the next reading.
-#[inline(never)]
-#[unsafe(no_mangle)]
-pub extern "C" fn tenax_kernels_next() {
-    cortex_m::asm::nop();
-}
 
 /// What the host asks for.
 pub struct Orders {
@@ -77,12 +69,4 @@ fn verdict_bits(verdict: ArrayVerdict) -> u32 {
 #[unsafe(no_mangle)]
 pub fn tenax_kernel_slow_frame(detector: &mut Detector, reading: &Reading) -> ArrayVerdict {
     detector.push(reading)
-}
-
-#[panic_handler]
-fn on_panic(_: &PanicInfo) -> ! {
-    // The host notices that nobody comes for the next reading.
-    loop {
-        cortex_m::asm::nop();
-    }
 }

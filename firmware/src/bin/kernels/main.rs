@@ -8,6 +8,7 @@
 
 mod mailbox;
 mod parts;
+mod stand;
 
 use core::hint::black_box;
 
@@ -27,7 +28,7 @@ fn main() -> ! {
     let mut detector = Detector::new(model);
     let mut parts = Parts::default();
     loop {
-        mailbox::tenax_kernels_next();
+        stand::tenax_kernels_next();
         let orders = mailbox::orders();
         let reading = mailbox::reading();
         if orders.forget {

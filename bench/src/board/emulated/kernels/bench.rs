@@ -68,7 +68,7 @@ impl Bench {
             frames: frames.to_vec(),
             fed: 0,
             outcome: Outcome { answers: vec![Vec::new(); recordings.len()], ..Outcome::default() },
-            meters: Meters::new(symbols),
+            meters: Meters::new(&symbols.kernels),
             done: false,
             looks: 0,
             progress: Some(progress),

@@ -35,7 +35,7 @@ impl Tracer {
 
     /// One for the tick of the image that is flashed. Fails if it is none.
     pub fn of_tick(elf: &Path, symbols: &Symbols) -> Result<Self> {
-        let tick = Kernel { name: TICK.to_owned(), entry: symbols.tick, after: symbols.after_tick };
+        let tick = Kernel { name: TICK.to_owned(), entry: symbols.tick, after: vec![symbols.after_tick] };
         Self::of(elf, &[tick], |name| name == TICK, Flash::F411)
     }
 
@@ -73,7 +73,7 @@ impl Tracer {
             if let (Some(core), Some((at, own))) = (core.as_mut(), last) {
                 core.execute(at, own, next);
             }
-            if address == kernel.after
+            if kernel.after.contains(&address)
                 && let Some(core) = core.take()
             {
                 *calls += 1;

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use rigless::emulator::Hit;
 
-use crate::image::kernels::{Kernel, KernelSymbols};
+use crate::image::kernels::Kernel;
 
 /// What a kernel cost, in instructions from its entry to where it returned.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -38,25 +38,25 @@ struct Meter {
 }
 
 impl Meters {
-    pub fn new(symbols: &KernelSymbols) -> Self {
+    pub fn new(kernels: &[Kernel]) -> Self {
         let meter = |kernel: &Kernel| Meter {
             kernel: kernel.clone(),
             entered: None,
             cost: Cost { name: kernel.name.clone(), calls: 0, least: u64::MAX, most: 0, sum: 0 },
         };
-        Self(symbols.kernels.iter().map(meter).collect())
+        Self(kernels.iter().map(meter).collect())
     }
 
     /// The instructions to be told about, each once: a kernel may return to where the next one begins.
-    pub fn watched(symbols: &KernelSymbols) -> impl Iterator<Item = u64> {
-        let ends = symbols.kernels.iter().flat_map(|kernel| [kernel.entry, kernel.after]);
+    pub fn watched(kernels: &[Kernel]) -> impl Iterator<Item = u64> {
+        let ends = kernels.iter().flat_map(|kernel| kernel.after.iter().copied().chain([kernel.entry]));
         ends.collect::<BTreeSet<_>>().into_iter()
     }
 
     /// The core is about to run a watched instruction.
     pub fn hit(&mut self, hit: Hit) {
         for meter in &mut self.0 {
-            if hit.address == meter.kernel.after
+            if meter.kernel.after.contains(&hit.address)
                 && let Some(entered) = meter.entered.take()
             {
                 let instructions = hit.instruction_count - entered;
