@@ -22,7 +22,7 @@ pub async fn commands(mut line: RingBufferedUartRx<'static>) -> ! {
             counts::BAD_FRAMES.add_one();
             continue;
         };
-        for &byte in &bytes[..count] {
+        for &byte in bytes.iter().take(count) {
             match receiver.push_if::<Down>(byte, || allowance.admits(counts::last_frame())) {
                 None => {}
                 // Never waits: while it did, bytes that came would be lost in the middle of a frame.

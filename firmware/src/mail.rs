@@ -141,20 +141,14 @@ pub fn save(record: Record) {
 }
 
 /// The next record to save; waits for one.
-pub async fn next_record() -> Record {
-    let record = wait_for(&RECORD_WAITING, || RECORD.lock(Cell::take)).await;
-    RECORD_WAITS.store(false, Relaxed);
-    record
-}
-
-/// Waits until `take` gives something.
-async fn wait_for<T>(waiting: &AtomicWaker, take: impl Fn() -> Option<T>) -> T {
+pub fn next_record() -> impl Future<Output = Record> {
     poll_fn(|context| {
         // Before it is asked: what comes in between wakes.
-        waiting.register(context.waker());
-        take().map_or(Poll::Pending, Poll::Ready)
+        RECORD_WAITING.register(context.waker());
+        let Some(record) = RECORD.lock(Cell::take) else { return Poll::Pending };
+        RECORD_WAITS.store(false, Relaxed);
+        Poll::Ready(record)
     })
-    .await
 }
 
 /// Says that a tick has ended, if anybody waits for it.

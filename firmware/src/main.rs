@@ -40,7 +40,7 @@ mod telemetry;
 
 use cortex_m::peripheral::SCB;
 use defmt_rtt as _;
-use embassy_executor::{InterruptExecutor, Spawner};
+use embassy_executor::{InterruptExecutor, SpawnError, SpawnToken, Spawner};
 use embassy_stm32::adc::AdcChannel;
 use embassy_stm32::gpio::Pull;
 use embassy_stm32::interrupt;
@@ -151,7 +151,7 @@ async fn main(spawner: Spawner) {
     // The first of all messages: a hello that comes after others would look like a second start.
     let after = if supplied { after } else { Some(Fault::SupplySagged) };
     mail::post(Up::Hello { frame_hz: FRAME_HZ as u16, after });
-    spawner.spawn(telemetry::telemetry(up).expect("one telemetry task"));
+    spawner.spawn(once(telemetry::telemetry(up)));
     if !supplied {
         // It is told why, and starts anew when there is enough to drive a motor with.
         while supply::is_low() {
@@ -163,8 +163,7 @@ async fn main(spawner: Spawner) {
         // Neither control nor what feeds the watchdog: the bridge stays as it is, off.
         core::future::pending::<()>().await;
     }
-    spawner
-        .spawn(commands::commands(down.into_ring_buffered(COMMAND_RING.take())).expect("one commands task"));
+    spawner.spawn(once(commands::commands(down.into_ring_buffered(COMMAND_RING.take()))));
     let control = CONTROL.init_with(|| control::Control::new(bridge, switches, button, watchdog));
     control.restore(|device| store::restore(device, &flash, &found));
     if !switched_on {
@@ -179,7 +178,12 @@ async fn main(spawner: Spawner) {
             store::restored(&flash, &found, mail::post);
         }
     });
-    spawner.spawn(store::store(flash, log).expect("one store task"));
+    spawner.spawn(once(store::store(flash, log)));
     let urgent = URGENT.start(interrupt::I2C3_ER);
-    urgent.spawn(control::control(scan, control).expect("one control task"));
+    urgent.spawn(once(control::control(scan, control)));
+}
+
+/// A task that is started here and nowhere else.
+fn once<S>(task: Result<SpawnToken<S>, SpawnError>) -> SpawnToken<S> {
+    task.expect("each task is started once")
 }

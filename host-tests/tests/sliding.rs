@@ -85,12 +85,12 @@ fn closing_that_does_not_help_ends_at_half_as_much_again() {
     assert!((LOAD_N + 0.1..slides_n - 0.5).contains(&held_n), "{held_n} N");
 }
 
-/// docs/safety.md, what a range still allows.
+/// What a laboratory may set on a trusted line: a hand that is worn hears it (`s1-mv` goes to 150 there).
 #[test]
-fn with_s1_at_its_highest_a_loud_slip_is_a_warning_still() {
+fn with_s1_deaf_to_it_a_loud_slip_is_a_warning_still() {
     let mut bench = Bench::holding(65);
-    let highest = SettingId::S1.row().max;
-    bench.fingertip.command(&Down::Set(Setting { id: SettingId::S1.number(), value: highest })).unwrap();
+    let deaf = 250;
+    bench.fingertip.command(&Down::Set(Setting { id: SettingId::S1.number(), value: deaf })).unwrap();
     bench.run(2_000);
     bench.vibration_mv = 300.0;
     bench.run(1_000);

@@ -1,6 +1,8 @@
 //! Requirements, hazards and tests, held against each other: `docs/safety/requirements.md`, the table of hazards in
 //! `docs/safety.md`, the comments `// Shows W1, R2.` above tests, and what the tests said when they last ran.
 
+pub mod soup;
+
 use std::collections::BTreeMap;
 use std::fmt;
 use std::fs;

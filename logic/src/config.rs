@@ -54,7 +54,7 @@ settings! {
     /// 1: no wearer, the reflex works without myosensors (a gripper on a robot). Set by muscle or button only
     42 NoWearer "no-wearer-flag" "flag" [0, 1] = 0 => Flag(no_wearer);
     /// Detectors that the reflex does not act on, the sum of: 1 Hebbian, 2 MLP, 4 photoelastic, 8 S2, 16 S1
-    74 DetectorsOff "detectors-off-mask" "mask" [0, 7, trusted 31] = 0 => Mask(detectors_off);
+    74 DetectorsOff "detectors-off-mask" "mask" [0, 7, trusted 0, 31] = 0 => Mask(detectors_off);
 }
 
 /// Every table of rows: a sense that joins adds its own here, and its part to what follows.
@@ -131,12 +131,24 @@ impl Config {
         Ok(())
     }
 
+    /// What a stroke has measured becomes S2, whatever a person may choose. False if no surface is like that.
+    pub(crate) fn measured(&mut self, s2_permille: i32) -> bool {
+        let is_friction = (150..=900).contains(&s2_permille);
+        if is_friction {
+            self.put(SettingId::S2, s2_permille);
+        }
+        is_friction
+    }
+
     /// Whoever relies on consent relies on the narrower ranges too.
     fn bound(&mut self) {
         for id in SettingId::ALL {
-            let (value, max) = (self.get(id), *id.row().range_in_force(self.line_trusted).end());
-            if value > max {
-                self.put(id, max);
+            let (min, max) = id.row().range_in_force(self.line_trusted).into_inner();
+            let value = self.get(id);
+            // Not by `clamp`, which panics where nobody can see that one is the lower.
+            let within = value.max(min).min(max);
+            if value != within {
+                self.put(id, within);
             }
         }
     }

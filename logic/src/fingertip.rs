@@ -10,7 +10,6 @@ mod link;
 mod told;
 mod verdicts;
 
-use crate::setting::SettingId;
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
@@ -375,7 +374,8 @@ impl Fingertip {
         let Some(measured) = self.detectors.s2.end_stroke(&self.config.friction) else {
             return;
         };
-        if self.set(SettingId::S2, measured.s2_permille.into()).is_ok() {
+        if self.config.measured(measured.s2_permille.into()) {
+            self.settings_changed = self.settings_changed.wrapping_add(1);
             self.journal.event(EventKind::Stroke {
                 mu_s_permille: measured.mu_s_permille,
                 s2_permille: measured.s2_permille,

@@ -242,4 +242,73 @@ mod tests {
         assert!(opened(&mut gate, false) > 0);
         assert_eq!(opened(&mut gate, true), 2_000_000, "nothing to drop");
     }
+
+    #[test]
+    fn both_envelopes_are_shown_and_co_contract_from_the_level_on_where_both_are_known() {
+        let mut gate = says(Wish::Rest, 0);
+        let mut co_contract = |mv: [Option<i16>; 2]| {
+            (0..).zip(mv).for_each(|(muscle, mv)| gate.show(muscle, mv));
+            assert_eq!([gate.flexor_mv(), gate.extensor_mv()], mv);
+            gate.is_co_contracted(&CONFIG)
+        };
+        assert!(co_contract([Some(200), Some(160)]));
+        assert!(!co_contract([Some(200), Some(159)]) && !co_contract([None, Some(200)]));
+        assert!(co_contract([Some(160), Some(2_000)]));
+        gate.take(Verdict::default());
+        assert!(!gate.is_co_contracted(&CONFIG));
+    }
+
+    // Shows W8.
+    #[test]
+    fn a_release_opens_slowly_until_its_time_is_over_nothing_is_felt_or_a_muscle_closes() {
+        let slowly = MotorDrive::Open(Duty::per_mille(300));
+        let mut gate = says(Wish::Rest, 0);
+        assert!(!gate.is_releasing() && !gate.is_active());
+        let mut lasts = |empty: bool| {
+            gate.release(true);
+            gate.tick(&CONFIG, empty);
+            let mut frames = 0;
+            while gate.is_releasing() && frames <= RELEASE_FRAMES {
+                assert_eq!(gate.wish(&CONFIG), slowly);
+                gate.tick(&CONFIG, empty);
+                assert!(gate.is_active(), "the reflex is silent");
+                gate.step_release(1);
+                frames += 1;
+            }
+            frames
+        };
+        // In an empty hand the first step leaves what is left then.
+        assert_eq!((lasts(false), lasts(true)), (RELEASE_FRAMES, RELEASED_FRAMES + 1));
+        assert_eq!(gate.wish(&CONFIG), MotorDrive::Coast);
+
+        let closes = Verdict { wish: Wish::Close, active: true, known: true, ..Verdict::default() };
+        for (verdict, goes_on) in [(closes, true), (Verdict { proven: true, ..closes }, false)] {
+            gate.release(true);
+            gate.take(verdict);
+            gate.step_release(1);
+            assert_eq!(gate.is_releasing(), goes_on, "{verdict:?}");
+        }
+        gate.release(true);
+        gate.release(false);
+        assert!(!gate.is_releasing());
+    }
+
+    /// Not a frame more, and activity renews nothing however long it lasts.
+    #[test]
+    fn what_is_not_proven_moves_the_hand_by_its_budget_to_the_frame() {
+        let config = GateConfig { slowest_permille: 400, ..CONFIG };
+        let frames = |wish, empty| {
+            let mut gate = Gate::default();
+            gate.take(Verdict { wish, active: true, known: true, ..Verdict::default() });
+            let all = (0..2 * RENEWED_AFTER).map(|_| {
+                gate.tick(&config, empty);
+                gate.wish(&config)
+            });
+            all.filter(|drive| *drive != MotorDrive::Coast).count() as u32
+        };
+        // Each tick counts what it is about to drive.
+        assert_eq!(frames(Wish::Open, false), OPENS_AT_MOST / 400 - 1);
+        assert_eq!(frames(Wish::Close, false), CLOSES_AT_MOST - 1);
+        assert_eq!(frames(Wish::Close, true), 2 * RENEWED_AFTER, "nothing to crush");
+    }
 }

@@ -16,15 +16,15 @@ pub struct Row {
     pub id: SettingId,
     /// What it is called on the command line and in scene files. It ends with the unit.
     pub name: &'static str,
-    /// A name that it had before and that scene files may still use.
-    pub was: Option<&'static str>,
     /// Its unit, for a person.
     pub unit: &'static str,
     /// The lowest value that is accepted.
     pub min: i32,
-    /// The highest: no combination of values in this range crushes, opens or deafens.
+    /// The highest: no mix of values in these ranges drops, crushes or deafens (`bench/tests/mixes.rs`).
     pub max: i32,
-    /// The highest where the line is trusted, for a laboratory: a detector may be silenced there.
+    /// The lowest where the line is trusted, for a laboratory.
+    pub min_if_trusted: i32,
+    /// The highest there: a detector may be silenced.
     pub max_if_trusted: i32,
     /// Its value until somebody changes it.
     pub default: i32,
@@ -42,7 +42,7 @@ impl Row {
     /// The values that are accepted, by whether the line is trusted.
     #[must_use]
     pub const fn range_in_force(&self, line_trusted: bool) -> RangeInclusive<i32> {
-        self.min..=if line_trusted { self.max_if_trusted } else { self.max }
+        if line_trusted { self.min_if_trusted..=self.max_if_trusted } else { self.range() }
     }
 }
 
@@ -172,8 +172,8 @@ impl Unit<bool> for Flag {
 
 /// Makes the rows of a part of the configuration, and each setting's way into its field and back.
 macro_rules! settings {
-    ($config:ident: $($(#[doc = $meaning:literal])+ $number:literal $id:ident $name:literal $(($was:literal))? $unit:literal
-        [$min:literal, $max:literal $(, trusted $trusted:literal)?] = $default:literal
+    ($config:ident: $($(#[doc = $meaning:literal])+ $number:literal $id:ident $name:literal $unit:literal
+        [$min:literal, $max:literal $(, trusted $low:literal, $high:literal)?] = $default:literal
         => $kind:ident($($field:tt)+);)+) => {
         impl $crate::setting::SettingId {
             $($(#[doc = $meaning])+ #[allow(non_upper_case_globals, reason = "read as the variants of an enum")]
@@ -185,11 +185,11 @@ macro_rules! settings {
             pub(crate) const ROWS: &'static [$crate::setting::Row] = &[$($crate::setting::Row {
                 id: $crate::setting::SettingId::$id,
                 name: $name,
-                was: $crate::setting::settings!(@was $($was)?),
                 unit: $unit,
                 min: $min,
                 max: $max,
-                max_if_trusted: $crate::setting::settings!(@max $max $(, $trusted)?),
+                min_if_trusted: $crate::setting::settings!(@trusted $min $(, $low)?),
+                max_if_trusted: $crate::setting::settings!(@trusted $max $(, $high)?),
                 default: $default,
                 meaning: concat!($($meaning),+).trim_ascii(),
             }),+];
@@ -213,9 +213,7 @@ macro_rules! settings {
             }
         }
     };
-    (@max $max:literal) => { $max };
-    (@max $max:literal, $trusted:literal) => { $trusted };
-    (@was) => { None };
-    (@was $was:literal) => { Some($was) };
+    (@trusted $end:literal) => { $end };
+    (@trusted $end:literal, $trusted:literal) => { $trusted };
 }
 pub(crate) use settings;

@@ -12,8 +12,9 @@ const HEAD: &str = "\
 This page is for anybody who changes a number of the fingertip. Printed from `logic/src/*/settings.rs` by `cargo tenax settings`; do not edit.
 
 `cargo tenax monitor --port P --set NAME=VALUE` changes one, `--get NAME` and `--settings` show them; a scene uses
-`kind = \"set-NAME\"` with `value`. A change needs [consent](safety.md#the-cable) at the hand and a value in range. No pair of values
-crushes, opens or deafens (`host-tests/tests/ranges.rs`). Settings outlive a power cut. The number is their name on wire and flash.
+`kind = \"set-NAME\"` with `value`. A change needs [consent](safety.md#the-cable) at the hand and a value in range, wider where the line is
+trusted. No pair of values opens or deafens (`host-tests/tests/ranges.rs`), no mix drops or crushes (`bench/tests/mixes.rs`). Settings outlive a power
+cut. The number is their name on wire and flash.
 
 | number | name | unit | range | default | meaning |
 |---|---|---|---|---|---|
@@ -33,10 +34,9 @@ pub fn markdown() -> String {
             row.unit,
             range.start(),
             range.end(),
-            if row.max_if_trusted > row.max {
-                format!(" ({} where the line is trusted)", row.max_if_trusted)
-            } else {
-                String::new()
+            match row.range_in_force(true) {
+                trusted if trusted == range => String::new(),
+                trusted => format!(" (trusted: {} to {})", trusted.start(), trusted.end()),
             },
             row.default,
             row.meaning

@@ -90,13 +90,14 @@ impl Receiver {
             return Some(Err(BadFrame::TooLong));
         }
         // A zero byte on its own is a sender clearing its throat.
-        (length > 0).then(|| if time() { decode(&mut self.buffer[..length]) } else { Err(BadFrame::Skipped) })
+        let frame = self.buffer.get_mut(..length).filter(|frame| !frame.is_empty())?;
+        Some(if time() { decode(frame) } else { Err(BadFrame::Skipped) })
     }
 }
 
 fn decode<T: DeserializeOwned>(bytes: &mut [u8]) -> Result<Received<T>, BadFrame> {
     let length = cobs::decode_in_place(bytes).map_err(|_| BadFrame::Garbled)?;
-    let bytes = &bytes[..length];
+    let bytes = bytes.get(..length).ok_or(BadFrame::Garbled)?;
     let parsed = from_bytes_u32::<(u8, u16, T)>(bytes, CRC.digest());
     match parsed {
         Ok((VERSION, sequence, message)) => Ok(Received { sequence, message }),

@@ -3,8 +3,8 @@
 use std::process::ExitCode;
 
 use super::format::Format;
-use super::workspace;
-use crate::safety::Matrix;
+use super::{out, workspace};
+use crate::safety::{Matrix, soup};
 
 /// Hold requirements, hazards and tests against each other.
 #[derive(Debug, clap::Args)]
@@ -13,6 +13,9 @@ pub struct Args {
     /// Every test that shows a requirement has to have passed when `tenax test` last ran
     #[arg(long)]
     tested: bool,
+    /// Print docs/safety/soup.md instead: the foreign crates of the image
+    #[arg(long, conflicts_with = "tested")]
+    soup: bool,
     /// How to print the matrix
     #[arg(long, value_enum, default_value_t = Format::Text)]
     report: Format,
@@ -22,10 +25,15 @@ const EXAMPLES: &str = "\
 Examples:
   tenax safety                      the matrix: requirement, hazards, tests
   tenax test && tenax safety --tested
+  tenax safety --soup > docs/safety/soup.md
 A test names what it shows in a comment above it: // Shows W1, R2.";
 
 /// Prints the matrix. 1: something is missing.
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
+    if args.soup {
+        out::say!("{}", soup::page(&workspace::root()?)?.trim_end())?;
+        return Ok(ExitCode::SUCCESS);
+    }
     let matrix = Matrix::of(&workspace::root()?, args.tested)?;
     args.report.print(&matrix, &matrix)?;
     Ok(ExitCode::from(u8::from(!matrix.problems.is_empty())))

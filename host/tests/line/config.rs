@@ -40,12 +40,12 @@ fn every_setting_is_set_read_back_exported_imported_and_reset() {
     let (done, _, error) = config(place, &["reset"]);
     assert!(!done && error.contains("--all"), "nothing is reset unasked: {error}");
     let (_, differs, _) = config(place, &["diff"]);
-    assert!(differs.contains("s1-mv = 20, there 100\n"), "{differs}");
+    assert!(differs.contains("s1-mv = 30, there 100\n"), "{differs}");
     assert!(config(place, &["reset", "--all"]).0);
     assert_eq!(config(place, &["diff"]).1, "line-trusted-flag = 1, there 0\n");
-    assert!(config(place, &["diff", file]).1.contains("s1-mv = 100, there 20\n"));
+    assert!(config(place, &["diff", file]).1.contains("s1-mv = 100, there 30\n"));
     assert_eq!(config(place, &["get", "s1-mv"]).1, "100\n");
-    assert!(std::fs::read_to_string(file).unwrap().contains("\ns1-mv = 20\n"));
+    assert!(std::fs::read_to_string(file).unwrap().contains("\ns1-mv = 30\n"));
     let (_, exported, _) = config(place, &["export"]);
     assert!(exported.starts_with("# Of the host's own build, schema "), "{exported}");
     assert!(exported.contains("\ns1-mv = 100\n"), "{exported}");

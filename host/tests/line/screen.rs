@@ -114,7 +114,7 @@ fn settings_are_shown_with_their_ranges_and_what_is_typed() {
     let edit = Edit { typed: Some("12".to_owned()), ..Edit::default() };
     let shown = Shown { control: true, edit: Some(edit), ..Shown::default() };
     let text = picture(&view, &shown, 80, 24);
-    assert!(text.contains("s1-mv") && text.contains("20 to 250, default 100"), "{text}");
+    assert!(text.contains("s1-mv") && text.contains("30 to 150, default 100"), "{text}");
     assert!(text.contains("new value, mV: 12_"), "{text}");
     let last_row = SettingId::ALL.last().expect("there are some").row().name;
     let mut last = Edit::default();

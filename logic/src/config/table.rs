@@ -41,6 +41,15 @@ static ROWS: [Row; COUNT] = {
     rows
 };
 
+/// Names that settings had before and that scene files may still use.
+const BEFORE: [(&str, SettingId); 5] = [
+    ("knock-level-mv", SettingId::ImpactLevel),
+    ("knock-ratio-permille", SettingId::ImpactRatio),
+    ("knock-ms", SettingId::ImpactLength),
+    ("network-slip-permille", SettingId::HebbianSlip),
+    ("myo-on-mv", SettingId::EmgOn),
+];
+
 impl SettingId {
     /// Every setting, in the order of their numbers.
     pub const ALL: [Self; COUNT] = {
@@ -62,7 +71,8 @@ impl SettingId {
     /// The setting with this name, or with one that it had before.
     #[must_use]
     pub fn by_name(name: &str) -> Option<Self> {
-        ROWS.iter().find(|row| row.name == name || row.was == Some(name)).map(|row| row.id)
+        let mut all = ROWS.iter().map(|row| (row.name, row.id)).chain(BEFORE);
+        all.find(|(own, _)| *own == name).map(|(_, id)| id)
     }
 
     /// Its row.
@@ -90,11 +100,11 @@ mod tests {
         let mut names = HashSet::new();
         for id in SettingId::ALL {
             let row = id.row();
-            assert!(names.insert(row.name) && row.was.is_none_or(|was| names.insert(was)), "{}", row.name);
+            assert!(names.insert(row.name), "{}", row.name);
             assert!(row.range().contains(&row.default) && row.min < row.max, "{}", row.name);
-            assert!(row.max <= row.max_if_trusted, "{}", row.name);
+            assert!(row.min_if_trusted <= row.min && row.max <= row.max_if_trusted, "{}", row.name);
             assert!(
-                row.min >= 0 && row.max_if_trusted < 1 << 24,
+                row.min_if_trusted >= 0 && row.max_if_trusted < 1 << 24,
                 "{}: a record keeps 24 bits of it",
                 row.name
             );
@@ -136,8 +146,8 @@ mod tests {
         assert_eq!(config.set(SettingId::S1, 1_500), Ok(()));
         assert_eq!(config.set(SettingId::S2, 800), Ok(()));
         assert_eq!(config.set(SettingId::LineTrusted, 0), Ok(()));
-        assert_eq!((config.get(SettingId::S1), config.get(SettingId::S2)), (250, 800));
-        assert_eq!(config.set(SettingId::S1, 1_500), Err(20..=250));
+        assert_eq!((config.get(SettingId::S1), config.get(SettingId::S2)), (150, 310));
+        assert_eq!(config.set(SettingId::S1, 1_500), Err(30..=150));
     }
 
     #[test]

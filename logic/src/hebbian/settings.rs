@@ -37,7 +37,7 @@ impl HebbianConfig {
 settings! {
     HebbianConfig:
     /// Hebbian: how far below 0 the PVDF part of o1 means slip
-    5 HebbianSlip "hebbian-slip-permille" ("network-slip-permille") "per mille" [10, 1_000] = 100 => Number(slip_permille);
+    5 HebbianSlip "hebbian-slip-permille" "per mille" [10, 1_000] = 100 => Number(slip_permille);
     /// Hebbian: how long o1 must mean slip if only some PVDF channels show it
     11 HebbianTime "hebbian-ms" "ms" [1, 100] = 15 => Ms(slip_frames);
     /// Hebbian: how long if all PVDF channels show it, longer than an impact

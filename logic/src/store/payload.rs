@@ -72,7 +72,9 @@ pub fn restore_settings(config: &mut Config, bytes: &[u8]) -> bool {
             0 => FIRST_FORMAT.get(place).copied(),
             number => SettingId::from_number(number),
         };
-        all &= id.is_some_and(|id| config.set(id, value).is_ok());
+        // S2 may be what a stroke has measured.
+        let accepted = |id| config.set(id, value).is_ok() || id == SettingId::S2 && config.measured(value);
+        all &= id.is_some_and(accepted);
     }
     all
 }
@@ -137,10 +139,10 @@ mod tests {
     #[test]
     fn a_value_that_is_not_accepted_and_a_setting_that_is_unknown_leave_the_others() {
         let mut config = Config::default();
-        let bytes = [word(1, 200), word(2, 99_999), word(250, 1), word(10, 900)].concat();
+        let bytes = [word(1, 140), word(2, 99_999), word(250, 1), word(10, 700)].concat();
         assert!(!restore_settings(&mut config, &bytes));
         let mut expected = Config::default();
-        assert!(expected.set(SettingId::S1, 200).is_ok() && expected.set(SettingId::Loaded, 900).is_ok());
+        assert!(expected.set(SettingId::S1, 140).is_ok() && expected.set(SettingId::Loaded, 700).is_ok());
         assert_eq!(config, expected);
     }
 
@@ -150,6 +152,16 @@ mod tests {
         assert!(!restore_settings(&mut config, &word(1, 1_500)));
         assert!(restore_settings(&mut config, &[word(1, 1_500), word(40, 1)].concat()));
         assert_eq!((config.get(SettingId::S1), config.line_trusted), (1_500, true));
+    }
+
+    #[test]
+    fn a_surface_that_was_stroked_comes_back_where_a_person_may_not_choose_it() {
+        let mut config = Config::default();
+        assert!(config.measured(640) && !Config::default().measured(901));
+        assert_eq!(config.set(SettingId::S2, 640), Err(SettingId::S2.row().range()));
+        let mut back = Config::default();
+        assert!(restore_settings(&mut back, &of_settings(&config)));
+        assert_eq!(back, config);
     }
 
     #[test]

@@ -21,13 +21,13 @@ pub struct VibrationConfig {
 settings! {
     VibrationConfig:
     /// S1: vibration envelope of a PVDF channel that means slip
-    1 S1 "s1-mv" "mV" [20, 250, trusted 1_500] = 100 => Mv(s1);
+    1 S1 "s1-mv" "mV" [30, 150, trusted 20, 1_500] = 100 => Mv(s1);
     /// Vibration above the slip band that an impact has at least
-    6 ImpactLevel "impact-level-mv" ("knock-level-mv") "mV" [10, 300] = 20 => Mv(impact_level);
+    6 ImpactLevel "impact-level-mv" "mV" [10, 100, trusted 10, 300] = 20 => Mv(impact_level);
     /// A vibration with more than this part of its envelope above the slip band is an impact
-    7 ImpactRatio "impact-ratio-permille" ("knock-ratio-permille") "per mille" [300, 3_000] = 500 => Number(impact_permille);
+    7 ImpactRatio "impact-ratio-permille" "per mille" [300, 1_000, trusted 300, 3_000] = 500 => Number(impact_permille);
     /// An impact is over after this long; what lasts longer is slip
-    8 ImpactLength "impact-ms" ("knock-ms") "ms" [5, 100] = 45 => Ms(impact_frames);
+    8 ImpactLength "impact-ms" "ms" [12, 80, trusted 5, 100] = 45 => Ms(impact_frames);
     /// The mains, whose hum is taken off the PVDF films, is at 60 Hz (1), not at 50 (0)
     73 Mains60Hz "mains-60-hz-flag" "flag" [0, 1] = 0 => Flag(mains_60_hz);
 }
