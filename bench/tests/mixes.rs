@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
+use tenax_bench::live::Use;
 use tenax_bench::report::Report;
 use tenax_bench::report::fate::Fate;
 use tenax_bench::session::{self, Board, controls};
@@ -116,7 +117,7 @@ impl Scene {
 }
 
 fn ran(file: &SceneFile, seed: u64) -> Report {
-    session::scene_alone(file, seed, &Board::Host, &mut ()).unwrap().report
+    session::scene_alone(file, seed, &Board::Host, Use::default(), &mut ()).unwrap().report
 }
 
 /// A flag says what the fingertip is built into: there is no number between, and neither value is right by itself.
