@@ -357,6 +357,50 @@ fn a_myosensor_that_stands_still_is_no_muscle_and_one_that_moves_may_be() {
     }
 }
 
+// Shows W1, R3.
+#[test]
+fn a_myosensor_that_comes_back_to_where_it_hummed_may_be_a_muscle_again() {
+    for lifted in [MYO_FLEXOR, MYO_EXTENSOR] {
+        // A contraction, or no contact, between.
+        for between_mv in [900.0, -f64::from(MYO_REST_MV)] {
+            let mut bench = Bench::holding(7);
+            bench.lifted = Some(lifted);
+            for (above_mv, frames) in [(400.0, 5_000), (between_mv, 4_000)] {
+                bench.pins_mv[lifted] = f64::from(MYO_REST_MV) + above_mv;
+                bench.run(frames);
+            }
+            bench.vibration_mv = 800.0;
+            bench.pins_mv[lifted] = f64::from(MYO_REST_MV) + 400.0;
+            bench.run(25);
+            bench.slows.clear();
+            for n in 0..18 {
+                bench.pins_mv[lifted] = f64::from(MYO_REST_MV) + [390.0, 410.0][n % 2];
+                bench.run(100);
+            }
+            assert_eq!(by_reflex(&bench), 0);
+        }
+    }
+}
+
+// Shows R3.
+#[test]
+fn a_lost_myosensor_renews_no_budget() {
+    for lifted in [MYO_FLEXOR, MYO_EXTENSOR] {
+        let mut bench = Bench::holding(6);
+        bench.lifted = Some(lifted);
+        bench.pins_mv[lifted] = f64::from(MYO_REST_MV) + 400.0;
+        bench.run(4_000);
+        bench.vibration_mv = 800.0;
+        bench.slows.clear();
+        for n in 0..10 {
+            bench.pins_mv[lifted] = f64::from(MYO_REST_MV) + [400.0, 1_000.0][n % 2];
+            bench.run(8_000);
+        }
+        let budget = Config::default().grip.blind_frames as usize;
+        assert!((1..=budget + 1).contains(&by_reflex(&bench)), "{} frames", by_reflex(&bench));
+    }
+}
+
 // Shows R3.
 #[test]
 fn without_both_myosensors_the_reflex_stands_by() {

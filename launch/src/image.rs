@@ -62,14 +62,23 @@ fn program(root: &Path, binary: Binary) -> Program<'_> {
 
 /// The same, beside other jobs.
 pub fn job<'a>(root: &'a Path, binaries: &[Binary]) -> Job<'a> {
-    let bins: Vec<_> = binaries.iter().flat_map(|binary| ["--bin", binary.name()]).collect();
+    // The camera's is built by itself: what is flashed has none of its features.
+    let (own, others): (Vec<Binary>, _) = binaries.iter().partition(|&&binary| binary == Binary::Pictures);
+    let bins = |binaries: &[Binary]| -> Vec<&str> {
+        binaries.iter().flat_map(|binary| ["--bin", binary.name()]).collect()
+    };
+    let mut builds = vec![bins(&others)];
+    if !own.is_empty() {
+        builds.push([bins(&own), vec!["--features", "pictures"]].concat());
+    }
+    builds.retain(|build| !build.is_empty());
     let programs: Vec<_> = binaries.iter().map(|&binary| program(root, binary)).collect();
     let run = move |desk: &Desk| {
         if programs.iter().all(Program::is_fresh) {
             return Ok(());
         }
         let begun = SystemTime::now();
-        run(root, "build", &bins, desk)?;
+        builds.iter().try_for_each(|build| run(root, "build", build, desk))?;
         programs.iter().try_for_each(|program| program.built(begun))
     };
     Job { name: "image", done: "built", run: Box::new(run) }
@@ -77,7 +86,8 @@ pub fn job<'a>(root: &'a Path, binaries: &[Binary]) -> Job<'a> {
 
 /// Lints the image's package with the toolchain that builds it; a warning is an error. An error says what to install, or what Clippy said.
 pub fn clippy(root: &Path) -> Result<()> {
-    let run = move |desk: &Desk| run(root, "clippy", &["--", "--deny", "warnings"], desk);
+    let run =
+        move |desk: &Desk| run(root, "clippy", &["--features", "pictures", "--", "--deny", "warnings"], desk);
     jobs::run(vec![Job { name: "image", done: "linted", run: Box::new(run) }])
 }
 

@@ -120,6 +120,10 @@ impl Config {
     /// # Errors
     /// If the value is not accepted: the values that are. Then nothing has changed.
     pub fn set(&mut self, id: SettingId, value: i32) -> Result<(), RangeInclusive<i32>> {
+        // A stroke may have measured what nobody may choose: it comes back from a file.
+        if value == self.get(id) {
+            return Ok(());
+        }
         let range = id.row().range_in_force(self.line_trusted);
         if !range.contains(&value) {
             return Err(range);
@@ -133,7 +137,9 @@ impl Config {
 
     /// What a stroke has measured becomes S2, whatever a person may choose. False if no surface is like that.
     pub(crate) fn measured(&mut self, s2_permille: i32) -> bool {
-        let is_friction = (150..=900).contains(&s2_permille);
+        let trusted = SettingId::S2.row().range_in_force(true);
+        let most = if self.line_trusted { *trusted.end() } else { 900 };
+        let is_friction = (*trusted.start()..=most).contains(&s2_permille);
         if is_friction {
             self.put(SettingId::S2, s2_permille);
         }

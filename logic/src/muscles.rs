@@ -144,6 +144,12 @@ impl Muscles {
         }
     }
 
+    /// Whether a muscle is active whose sensor is believed.
+    #[must_use]
+    pub fn is_heard(&self) -> bool {
+        self.emg.is_active(0) || self.emg.is_active(1)
+    }
+
     /// The wearer that they are calibrated to.
     #[must_use]
     pub const fn model(&self) -> Option<&EmgModel> {

@@ -108,7 +108,7 @@ mod tests {
     #[test]
     fn what_is_out_of_range_is_moved_into_it_and_says_so() {
         let suggestion = Suggestion::new(SettingId::S1, 3.0, "quiet".to_owned());
-        assert_eq!(suggestion.value, 20);
-        assert!(suggestion.why.contains("3 would be outside 20 to 250"), "{}", suggestion.why);
+        assert_eq!(suggestion.value, 30);
+        assert!(suggestion.why.contains("3 would be outside 30 to 150"), "{}", suggestion.why);
     }
 }

@@ -144,7 +144,7 @@ impl Trust {
             self.missing = self.missing.saturating_add(1);
             if self.missing > BRIDGED_READINGS {
                 self.last_uv = None;
-                self.proofs = 0;
+                (self.proofs, self.hum_uv) = (0, 0);
                 self.lose(Quality::LeadOff);
             }
             return self.last_uv;
@@ -249,6 +249,9 @@ impl Trust {
         }
         if self.flat >= FLAT_FRAMES {
             self.hum_uv = self.anchor_uv;
+        } else if (uv - self.hum_uv).abs() > self.hum_uv / HUM_PART + STILL_UV {
+            // What comes back there may be a muscle, until it stands still again.
+            self.hum_uv = 0;
         }
     }
 

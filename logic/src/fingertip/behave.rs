@@ -52,7 +52,9 @@ impl Fingertip {
         if self.senses.gate.is_active() {
             return Err(Refusal::WearerActive);
         }
-        let may_begin = matches!(self.mode, GripMode::Watch | GripMode::Settle) || self.behaviour.is_some();
+        let may_begin = self.senses.all_ready(&self.config)
+            && matches!(self.mode, GripMode::Watch | GripMode::Settle)
+            || self.behaviour.is_some();
         let running = Running::begin(what, &self.felt(None)).filter(|_| may_begin);
         let running = running.ok_or(Refusal::SensorLost)?;
         self.end(Ending::Stopped);

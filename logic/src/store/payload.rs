@@ -59,7 +59,8 @@ pub fn of_settings(config: &Config) -> SettingsBytes {
     bytes
 }
 
-/// Puts a record's settings into `config`. False if one is unknown or its value not accepted; that one is left as it was.
+/// Puts a record's settings into `config`. False if one is unknown, or its value not accepted: of what a trusted line may
+/// choose the nearest is taken, for an older image had wider ranges; anything else leaves the default.
 #[must_use]
 pub fn restore_settings(config: &mut Config, bytes: &[u8]) -> bool {
     let mut all = true;
@@ -73,8 +74,17 @@ pub fn restore_settings(config: &mut Config, bytes: &[u8]) -> bool {
             number => SettingId::from_number(number),
         };
         // S2 may be what a stroke has measured.
-        let accepted = |id| config.set(id, value).is_ok() || id == SettingId::S2 && config.measured(value);
-        all &= id.is_some_and(accepted);
+        all &= id.is_some_and(|id| match config.set(id, value) {
+            Ok(()) => true,
+            Err(_) if id == SettingId::S2 && config.measured(value) => true,
+            Err(range) => {
+                // A flag is no size, and what no image accepted is damaged.
+                if id.row().unit != "flag" && id.row().range_in_force(true).contains(&value) {
+                    let _accepted = config.set(id, value.max(*range.start()).min(*range.end()));
+                }
+                false
+            }
+        });
     }
     all
 }
@@ -155,10 +165,18 @@ mod tests {
     }
 
     #[test]
+    fn a_value_of_an_older_images_range_comes_back_as_the_nearest() {
+        let mut config = Config::default();
+        assert!(!restore_settings(&mut config, &[word(4, 5_000), word(42, 7)].concat()));
+        assert_eq!((config.get(SettingId::ForceCeiling), config.no_wearer), (20_000, false));
+    }
+
+    #[test]
     fn a_surface_that_was_stroked_comes_back_where_a_person_may_not_choose_it() {
         let mut config = Config::default();
         assert!(config.measured(640) && !Config::default().measured(901));
-        assert_eq!(config.set(SettingId::S2, 640), Err(SettingId::S2.row().range()));
+        assert_eq!(config.set(SettingId::S2, 630), Err(SettingId::S2.row().range()));
+        assert_eq!(config.set(SettingId::S2, 640), Ok(()), "a file that was exported here is imported here");
         let mut back = Config::default();
         assert!(restore_settings(&mut back, &of_settings(&config)));
         assert_eq!(back, config);
