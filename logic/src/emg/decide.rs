@@ -1,7 +1,7 @@
 //! What the wearer wants: rest, close or open, from both envelopes.
 //!
 //! Four numbers a reading: each site's *share* of the rise that calibration found there, and the *place* of the electrodes'
-//! ratio between calibrated closing and opening; averaged over 0.12 s. The place says which way, the share of that way's site
+//! ratio between calibrated closing and opening; averaged over 0.13 s. The place says which way, the share of that way's site
 //! says whether; both with hysteresis and dwell. A wish ends when its site falls from its own crest, and begins by a rise, so
 //! that tone is none. Rest is followed while nothing is wished: what has been added to it (hum, tone) is subtracted.
 //! A reading above all that was calibrated opens at once: what it may move before it is proven is the gate's business.
