@@ -116,7 +116,7 @@ pub fn forces([a, b, c, d]: [i32; FSR_COUNT], loaded_mn: i32) -> Forces {
     Forces { fn_mn, fx_mn, fy_mn, ft_mn, load_mn, ratio_permille }
 }
 
-/// Root of the sum of squares, rounded down: core's integer root, exact, where micromath's is off by up to 6.1 % (docs/crates.md).
+/// Root of the sum of squares, rounded down: core's integer root, exact, where micromath's is off by up to 6.1 %.
 fn root<const N: usize>(values: [i32; N]) -> i32 {
     // Of a number without a sign: core's root of one that has it would panic below 0.
     let squares: u64 = values.iter().map(|&value| u64::from(value.unsigned_abs()).pow(2)).sum();
