@@ -11,10 +11,9 @@ const HEAD: &str = "\
 
 This page is for anybody who changes a number of the fingertip. Printed from `logic/src/*/settings.rs` by `cargo tenax settings`; do not edit.
 
-`cargo tenax monitor --port P --set NAME=VALUE` changes one, `--get NAME` and `--settings` show them; a scene uses
-`kind = \"set-NAME\"` with `value`. A change needs [consent](safety.md#the-cable) at the hand and a value in range, wider where the line is
-trusted. No pair of values opens or deafens (`host-tests/tests/ranges.rs`), no mix drops or crushes (`bench/tests/mixes.rs`). Settings outlive a power
-cut. The number is their name on wire and flash.
+`cargo tenax config set NAME=VALUE` changes one; a scene uses `kind = \"set-NAME\"` with `value`. A change needs [consent](safety.md#the-cable) at the hand,
+and outlives a power cut. Ranges are wider where the line is trusted. No pair of values opens or deafens (`host-tests/tests/ranges.rs`), no mix drops or
+crushes (`bench/tests/mixes.rs`). The number is the name on wire and flash.
 
 | number | name | unit | range | default | meaning |
 |---|---|---|---|---|---|
