@@ -18,6 +18,7 @@ mod run;
 mod safety;
 mod scenes;
 mod size;
+mod sweep;
 mod test;
 mod train;
 mod vision;
@@ -65,6 +66,8 @@ enum Command {
     Learn(learn::Args),
     /// List the scenes
     Scenes,
+    /// Run scenes with many seeds, in shards
+    Sweep(sweep::Args),
     /// Run every test of the workspace, the emulated ones included
     Test(test::Args),
     /// Measure every promise of the project, one line each; fails if one is not kept
@@ -115,6 +118,7 @@ pub fn main() -> ExitCode {
         Command::Run(args) => run::main(&args),
         Command::Learn(args) => learn::main(&args),
         Command::Scenes => scenes::main(),
+        Command::Sweep(args) => sweep::main(&args),
         Command::Test(args) => test::main(&args),
         Command::Check(args) => check::main(&args),
         Command::Safety(args) => safety::main(&args),
