@@ -67,7 +67,7 @@ fn what_is_missing_or_cannot_be_written_is_said_before_work_begins() {
     let out = file.path().to_str().unwrap();
     let is_a_file = format!("error: cannot write to the folder {out}: is a file, and a folder is needed\n");
     // The first would take minutes, the second compiles a package.
-    assert_eq!(failed(&["chart", "features", "--out", out]), is_a_file);
+    assert_eq!(failed(&["chart", "front", "--out", out]), is_a_file);
     assert_eq!(failed(&["train", "--out", out]), is_a_file);
     assert_eq!(failed(&["run", "--host", "--out", out]), is_a_file);
     let folder = tempfile::tempdir().unwrap();
