@@ -130,7 +130,10 @@ const SWEPT: [&str; 5] = ["sweep", "--scenes", "gripper-control,rig", "--seeds",
 fn merged(folders: &[&Path]) -> [Vec<u8>; 2] {
     let output = tenax(&["sweep", "merge"]).args(folders).output().unwrap();
     assert!(output.status.success(), "{output:?}");
-    assert!(String::from_utf8_lossy(&output.stdout).starts_with("6 runs\n"), "{output:?}");
+    assert!(
+        String::from_utf8_lossy(&output.stdout).starts_with("runs                        6\n"),
+        "{output:?}"
+    );
     ["runs.jsonl", "summary.json"].map(|name| fs::read(folders[0].join(name)).unwrap())
 }
 

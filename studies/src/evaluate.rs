@@ -8,7 +8,6 @@ pub mod online;
 pub mod ran;
 pub mod report;
 pub mod roc;
-pub mod text;
 
 use tenax_bench::labelled::{Part, Recording};
 

@@ -4,7 +4,6 @@
 //! merged, `runs.jsonl` and `summary.json`. A file is renamed to its name when it is whole, and read back before it is believed.
 
 use std::collections::BTreeSet;
-use std::fmt::{self, Display};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -198,9 +197,9 @@ pub struct Case {
 pub struct Summary {
     pub runs: usize,
     /// The hand lost what the bound keeps; and how far it slid, mm.
-    pub lost: Vec<Case>,
+    pub lost_mm: Vec<Case>,
     /// The hand pressed more than 1.5 times as hard as the bound; and how many times, the worst first.
-    pub over: Vec<Case>,
+    pub above_1_5_times: Vec<Case>,
     pub force_ratio_median: Option<f64>,
     /// Of the runs in which the bound's object slides, too, or neither does.
     pub distance_ratio_median: Option<f64>,
@@ -222,31 +221,11 @@ impl Summary {
         let distance = |row: &Value| row["bound"]["distance_ratio"].as_f64();
         Self {
             runs: rows.len(),
-            lost: lost.map(|row| case(row, row["slip"]["distance_mm"].as_f64())).collect(),
-            over,
+            lost_mm: lost.map(|row| case(row, row["slip"]["distance_mm"].as_f64())).collect(),
+            above_1_5_times: over,
             force_ratio_median: middle(rows.iter().filter_map(force).collect()),
             distance_ratio_median: middle(rows.iter().filter_map(distance).collect()),
         }
-    }
-}
-
-impl Display for Summary {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let ratio = |ratio: Option<f64>| ratio.map_or("-".to_owned(), |ratio| format!("{ratio:.3}"));
-        writeln!(f, "{} runs", self.runs)?;
-        writeln!(f, "  median force    {} of the bound's", ratio(self.force_ratio_median))?;
-        writeln!(f, "  median distance {} of the bound's", ratio(self.distance_ratio_median))?;
-        let lists = [
-            ("lost where the bound keeps", &self.lost, "mm"),
-            ("above 1.5 times its force", &self.over, "times"),
-        ];
-        for (title, cases, unit) in lists {
-            writeln!(f, "  {title}: {}", cases.len())?;
-            for Case { scene, seed, value } in cases {
-                writeln!(f, "    {scene:<20} seed {seed:<4} {:>7.2} {unit}", value.unwrap_or(f64::NAN))?;
-            }
-        }
-        Ok(())
     }
 }
 
@@ -281,8 +260,8 @@ mod tests {
         ];
         let summary = Summary::of(&rows);
         let seeds = |cases: &[Case]| cases.iter().map(|case| (case.seed, case.value)).collect::<Vec<_>>();
-        assert_eq!(seeds(&summary.lost), [(1, Some(40.0))]);
-        assert_eq!(seeds(&summary.over), [(6, Some(2.0)), (3, Some(1.6))]);
+        assert_eq!(seeds(&summary.lost_mm), [(1, Some(40.0))]);
+        assert_eq!(seeds(&summary.above_1_5_times), [(6, Some(2.0)), (3, Some(1.6))]);
         assert_eq!((summary.force_ratio_median, summary.distance_ratio_median), (Some(1.6), None));
     }
 }

@@ -98,9 +98,8 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             vec![table.chart()?]
         }
         Subject::Photoelastic => {
-            let (chart, measured) =
-                with_bar("photoelastic", |progress| chart::photoelastic::chart(progress))?;
-            out::unless_closed(args.report.print(&format_args!("{measured}\n"), &measured.report))?;
+            let (chart, report) = with_bar("photoelastic", |progress| chart::photoelastic::chart(progress))?;
+            out::unless_closed(args.report.show(&report))?;
             vec![chart]
         }
     };

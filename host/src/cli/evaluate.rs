@@ -20,7 +20,6 @@ use tenax_studies::dataset::session::{Sizes, sessions};
 use tenax_studies::dataset::{Dataset, Label, Plan};
 use tenax_studies::evaluate::report::Report;
 use tenax_studies::evaluate::roc::Roc;
-use tenax_studies::evaluate::text::Text;
 use tenax_studies::evaluate::{draws, emg, online, test_split};
 
 const EXAMPLES: &str = "\
@@ -98,7 +97,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some(What::Emg(emg)) = &args.what {
         let People { recordings, seed, report: format } = &emg.people;
         let report = emg::evaluate(recordings, emg.person, emg.faults, *seed)?;
-        out::unless_closed(format.print(&emg::Text(&report), &report))?;
+        out::unless_closed(format.show(&report))?;
         return Ok(ExitCode::SUCCESS);
     }
     if args.online {
@@ -135,7 +134,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             report
         }
     };
-    out::unless_closed(args.report.print(&Text(&report), &report))?;
+    out::unless_closed(args.report.show(&report))?;
     Ok(ExitCode::SUCCESS)
 }
 

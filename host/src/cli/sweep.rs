@@ -66,6 +66,6 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         }
         sweep::merge(&[folder])?
     };
-    out::unless_closed(args.report.print(&summary, &summary))?;
+    out::unless_closed(args.report.show(&summary))?;
     Ok(ExitCode::SUCCESS)
 }

@@ -85,7 +85,7 @@ struct EmgArgs {
 fn emg(args: &EmgArgs) -> anyhow::Result<ExitCode> {
     let People { recordings, seed, report: format } = &args.people;
     let report = with_bar("fitting", |part| fit::fit(recordings, args.rounds, *seed, part))?;
-    out::unless_closed(format.print(&fit::Text(&report), &report))?;
+    out::unless_closed(format.show(&report))?;
     if args.ship {
         let to = workspace::root()?.join("logic/src/emg/fitted.rs");
         std::fs::write(&to, &report.file).with_context(|| format!("cannot write {}", to.display()))?;
