@@ -42,6 +42,72 @@ pub struct TooLong {
     pub what: &'static str,
 }
 
+/// What is wrong with a CSV file, and where.
+#[derive(Debug, thiserror::Error)]
+pub enum CsvError {
+    #[error("{file}: cannot be read")]
+    Unreadable { file: String, source: io::Error },
+    /// Of the whole.
+    #[error("{file}: {what}")]
+    File { file: String, what: String },
+    /// Of a row, by its line in the file, from 1; the header is line 1.
+    #[error("{file}:{line}: {what}")]
+    Row { file: String, line: u64, what: String },
+}
+
+impl CsvError {
+    /// The csv crate's error as one of ours.
+    pub fn of(file: &str, error: csv::Error) -> Self {
+        let line = error.position().map_or(1, csv::Position::line);
+        let file = file.to_owned();
+        let row = |line, what| Self::Row { file: file.clone(), line, what };
+        match error.into_kind() {
+            csv::ErrorKind::Io(source) => match too_long(&source) {
+                Some(TooLong { line, what }) => row(line, what.to_owned()),
+                None => Self::Unreadable { file, source },
+            },
+            csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+                row(line, format!("{len} cells, but the header has {expected_len}"))
+            }
+            csv::ErrorKind::Utf8 { err, .. } => row(line, format!("not text (UTF-8): {err}")),
+            other => row(line, format!("not CSV: {other:?}")),
+        }
+    }
+
+    /// The column that somebody asked for is not in the header.
+    pub fn no_column<'a>(file: &str, why: &str, columns: impl IntoIterator<Item = &'a str>) -> Self {
+        let quoted: Vec<String> = columns.into_iter().map(|name| format!("`{name}`")).collect();
+        Self::Row {
+            file: file.to_owned(),
+            line: 1,
+            what: format!("{why}; the columns are {}", quoted.join(", ")),
+        }
+    }
+}
+
+/// A CSV file, opened, and what errors call it.
+pub fn open(path: &Path) -> Result<(File, String), CsvError> {
+    let file = path.display().to_string();
+    match File::open(path) {
+        Ok(source) => Ok((source, file)),
+        Err(source) => Err(CsvError::Unreadable { file, source }),
+    }
+}
+
+/// Reads CSV with a header, comments and blanks around cells, within bounds.
+pub fn rows<R: Read>(source: R) -> csv::Reader<Rows<R>> {
+    csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(Rows::new(source))
+}
+
+/// A cell's number.
+pub fn number(column: &str, cell: &str) -> Result<f64, String> {
+    match cell.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        Ok(_) => Err(format!("column `{column}` is `{cell}`; only finite numbers are allowed")),
+        Err(_) => Err(format!("column `{column}` is `{cell}`, which is not a number")),
+    }
+}
+
 /// The source of a CSV file, cut off with [`TooLong`] where it is longer than allowed.
 #[derive(Debug)]
 pub struct Rows<R> {

@@ -42,6 +42,7 @@ use crate::replay::{Recording, ReplayPlant, library};
 use crate::report::fate::Fate;
 use crate::report::replay::{ActivePart, Replay};
 use crate::report::{Report, Subject};
+use crate::timeline::Timeline;
 
 /// The scene that is run when none is asked for.
 pub const DEFAULT_SCENE: &str = "glass";
@@ -210,21 +211,9 @@ fn judged(
     plant.draw();
     let truth = Fate { grips: std::mem::take(&mut plant.grips), ..Fate::of(plant.world.truth(), file) };
     let bound = bound(&truth);
-    let Witness { timeline, judge, added, mut sketch } = witness;
-    sketch.needs = Some(plant.needs);
-    let subject = Subject {
-        scene: &file.name,
-        board: board.name(),
-        seed,
-        run: &run,
-        timeline: &timeline,
-        judge: &judge,
-        added: &added,
-        truth: Some(&truth),
-        bound: bound.as_ref(),
-    };
-    let report = Report::new(&subject);
-    let mut figure = panels::figure(&subject, sketch);
+    witness.sketch.needs = Some(plant.needs);
+    let (report, mut figure, _) =
+        told(&file.name, board.name(), seed, &run, witness, [Some(&truth), bound.as_ref()]);
     figure.subtitle = format!("{}; {}", file.title, figure.subtitle);
     Ok(Outcome { run, report, figure, truth })
 }
@@ -237,21 +226,8 @@ pub fn replay(
     board: &Board,
     progress: &mut dyn FnMut(f64),
 ) -> anyhow::Result<Outcome> {
-    replay_with(path, recipe, None, seed, board, &mut (), progress)
-}
-
-/// Plays a recording to a board that is calibrated to this wearer; `recorder` is told of the run as it goes.
-pub fn replay_with(
-    path: &Path,
-    recipe: Option<&str>,
-    calibrated: Option<EmgModel>,
-    seed: u64,
-    board: &Board,
-    recorder: &mut dyn Recorder,
-    progress: &mut dyn FnMut(f64),
-) -> anyhow::Result<Outcome> {
-    let options = ReplayOptions { recipe, calibrated, line: Use::default() };
-    replay_served(path, options, seed, board, recorder, progress)
+    let options = ReplayOptions { recipe, ..ReplayOptions::default() };
+    replay_served(path, options, seed, board, &mut (), progress)
 }
 
 /// How to play a recording.
@@ -294,23 +270,10 @@ pub fn replay_served(
     let plant = line.of(plant);
     let (run, _) = board.record(plant, &mut (&mut (&mut witness, &mut active), recorder), progress)?;
     let scene = name_of(path);
-    let Witness { timeline, judge, added, sketch } = witness;
-    let subject = Subject {
-        scene: &scene,
-        board: board.name(),
-        seed,
-        run: &run,
-        timeline: &timeline,
-        judge: &judge,
-        added: &added,
-        truth: None,
-        bound: None,
-    };
-    let mut report = Report::new(&subject);
+    let (mut report, mut figure, timeline) = told(&scene, board.name(), seed, &run, witness, [None; 2]);
     let lead_in_s = recording.first_s() - zero_s;
     report.replay =
         Some(Replay::new(&recording, named.as_ref(), lead_in_s, &timeline, &active, &report.wearer)?);
-    let mut figure = panels::figure(&subject, sketch);
     if let Some(named) = &named {
         figure.subtitle = format!("{} ({}), {}", named.recipe.title, named.name, figure.subtitle);
     }
@@ -329,21 +292,23 @@ pub fn recorded(name: &str, line: &[u8]) -> anyhow::Result<Outcome> {
     run.virtual_s = span_s.1 - span_s.0;
     let mut witness = Witness::new(0.0, span_s, None);
     slows.slows.iter().for_each(|slow| witness.slow(slow));
-    let Witness { timeline, judge, added, sketch } = witness;
-    let subject = Subject {
-        scene: name,
-        board: "recorded",
-        seed: 0,
-        run: &run,
-        timeline: &timeline,
-        judge: &judge,
-        added: &added,
-        truth: None,
-        bound: None,
-    };
-    let report = Report::new(&subject);
-    let figure = panels::figure(&subject, sketch);
+    let (report, figure, _) = told(name, "recorded", 0, &run, witness, [None; 2]);
     Ok(Outcome { run, report, figure, truth: Fate::default() })
+}
+
+/// Report and figure of what was witnessed, beside what truly happened and the bound.
+fn told(
+    scene: &str,
+    board: &'static str,
+    seed: u64,
+    run: &Summary,
+    witness: Witness,
+    [truth, bound]: [Option<&Fate>; 2],
+) -> (Report, Figure, Timeline) {
+    let Witness { timeline, judge, added, sketch } = witness;
+    let subject =
+        Subject { scene, board, seed, run, timeline: &timeline, judge: &judge, added: &added, truth, bound };
+    (Report::new(&subject), panels::figure(&subject, sketch), timeline)
 }
 
 /// What a recording is called: its file's name.

@@ -4,7 +4,7 @@ mod common;
 
 use tenax_bench::replay::calibrate::calibrate;
 use tenax_bench::replay::meaning::Motion;
-use tenax_bench::session::{self, Board};
+use tenax_bench::session::{self, Board, ReplayOptions};
 
 #[test]
 #[cfg_attr(not(recordings), ignore = "no recordings in ../shared/data")]
@@ -19,15 +19,9 @@ fn a_replayed_fist_never_opens_the_hand_and_rest_never_moves_it() {
                 continue;
             }
             for calibrated in [Some(model), None] {
-                let outcome = session::replay_with(
-                    &path(name),
-                    None,
-                    calibrated,
-                    1,
-                    &Board::Host,
-                    &mut (),
-                    &mut |_| {},
-                );
+                let options = ReplayOptions { calibrated, ..ReplayOptions::default() };
+                let outcome =
+                    session::replay_served(&path(name), options, 1, &Board::Host, &mut (), &mut |_| {});
                 let report = outcome.expect("a shared recording is good").report;
                 let (wearer, replay) = (report.wearer, report.replay.expect("it is a replay"));
                 let meant = replay.meant.expect("the recipe says what it means");

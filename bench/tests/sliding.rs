@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use tenax_bench::board::Recorder;
-use tenax_bench::session::{self, Board};
+use tenax_bench::session::{self, Board, ReplayOptions};
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::wire::Slow;
@@ -37,7 +37,8 @@ fn the_rigs_sliding_is_heard_and_its_disturbance_is_not() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/friction_rig_10khz.csv");
     for seed in 1..=4 {
         let mut listener = Listener::default();
-        session::replay_with(&file, None, None, seed, &Board::Host, &mut listener, &mut |_| {}).unwrap();
+        let plain = ReplayOptions::default();
+        session::replay_served(&file, plain, seed, &Board::Host, &mut listener, &mut |_| {}).unwrap();
         let part = f64::from(listener.sliding.0) / f64::from(listener.sliding.1);
         println!("seed {seed}: heard in {:.1} % of the sliding", 100.0 * part);
         // By its threshold in millivolts alone: 7 %.

@@ -18,6 +18,7 @@ mod run;
 mod safety;
 mod scenes;
 mod size;
+mod sweep;
 mod test;
 mod train;
 mod vision;
@@ -25,9 +26,7 @@ mod vision;
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
-use tenax_serial::cli::{
-    config, exit, flash, monitor, out, play, record, selftest, settings, wiring, workspace,
-};
+use tenax_serial::cli::{Shared, exit, out, workspace};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -65,6 +64,8 @@ enum Command {
     Learn(learn::Args),
     /// List the scenes
     Scenes,
+    /// Run scenes with many seeds, in shards
+    Sweep(sweep::Args),
     /// Run every test of the workspace, the emulated ones included
     Test(test::Args),
     /// Measure every promise of the project, one line each; fails if one is not kept
@@ -83,30 +84,16 @@ enum Command {
     Chart(chart::Args),
     /// Follow skin and object with a camera behind a clear skin, or calibrate its force
     Vision(vision::Args),
-    /// Flash a NUCLEO-F411RE through probe-rs
-    Flash(flash::Args),
-    /// Touch every sensor in turn; say which wire is wrong
-    Selftest(selftest::Args),
-    /// Watch a board: a screen, or one line a message
-    Monitor(monitor::Args),
-    /// Record a board's line
-    Record(record::Args),
-    /// Play a recording: serve its line, or write it as CSV
-    Play(play::Args),
+    #[command(flatten)]
+    Serial(Shared),
     /// Draw a recording
     Plot(plot::Args),
-    /// Show and change a board's settings
-    Config(config::Args),
     /// Flash, RAM, worst stack and instructions a tick of the image, beside their budgets
     Size(size::Args),
     /// Run Clippy on the image with the toolchain that builds it
     LintImage,
     /// Print every command with its options as a Markdown table
     Commands,
-    /// Print the channel map as a Markdown table
-    Wiring,
-    /// Print every setting with unit, range, default and meaning as a Markdown table
-    Settings,
 }
 
 /// Runs the command line. 0: done. 1: something measured is not as promised. 2: it could not be run.
@@ -115,6 +102,7 @@ pub fn main() -> ExitCode {
         Command::Run(args) => run::main(&args),
         Command::Learn(args) => learn::main(&args),
         Command::Scenes => scenes::main(),
+        Command::Sweep(args) => sweep::main(&args),
         Command::Test(args) => test::main(&args),
         Command::Check(args) => check::main(&args),
         Command::Safety(args) => safety::main(&args),
@@ -124,18 +112,11 @@ pub fn main() -> ExitCode {
         Command::Dataset(args) => dataset::main(&args),
         Command::Evaluate(args) => evaluate::main(&args),
         Command::Vision(args) => vision::main(&args),
-        Command::Flash(args) => flash::main(&args),
-        Command::Selftest(args) => selftest::main(&args),
-        Command::Monitor(args) => monitor::main(&args),
-        Command::Record(args) => record::main(&args),
-        Command::Play(args) => play::main(&args),
+        Command::Serial(command) => command.run(),
         Command::Plot(args) => plot::main(&args),
-        Command::Config(args) => config::main(&args),
         Command::Size(args) => size::main(&args),
         Command::LintImage => lint_image::main(),
         Command::Commands => commands::main(&Cli::command()),
-        Command::Wiring => wiring::main(),
-        Command::Settings => settings::main(),
     })
 }
 

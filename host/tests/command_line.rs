@@ -1,7 +1,11 @@
 //! The tool as it is started: what it says of files that cannot be meant, and what it does when nobody reads.
 
+use std::fs;
 use std::io::Read;
+use std::path::Path;
 use std::process::{Command, Output, Stdio};
+use std::thread;
+use std::time::Duration;
 
 fn tenax(args: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_tenax-host"));
@@ -63,14 +67,14 @@ fn what_is_missing_or_cannot_be_written_is_said_before_work_begins() {
     let out = file.path().to_str().unwrap();
     let is_a_file = format!("error: cannot write to the folder {out}: is a file, and a folder is needed\n");
     // The first would take minutes, the second compiles a package.
-    assert_eq!(failed(&["chart", "features", "--out", out]), is_a_file);
+    assert_eq!(failed(&["chart", "front", "--out", out]), is_a_file);
     assert_eq!(failed(&["train", "--out", out]), is_a_file);
     assert_eq!(failed(&["run", "--host", "--out", out]), is_a_file);
     let folder = tempfile::tempdir().unwrap();
     let train = ["train", "--out", folder.path().to_str().unwrap(), "--recipe", "array", "--dataset"];
     let missing = failed(&[&train[..], &["no/such.csv"]].concat());
     assert!(missing.starts_with("error: no/such.csv: cannot be read"), "{missing}");
-    std::fs::write(file.path(), "a1\n1\n").unwrap();
+    fs::write(file.path(), "a1\n1\n").unwrap();
     let wrong = failed(&[&train[..], &[out]].concat());
     assert!(wrong.contains(":1: no column"), "{wrong}");
 }
@@ -79,8 +83,8 @@ fn what_is_missing_or_cannot_be_written_is_said_before_work_begins() {
 fn what_is_no_boards_line_is_neither_played_nor_watched_nor_drawn() {
     let folder = tempfile::tempdir().unwrap();
     let (empty, random) = (folder.path().join("empty.bin"), folder.path().join("random.bin"));
-    std::fs::write(&empty, "").unwrap();
-    std::fs::write(
+    fs::write(&empty, "").unwrap();
+    fs::write(
         &random,
         (0..100_000_u32).map(|n| (n.wrapping_mul(2_654_435_761) >> 13) as u8).collect::<Vec<u8>>(),
     )
@@ -118,4 +122,65 @@ fn a_port_that_another_program_reads_names_it() {
     assert!(said.contains(&format!("another program reads {path}: process {} (s", other.id())), "{said}");
     other.kill().unwrap();
     other.wait().unwrap();
+}
+
+const SWEPT: [&str; 5] = ["sweep", "--scenes", "gripper-control,rig", "--seeds", "1..3"];
+
+/// What a merge of these folders leaves in the first.
+fn merged(folders: &[&Path]) -> [Vec<u8>; 2] {
+    let output = tenax(&["sweep", "merge"]).args(folders).output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    assert!(
+        String::from_utf8_lossy(&output.stdout).starts_with("runs                        6\n"),
+        "{output:?}"
+    );
+    ["runs.jsonl", "summary.json"].map(|name| fs::read(folders[0].join(name)).unwrap())
+}
+
+fn is_swept(folder: &Path, shard: &[&str]) -> String {
+    let output = tenax(&SWEPT).args(shard).arg("--out").arg(folder).output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    String::from_utf8(output.stderr).unwrap()
+}
+
+#[test]
+fn a_sweep_gives_the_same_bytes_in_any_shards_and_after_a_kill() {
+    let folder = tempfile::tempdir().unwrap();
+    let [whole, part, other, killed] =
+        ["whole", "part", "other", "killed"].map(|name| folder.path().join(name));
+    assert!(is_swept(&whole, &[]).contains("6 runs done now"));
+    let all = merged(&[&whole]);
+    for of in [3, 16] {
+        for number in (1..=of).rev() {
+            // As of two machines.
+            let out = if number % 2 == 0 { &part } else { &other };
+            is_swept(out, &["--shard", &format!("{number}/{of}")]);
+        }
+        assert_eq!(merged(&[&part, &other]), all, "{of} shards");
+        fs::remove_dir_all(&part).unwrap();
+        fs::remove_dir_all(&other).unwrap();
+    }
+
+    let runs = || {
+        let names = fs::read_dir(&killed).into_iter().flatten().map(|entry| entry.unwrap().path());
+        names
+            .filter(|path| path.to_str().unwrap().ends_with(".json") && !path.ends_with("plan.json"))
+            .collect::<Vec<_>>()
+    };
+    let mut child = tenax(&SWEPT).arg("--out").arg(&killed).stderr(Stdio::null()).spawn().unwrap();
+    while runs().is_empty() && child.try_wait().unwrap().is_none() {
+        thread::sleep(Duration::from_millis(5));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let done = runs();
+    let cut = fs::read(&done[0]).unwrap();
+    fs::write(&done[0], &cut[..cut.len() - 2]).unwrap();
+    let missing = failed(&["sweep", "merge", killed.to_str().unwrap()]);
+    assert!(missing.starts_with(&format!("error: {} of 6 runs are missing: ", 7 - done.len())), "{missing}");
+    assert!(is_swept(&killed, &[]).contains(&format!("{} runs done now", 7 - done.len())));
+    assert_eq!(merged(&[&killed]), all);
+
+    let others = failed(&["sweep", "--seeds", "4", "--out", whole.to_str().unwrap()]);
+    assert!(others.contains("holds another sweep"), "{others}");
 }

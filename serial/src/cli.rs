@@ -29,6 +29,13 @@ struct Cli {
 enum Command {
     /// Calibrate a sensor or the wearer's muscles, step by step
     Calibrate(calibrate::Args),
+    #[command(flatten)]
+    Shared(Shared),
+}
+
+/// What the whole tool has as it is.
+#[derive(Debug, Subcommand)]
+pub enum Shared {
     /// Flash a NUCLEO-F411RE through probe-rs
     Flash(flash::Args),
     /// Touch every sensor in turn; say which wire is wrong
@@ -51,15 +58,24 @@ enum Command {
 pub fn main() -> ExitCode {
     exit(match Cli::parse().command {
         Command::Calibrate(args) => calibrate::main(&args),
-        Command::Flash(args) => flash::main(&args),
-        Command::Selftest(args) => selftest::main(&args),
-        Command::Monitor(args) => monitor::main(&args),
-        Command::Record(args) => record::main(&args),
-        Command::Play(args) => play::main(&args),
-        Command::Config(args) => config::main(&args),
-        Command::Wiring => wiring::main(),
-        Command::Settings => settings::main(),
+        Command::Shared(command) => command.run(),
     })
+}
+
+impl Shared {
+    /// Runs it.
+    pub fn run(&self) -> anyhow::Result<ExitCode> {
+        match self {
+            Self::Flash(args) => flash::main(args),
+            Self::Selftest(args) => selftest::main(args),
+            Self::Monitor(args) => monitor::main(args),
+            Self::Record(args) => record::main(args),
+            Self::Play(args) => play::main(args),
+            Self::Config(args) => config::main(args),
+            Self::Wiring => wiring::main(),
+            Self::Settings => settings::main(),
+        }
+    }
 }
 
 /// What a command that has ended exits with; says what went wrong.

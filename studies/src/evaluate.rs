@@ -1,17 +1,13 @@
 //! `tenax evaluate`: the shipped network of the force array on recordings that it never saw, step by step and slip by
 //! slip; and with the hand around it, in the paper's two tasks and in the scenes where it has to fail.
 
-#[cfg(feature = "emulator")]
-pub mod core;
 pub mod draws;
 pub mod emg;
-pub mod failures;
 pub mod fit;
 pub mod online;
 pub mod ran;
 pub mod report;
 pub mod roc;
-pub mod text;
 
 use tenax_bench::labelled::{Part, Recording};
 

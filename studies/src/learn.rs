@@ -11,7 +11,6 @@
 pub mod bench;
 pub mod chain;
 pub mod control;
-pub mod crackle;
 pub mod figures;
 pub mod finger;
 pub mod holding;
@@ -63,8 +62,6 @@ pub struct Options {
     pub controls: bool,
     /// Whether the films hear no mains hum: the most that a canceller of it could bring.
     pub without_hum: bool,
-    /// Whether one film of the plain finger is made to crackle, too.
-    pub crackling: bool,
     /// Settings of the fingertips that are not the defaults, on the host only.
     pub settings: Vec<Setting>,
 }
@@ -87,7 +84,6 @@ impl Default for Options {
             fingertips: 20,
             controls: true,
             without_hum: false,
-            crackling: false,
             settings: Vec::new(),
         }
     }
@@ -117,8 +113,6 @@ pub struct Outcome {
     /// Lifts with the reflex.
     pub lifts: Vec<Three>,
     pub pours: Vec<Three>,
-    /// The plain finger with a film that crackles: with what it has learned, and with equal weights.
-    pub crackling: Option<[crackle::Tried; 2]>,
     /// The other fingers.
     pub others: Vec<Other>,
     /// What the receptors felt in the last three lessons.
@@ -153,7 +147,6 @@ pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Resu
     progress("lifting and pouring", 0.0);
     let lifts = reflex::lifts(&finger, &learned, options.lifts, seed(options.seed, 4, 0))?;
     let pours = reflex::pours(&finger, &learned, options.lifts, seed(options.seed, 5, 0))?;
-    let crackling = if options.crackling { Some(crackle::compare(options)?) } else { None };
     let over = AtomicU64::new(0);
     let others = (1..=options.fingertips).into_par_iter().map(|n| {
         let score = other(options, n);
@@ -174,7 +167,6 @@ pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Resu
         holding,
         lifts,
         pours,
-        crackling,
         others,
         felt,
     })

@@ -13,4 +13,5 @@ pub mod dataset;
 pub mod evaluate;
 pub mod learn;
 pub mod photoelastic;
+pub mod sweep;
 pub mod vision;

@@ -21,7 +21,7 @@ fn sessions_keep_their_bars() {
     // first 0.75 s.
     for (session, windows_right) in sessions().iter().zip([0.92, 0.94]) {
         let report = session.score(&FITTED);
-        print!("{report}");
+        println!("{report:#?}");
         assert_eq!((report.refused, report.doubts), (0, 0), "every one of these is a muscle");
         assert!(report.worst_right >= windows_right, "{} of the windows", report.worst_right);
         for (name, &ms) in &report.wrong_ms {

@@ -19,7 +19,6 @@ const FEW: Options = Options {
     fingertips: 1,
     controls: true,
     without_hum: false,
-    crackling: false,
     settings: Vec::new(),
 };
 

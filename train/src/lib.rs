@@ -1,17 +1,16 @@
-//! Training of the force array's slip detector (Bamshad 2023), and the comparison that it was chosen from.
+//! Training of the force array's slip detector (Bamshad 2023).
 //!
 //! A package of its own, so that `tenax run` never compiles what only training needs.
 #![forbid(unsafe_code)]
 #![allow(missing_docs, reason = "a part of the tool: where a name says it all, nothing repeats it")]
 
-pub mod compare;
+pub mod candidates;
 pub mod export;
 pub mod features;
 pub mod fit;
 pub mod linear;
 pub mod network;
 pub mod quantise;
-pub mod recurrent;
 pub mod report;
 pub mod score;
 pub mod table;

@@ -1,19 +1,13 @@
-//! Logistic regression and the support vector machine, from linfa.
+//! Logistic regression, from linfa.
 
-use anyhow::{Context, ensure};
+use anyhow::Context;
 use linfa::dataset::DatasetBase;
 use linfa::traits::Fit;
 use linfa_logistic::LogisticRegression;
-use linfa_svm::Svm;
-use ndarray::{Array1, Array2, ArrayView1};
-use rand::seq::SliceRandom;
-use rand::{SeedableRng, rngs::ChaCha8Rng};
+use ndarray::{Array1, Array2};
 use tenax_logic::array::FEATURES;
 
 use crate::table::{Standard, Table};
-
-/// What a step inside the margin costs the support vector machine.
-const SVM_COST: f64 = 0.1;
 
 /// A weighted sum.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,27 +71,4 @@ pub fn logistic(table: &Table, standard: &Standard, ridge: f64, alike: bool) -> 
     let sign = if model.labels().pos.class { 1.0 } else { -1.0 };
     let weights: Vec<f64> = model.params().iter().map(|weight| sign * weight).collect();
     Ok(Linear::unscaled(&weights, sign * model.intercept(), standard))
-}
-
-/// A linear support vector machine; learns from at most `rows_max` rows, drawn with the seed: the solver's matrix is as
-/// large as their square. Fails if there are not both kinds of rows, or the optimiser fails.
-pub fn svm(table: &Table, standard: &Standard, rows_max: usize, seed: u64) -> anyhow::Result<Linear> {
-    let mut rows: Vec<usize> = (0..table.len()).collect();
-    rows.shuffle(&mut ChaCha8Rng::seed_from_u64(seed));
-    rows.truncate(rows_max);
-    let slips = rows.iter().filter(|&&row| table.labels[row] > 0.5).count();
-    ensure!(slips > 0 && slips < rows.len(), "a support vector machine needs steps of both kinds");
-    let svm = Svm::<f64, bool>::params()
-        .pos_neg_weights(SVM_COST, SVM_COST)
-        .linear_kernel()
-        .fit(&dataset(table, &rows, standard))
-        .context("support vector machine")?;
-    // The hyperplane on the common scale: what each feature alone adds.
-    let alone = |feature: usize| {
-        let mut row = vec![0.0; FEATURES];
-        row[feature] = 1.0;
-        svm.weighted_sum(&ArrayView1::from(&row))
-    };
-    let weights: Vec<f64> = (0..FEATURES).map(alone).collect();
-    Ok(Linear::unscaled(&weights, -svm.rho, standard))
 }

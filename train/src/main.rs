@@ -14,7 +14,7 @@ use tenax_bench::array::network::{Network, Saved};
 use tenax_bench::labelled::recipe::ArrayRecipe;
 use tenax_bench::labelled::{self, Part, Recording, library};
 use tenax_bench::scorer::Doing;
-use tenax_train::compare;
+use tenax_train::candidates;
 use tenax_train::export;
 use tenax_train::features::{self, Recipe, Sequence};
 use tenax_train::fit::{self, Trained};
@@ -51,9 +51,6 @@ struct Args {
     /// Learn from the paper's 76 features alone: the control
     #[arg(long)]
     paper_only: bool,
-    /// Instead: compare the paper's five classifiers, and write DIR/detectors.csv
-    #[arg(long)]
-    compare: bool,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -80,26 +77,12 @@ fn run(args: &Args) -> anyhow::Result<()> {
     let Loaded { data, sequences, noise_samples, pours: recorded_pours } =
         load(&args.dataset, &recipe, &features, args.open_test)?;
     let bar = bar();
-    if args.compare {
-        let mut tests = Vec::new();
-        for path in &args.test {
-            tests.extend(labelled::read(path, &recipe)?);
-        }
-        let recordings = compare::with_parts(labelled::read(&args.dataset, &recipe)?, tests);
-        let table = compare::compare(&recordings, &features, args.seed, &mut |part, what| {
-            bar.set_message(what.to_owned());
-            bar.set_position((1e3 * part) as u64);
-        })?;
-        bar.finish_and_clear();
-        print!("{}", compare::text(&table));
-        return write(&args.out, &[("detectors.csv", compare::csv(&table).into_bytes())]);
-    }
     bar.set_message("training");
     let parts = sequences.iter().any(|sequence| sequence.part.is_some());
     let (aim, candidates) = if parts {
-        (Aim::Pours, compare::shipped().to_vec())
+        (Aim::Pours, candidates::SHIPPED.to_vec())
     } else {
-        (Aim::Balanced, compare::FEW_OBJECTS.to_vec())
+        (Aim::Balanced, candidates::FEW_OBJECTS.to_vec())
     };
     let trained =
         fit::fit(&sequences, &candidates, aim, args.seed, &mut |part| bar.set_position((1e3 * part) as u64))?;
@@ -130,7 +113,7 @@ fn run(args: &Args) -> anyhow::Result<()> {
         choice: trained.choice,
         threshold_permille: export::permille(&trained.choice),
         edges: chosen,
-        sizes: compare::sizes(trained.choice.candidate.look_back),
+        sizes: candidates::sizes(trained.choice.candidate.look_back),
         validation: test_quantised(&trained, &quantised, &pours)?,
         float: test(&trained, &tests),
         quantised: test_quantised(&trained, &quantised, &tests)?,

@@ -5,7 +5,7 @@ use std::path::Path;
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use tenax_bench::labelled::{self, Recording, Step, library};
 use tenax_logic::array::{ELEMENTS, Preprocessor, PreprocessorConfig};
-use tenax_train::compare::FEW_OBJECTS;
+use tenax_train::candidates::FEW_OBJECTS;
 use tenax_train::features::{Recipe, Sequence, sequence};
 use tenax_train::fit::{Candidate, Trained, fit, judge};
 use tenax_train::quantise::Quantised;

@@ -18,7 +18,7 @@ use tenax_hal_shim::channel::ARRAY_COUNT;
 
 use crate::scorer::{Doing, SlipSpan, onsets};
 
-pub use read::{LabelledError, parse, read};
+pub use read::{parse, read};
 pub use recipe::ArrayRecipe;
 
 /// What a recording is for.

@@ -1,91 +1,48 @@
 //! A CSV file, read with a recipe.
 
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
 use csv::StringRecord;
 use tenax_hal_shim::channel::{ARRAY_COUNT, SAMPLE_MAX};
-use thiserror::Error;
 
 use super::recipe::ArrayRecipe;
 use super::resample::instants;
 use super::{Part, Recording, Step};
-use crate::input::{Rows, TooLong, too_long};
+use crate::input::{CsvError, number, open, rows};
 use crate::scorer::{Doing, SlipSpan, onsets};
 
 /// The longest time between two rows of a recording, s: over a longer one a straight line is an invention.
 const GAP_MAX_S: f64 = 0.5;
 
-/// What is wrong with a file, and where.
-#[derive(Debug, Error)]
-pub enum LabelledError {
-    /// The file cannot be opened or read.
-    #[error("{file}: cannot be read")]
-    Unreadable {
-        file: String,
-        /// Why not.
-        source: std::io::Error,
-    },
-    /// A column that the recipe asks for is not there.
-    #[error("{file}:1: no column `{column}`, which the recipe asks for; the columns are {columns}")]
-    NoColumn {
-        file: String,
-        /// What was asked for.
-        column: String,
-        /// What it has instead.
-        columns: String,
-    },
-    /// Something about a row.
-    #[error("{file}:{line}: {what}")]
-    Row {
-        file: String,
-        /// Line in the file, from 1; the header is line 1.
-        line: u64,
-        what: String,
-    },
-    /// Nothing below the header.
-    #[error("{file}: no rows below the header")]
-    Empty { file: String },
-}
-
 /// Reads a file. An error says which row is wrong, and what is allowed.
-pub fn read(path: &Path, recipe: &ArrayRecipe) -> Result<Vec<Recording>, LabelledError> {
-    let name = path.display().to_string();
-    let file = File::open(path).map_err(|source| LabelledError::Unreadable { file: name.clone(), source })?;
-    parse(file, recipe, &name)
+pub fn read(path: &Path, recipe: &ArrayRecipe) -> Result<Vec<Recording>, CsvError> {
+    let (source, file) = open(path)?;
+    parse(source, recipe, &file)
 }
 
 /// Reads from anything; `file` is what errors call it. Recordings come in the order of their first rows.
 /// An error says which row is wrong, and what is allowed.
-pub fn parse(source: impl Read, recipe: &ArrayRecipe, file: &str) -> Result<Vec<Recording>, LabelledError> {
-    let mut reader =
-        csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(Rows::new(source));
-    let header = reader.headers().map_err(|error| from_csv(file, error))?.clone();
+pub fn parse(source: impl Read, recipe: &ArrayRecipe, file: &str) -> Result<Vec<Recording>, CsvError> {
+    let mut reader = rows(source);
+    let header = reader.headers().map_err(|error| CsvError::of(file, error))?.clone();
     let columns = Columns::find(&header, recipe, file)?;
     let mut order: Vec<Open> = Vec::new();
     let mut places: BTreeMap<String, usize> = BTreeMap::new();
     for record in reader.into_records() {
-        let record = record.map_err(|error| from_csv(file, error))?;
+        let record = record.map_err(|error| CsvError::of(file, error))?;
         let line = record.position().map_or(0, csv::Position::line);
-        let row = columns.row(&record, recipe).map_err(|what| LabelledError::Row {
-            file: file.to_owned(),
-            line,
-            what,
-        })?;
+        let wrong = |what| CsvError::Row { file: file.to_owned(), line, what };
+        let row = columns.row(&record, recipe).map_err(wrong)?;
         let place = *places.entry(row.name.clone()).or_insert_with(|| {
             order.push(Open::begin(&row));
             order.len() - 1
         });
-        order[place].take(row, recipe).map_err(|what| LabelledError::Row {
-            file: file.to_owned(),
-            line,
-            what,
-        })?;
+        order[place].take(row, recipe).map_err(wrong)?;
     }
     if order.is_empty() {
-        return Err(LabelledError::Empty { file: file.to_owned() });
+        return Err(CsvError::File { file: file.to_owned(), what: "no rows below the header".into() });
     }
     Ok(order.into_iter().map(|open| open.close(columns.onsets.is_some())).collect())
 }
@@ -116,15 +73,11 @@ struct Row {
 }
 
 impl Columns {
-    fn find(header: &StringRecord, recipe: &ArrayRecipe, file: &str) -> Result<Self, LabelledError> {
+    fn find(header: &StringRecord, recipe: &ArrayRecipe, file: &str) -> Result<Self, CsvError> {
         let place = |column: &str| {
             header.iter().position(|name| name == column).ok_or_else(|| {
-                let quoted: Vec<String> = header.iter().map(|name| format!("`{name}`")).collect();
-                LabelledError::NoColumn {
-                    file: file.to_owned(),
-                    column: column.to_owned(),
-                    columns: quoted.join(", "),
-                }
+                let why = format!("no column `{column}`, which the recipe asks for");
+                CsvError::no_column(file, &why, header)
             })
         };
         let maybe = |column: Option<&String>| column.map(|column| place(column)).transpose();
@@ -148,13 +101,7 @@ impl Columns {
     }
 
     fn row(&self, record: &StringRecord, recipe: &ArrayRecipe) -> Result<Row, String> {
-        let number = |place: usize, column: &str| match record[place].parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok(value),
-            Ok(_) => {
-                Err(format!("column `{column}` is `{}`; only finite numbers are allowed", &record[place]))
-            }
-            Err(_) => Err(format!("column `{column}` is `{}`, which is not a number", &record[place])),
-        };
+        let number = |place: usize, column: &str| number(column, &record[place]);
         let mut samples = [0.0; ARRAY_COUNT];
         for ((sample, &place), column) in
             samples.iter_mut().zip(&self.array).zip(recipe.array.columns.get_ref())
@@ -285,25 +232,6 @@ impl Open {
     }
 }
 
-/// The csv crate's error as one of ours: what, and in which line.
-fn from_csv(file: &str, error: csv::Error) -> LabelledError {
-    let line = error.position().map_or(1, csv::Position::line);
-    let file = file.to_owned();
-    match error.into_kind() {
-        csv::ErrorKind::Io(source) => match too_long(&source) {
-            Some(TooLong { line, what }) => LabelledError::Row { file, line, what: what.to_owned() },
-            None => LabelledError::Unreadable { file, source },
-        },
-        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            LabelledError::Row { file, line, what: format!("{len} cells, but the header has {expected_len}") }
-        }
-        csv::ErrorKind::Utf8 { err, .. } => {
-            LabelledError::Row { file, line, what: format!("not text (UTF-8): {err}") }
-        }
-        other => LabelledError::Row { file, line, what: format!("not CSV: {other:?}") },
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -326,7 +254,7 @@ slip = ['yes']
 no_slip = ['no']
 ";
 
-    fn read(rows: &str) -> Result<Vec<Recording>, LabelledError> {
+    fn read(rows: &str) -> Result<Vec<Recording>, CsvError> {
         let recipe = ArrayRecipe::parse(RECIPE, "r.toml").unwrap();
         parse(format!("r,part,label,t,a,b,c,d,e,f,g,h,i,j\n{rows}").as_bytes(), &recipe, "d.csv")
     }

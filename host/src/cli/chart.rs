@@ -46,8 +46,6 @@ enum Subject {
     /// What each grip pays in newtons beyond need for what it saves in millimetres: the hand, each detector alone, all but each, no
     /// reflex, constant grip, the bound; and decision delay by stiffness by gain
     Front,
-    /// What tells slip from rest in the force array: force sum, derivative, covariance, frequency, and their windows
-    Features,
     /// How soon the slip of a lift could be told, and from which sensors, beside what a camera sees
     Onset,
     /// How well the wearer is understood on recorded people, and how late, against false motions: the hand and plain control
@@ -65,7 +63,6 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let charts = match args.subject {
         Subject::Scenes => chart::scenes()?,
         Subject::Array => vec![with_bar("array", |progress| chart::array::chart(progress))?],
-        Subject::Features => vec![with_bar("features", |progress| chart::features::chart(progress))?],
         Subject::Front => {
             let front = with_bar("front", |progress| chart::front::front(progress))?;
             vec![front, with_bar("delay", |progress| chart::delay::map(progress))?]
@@ -101,9 +98,8 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             vec![table.chart()?]
         }
         Subject::Photoelastic => {
-            let (chart, measured) =
-                with_bar("photoelastic", |progress| chart::photoelastic::chart(progress))?;
-            out::unless_closed(args.report.print(&format_args!("{measured}\n"), &measured.report))?;
+            let (chart, report) = with_bar("photoelastic", |progress| chart::photoelastic::chart(progress))?;
+            out::unless_closed(args.report.show(&report))?;
             vec![chart]
         }
     };

@@ -5,7 +5,6 @@ use std::process::ExitCode;
 
 use anyhow::bail;
 use rayon::prelude::*;
-use tenax_logic::array::{Reading, ShippedDetector};
 
 use super::format::Format;
 use super::out;
@@ -16,27 +15,22 @@ use tenax_bench::array::network::Network;
 use tenax_bench::array::real::{Logits, Real};
 use tenax_bench::array::{Verdicts, adapt, readings};
 use tenax_bench::labelled::{self, Part, Recording, library};
-use tenax_bench::report::bound::Control;
-use tenax_bench::scorer::Card;
 use tenax_bench::session::Board;
 use tenax_studies::dataset::session::{Sizes, sessions};
 use tenax_studies::dataset::{Dataset, Label, Plan};
 use tenax_studies::evaluate::report::Report;
 use tenax_studies::evaluate::roc::Roc;
-use tenax_studies::evaluate::text::Text;
-use tenax_studies::evaluate::{draws, emg, failures, online, test_split};
+use tenax_studies::evaluate::{draws, emg, online, test_split};
 
 const EXAMPLES: &str = "\
 Examples:
   tenax evaluate                                   the shipped network on the test split of the built-in data set
   tenax evaluate --report json                     for programs
-  tenax evaluate --core                            and on the emulated core, bit for bit
   tenax evaluate --dataset my.csv --recipe my.toml --adapt 6
                                                    on recordings of one's own array, after 6 s of quiet holding of each object
   tenax evaluate --dataset my.csv --network out/train
                                                    the network that `tenax train` has made of one's own
   tenax evaluate --online --host                   the paper's two tasks, ten times with each of four materials
-  tenax evaluate --failures --host                 the scenes where it may fail, and what the hand does then
   tenax evaluate emg --recordings FOLDER           what the wearer wants, on envelopes of people";
 
 /// Score the force array's network on what it never saw.
@@ -52,10 +46,10 @@ pub struct Args {
     #[arg(long, value_name = "FILE.toml|NAME", requires = "dataset")]
     recipe: Option<String>,
     /// The network in this folder of `tenax train` instead of the one that ships
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["online", "failures", "core"])]
+    #[arg(long, value_name = "DIR", conflicts_with = "online")]
     network: Option<PathBuf>,
     /// Fit scale and threshold to each session's first N seconds in which nothing slips; they are not scored
-    #[arg(long, value_name = "N", requires = "dataset", conflicts_with = "core")]
+    #[arg(long, value_name = "N", requires = "dataset")]
     adapt: Option<f64>,
     /// Seed of the built-in data set, or of the online tasks
     #[arg(long, default_value_t = 1)]
@@ -72,14 +66,8 @@ pub struct Args {
     /// Online: times that each task is tried with each material
     #[arg(long, value_name = "N", default_value_t = online::TIMES, requires = "online")]
     times: usize,
-    /// The scenes where it may fail, instead of recordings
-    #[arg(long, conflicts_with_all = ["dataset", "sessions", "online"])]
-    failures: bool,
-    /// Recordings: judge them on the emulated core, too, and compare features, logits and verdicts
-    #[arg(long, conflicts_with_all = ["online", "failures", "host"])]
-    core: bool,
-    /// Online and failures: run the host's own build of the logic, no image, no emulator
-    #[arg(long)]
+    /// Online: run the host's own build of the logic, no image, no emulator
+    #[arg(long, requires = "online")]
     host: bool,
     /// How to print the scores
     #[arg(long, value_enum, default_value_t = Format::Text)]
@@ -109,17 +97,11 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some(What::Emg(emg)) = &args.what {
         let People { recordings, seed, report: format } = &emg.people;
         let report = emg::evaluate(recordings, emg.person, emg.faults, *seed)?;
-        out::unless_closed(format.print(&emg::Text(&report), &report))?;
+        out::unless_closed(format.show(&report))?;
         return Ok(ExitCode::SUCCESS);
     }
     if args.online {
         return online_tasks(args);
-    }
-    if args.failures {
-        return failing_scenes(args);
-    }
-    if args.host {
-        bail!("--host is for --online and --failures: recordings are always judged on this machine");
     }
     let recordings = recordings(args)?;
     let recordings = if args.dataset.is_some() { test_split(recordings) } else { recordings };
@@ -152,10 +134,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             report
         }
     };
-    out::unless_closed(args.report.print(&Text(&report), &report))?;
-    if args.core {
-        on_the_core(&recordings)?;
-    }
+    out::unless_closed(args.report.show(&report))?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -185,28 +164,6 @@ fn real(network: &Network) -> anyhow::Result<Option<Real>> {
     };
     let recordings = labelled::read(&file, &library::choose(&file, None)?)?;
     Ok(adapted(network, &recordings, quiet_s)?.real)
-}
-
-/// Says whether the emulated core judges recordings as this machine does.
-#[cfg(feature = "emulator")]
-fn on_the_core(recordings: &[Recording]) -> anyhow::Result<()> {
-    let image = tenax_bench::image::build_kernels(&workspace::root()?)?;
-    let steps = with_bar("on the core", |progress| {
-        tenax_studies::evaluate::core::compare(&image, recordings, &mut |part| progress(part))
-    })?;
-    out::note!("the emulated core      says the same, bit for bit, in {steps} steps");
-    Ok(())
-}
-
-#[cfg(not(feature = "emulator"))]
-fn on_the_core(_recordings: &[Recording]) -> anyhow::Result<()> {
-    bail!("--core needs the emulator: run it as `cargo tenax evaluate --core`")
-}
-
-/// The network that ships, knowing nothing yet.
-fn shipped_detector() -> impl FnMut(&Reading) -> bool {
-    let mut detector = ShippedDetector::default();
-    move |reading| detector.push(reading).slip
 }
 
 fn recordings(args: &Args) -> anyhow::Result<Vec<Recording>> {
@@ -255,52 +212,6 @@ fn online_tasks(args: &Args) -> anyhow::Result<ExitCode> {
             by("hebbian alone"),
             by("mlp alone")
         )?;
-    }
-    Ok(ExitCode::SUCCESS)
-}
-
-fn failing_scenes(args: &Args) -> anyhow::Result<ExitCode> {
-    let board = board(args)?;
-    let rows = with_bar("scenes", |progress| failures::rows(shipped_detector, args.seed, &board, progress))?;
-    if args.report == Format::Json {
-        out::say!("{}", serde_json::to_string_pretty(&rows)?)?;
-        return Ok(ExitCode::SUCCESS);
-    }
-    out::say!(
-        "scene               steps right  missed  false  slips caught  false alarms  object   slid, mm (bound)  peak, N (bound)"
-    )?;
-    let or_dash = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.2}"));
-    for row in rows {
-        let Card { slips, false_alarms, .. } = &row.events;
-        out::say!(
-            "{:<20}{:>9.2} %{:>8}{:>7}{:>9} of {:<3}{:>12}   {:<8}{:>9} ({:>6}){:>12} ({:>6}) {}",
-            row.scene,
-            100.0 * row.steps.accuracy,
-            row.steps.missed,
-            row.steps.false_steps,
-            slips.caught,
-            slips.count,
-            false_alarms.count,
-            row.kept.map_or("-", |kept| if kept { "kept" } else { "LOST" }),
-            or_dash(row.distance_mm[0]),
-            or_dash(row.distance_mm[1]),
-            or_dash(row.peak_force_n[0]),
-            or_dash(row.peak_force_n[1]),
-            row.faults.join("; ")
-        )?;
-        let told = |own: &Control| {
-            let kept = if own.kept { "kept" } else { "LOST" };
-            format!(
-                "{} {kept} {:.2} mm {:.1} N",
-                own.name,
-                own.distance_mm,
-                own.peak_force_n.unwrap_or_default()
-            )
-        };
-        let controls: Vec<String> = row.controls.iter().map(told).collect();
-        if !controls.is_empty() {
-            out::say!("    controls: {}", controls.join("; "))?;
-        }
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -50,9 +50,6 @@ pub struct Args {
     /// Let the films hear no mains hum: the most that a canceller of it could bring
     #[arg(long)]
     without_hum: bool,
-    /// Let one film of the plain finger crackle, too, and compare what is learned with equal weights
-    #[arg(long)]
-    crackling: bool,
     /// A setting of the fingertips (docs/settings.md), on the host only; may be given more than once
     #[arg(long, value_name = "NAME=VALUE", requires = "host")]
     set: Vec<String>,
@@ -78,7 +75,6 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         fingertips: args.fingertips,
         controls: true,
         without_hum: args.without_hum,
-        crackling: args.crackling,
         settings: args.set.iter().map(|text| setting(text)).collect::<anyhow::Result<_>>()?,
     };
     let counts = [

@@ -2,7 +2,7 @@
 
 mod sum;
 
-use std::process::{Command, ExitCode};
+use std::process::{Command, ExitCode, Stdio};
 
 use anyhow::Context;
 use sum::Sum;
@@ -49,10 +49,16 @@ fn tool() -> Command {
 
 /// Tests of the training. It learns, which without optimisation takes minutes. Apart from the tool's, as `tenax train` builds
 /// it: together they would share features, and the emulator would be compiled again.
-fn training() -> Command {
-    let mut command = Command::new("cargo");
-    command.args(["test", "--release", "--ignore-rust-version", "--package", "tenax-train"]);
-    command
+const TRAINING: [&str; 5] = ["test", "--release", "--ignore-rust-version", "--package", "tenax-train"];
+
+/// Compiles the tests of the training with what the tool's tests leave of the cores: many of those wait for a board that runs at
+/// real time. Not before these are compiled, for Cargo lets one of them compile at a time.
+fn compile_training() {
+    let mut command = Command::new("nice");
+    command.args(["-n", "19", "cargo"]).args(TRAINING).args(["--no-run", "--quiet"]);
+    let quiet = command.stdout(Stdio::null()).stderr(Stdio::null());
+    // Whatever hinders it will be said when they are run. It goes on by itself.
+    let _hindered = workspace::root().and_then(|root| Ok(quiet.current_dir(root).spawn()?));
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
@@ -62,10 +68,13 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         &[Binary::Image, Binary::Kernels, Binary::Frames, Binary::Pictures],
     )])?;
     let mut sum = Sum::default();
-    for mut command in [logic(), tool(), training()] {
-        // The next is run even if one fails: a person wants to know of all that is broken.
-        sum.run(command.arg("--no-fail-fast").args(&args.extra))?;
-    }
+    // The next is run even if one fails: a person wants to know of all that is broken.
+    let mut run = |command: &mut Command, compiled: fn()| {
+        sum.run(command.arg("--no-fail-fast").args(&args.extra), compiled)
+    };
+    run(&mut logic(), || {})?;
+    run(&mut tool(), compile_training)?;
+    run(Command::new("cargo").args(TRAINING), || {})?;
     if args.extra.is_empty() {
         // For `tenax safety --tested`.
         let path = workspace::root()?.join(RESULTS);

@@ -17,7 +17,6 @@ use tenax_studies::evaluate::fit;
 const EXAMPLES: &str = "\
 Examples:
   tenax train                                     from the data set of `tenax dataset`, which is made if it is not there
-  tenax train --compare                           the paper's five classifiers on it, and out/train/detectors.csv
   tenax train --dataset mine.csv --recipe r.toml  from recordings of your own; docs/training.md says how to write a recipe
   tenax train --dataset basic.csv --recipe biotac --test solids.csv
   tenax train emg --recordings FOLDER             the constants of the wearer's model, each person held apart once";
@@ -55,9 +54,6 @@ pub struct Args {
     /// Learn from the paper's 76 features alone: the control
     #[arg(long)]
     paper_only: bool,
-    /// Instead: compare the paper's five classifiers
-    #[arg(long)]
-    compare: bool,
     /// Put what was written where the firmware and the documentation have it
     #[arg(long)]
     ship: bool,
@@ -85,7 +81,7 @@ struct EmgArgs {
 fn emg(args: &EmgArgs) -> anyhow::Result<ExitCode> {
     let People { recordings, seed, report: format } = &args.people;
     let report = with_bar("fitting", |part| fit::fit(recordings, args.rounds, *seed, part))?;
-    out::unless_closed(format.print(&fit::Text(&report), &report))?;
+    out::unless_closed(format.show(&report))?;
     if args.ship {
         let to = workspace::root()?.join("logic/src/emg/fitted.rs");
         std::fs::write(&to, &report.file).with_context(|| format!("cannot write {}", to.display()))?;
@@ -95,12 +91,9 @@ fn emg(args: &EmgArgs) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What `--ship` puts where, if it was written.
-const SHIPPED: [(&str, &str); 3] = [
-    ("network.rs", "logic/src/array/shipped.rs"),
-    ("model-card.md", "docs/model-card.md"),
-    ("detectors.csv", "docs/figures/detectors.csv"),
-];
+/// What `--ship` puts where.
+const SHIPPED: [(&str, &str); 2] =
+    [("network.rs", "logic/src/array/shipped.rs"), ("model-card.md", "docs/model-card.md")];
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some(What::Emg(args)) = &args.what {
@@ -127,9 +120,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         command.arg("--test").arg(file);
     }
     command.arg("--out").arg(&args.out).args(["--seed", &args.seed.to_string(), "--report", &args.report]);
-    for (is_set, flag) in
-        [(args.compare, "--compare"), (args.open_test, "--open-test"), (args.paper_only, "--paper-only")]
-    {
+    for (is_set, flag) in [(args.open_test, "--open-test"), (args.paper_only, "--paper-only")] {
         if is_set {
             command.arg(flag);
         }
@@ -153,8 +144,7 @@ fn readable(file: &Path, dataset: &Path, recipe: Option<&str>) -> anyhow::Result
 }
 
 fn ship(args: &Args) -> anyhow::Result<()> {
-    let written = if args.compare { &SHIPPED[2..] } else { &SHIPPED[..2] };
-    for (name, to) in written {
+    for (name, to) in SHIPPED {
         let to = workspace::root()?.join(to);
         std::fs::copy(args.out.join(name), &to).with_context(|| format!("cannot write {}", to.display()))?;
         out::note!("  {:<14}{}", "shipped", to.display());

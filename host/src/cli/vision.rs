@@ -195,27 +195,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if args.teach && args.port.is_none() {
         return Ok(ExitCode::SUCCESS);
     }
-    match args.report {
-        Format::Json => out::say!("{}", serde_json::to_string_pretty(&report)?)?,
-        Format::Text => {
-            out::say!("{} pictures, {:.0} a second on one core", report.frames, report.fps_per_core)?;
-            out::say!(
-                "{} markers, {:.2} % of updates failed, longest jump {:.2} px",
-                report.markers,
-                100.0 * report.failed_share,
-                report.longest_jump_px
-            )?;
-            out::say!(
-                "an object in {:.1} % of the pictures, slip in {:.1} %; blind: {} late, {} frozen, {} covered, lost {} times",
-                100.0 * report.object_share,
-                100.0 * report.slip_share,
-                report.blind.late,
-                report.blind.frozen,
-                report.blind.covered,
-                report.blind.lost
-            )?;
-        }
-    }
+    args.report.show(&report)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -306,48 +286,7 @@ fn drawn(args: &Args) -> anyhow::Result<ExitCode> {
     if args.sessions == 0 {
         bail!("--sessions must be at least 1");
     }
-    let report = scored::score(args.seed, args.sessions)?;
-    match args.report {
-        Format::Json => out::say!("{}", serde_json::to_string_pretty(&report)?)?,
-        Format::Text => {
-            let shown = |value: Option<f64>, scale: f64, digits: usize| {
-                value.map_or_else(|| "-".to_owned(), |value| format!("{:.*}", digits, scale * value))
-            };
-            let percent = |value| shown(value, 100.0, 2);
-            out::say!("{} sessions from seed {}, {} pictures", report.sessions, report.seed, report.frames)?;
-            out::say!(
-                "{:.0} pictures a second on one core, markers and object together",
-                report.fps_per_core
-            )?;
-            out::say!(
-                "markers: {} % calibrated, {} % of updates failed, {} px rms from the truth",
-                percent(report.markers_found),
-                percent(report.failed_share),
-                shown(report.marker_px_rms, 1.0, 3)
-            )?;
-            out::say!("direction of shear: {} degrees rms", shown(report.force_deg_rms, 1.0, 2))?;
-            out::say!(
-                "object: seen in {} % of the pictures in which it is held, in {} % of those without; angle {} degrees rms; \
-                 'out of view' said in {} % of the pictures in which a part of it is",
-                percent(report.object_seen),
-                percent(report.object_false),
-                shown(report.angle_deg_rms, 1.0, 2),
-                percent(report.cut_said)
-            )?;
-            out::say!(
-                "slip: recall {} %, false {} %, while the background moves {} %",
-                percent(report.slip.recall),
-                percent(report.slip.false_rate),
-                percent(report.slip.false_rate_moving_background)
-            )?;
-            out::say!(
-                "worst session: recall {} %, false {} %, seen {} %",
-                percent(report.worst.recall),
-                percent(report.worst.false_rate),
-                percent(report.worst.seen)
-            )?;
-        }
-    }
+    args.report.show(&scored::score(args.seed, args.sessions)?)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -367,27 +306,15 @@ fn calibrated(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
     if !tried.is_empty() {
         scores.push(("tried", calibrate::score(&loads, &tried)));
     }
-    if matches!(args.report, Format::Json) {
-        let scores: serde_json::Map<_, _> = scores
-            .iter()
-            .map(|(name, score)| Ok(((*name).to_owned(), serde_json::to_value(score)?)))
-            .collect::<anyhow::Result<_>>()?;
-        out::say!("{}", serde_json::to_string_pretty(&scores)?)?;
+    let scores: serde_json::Map<_, _> = scores
+        .iter()
+        .map(|(name, score)| Ok(((*name).to_owned(), serde_json::to_value(score)?)))
+        .collect::<anyhow::Result<_>>()?;
+    args.report.show(&scores)?;
+    if args.report == Format::Json {
         return Ok(ExitCode::SUCCESS);
     }
     out::say!("{} markers", skin.markers())?;
-    let percent =
-        |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{:.0} %", 100.0 * value));
-    for (name, score) in &scores {
-        out::say!(
-            "{name}: {} pictures, shear {:.2} N rms in x and {:.2} in z; normal force above 3 N: {} rms, {} within 15 %",
-            score.pictures,
-            score.x_rms_n,
-            score.z_rms_n,
-            percent(score.normal_rms_share),
-            percent(score.normal_within_15_percent)
-        )?;
-    }
     if !tried.is_empty() {
         out::say!("tried, a load a row, N:   mass_g   truth x   normal   z      estimate x   normal   z")?;
         for (mass, truth, estimate) in calibrate::table(&loads, &tried) {

@@ -3,7 +3,6 @@
 pub mod array;
 pub mod delay;
 pub mod emg;
-pub mod features;
 pub mod front;
 mod growth;
 pub mod loads;

@@ -48,51 +48,12 @@ pub struct Report {
 pub struct Rate {
     /// Median error on days that were not calibrated on, %.
     pub median_pct: f64,
-}
-
-/// The rest of what was measured, for a person.
-#[derive(Clone, Debug)]
-pub struct Measured {
-    /// For programs.
-    pub report: Report,
-    /// Rates on plastic with aluminium's calibration: median error, %.
+    /// On plastic, with aluminium's calibration.
     pub other_material_pct: f64,
 }
 
-impl std::fmt::Display for Measured {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { report, other_material_pct } = self;
-        for (name, score) in
-            [("without shear", &report.force), ("sheared by 0 to 0.5", &report.force_sheared)]
-        {
-            writeln!(
-                f,
-                "force, {name:20}  certain in {:.1} % of the cycles: {:.2} % rms, {:.2} % at most, of 6 N; off by more than it says in {:.2} %",
-                100.0 * score.certain_part,
-                score.rms_pct_fs,
-                score.max_pct_fs,
-                100.0 * score.certain_off_part
-            )?;
-            writeln!(
-                f,
-                "  of all {} cycles          load below the true force in {:.2} %, least force above it in {:.2} %",
-                score.cycles,
-                100.0 * score.load_below_part,
-                100.0 * score.least_above_part
-            )?;
-        }
-        writeln!(
-            f,
-            "slip rate                    {:.1} % median error on other days, {other_material_pct:.0} % on plastic",
-            report.rate.median_pct
-        )?;
-        writeln!(f, "boundary of vibration        {:.2} % off theory", report.boundary_pct)?;
-        write!(f, "slowest slip seen            {:.2} mm/s on aluminium", report.slip_floor_mm_s)
-    }
-}
-
 /// Runs everything and draws it. Fails if the chart cannot be drawn.
-pub fn chart(progress: Progress) -> anyhow::Result<(Chart, Measured)> {
+pub fn chart(progress: Progress) -> anyhow::Result<(Chart, Report)> {
     let [runs, lifts] = [false, true].map(|sheared| force::sessions(VALIDATION, STORIES, sheared));
     let [force, force_sheared] = [&runs, &lifts].map(|runs| Score::of(runs.iter().map(Vec::as_slice)));
     progress(0.3);
@@ -104,7 +65,7 @@ pub fn chart(progress: Progress) -> anyhow::Result<(Chart, Measured)> {
     let report = Report {
         force,
         force_sheared,
-        rate: Rate { median_pct },
+        rate: Rate { median_pct, other_material_pct },
         boundary_pct: region.boundary_pct,
         slip_floor_mm_s,
     };
@@ -131,8 +92,7 @@ pub fn chart(progress: Progress) -> anyhow::Result<(Chart, Measured)> {
     );
     let csv = table(&runs, &curves, &region)?;
     progress(1.0);
-    let measured = Measured { report, other_material_pct };
-    Ok((Chart::new("photoelastic", &sheet, csv)?, measured))
+    Ok((Chart::new("photoelastic", &sheet, csv)?, report))
 }
 
 /// Each head is calibrated on four days, and asked on four others; then on plastic.

@@ -10,7 +10,6 @@ pub(super) mod trial;
 pub mod two_channel;
 
 use std::collections::BTreeMap;
-use std::fmt;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
@@ -174,68 +173,6 @@ pub(super) fn person(fitted: &'static Fitted, number: u32, days: &Days) -> Perso
         first_day_kept: score(Kind::FirstDayKept),
         refused,
         sessions: days.len(),
-    }
-}
-
-/// A table for people.
-#[derive(Debug)]
-pub struct Text<'a>(pub &'a Report);
-
-impl fmt::Display for Text<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self(report) = self;
-        for session in &report.two_channel {
-            writeln!(f, "{session}")?;
-        }
-        if let Some(faults) = &report.faults {
-            writeln!(f, "{faults}")?;
-        }
-        if report.persons.is_empty() {
-            return Ok(());
-        }
-        writeln!(
-            f,
-            "{:28} {:>17} {:>17} {:>7} {:>8} {:>15} {:>15} {:>8}",
-            "",
-            "closes right/wrong",
-            "opens right/wrong",
-            "missed",
-            "false/h",
-            "late p50, p95 s",
-            "full p50, p95 s",
-            "doubted"
-        )?;
-        let row = |f: &mut fmt::Formatter<'_>, name: &str, score: Option<Score>| {
-            let Some(s) = score else { return writeln!(f, "{name:28} {:>17}", "-") };
-            writeln!(
-                f,
-                "{name:28} {:>10.3} {:.3} {:>11.3} {:.3} {:>8.3} {:>8.1} {:>8.3} {:>6.3} {:>8.3} {:>6.3} {:>8.4}",
-                s.close_right,
-                s.close_wrong_way,
-                s.open_right,
-                s.open_wrong_way,
-                s.missed,
-                s.false_per_hour,
-                s.latency_s_p50,
-                s.latency_s_p95,
-                s.full_s_p50,
-                s.full_s_p95,
-                s.doubted_part
-            )
-        };
-        for person in &report.persons {
-            let name = |what: &str| format!("person {}, {what}", person.person);
-            row(f, &name("same session"), person.same_session)?;
-            row(f, &name("other posture"), person.other_posture)?;
-            row(f, &name("first day kept"), person.first_day_kept)?;
-            for (day, why) in &person.refused {
-                writeln!(f, "  day {day}'s calibration is refused: {why}")?;
-            }
-        }
-        row(f, "median, same session", report.same_session)?;
-        row(f, "median, other posture", report.other_posture)?;
-        row(f, "median, first day kept", report.first_day_kept)?;
-        writeln!(f, "{:.1} % of the calibrations are refused", 100.0 * report.refused_part)
     }
 }
 

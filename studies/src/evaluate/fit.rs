@@ -6,7 +6,6 @@
 
 mod promises;
 
-use std::fmt;
 use std::path::Path;
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -23,7 +22,7 @@ use self::promises::Promises;
 use super::emg::recordings::Days;
 use super::emg::score::Count;
 use super::emg::trial::{Kind, Trial, Trials};
-use super::emg::{self, Person, Recordings, Score, person};
+use super::emg::{self, Recordings, Score, person};
 
 /// A person's trials, and what the electrodes say in each.
 struct Wearer<'a> {
@@ -185,23 +184,4 @@ fn file(
         persons.join(", "),
         costs.join(", "),
     )
-}
-
-/// A table for people.
-#[derive(Debug)]
-pub struct Text<'a>(pub &'a Report);
-
-impl fmt::Display for Text<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self(report) = self;
-        let [first, least] = report.cost;
-        writeln!(f, "everybody: a person's mean cost {first:.3} before, {least:.3} after")?;
-        for (Person { person, .. }, [first, least]) in report.held.persons.iter().zip(&report.held_cost) {
-            writeln!(
-                f,
-                "person {person} held apart: {first:.3} with what ships, {least:.3} fitted on the others"
-            )?;
-        }
-        write!(f, "\neach person fitted on the others:\n{}", emg::Text(&report.held))
-    }
 }

@@ -16,7 +16,6 @@ use tenax_scene::plant::Plant;
 
 use super::chain::slow_frames;
 use super::control::Control;
-use super::crackle::crackle;
 use super::report::Spread;
 use super::trial::{Setup, Trial, by_network};
 use tenax_bench::board::simulated::Ahead;
@@ -42,13 +41,11 @@ pub struct Bench {
     frame: u32,
     /// What the network said in the ticks of the last slow frame.
     said: Vec<Said>,
-    /// Whether one film crackles.
-    crackles: bool,
 }
 
 impl Default for Bench {
     fn default() -> Self {
-        Self { fingertip: Fingertip::trusting(), frame: 0, said: Vec::new(), crackles: false }
+        Self { fingertip: Fingertip::trusting(), frame: 0, said: Vec::new() }
     }
 }
 
@@ -87,10 +84,7 @@ impl Bench {
                 // A refusal goes back to whoever sent it; there is no line here.
                 let _ = self.fingertip.command(command);
             }
-            let mut frame_in = Frame::from_scans(self.frame, &scans);
-            if self.crackles {
-                crackle(&mut frame_in.pvdf, self.frame);
-            }
+            let frame_in = Frame::from_scans(self.frame, &scans);
             self.frame = self.frame.wrapping_add(1);
             let told = match judge {
                 Judge::Touch | Judge::Bound => None,
@@ -128,12 +122,6 @@ impl Bench {
         });
         trial.end(world.truth().clone());
         trial
-    }
-
-    /// The same with a film that crackles.
-    pub const fn crackling(mut self) -> Self {
-        self.crackles = true;
-        self
     }
 
     /// A new fingertip with these settings. Fails if a setting does not take its value.

@@ -68,12 +68,6 @@ impl fmt::Display for Text<'_> {
         line("lift, pressed with", three(&outcome.lifts, "N", |run| run.grip_n))?;
         line("pour, slipped", three(&outcome.pours, "mm", |run| run.distance_mm))?;
         line("pour, pressed with", three(&outcome.pours, "N", |run| run.grip_n))?;
-        for (name, tried) in ["learned", "equal weights"].iter().zip(outcome.crackling.iter().flatten()) {
-            let (score, holding) = tried;
-            let (slip, false_in) = (lead(&score.slip), score.slip.false_alarms);
-            let held = held(holding);
-            line("one film crackles", format!("{name}: slip {slip}, {false_in} trials false; {held}"))?;
-        }
         let safe = outcome.safe();
         line(
             "lifts that would hold",

@@ -8,6 +8,7 @@ use std::sync::OnceLock;
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
+use tenax_bench::array::readings;
 use tenax_bench::board::emulated::kernels::{self, Answer, Cost, Kernels};
 use tenax_bench::image::timing::Flash;
 use tenax_bench::labelled::{self, Part, library};
@@ -16,7 +17,6 @@ use tenax_logic::array::{Reading, ShippedDetector};
 use tenax_studies::chart::table::costs::{Costs, Kernel};
 use tenax_studies::chart::table::rivals;
 use tenax_studies::dataset::{Dataset, Label, Plan};
-use tenax_studies::evaluate::core;
 
 fn image() -> &'static Path {
     static IMAGE: OnceLock<PathBuf> = OnceLock::new();
@@ -60,25 +60,31 @@ fn recordings() -> Vec<Vec<Reading>> {
     ]
 }
 
-#[test]
-fn the_core_says_what_this_machine_says() {
-    let recordings = recordings();
-    let outcome = kernels::run(image(), &recordings, Kernels::Detector, &mut |_| {}).unwrap();
-    let (mut judged, mut slipping) = (0, 0);
+/// Steps of these recordings, all of which the core judges as this machine does, and those in which either finds a verdict, and slip.
+fn judged_alike(recordings: &[Vec<Reading>]) -> [usize; 3] {
+    let outcome = kernels::run(image(), recordings, Kernels::Detector, &mut |_| {}).unwrap();
+    let [mut steps, mut judged, mut slipping] = [0; 3];
     for (readings, answers) in recordings.iter().zip(&outcome.answers) {
         let mut detector = ShippedDetector::default();
         assert_eq!(readings.len(), answers.len());
         for (n, (reading, answer)) in readings.iter().zip(answers).enumerate() {
             assert_eq!(Answer::of(&mut detector, reading), *answer, "frame {n}: {reading:?}");
-            judged += u32::from(answer.evidence.is_some());
-            slipping += u32::from(answer.verdict.slip);
+            judged += usize::from(answer.evidence.is_some());
+            slipping += usize::from(answer.verdict.slip);
         }
+        steps += readings.len();
     }
+    [steps, judged, slipping]
+}
+
+#[test]
+fn the_core_says_what_this_machine_says() {
+    let [_, judged, slipping] = judged_alike(&recordings());
     // Both answers were given, or it would have been no test.
     assert!(judged > 1_500 && slipping > 20 && slipping < judged - 20, "{judged} {slipping}");
 }
 
-/// The shipped network on the first sessions of the built-in data's test split; `tenax evaluate --core` runs them all.
+/// The shipped network on the first sessions of the built-in data's test split.
 #[test]
 fn the_core_judges_the_test_split_as_this_machine_does() {
     let plan = Plan { seed: 1, sessions: 2, label: Label::Truth };
@@ -86,7 +92,8 @@ fn the_core_judges_the_test_split_as_this_machine_does() {
     let name = "array_dataset.csv";
     let recipe = library::choose(name.as_ref(), None).unwrap();
     let recordings = labelled::parse(csv.as_slice(), &recipe, name).unwrap();
-    let steps = core::compare(image(), &recordings, &mut |_| {}).unwrap();
+    let read: Vec<Vec<Reading>> = recordings.iter().map(|own| readings(&own.steps)).collect();
+    let [steps, ..] = judged_alike(&read);
     // Six sessions, each of 48 s.
     assert!(steps > 6 * 30 * 80, "{steps}");
 }

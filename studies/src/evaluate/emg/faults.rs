@@ -7,7 +7,6 @@
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
-use std::fmt;
 use std::ops::Range;
 
 use rand::rngs::ChaCha8Rng;
@@ -347,28 +346,5 @@ pub(in crate::evaluate) fn draw(fitted: &'static Fitted, trials: &[&Trial], case
             .enumerate()
             .map(|(wearer, name)| (name, Row::of(outcomes.iter().filter(|own| own.wearer == wearer))))
             .collect(),
-    }
-}
-
-impl fmt::Display for Report {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(
-            f,
-            "faults drawn over people at rest, seed {}; the most that is safe is {SAFE_MM} mm\n{:28} {:>7} {:>8} {:>8} {:>8} {:>9}",
-            self.seed, "", "cases", "dropped", "most mm", "lasting", "reported"
-        )?;
-        let row = |f: &mut fmt::Formatter<'_>, name: &str, row: &Row| {
-            let Row { cases, dropped, most_mm, lasting, reported } = row;
-            writeln!(f, "{name:28} {cases:>7} {dropped:>8} {most_mm:>8.2} {lasting:>8} {reported:>9}")
-        };
-        for (name, own) in &self.faults {
-            row(f, &format!("one electrode, {name}"), own)?;
-        }
-        for (name, own) in &self.wearers {
-            row(f, name, own)?;
-        }
-        row(f, "one electrode", &self.one)?;
-        row(f, "both electrodes", &self.both)?;
-        row(f, "all", &self.all)
     }
 }

@@ -3,7 +3,6 @@
 //! and one that opens, and scored on the others.
 
 use std::collections::BTreeMap;
-use std::fmt;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
@@ -319,21 +318,5 @@ impl Session {
         report.right = f64::from(right) / f64::from(all.max(1));
         report.nearest_right = f64::from(nearest) / f64::from(all.max(1));
         report
-    }
-}
-
-impl fmt::Display for Report {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { session, calibrations, refused, right, worst_right, nearest_right, wrong_ms, doubts } =
-            self;
-        writeln!(
-            f,
-            "two channels, session `{session}`: {calibrations} calibrations, {refused} refused; windows right {right:.3}, worst \
-             {worst_right:.3}, nearest middle {nearest_right:.3}; {doubts} doubts"
-        )?;
-        for (name, ms) in wrong_ms.iter().filter(|(_, ms)| **ms > 0) {
-            writeln!(f, "  {name}: {ms} ms of what must not be")?;
-        }
-        Ok(())
     }
 }
