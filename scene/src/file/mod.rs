@@ -23,7 +23,7 @@ pub use error::SceneError;
 pub use happening::Happening;
 use quantity::{Duration, Speed};
 use sections::{
-    Arm, Array, Camera, Command, CommandKind, Contact, ElectrodeLift, Fill, Fsr, Gripper, Hum, Jam, Knock,
+    Arm, Array, Camera, Command, CommandKind, Contact, ElectrodeLift, Fill, Fingers, Fsr, Gripper, Hum, Jam, Knock,
     Move, Muscle, Myo, Object, Photoelastic, Pitch, Press, Pull, Pvdf, Robot, SensorFault, Skin, Strain,
     Sweep, Swing, Table, Wet,
 };
@@ -95,6 +95,7 @@ pub struct SceneFile {
     #[serde(default)]
     pub(crate) command: Vec<Command>,
     pub(crate) line_trusted: Option<bool>,
+    pub(crate) fingers: Option<Fingers>,
 }
 
 impl SceneFile {
