@@ -2,6 +2,7 @@
 
 mod board;
 pub mod bus;
+pub mod report;
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -20,8 +21,10 @@ use self::board::Board;
 use self::bus::{SLOT_HZ, Wires};
 use crate::board::kept;
 
-/// Slots of the bus in a scan.
-const SLOTS: u64 = (SLOT_HZ / SCAN_HZ) as u64;
+/// The first slot of the bus in a scan.
+const fn slot_of(scan: u64) -> u64 {
+    scan * SLOT_HZ as u64 / SCAN_HZ as u64
+}
 /// An answer begins so long after its question, us, and so much later by chance (assumed: interrupt, decoding, CRC, encoding).
 const TURN_US: f64 = 85.0;
 const TURN_JITTER_US: f64 = 20.0;
@@ -45,6 +48,8 @@ pub enum Part {
     Bus,
     /// This finger's driver stays on.
     Driver(usize),
+    /// The second finger takes the first one's address and numbers.
+    Twin(usize, usize),
 }
 
 /// How a hand is run.
@@ -177,6 +182,7 @@ pub fn run(scene: &SceneFile, options: &Options, mut intruder: Option<Intruder<'
                 Part::Palm => palm = None,
                 Part::Bus => wires.is_cut = true,
                 Part::Driver(n) => wires.stick(n),
+                Part::Twin(of, n) => boards[n].end = boards[of].end.twin([options.seed as u32, 7, n as u32]),
             }
         }
         let drives: Vec<MotorDrive> = boards.iter().map(|board| board.drive).collect();
@@ -185,7 +191,7 @@ pub fn run(scene: &SceneFile, options: &Options, mut intruder: Option<Intruder<'
             board.scan(finger.pins().codes());
         }
         watch(&mut outcome, &mut slips, &boards, &world, t_s);
-        for slot in scan * SLOTS..(scan + 1) * SLOTS {
+        for slot in slot_of(scan)..slot_of(scan + 1) {
             let true_us = slot as f64 * 1e6 / f64::from(SLOT_HZ);
             for (n, board) in boards.iter_mut().enumerate() {
                 if board.run(true_us) {
@@ -220,7 +226,7 @@ pub fn run(scene: &SceneFile, options: &Options, mut intruder: Option<Intruder<'
             }
         }
         if scan % (u64::from(SCAN_HZ) / 80) == 0 && t_s > 4.6 {
-            outcome.sums.push(sum(&world, palm.as_ref(), t_s));
+            outcome.sums.push(sum(&world, &boards, t_s));
         }
     }
     (outcome.dropped, outcome.slid_mm) = (world.is_dropped(), world.slid_mm());
@@ -275,7 +281,7 @@ fn watch(outcome: &mut Outcome, slips: &mut [Slip], boards: &[Board], world: &Fi
 }
 
 /// The forces now, and the least that would do.
-fn sum(world: &Fingers, palm: Option<&Palm>, t_s: f64) -> Sum {
+fn sum(world: &Fingers, boards: &[Board], t_s: f64) -> Sum {
     let fingers = world.fingers();
     let milli = |n: f64| (n * 1e3).round() as i32;
     let normal = |pushes: [f64; 2]| pushes.map(|part| (part * 1e3).round() as i16);
@@ -293,10 +299,7 @@ fn sum(world: &Fingers, palm: Option<&Palm>, t_s: f64) -> Sum {
         let forces = share::share(&contacts?, load)?;
         Some(forces.iter().map(|&mn| f64::from(mn) / 1e3).sum())
     };
-    let known = |n: usize, _: f64| {
-        let felt = palm?.state(n)?.felt?;
-        Some(f64::from(felt.friction_permille) / 1e3)
-    };
+    let known = |n: usize, _: f64| Some(f64::from(boards.get(n)?.end.felt()?.friction_permille) / 1e3);
     Sum {
         at_s: t_s,
         pressed_n: fingers.iter().map(|finger| finger.touch().normal_n).sum(),

@@ -8,6 +8,7 @@ mod dataset;
 mod evaluate;
 mod folder;
 mod format;
+mod hand;
 mod learn;
 mod line_file;
 mod lint_image;
@@ -63,6 +64,8 @@ enum Command {
     Run(run::Args),
     /// Let a fingertip teach itself slip from a camera, and measure what that is worth
     Learn(learn::Args),
+    /// Run several fingertips and a palm on one object, on the host
+    Hand(hand::Args),
     /// List the scenes
     Scenes,
     /// Run every test of the workspace, the emulated ones included
@@ -114,6 +117,7 @@ pub fn main() -> ExitCode {
     exit(match Cli::parse().command {
         Command::Run(args) => run::main(&args),
         Command::Learn(args) => learn::main(&args),
+        Command::Hand(args) => hand::main(&args),
         Command::Scenes => scenes::main(),
         Command::Test(args) => test::main(&args),
         Command::Check(args) => check::main(&args),

@@ -10,7 +10,7 @@ use tenax_logic::fingertip::Fingertip;
 use tenax_logic::session::Session;
 
 use crate::bus::{
-    ALL, CLAIM_SLOT_US, CLAIM_SLOTS, CYCLE_US, Chip, Felt, LINE_DOWN, MISSED_MAX, Packet, Poll, State, Word,
+    ALL, CLAIM_SLOT_US, CLAIM_SLOTS, CYCLE_US, Chip, FRAME_MAX, Felt, LINE_DOWN, MISSED_MAX, Packet, Poll, State, Word,
     bytes_us,
 };
 use crate::clock::Clock;
@@ -85,9 +85,15 @@ impl Finger {
         }
     }
 
+    /// Another chip with the same address and numbers: what a fault makes of two fingers. For tests.
+    #[must_use]
+    pub fn twin(&self, chip: Chip) -> Self {
+        Self { address: self.address, session: self.session.clone(), polled_us: self.polled_us, ..Self::new(chip) }
+    }
+
     /// A byte is over at `now_us` by this chip's clock. Some if it asks for an answer, which is in `out` then.
     pub fn hear(&mut self, byte: u8, now_us: u32, out: &mut [u8]) -> Option<Answer> {
-        self.bytes = self.bytes.saturating_add(1);
+        self.bytes = self.bytes.saturating_add(1).min(2 * FRAME_MAX as u32);
         if byte != 0 {
             // Only a zero ends a frame.
             let _nothing_yet = self.receiver.push::<Packet>(byte);
@@ -145,8 +151,8 @@ impl Finger {
     }
 
     fn polled(&mut self, poll: &Poll, now_us: u32, bytes: u32, out: &mut [u8]) -> Option<Answer> {
-        // Whoever makes frames up does not know the time: nothing of theirs is wished.
-        let knows = self.clock.follow(poll.stamp_us, now_us.wrapping_sub(bytes_us(bytes)));
+        // A zero came before it. Whoever makes frames up does not know the time: nothing of theirs is wished.
+        let knows = self.clock.follow(poll.stamp_us, now_us.wrapping_sub(bytes_us(1 + bytes)));
         self.polled_us = now_us;
         (self.slips, self.want_mn) = if knows { (poll.slips, poll.want_mn) } else { (0, None) };
         // A flood from above finds no room and is cut; what is left of its frames has a wrong CRC.
@@ -249,6 +255,12 @@ impl Finger {
     #[must_use]
     pub const fn want_mn(&self) -> Option<u16> {
         self.want_mn
+    }
+
+    /// What it feels, as the palm is told.
+    #[must_use]
+    pub const fn felt(&self) -> Option<Felt> {
+        self.state.felt
     }
 
     /// Detectors that say slip here, as the palm is told.

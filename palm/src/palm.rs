@@ -12,10 +12,11 @@ use crate::share::{Contact, Forces, load, share};
 
 /// Cycles between two sharings: 12 ms.
 const SHARE_CYCLES: u32 = 6;
-/// The force that a finger keeps, as a part of what its shear needs, per mille: its reflex warns itself at 1000.
-const KEEPS_PERMILLE: i32 = 1_050;
+/// The force that a finger keeps, as a part of what its shear needs by its S2, per mille: from here on its reflex warns itself, too, but aims
+/// higher. This and the next chosen on the scenes of `scenes/hand/`, seeds 1 to 8.
+const KEEPS_PERMILLE: i32 = 1_000;
 /// The same while a neighbour slips and so long after, us: what that one lets go of, the others bear.
-const KEEPS_SLIP_PERMILLE: i32 = 1_100;
+const KEEPS_SLIP_PERMILLE: i32 = 1_050;
 const SLIP_US: u32 = 100_000;
 /// Answers that nobody asked for, after which a finger is cut off, and for how long, us.
 const STRIKES_MAX: u8 = 3;
@@ -161,6 +162,10 @@ impl Palm {
         }
         self.stage = Stage::Free;
         let length = self.speak(now_us, out).unwrap_or(0);
+        if length > 0 {
+            // What was garbled before ends here, too.
+            let _garbled = self.receiver.push::<Packet>(0);
+        }
         self.free_us = now_us.wrapping_add(bytes_us(length as u32));
         match &mut self.stage {
             Stage::Asked { until_us, .. } => *until_us = self.free_us.wrapping_add(BEGINS_US),
@@ -417,6 +422,9 @@ impl Palm {
     }
 }
 
+/// A frame behind a zero, which ends whatever garbled bytes came before it.
 fn frame(number: u16, address: u8, word: Word, out: &mut [u8]) -> Option<usize> {
-    Some(encode(number, &Packet { address, word }, out)?.len())
+    let (first, rest) = out.split_first_mut()?;
+    *first = 0;
+    Some(1 + encode(number, &Packet { address, word }, rest)?.len())
 }

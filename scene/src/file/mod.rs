@@ -146,6 +146,11 @@ impl SceneFile {
         })
     }
 
+    /// How many fingertips it has; 0 where it is of one, between whose pads everything happens.
+    pub fn finger_count(&self) -> usize {
+        self.fingers.as_ref().map_or(0, |fingers| fingers.finger.len())
+    }
+
     /// How long it lasts, s.
     pub const fn duration_s(&self) -> f64 {
         self.duration_s.get()
