@@ -7,6 +7,7 @@ pub mod report;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use tenax_hal_shim::channel::SCAN_HZ;
+use tenax_hal_shim::detector::DetectorSet;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Received, Receiver, Up};
 use tenax_hal_shim::words::GripMode;
@@ -59,6 +60,8 @@ pub struct Options {
     pub seed: u64,
     /// Whether there is a palm.
     pub palm: bool,
+    /// Whether the fingers' reflexes act at all: the control.
+    pub reflex: bool,
     /// What breaks, and when, s.
     pub cut: Option<(f64, Part)>,
     /// When it ends, s; the scene's end if that comes first.
@@ -67,7 +70,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { seed: 1, palm: true, cut: None, until_s: f64::INFINITY }
+        Self { seed: 1, palm: true, reflex: true, cut: None, until_s: f64::INFINITY }
     }
 }
 
@@ -93,6 +96,8 @@ pub struct Outcome {
     pub opened: bool,
     /// Somebody else than wearer and reflex drove a motor, or a motor without power was driven.
     pub driven: bool,
+    /// Pulses of all fingers that the palm wished for.
+    pub wished: u32,
     /// Pulses of all fingers.
     pub pulses: u32,
     /// The greatest force of a finger, N.
@@ -145,7 +150,8 @@ pub fn run(scene: &SceneFile, options: &Options, mut intruder: Option<Intruder<'
     let mut world = Fingers::new(scene, options.seed).expect("a scene of several fingertips");
     let count = world.fingers().len();
     let mut random = ChaCha8Rng::seed_from_u64(options.seed ^ 0x9A11);
-    let wearer = world.calibrated().map(|calibrated| kept::model_of(&calibrated).expect("the scenes' wearer is one"));
+    let wearer =
+        world.calibrated().map(|calibrated| kept::model_of(&calibrated).expect("the scenes' wearer is one"));
     let mut boards: Vec<Board> = (0..count)
         .map(|n| {
             let chip = [options.seed as u32, 7, n as u32];
@@ -164,6 +170,9 @@ pub fn run(scene: &SceneFile, options: &Options, mut intruder: Option<Intruder<'
             ceiling_mn: boards[n].device.fingertip().config().grip.ceiling_mn,
         })
         .collect();
+    if !options.reflex {
+        boards.iter_mut().for_each(|board| board.device.fingertip_mut().act_on(DetectorSet::NONE));
+    }
     let mut palm = options.palm.then(|| Palm::new(&places, 0));
     let mut wires = Wires::new(count + 2);
     let (mut outcome, mut out) = (Outcome::default(), [0; FRAME_MAX]);
@@ -201,6 +210,9 @@ pub fn run(scene: &SceneFile, options: &Options, mut intruder: Option<Intruder<'
             if let Some(palm) = palm.as_mut().filter(|_| !wires.is_sending(count)) {
                 let length = palm.step(true_us as u32, &mut out);
                 wires.send(count, &out[..length], slot);
+                while let Some(report) = palm.next_report() {
+                    outcome.reports.push((t_s, report));
+                }
             }
             if let Some(intruder) = intruder.as_mut().filter(|_| !wires.is_sending(count + 1)) {
                 let bytes = intruder(t_s);
@@ -210,7 +222,8 @@ pub fn run(scene: &SceneFile, options: &Options, mut intruder: Option<Intruder<'
             for (n, board) in boards.iter_mut().enumerate().filter(|(n, _)| by != Some(*n)) {
                 let late_us = if byte == 0 { random.random_range(0.0..=LATE_US) } else { 0.0 };
                 if let Some(answer) = board.hear(byte, true_us, late_us, &mut out) {
-                    let turn_us = TURN_US + random.random_range(0.0..=TURN_JITTER_US) + f64::from(answer.after_us);
+                    let turn_us =
+                        TURN_US + random.random_range(0.0..=TURN_JITTER_US) + f64::from(answer.after_us);
                     let begins = slot + (turn_us * f64::from(SLOT_HZ) / 1e6) as u64;
                     wires.send(n, &out[..answer.length], begins);
                 }
@@ -220,9 +233,6 @@ pub fn run(scene: &SceneFile, options: &Options, mut intruder: Option<Intruder<'
                     let bytes = palm.state(finger).map(|state| state.line.clone()).unwrap_or_default();
                     bytes.iter().for_each(|&byte| outcome.lines[finger].take(&mut receivers[finger], byte));
                 }
-                while let Some(report) = palm.next_report() {
-                    outcome.reports.push((t_s, report));
-                }
             }
         }
         if scan % (u64::from(SCAN_HZ) / 80) == 0 && t_s > 4.6 {
@@ -231,6 +241,7 @@ pub fn run(scene: &SceneFile, options: &Options, mut intruder: Option<Intruder<'
     }
     (outcome.dropped, outcome.slid_mm) = (world.is_dropped(), world.slid_mm());
     (outcome.cycle_us, outcome.cycles) = palm.as_ref().map_or((0, 0), Palm::cycles);
+    outcome.wished = boards.iter().map(|board| board.wished).sum();
     outcome.line_dropped = boards.iter().map(|board| board.end.dropped()).sum();
     outcome.end_n = world.fingers().iter().map(|finger| finger.touch().normal_n).collect();
     outcome
@@ -268,7 +279,8 @@ fn watch(outcome: &mut Outcome, slips: &mut [Slip], boards: &[Board], world: &Fi
             slip.said_s = Some(t_s);
         }
         let told = |board: &Board| board.end.neighbours() >> (own.max(1) - 1) & 1 == 1;
-        let all = own != 0 && boards.iter().enumerate().filter(|(other, _)| *other != n).all(|(_, board)| told(board));
+        let all = own != 0
+            && boards.iter().enumerate().filter(|(other, _)| *other != n).all(|(_, board)| told(board));
         if all {
             outcome.evidence_s.push(t_s - began_s);
             outcome.said_s.extend(slip.said_s.map(|said_s| t_s - said_s));

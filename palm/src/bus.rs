@@ -126,14 +126,24 @@ mod tests {
 
     #[test]
     fn every_packet_fits_and_five_fingers_are_asked_in_a_cycle() {
-        let length = |word| encode(u16::MAX, &Packet { address: 5, word }, &mut [0; FRAME_MAX]).map(|frame| frame.len());
+        let length = |word| {
+            encode(u16::MAX, &Packet { address: 5, word }, &mut [0; FRAME_MAX]).map(|frame| frame.len())
+        };
         let poll = |line: &[u8]| {
             let line = Vec::from_slice(line).unwrap();
             length(Word::Poll(Poll { stamp_us: u32::MAX, slips: 31, want_mn: Some(u16::MAX), line })).unwrap()
         };
         let felt = Felt { load_mn: u16::MAX, ft_mn: u16::MAX, friction_permille: 1_500 };
         let line = Vec::from_slice(&[7; LINE_UP]).unwrap();
-        let state = State { frame: u32::MAX, frame_at_us: u32::MAX, wearer: true, slip: DetectorSet::ALL, incipient: DetectorSet::ALL, felt: Some(felt), line };
+        let state = State {
+            frame: u32::MAX,
+            frame_at_us: u32::MAX,
+            wearer: true,
+            slip: DetectorSet::ALL,
+            incipient: DetectorSet::ALL,
+            felt: Some(felt),
+            line,
+        };
         let state = length(Word::State(state)).unwrap();
         let here = length(Word::Here { chip: [u32::MAX; 3], nonce: u32::MAX }).unwrap();
         // One finger in a cycle has bytes of its line; an answer begins 100 us after its poll (assumed).

@@ -10,8 +10,8 @@ use tenax_logic::fingertip::Fingertip;
 use tenax_logic::session::Session;
 
 use crate::bus::{
-    ALL, CLAIM_SLOT_US, CLAIM_SLOTS, CYCLE_US, Chip, FRAME_MAX, Felt, LINE_DOWN, MISSED_MAX, Packet, Poll, State, Word,
-    bytes_us,
+    ALL, CLAIM_SLOT_US, CLAIM_SLOTS, CYCLE_US, Chip, FRAME_MAX, Felt, LINE_DOWN, MISSED_MAX, Packet, Poll,
+    State, Word, bytes_us,
 };
 use crate::clock::Clock;
 
@@ -88,7 +88,12 @@ impl Finger {
     /// Another chip with the same address and numbers: what a fault makes of two fingers. For tests.
     #[must_use]
     pub fn twin(&self, chip: Chip) -> Self {
-        Self { address: self.address, session: self.session.clone(), polled_us: self.polled_us, ..Self::new(chip) }
+        Self {
+            address: self.address,
+            session: self.session.clone(),
+            polled_us: self.polled_us,
+            ..Self::new(chip)
+        }
     }
 
     /// A byte is over at `now_us` by this chip's clock. Some if it asks for an answer, which is in `out` then.
@@ -221,7 +226,8 @@ impl Finger {
             self.left_frames = BUDGET_FRAMES;
         }
         let wish_mn = self.want_mn.filter(|_| self.left_frames > 0 && !wearer).map(i32::from);
-        let lacks = |want_mn: &i32| self.state.felt.is_some_and(|felt| i32::from(felt.load_mn) + NEAR_MN < *want_mn);
+        let lacks =
+            |want_mn: &i32| self.state.felt.is_some_and(|felt| i32::from(felt.load_mn) + NEAR_MN < *want_mn);
         let wish_mn = wish_mn.filter(lacks);
         if wish_mn.is_some() && fingertip.mode() == GripMode::Incipient {
             self.left_frames -= 1;

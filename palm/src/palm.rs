@@ -156,7 +156,9 @@ impl Palm {
             return 0;
         }
         match self.stage {
-            Stage::Asked { until_us, .. } | Stage::Claims { until_us } if !reached(now_us, until_us) => return 0,
+            Stage::Asked { until_us, .. } | Stage::Claims { until_us } if !reached(now_us, until_us) => {
+                return 0;
+            }
             Stage::Asked { seat, .. } => self.miss(seat),
             Stage::Claims { .. } | Stage::Free => {}
         }

@@ -1,7 +1,7 @@
 //! What comes over the bus that is none of the palm's: nothing is wished by it, and a finger that was pushed off comes back.
 
-use proptest::test_runner::{RngAlgorithm, TestRng};
 use proptest::prelude::Rng;
+use proptest::test_runner::{RngAlgorithm, TestRng};
 use tenax_hal_shim::wire::encode;
 use tenax_palm::bus::{ALL, CYCLE_US, Chip, FRAME_MAX, Packet, Poll, State, Word, bytes_us};
 use tenax_palm::finger::Finger;
@@ -23,7 +23,12 @@ struct Hand {
 impl Hand {
     fn new() -> Self {
         let place = |chip| Place { chip, normal: [1_000, 0], ceiling_mn: 40_000 };
-        Self { palm: Palm::new(&CHIPS.map(place), 0), fingers: CHIPS.map(Finger::new), now_us: 0, said: Vec::new() }
+        Self {
+            palm: Palm::new(&CHIPS.map(place), 0),
+            fingers: CHIPS.map(Finger::new),
+            now_us: 0,
+            said: Vec::new(),
+        }
     }
 
     /// The palm's next step, and what the fingers answer to it, one after the other.

@@ -14,11 +14,14 @@ fn reference(contacts: &[Contact], pushed: [i64; 2], wider_mn: f64) -> Option<f6
             problem.add_var(1.0, bounds)
         })
         .collect();
-    for axis in 0..2 {
-        let parts = forces.iter().zip(contacts).map(|(&force, contact)| (force, f64::from(contact.normal[axis]) / 1e3));
+    for (axis, pushed) in pushed.into_iter().enumerate() {
+        let parts = forces
+            .iter()
+            .zip(contacts)
+            .map(|(&force, contact)| (force, f64::from(contact.normal[axis]) / 1e3));
         let parts: Vec<_> = parts.filter(|(_, part)| *part != 0.0).collect();
         if !parts.is_empty() {
-            problem.add_constraint(parts, ComparisonOp::Eq, pushed[axis] as f64 / 1e3);
+            problem.add_constraint(parts, ComparisonOp::Eq, pushed as f64 / 1e3);
         }
     }
     problem.solve().ok().map(|solution| solution.objective())
@@ -41,8 +44,13 @@ fn hand() -> impl Strategy<Value = (Vec<Contact>, Vec<i32>)> {
                 let normal = if n % 2 == 0 { line } else { line.map(|part| -part) };
                 if opposed { Contact { normal, ..*contact } } else { *contact }
             });
-            let within = |contact: &Contact, part: i32| contact.least_mn + (contact.most_mn - contact.least_mn) / 1_000 * part;
-            let forces = parts.iter().map(|(contact, part)| (within(contact, *part) + beyond_mn.min(0)).max(0)).collect();
+            let within = |contact: &Contact, part: i32| {
+                contact.least_mn + (contact.most_mn - contact.least_mn) / 1_000 * part
+            };
+            let forces = parts
+                .iter()
+                .map(|(contact, part)| (within(contact, *part) + beyond_mn.min(0)).max(0))
+                .collect();
             (contacts.collect(), forces)
         },
     )
@@ -65,11 +73,9 @@ proptest! {
             for (contact, mn) in contacts.iter().zip(&shared) {
                 prop_assert!((contact.least_mn..=contact.most_mn).contains(mn));
             }
+            // Half a millinewton of each of two free fingers.
             let rest = load(&contacts, &shared);
-            for axis in 0..2 {
-                // Half a millinewton of each of two free fingers.
-                prop_assert!((rest[axis] - pushed[axis]).abs() <= 1_000, "{rest:?} for {pushed:?}");
-            }
+            prop_assert!(rest.iter().zip(pushed).all(|(rest, pushed)| (rest - pushed).abs() <= 1_000), "{rest:?}");
         }
     }
 }

@@ -26,7 +26,5 @@ pub fn find(name: &str) -> Option<(String, Cow<'static, str>)> {
         let (_, text) = all.iter().find(|(known, _)| *known == name)?;
         Some((format!("{folder}/{name}.toml"), Cow::Borrowed(*text)))
     };
-    among(SCENES, "scenes")
-        .or_else(|| among(PARTS, "scenes/parts"))
-        .or_else(|| among(HANDS, "scenes/hand"))
+    among(SCENES, "scenes").or_else(|| among(PARTS, "scenes/parts")).or_else(|| among(HANDS, "scenes/hand"))
 }

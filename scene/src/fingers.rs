@@ -3,7 +3,9 @@
 //! The object moves along the fingers as one mass, held by the patch of skin under each (L1), so that what one lets go of the others
 //! bear. In the plane of the grip it is where the forces balance: pad and object are a spring behind each finger. It does not turn.
 
-use tenax_hal_shim::channel::{ARRAY, COUNT, FSR, MYO_FLEXOR, OPENING, PVDF, PVDF_COUNT, SCANS_PER_FRAME, STRAIN};
+use tenax_hal_shim::channel::{
+    ARRAY, COUNT, FSR, MYO_FLEXOR, OPENING, PVDF, PVDF_COUNT, SCANS_PER_FRAME, STRAIN,
+};
 use tenax_hal_shim::motor::MotorDrive;
 
 use crate::file::SceneFile;
@@ -99,7 +101,8 @@ impl Fingers {
         let contact = &scene.contact;
         let radius_m = contact.patch_radius_mm.get() / 1e3;
         let skin_n_per_m = contact.skin_n_per_mm().get() * 1e3;
-        let pad = Pad { radius_m, stiffness_n_per_m3: skin_n_per_m / (std::f64::consts::PI * radius_m * radius_m) };
+        let pad =
+            Pad { radius_m, stiffness_n_per_m3: skin_n_per_m / (std::f64::consts::PI * radius_m * radius_m) };
         let fingers = hand.finger.iter().zip(0..).map(|(finger, n)| {
             let seeds = Seeds { making: seed + 1_000 * n, noise: seed + 1_000 * n };
             let wets = if finger.wet { scene.wet.as_slice() } else { &[] };
@@ -201,7 +204,8 @@ impl Fingers {
             let mut slope = [SIDEWAYS * k, 0.0, SIDEWAYS * k];
             let mut same = true;
             for finger in &mut self.fingers {
-                let deep_mm = self.half_mm - finger.gripper.opening_mm() / 2.0 + along(finger.towards, self.place_mm);
+                let deep_mm =
+                    self.half_mm - finger.gripper.opening_mm() / 2.0 + along(finger.towards, self.place_mm);
                 let normal_n = if self.dropped { 0.0 } else { (k * deep_mm).max(0.0) };
                 same &= (normal_n - finger.touch.normal_n).abs() < 1e-9;
                 finger.touch.normal_n = normal_n;

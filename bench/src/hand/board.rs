@@ -1,10 +1,11 @@
 //! A finger of the hand: the host's own build of the logic, its line and its end of the bus, on a crystal of its own.
 
 use tenax_hal_shim::channel::{COUNT, SCANS_PER_FRAME};
+use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::frame::{Frame, Scan, scan_of_pins};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::{Job, slot_of};
-use tenax_hal_shim::wire::{Identity, Up};
+use tenax_hal_shim::wire::{Event, EventKind, Identity, Up};
 use tenax_logic::device::Device;
 use tenax_palm::bus::{Chip, FRAME_MAX};
 use tenax_palm::finger::{Answer, Finger};
@@ -34,8 +35,8 @@ pub struct Board {
     pub drive: MotorDrive,
     /// It has power.
     pub is_on: bool,
-    /// Frames of its line so far.
-    pub posted: u32,
+    /// Pulses that nobody but the palm wished for.
+    pub wished: u32,
 }
 
 impl Board {
@@ -54,7 +55,7 @@ impl Board {
             codes: [[0; COUNT]; SCANS_PER_FRAME],
             drive: MotorDrive::Coast,
             is_on: true,
-            posted: 0,
+            wished: 0,
         };
         board.post(&about);
         board
@@ -99,6 +100,9 @@ impl Board {
         self.drive = self.device.tick(&frame);
         while let Some(message) = self.device.next_message() {
             self.end.note(&message);
+            if let Up::Event(Event { kind: EventKind::Pulse { believed, .. }, .. }) = &message {
+                self.wished += u32::from(*believed == DetectorSet::only(DetectorId::Injected));
+            }
             self.post(&message);
         }
         if frame.slot() == slot_of(Job::Save) {
@@ -109,12 +113,17 @@ impl Board {
     }
 
     fn post(&mut self, message: &Up) {
-        self.posted += 1;
         self.end.post(self.line.frame(message).1);
     }
 
     /// A byte of the bus is over; its interrupt is so late.
-    pub fn hear(&mut self, byte: u8, true_us: f64, late_us: f64, out: &mut [u8; FRAME_MAX]) -> Option<Answer> {
+    pub fn hear(
+        &mut self,
+        byte: u8,
+        true_us: f64,
+        late_us: f64,
+        out: &mut [u8; FRAME_MAX],
+    ) -> Option<Answer> {
         let own_us = clock(self.own_us(true_us + late_us));
         if self.is_on { self.end.hear(byte, own_us, out) } else { None }
     }

@@ -20,6 +20,8 @@ pub struct Scene {
     /// How far it went, the skin's stretch included, mm: the mean, as the forces.
     pub slid_mm: f64,
     pub slid_alone_mm: f64,
+    /// Pulses that nobody but the palm wished for, a run.
+    pub wished: f64,
     /// The greatest sum of forces, N.
     pub pressed_n: f64,
     pub pressed_alone_n: f64,
@@ -71,7 +73,10 @@ impl Report {
     #[must_use]
     pub fn holds(&self) -> bool {
         let cuts = self.cuts.as_ref().is_none_or(|cuts| cuts.lost + cuts.broken + cuts.untold == 0);
-        cuts && self.scenes.iter().all(|scene| scene.broken == 0 && scene.kept >= scene.kept_alone && scene.missing == 0)
+        cuts && self
+            .scenes
+            .iter()
+            .all(|scene| scene.broken == 0 && scene.kept >= scene.kept_alone && scene.missing == 0)
     }
 }
 
@@ -85,7 +90,8 @@ pub fn scene(file: &SceneFile, seeds: std::ops::Range<u64>) -> Scene {
             (of(true), of(false))
         })
         .collect();
-    let mean = |value: &dyn Fn(&(Outcome, Outcome)) -> f64| runs.iter().map(value).sum::<f64>() / runs.len() as f64;
+    let mean =
+        |value: &dyn Fn(&(Outcome, Outcome)) -> f64| runs.iter().map(value).sum::<f64>() / runs.len() as f64;
     let most = |value: &dyn Fn(&(Outcome, Outcome)) -> f64| runs.iter().map(value).fold(0.0, f64::max);
     let with = || runs.iter().map(|run| &run.0);
     let evidence: Vec<f64> = with().flat_map(|run| run.evidence_s.clone()).collect();
@@ -96,6 +102,7 @@ pub fn scene(file: &SceneFile, seeds: std::ops::Range<u64>) -> Scene {
         kept_alone: runs.iter().filter(|run| !run.1.dropped).count(),
         slid_mm: mean(&|run| run.0.slid_mm),
         slid_alone_mm: mean(&|run| run.1.slid_mm),
+        wished: mean(&|run| f64::from(run.0.wished)),
         pressed_n: mean(&|run| run.0.pressed_n()),
         pressed_alone_n: mean(&|run| run.1.pressed_n()),
         over_known: most(&|run| run.0.over(|sum| sum.known_n)),
@@ -108,7 +115,9 @@ pub fn scene(file: &SceneFile, seeds: std::ops::Range<u64>) -> Scene {
         clock_us: most(&|run| run.0.clock_us),
         cycle_us: with().map(|run| run.cycle_us).max().unwrap_or(0),
         messages: with().flat_map(|run| &run.lines).map(|line| line.messages).sum(),
-        missing: with().map(|run| run.line_dropped + run.lines.iter().map(|line| line.missing).sum::<u32>()).sum(),
+        missing: with()
+            .map(|run| run.line_dropped + run.lines.iter().map(|line| line.missing).sum::<u32>())
+            .sum(),
         broken: runs.iter().filter(|run| [&run.0, &run.1].iter().any(|run| run.opened || run.driven)).count(),
     }
 }
@@ -129,7 +138,13 @@ pub fn cuts(files: &[SceneFile], count: u64) -> Cuts {
                 _ if n % 2 == 0 => Part::Bus,
                 _ => Part::Driver(n as usize / 7 % fingers),
             };
-            let of = |palm| run(file, &Options { seed: 100 + n, palm, cut: Some((at_s, part)), ..Options::default() }, None);
+            let of = |palm| {
+                run(
+                    file,
+                    &Options { seed: 100 + n, palm, cut: Some((at_s, part)), ..Options::default() },
+                    None,
+                )
+            };
             let (with, alone) = (of(true), of(false));
             let told = with.reports.iter().find_map(|(told_s, report)| {
                 let of_part = match (report, part) {
@@ -186,19 +201,48 @@ impl Outcome {
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let pair = |pair: Option<[f64; 2]>| pair.map_or("none".into(), |[a, b]| format!("{a:.1} ms, 95 % within {b:.1} ms"));
+        let pair = |pair: Option<[f64; 2]>| {
+            pair.map_or("none".into(), |[a, b]| format!("{a:.1} ms, 95 % within {b:.1} ms"))
+        };
         for scene in &self.scenes {
             let Scene { name, runs, kept, kept_alone, .. } = scene;
             writeln!(f, "{name}")?;
-            writeln!(f, "  object      kept in {kept} of {runs} runs, without a palm in {kept_alone}; went {:.2} mm, without {:.2} mm", scene.slid_mm, scene.slid_alone_mm)?;
-            writeln!(f, "  force       all fingers {:.1} N, without a palm {:.1} N; over the least by known friction {:.2}, without {:.2}; by the true one {:.2}", scene.pressed_n, scene.pressed_alone_n, scene.over_known, scene.over_known_alone, scene.over_true)?;
-            writeln!(f, "  evidence    {} slips reached all neighbours, median {}; {} did not; of it the bus {}", scene.slips, pair(scene.evidence_ms), scene.untold, pair(scene.bus_ms))?;
-            writeln!(f, "  bus         cycle {} us at most, clocks within {:.0} us; {} messages, {} missing", scene.cycle_us, scene.clock_us, scene.messages, scene.missing)?;
+            writeln!(
+                f,
+                "  object      kept in {kept} of {runs} runs, without a palm in {kept_alone}; went {:.2} mm, without {:.2} mm",
+                scene.slid_mm, scene.slid_alone_mm
+            )?;
+            writeln!(
+                f,
+                "  force       all fingers {:.1} N, without a palm {:.1} N; over the least by known friction {:.2}, without {:.2}; by the true one {:.2}; {:.1} pulses by the palm",
+                scene.pressed_n,
+                scene.pressed_alone_n,
+                scene.over_known,
+                scene.over_known_alone,
+                scene.over_true,
+                scene.wished
+            )?;
+            writeln!(
+                f,
+                "  evidence    {} slips reached all neighbours, median {}; {} did not; of it the bus {}",
+                scene.slips,
+                pair(scene.evidence_ms),
+                scene.untold,
+                pair(scene.bus_ms)
+            )?;
+            writeln!(
+                f,
+                "  bus         cycle {} us at most, clocks within {:.0} us; {} messages, {} missing",
+                scene.cycle_us, scene.clock_us, scene.messages, scene.missing
+            )?;
             writeln!(f, "  never       opened or driven by anybody else: {} runs", scene.broken)?;
         }
         if let Some(cuts) = &self.cuts {
             let Cuts { runs, lost, lost_alone, broken, told_ms, untold } = cuts;
-            writeln!(f, "cut at random\n  {runs} runs     {lost} dropped what the rest keeps without a palm, {lost_alone} dropped either way; {broken} opened or driven; loss told within {told_ms:.0} ms, {untold} untold")?;
+            writeln!(
+                f,
+                "cut at random\n  {runs} runs     {lost} dropped what the rest keeps without a palm, {lost_alone} dropped either way; {broken} opened or driven; loss told within {told_ms:.0} ms, {untold} untold"
+            )?;
         }
         Ok(())
     }

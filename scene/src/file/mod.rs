@@ -23,9 +23,9 @@ pub use error::SceneError;
 pub use happening::Happening;
 use quantity::{Duration, Speed};
 use sections::{
-    Arm, Array, Camera, Command, CommandKind, Contact, ElectrodeLift, Fill, Fingers, Fsr, Gripper, Hum, Jam, Knock,
-    Move, Muscle, Myo, Object, Photoelastic, Pitch, Press, Pull, Pvdf, Robot, SensorFault, Skin, Strain,
-    Sweep, Swing, Table, Wet,
+    Arm, Array, Camera, Command, CommandKind, Contact, ElectrodeLift, Fill, Fingers, Fsr, Gripper, Hum, Jam,
+    Knock, Move, Muscle, Myo, Object, Photoelastic, Pitch, Press, Pull, Pvdf, Robot, SensorFault, Skin,
+    Strain, Sweep, Swing, Table, Wet,
 };
 
 /// A whole scene, every number in it checked.
