@@ -55,6 +55,7 @@ fn every_test_that_a_page_names_is_one() {
     let packages = [
         "hal-shim",
         "logic",
+        "palm",
         "scene",
         "serial",
         "bench",

@@ -12,7 +12,7 @@ const STANDS_ON: [(&str, &[&str]); 16] = [
     ("scene", &["hal-shim", "logic"]),
     ("vision", &[]),
     ("vision/quarter", &[]),
-    ("firmware", &["hal-shim", "logic", "vision/quarter"]),
+    ("firmware", &["hal-shim", "logic", "palm", "vision/quarter"]),
     ("launch", &[]),
     ("serial", &["hal-shim", "launch", "logic"]),
     ("plot", &[]),
