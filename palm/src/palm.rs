@@ -5,8 +5,8 @@ use tenax_hal_shim::wire::{Receiver, encode};
 use tenax_logic::force::friction::LEAST_PERMILLE;
 
 use crate::bus::{
-    ALL, BEGINS_US, CLAIM_SLOT_US, CLAIM_SLOTS, CYCLE_US, Chip, FINGERS_MAX, FRAME_MAX, MISSED_MAX, Packet,
-    Poll, State, Word, bytes_us,
+    ALL, BEGINS_US, CLAIM_SLOT_US, CLAIM_SLOTS, CYCLE_US, Chip, FINGERS_MAX, FRAME_MAX, Felt, MISSED_MAX,
+    Packet, Poll, State, Word, bytes_us,
 };
 use crate::share::{Contact, Forces, load, share};
 
@@ -70,6 +70,8 @@ struct Seat {
     slips_until: Option<u32>,
     state: Option<State>,
     want_mn: Option<u16>,
+    /// What it pressed with when it was lost, mN: its gear holds.
+    held_mn: Option<u16>,
     line: Deque<u8, 256>,
     assign: Option<u32>,
     release: bool,
@@ -107,6 +109,12 @@ pub struct Palm {
     reports: Deque<Report, 16>,
 }
 
+impl Seat {
+    fn felt(&self) -> Option<Felt> {
+        self.state.as_ref()?.felt
+    }
+}
+
 /// Whether `until_us` is reached, across the clock's wrap.
 const fn reached(now_us: u32, until_us: u32) -> bool {
     now_us.wrapping_sub(until_us) < u32::MAX / 2
@@ -126,6 +134,7 @@ impl Palm {
             slips_until: None,
             state: None,
             want_mn: None,
+            held_mn: None,
             line: Deque::new(),
             assign: None,
             release: false,
@@ -305,7 +314,7 @@ impl Palm {
         if !state.slip.is_empty() {
             seat.slips_until = Some(now_us.wrapping_add(SLIP_US));
         }
-        seat.missed = 0;
+        (seat.missed, seat.held_mn) = (0, None);
         seat.state = Some(state);
         if begins {
             self.allot();
@@ -334,6 +343,8 @@ impl Palm {
     fn lose(&mut self, n: usize, report: Report) {
         let Some(seat) = self.seats.get_mut(n) else { return };
         let was_heard = seat.state.is_some();
+        seat.held_mn =
+            seat.state.as_ref().and_then(|state| state.felt).map(|felt| felt.load_mn).or(seat.held_mn);
         (seat.is_known, seat.missed, seat.strikes, seat.release) = (false, 0, 0, true);
         (seat.state, seat.want_mn, seat.slips_until, seat.assign) = (None, None, None, None);
         if was_heard || matches!(report, Report::Cut(_)) {
@@ -365,13 +376,21 @@ impl Palm {
         let keeps = if slips { KEEPS_SLIP_PERMILLE } else { KEEPS_PERMILLE };
         let mut contacts: Vec<Contact, FINGERS_MAX> = Vec::new();
         let mut felt_mn = Forces::new();
-        for seat in &self.seats {
-            if let Some(felt) = seat.state.as_ref().and_then(|state| state.felt) {
-                let friction = i32::from(felt.friction_permille.max(LEAST_PERMILLE));
-                let least_mn = i32::from(felt.ft_mn) * keeps / friction;
-                let contact = Contact { normal: seat.place.normal, least_mn, most_mn: seat.place.ceiling_mn };
-                let _fits = (contacts.push(contact), felt_mn.push(felt.load_mn.into()));
-            }
+        let is_held = self.seats.iter().any(|seat| seat.felt().is_some());
+        for seat in &mut self.seats {
+            // Whoever held it with the others has let go, too.
+            seat.held_mn = seat.held_mn.filter(|_| is_held);
+            let Place { normal, ceiling_mn: most_mn, .. } = seat.place;
+            let (least_mn, load_mn) = match (seat.felt(), seat.held_mn) {
+                (Some(felt), _) => {
+                    let friction = i32::from(felt.friction_permille.max(LEAST_PERMILLE));
+                    (i32::from(felt.ft_mn) * keeps / friction, felt.load_mn)
+                }
+                // A wall: it presses as the others press against it.
+                (None, Some(held_mn)) => (0, held_mn),
+                (None, None) => continue,
+            };
+            let _fits = (contacts.push(Contact { normal, least_mn, most_mn }), felt_mn.push(load_mn.into()));
         }
         // The wearer's gate is the palm's, too: who contracts moves the hand alone.
         let wearer = self.seats.iter().any(|seat| seat.state.as_ref().is_some_and(|state| state.wearer));
@@ -380,8 +399,9 @@ impl Palm {
         let mut shares = contacts.iter().zip(&felt_mn).zip(shared.iter().flatten());
         for seat in &mut self.seats {
             seat.want_mn = None;
-            if seat.state.as_ref().is_some_and(|state| state.felt.is_some())
+            if (seat.felt().is_some() || seat.held_mn.is_some())
                 && let Some(((contact, &felt_mn), &share_mn)) = shares.next()
+                && seat.felt().is_some()
                 && felt_mn < contact.least_mn
             {
                 seat.want_mn = u16::try_from(share_mn).ok();

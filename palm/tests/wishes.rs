@@ -103,7 +103,7 @@ fn where_a_ceiling_is_in_the_way_or_only_one_is_felt_every_finger_is_on_its_own(
 }
 
 #[test]
-fn what_a_lost_finger_pressed_last_is_load_for_the_rest() {
+fn a_lost_finger_holds_as_a_wall_until_the_others_let_go() {
     // Three around a ball, of which one is lost: its gear holds, and the others press against it.
     let mut ball = Hand::at(&[90.0, 210.0, 330.0]);
     ball.states = [4_500, 4_500, 4_500].map(|mn| Some(felt(mn))).into();
@@ -111,7 +111,11 @@ fn what_a_lost_finger_pressed_last_is_load_for_the_rest() {
     ball.states[0] = None;
     let wishes = ball.wishes(20);
     assert_eq!((wishes[0], ball.palm.state(0)), (None, None));
-    println!("{wishes:?}");
-    // Two can balance its 4.5 N in one way alone, which keeps neither's margin.
-    assert_eq!((&wishes[1..], ball.palm.is_lacking()), (&[None, None][..], true));
+    // It presses as they press against it.
+    assert_eq!((&wishes[1..], ball.palm.is_lacking()), (&[Some(5.0), Some(5.0)][..], false));
+    // They let go: what it holds now nobody knows.
+    ball.states[1..].fill(Some(State::default()));
+    ball.wishes(20);
+    ball.states[1..].fill(Some(felt(4_500)));
+    assert_eq!((ball.wishes(20), ball.palm.is_lacking()), (vec![None; 3], true));
 }
