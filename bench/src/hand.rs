@@ -12,7 +12,8 @@ use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Received, Receiver, Up};
 use tenax_hal_shim::words::GripMode;
 use tenax_logic::mode;
-use tenax_palm::bus::FRAME_MAX;
+use tenax_palm::bus::{Chip, FRAME_MAX};
+use tenax_palm::finger::Finger as End;
 use tenax_palm::palm::{Palm, Place, Report};
 use tenax_palm::share::{self, Contact};
 use tenax_scene::SceneFile;
@@ -26,9 +27,10 @@ use crate::board::kept;
 const fn slot_of(scan: u64) -> u64 {
     scan * SLOT_HZ as u64 / SCAN_HZ as u64
 }
-/// An answer begins so long after its question, us, and so much later by chance (assumed: interrupt, decoding, CRC, encoding).
-const TURN_US: f64 = 85.0;
-const TURN_JITTER_US: f64 = 20.0;
+/// An answer begins so long after its question, us: 7700 instructions on the emulated core at 1.5 cycles each; and so much later by
+/// chance, where a control tick comes between (assumed).
+const TURN_US: f64 = 115.0;
+const TURN_JITTER_US: f64 = 45.0;
 /// A finger's interrupt is so late at most, us (assumed: behind control's).
 const LATE_US: f64 = 30.0;
 /// Crystals are off by so many ppm at most, either way.
@@ -49,6 +51,8 @@ pub enum Part {
     Bus,
     /// This finger's driver stays on.
     Driver(usize),
+    /// This finger's end of the bus, which starts anew.
+    Restart(usize),
     /// The second finger takes the first one's address and numbers.
     Twin(usize, usize),
 }
@@ -154,10 +158,9 @@ pub fn run(scene: &SceneFile, options: &Options, mut intruder: Option<Intruder<'
         world.calibrated().map(|calibrated| kept::model_of(&calibrated).expect("the scenes' wearer is one"));
     let mut boards: Vec<Board> = (0..count)
         .map(|n| {
-            let chip = [options.seed as u32, 7, n as u32];
             let ppm = random.random_range(-CRYSTAL_PPM..=CRYSTAL_PPM);
             let begins_us = random.random_range(0.0..5e6);
-            Board::new(kept::device(false, wearer.as_ref()), chip, ppm, begins_us)
+            Board::new(kept::device(false, wearer.as_ref()), chip(options.seed, n), ppm, begins_us)
         })
         .collect();
     let places: Vec<Place> = world
@@ -165,7 +168,7 @@ pub fn run(scene: &SceneFile, options: &Options, mut intruder: Option<Intruder<'
         .iter()
         .enumerate()
         .map(|(n, finger)| Place {
-            chip: [options.seed as u32, 7, n as u32],
+            chip: chip(options.seed, n),
             normal: finger.pushes().map(|part| (part * 1e3).round() as i16),
             ceiling_mn: boards[n].device.fingertip().config().grip.ceiling_mn,
         })
@@ -191,7 +194,8 @@ pub fn run(scene: &SceneFile, options: &Options, mut intruder: Option<Intruder<'
                 Part::Palm => palm = None,
                 Part::Bus => wires.is_cut = true,
                 Part::Driver(n) => wires.stick(n),
-                Part::Twin(of, n) => boards[n].end = boards[of].end.twin([options.seed as u32, 7, n as u32]),
+                Part::Restart(n) => boards[n].end = End::new(chip(options.seed, n)),
+                Part::Twin(of, n) => boards[n].end = boards[of].end.twin(chip(options.seed, n)),
             }
         }
         let drives: Vec<MotorDrive> = boards.iter().map(|board| board.drive).collect();
@@ -245,6 +249,10 @@ pub fn run(scene: &SceneFile, options: &Options, mut intruder: Option<Intruder<'
     outcome.line_dropped = boards.iter().map(|board| board.end.dropped()).sum();
     outcome.end_n = world.fingers().iter().map(|finger| finger.touch().normal_n).collect();
     outcome
+}
+
+fn chip(seed: u64, finger: usize) -> Chip {
+    [seed as u32, 7, finger as u32]
 }
 
 /// What a tick did.

@@ -132,3 +132,13 @@ fn in_a_minute_of_five_fingers_no_message_of_their_lines_is_lost() {
     assert!(run.cycle_us <= CYCLE_US && run.cycles >= 29_990 && run.clock_us <= 100.0);
     assert!(is_quiet(&run) && !run.dropped && run.reports.len() == 5, "{:?}", run.reports);
 }
+
+#[test]
+fn a_finger_that_starts_anew_is_found_again_beside_four_others() {
+    let cut = Some((5.2, Part::Restart(2)));
+    let run = run(&scene("bottle"), &Options { seed: 105, cut, until_s: 6.0, ..Options::default() }, None);
+    let told: Vec<_> = run.reports.iter().filter(|(at_s, _)| *at_s >= 5.2).collect();
+    println!("{told:?}, cycle {} us", run.cycle_us);
+    let [(lost_s, Report::Lost(3)), (found_s, Report::Found(3))] = told[..] else { panic!("{told:?}") };
+    assert!(*lost_s < 5.3 && *found_s < 5.4 && run.cycle_us <= CYCLE_US && is_quiet(&run));
+}

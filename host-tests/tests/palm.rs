@@ -22,9 +22,10 @@ impl Wished {
         let mut wished = Self { bench, end: Finger::new(CHIP), number: 0, want_mn: None, is_polled: true };
         // It tells its number when it is asked who has no address, and has one then.
         let mut out = [0; FRAME_MAX];
-        let claim = encode(0, &Packet { address: 0, word: Word::Claim { round: 1 } }, &mut [0; FRAME_MAX])
-            .unwrap()
-            .to_vec();
+        let claim =
+            encode(0, &Packet { address: 0, word: Word::Claim { round: 1, slots: 1 } }, &mut [0; FRAME_MAX])
+                .unwrap()
+                .to_vec();
         let answer = claim.iter().find_map(|&byte| wished.end.hear(byte, 0, &mut out)).unwrap();
         let mut receiver = tenax_hal_shim::wire::Receiver::new();
         let here =

@@ -8,23 +8,23 @@ use tenax_hal_shim::detector::DetectorSet;
 pub const FINGERS_MAX: usize = 5;
 /// The bus's rate, baud, 8N1: 100 MHz over 20.
 pub const BAUD: u32 = 5_000_000;
-/// Bytes of a finger's own line that a poll carries down, and its answer up. 500 polls a second give 32 kB/s up, where a finger says
-/// 30 at most: 80 slow frames of 375 bytes.
+/// Bytes of a finger's own line that a poll carries down, and its answer up. 500 polls a second give 26 kB/s up, where a finger that
+/// streams nothing says 16; what it says in motion beyond that waits.
 pub const LINE_DOWN: usize = 12;
 /// See [`LINE_DOWN`].
-pub const LINE_UP: usize = 64;
+pub const LINE_UP: usize = 52;
 /// The longest frame of the bus, bytes.
-pub const FRAME_MAX: usize = 120;
+pub const FRAME_MAX: usize = 108;
 /// Everybody's address.
 pub const ALL: u8 = 0;
 /// A finger is polled every so many us.
 pub const CYCLE_US: u32 = 2_000;
 /// Polls in a row without an answer, after which a finger is lost; a finger that misses as many forgets what the palm wishes.
 pub const MISSED_MAX: u8 = 3;
-/// An answer begins so late at most, us.
-pub const BEGINS_US: u32 = 150;
-/// Places in time in which fingers without an address answer, and the length of one, us: a frame and its jitter.
-pub const CLAIM_SLOTS: u32 = 4;
+/// An answer begins so late at most, us: 7700 instructions at 1.5 cycles each, a control tick that comes between, and its interrupt.
+pub const BEGINS_US: u32 = 190;
+/// Places in time in which fingers without an address answer, at most, and the length of one, us: a frame and its jitter.
+pub const CLAIM_SLOTS: u8 = 4;
 /// See [`CLAIM_SLOTS`].
 pub const CLAIM_SLOT_US: u32 = 120;
 
@@ -47,6 +47,8 @@ pub enum Word {
     Claim {
         /// Number of the round.
         round: u8,
+        /// How many slots it has.
+        slots: u8,
     },
     /// A finger without an address, or without a session, answers with a number of its own.
     Here {
@@ -146,9 +148,9 @@ mod tests {
         };
         let state = length(Word::State(state)).unwrap();
         let here = length(Word::Here { chip: [u32::MAX; 3], nonce: u32::MAX }).unwrap();
-        // One finger in a cycle has bytes of its line; an answer begins 100 us after its poll (assumed).
+        // One finger in a cycle has bytes of its line; an answer begins 140 us after its poll on average.
         let bytes = 5 + 4 * poll(&[]) + poll(&[7; LINE_DOWN]) + 5 * state;
-        let cycle_us = bytes_us(bytes as u32) + 5 * 100;
+        let cycle_us = bytes_us(bytes as u32) + 5 * 140;
         assert!(cycle_us <= CYCLE_US, "{cycle_us} us");
         assert!(bytes_us(here as u32) < CLAIM_SLOT_US - 30, "{here} bytes");
     }

@@ -10,8 +10,8 @@ use tenax_logic::fingertip::Fingertip;
 use tenax_logic::session::Session;
 
 use crate::bus::{
-    ALL, CLAIM_SLOT_US, CLAIM_SLOTS, CYCLE_US, Chip, FRAME_MAX, Felt, LINE_DOWN, MISSED_MAX, Packet, Poll,
-    State, Word, bytes_us,
+    ALL, CLAIM_SLOT_US, CYCLE_US, Chip, FRAME_MAX, Felt, LINE_DOWN, MISSED_MAX, Packet, Poll, State, Word,
+    bytes_us,
 };
 use crate::clock::Clock;
 
@@ -109,11 +109,11 @@ impl Finger {
         let Packet { address, word } = received.message;
         let own = address != ALL && address == self.address;
         match word {
-            Word::Claim { round } if self.address == ALL => {
+            Word::Claim { round, slots } if self.address == ALL => {
                 let slot = self.chip.iter().fold(u32::from(round), |all, &part| {
                     (all ^ part).wrapping_mul(0x9E37_79B9).rotate_left(13)
                 });
-                Some(self.here(slot % CLAIM_SLOTS * CLAIM_SLOT_US, out)?)
+                Some(self.here(slot % u32::from(slots.max(1)) * CLAIM_SLOT_US, out)?)
             }
             Word::Assign { chip, nonce } if chip == self.chip && address != ALL => {
                 if self.session.open(nonce, received.sequence).is_ok() {

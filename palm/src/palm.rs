@@ -180,9 +180,7 @@ impl Palm {
         self.free_us = now_us.wrapping_add(bytes_us(length as u32));
         match &mut self.stage {
             Stage::Asked { until_us, .. } => *until_us = self.free_us.wrapping_add(BEGINS_US),
-            Stage::Claims { until_us } => {
-                *until_us = self.free_us.wrapping_add(BEGINS_US + CLAIM_SLOTS * CLAIM_SLOT_US);
-            }
+            Stage::Claims { until_us } => *until_us = until_us.wrapping_add(bytes_us(length as u32)),
             Stage::Free => {}
         }
         length
@@ -222,14 +220,16 @@ impl Palm {
             self.stage = Stage::Asked { seat: n, until_us: now_us, has_begun: false };
             return frame(seat.number, n as u8 + 1, Word::Poll(poll), out);
         }
-        let asks = self.seats.iter().any(|seat| !seat.is_known && seat.cut_us.is_none());
+        // One place in time for each that is missing: with four fingers there is no more room.
+        let missing = self.seats.iter().filter(|seat| !seat.is_known && seat.cut_us.is_none()).count();
+        let slots = CLAIM_SLOTS.min(missing as u8);
+        let window_us = BEGINS_US + u32::from(slots) * CLAIM_SLOT_US;
         let since_us = now_us.wrapping_sub(self.cycle_us);
-        let takes_us = 60 + BEGINS_US + CLAIM_SLOTS * CLAIM_SLOT_US;
-        if asks && !self.has_claimed && since_us + takes_us <= CYCLE_US {
+        if slots > 0 && !self.has_claimed && since_us + 40 + window_us <= CYCLE_US {
             self.has_claimed = true;
             self.claim = self.claim.wrapping_add(1);
-            self.stage = Stage::Claims { until_us: now_us };
-            return frame(0, ALL, Word::Claim { round: self.claim }, out);
+            self.stage = Stage::Claims { until_us: now_us.wrapping_add(window_us) };
+            return frame(0, ALL, Word::Claim { round: self.claim, slots }, out);
         }
         if since_us >= CYCLE_US {
             self.begin(now_us, since_us);

@@ -86,7 +86,7 @@ fn made_up(random: &mut TestRng) -> Vec<u8> {
     let address = (four % 8) as u8;
     let chip = CHIPS[four as usize / 8 % 2];
     let word = match four / 16 % 6 {
-        0 => Word::Claim { round: number as u8 },
+        0 => Word::Claim { round: number as u8, slots: (four >> 24) as u8 },
         1 => Word::Here { chip, nonce: random.next_u32() },
         2 => Word::Assign { chip, nonce: random.next_u32() },
         3 => Word::State(State { frame: four, ..State::default() }),

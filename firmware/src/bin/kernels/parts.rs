@@ -84,7 +84,7 @@ impl Parts {
     /// It says who it is, and is given an address.
     fn claim(&mut self) {
         let (mut frame, mut out) = ([0; FRAME_MAX], [0; FRAME_MAX]);
-        let claim = Packet { address: ALL, word: Word::Claim { round: 1 } };
+        let claim = Packet { address: ALL, word: Word::Claim { round: 1, slots: 1 } };
         let Some(asked) = encode(0, &claim, &mut frame) else { return };
         let Some(answer) = asked.iter().find_map(|&byte| self.finger.hear(byte, 0, &mut out)) else { return };
         let mut receiver = Receiver::new();
