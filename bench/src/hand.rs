@@ -9,7 +9,6 @@ use rand::{RngExt, SeedableRng};
 use tenax_hal_shim::channel::SCAN_HZ;
 use tenax_hal_shim::detector::DetectorSet;
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{Received, Receiver, Up};
 use tenax_hal_shim::words::GripMode;
 use tenax_logic::mode;
 use tenax_palm::bus::{Chip, FRAME_MAX};
@@ -18,6 +17,7 @@ use tenax_palm::palm::{Palm, Place, Report};
 use tenax_palm::share::{self, Contact};
 use tenax_scene::SceneFile;
 use tenax_scene::fingers::Fingers;
+use tenax_serial::link::{Counts, Inbox};
 
 use self::board::Board;
 use self::bus::{SLOT_HZ, Wires};
@@ -81,16 +81,6 @@ impl Default for Options {
 /// Somebody else on the bus: its bytes, whenever it has finished the last.
 pub type Intruder<'a> = &'a mut dyn FnMut(f64) -> Vec<u8>;
 
-/// What comes up a finger's line over the bus.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Line {
-    /// Messages that came.
-    pub messages: u32,
-    /// Numbers that are missing, and frames that are none.
-    pub missing: u32,
-    last: Option<u16>,
-}
-
 /// What a run leaves behind.
 #[derive(Debug, Default)]
 pub struct Outcome {
@@ -104,8 +94,6 @@ pub struct Outcome {
     pub wished: u32,
     /// Pulses of all fingers.
     pub pulses: u32,
-    /// The greatest force of a finger, N.
-    pub peak_n: f64,
     /// Sums of forces, and the least that would do by what is true, and by what the fingers know, N; 80 times a second.
     pub sums: Vec<Sum>,
     /// From a finger's slip to its neighbours' evidence, s; and slips of which nobody was told.
@@ -118,7 +106,8 @@ pub struct Outcome {
     /// The longest cycle of polls, us, and how many there were.
     pub cycle_us: u32,
     pub cycles: u32,
-    pub lines: Vec<Line>,
+    /// What came up each finger's line.
+    pub lines: Vec<Counts>,
     /// Messages that found no room on a finger.
     pub line_dropped: u32,
     /// When what was reported, s.
@@ -129,7 +118,6 @@ pub struct Outcome {
 /// Forces at one instant, N.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sum {
-    pub at_s: f64,
     pub pressed_n: f64,
     /// The least by the true friction, load and shear.
     pub least_n: Option<f64>,
@@ -179,8 +167,7 @@ pub fn run(scene: &SceneFile, options: &Options, mut intruder: Option<Intruder<'
     let mut palm = options.palm.then(|| Palm::new(&places, 0));
     let mut wires = Wires::new(count + 2);
     let (mut outcome, mut out) = (Outcome::default(), [0; FRAME_MAX]);
-    outcome.lines = vec![Line::default(); count];
-    let mut receivers: Vec<Receiver> = (0..count).map(|_| Receiver::new()).collect();
+    let mut lines: Vec<Inbox> = (0..count).map(|_| Inbox::default()).collect();
     let mut slips = vec![Slip { slid_s: -APART_S, ..Slip::default() }; count];
     let mut modes = vec![GripMode::Standby; count];
     let mut cut = options.cut;
@@ -232,20 +219,21 @@ pub fn run(scene: &SceneFile, options: &Options, mut intruder: Option<Intruder<'
                     wires.send(n, &out[..answer.length], begins);
                 }
             }
-            if let Some(palm) = palm.as_mut().filter(|_| by != Some(count)) {
-                if let Some(finger) = palm.hear(byte, true_us as u32) {
-                    let bytes = palm.state(finger).map(|state| state.line.clone()).unwrap_or_default();
-                    bytes.iter().for_each(|&byte| outcome.lines[finger].take(&mut receivers[finger], byte));
-                }
+            if let Some(palm) = palm.as_mut().filter(|_| by != Some(count))
+                && let Some(finger) = palm.hear(byte, true_us as u32)
+            {
+                let bytes = palm.state(finger).map(|state| state.line.clone()).unwrap_or_default();
+                bytes.iter().for_each(|&byte| _ = lines[finger].push(byte));
             }
         }
         if scan % (u64::from(SCAN_HZ) / 80) == 0 && t_s > 4.6 {
-            outcome.sums.push(sum(&world, &boards, t_s));
+            outcome.sums.push(sum(&world, &boards));
         }
     }
     (outcome.dropped, outcome.slid_mm) = (world.is_dropped(), world.slid_mm());
     (outcome.cycle_us, outcome.cycles) = palm.as_ref().map_or((0, 0), Palm::cycles);
     outcome.wished = boards.iter().map(|board| board.wished).sum();
+    outcome.lines = lines.iter().map(Inbox::counts).collect();
     outcome.line_dropped = boards.iter().map(|board| board.end.dropped()).sum();
     outcome.end_n = world.fingers().iter().map(|finger| finger.touch().normal_n).collect();
     outcome
@@ -273,7 +261,6 @@ fn ticked(outcome: &mut Outcome, board: &Board, before: &mut GripMode) {
 fn watch(outcome: &mut Outcome, slips: &mut [Slip], boards: &[Board], world: &Fingers, t_s: f64) {
     for (n, (slip, finger)) in slips.iter_mut().zip(world.fingers()).enumerate() {
         let touch = finger.touch();
-        outcome.peak_n = outcome.peak_n.max(touch.normal_n);
         let slides = touch.normal_n > 0.2 && !touch.sticks && !world.is_dropped();
         if slides && t_s - slip.slid_s > APART_S && t_s > 4.6 {
             (slip.began_s, slip.said_s) = (Some(t_s), None);
@@ -301,7 +288,7 @@ fn watch(outcome: &mut Outcome, slips: &mut [Slip], boards: &[Board], world: &Fi
 }
 
 /// The forces now, and the least that would do.
-fn sum(world: &Fingers, boards: &[Board], t_s: f64) -> Sum {
+fn sum(world: &Fingers, boards: &[Board]) -> Sum {
     let fingers = world.fingers();
     let milli = |n: f64| (n * 1e3).round() as i32;
     let normal = |pushes: [f64; 2]| pushes.map(|part| (part * 1e3).round() as i16);
@@ -321,24 +308,8 @@ fn sum(world: &Fingers, boards: &[Board], t_s: f64) -> Sum {
     };
     let known = |n: usize, _: f64| Some(f64::from(boards.get(n)?.end.felt()?.friction_permille) / 1e3);
     Sum {
-        at_s: t_s,
         pressed_n: fingers.iter().map(|finger| finger.touch().normal_n).sum(),
         least_n: least(&|_, mu_s| Some(mu_s)),
         known_n: least(&known),
-    }
-}
-
-impl Line {
-    /// A byte of it has come.
-    fn take(&mut self, receiver: &mut Receiver, byte: u8) {
-        match receiver.push::<Up>(byte) {
-            None => {}
-            Some(Ok(Received { sequence, .. })) => {
-                let missing = self.last.map_or(0, |last| sequence.wrapping_sub(last).wrapping_sub(1));
-                self.missing += u32::from(missing);
-                (self.last, self.messages) = (Some(sequence), self.messages + 1);
-            }
-            Some(Err(_)) => self.missing += 1,
-        }
     }
 }

@@ -125,10 +125,10 @@ fn in_a_minute_of_five_fingers_no_message_of_their_lines_is_lost() {
     let text = "name = \"minute\"\nbase = \"bottle\"\ntitle = \"A bottle for a minute\"\nduration_s = 60";
     let run =
         run(&SceneFile::parse(text, "minute").unwrap(), &Options { seed: 104, ..Options::default() }, None);
-    let messages: Vec<u32> = run.lines.iter().map(|line| line.messages).collect();
+    let messages: Vec<u64> = run.lines.iter().map(|line| line.messages).collect();
     println!("{messages:?}, cycle {} us, {} cycles, clock {} us", run.cycle_us, run.cycles, run.clock_us);
     assert!(messages.iter().all(|&messages| messages > 60 * 80), "80 slow frames a second");
-    assert!(run.line_dropped == 0 && run.lines.iter().all(|line| line.missing == 0));
+    assert!(run.line_dropped == 0 && run.lines.iter().all(|line| line.missed + line.bad_frames == 0));
     assert!(run.cycle_us <= CYCLE_US && run.cycles >= 29_990 && run.clock_us <= 100.0);
     assert!(is_quiet(&run) && !run.dropped && run.reports.len() == 5, "{:?}", run.reports);
 }

@@ -69,6 +69,7 @@ pub struct Fingers {
     envelopes: Envelopes,
     pulls: Pulls,
     hand: sections::Fingers,
+    empty_kg: f64,
     mass_kg: f64,
     fills: Vec<(Span, f64)>,
     half_mm: f64,
@@ -132,6 +133,7 @@ impl Fingers {
             wearer: Wearer::new(&scene.muscle),
             envelopes: Envelopes::new(&scene.myo, &scene.electrode_lift, scene.pvdf.mains_hz.get(), seed),
             pulls: Pulls::new(&scene.pull),
+            empty_kg: object.mass_kg.get(),
             mass_kg: object.mass_kg.get(),
             fills: fills
                 .map(|fill| {
@@ -175,13 +177,13 @@ impl Fingers {
     /// What pulls the object along the fingers, and aside.
     fn loads(&mut self, t_s: f64) {
         let Self { hand, fills, .. } = self;
-        let poured_kg: f64 = fills.iter().map(|(span, kg)| kg * span.progress(t_s)).sum();
+        self.mass_kg = self.empty_kg + fills.iter().map(|(span, kg)| kg * span.progress(t_s)).sum::<f64>();
         let lifted = smooth(Span::new(hand.lift_s.get(), LIFTS_S).progress(t_s));
         let turned = |tilt: &Tilt| {
             tilt.by_deg.get() * smooth(Span::new(tilt.at_s.get(), tilt.for_s.get()).progress(t_s))
         };
         let tilt_rad = hand.tilt.iter().map(turned).sum::<f64>().to_radians();
-        let weight_n = (self.mass_kg + poured_kg) * GRAVITY_M_S2 * lifted;
+        let weight_n = self.mass_kg * GRAVITY_M_S2 * lifted;
         // Up is positive in a scene's pulls.
         self.pulls_n = weight_n * libm::cos(tilt_rad) - self.pulls.force_n(t_s);
         self.aside_n = [weight_n * libm::sin(tilt_rad), 0.0];
@@ -228,7 +230,6 @@ impl Fingers {
 
     /// Moves the object along the fingers.
     fn slide(&mut self, t_s: f64) {
-        let poured_kg: f64 = self.fills.iter().map(|(span, kg)| kg * span.progress(t_s)).sum();
         let by_m = self.speed_m_s * STEP_S;
         let mut held_n = 0.0;
         for finger in &mut self.fingers {
@@ -252,7 +253,7 @@ impl Fingers {
                 ..Touch::default()
             };
         }
-        self.speed_m_s += (self.pulls_n - held_n) / (self.mass_kg + poured_kg) * STEP_S;
+        self.speed_m_s += (self.pulls_n - held_n) / self.mass_kg * STEP_S;
         let is_lifted = t_s > self.hand.lift_s.get();
         if !is_lifted {
             // It stands.

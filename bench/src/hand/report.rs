@@ -39,8 +39,8 @@ pub struct Scene {
     pub clock_us: f64,
     pub cycle_us: u32,
     /// Messages of the fingers' lines, and those that did not come.
-    pub messages: u32,
-    pub missing: u32,
+    pub messages: u64,
+    pub missing: u64,
     /// Runs in which somebody else than the wearer opened, or somebody else than wearer and reflex drove.
     pub broken: usize,
 }
@@ -116,7 +116,10 @@ pub fn scene(file: &SceneFile, seeds: std::ops::Range<u64>) -> Scene {
         cycle_us: with().map(|run| run.cycle_us).max().unwrap_or(0),
         messages: with().flat_map(|run| &run.lines).map(|line| line.messages).sum(),
         missing: with()
-            .map(|run| run.line_dropped + run.lines.iter().map(|line| line.missing).sum::<u32>())
+            .map(|run| {
+                let missing = run.lines.iter().map(|line| line.missed + line.bad_frames).sum::<u64>();
+                missing + u64::from(run.line_dropped)
+            })
             .sum(),
         broken: runs.iter().filter(|run| [&run.0, &run.1].iter().any(|run| run.opened || run.driven)).count(),
     }
