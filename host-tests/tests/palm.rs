@@ -72,19 +72,35 @@ impl Wished {
 fn a_wish_closes_in_pulses_until_its_budget_is_spent_and_a_muscle_renews_it() {
     let mut wished = Wished::holding();
     wished.want_mn = Some(30_000);
-    // The bench's load does not follow: the worst that a palm can ask for.
-    let closed = wished.run(200_000);
-    assert!((50..=460).contains(&closed), "{closed} frames");
-    assert_eq!(wished.run(20_000), 0, "its budget is spent");
+    // The worst that a palm can ask for, where each pulse raises a little.
+    let closes = |wished: &mut Wished| {
+        (0..100)
+            .map(|n| {
+                wished.bench.load(4.0 + f64::from(n) * 0.1, 0.8);
+                wished.run(400)
+            })
+            .sum::<u32>()
+    };
+    let closed = closes(&mut wished);
+    assert!((350..=460).contains(&closed), "{closed} frames");
+    assert_eq!(closes(&mut wished), 0, "its budget is spent");
     wished.bench.muscles(400.0, 0.0);
-    wished.want_mn = None;
     wished.run(1_000);
     wished.bench.muscles(0.0, 0.0);
-    wished.run(3_000);
+    wished.run(1_000);
+    assert!(closes(&mut wished) > 0);
+}
+
+#[test]
+fn pulses_that_raise_nothing_end_and_leave_the_fingers_own_warnings_answered() {
+    let mut wished = Wished::holding();
     wished.want_mn = Some(30_000);
-    // A load that changed: pulses in vain are forgotten.
-    wished.bench.load(5.0, 0.5);
-    assert!(wished.run(4_000) > 0);
+    let closed = wished.run(20_000);
+    assert!((1..=4 * 40).contains(&closed), "{closed} frames");
+    assert_eq!(wished.run(20_000), 0);
+    // Shear that S2 warns of, at the same load.
+    wished.bench.load(4.0, 1.4);
+    assert!(wished.run(1_000) > 0);
 }
 
 #[test]

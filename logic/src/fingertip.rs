@@ -173,10 +173,12 @@ impl Fingertip {
     fn feel(&mut self) {
         let held = self.senses.forces.filter(|_| matches!(self.senses.grip, Grip::Holds(_)));
         let slides = self.reflex.slides(self.mode);
+        // What a detector of its own warns of is answered as ever.
+        let own = self.detectors.incipient().without(DetectorSet::only(DetectorId::Injected));
         let s2 = &mut self.detectors.s2;
         let lacks = held.map(|forces| s2.lacks(&self.config.friction, &forces, slides));
         let mut lacks = lacks.unwrap_or_default();
-        if let (Some(wish_mn), Some(forces), false) = (self.wish_mn, held, lacks.by_s2) {
+        if let (Some(wish_mn), Some(forces), true) = (self.wish_mn, held, own.is_empty()) {
             let wished_mn = wish_mn - forces.load_mn;
             lacks.warning_mn = Some(lacks.warning_mn.map_or(wished_mn, |mn| mn.min(wished_mn)));
         }

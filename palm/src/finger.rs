@@ -21,6 +21,10 @@ const WISH_US: u32 = (MISSED_MAX as u32 + 1) * CYCLE_US;
 const FORGETS_US: u32 = 100_000;
 /// How long the palm's warnings may close a finger in all, frames: as long as the blind may. A muscle, or an object let go, renews it.
 const BUDGET_FRAMES: u32 = frames(200);
+/// So many pulses that raised nothing end the wish until the load changes: after more, the reflex would not answer its own warnings either.
+const TRIES_MAX: u8 = 4;
+/// The part of a load by which it has changed.
+const CHANGED_PART: u16 = 100;
 /// A wish that is no further above the load is fulfilled, mN: the force sensor's noise.
 const NEAR_MN: i32 = 50;
 /// Bytes of the finger's line that wait.
@@ -42,6 +46,10 @@ pub struct Finger {
     slips: u8,
     want_mn: Option<u16>,
     left_frames: u32,
+    /// Pulses that this load has been wished for, mN, and whether one is on.
+    tries: u8,
+    tried_mn: u16,
+    pulses: bool,
     /// The last tick, and when it was here.
     state: State,
     frame_us: u32,
@@ -77,6 +85,9 @@ impl Finger {
             slips: 0,
             want_mn: None,
             left_frames: BUDGET_FRAMES,
+            tries: 0,
+            tried_mn: 0,
+            pulses: false,
             state: State::default(),
             frame_us: 0,
             line_up: Deque::new(),
@@ -225,13 +236,20 @@ impl Finger {
         if wearer || self.state.felt.is_none() {
             self.left_frames = BUDGET_FRAMES;
         }
-        let wish_mn = self.want_mn.filter(|_| self.left_frames > 0 && !wearer).map(i32::from);
-        let lacks =
-            |want_mn: &i32| self.state.felt.is_some_and(|felt| i32::from(felt.load_mn) + NEAR_MN < *want_mn);
-        let wish_mn = wish_mn.filter(lacks);
-        if wish_mn.is_some() && fingertip.mode() == GripMode::Incipient {
-            self.left_frames -= 1;
+        let load_mn = self.state.felt.map_or(0, |felt| felt.load_mn);
+        if load_mn.abs_diff(self.tried_mn) > self.tried_mn / CHANGED_PART {
+            (self.tries, self.tried_mn) = (0, load_mn);
         }
+        let lacks = self.want_mn.map(i32::from).filter(|&want_mn| i32::from(load_mn) + NEAR_MN < want_mn);
+        let may = self.left_frames > 0 && self.tries < TRIES_MAX && self.state.felt.is_some() && !wearer;
+        let wish_mn = lacks.filter(|_| may);
+        let pulses = wish_mn.is_some() && fingertip.mode() == GripMode::Incipient;
+        if pulses {
+            self.left_frames -= 1;
+        } else if core::mem::replace(&mut self.pulses, pulses) {
+            self.tries += 1;
+        }
+        self.pulses = pulses;
         fingertip.inject(Said { slip: false, incipient: wish_mn.is_some() });
         fingertip.wish(wish_mn);
     }
