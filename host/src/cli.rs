@@ -64,7 +64,7 @@ enum Command {
     Run(run::Args),
     /// Let a fingertip teach itself slip from a camera, and measure what that is worth
     Learn(learn::Args),
-    /// Run several fingertips and a palm on one object, on the host
+    /// Run a hand of several fingertips
     Hand(hand::Args),
     /// List the scenes
     Scenes,

@@ -9,7 +9,7 @@ use super::format::Format;
 use super::out;
 use super::progress::Progress;
 
-/// Run a hand of several fingertips, with a palm and without, on the host's build of the logic.
+/// Run a hand of several fingertips, with a palm and without, on the host.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   tenax hand                            four scenes, five seeds each, and 40 parts that break
