@@ -89,7 +89,7 @@ fn the_commands_page_is_the_tools() {
 }
 
 /// Pages of `docs/` and the README, all words together. The goal is 20 000.
-const WORDS_MAX: usize = 24_334;
+const WORDS_MAX: usize = 24_317;
 const SENTENCE_MAX: usize = 25;
 
 fn words(text: &str) -> usize {
