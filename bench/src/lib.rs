@@ -15,6 +15,7 @@ pub mod board;
 pub mod budgets;
 pub mod disturbances;
 pub mod figure;
+pub mod hand;
 pub mod image;
 pub mod input;
 pub mod jobs;

@@ -8,6 +8,7 @@ mod dataset;
 mod evaluate;
 mod folder;
 mod format;
+mod hand;
 mod learn;
 mod line_file;
 mod lint_image;
@@ -62,6 +63,8 @@ enum Command {
     Run(run::Args),
     /// Let a fingertip teach itself slip from a camera, and measure what that is worth
     Learn(learn::Args),
+    /// Run a hand of several fingertips
+    Hand(hand::Args),
     /// List the scenes
     Scenes,
     /// Run scenes with many seeds, in shards
@@ -101,6 +104,7 @@ pub fn main() -> ExitCode {
     exit(match Cli::parse().command {
         Command::Run(args) => run::main(&args),
         Command::Learn(args) => learn::main(&args),
+        Command::Hand(args) => hand::main(&args),
         Command::Scenes => scenes::main(),
         Command::Sweep(args) => sweep::main(&args),
         Command::Test(args) => test::main(&args),

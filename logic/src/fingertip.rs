@@ -75,6 +75,8 @@ pub struct Fingertip {
     /// What the last tick was asked for, and how it drove the motor.
     asked: MotorDrive,
     drive: MotorDrive,
+    /// What is wished from outside: see [`wish`](Self::wish).
+    wish_mn: Option<i32>,
     /// Since the last look at the drive it opened by what the reflex had added.
     took_back: bool,
 }
@@ -171,9 +173,16 @@ impl Fingertip {
     fn feel(&mut self) {
         let held = self.senses.forces.filter(|_| matches!(self.senses.grip, Grip::Holds(_)));
         let slides = self.reflex.slides(self.mode);
+        // What a detector of its own warns of is answered as ever.
+        let own = self.detectors.incipient().without(DetectorSet::only(DetectorId::Injected));
         let s2 = &mut self.detectors.s2;
         let lacks = held.map(|forces| s2.lacks(&self.config.friction, &forces, slides));
-        self.reflex.feel(self.mode, held.map(|forces| forces.load_mn), lacks.unwrap_or_default());
+        let mut lacks = lacks.unwrap_or_default();
+        if let (Some(wish_mn), Some(forces), true) = (self.wish_mn, held, own.is_empty()) {
+            let wished_mn = wish_mn - forces.load_mn;
+            lacks.warning_mn = Some(lacks.warning_mn.map_or(wished_mn, |mn| mn.min(wished_mn)));
+        }
+        self.reflex.feel(self.mode, held.map(|forces| forces.load_mn), lacks);
         let slid_permille = s2.slid_permille();
         let reading = held.map(|Forces { load_mn, ft_mn, .. }| Reading { load_mn, ft_mn, slid_permille });
         self.reflex.relax(self.mode, reading.filter(|_| self.may_relax()).as_ref());
@@ -191,6 +200,11 @@ impl Fingertip {
     /// Evidence from outside, from the next frame on.
     pub const fn inject(&mut self, said: Said) {
         self.detectors.injected.inject(said);
+    }
+
+    /// The load that whoever injects a warning wishes for, mN: its pulse goes no further.
+    pub const fn wish(&mut self, load_mn: Option<i32>) {
+        self.wish_mn = load_mn;
     }
 
     /// The reflex acts on these detectors alone from now on: for a scene's controls and its bound.

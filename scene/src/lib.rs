@@ -26,6 +26,7 @@
 //! | [`physics`] | contact at three levels, gripper, grasped object, stroked surface, hand, wearer |
 //! | [`sensor`] | PVDF, strain, FSR, force array, myoelectric, camera, photoelastic head, opening, motor current, and the faults of all of them |
 //! | [`picture`] | what a camera behind a clear skin sees, drawn pixel by pixel |
+//! | [`fingers`] | several fingertips around one object |
 //! | [`act`] | what a person at the bench does meanwhile |
 //! | [`bound`] | the least force that holds, planned ahead |
 //! | [`truth`] | nothing of the world: it writes down what really happened |
@@ -37,6 +38,7 @@ pub mod bounds;
 pub mod builtin;
 mod commands;
 pub mod file;
+pub mod fingers;
 pub mod physics;
 pub mod picture;
 pub mod plant;

@@ -4,7 +4,7 @@
 //! for what [`uplink`] says.
 
 mod ahead;
-mod downlink;
+pub(crate) mod downlink;
 mod store;
 mod uplink;
 

@@ -22,7 +22,7 @@ pub struct Args {
 }
 
 /// What is tested in a debug build.
-const DEBUG: [&str; 6] = ["logic", "hal-shim", "scene", "vision", "launch", "host-tests"];
+const DEBUG: [&str; 7] = ["logic", "hal-shim", "palm", "scene", "vision", "launch", "host-tests"];
 
 /// What the tool is made of.
 const TOOL: [&str; 5] = ["serial", "plot", "board-model", "bench", "studies"];

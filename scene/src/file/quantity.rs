@@ -68,6 +68,8 @@ quantities! {
     Pulling: -200.0 to 200.0;
     /// A small force, mN.
     Millinewtons: 0.0 to 1000.0;
+    /// A direction, degrees.
+    Direction: -360.0 to 360.0;
     /// An angle, degrees.
     Degrees: 0.0 to 90.0;
     /// A length, mm.

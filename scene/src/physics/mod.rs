@@ -10,7 +10,7 @@ pub mod level;
 pub mod limit;
 pub mod patch;
 pub mod pitch;
-mod pull;
+pub(crate) mod pull;
 pub mod stribeck;
 pub mod stroke;
 pub mod wearer;

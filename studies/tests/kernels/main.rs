@@ -111,6 +111,8 @@ fn kernels_cost_no_more_than_promised() {
     assert!(most("mlp_structure_8_1") <= 6_100);
     // A sample of the photoelastic head: ac, dc, envelope, swings and presence.
     assert!(most("head_sample") <= 150);
+    // The palm shares 80 times a second; a finger answers 500 polls.
+    println!("palm {}", most("palm_share") * 80 + most("bus_poll") * 500);
     // A hundredth of what the core executes in 12.5 ms, at one instruction a cycle.
     assert!(most("slow_frame") <= 12_500);
 }
