@@ -46,6 +46,8 @@ fn answer(prompt: &str) -> String {
         [_, "of", _, "put", "on", newtons, ..] => format!("weight {newtons}"),
         _ if prompt.contains("shall close the hand") => "c".to_owned(),
         _ if prompt.contains("shall open the hand") => "o".to_owned(),
+        // A reflex that closed on what was pressed before holds the finger.
+        _ if prompt.contains("Nothing may touch") => "o".to_owned(),
         _ => prompt.to_owned(),
     }
 }
