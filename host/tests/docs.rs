@@ -88,8 +88,8 @@ fn the_commands_page_is_the_tools() {
     );
 }
 
-/// Pages of `docs/` and the README, all words together. The goal is 20 000.
-const WORDS_MAX: usize = 20_500;
+/// Pages of `docs/` and the README, all words together: the bar of plain pages.
+const WORDS_MAX: usize = 20_000;
 const SENTENCE_MAX: usize = 25;
 
 fn words(text: &str) -> usize {
