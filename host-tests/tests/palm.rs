@@ -1,5 +1,6 @@
 //! The contract with the wearer, where a palm wishes for force: as a warning of the finger's own, and never more.
 
+use tenax_hal_shim::channel::FSR;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Up, encode};
 use tenax_host_tests::Bench;
@@ -89,6 +90,21 @@ fn a_wish_closes_in_pulses_until_its_budget_is_spent_and_a_muscle_renews_it() {
     wished.bench.muscles(0.0, 0.0);
     wished.run(1_000);
     assert!(closes(&mut wished) > 0);
+}
+
+#[test]
+fn a_force_sensor_that_comes_and_goes_renews_nothing() {
+    let mut wished = Wished::holding();
+    wished.want_mn = Some(30_000);
+    let closed: u32 = (0..60)
+        .map(|n| {
+            wished.bench.load(4.0 + f64::from(n) * 0.1, 0.8);
+            let closed = wished.run(2_400);
+            wished.bench.pins_mv[FSR + 1] = 0.0;
+            closed + wished.run(100)
+        })
+        .sum();
+    assert!((200..=460).contains(&closed), "{closed} frames");
 }
 
 #[test]

@@ -23,6 +23,8 @@ const FORGETS_US: u32 = 100_000;
 const BUDGET_FRAMES: u32 = frames(200);
 /// So many pulses that raised nothing end the wish until the load changes: after more, the reflex would not answer its own warnings either.
 const TRIES_MAX: u8 = 4;
+/// A load below this is let go, mN. Where there is no load or no ratio, nobody knows: a sensor that comes and goes renews nothing.
+const LET_GO_MN: i32 = 150;
 /// The part of a load by which it has changed.
 const CHANGED_PART: u16 = 100;
 /// A wish that is no further above the load is fulfilled, mN: the force sensor's noise.
@@ -46,6 +48,7 @@ pub struct Finger {
     slips: u8,
     want_mn: Option<u16>,
     left_frames: u32,
+    has_let_go: bool,
     /// Pulses that this load has been wished for, mN, and whether one is on.
     tries: u8,
     tried_mn: u16,
@@ -85,6 +88,7 @@ impl Finger {
             slips: 0,
             want_mn: None,
             left_frames: BUDGET_FRAMES,
+            has_let_go: false,
             tries: 0,
             tried_mn: 0,
             pulses: false,
@@ -209,6 +213,7 @@ impl Finger {
         let Up::Slow(slow) = message else { return };
         self.session.stir(slow.samples_sum);
         let narrow = |mn: i32| mn.clamp(0, u16::MAX.into()) as u16;
+        self.has_let_go = slow.forces.is_some_and(|forces| forces.load_mn < LET_GO_MN);
         // Without a ratio it holds nothing worth the name.
         self.state.felt = slow.forces.filter(|forces| forces.ratio_permille.is_some()).map(|forces| Felt {
             load_mn: narrow(forces.load_mn),
@@ -233,7 +238,7 @@ impl Finger {
         } else if unheard_us > WISH_US {
             (self.want_mn, self.slips) = (None, 0);
         }
-        if wearer || self.state.felt.is_none() {
+        if wearer || self.has_let_go {
             self.left_frames = BUDGET_FRAMES;
         }
         let load_mn = self.state.felt.map_or(0, |felt| felt.load_mn);
