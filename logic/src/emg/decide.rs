@@ -370,3 +370,6 @@ impl Decide {
         self.mean = [16 * 750; 3];
     }
 }
+
+#[cfg(test)]
+mod tests;
