@@ -229,4 +229,11 @@ mod tests {
         (0..AGREEING).for_each(|_| shear.feel(200, Some(&reading(300, 2_000))));
         assert!(!shear.warns());
     }
+
+    #[test]
+    fn a_lesson_without_a_ratio_teaches_nothing() {
+        let mut shear = taught(500);
+        shear.learn();
+        assert_eq!(shear.learned(), taught(500).learned());
+    }
 }

@@ -91,6 +91,7 @@ mod tests {
     #[test]
     fn what_slides_carries_more_as_the_hand_closes_and_what_is_held_does_not() {
         let mut asked = Asked::default();
+        assert!(!asked.is_held(&forces(9_000, 1_000), 0), "it asked for nothing");
         asked.begin(&forces(4_000, 1_000));
         assert!(!asked.is_held(&forces(4_400, 1_000), 0), "hysteresis could do that");
         assert!(asked.is_held(&forces(4_600, 1_000), 0));

@@ -318,10 +318,12 @@ mod tests {
 
     #[test]
     fn a_ratio_has_slid_below_its_part_of_the_peak_and_not_at_it() {
-        for (ratio, measured) in [(340, None), (339, Some(400))] {
+        for (peak, ratio, measured) in
+            [(400, 340, None), (400, 339, Some(400)), (99, 50, None), (100, 50, Some(100))]
+        {
             let mut detector = FrictionDetector::default();
             detector.begin_stroke();
-            [400, ratio].iter().for_each(|&ratio| _ = detector.process(&CONFIG, Some(ratio)));
+            [peak, ratio].iter().for_each(|&ratio| _ = detector.process(&CONFIG, Some(ratio)));
             assert_eq!(detector.ratio_permille(), Some(ratio));
             assert_eq!(detector.end_stroke(&CONFIG).map(|measured| measured.mu_s_permille), measured);
         }
