@@ -69,6 +69,7 @@ impl Wished {
     }
 }
 
+// Shows L7.
 #[test]
 fn a_wish_closes_in_pulses_until_its_budget_is_spent_and_a_muscle_renews_it() {
     let mut wished = Wished::holding();
@@ -92,6 +93,7 @@ fn a_wish_closes_in_pulses_until_its_budget_is_spent_and_a_muscle_renews_it() {
     assert!(closes(&mut wished) > 0);
 }
 
+// Shows L7.
 #[test]
 fn a_force_sensor_that_comes_and_goes_renews_nothing() {
     let mut wished = Wished::holding();
@@ -119,6 +121,7 @@ fn pulses_that_raise_nothing_end_and_leave_the_fingers_own_warnings_answered() {
     assert!(wished.run(1_000) > 0);
 }
 
+// Shows L7, R2.
 #[test]
 fn nothing_is_closed_by_a_wish_that_is_met_above_the_ceiling_or_of_an_empty_hand() {
     let mut wished = Wished::holding();
@@ -133,6 +136,7 @@ fn nothing_is_closed_by_a_wish_that_is_met_above_the_ceiling_or_of_an_empty_hand
     assert_eq!(wished.run(4_000), 0, "empty");
 }
 
+// Shows L7, W1.
 #[test]
 fn while_a_muscle_is_active_a_wish_moves_nothing() {
     let mut wished = Wished::holding();

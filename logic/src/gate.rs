@@ -311,4 +311,19 @@ mod tests {
         assert_eq!(frames(Wish::Close, false), CLOSES_AT_MOST - 1);
         assert_eq!(frames(Wish::Close, true), 2 * RENEWED_AFTER, "nothing to crush");
     }
+
+    #[test]
+    fn certainty_takes_as_long_as_activity_is_held_and_begins_anew() {
+        let mut gate = Gate::default();
+        let half = Verdict { half_known: true, ..Verdict::default() };
+        let mut after = |verdict: Verdict, frames: u32| {
+            gate.take(verdict);
+            (0..frames).for_each(|_| gate.tick(&CONFIG, false));
+            (gate.is_certain(&CONFIG), gate.is_half_certain(&CONFIG))
+        };
+        assert_eq!(after(half, CONFIG.hold_frames - 1), (false, false));
+        assert_eq!(after(half, 1), (false, true));
+        assert_eq!(after(Verdict { known: true, ..half }, CONFIG.hold_frames), (true, true));
+        assert_eq!(after(Verdict::default(), 1), (false, false));
+    }
 }

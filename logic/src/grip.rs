@@ -308,6 +308,8 @@ impl Reflex {
 }
 
 #[cfg(test)]
+mod edges;
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::config::Config;

@@ -142,6 +142,7 @@ fn attack(frames: u32) {
     hand.gather();
 }
 
+// Shows L7.
 #[test]
 fn frames_of_nobody_wish_for_nothing() {
     attack(400_000);
@@ -153,6 +154,7 @@ fn ten_million_frames_of_nobody_wish_for_nothing() {
     attack(10_000_000);
 }
 
+// Shows L7.
 #[test]
 fn a_wish_is_heard_with_its_number_and_its_time_and_not_again() {
     let mut hand = Hand::new();

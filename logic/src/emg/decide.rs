@@ -249,7 +249,7 @@ impl Decide {
         let strong = level[1] - sites.rest[1] - sites.span[1] >= if lately { f.firmer } else { 0 };
         let alone = share[0] < sites.both[1] + f.both || electrodes[0].still;
         let apart = (place >= f.place_begins && alone) || blind[0];
-        let opens = apart && strong && uv[1].is_some() && !over[1];
+        let opens = apart && strong && !over[1];
         self.strong = if opens { self.strong.saturating_add(1) } else { 0 };
         self.settle(wish, now);
         self.follow(sites, electrodes, wish);
@@ -370,3 +370,6 @@ impl Decide {
         self.mean = [16 * 750; 3];
     }
 }
+
+#[cfg(test)]
+mod tests;

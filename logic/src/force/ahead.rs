@@ -215,4 +215,25 @@ mod tests {
         other.restore(u32::MAX);
         assert_eq!(other.learned(), 0);
     }
+
+    #[test]
+    fn a_lost_reading_warns_of_nothing_and_what_was_before_it_is_no_rise() {
+        let mut shear = taught(500);
+        (0..AGREEING).for_each(|_| shear.feel(50, Some(&reading(450, 2_000))));
+        assert!(shear.warns());
+        shear.lose();
+        assert!(!shear.warns());
+        let mut shear = taught(500);
+        (0..AGREEING).for_each(|_| shear.feel(200, Some(&reading(0, 2_000))));
+        shear.lose();
+        (0..AGREEING).for_each(|_| shear.feel(200, Some(&reading(300, 2_000))));
+        assert!(!shear.warns());
+    }
+
+    #[test]
+    fn a_lesson_without_a_ratio_teaches_nothing() {
+        let mut shear = taught(500);
+        shear.learn();
+        assert_eq!(shear.learned(), taught(500).learned());
+    }
 }

@@ -91,10 +91,25 @@ mod tests {
     #[test]
     fn what_slides_carries_more_as_the_hand_closes_and_what_is_held_does_not() {
         let mut asked = Asked::default();
+        assert!(!asked.is_held(&forces(9_000, 1_000), 0), "it asked for nothing");
         asked.begin(&forces(4_000, 1_000));
         assert!(!asked.is_held(&forces(4_400, 1_000), 0), "hysteresis could do that");
         assert!(asked.is_held(&forces(4_600, 1_000), 0));
         assert!(!asked.is_held(&forces(4_600, 1_150), 0), "it slides");
         assert!(!asked.is_held(&Forces { ratio_permille: None, ..forces(4_600, 1_000) }, 0), "nobody knows");
+    }
+
+    #[test]
+    fn its_limits_are_a_half_an_eighth_and_a_quarter_of_what_sliding_would_carry() {
+        let mut asked = Asked::default();
+        asked.begin(&forces(4_000, 1_000));
+        assert_eq!([6_100, 6_101].map(|mn| asked.in_vain(&forces(mn, 1_000), 100)), [false, true]);
+        assert_eq!([4_500, 4_501].map(|mn| asked.is_held(&forces(mn, 1_000), 0)), [false, true]);
+        assert_eq!([4_600, 4_601].map(|mn| asked.is_held(&forces(mn, 1_000), 100)), [false, true]);
+        // 1 N more of load is 0.25 N more of shear, if it slid.
+        assert_eq!([1_062, 1_063].map(|ft_mn| asked.is_held(&forces(5_000, ft_mn), 0)), [true, false]);
+        let mut heavy = Asked::default();
+        heavy.begin(&forces(4_000, 4_000));
+        assert_eq!([4_249, 4_250].map(|ft_mn| heavy.is_held(&forces(5_000, ft_mn), 0)), [true, false]);
     }
 }

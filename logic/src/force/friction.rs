@@ -315,4 +315,40 @@ mod tests {
         }
         assert_eq!(detector.end_stroke(&CONFIG), None);
     }
+
+    #[test]
+    fn a_ratio_has_slid_below_its_part_of_the_peak_and_not_at_it() {
+        for (peak, ratio, measured) in
+            [(400, 340, None), (400, 339, Some(400)), (99, 50, None), (100, 50, Some(100))]
+        {
+            let mut detector = FrictionDetector::default();
+            detector.begin_stroke();
+            [peak, ratio].iter().for_each(|&ratio| _ = detector.process(&CONFIG, Some(ratio)));
+            assert_eq!(detector.ratio_permille(), Some(ratio));
+            assert_eq!(detector.end_stroke(&CONFIG).map(|measured| measured.mu_s_permille), measured);
+        }
+    }
+
+    #[test]
+    fn the_ratio_that_slid_is_the_least_of_a_slip_until_the_next_is_answered() {
+        let mut detector = FrictionDetector::default();
+        let slides = |detector: &mut FrictionDetector, slides: Slides, ratio: u16| {
+            let ft_mn = i32::from(ratio) * 10;
+            detector.carry(Some(ft_mn), false);
+            detector.process(&CONFIG, Some(ratio));
+            let ratio_permille = Some(ratio);
+            let forces =
+                Forces { fn_mn: 10_000, fx_mn: ft_mn, fy_mn: 0, ft_mn, load_mn: 10_000, ratio_permille };
+            let _lacks = detector.lacks(&CONFIG, &forces, slides);
+            detector.slid_permille()
+        };
+        assert_eq!(slides(&mut detector, Slides::Unknown, 250), None);
+        let slid = [250, 200, 220].map(|ratio| slides(&mut detector, Slides::Now, ratio));
+        assert_eq!(slid, [Some(250), Some(200), Some(200)]);
+        detector.slips();
+        assert_eq!(detector.slid_permille(), None);
+        // The pulse was over before the quadrants showed it: the least of the last readings.
+        assert_eq!(slides(&mut detector, Slides::Again, 230), Some(200));
+        assert_eq!(slides(&mut detector, Slides::Unknown, 100), Some(200));
+    }
 }

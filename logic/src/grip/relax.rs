@@ -183,4 +183,22 @@ mod tests {
         hand.relax.closed = 3_000;
         assert_eq!(hand.feel(100, Some(200), 10 * SILENT), 3_000 / usize::from(DUTY_PERMILLE));
     }
+
+    #[test]
+    fn a_step_comes_with_every_twentieth_quiet_reading_for_as_long_as_it_is_quiet() {
+        let stepped = |slid_permille: Option<u16>| {
+            let Hand { mut relax, stiffness, .. } = Hand::squeezed();
+            relax.floor_mn = Some(6_000);
+            let is_on = |_: &u16| {
+                relax.left = 0;
+                relax.feel(&Reading { load_mn: 16_000, ft_mn: 2_000, slid_permille }, &stiffness);
+                relax.is_on()
+            };
+            (1..=5 * QUIET_READINGS).filter(is_on).collect::<std::vec::Vec<_>>()
+        };
+        let expected: std::vec::Vec<u16> =
+            (QUIET_READINGS + STEP_READINGS..=5 * QUIET_READINGS).step_by(STEP_READINGS.into()).collect();
+        assert_eq!(stepped(Some(200)), expected);
+        assert_eq!(stepped(Some(0)), [], "no friction");
+    }
 }

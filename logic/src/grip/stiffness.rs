@@ -159,4 +159,14 @@ mod tests {
         assert!(stiffness.travel_for(1_000) <= before);
         assert_eq!(stiffness.mn_a_frame, before.map(|travel| (1_000_000 << FRACTION) / travel).unwrap());
     }
+
+    #[test]
+    fn a_rise_within_the_noise_shows_no_stiffness() {
+        for (rise_mn, is_shown) in [(NOISE_MN, false), (NOISE_MN + 1, true)] {
+            let mut stiffness =
+                Stiffness { loads_mn: [1_000; SPAN], before: [TRAVEL_MIN; KEPT], ..Stiffness::default() };
+            stiffness.feel(Some(1_000 + rise_mn));
+            assert_eq!(stiffness.travel_for(1_000).is_some(), is_shown, "{rise_mn} mN");
+        }
+    }
 }
