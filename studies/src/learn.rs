@@ -14,7 +14,6 @@ pub mod control;
 pub mod figures;
 pub mod finger;
 pub mod holding;
-pub mod observer;
 pub mod reflex;
 pub mod report;
 pub mod text;
