@@ -16,6 +16,7 @@ pub mod onsets;
 use std::collections::BTreeMap;
 
 use serde::Serialize;
+use tenax_serial::quantile::not_exceeded;
 
 pub use doing::{Doing, Stretch};
 
@@ -220,10 +221,7 @@ impl Card {
 
     /// The latency that this part of those caught do not exceed, ms. None if none was caught.
     pub fn latency_ms(&self, part: f64) -> Option<f64> {
-        let mut sorted = self.latencies_ms.clone();
-        sorted.sort_by(f64::total_cmp);
-        let rank = (part * sorted.len() as f64).ceil() as usize;
-        sorted.get(rank.max(1) - 1).copied()
+        not_exceeded(self.latencies_ms.iter().copied(), part)
     }
 }
 

@@ -5,6 +5,7 @@ pub mod array;
 pub mod default_scene;
 pub mod learn;
 pub mod mistakes;
+pub mod pages;
 pub mod recordings;
 pub mod side_by_side;
 pub mod wearer;

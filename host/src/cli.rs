@@ -41,7 +41,6 @@ Examples:
   tenax learn                               a fingertip teaches itself slip from a camera
   tenax scenes                              what there is to run
   tenax check                               every promise, measured
-  tenax chart scenes                        how friction is stepped, beside theory
   tenax monitor                             watch the board that is plugged in
   tenax monitor --port /dev/pts/5           watch a running scene: the path is what `tenax run --serve` printed
   tenax config --port /dev/pts/5 set s1-mv=120

@@ -149,7 +149,7 @@ mod tests {
     fn only_what_runs_the_image_waits_for_it() {
         assert_eq!(image("run --seed 2"), [Binary::Image]);
         assert_eq!(image("size --check"), [Binary::Image, Binary::Kernels]);
-        for none in ["run --host", "run --help", "scenes", "chart scenes", ""] {
+        for none in ["run --host", "run --help", "scenes", "chart emg", ""] {
             assert_eq!(image(none), [], "{none}");
         }
     }

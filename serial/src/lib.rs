@@ -14,6 +14,7 @@ pub mod link;
 pub mod mcap;
 pub mod monitor;
 pub mod protobuf;
+pub mod quantile;
 pub mod record;
 pub mod serve;
 pub mod settings;

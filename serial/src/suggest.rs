@@ -11,6 +11,7 @@ use tenax_hal_shim::wire::{Setting, Slow, Up};
 use tenax_logic::setting::SettingId;
 
 use crate::link::Inbox;
+use crate::quantile::middle;
 
 /// A setting's value, and why.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -72,17 +73,11 @@ impl Suggestions {
     }
 }
 
-/// The value below which this part of them lies. None of none.
-fn quantile(values: &mut [f64], part: f64) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get((part * values.len().saturating_sub(1) as f64).round() as usize).copied()
-}
-
 /// The median, and what is still usual: five median deviations above it, as five of a normal distribution's.
 fn usual(values: &[f64]) -> Option<(f64, f64)> {
-    let median = quantile(&mut values.to_vec(), 0.5)?;
-    let mut apart: Vec<f64> = values.iter().map(|value| (value - median).abs()).collect();
-    Some((median, median + 5.0 * 1.4826 * quantile(&mut apart, 0.5)?))
+    let median = middle(values.iter().copied())?;
+    let apart = values.iter().map(|value| (value - median).abs());
+    Some((median, median + 5.0 * 1.4826 * middle(apart)?))
 }
 
 /// Slow frames as seconds.

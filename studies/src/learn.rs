@@ -14,10 +14,8 @@ pub mod control;
 pub mod figures;
 pub mod finger;
 pub mod holding;
-pub mod observer;
 pub mod reflex;
 pub mod report;
-pub mod text;
 pub mod trial;
 
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -240,8 +238,6 @@ pub struct Other {
     pub controls: [Score; Control::ALL.len()],
     /// Lifts with more force than the object needs.
     pub safe: Safe,
-    /// How unlike its films are, standard deviation over mean: their maxima, and what it has learned of each, its weight.
-    pub films_apart: [f64; 2],
 }
 
 /// The same lessons, and some held-out trials.
@@ -266,7 +262,6 @@ fn other(options: &Options, n: u64) -> anyhow::Result<Other> {
         *score = apart(&bench.controlled(Some(control))?)?;
     }
     let learned_apart = if options.controls { apart(&bench.controlled(None)?)? } else { Score::default() };
-    let films_apart = bench.films_apart()?;
     let mut safe = Safe::default();
     for n in 0..SAFE_LIFTS {
         let setup = Setup::held(&finger, seed(own, 7, n))?;
@@ -285,7 +280,7 @@ fn other(options: &Options, n: u64) -> anyhow::Result<Other> {
         trials.push(bench.trial(Setup::new(&finger, held_out(own, n), false)?));
     }
     let score = Score::of(&trials);
-    Ok(Other { ratio: finger.ratio(), score, apart: learned_apart, controls, safe, films_apart })
+    Ok(Other { ratio: finger.ratio(), score, apart: learned_apart, controls, safe })
 }
 
 fn lesson(all: u64, n: u64) -> u64 {

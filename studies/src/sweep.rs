@@ -17,7 +17,7 @@ use tenax_bench::jobs::{Jobs, Told};
 use tenax_bench::session::{self, Board};
 use tenax_scene::{SceneFile, builtin};
 
-use crate::photoelastic::bench::median;
+use tenax_serial::quantile::middle;
 
 /// What of a run's report is kept: nothing that differs when it is run again.
 const KEPT: [&str; 8] = ["scene", "seed", "object", "slip", "grip", "bound", "reflex", "margin"];
@@ -217,14 +217,13 @@ impl Summary {
         let over = rows.iter().filter(|row| force(row).is_some_and(|ratio| ratio > OVER));
         let mut over: Vec<Case> = over.map(|row| case(row, force(row))).collect();
         over.sort_by(|a, b| b.value.unwrap_or(0.0).total_cmp(&a.value.unwrap_or(0.0)));
-        let middle = |ratios: Vec<f64>| (!ratios.is_empty()).then(|| median(ratios));
         let distance = |row: &Value| row["bound"]["distance_ratio"].as_f64();
         Self {
             runs: rows.len(),
             lost_mm: lost.map(|row| case(row, row["slip"]["distance_mm"].as_f64())).collect(),
             above_1_5_times: over,
-            force_ratio_median: middle(rows.iter().filter_map(force).collect()),
-            distance_ratio_median: middle(rows.iter().filter_map(distance).collect()),
+            force_ratio_median: middle(rows.iter().filter_map(force)),
+            distance_ratio_median: middle(rows.iter().filter_map(distance)),
         }
     }
 }

@@ -79,6 +79,8 @@ fn before_learning_it_says_nothing_and_afterwards_it_sees_micro_slip() {
             "trials",
             "network_first_s_mean",
             "vision_first_s_mean",
+            "micro_onset_s_mean",
+            "macro_onset_s_mean",
             "lead_s",
             "lead_s_no_delay",
             "lead_s_equal_weights",
@@ -89,6 +91,8 @@ fn before_learning_it_says_nothing_and_afterwards_it_sees_micro_slip() {
             "warning",
             "holding_hours",
             "safe",
+            "lifts",
+            "pours",
             "direction_wrong",
             "fingertips"
         ]
@@ -96,7 +100,7 @@ fn before_learning_it_says_nothing_and_afterwards_it_sees_micro_slip() {
     assert_eq!(keys(&json["lead_s"]), ["mean", "sd", "min"]);
     assert_eq!(
         keys(&json["slip"]),
-        ["lead_s", "lead_s_no_delay", "missed", "false_per_hour", "equal_weights"]
+        ["said_s_mean", "lead_s", "lead_s_no_delay", "missed", "false_per_hour", "equal_weights"]
     );
     assert_eq!(keys(&json["fingertips"]), ["count", "worst_lead_s", "missed", "slippery", "even"]);
     // The camera's delay is all that is between the two.

@@ -66,15 +66,6 @@ pub fn accept(network: &Network, recordings: &[Recording]) -> anyhow::Result<()>
     Ok(())
 }
 
-/// What adapting to one session gave.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Adapted {
-    /// Readings are multiplied with this about their first.
-    pub scale: f64,
-    /// Slip is a logit of at least this.
-    pub on: i32,
-}
-
 /// Recordings judged by a network that has adapted to their sessions: those left to score, with logits and thresholds.
 #[derive(Clone, Debug, Default)]
 pub struct Judged {

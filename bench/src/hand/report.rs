@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use tenax_palm::palm::Report as Told;
 use tenax_scene::SceneFile;
+use tenax_serial::quantile::not_exceeded;
 
 use super::{Options, Outcome, Part, run};
 
@@ -109,9 +110,9 @@ pub fn scene(file: &SceneFile, seeds: std::ops::Range<u64>) -> Scene {
         over_known_alone: most(&|run| run.1.over(|sum| sum.known_n)),
         over_true: most(&|run| run.0.over(|sum| sum.least_n)),
         slips: evidence.len(),
-        evidence_ms: quantiles(evidence),
+        evidence_ms: quantiles(&evidence),
         untold: with().map(|run| run.untold).sum(),
-        bus_ms: quantiles(with().flat_map(|run| run.said_s.clone()).collect()),
+        bus_ms: quantiles(&with().flat_map(|run| run.said_s.clone()).collect::<Vec<_>>()),
         clock_us: most(&|run| run.0.clock_us),
         cycle_us: with().map(|run| run.cycle_us).max().unwrap_or(0),
         messages: with().flat_map(|run| &run.lines).map(|line| line.messages).sum(),
@@ -178,9 +179,8 @@ pub fn cuts(files: &[SceneFile], count: u64) -> Cuts {
 }
 
 /// Median and 95th of a hundred, ms.
-fn quantiles(mut times_s: Vec<f64>) -> Option<[f64; 2]> {
-    times_s.sort_by(f64::total_cmp);
-    let at = |part: f64| times_s.get((part * (times_s.len() as f64 - 1.0)).ceil() as usize).map(|s| s * 1e3);
+fn quantiles(times_s: &[f64]) -> Option<[f64; 2]> {
+    let at = |part| Some(not_exceeded(times_s.iter().copied(), part)? * 1e3);
     Some([at(0.5)?, at(0.95)?])
 }
 

@@ -37,8 +37,6 @@ pub struct Args {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Subject {
-    /// How the scenes' friction is stepped: the brush patch and the slider that vibrates by itself, beside theory
-    Scenes,
     /// What the scenes' sensors say at the onset of slip, beside real recordings where they are present
     Sensors,
     /// How the force array's network does against each quantity that sessions draw: where the method fails
@@ -46,8 +44,6 @@ enum Subject {
     /// What each grip pays in newtons beyond need for what it saves in millimetres: the hand, each detector alone, all but each, no
     /// reflex, constant grip, the bound; and decision delay by stiffness by gain
     Front,
-    /// How soon the slip of a lift could be told, and from which sensors, beside what a camera sees
-    Onset,
     /// How well the wearer is understood on recorded people, and how late, against false motions: the hand and plain control
     Emg,
     /// What each detector catches and costs, pairs, the hand and plain rivals beside it, on the same fingertips and hours
@@ -61,7 +57,6 @@ enum Subject {
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let folder = folder::made(&args.out)?;
     let charts = match args.subject {
-        Subject::Scenes => chart::scenes()?,
         Subject::Array => vec![with_bar("array", |progress| chart::array::chart(progress))?],
         Subject::Front => {
             let front = with_bar("front", |progress| chart::front::front(progress))?;
@@ -70,11 +65,6 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         Subject::Sensors => {
             let recordings = workspace::root()?.join(RECORDINGS);
             vec![with_bar("sensors", |progress| chart::sensors::chart(&recordings, progress))?]
-        }
-        Subject::Onset => {
-            let (chart, measured) = with_bar("onset", |progress| chart::onset::chart(progress))?;
-            out::unless_closed(out::say!("{measured}"))?;
-            vec![chart]
         }
         Subject::Vision => {
             let folder = workspace::root()?.join(RECORDINGS).join("fingervision");

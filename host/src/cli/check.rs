@@ -2,14 +2,16 @@
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Mutex;
 
 use tenax_launch::status::Status;
 
 use super::{out, size, test, workspace};
 use crate::check::side_by_side::{Group, measure};
-use crate::check::{Bar, Verdict, array, default_scene, learn, mistakes, recordings, wearer};
+use crate::check::{Bar, Verdict, array, default_scene, learn, mistakes, pages, recordings, wearer};
 use tenax_bench::board::Run;
 use tenax_bench::budgets::Line;
+use tenax_bench::report::text::Text;
 use tenax_bench::session::{self, Board};
 
 /// Measure every promise of the project, one line each; fails if one is not kept.
@@ -24,6 +26,9 @@ pub struct Args {
     /// The budgets of `tenax size --check` too, from the same run of the default scene
     #[arg(long, conflicts_with = "host")]
     size: bool,
+    /// The pages' figures of other commands too, which are run: minutes each
+    #[arg(long, requires = "size")]
+    pages: bool,
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
@@ -34,8 +39,9 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         // Here, and not in the middle of what is measured side by side.
         tenax_bench::image::build_kernels(&root)?;
     }
+    let told = Mutex::new(String::new());
     let mut groups = vec![
-        Group::new("default scene", || default_scene(&root, &board, args)),
+        Group::new("default scene", || default_scene(&root, &board, args, &told)),
         Group::new("wearer in all scenes", wearer::scenes),
         Group::new("random hands", || {
             Ok(vec![wearer::random(
@@ -54,8 +60,9 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let (mut failed, mut skipped, mut passed) = (0, 0, 0);
     // Whoever stops reading still wants the verdict: it is the exit code.
     let mut printed = Ok(());
-    let print = |bars: Vec<Bar>| {
+    let mut print = |bars: Vec<Bar>| {
         for bar in &bars {
+            *told.lock().unwrap() += &format!("{bar}\n");
             match bar.verdict {
                 Verdict::Pass => passed += 1,
                 Verdict::Fail => failed += 1,
@@ -67,7 +74,11 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             status.print(|| printed = bars.iter().try_for_each(|bar| out::say!("{bar}")));
         }
     };
-    measure(&groups, |running| status.say(running), print)?;
+    measure(&groups, |running| status.say(running), &mut print)?;
+    if args.size {
+        let told = told.lock().unwrap().clone();
+        print(pages::bars(&root, &told, args.pages)?);
+    }
     drop(status);
     let last = || out::say!("{passed} kept, {failed} not kept, {skipped} skipped");
     out::unless_closed(printed.and_then(|()| last()))?;
@@ -75,11 +86,12 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
 }
 
 /// One run of the default scene, and all that is told from it.
-fn default_scene(root: &Path, board: &Board, args: &Args) -> anyhow::Result<Vec<Bar>> {
+fn default_scene(root: &Path, board: &Board, args: &Args, told: &Mutex<String>) -> anyhow::Result<Vec<Bar>> {
     let file = session::load_scene(session::DEFAULT_SCENE)?;
     let mut run = Run::default();
     let outcome = session::scene_with(&file, 1, board, &mut run, &mut |_| {})?;
     run.summary = outcome.run.clone();
+    *told.lock().unwrap() += &Text(&outcome.report).to_string();
     let mut bars = default_scene::bars(&outcome, (!args.host).then_some(&run));
     if args.size {
         bars.extend(size::lines(root, &outcome.report)?.iter().map(budget));

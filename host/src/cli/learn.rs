@@ -18,7 +18,6 @@ use tenax_bench::board::agreement::Agreement;
 use tenax_bench::session::Board;
 use tenax_plot::png;
 use tenax_studies::learn::report::Report;
-use tenax_studies::learn::text::Text;
 use tenax_studies::learn::{self, Options, Outcome, figures};
 
 const EXAMPLES: &str = "\
@@ -88,8 +87,8 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let board = if args.host { Board::Host } else { Board::emulated(&workspace::root()?)? };
     let outcome = run(&options, &board)?;
-    out::unless_closed(args.report.print(&Text(&outcome), &Report::of(&outcome)))?;
-    if let (Format::Json, Some(agreement)) = (args.report, &outcome.agreement) {
+    out::unless_closed(args.report.show(&Report::of(&outcome)))?;
+    if let Some(agreement) = &outcome.agreement {
         out::note!("  {:<26}{agreement}", "image and host's logic");
     }
     for file in write(&args.out, &outcome)? {

@@ -44,6 +44,9 @@ fn tool() -> Command {
     for package in TOOL {
         command.args(["--package", &format!("tenax-{package}")]);
     }
+    // Tests of the line wait for real time to go by: twice as many at once take half as long.
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    command.env("RUST_TEST_THREADS", (2 * cores).to_string());
     command
 }
 

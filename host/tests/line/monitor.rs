@@ -18,6 +18,7 @@ fn frame(sequence: u16) -> Vec<u8> {
 fn a_board_that_is_unplugged_ends_the_watch_with_a_reason() {
     let (mut board, mut port) = TTYPort::pair().expect("this machine has ptys");
     port.set_timeout(Duration::from_millis(50)).unwrap();
+    let unread = port.try_clone_native().unwrap();
     let sender = thread::spawn(move || {
         // It was switched on in the middle of a message, sends two, loses one, and has its cable pulled.
         board.write_all(&frame(0)[5..]).unwrap();
@@ -25,7 +26,11 @@ fn a_board_that_is_unplugged_ends_the_watch_with_a_reason() {
             board.write_all(&frame(sequence)).unwrap();
         }
         board.flush().unwrap();
+        // What is not read when the near end closes is lost.
         thread::sleep(Duration::from_millis(200));
+        while unread.bytes_to_read().unwrap() > 0 {
+            thread::sleep(Duration::from_millis(5));
+        }
     });
     let (mut monitor, mut out) = (Monitor::default(), Vec::new());
     let end = monitor.watch(&mut port, &mut out).unwrap();

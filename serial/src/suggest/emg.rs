@@ -3,7 +3,8 @@
 use tenax_hal_shim::wire::Slow;
 use tenax_logic::setting::SettingId;
 
-use super::{Suggestion, quantile, seconds, usual};
+use super::{Suggestion, seconds, usual};
+use crate::quantile::not_exceeded;
 
 /// Slow frames of rest and of contraction that are enough: two seconds and half a second.
 const REST_ENOUGH: usize = 160;
@@ -32,7 +33,7 @@ pub fn suggest(slows: &[Slow]) -> Result<Suggestion, String> {
     }
     let (median, most) = usual(&rest).unwrap_or_default();
     // How it rises and falls belongs to a contraction too: what it holds is its upper half.
-    let held = quantile(&mut active, 0.7).unwrap_or_default();
+    let held = not_exceeded(active, 0.7).unwrap_or_default();
     if held < APART * most.max(1.0) {
         return Err(format!(
             "{name}: contractions of {held:.0} mV do not stand out of rest, up to {most:.0} mV"

@@ -5,7 +5,8 @@ use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::wire::Slow;
 use tenax_logic::setting::SettingId;
 
-use super::{Suggestion, quantile};
+use super::Suggestion;
+use crate::quantile::not_exceeded;
 
 /// Who hears that something slides. S2 only foresees it, and a camera's word comes late.
 const HEARD_BY: DetectorSet = DetectorSet::only(DetectorId::S1)
@@ -41,7 +42,7 @@ pub fn suggest(slows: &[Slow]) -> Result<Suggestion, String> {
     }
     let part = f64::from(SettingId::S2OfMuS.row().default) / 1e3;
     // One in ten may have another reason.
-    let Some(peak) = quantile(&mut peaks, 0.1) else {
+    let Some(peak) = not_exceeded(peaks.iter().copied(), 0.1) else {
         return Err(
             "s2-permille: nothing was heard to slide while it was held; `tenax calibrate friction` strokes a surface"
                 .to_owned(),

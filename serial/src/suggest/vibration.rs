@@ -5,7 +5,8 @@ use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::Slow;
 use tenax_logic::setting::SettingId;
 
-use super::{Suggestion, quantile, seconds, usual};
+use super::{Suggestion, seconds, usual};
+use crate::quantile::not_exceeded;
 
 /// Slow frames after the motor has last run in which its gear is still heard: 0.3 s.
 const RINGS: usize = 24;
@@ -50,7 +51,7 @@ pub fn suggest(slows: &[Slow]) -> Result<Suggestion, String> {
     let floor = ABOVE_QUIET * most.max(1.0);
     slips.retain(|&slip| slip > EVENT * most);
     let quietly = format!("{:.0} s of quiet: {median:.0} mV, up to {most:.0} mV usual", seconds(quiet.len()));
-    Ok(match quantile(&mut slips, 0.1) {
+    Ok(match not_exceeded(slips.iter().copied(), 0.1) {
         // Half way between both, as ratios go.
         Some(slip) => Suggestion::new(
             SettingId::S1,

@@ -4,10 +4,7 @@ pub mod array;
 pub mod delay;
 pub mod emg;
 pub mod front;
-mod growth;
 pub mod loads;
-pub mod onset;
-mod patch;
 pub mod photoelastic;
 pub mod sensors;
 pub mod table;
@@ -35,12 +32,6 @@ impl Chart {
 
 /// Told how much is done, from 0 to 1.
 pub type Progress<'a> = tenax_bench::jobs::Told<'a>;
-
-/// Draws the brush patch and the Stribeck slider. Times are of this machine; all else is the same on every one.
-/// Fails if a chart cannot be drawn.
-pub fn scenes() -> anyhow::Result<Vec<Chart>> {
-    Ok(vec![patch::chart()?, growth::chart()?])
-}
 
 /// The rows of a CSV file, under its header.
 fn csv(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> anyhow::Result<String> {

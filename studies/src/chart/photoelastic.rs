@@ -8,12 +8,12 @@ use tenax_scene::sensor::photoelastic::optics::Layer;
 
 use super::{Chart, Progress, csv};
 use crate::photoelastic::balance;
-use crate::photoelastic::bench::median;
 use crate::photoelastic::force::{self, Point, Score, Session, Story};
 use crate::photoelastic::rate::{self, Material, Rig, Seen};
 use crate::photoelastic::region::{self, Region};
 use tenax_plot::figure::colour;
 use tenax_plot::sheet::{Axis, Mark, Panel, Series, Sheet};
+use tenax_serial::quantile::middle;
 
 /// Heads on whose days the rate is fitted, and their first days.
 const HEADS: [u64; 4] = [1, 2, 3, 4];
@@ -107,7 +107,7 @@ fn rates(progress: Progress) -> (f64, f64) {
         others.extend(rate::errors_percent(&fit, &days(3_000, Material::Plastic)[..SLIPS]));
         progress((n + 1) as f64 / HEADS.len() as f64);
     }
-    (median(errors), median(others))
+    [errors, others].map(|errors| middle(errors).unwrap_or(f64::NAN)).into()
 }
 
 /// What the mean head sees of each rate.

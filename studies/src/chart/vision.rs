@@ -6,6 +6,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
+use tenax_serial::quantile::middle;
 use tenax_vision::frame::{Frame, Plane, plane};
 use tenax_vision::mask::Mask;
 use tenax_vision::object::{Config, Running, Tracker};
@@ -48,9 +49,7 @@ impl Choice {
 
     /// Frames a second, by the median of their times.
     fn fps(&self) -> f64 {
-        let mut times_s = self.times_s.clone();
-        times_s.sort_by(f64::total_cmp);
-        times_s.get(times_s.len() / 2).map_or(0.0, |median_s| 1.0 / median_s)
+        middle(self.times_s.iter().copied()).map_or(0.0, |median_s| 1.0 / median_s)
     }
 
     fn mean(&self) -> f64 {

@@ -16,7 +16,6 @@ use tenax_scene::plant::Plant;
 
 use super::chain::slow_frames;
 use super::control::Control;
-use super::report::Spread;
 use super::trial::{Setup, Trial, by_network};
 use tenax_bench::board::simulated::Ahead;
 
@@ -149,19 +148,6 @@ impl Bench {
         let mut bytes = [0; hebbian::SNAPSHOT_LENGTH];
         let kept = self.fingertip.learned();
         Ok(kept.write(&mut bytes).context("a snapshot of another length")?.to_vec())
-    }
-
-    /// How unlike the films are, standard deviation over mean: their maxima, and their weights of o1.
-    /// Fails by a bug alone: what was learned can be restored.
-    pub fn films_apart(&self) -> anyhow::Result<[f64; 2]> {
-        let (normaliser, weights, _) = self.kept()?;
-        let apart = |values: Vec<f64>| {
-            let Spread { mean, sd, .. } = Spread::of(&values);
-            if mean == 0.0 { 0.0 } else { sd / mean.abs() }
-        };
-        let maxima = normaliser.maxima()[..PVDF_COUNT].iter().copied().map(f64::from).collect();
-        let weights = weights[0][..PVDF_COUNT].iter().map(|weight| f64::from(weight.into_bits())).collect();
-        Ok([apart(maxima), apart(weights)])
     }
 
     /// The same fingertip as a control has it: something of what was learned is changed; nothing, if there is none. Either way it is

@@ -86,6 +86,9 @@ pub struct Score {
     pub first: Words,
     /// Its word of slip, which the films alone give.
     pub slip: Words,
+    /// What a hand made of slip that each judge told it of, in lifts and in pours.
+    pub lifts: Vec<Told>,
+    pub pours: Vec<Told>,
     /// Slips, up or down, of which o2 said the wrong direction.
     pub direction_wrong: u64,
 }
@@ -118,6 +121,9 @@ pub struct Report {
     pub network_first_s_mean: f64,
     /// First said by the camera's codes, likewise.
     pub vision_first_s_mean: f64,
+    /// When the first place of the contact let go, and when all of it slid, s after the lift began, means.
+    pub micro_onset_s_mean: f64,
+    pub macro_onset_s_mean: f64,
     /// How much earlier the network's first word was, s: slip, or a warning of it.
     pub lead_s: Spread,
     /// The same over a camera without delay.
@@ -138,15 +144,45 @@ pub struct Report {
     pub holding_hours: f64,
     /// Lifts of all fingers with 1.5 to 3 times the needed force.
     pub safe: Safe,
+    /// What a hand made of slip that each judge told it of, in lifts and in pours.
+    pub lifts: Vec<Told>,
+    pub pours: Vec<Told>,
     /// Slips, up or down, of which o2 said the wrong direction.
     pub direction_wrong: u64,
     /// The same learning on fingers made by chance.
     pub fingertips: Fingertips,
 }
 
+/// Means of the runs in which the reflex was told by one judge.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Told {
+    pub judge: &'static str,
+    /// When the object last moved along the hand, s from the beginning of the lift.
+    pub secured_s: f64,
+    /// How far it had sunk in the end, mm.
+    pub distance_mm: f64,
+    /// What each finger pressed with in the end, N.
+    pub grip_n: f64,
+}
+
+fn told(runs: &[Three]) -> Vec<Told> {
+    let secured_s = of_judges(runs, |run| run.secured_s);
+    let distance_mm = of_judges(runs, |run| run.distance_mm);
+    let grip_n = of_judges(runs, |run| run.grip_n);
+    let of = |(n, judge): (usize, &'static str)| Told {
+        judge,
+        secured_s: secured_s[n].mean,
+        distance_mm: distance_mm[n].mean,
+        grip_n: grip_n[n].mean,
+    };
+    ["touch", "vision", "bound"].into_iter().enumerate().map(of).collect()
+}
+
 /// What was said of slip, warnings left out.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Slip {
+    /// When it was said, s after the lift began, mean.
+    pub said_s_mean: f64,
     /// How much earlier than the camera, s, of those trials in which it was said.
     pub lead_s: Spread,
     /// The same over a camera without delay.
@@ -277,6 +313,8 @@ impl Report {
             trials: score.trials,
             network_first_s_mean: said_s(&score.first).mean,
             vision_first_s_mean: Spread::of(&score.vision_s).mean,
+            micro_onset_s_mean: Spread::of(&score.micro_s).mean,
+            macro_onset_s_mean: Spread::of(&score.macro_s).mean,
             lead_s: score.first.lead(),
             lead_s_no_delay: Spread::of(&score.first.lead_no_delay_s),
             lead_s_equal_weights: equal.first.lead(),
@@ -284,6 +322,7 @@ impl Report {
             missed: score.first.missed,
             false_per_hour: holding.per_hour(holding.any),
             slip: Slip {
+                said_s_mean: said_s(&score.slip).mean,
                 lead_s: score.slip.lead(),
                 lead_s_no_delay: Spread::of(&score.slip.lead_no_delay_s),
                 missed: score.slip.missed,
@@ -297,6 +336,8 @@ impl Report {
             warning: Warning { false_per_hour: holding.per_hour(holding.warning) },
             holding_hours: outcome.holding.hours,
             safe: outcome.safe(),
+            lifts: told(&outcome.lifts),
+            pours: told(&outcome.pours),
             direction_wrong: score.direction_wrong,
             fingertips: Fingertips {
                 count: outcome.others.len() as u64,

@@ -74,9 +74,3 @@ pub fn between(random: &mut ChaCha8Rng, low: f64, high: f64) -> f64 {
 pub fn over_decades(random: &mut ChaCha8Rng, low: f64, high: f64) -> f64 {
     between(random, low.log10(), high.log10()).exp2().powf(std::f64::consts::LOG2_10)
 }
-
-/// The middle of a list that is not empty.
-pub fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
-}

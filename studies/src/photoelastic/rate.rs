@@ -11,9 +11,10 @@ use tenax_scene::physics::stribeck::{METAL, PLASTIC, Slider, Stribeck};
 use tenax_scene::sensor::photoelastic::curve::{Day, Making};
 use tenax_scene::sensor::photoelastic::optics::Layer;
 use tenax_scene::sensor::photoelastic::{Head, drawn_strip};
+use tenax_serial::quantile::middle;
 
 use super::balance;
-use super::bench::{Bench, between, median, over_decades};
+use super::bench::{Bench, between, over_decades};
 use super::least_squares::LeastSquares;
 
 /// Friction of one material differs by this part from day to day: grease, dust, wear. Assumed.
@@ -116,11 +117,11 @@ impl Rig {
             periods.push(f64::from(reads.split().period_q4()));
             swings.extend(reads.swing(&self.bench.config));
         }
-        let period_q4 = median(periods);
+        let period_q4 = middle(periods).unwrap_or(f64::NAN);
         swings.sort_by_key(|swing| swing.0);
         Seen {
             rate_mm_s,
-            amplitude_mv: median(amplitudes),
+            amplitude_mv: middle(amplitudes).unwrap_or(f64::NAN),
             hz: if period_q4 > 0.0 { 32_000.0 / period_q4 } else { 0.0 },
             swing: swings.get(swings.len() / 2).copied(),
             said: said as f64 / (count - count / 2) as f64,

@@ -6,6 +6,7 @@ use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use serde::Serialize;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use tenax_bench::scorer::{CAUGHT_WITHIN_S, Outcome, false_alarms_s, outcome};
+use tenax_serial::quantile::not_exceeded;
 
 use super::heard::{Heard, Kind};
 
@@ -155,7 +156,7 @@ impl Scored {
             Outcome::Caught(s) => Some(1e3 * s),
             _ => None,
         });
-        ranked(caught.collect(), part)
+        not_exceeded(caught, part)
     }
 
     /// The median of macro onset less the word of those that came before it, ms.
@@ -164,7 +165,7 @@ impl Scored {
             Outcome::Caught(s) if s < 0.0 => Some(-1e3 * s),
             _ => None,
         });
-        ranked(early.collect(), 0.5)
+        not_exceeded(early, 0.5)
     }
 }
 
@@ -176,12 +177,6 @@ fn rank(outcome: Outcome) -> f64 {
         Outcome::SaidBefore => 2e6,
         Outcome::Missed => 3e6,
     }
-}
-
-fn ranked(mut all: Vec<f64>, part: f64) -> Option<f64> {
-    all.sort_by(f64::total_cmp);
-    let rank = (part * all.len() as f64).ceil() as usize;
-    all.get(rank.max(1) - 1).copied()
 }
 
 /// Wilson's interval at 95 %.

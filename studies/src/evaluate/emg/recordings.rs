@@ -13,7 +13,7 @@ use tenax_logic::emg::calibration::{Calibration, PROMPT_FRAMES, Progress};
 use tenax_logic::emg::level::level_of;
 use tenax_logic::emg::model::EmgModel;
 
-use super::score::quantile;
+use tenax_serial::quantile::between_ranks;
 
 /// Rows a second of a recording.
 pub(super) const HZ: f64 = 100.0;
@@ -203,7 +203,7 @@ impl Recording {
                     f64::from(level_of(self.uv[row][extensor] as i32) - level_of(self.uv[row][flexor] as i32))
                 })
                 .collect();
-            quantile(&levels, 0.5)
+            between_ranks(levels, 0.5).unwrap_or_default()
         };
         (ratio(OPEN) - ratio(CLOSE)).abs()
     }

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use tenax_logic::emg::decide::Wish;
+use tenax_serial::quantile::between_ranks;
 
 use super::recordings::{CLOSE, HZ, OPEN, Recording};
 
@@ -117,50 +118,26 @@ pub struct Score {
 }
 
 impl Score {
-    fn values(&self) -> [f64; 11] {
-        let Self { close_right, close_wrong_way, open_right, open_wrong_way, missed, .. } = *self;
-        let Self { false_per_hour, latency_s_p50, latency_s_p95, .. } = *self;
-        let Self { full_s_p50, full_s_p95, doubted_part, .. } = *self;
-        [
-            close_right,
-            close_wrong_way,
-            open_right,
-            open_wrong_way,
-            missed,
-            false_per_hour,
-            latency_s_p50,
-            latency_s_p95,
-            full_s_p50,
-            full_s_p95,
-            doubted_part,
-        ]
-    }
-
     /// The median of each number over people.
     pub(super) fn median(scores: &[Self]) -> Option<Self> {
-        let all: Vec<[f64; 11]> = scores.iter().map(Self::values).collect();
-        let median = |n: usize| quantile(&all.iter().map(|values| values[n]).collect::<Vec<_>>(), 0.5);
-        (!scores.is_empty()).then(|| Self {
-            close_right: median(0),
-            close_wrong_way: median(1),
-            open_right: median(2),
-            open_wrong_way: median(3),
-            missed: median(4),
-            false_per_hour: median(5),
-            latency_s_p50: median(6),
-            latency_s_p95: median(7),
-            full_s_p50: median(8),
-            full_s_p95: median(9),
-            doubted_part: median(10),
+        let median = |value: fn(&Self) -> f64| between_ranks(scores.iter().map(value), 0.5);
+        Some(Self {
+            close_right: median(|score| score.close_right)?,
+            close_wrong_way: median(|score| score.close_wrong_way)?,
+            open_right: median(|score| score.open_right)?,
+            open_wrong_way: median(|score| score.open_wrong_way)?,
+            missed: median(|score| score.missed)?,
+            false_per_hour: median(|score| score.false_per_hour)?,
+            latency_s_p50: median(|score| score.latency_s_p50)?,
+            latency_s_p95: median(|score| score.latency_s_p95)?,
+            full_s_p50: median(|score| score.full_s_p50)?,
+            full_s_p95: median(|score| score.full_s_p95)?,
+            doubted_part: median(|score| score.doubted_part)?,
         })
     }
 }
 
-/// Linear between the ranks; 0 of nothing.
-pub(super) fn quantile(values: &[f64], part: f64) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let at = (sorted.len().max(1) - 1) as f64 * part;
-    let (low, high) = (sorted.get(at.floor() as usize), sorted.get(at.ceil() as usize));
-    low.zip(high).map_or(0.0, |(low, high)| low + (high - low) * at.fract())
+/// 0 of nothing.
+fn quantile(values: &[f64], part: f64) -> f64 {
+    between_ranks(values.iter().copied(), part).unwrap_or_default()
 }
