@@ -3,11 +3,12 @@
 //! The myosensors give smoothed envelopes, each read three times a slow frame. [`level`] turns them into logarithms;
 //! [`calibration`] learns where rest, closing and opening lie and [`model`] keeps it; [`decide`] says what the wearer wants,
 //! with the constants of [`fitted`]; [`trust`] says whether an envelope is a muscle's, with the help of a spectrum outside the
-//! tick ([`mains`]). [`Emg`] is the whole. `docs/emg.md` has what was measured.
+//! tick ([`mains`]); [`fit`] whether the calibration still fits. [`Emg`] is the whole. `docs/emg.md` has what was measured.
 
 pub mod calibration;
 pub mod constants;
 pub mod decide;
+pub mod fit;
 pub mod fitted;
 pub mod level;
 pub mod log2;
@@ -25,7 +26,7 @@ use tenax_hal_shim::front_end::MYO_REST_MV;
 use self::decide::{Decide, Electrode, OVER_UV, Wish};
 use self::level::level_of;
 use self::mains::{Mains, WINDOW};
-use self::model::EmgModel;
+use self::model::{EmgModel, Point};
 use self::proof::Proof;
 use self::trust::{Quality, Trust};
 
@@ -165,6 +166,12 @@ impl Emg {
             known: self.known[0] && self.known[1],
             half_known: false,
         };
+    }
+
+    /// The level of each electrode of the last 0.1 s, flexor first.
+    #[must_use]
+    pub fn levels(&self) -> Point {
+        self.proof.levels()
     }
 
     /// Whether a channel can be believed.

@@ -6,6 +6,7 @@
 
 use super::decide::Wish;
 use super::level::{TOP_LEVEL, level_of};
+use super::model::Point;
 use super::trust::{TOP_UV, Trust};
 
 /// Slow frames in a block, 0.1 s; the first five blocks that are kept are before.
@@ -233,6 +234,12 @@ impl Proof {
         self.heard = wish == self.last.0 && self.last.1 < GOES_ON_FRAMES && wish != Wish::Rest;
         self.apart = self.heard;
         self.proven = false;
+    }
+
+    /// The highest level of each electrode in the block that is under way.
+    #[must_use]
+    pub fn levels(&self) -> Point {
+        self.blocks.map(|[.., now]| now.into())
     }
 
     /// An electrode's highest level of 0.4 to 0.8 s ago.
