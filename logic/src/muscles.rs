@@ -245,10 +245,12 @@ impl Muscles {
             }
             return false;
         }
+        let fit = self.watch.fit();
         if let Some(model) = &self.model
-            && let Some(fit) = self.watch.take(model, self.emg.levels(), self.emg.verdict())
+            && self.watch.take(model, self.emg.levels(), self.emg.verdict())
+            && self.watch.fit() != fit
         {
-            journal.event(EventKind::Calibration(words::Calibration::Fit(fit)));
+            journal.event(EventKind::Calibration(words::Calibration::Fit(self.watch.fit())));
         }
         for n in 0..2 {
             if let Some(window) = self.emg.window(n) {

@@ -46,13 +46,14 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Takes the levels of each slow frame, and what was made of them. What is said from now on, if that is another than before.
+    /// Takes the levels of each slow frame, and what was made of them. True if it has
+    /// judged twelve contractions with this.
     #[inline(never)]
-    pub fn take(&mut self, model: &EmgModel, levels: Point, verdict: Verdict) -> Option<Fit> {
+    pub fn take(&mut self, model: &EmgModel, levels: Point, verdict: Verdict) -> bool {
         if !verdict.known || self.frames >= MOST_FRAMES {
             // Of a fault nothing is learned.
             self.frames = 0;
-            return None;
+            return false;
         }
         if verdict.active {
             if self.frames == 0 {
@@ -62,21 +63,21 @@ impl Watch {
             self.wished += u16::from(verdict.wish != Wish::Rest);
             self.sums = [self.sums[0] + levels[0], self.sums[1] + levels[1]];
             self.rest = 0;
-            return None;
+            return false;
         }
         self.rest = self.rest.saturating_add(1);
         if self.rest < OVER_FRAMES {
-            return None;
+            return false;
         }
         let frames = u32::from(core::mem::take(&mut self.frames));
         if frames < LEAST_FRAMES {
-            return None;
+            return false;
         }
         self.unanswered += u8::from(u32::from(self.wished) * ANSWERED[1] < frames * ANSWERED[0]);
         self.turns += turn(model, self.sums.map(|sum| (sum.unsigned_abs() / frames) as i32));
         self.count += 1;
         if self.count < CONTRACTIONS {
-            return None;
+            return false;
         }
         let (turns, unanswered) = (self.turns, self.unanswered);
         (self.count, self.turns, self.unanswered) = (0, 0, 0);
@@ -84,14 +85,14 @@ impl Watch {
         let calibrated = turn(model, model.close()) + turn(model, model.open());
         let beyond = |[part, of]: [i32; 2]| calibrated * (i32::from(CONTRACTIONS) / 2) * part / of;
         let tells = calibrated <= -2 * LEAST;
-        let fit = if tells && turns > -beyond(EXCHANGED) {
+        self.fit = if tells && turns > -beyond(EXCHANGED) {
             Fit::Exchanged
         } else if tells && turns > beyond(MOVED) || unanswered >= UNANSWERED {
             Fit::Moved
         } else {
             Fit::Fits
         };
-        (core::mem::replace(&mut self.fit, fit) != fit).then_some(fit)
+        true
     }
 
     /// What it says.
@@ -139,8 +140,9 @@ mod tests {
                 let pair = if t < 2.0 { [60.0, 50.0] } else { mv.map(|mv| mv * lively) };
                 let pair = uv(pair).map(Some);
                 let verdict = emg.take(pair);
-                if n % 3 == 2 {
-                    told.extend(watch.take(&model, emg.levels(), verdict).map(|fit| (number, fit)));
+                let before = watch.fit();
+                if n % 3 == 2 && watch.take(&model, emg.levels(), verdict) && watch.fit() != before {
+                    told.push((number, watch.fit()));
                 }
             }
         }
