@@ -154,9 +154,9 @@ impl Emg {
             let mover = self.decide.mover();
             let levels = self.electrodes.map(|electrode| electrode.uv.map(|uv| level_of(uv.min(OVER_UV))));
             self.lone = self.proof.lone(levels, self.raised);
-            let over = self.electrodes[mover].uv.is_some_and(|uv| uv >= OVER_UV);
-            proven = self.proof.take(levels, wish, mover, &self.trust[mover], self.decide.hears(), over)
-                && !self.lone[mover];
+            let (trust, hears) = (&self.trust[mover], self.decide.hears());
+            proven =
+                self.proof.take(levels, wish, mover, trust, hears, self.raised[mover]) && !self.lone[mover];
         }
         self.verdict = Verdict {
             wish,

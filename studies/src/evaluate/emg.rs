@@ -155,10 +155,8 @@ pub fn evaluate(folder: &Path, only: Option<u32>, faults: u32, seed: u64) -> any
     let trials: Vec<Trial> = all.people.values().flat_map(|days| Trials::of(days).all).collect();
     let faults =
         (faults > 0).then(|| faults::draw(&FITTED, &trials.iter().collect::<Vec<_>>(), faults, seed));
-    let score = |(&number, days)| Person {
-        asked: asked::asked(&FITTED, days),
-        ..person(&FITTED, number, days)
-    };
+    let score =
+        |(&number, days)| Person { asked: asked::asked(&FITTED, days), ..person(&FITTED, number, days) };
     let persons = all.people.par_iter().map(score).collect();
     let two_channel = all.sessions.par_iter().map(|session| session.score(&FITTED)).collect();
     Ok(Report { two_channel, faults, ..Report::of(persons) })

@@ -110,7 +110,9 @@ impl Session<'_> {
         };
         let all = labels.iter().map(|label| self.recording.contractions(*label)).collect::<Vec<_>>();
         let all = all.into_iter().filter(|own| !own.is_empty()).collect::<Vec<_>>();
-        let turn = |n: usize| Some(around(all.get(n % all.len().max(1))?[n / all.len() % all[n % all.len()].len()].clone()));
+        let turn = |n: usize| {
+            Some(around(all.get(n % all.len().max(1))?[n / all.len() % all[n % all.len()].len()].clone()))
+        };
         (0..PLAYED).filter_map(turn).collect()
     }
 
