@@ -148,7 +148,7 @@ pub(super) fn asked(fitted: &'static Fitted, days: &Days) -> Option<Asked> {
             let session = Session { recording, sites, model, fitted };
             let gain = own.get(&(day, posture)).map(|new| session.right(*new) - session.right(model));
             let both = session.judge(&session.in_turn(&[CLOSE, OPEN]), false);
-            let busy = session.judge(&[0..recording.rows()], false);
+            let busy = session.judge(std::slice::from_ref(&(0..recording.rows())), false);
             let is_own = from == day && first(day) == Some(posture);
             let only = |label: u8, exchanged: bool| session.judge(&session.in_turn(&[label]), exchanged);
             let others = is_own.then(|| {
