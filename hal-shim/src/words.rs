@@ -354,6 +354,30 @@ impl core::fmt::Display for CalibrationRefusal {
     }
 }
 
+/// Whether what the electrodes do still fits the calibration of the myosensors.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
+pub enum Fit {
+    /// It does, or is not known not to.
+    #[default]
+    Fits,
+    /// It does not: the electrodes have moved, or the wearer contracts otherwise. They shall calibrate anew.
+    Moved,
+    /// The contractions are those that were calibrated with the electrodes exchanged.
+    Exchanged,
+}
+
+impl Fit {
+    /// For a person.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Fits => "it fits what the electrodes do",
+            Self::Moved => "it does not fit what the electrodes do; calibrate anew",
+            Self::Exchanged => "the electrodes look exchanged; exchange their plugs, or calibrate anew",
+        }
+    }
+}
+
 /// How the calibration of the myosensors goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Calibration {
@@ -366,4 +390,6 @@ pub enum Calibration {
     },
     /// It is not, and what was in force before still is.
     Refused(CalibrationRefusal),
+    /// What is in force fits what the electrodes do, or not any more: told when it changes.
+    Fit(Fit),
 }

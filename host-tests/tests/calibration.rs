@@ -2,8 +2,8 @@
 
 use tenax_hal_shim::channel::FSR;
 use tenax_hal_shim::wire::{Down, EventKind, Refusal};
-use tenax_hal_shim::words::{Calibration, CalibrationRefusal, Kept, Prompt};
-use tenax_host_tests::Bench;
+use tenax_hal_shim::words::{Calibration, CalibrationRefusal, Fit, Kept, Prompt};
+use tenax_host_tests::{Bench, wearer};
 use tenax_logic::fingertip::Fingertip;
 use tenax_logic::store::payload;
 
@@ -107,4 +107,54 @@ fn whoever_comes_to_hold_something_can_let_it_go() {
     assert!(bench.run(100).iter().any(|drive| drive.opens()));
     let given_up = EventKind::Calibration(Calibration::Refused(CalibrationRefusal::Loaded));
     assert_eq!(bench.events.iter().filter(|event| event.kind == given_up).count(), 1);
+}
+
+/// Contracts in turn, each for 1.5 s, and rests for 1 s; in how many of the frames the light was on in the 4 s after.
+fn contract(bench: &mut Bench, contractions: [[f64; 2]; 2], count: usize) -> usize {
+    let slow = |bench: &mut Bench, frames: u32| {
+        let mut lit = 0;
+        for _ in 0..frames / 25 {
+            bench.run(25);
+            bench.fingertip.think();
+            lit += usize::from(bench.fingertip.light());
+        }
+        lit
+    };
+    for [flexor_mv, extensor_mv] in contractions.into_iter().cycle().take(count) {
+        bench.muscles(flexor_mv, extensor_mv);
+        slow(bench, 3_000);
+        bench.muscles(50.0, 50.0);
+        slow(bench, 2_000);
+    }
+    slow(bench, 8_000)
+}
+
+#[test]
+fn electrodes_that_were_exchanged_ask_for_a_calibration_and_change_nobodys_command() {
+    let mut bench = uncalibrated(35);
+    let phases = [[50.0, 50.0], [450.0, 165.0], [150.0, 1_400.0]];
+    calibrate(&mut bench, phases);
+    bench.run(6_000);
+    bench.events.clear();
+    let fits = |bench: &mut Bench| -> Vec<Fit> {
+        let told = bench.events.drain(..).filter_map(|event| match event.kind {
+            EventKind::Calibration(Calibration::Fit(fit)) => Some(fit),
+            _ => None,
+        });
+        told.collect()
+    };
+    let [_, close, open] = phases;
+    assert_eq!(contract(&mut bench, [close, open], 24), 0, "the light is dark");
+    assert_eq!(fits(&mut bench), []);
+    let swapped = [close, open].map(|[flexor, extensor]| [extensor, flexor]);
+    // Three flashes of 0.1 s.
+    assert_eq!(contract(&mut bench, swapped, 12), 24);
+    assert_eq!(fits(&mut bench), [Fit::Exchanged]);
+    bench.muscles(150.0, 2_000.0);
+    assert!(bench.run(50).last().expect("frames").opens(), "what opened before opens now");
+    bench.muscles(50.0, 50.0);
+    bench.run(4_000);
+    // A new calibration ends it.
+    bench.fingertip.restore(Kept::Emg, &payload::of_emg(&wearer()));
+    assert_eq!(contract(&mut bench, [close, open], 0), 0);
 }

@@ -62,7 +62,8 @@ impl Journal {
         self.event(EventKind::Fault(fault));
     }
 
-    /// Something happened.
+    /// Something happened. Not inlined: it rarely does, and everybody who tells of it would carry the queue.
+    #[inline(never)]
     pub fn event(&mut self, kind: EventKind) {
         if self.events.push_back(Event { frame: self.frame, kind }).is_err() {
             self.events_lost = self.events_lost.saturating_add(1);

@@ -2,10 +2,11 @@
 
 use tenax_hal_shim::channel::{CHANNELS, MYO_EXTENSOR, MYO_FLEXOR, SLOW_HZ, frames};
 use tenax_hal_shim::wire::EventKind;
-use tenax_hal_shim::words::{self, Fault, Prompt, Reason};
+use tenax_hal_shim::words::{self, Fault, Fit, Prompt, Reason};
 
 use crate::emg::calibration::{Calibration, Progress};
 use crate::emg::decide::Wish;
+use crate::emg::fit::Watch;
 use crate::emg::mains::mains_of;
 use crate::emg::model::EmgModel;
 use crate::emg::trust::Quality;
@@ -46,6 +47,7 @@ pub struct Muscles {
     /// The last readings that were in range, uV above the live zero.
     uv: [Option<i32>; 2],
     model: Option<EmgModel>,
+    watch: Watch,
     lesson: Option<Lesson>,
     /// When the last calibration ended, in frames, and whether it was taken.
     ended: Option<(u32, bool)>,
@@ -57,6 +59,8 @@ const RESULT_FRAMES: u32 = frames(2_000);
 const REFUSED_FRAMES: u32 = frames(50);
 const OPEN_FRAMES: u32 = frames(100);
 const REST_FRAMES: [u32; 2] = [frames(1_000), frames(100)];
+/// How often the light flashes where the calibration does not fit, twice, or three times for exchanged electrodes.
+const ASK_FRAMES: u32 = frames(4_000);
 
 impl Muscles {
     /// Takes a sample: 0 the flexor's, others the extensor's. The envelope above the live zero, uV, none where the sensor
@@ -160,6 +164,7 @@ impl Muscles {
     pub fn calibrate(&mut self, model: EmgModel) {
         self.emg.calibrate(Some(&model));
         self.model = Some(model);
+        self.watch = Watch::default();
     }
 
     /// Asks the wearer to show what they do, from this frame on.
@@ -174,7 +179,8 @@ impl Muscles {
     }
 
     /// Whether the light at the hand is on: a short flash a second asks for rest, on for closing, five flashes a second for opening.
-    /// Then on for 2 s: taken; ten flashes a second for 2 s: refused.
+    /// Then on for 2 s: taken; ten flashes a second for 2 s: refused. Two short flashes every 4 s: the calibration does not fit any more;
+    /// three: the electrodes look exchanged.
     #[must_use]
     pub fn light(&self, frame: u32) -> bool {
         if let Some(lesson) = &self.lesson {
@@ -184,10 +190,21 @@ impl Muscles {
                 Some(Prompt::Open) => frame % (2 * OPEN_FRAMES) < OPEN_FRAMES,
             };
         }
-        self.ended.is_some_and(|(at, taken)| {
-            let since = frame.wrapping_sub(at);
-            since < RESULT_FRAMES && (taken || since % (2 * REFUSED_FRAMES) < REFUSED_FRAMES)
-        })
+        let shown = |since: u32, taken| taken || since % (2 * REFUSED_FRAMES) < REFUSED_FRAMES;
+        match self.ended {
+            Some((at, taken)) if frame.wrapping_sub(at) < RESULT_FRAMES => {
+                shown(frame.wrapping_sub(at), taken)
+            }
+            _ => {
+                let flashes = match self.watch.fit() {
+                    Fit::Fits => 0,
+                    Fit::Moved => 2,
+                    Fit::Exchanged => 3,
+                };
+                let place = frame % ASK_FRAMES;
+                place < flashes * 2 * OPEN_FRAMES && place % (2 * OPEN_FRAMES) < OPEN_FRAMES
+            }
+        }
     }
 
     /// Ends a calibration without a result.
@@ -227,6 +244,13 @@ impl Muscles {
                 return self.conclude(result, journal);
             }
             return false;
+        }
+        let fit = self.watch.fit();
+        if let Some(model) = &self.model
+            && self.watch.take(model, self.emg.levels(), self.emg.verdict())
+            && self.watch.fit() != fit
+        {
+            journal.event(EventKind::Calibration(words::Calibration::Fit(self.watch.fit())));
         }
         for n in 0..2 {
             if let Some(window) = self.emg.window(n) {

@@ -391,6 +391,7 @@ fn event_words(f: &mut fmt::Formatter<'_>, event: &Event) -> fmt::Result {
         EventKind::Calibration(Calibration::Refused(refusal)) => {
             write!(f, "calibration: refused, {refusal}; what was in force before still is")
         }
+        EventKind::Calibration(Calibration::Fit(fit)) => write!(f, "calibration: {}", fit.name()),
     }
 }
 

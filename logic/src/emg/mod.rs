@@ -3,11 +3,12 @@
 //! The myosensors give smoothed envelopes, each read three times a slow frame. [`level`] turns them into logarithms;
 //! [`calibration`] learns where rest, closing and opening lie and [`model`] keeps it; [`decide`] says what the wearer wants,
 //! with the constants of [`fitted`]; [`trust`] says whether an envelope is a muscle's, with the help of a spectrum outside the
-//! tick ([`mains`]). [`Emg`] is the whole. `docs/emg.md` has what was measured.
+//! tick ([`mains`]); [`fit`] whether the calibration still fits. [`Emg`] is the whole. `docs/emg.md` has what was measured.
 
 pub mod calibration;
 pub mod constants;
 pub mod decide;
+pub mod fit;
 pub mod fitted;
 pub mod level;
 pub mod log2;
@@ -25,7 +26,7 @@ use tenax_hal_shim::front_end::MYO_REST_MV;
 use self::decide::{Decide, Electrode, OVER_UV, Wish};
 use self::level::level_of;
 use self::mains::{Mains, WINDOW};
-use self::model::EmgModel;
+use self::model::{EmgModel, Point};
 use self::proof::Proof;
 use self::trust::{Quality, Trust};
 
@@ -153,9 +154,9 @@ impl Emg {
             let mover = self.decide.mover();
             let levels = self.electrodes.map(|electrode| electrode.uv.map(|uv| level_of(uv.min(OVER_UV))));
             self.lone = self.proof.lone(levels, self.raised);
-            let over = self.electrodes[mover].uv.is_some_and(|uv| uv >= OVER_UV);
-            proven = self.proof.take(levels, wish, mover, &self.trust[mover], self.decide.hears(), over)
-                && !self.lone[mover];
+            let (trust, hears) = (&self.trust[mover], self.decide.hears());
+            proven =
+                self.proof.take(levels, wish, mover, trust, hears, self.raised[mover]) && !self.lone[mover];
         }
         self.verdict = Verdict {
             wish,
@@ -165,6 +166,12 @@ impl Emg {
             known: self.known[0] && self.known[1],
             half_known: false,
         };
+    }
+
+    /// The level of each electrode of the last 0.1 s, flexor first.
+    #[must_use]
+    pub fn levels(&self) -> Point {
+        self.proof.levels()
     }
 
     /// Whether a channel can be believed.

@@ -4,8 +4,9 @@
 //! second or turns. So an opening is proven when the other electrode has risen lately above all that it was just before, *and* its own
 //! envelope rose by degrees or has turned. Both are known as a rule when the wish begins: a wish takes longer than they do.
 
-use super::decide::Wish;
+use super::decide::{OVER_UV, Wish};
 use super::level::{TOP_LEVEL, level_of};
+use super::model::Point;
 use super::trust::{TOP_UV, Trust};
 
 /// Slow frames in a block, 0.1 s; the first five blocks that are kept are before.
@@ -142,7 +143,7 @@ impl Default for Proof {
 impl Proof {
     /// Takes a pair of levels of each slow frame, none without a number, and the wish that they make: whether it is proven. `mover` is the
     /// electrode of the wish, `trust` what is thought of it, `hears` the other one's rest and how far above it rises at least, Q10
-    /// octaves, none if it hardly does: then turning twice is all there is.
+    /// octaves, none if it hardly does: then turning twice is all there is. `raised`: the mover's electrode is active.
     #[inline(never)]
     pub fn take(
         &mut self,
@@ -151,13 +152,14 @@ impl Proof {
         mover: usize,
         trust: &Trust,
         hears: Option<[i32; 2]>,
-        over: bool,
+        raised: bool,
     ) -> bool {
         self.keep(levels);
         self.begin(wish);
         if wish == Wish::Rest {
             return false;
         }
+        let over = levels[mover & 1].is_some_and(|level| level >= const { level_of(OVER_UV) });
         self.over = if over { self.over.saturating_add(1) } else { 0 };
         self.age = self.age.saturating_add(1);
         let heard = hears.map(|[rest, rise]| {
@@ -173,8 +175,8 @@ impl Proof {
             }
             _ => self.heard || trust.has_turned_twice(),
         };
-        if self.over > OVER_FRAMES || !(over || trust.is_sound()) {
-            // Whatever follows is another contraction, which has to be heard.
+        if self.over > OVER_FRAMES || !(over || trust.is_sound() && raised) {
+            // It is over, though its wish may last for a moment, or it is no muscle's. Whatever follows is another contraction, which has to be heard.
             (self.proven, self.heard, self.age) = (false, false, HEARD_FRAMES);
         }
         self.proven &= !trust.is_straight();
@@ -233,6 +235,12 @@ impl Proof {
         self.heard = wish == self.last.0 && self.last.1 < GOES_ON_FRAMES && wish != Wish::Rest;
         self.apart = self.heard;
         self.proven = false;
+    }
+
+    /// The highest level of each electrode in the block that is under way.
+    #[must_use]
+    pub fn levels(&self) -> Point {
+        self.blocks.map(|[.., now]| now.into())
     }
 
     /// An electrode's highest level of 0.4 to 0.8 s ago.

@@ -2,6 +2,7 @@
 //!
 //! Two kinds of [recordings]: sessions of minutes with labels, and [short ones](two_channel) that are named by their movement.
 
+pub mod asked;
 pub mod curves;
 pub mod faults;
 pub(super) mod recordings;
@@ -39,6 +40,8 @@ pub struct Person {
     pub refused: BTreeMap<u32, String>,
     /// Calibrations that were tried.
     pub sessions: usize,
+    /// Whether a new calibration is asked for where it helps; not while constants are fitted.
+    pub asked: Option<asked::Asked>,
 }
 
 /// The whole folder: medians over people.
@@ -152,7 +155,9 @@ pub fn evaluate(folder: &Path, only: Option<u32>, faults: u32, seed: u64) -> any
     let trials: Vec<Trial> = all.people.values().flat_map(|days| Trials::of(days).all).collect();
     let faults =
         (faults > 0).then(|| faults::draw(&FITTED, &trials.iter().collect::<Vec<_>>(), faults, seed));
-    let persons = all.people.par_iter().map(|(&number, days)| person(&FITTED, number, days)).collect();
+    let score =
+        |(&number, days)| Person { asked: asked::asked(&FITTED, days), ..person(&FITTED, number, days) };
+    let persons = all.people.par_iter().map(score).collect();
     let two_channel = all.sessions.par_iter().map(|session| session.score(&FITTED)).collect();
     Ok(Report { two_channel, faults, ..Report::of(persons) })
 }
@@ -173,6 +178,7 @@ pub(super) fn person(fitted: &'static Fitted, number: u32, days: &Days) -> Perso
         first_day_kept: score(Kind::FirstDayKept),
         refused,
         sessions: days.len(),
+        asked: None,
     }
 }
 

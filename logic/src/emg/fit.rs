@@ -1,0 +1,188 @@
+//! Whether what the two electrodes do still fits the calibration. It only reports: nobody is given the hand, or loses it.
+//!
+//! Each contraction gives two numbers. Its *turn*: the distance of its mean levels from the nearest calibrated contraction, less the
+//! distance from the nearest one with the electrodes exchanged. With an electrode that sits where it sat, the turn is far below zero;
+//! with exchanged plugs it is as far above; where both contractions drive the electrodes alike it is about zero. And whether it
+//! was *answered*: whether the hand took it for a wish. The wearer is asked for a calibration by the sums over twelve contractions.
+
+use tenax_hal_shim::words::Fit;
+
+use super::Verdict;
+use super::decide::Wish;
+use super::model::{EmgModel, Point};
+
+/// Slow frames of rest that end a contraction, 0.1 s, the fewest that one has, 0.5 s, and the most, 60 s.
+const OVER_FRAMES: u8 = 8;
+const LEAST_FRAMES: u32 = 40;
+const MOST_FRAMES: u16 = 4_800;
+/// A contraction is answered if at least one in so many of its slow frames is a wish, to the numerator: 0.4.
+const ANSWERED: [u32; 2] = [2, 5];
+/// Contractions that are judged together.
+pub const CONTRACTIONS: u8 = 12;
+/// So many of them unanswered, or their turns less than an eighth of the calibrated ones': the electrodes have moved.
+const UNANSWERED: u8 = 3;
+const MOVED: [i32; 2] = [1, 8];
+/// Turns the other way of more than a third of the calibrated ones': they are exchanged.
+const EXCHANGED: [i32; 2] = [1, 3];
+/// The most that one contraction turns, and the least that calibrated ones do on average, Q10 octaves, for turns to say anything: two
+/// muscles that are each other's mirror turn little.
+const MOST: i32 = 2_048;
+const LEAST: i32 = 512;
+
+/// Watches from slow frame to slow frame.
+#[derive(Clone, Debug, Default)]
+pub struct Watch {
+    /// Of the contraction under way: sums of levels, slow frames, and those with a wish.
+    sums: Point,
+    frames: u16,
+    wished: u16,
+    /// Slow frames of rest since.
+    rest: u8,
+    /// Of the contractions so far.
+    count: u8,
+    unanswered: u8,
+    fit: Fit,
+    turns: i32,
+}
+
+impl Watch {
+    /// Takes the levels of each slow frame, and what was made of them. True if it has
+    /// judged twelve contractions with this.
+    #[inline(never)]
+    pub fn take(&mut self, model: &EmgModel, levels: Point, verdict: Verdict) -> bool {
+        if !verdict.known || self.frames >= MOST_FRAMES {
+            // Of a fault nothing is learned.
+            self.frames = 0;
+            return false;
+        }
+        if verdict.active {
+            if self.frames == 0 {
+                (self.wished, self.sums) = (0, [0; 2]);
+            }
+            self.frames += 1;
+            self.wished += u16::from(verdict.wish != Wish::Rest);
+            self.sums = [self.sums[0] + levels[0], self.sums[1] + levels[1]];
+            self.rest = 0;
+            return false;
+        }
+        self.rest = self.rest.saturating_add(1);
+        if self.rest < OVER_FRAMES {
+            return false;
+        }
+        let frames = u32::from(core::mem::take(&mut self.frames));
+        if frames < LEAST_FRAMES {
+            return false;
+        }
+        self.unanswered += u8::from(u32::from(self.wished) * ANSWERED[1] < frames * ANSWERED[0]);
+        self.turns += turn(model, self.sums.map(|sum| (sum.unsigned_abs() / frames) as i32));
+        self.count += 1;
+        if self.count < CONTRACTIONS {
+            return false;
+        }
+        let (turns, unanswered) = (self.turns, self.unanswered);
+        (self.count, self.turns, self.unanswered) = (0, 0, 0);
+        // Below zero, of two contractions.
+        let calibrated = turn(model, model.close()) + turn(model, model.open());
+        let beyond = |[part, of]: [i32; 2]| calibrated * (i32::from(CONTRACTIONS) / 2) * part / of;
+        let tells = calibrated <= -2 * LEAST;
+        self.fit = if tells && turns > -beyond(EXCHANGED) {
+            Fit::Exchanged
+        } else if tells && turns > beyond(MOVED) || unanswered >= UNANSWERED {
+            Fit::Moved
+        } else {
+            Fit::Fits
+        };
+        true
+    }
+
+    /// What it says.
+    #[must_use]
+    pub const fn fit(&self) -> Fit {
+        self.fit
+    }
+}
+
+/// How much nearer a contraction's levels are to a calibrated one with the electrodes exchanged than to one as it was calibrated.
+fn turn(model: &EmgModel, [flexor, extensor]: Point) -> i32 {
+    let nearest = |flexor: i32, extensor: i32| {
+        let far = |[f, e]: Point| (f - flexor).abs() + (e - extensor).abs();
+        far(model.close()).min(far(model.open()))
+    };
+    (nearest(flexor, extensor) - nearest(extensor, flexor)).clamp(-MOST, MOST)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::emg::Emg;
+    use std::f64::consts::TAU;
+    use std::vec::Vec;
+
+    const CLOSE: [f64; 2] = [450.0, 165.0];
+    const OPEN: [f64; 2] = [150.0, 1_400.0];
+
+    /// What is said while somebody who was calibrated with the levels above makes contractions of 2 s at these levels, mV, in turn, and
+    /// after which of them.
+    fn told(contractions: &[[f64; 2]], count: usize) -> Vec<(usize, Fit)> {
+        told_to([CLOSE, OPEN], contractions, count)
+    }
+
+    fn told_to(calibrated: [[f64; 2]; 2], contractions: &[[f64; 2]], count: usize) -> Vec<(usize, Fit)> {
+        let uv = |mv: [f64; 2]| mv.map(|mv| (mv * 1e3) as i32);
+        let [close, open] = calibrated.map(uv);
+        let model = EmgModel::of_uv([60_000, 50_000], close, open).unwrap();
+        let mut emg = Emg::new(Some(&model));
+        let (mut watch, mut told) = (Watch::default(), Vec::new());
+        for (number, mv) in contractions.iter().cycle().take(count).enumerate() {
+            for n in 0..960 {
+                let t = f64::from(n) / 240.0;
+                let lively = 1.0 + 0.12 * (TAU * 2.7 * t).sin();
+                let pair = if t < 2.0 { [60.0, 50.0] } else { mv.map(|mv| mv * lively) };
+                let pair = uv(pair).map(Some);
+                let verdict = emg.take(pair);
+                let before = watch.fit();
+                if n % 3 == 2 && watch.take(&model, emg.levels(), verdict) && watch.fit() != before {
+                    told.push((number, watch.fit()));
+                }
+            }
+        }
+        told
+    }
+
+    #[test]
+    fn who_does_what_was_calibrated_is_asked_for_nothing() {
+        assert_eq!(told(&[CLOSE, OPEN], 60), []);
+        assert_eq!(told(&[OPEN], 60), [], "nor who only opens");
+        assert_eq!(told(&[CLOSE], 60), [], "nor who only closes");
+        assert_eq!(told(&[CLOSE.map(|mv| 0.7 * mv), OPEN.map(|mv| 1.4 * mv)], 60), []);
+    }
+
+    #[test]
+    fn of_muscles_that_are_each_others_mirror_only_what_is_not_answered_is_told() {
+        let (close, open) = ([600.0, 80.0], [80.0, 500.0]);
+        assert_eq!(told_to([close, open], &[close, open], 40), []);
+        assert_eq!(told_to([close, open], &[[80.0, 600.0], [500.0, 80.0]], 40), []);
+        let moved = [(CONTRACTIONS as usize, Fit::Moved)];
+        assert_eq!(told_to([close, open], &[close, [80.0, 200.0]], 40), moved);
+    }
+
+    #[test]
+    fn exchanged_plugs_are_told_after_twelve_contractions() {
+        let swap = |[flexor, extensor]: [f64; 2]| [extensor, flexor];
+        // The twelfth is over as the thirteenth begins.
+        let first = CONTRACTIONS as usize;
+        assert_eq!(told(&[swap(CLOSE), swap(OPEN)], 40), [(first, Fit::Exchanged)]);
+        assert_eq!(told(&[swap(OPEN)], 40), [(first, Fit::Exchanged)], "and by one of them alone");
+    }
+
+    #[test]
+    fn electrodes_that_moved_are_told_and_told_to_fit_when_they_do() {
+        // Openings that the hand does not answer, and contractions that drive both electrodes alike.
+        for both in [[CLOSE, [150.0, 300.0]], [[450.0, 400.0], [400.0, 450.0]]] {
+            assert_eq!(told(&both, 40), [(CONTRACTIONS as usize, Fit::Moved)], "{both:?}");
+        }
+        let mut all = Vec::from([[400.0, 400.0]; 12]);
+        all.extend([CLOSE, OPEN].iter().cycle().take(24));
+        assert_eq!(told(&all, 37), [(12, Fit::Moved), (24, Fit::Fits)]);
+    }
+}
