@@ -138,6 +138,6 @@ impl Score {
 }
 
 /// 0 of nothing.
-fn quantile(values: &[f64], part: f64) -> f64 {
+pub(super) fn quantile(values: &[f64], part: f64) -> f64 {
     between_ranks(values.iter().copied(), part).unwrap_or_default()
 }
