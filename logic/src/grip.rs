@@ -2,10 +2,9 @@
 //!
 //! A pulse ends when the force that the grip lacks ([`Lacks`]) is there, by the force that is felt and by what the motor has travelled since
 //! at the stiffness that closing has shown ([`Stiffness`]). The lack is taken anew with each reading. Where it is not known, a pulse has
-//! the length that is set. Where it is, a slip's pulse, at full speed, lasts up to 2.5 times the longest that is set, and at most doubles
-//! the force; a warning's is slower. After each, the object settles for longer than the motor's dead time before the detectors are asked
-//! again. Slip that goes on is answered with pulses that grow, for force or stiffness may be wrong; warnings are answered no more once
-//! pulses have raised nothing.
+//! the length that is set; in any case a slip's pulse, at full speed, lasts no longer than is set, and a warning's is slower. After each,
+//! the object settles for longer than the motor's dead time before the detectors are asked again. Slip that goes on is answered with pulses
+//! that grow, for force or stiffness may be wrong; warnings are answered no more once pulses have raised nothing.
 //!
 //! No pulse begins on a finger that is known to hold nothing or to press as hard as it may; without a known
 //! force, the pulses share a small budget that only the wearer can renew.
@@ -46,8 +45,6 @@ const LEAST_FRAMES: u32 = 6;
 /// Slip that is said again within this goes on, frames: its pulse is at least twice as long as the one before, up to 48 ms.
 const AT_ONCE_FRAMES: u32 = 60;
 const ROW_MAX: u8 = 5;
-/// The longest pulse while the measured force is still lacking, in halves of the longest otherwise: soft objects need 0.1 s and more.
-const LACKING_HALVES: u32 = 5;
 /// The quadrants show the friction of what slides so long after slip was said, in frames: two readings.
 const SHOWS_FRAMES: u32 = frames(25);
 
@@ -137,7 +134,7 @@ impl Reflex {
             self.in_vain = if self.has_changed(mn) { 0 } else { self.in_vain.saturating_add(1) };
             self.began_mn = Some(mn);
         }
-        self.size(mode, self.began_mn);
+        self.size(mode);
     }
 
     /// Whether the load is another one than when the last pulse began.
@@ -154,7 +151,7 @@ impl Reflex {
             (self.began_mn, self.in_vain) = (None, 0);
         }
         self.lacks = lacks;
-        self.size(mode, load_mn);
+        self.size(mode);
     }
 
     /// What Ft/Fn tells of the friction of what slides.
@@ -171,14 +168,14 @@ impl Reflex {
 
     /// Sizes the pulse by what the grip lacks and what closing has shown of the stiffness.
     #[inline(never)]
-    fn size(&mut self, mode: GripMode, load_mn: Option<i32>) {
+    fn size(&mut self, mode: GripMode) {
         let lacks_mn = match mode {
             GripMode::Slip => self.lacks.slip_mn,
             GripMode::Incipient => self.lacks.warning_mn,
             _ => None,
         };
-        // To no more than twice what it pressed when the pulse began.
-        let most_mn = self.began_mn.zip(load_mn).map_or(0, |(began_mn, load_mn)| 2 * began_mn - load_mn);
+        // No more than as much again as it pressed when the pulse began.
+        let most_mn = self.began_mn.unwrap_or(0);
         self.left = lacks_mn.and_then(|lacks_mn| self.stiffness.travel_for(lacks_mn.min(most_mn)));
     }
 
@@ -259,9 +256,6 @@ impl Reflex {
     #[must_use]
     pub const fn pulse_over(&self, config: &GripConfig, mode: GripMode, slips: bool, grip: Grip) -> bool {
         let length = match mode {
-            GripMode::Slip if slips && matches!(self.left, Some(1..)) => {
-                config.slip_frames_max * LACKING_HALVES / 2
-            }
             GripMode::Slip if slips => config.slip_frames_max,
             GripMode::Slip => config.slip_frames,
             GripMode::Incipient if self.left.is_some() && self.lacks.by_s2 => config.slip_frames_max,
