@@ -129,6 +129,7 @@ fn contract(bench: &mut Bench, contractions: [[f64; 2]; 2], count: usize) -> usi
     slow(bench, 8_000)
 }
 
+// Shows W9.
 #[test]
 fn electrodes_that_were_exchanged_ask_for_a_calibration_and_change_nobodys_command() {
     let mut bench = uncalibrated(35);

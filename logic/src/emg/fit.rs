@@ -149,6 +149,7 @@ mod tests {
         told
     }
 
+    // Shows W9.
     #[test]
     fn who_does_what_was_calibrated_is_asked_for_nothing() {
         assert_eq!(told(&[CLOSE, OPEN], 60), []);
@@ -166,6 +167,7 @@ mod tests {
         assert_eq!(told_to([close, open], &[close, [80.0, 200.0]], 40), moved);
     }
 
+    // Shows W9.
     #[test]
     fn exchanged_plugs_are_told_after_twelve_contractions() {
         let swap = |[flexor, extensor]: [f64; 2]| [extensor, flexor];
@@ -175,6 +177,7 @@ mod tests {
         assert_eq!(told(&[swap(OPEN)], 40), [(first, Fit::Exchanged)], "and by one of them alone");
     }
 
+    // Shows W9.
     #[test]
     fn electrodes_that_moved_are_told_and_told_to_fit_when_they_do() {
         // Openings that the hand does not answer, and contractions that drive both electrodes alike.
