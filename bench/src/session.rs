@@ -38,7 +38,7 @@ use tenax_plot::Figure;
 
 use crate::figure::panels;
 use crate::live::{Served, Use};
-use crate::replay::{Recording, ReplayPlant, library};
+use crate::replay::{ReplayPlant, library};
 use crate::report::fate::Fate;
 use crate::report::replay::{ActivePart, Replay};
 use crate::report::{Report, Subject};
@@ -253,8 +253,7 @@ pub fn replay_served(
     progress: &mut dyn FnMut(f64),
 ) -> anyhow::Result<Outcome> {
     let ReplayOptions { recipe, calibrated, line } = options;
-    let recording = Recording::read(path)?;
-    let named = library::choose(&recording, path, recipe)?;
+    let (recording, named) = library::read(path, recipe)?;
     let mut plant = match &named {
         Some(named) => ReplayPlant::new(&recording, &named.recipe, seed)
             .with_context(|| format!("recipe {}", named.name))?,

@@ -1,6 +1,8 @@
 //! A recording with a mistake gets one message that names the file, the row and what is allowed.
 
-use tenax_bench::replay::Recording;
+use tenax_bench::recipe::Kind;
+use tenax_bench::replay::recipe::Time;
+use tenax_bench::replay::{Recipe, Recording};
 
 fn message(csv: &str) -> String {
     let recording = Recording::parse(csv.as_bytes(), "r.csv");
@@ -38,6 +40,32 @@ fn mistakes_are_named_by_file_and_row() {
 }
 
 #[test]
+fn a_recipe_names_the_clock_and_its_unit() {
+    let recipe = |time: &str| {
+        let text = format!(
+            "title = ''\ndescription = ''\n[time]\n{time}\n[[map]]\ncolumn = 'a'\nchannels = ['pvdf_1']\ngain = 1.0\n"
+        );
+        Recipe::parse(&text, "r.toml")
+    };
+    let read = |csv: &str, time: &str| Recording::timed(csv.as_bytes(), "r.csv", &recipe(time).unwrap().time);
+    let csv = "stamp,a,t\n1500,1,7\n2500,2,7\n";
+    for (unit, first_s) in [("s", 1_500.0), ("ms", 1.5), ("us", 0.001_5)] {
+        let time = format!("column = 'stamp'\nunit = '{unit}'");
+        let recording = read(&csv.replace("2500", if unit == "s" { "1501" } else { "2500" }), &time).unwrap();
+        assert_eq!((recording.first_s(), recording.signals().collect::<Vec<_>>()), (first_s, vec!["a", "t"]));
+    }
+    let error = read(csv, "column = 'when'").unwrap_err().to_string();
+    assert!(
+        error.starts_with("r.csv:1: no time column `when`, which the recipe names; the columns are `stamp`"),
+        "{error}"
+    );
+    let error = read("t,a\n0,1\n5500,1\n", "unit = 's'").unwrap_err().to_string();
+    assert!(error.contains("[time] unit = \"ms\""), "{error}");
+    let error = recipe("unit = 'h'").unwrap_err().to_string();
+    assert!(error.starts_with("r.toml:4: unknown variant `h`, expected one of `s`, `ms`, `us`"), "{error}");
+}
+
+#[test]
 fn what_is_not_text_is_refused_by_row() {
     let error = Recording::parse(&b"t,a\n0,1\n1,\xff\xfe\n"[..], "r.csv").unwrap_err().to_string();
     assert!(error.starts_with("r.csv:3: not text"), "{error}");
@@ -45,7 +73,7 @@ fn what_is_not_text_is_refused_by_row() {
 
 #[test]
 fn a_missing_file_is_named() {
-    let error = Recording::read("no/such/file.csv".as_ref()).unwrap_err().to_string();
+    let error = Recording::read("no/such/file.csv".as_ref(), &Time::default()).unwrap_err().to_string();
     assert!(error.starts_with("no/such/file.csv: cannot be read"), "{error}");
 }
 

@@ -38,7 +38,7 @@ const LAST_KEYS: &str = "
 /// What a recording's report has below `replay`.
 const REPLAY_KEYS: &str = "
     replay.recording replay.recipe replay.first_s replay.duration_s replay.lead_in_s replay.longest_gap_ms
-    replay.unused_columns replay.assumed
+    replay.unused_columns replay.assumed replay.doubts
     replay.force.peak_ratio replay.force.peak_s
     replay.force.s2_first_s replay.force.s2_before_peak_ms replay.force.s1_first_s replay.force.s1_before_peak_ms
     replay.muscle.onset_s replay.muscle.noticed_s replay.muscle.onset_delay_ms replay.muscle.active_part

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use tenax_logic::config::Config;
+use tenax_serial::quantile::middle;
 
 use super::filter::{Pass, pass};
 use super::resample::Grid;
@@ -18,6 +19,12 @@ const FORCE_MEAN_S: f64 = 0.001;
 /// Length of the centred mean that stands for a muscle's activity, s.
 const MUSCLE_MEAN_S: f64 = 0.05;
 
+/// No finger's friction is greater: dry skin at small loads has 2 to 3 (Derler and Gerhardt, Tribology Letters 45, 2012).
+const RATIO_MOST: f64 = 3.0;
+/// Between these a recorded normal force is one that a finger may have, N: below the first nothing is touched, above the second a motor
+/// of 140 N is at its end.
+const NORMAL_N: [f64; 2] = [0.05, 140.0];
+
 /// The crest of Ft/Fn: where sticking ends.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Crest {
@@ -27,9 +34,17 @@ pub struct Crest {
     pub peak_s: f64,
 }
 
-/// The first crest of Ft/Fn in a force recording: climbed to while the finger is loaded, then fallen from by a fifth.
-/// None if there is no such thing, or no force.
-pub fn crest(recording: &Recording, recipe: &Recipe) -> anyhow::Result<Option<Crest>> {
+/// Forces without the load cell's noise, one a row.
+struct Rows {
+    normal: Vec<f64>,
+    shear: Vec<f64>,
+    /// The normal force above which the finger is loaded, and its 95th percentile.
+    loaded_n: f64,
+    high_n: f64,
+}
+
+/// What the recipe presses the force sensor with, before its scale. None if it does not.
+fn forces(recording: &Recording, recipe: &Recipe) -> anyhow::Result<Option<Rows>> {
     let Some(force) = &recipe.force else {
         return Ok(None);
     };
@@ -41,17 +56,56 @@ pub fn crest(recording: &Recording, recipe: &Recipe) -> anyhow::Result<Option<Cr
         None => vec![0.0; x.len()],
     };
     let sign = force.scale.get_ref().signum();
-    let mut sorted: Vec<f64> = normal.iter().map(|n| n * sign).collect();
+    let normal: Vec<f64> = normal.iter().map(|n| n * sign).collect();
+    let mut sorted = normal.clone();
     sorted.sort_by(f64::total_cmp);
-    let loaded_n = LOADED_PART * sorted[sorted.len() * 95 / 100];
+    let high_n = sorted[sorted.len() * 95 / 100];
+    let shear = x.iter().zip(&y).map(|(x, y)| x.hypot(*y)).collect();
+    Ok(Some(Rows { normal, shear, loaded_n: LOADED_PART * high_n, high_n }))
+}
+
+/// Whether the columns that press the force sensor can be forces of a finger; each sentence is a reason why not.
+pub fn doubts(recording: &Recording, recipe: &Recipe) -> anyhow::Result<Vec<String>> {
+    let (Some(rows), Some(map)) = (forces(recording, recipe)?, &recipe.force) else {
+        return Ok(Vec::new());
+    };
+    let mut doubts = Vec::new();
+    let high_n = rows.high_n * map.scale.get_ref().abs();
+    let [least_n, most_n] = NORMAL_N;
+    if !(least_n..=most_n).contains(&high_n) {
+        doubts.push(format!(
+            "`{}` is {high_n:.3} N at its 95th percentile, a finger's is {least_n} to {most_n} N: is it a normal force, and in newtons \
+             (scale)?",
+            map.normal
+        ));
+    }
+    let loaded = rows.normal.iter().zip(&rows.shear).filter(|&(&normal, _)| normal > rows.loaded_n.max(0.0));
+    if let Some(ratio) =
+        middle(loaded.map(|(normal, shear)| shear / normal)).filter(|&ratio| ratio > RATIO_MOST)
+    {
+        doubts.push(format!(
+            "`{}` is {ratio:.1} times `{}` while the finger is loaded (median), more than any friction holds: is it a shear in the same \
+             unit, without an offset?",
+            map.shear_x, map.normal
+        ));
+    }
+    Ok(doubts)
+}
+
+/// The first crest of Ft/Fn in a force recording: climbed to while the finger is loaded, then fallen from by a fifth.
+/// None if there is no such thing, or no force.
+pub fn crest(recording: &Recording, recipe: &Recipe) -> anyhow::Result<Option<Crest>> {
+    let Some(rows) = forces(recording, recipe)? else {
+        return Ok(None);
+    };
     let mut best: Option<Crest> = None;
     for (index, &t) in recording.t_s().iter().enumerate() {
-        let normal = normal[index] * sign;
-        if normal <= loaded_n {
+        let normal = rows.normal[index];
+        if normal <= rows.loaded_n {
             best = None;
             continue;
         }
-        let ratio = x[index].hypot(y[index]) / normal;
+        let ratio = rows.shear[index] / normal;
         match best {
             Some(crest)
                 if ratio < crest.peak_ratio * (1.0 - CREST_FALL) && crest.peak_ratio >= CREST_LEAST =>
@@ -139,6 +193,24 @@ mod tests {
         });
         let crest = crest(&recording, &recipe).unwrap().expect("there is one");
         assert!((crest.peak_s - 0.999).abs() < 0.002 && (crest.peak_ratio - 0.6).abs() < 0.01, "{crest:?}");
+    }
+
+    #[test]
+    fn columns_that_are_no_forces_are_doubted() {
+        let doubts = |ratio: f64| {
+            let (recording, recipe) = rig(|_| ratio);
+            doubts(&recording, &recipe).unwrap()
+        };
+        assert_eq!((doubts(0.5), doubts(2.9)), (vec![], vec![]));
+        assert!(doubts(42.0)[0].starts_with("`s` is 42.0 times `n`"), "{:?}", doubts(42.0));
+        let csv = "t,n,s\n0,2500,300\n1,2500,300\n2,2500,300\n";
+        let recipe = "title = ''\ndescription = ''\n[force]\nnormal = 'n'\nshear_x = 's'\n";
+        let told = |scale: &str| {
+            let recipe = Recipe::parse(&format!("{recipe}{scale}"), "r.toml").unwrap();
+            super::doubts(&Recording::parse(csv.as_bytes(), "r.csv").unwrap(), &recipe).unwrap()
+        };
+        assert!(told("")[0].contains("2500.000 N"), "{:?}", told(""));
+        assert_eq!(told("scale = 0.001"), Vec::<String>::new());
     }
 
     #[test]

@@ -1,22 +1,25 @@
-//! The recipe of a recording.
+//! A recording and its recipe.
 
 use std::path::Path;
 
 use anyhow::{Context, Result};
 
+use super::recipe::Time;
 use super::{Recipe, Recording};
 use crate::recipe::{Kind, Named, RecipeError};
 
-/// The recipe to play a recording with: the one that was asked for, by file or by name; else the one that its name calls
-/// for, unless its columns already are channels.
-pub fn choose(recording: &Recording, path: &Path, asked: Option<&str>) -> Result<Option<Named<Recipe>>> {
-    if let Some(asked) = asked {
-        return Recipe::asked(asked).map(Some);
-    }
-    if recording.signals().all(|column| tenax_hal_shim::channel::by_name(column).is_some()) {
-        return Ok(None);
-    }
-    for_recording(path).context("in a recipe of the repository")
+/// Reads a recording, and gives the recipe to play it with: the one that was asked for, by file or by name; else the one that its name
+/// calls for, unless its columns already are channels.
+pub fn read(path: &Path, asked: Option<&str>) -> Result<(Recording, Option<Named<Recipe>>)> {
+    let named = match asked {
+        Some(asked) => Some(Recipe::asked(asked)?),
+        None => for_recording(path).context("in a recipe of the repository")?,
+    };
+    let time = named.as_ref().map_or_else(Time::default, |named| named.recipe.time.clone());
+    let recording = Recording::read(path, &time)?;
+    let is_channel = |column: &str| tenax_hal_shim::channel::by_name(column).is_some();
+    let is_plain = asked.is_none() && recording.signals().all(is_channel);
+    Ok((recording, named.filter(|_| !is_plain)))
 }
 
 /// The repository's recipe for a recording of this name, if there is one.

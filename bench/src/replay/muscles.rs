@@ -10,7 +10,7 @@ use tenax_logic::emg::model::{EmgModel, Refusal};
 use tenax_logic::emg::uv_of_sample;
 use tenax_scene::plant::Plant;
 
-use super::{Recording, ReplayPlant, library};
+use super::{ReplayPlant, library};
 
 /// Both envelopes above the live zero.
 #[derive(Clone, Debug)]
@@ -25,8 +25,8 @@ pub struct Muscles {
 impl Muscles {
     /// Reads a recording through its recipe's front end; `recipe` in place of the one that its name calls for.
     pub fn read(path: &Path, recipe: Option<&str>, seed: u64) -> anyhow::Result<Self> {
-        let recording = Recording::read(path)?;
-        let mut plant = match library::choose(&recording, path, recipe)? {
+        let (recording, named) = library::read(path, recipe)?;
+        let mut plant = match named {
             Some(named) => ReplayPlant::new(&recording, &named.recipe, seed)?,
             None => ReplayPlant::plain(&recording, seed)?,
         };

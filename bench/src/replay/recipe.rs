@@ -20,6 +20,9 @@ pub struct Recipe {
     /// Names of the recordings that it is taken for when no recipe is given; `*` and `?` match as in a shell.
     #[serde(default)]
     pub applies_to: Vec<Spanned<String>>,
+    /// The recording's clock.
+    #[serde(default)]
+    pub time: Time,
     /// How long the first row is held before the recording begins, s: the fingertip's filters and baselines settle in it.
     #[serde(default = "default_lead_in_s")]
     pub lead_in_s: Spanned<f64>,
@@ -37,6 +40,39 @@ pub struct Recipe {
     /// What recordings mean for the hand.
     #[serde(default)]
     pub meaning: Vec<Meaning>,
+}
+
+/// The column that holds the time.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Time {
+    /// Its name. If not given, `t` or `t_s`.
+    pub column: Option<String>,
+    #[serde(default)]
+    pub unit: TimeUnit,
+}
+
+/// What the time column counts.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+pub enum TimeUnit {
+    #[default]
+    #[serde(rename = "s")]
+    Seconds,
+    #[serde(rename = "ms")]
+    Milliseconds,
+    #[serde(rename = "us")]
+    Microseconds,
+}
+
+impl TimeUnit {
+    /// How many of it are a second.
+    pub const fn in_a_second(self) -> f64 {
+        match self {
+            Self::Seconds => 1.0,
+            Self::Milliseconds => 1e3,
+            Self::Microseconds => 1e6,
+        }
+    }
 }
 
 /// A column and the front end that brings it to pins. The stages act in the order of the fields.

@@ -5,9 +5,10 @@ use std::path::Path;
 
 use csv::StringRecord;
 
+use super::recipe::Time;
 use crate::input::{CsvError, number, open, rows};
 
-/// Names under which the time column is looked for.
+/// Names under which the time column is looked for where no recipe names it.
 const TIME_COLUMNS: [&str; 2] = ["t", "t_s"];
 /// The longest recording that is played, s. A longer one is nearly always one whose time is in milliseconds.
 const LONGEST_S: f64 = 600.0;
@@ -17,6 +18,8 @@ const LONGEST_S: f64 = 600.0;
 pub struct Recording {
     file: String,
     columns: Vec<String>,
+    /// Which of them is the time.
+    time: usize,
     t_s: Vec<f64>,
     signals: Vec<Signal>,
 }
@@ -45,14 +48,19 @@ impl Signal {
 }
 
 impl Recording {
-    /// Reads a file.
-    pub fn read(path: &Path) -> Result<Self, CsvError> {
+    /// Reads a file, with this clock.
+    pub fn read(path: &Path, time: &Time) -> Result<Self, CsvError> {
         let (source, file) = open(path)?;
-        Self::parse(source, &file)
+        Self::timed(source, &file, time)
     }
 
-    /// Reads from anything; `file` is what errors call it.
+    /// Reads from anything, with seconds in `t` or `t_s`; `file` is what errors call it.
     pub fn parse(source: impl Read, file: &str) -> Result<Self, CsvError> {
+        Self::timed(source, file, &Time::default())
+    }
+
+    /// Reads from anything, with this clock.
+    pub fn timed(source: impl Read, file: &str, time: &Time) -> Result<Self, CsvError> {
         let too_short = |rows| {
             let what = format!("{rows} rows of samples; a recording has a header line and at least two rows");
             Err(CsvError::File { file: file.to_owned(), what })
@@ -70,18 +78,23 @@ impl Recording {
             }
         }
         let signals = vec![Signal::default(); columns.len()];
-        let mut recording = Self { file: file.to_owned(), columns, t_s: Vec::new(), signals };
-        let place = TIME_COLUMNS.iter().find_map(|name| recording.place(name));
+        let mut recording = Self { file: file.to_owned(), columns, time: 0, t_s: Vec::new(), signals };
+        recording.time = match &time.column {
+            Some(name) => recording
+                .place(name)
+                .ok_or_else(|| recording.no_column(&format!("no time column `{name}`, which the recipe names")))?,
+            None => TIME_COLUMNS.iter().find_map(|name| recording.place(name)).ok_or_else(|| {
+                recording.no_column(
+                    "no time column: one must be called `t` or `t_s` and hold seconds, or a recipe's [time] names another",
+                )
+            })?,
+        };
         let mut row = StringRecord::new();
         // Of a recording that is too long, only the time is read on: the error says how long it is.
         let mut too_long_s = None;
         while reader.read_record(&mut row).map_err(|error| CsvError::of(file, error))? {
-            let Some(place) = place else {
-                let why = "no time column: one must be called `t` or `t_s` and hold seconds";
-                return Err(recording.no_column(why));
-            };
             let line = row.position().map_or(0, csv::Position::line);
-            let t_s = recording.time_s(place, &row[place], line)?;
+            let t_s = recording.time_s(&row[recording.time], line, time)?;
             let first_s = *recording.t_s.first().unwrap_or(&t_s);
             if t_s - first_s > LONGEST_S {
                 too_long_s = Some(t_s - first_s);
@@ -96,8 +109,8 @@ impl Recording {
         match too_long_s {
             Some(duration_s) => {
                 let what = format!(
-                    "lasts {duration_s:.0} s and {LONGEST_S:.0} s is the longest allowed; is its time in seconds? (divide \
-                     milliseconds by 1000)"
+                    "lasts {duration_s:.0} s and {LONGEST_S:.0} s is the longest allowed; is its time in seconds? (if not, a \
+                     recipe says: [time] unit = \"ms\")"
                 );
                 Err(CsvError::File { file: recording.file, what })
             }
@@ -107,9 +120,9 @@ impl Recording {
     }
 
     /// The time stamp of the next row, which may not be earlier than the last one's.
-    fn time_s(&self, place: usize, cell: &str, line: u64) -> Result<f64, CsvError> {
+    fn time_s(&self, cell: &str, line: u64, time: &Time) -> Result<f64, CsvError> {
         let wrong = |what| CsvError::Row { file: self.file.clone(), line, what };
-        let t_s = number(&self.columns[place], cell).map_err(wrong)?;
+        let t_s = number(&self.columns[self.time], cell).map_err(wrong)? / time.unit.in_a_second();
         match self.t_s.last() {
             Some(&last_s) if t_s < last_s => Err(wrong(format!(
                 "time goes backwards, from {last_s} s to {t_s} s; rows must be in order of time"
@@ -125,7 +138,8 @@ impl Recording {
 
     /// The columns, the time column not among them.
     pub fn signals(&self) -> impl Iterator<Item = &str> {
-        self.columns.iter().map(String::as_str).filter(|column| !TIME_COLUMNS.contains(column))
+        let of_signals = self.columns.iter().enumerate().filter(|&(place, _)| place != self.time);
+        of_signals.map(|(_, column)| column.as_str())
     }
 
     /// Time stamps, s, never decreasing, at least two.

@@ -10,7 +10,7 @@ use tenax_hal_shim::wire::Slow;
 use super::wearer::Wearer;
 use crate::board::Recorder;
 use crate::recipe::Named;
-use crate::replay::facts::{Crest, crest, muscle_onset_s};
+use crate::replay::facts::{Crest, crest, doubts, muscle_onset_s};
 use crate::replay::meaning::{Meaning, Motion};
 use crate::replay::{Recipe, Recording};
 use crate::timeline::{Timeline, frame_end_s};
@@ -34,6 +34,8 @@ pub struct Replay {
     pub unused_columns: Vec<String>,
     /// What was assumed of signals that the recording lacks, and why.
     pub assumed: Vec<String>,
+    /// Why the columns that press the force sensor can hardly be forces.
+    pub doubts: Vec<String>,
     /// Force recordings: the crest of Ft/Fn and who saw it coming.
     pub force: Option<Force>,
     /// Myoelectric recordings: the muscle and when the gate noticed.
@@ -154,6 +156,7 @@ impl Replay {
             longest_gap_ms: recording.longest_gap_s() * 1e3,
             unused_columns: recording.signals().filter(|column| !used(column)).map(str::to_owned).collect(),
             assumed: recipe.map_or_else(Vec::new, assumed),
+            doubts: recipe.map_or_else(|| Ok(Vec::new()), |recipe| doubts(recording, recipe))?,
             force: match recipe {
                 Some(recipe) if recipe.force.is_some() => {
                     Some(Force::new(crest(recording, recipe)?, timeline))

@@ -217,6 +217,9 @@ fn replay(f: &mut fmt::Formatter<'_>, replay: &Replay) -> fmt::Result {
     for assumption in &replay.assumed {
         line!(f, "assumed", "{assumption}")?;
     }
+    for doubt in &replay.doubts {
+        line!(f, "WARNING", "{doubt}")?;
+    }
     if let Some(force) = &replay.force {
         crest(f, force)?;
     }

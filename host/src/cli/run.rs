@@ -89,7 +89,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let folder = folder::made(&args.out)?;
     // What is to be run is looked at before the image is built, which can take minutes.
     let subject = match &args.replay {
-        Some(path) => Subject::Recording(path, replay::Recording::read(path)?),
+        Some(path) => Subject::Recording(path, replay::library::read(path, args.recipe.as_deref())?.0),
         None => Subject::Scene(Box::new(session::load_scene(&args.scene)?)),
     };
     let recordings = args.calibrate_emg.as_deref();
