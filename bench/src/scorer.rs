@@ -66,6 +66,16 @@ impl Verdict {
     pub const fn new(from_s: f64, to_s: f64) -> Self {
         Self { from_s, to_s, by_wearer: false }
     }
+
+    /// Goes on with a row of verdicts to this instant, at which one stands or none does.
+    pub fn go_on(all: &mut Vec<Self>, t_s: f64, stands: bool) {
+        let open = all.last_mut().filter(|last| last.to_s == f64::INFINITY);
+        match (open, stands) {
+            (None, true) => all.push(Self::new(t_s, f64::INFINITY)),
+            (Some(open), false) => open.to_s = t_s,
+            _ => {}
+        }
+    }
 }
 
 /// What became of a macro slip.

@@ -155,18 +155,7 @@ pub fn scene(
     board: &Board,
     progress: &mut dyn FnMut(f64),
 ) -> anyhow::Result<Outcome> {
-    scene_with(file, seed, board, &mut (), progress)
-}
-
-/// Runs a scene, and its bound beside it; `recorder` is told of the scene's run as it goes.
-pub fn scene_with(
-    file: &SceneFile,
-    seed: u64,
-    board: &Board,
-    recorder: &mut dyn Recorder,
-    progress: &mut dyn FnMut(f64),
-) -> anyhow::Result<Outcome> {
-    scene_served(file, seed, board, Use::default(), recorder, progress)
+    scene_served(file, seed, board, Use::default(), &mut (), progress)
 }
 
 /// As [`scene_served`], without the bound, whose search takes up to ten times as long as the run.
@@ -180,7 +169,7 @@ pub fn scene_alone(
     judged(file, seed, board, line, recorder, &mut |_| {}, &|_| None)
 }
 
-/// As [`scene_with`], with the board's line used so.
+/// As [`scene`], with the board's line used so; `recorder` is told of the scene's run as it goes.
 pub fn scene_served(
     file: &SceneFile,
     seed: u64,

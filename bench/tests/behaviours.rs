@@ -1,23 +1,24 @@
 //! The behaviours in their scenes, each of the paper's results beside its control, with a camera that errs as the vision crate does and
 //! with one of whose pictures 5 % are wrong, three in a row. Eight seeds each; `TENAX_SEEDS=100 cargo test ... --test behaviours` runs more.
 
+mod common;
+
+use common::{asked, parsed, ran, text};
 use tenax_bench::report::text::Text;
-use tenax_bench::session::{self, Board};
-use tenax_scene::{SceneFile, Truth, World, builtin};
+use tenax_bench::session::Board;
+use tenax_scene::{Truth, World};
 
 fn seeds() -> std::ops::RangeInclusive<u64> {
-    let asked = std::env::var("TENAX_SEEDS").ok().and_then(|seeds| seeds.parse().ok());
-    1..=asked.unwrap_or(8)
+    1..=asked("TENAX_SEEDS").unwrap_or(8)
 }
 
 /// What really happened in each seed, with `more` added to the scene's file.
 fn fates(name: &str, more: &str) -> Vec<Truth> {
-    let (_, text) = builtin().iter().find(|(known, _)| *known == name).expect("a scene");
-    run(name, &format!("{text}\n{more}"))
+    run(&format!("{}\n{more}", text(name)))
 }
 
-fn run(name: &str, text: &str) -> Vec<Truth> {
-    let scene = SceneFile::parse(text, name).expect("it parses");
+fn run(text: &str) -> Vec<Truth> {
+    let scene = parsed(text);
     let run =
         |seed| Board::Host.run(World::new(&scene, seed), &mut |_| {}).expect("it runs").1.truth().clone();
     seeds().map(run).collect()
@@ -57,8 +58,7 @@ fn fails(name: &str, fates: &[Truth]) {
 
 /// The scene with nobody who holds.
 fn not_held(name: &str, more: &str) -> Vec<Truth> {
-    let (_, text) = builtin().iter().find(|(known, _)| *known == name).expect("a scene");
-    run(name, &format!("{}\n{more}", text.replace("kind = \"hold\"", "kind = \"end\"")))
+    run(&format!("{}\n{more}", text(name).replace("kind = \"hold\"", "kind = \"end\"")))
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> f64 {
@@ -125,12 +125,9 @@ fn a_pull_takes_the_object_and_without_one_it_stays() {
             assert!(truth.handed_over, "{name}, seed {seed}: nobody can take it");
         }
     }
-    let (_, text) = builtin().iter().find(|(known, _)| *known == "hand-over-can").expect("a scene");
-    let nobody =
-        SceneFile::parse(&text.replace("force_n = 2.0", "force_n = 0.0"), "nobody").expect("it parses");
-    for seed in seeds() {
-        let (_, world) = Board::Host.run(World::new(&nobody, seed), &mut |_| {}).expect("it runs");
-        assert!(!world.truth().handed_over && !world.truth().dropped, "seed {seed}");
+    let nobody = run(&text("hand-over-can").replace("force_n = 2.0", "force_n = 0.0"));
+    for (seed, truth) in seeds().zip(nobody) {
+        assert!(!truth.handed_over && !truth.dropped, "seed {seed}");
     }
 }
 
@@ -155,8 +152,7 @@ fn a_turn_comes_within_two_degrees_and_foresight_takes_the_overshoot_away() {
 
 #[test]
 fn a_report_says_what_the_hand_did() {
-    let file = session::load_scene("hand-over-can").expect("a scene");
-    let report = session::scene(&file, 1, &Board::Host, &mut |_| {}).expect("it runs").report;
+    let report = ran(&parsed(&text("hand-over-can")), 1).report;
     let names: Vec<_> = report.behaviours.iter().map(|ran| (ran.name, ran.ending)).collect();
     assert_eq!(
         names,

@@ -1,13 +1,15 @@
 //! Scenes in which a reflex of many guards failed, beside their bound: what has to be kept, and with how much.
 //! `cargo test -p tenax-bench --test failures -- --nocapture` prints the table of docs/scenes.md.
 
-use std::path::Path;
+mod common;
 
+use common::{asked, parsed, text};
 use tenax_bench::disturbances;
 use tenax_bench::report::Report;
 use tenax_bench::report::bound::SAME_MM;
-use tenax_bench::session::{self, Board};
-use tenax_scene::SceneFile;
+use tenax_hal_shim::motor::MotorDrive;
+use tenax_scene::World;
+use tenax_scene::plant::Plant;
 
 /// Each with the seconds in which its object slips, if it does, and the force that it bears, N.
 const SCENES: [(&str, bool, f64); 10] = [
@@ -23,19 +25,14 @@ const SCENES: [(&str, bool, f64); 10] = [
     ("dead-extensor", true, f64::INFINITY),
 ];
 
-fn scene(name: &str) -> SceneFile {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes").join(name).with_extension("toml");
-    session::load_scene(path.to_str().unwrap()).unwrap()
-}
-
-fn ran(file: &SceneFile) -> Report {
-    session::scene(file, 1, &Board::Host, &mut |_| {}).unwrap().report
+fn ran(name: &str) -> Report {
+    common::ran(&parsed(&text(name)), 1).report
 }
 
 #[test]
 fn the_bound_keeps_every_one_of_them_with_little_more_than_is_needed() {
     for (name, slips, bears_n) in SCENES {
-        let report = ran(&scene(name));
+        let report = ran(name);
         let (bound, grip) = (&report.bound, &report.grip);
         println!(
             "| `{name}` | {} | {:.1} | {:.2} | {:.2} | {:.2} | {} | {:.2} |",
@@ -61,7 +58,7 @@ fn the_bound_keeps_every_one_of_them_with_little_more_than_is_needed() {
 fn cells_that_drift_add_nothing() {
     // All quadrants that run down are followed by a real slip, whose answer is needed.
     for name in ["drifting-quadrant", "drifting-quadrants"] {
-        let report = ran(&scene(name));
+        let report = ran(name);
         assert_eq!(report.object.kept, Some(true), "{name}");
         let without_n = report.added.added_without_need_n.unwrap();
         assert!(without_n < 0.1, "{name}: {without_n} N without need in {} pulses", report.reflex.pulses);
@@ -71,7 +68,7 @@ fn cells_that_drift_add_nothing() {
 // Shows R4.
 #[test]
 fn hum_that_closing_does_not_change_is_not_answered_for_long() {
-    let report = ran(&scene("hum-after-slip"));
+    let report = ran("hum-after-slip");
     let without_n = report.added.added_without_need_n.unwrap();
     // 9.0 N while only half as much force again ended it. 2.3 N, and a peak of 17.7 N, while the slip before had twice the pulse: on a
     // tighter grip Ft/Fn fell below all friction at once.
@@ -84,7 +81,7 @@ fn hum_that_closing_does_not_change_is_not_answered_for_long() {
 #[test]
 fn one_sound_electrode_is_enough_to_save_a_glass() {
     for name in ["lifted-extensor", "lifted-flexor", "dead-extensor"] {
-        let report = ran(&scene(name));
+        let report = ran(name);
         assert_eq!((report.object.kept, report.wearer.reflex_while_active), (Some(true), 0), "{name}");
         assert!(report.wearer.faults > 0, "{name}: nobody is told");
     }
@@ -93,7 +90,7 @@ fn one_sound_electrode_is_enough_to_save_a_glass() {
 // Shows R9.
 #[test]
 fn a_pulse_breaks_no_egg() {
-    let report = ran(&scene("egg-filled"));
+    let report = ran("egg-filled");
     assert_eq!((report.object.kept, report.grip.broken_at_s), (Some(true), None), "{:?}", report.grip);
     // 25 N, and broken, by a pulse of 30 ms.
     let [peak_n, bound_n] = [report.grip.peak_force_n, report.bound.peak_force_n].map(Option::unwrap);
@@ -104,18 +101,11 @@ fn a_pulse_breaks_no_egg() {
 fn what_drifts_and_hums_reaches_the_pins() {
     // The control of every scene in which nothing is to be answered: the disturbance is there.
     let with = |name: &str, what: &str| {
-        let path =
-            Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes").join(name).with_extension("toml");
-        let text = std::fs::read_to_string(path).unwrap();
+        let text = text(name);
         let without = text.split(what).next().unwrap().to_owned();
         let last = |text: &str| {
-            let mut world = tenax_scene::World::new(&SceneFile::parse(text, name).unwrap(), 1);
-            (0..8 * 15_007)
-                .map(|_| {
-                    tenax_scene::plant::Plant::scan(&mut world, tenax_hal_shim::motor::MotorDrive::Coast)
-                        .codes()
-                })
-                .last()
+            let mut world = World::new(&parsed(text), 1);
+            (0..8 * 15_007).map(|_| world.scan(MotorDrive::Coast).codes()).last()
         };
         assert_ne!(last(&text), last(&without), "{name}");
     };
@@ -126,9 +116,8 @@ fn what_drifts_and_hums_reaches_the_pins() {
 #[test]
 fn minutes_of_disturbances_slip_nowhere_and_drop_nothing() {
     // TENAX_MINUTES=60 is the hour.
-    let minutes = std::env::var("TENAX_MINUTES").ok().and_then(|own| own.parse().ok()).unwrap_or(1);
-    let text = disturbances::text(1, minutes);
-    let report = ran(&SceneFile::parse(&text, disturbances::NAME).unwrap());
+    let minutes = asked("TENAX_MINUTES").unwrap_or(1);
+    let report = common::ran(&parsed(&disturbances::text(1, minutes)), 1).report;
     println!(
         "{minutes} min: {} pulses, {:.2} N added, {:.2} N of them without need; {:?}",
         report.reflex.pulses,

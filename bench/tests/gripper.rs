@@ -1,13 +1,13 @@
 //! A gripper without myosensors: its reflex keeps what it lifts if the board knows that nobody wears it. The control is
 //! the same board that was not told so.
 
+mod common;
+
+use common::{parsed, ran, text};
 use serde_json::Value;
-use tenax_bench::session::{self, Board};
 
 fn report(scene: &str, seed: u64) -> Value {
-    let file = session::load_scene(scene).unwrap();
-    let outcome = session::scene(&file, seed, &Board::Host, &mut |_| {}).unwrap();
-    serde_json::to_value(&outcome.report).unwrap()
+    serde_json::to_value(&ran(&parsed(&text(scene)), seed).report).unwrap()
 }
 
 // Shows R8.

@@ -1,6 +1,8 @@
 //! Settings anywhere in their ranges, several at once: none of them drops what the defaults keep, crushes it or deafens the hand.
 //! `TENAX_MIXES=500 cargo test --release -p tenax-bench --test mixes -- --nocapture`; `TENAX_SEED` draws others.
 
+mod common;
+
 use std::fmt::Write as _;
 
 use rand::rngs::ChaCha8Rng;
@@ -11,7 +13,7 @@ use tenax_bench::report::Report;
 use tenax_bench::report::fate::Fate;
 use tenax_bench::session::{self, Board, controls};
 use tenax_logic::setting::SettingId;
-use tenax_scene::{SceneFile, builtin};
+use tenax_scene::SceneFile;
 
 /// A pour with knocks and a wet wall that ends with an opening; knocks alone; a pick-up; a gripper that nobody wears; an egg; a slip
 /// between contractions, the last of which opens.
@@ -30,13 +32,8 @@ type Mix = Vec<(SettingId, i32)>;
 
 /// A scene without what its script sets, but for what it is built into.
 fn text(name: &str) -> String {
-    let own = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/");
-    let text = builtin::find(name).map_or_else(
-        || std::fs::read_to_string(format!("{own}{name}.toml")).unwrap(),
-        |(_, text)| text.into_owned(),
-    );
     let sets = |table: &&str| table.contains("kind = \"set-") && !table.contains("-flag\"");
-    text.split("[[").filter(|table| !sets(table)).collect::<Vec<_>>().join("[[")
+    common::text(name).split("[[").filter(|table| !sets(table)).collect::<Vec<_>>().join("[[")
 }
 
 /// A scene whose board is set up so before anything happens.
@@ -46,7 +43,7 @@ fn scene(text: &str, mix: &[(SettingId, i32)]) -> SceneFile {
         let name = id.row().name;
         write!(text, "\n[[command]]\nat_s = 0.11\nkind = \"set-{name}\"\nvalue = {value}\n").unwrap();
     }
-    SceneFile::parse(&text, "scene").unwrap_or_else(|error| panic!("{error}"))
+    common::parsed(&text)
 }
 
 /// What became of a mix in a scene.
@@ -140,8 +137,7 @@ fn mix(rng: &mut ChaCha8Rng) -> Mix {
 // Shows W6, R2.
 #[test]
 fn no_mix_of_legal_settings_drops_crushes_or_deafens() {
-    let number = |name, or| std::env::var(name).ok().and_then(|own| own.parse().ok()).unwrap_or(or);
-    let (asked, seed) = (number("TENAX_MIXES", 0), number("TENAX_SEED", 1));
+    let (asked, seed) = (common::asked("TENAX_MIXES").unwrap_or(0), common::asked("TENAX_SEED").unwrap_or(1));
     let count = if asked == 0 { 10 } else { asked as usize };
     println!("{count} mixes, seeds {seed} and {}", seed + 1);
     let seeds = if asked == 0 { seed..=seed } else { seed..=seed + 1 };

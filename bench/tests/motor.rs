@@ -1,19 +1,14 @@
 //! A motor that is blocked in a scene: it stops within half a second, says so, keeps what is held and opens when it is asked again.
 
-use std::path::Path;
+mod common;
 
+use common::{parsed, text};
 use tenax_bench::board::{Run, simulated};
-use tenax_bench::session;
 use tenax_hal_shim::channel::{SCAN_HZ, SCANS_PER_FRAME};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::EventKind;
 use tenax_hal_shim::words::MotorStop;
-use tenax_scene::{SceneFile, World};
-
-fn jam() -> SceneFile {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/jam.toml");
-    session::load_scene(path.to_str().unwrap()).unwrap()
-}
+use tenax_scene::World;
 
 /// When the motor was stopped or freed, s.
 fn stops(run: &Run) -> Vec<(f64, Option<MotorStop>)> {
@@ -34,7 +29,7 @@ fn drives(run: &Run, from_s: f64, to_s: f64) -> &[MotorDrive] {
 // Shows B9.
 #[test]
 fn a_jammed_gear_stops_the_motor_within_half_a_second_either_way() {
-    let (run, world) = simulated::run(World::new(&jam(), 1), &mut |_| {});
+    let (run, world) = simulated::run(World::new(&parsed(&text("jam")), 1), &mut |_| {});
     let told: Vec<_> = stops(&run);
     println!("{told:?}");
     let kinds: Vec<_> = told.iter().map(|(_, stop)| *stop).collect();
@@ -64,11 +59,8 @@ fn a_jammed_gear_stops_the_motor_within_half_a_second_either_way() {
 // Shows B9.
 #[test]
 fn a_free_gear_is_not_stopped() {
-    let text =
-        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes/jam.toml")).unwrap();
-    let text = text.replace("for_s = 1.2 ", "for_s = 0.01 ").replace("for_s = 1.3 ", "for_s = 0.01 ");
-    let free = SceneFile::parse(&text, "free.toml").unwrap();
-    let (run, _) = simulated::run(World::new(&free, 1), &mut |_| {});
+    let text = text("jam").replace("for_s = 1.2 ", "for_s = 0.01 ").replace("for_s = 1.3 ", "for_s = 0.01 ");
+    let (run, _) = simulated::run(World::new(&parsed(&text), 1), &mut |_| {});
     assert_eq!(stops(&run), []);
     assert!(drives(&run, 0.51, 1.39).iter().all(|drive| drive.closes()));
 }

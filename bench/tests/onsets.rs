@@ -5,6 +5,7 @@ mod onsets;
 
 use onsets::held_against_evidence;
 use tenax_bench::board::{Recorder, Run};
+use tenax_bench::live::Use;
 use tenax_bench::session::{self, Board};
 use tenax_bench::timeline::Timeline;
 use tenax_hal_shim::detector::DetectorId;
@@ -18,7 +19,8 @@ fn every_onset_of_a_scene_is_where_its_evidence_says() {
     ] {
         let file = session::load_scene(scene).unwrap();
         let mut run = Run::default();
-        let outcome = session::scene_with(&file, 1, &Board::Host, &mut run, &mut |_| {}).unwrap();
+        let outcome =
+            session::scene_served(&file, 1, &Board::Host, Use::default(), &mut run, &mut |_| {}).unwrap();
         let mut timeline = Timeline::new(0.0);
         run.slows.iter().for_each(|slow| timeline.slow(slow));
         let onsets = held_against_evidence(&run.slows);

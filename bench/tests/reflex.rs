@@ -3,6 +3,9 @@
 //!
 //! `TENAX_SEEDS=12 cargo test --release -p tenax-bench --test reflex -- --nocapture`
 
+mod common;
+
+use common::{asked, parsed, text};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use tenax_bench::board::Run;
@@ -12,20 +15,14 @@ use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::wire::{EventKind, Slow};
 use tenax_hal_shim::words::{Cause, GripMode};
-use tenax_scene::SceneFile;
 
 fn seeds(default: u64) -> std::ops::RangeInclusive<u64> {
-    1..=std::env::var("TENAX_SEEDS").ok().and_then(|text| text.parse().ok()).unwrap_or(default)
-}
-
-fn text(name: &str) -> &'static str {
-    tenax_scene::builtin().iter().find(|(scene, _)| *scene == name).expect("a scene of ours").1
+    1..=asked("TENAX_SEEDS").unwrap_or(default)
 }
 
 fn run(scene: &str, seed: u64) -> (Outcome, Run) {
-    let scene = SceneFile::parse(scene, "scene").unwrap_or_else(|error| panic!("{error}"));
     let mut run = Run::default();
-    let outcome = session::scene_alone(&scene, seed, &Board::Host, Use::default(), &mut run).unwrap();
+    let outcome = session::scene_alone(&parsed(scene), seed, &Board::Host, Use::default(), &mut run).unwrap();
     (outcome, run)
 }
 
@@ -63,7 +60,7 @@ fn what_is_no_slip_is_answered_once_in_84_runs_at_most() {
     let scenes = ["arm-swing", "array-disturb", "glass-quiet", "hold", "array-load", "array-noisy"];
     let (mut runs, mut without) = (0, 0);
     for seed in seeds(2) {
-        let all = scenes.iter().map(|name| (*name, text(name).to_owned()));
+        let all = scenes.iter().map(|name| (*name, text(name)));
         for (name, scene) in all.chain([("ringing knocks", ringing_knocks(seed))]) {
             let (outcome, _) = run(&scene, seed);
             let reflex = &outcome.report.reflex;
@@ -119,7 +116,7 @@ fn a_warning_restores_a_margin_and_no_more() {
     let (mut all, mut least, mut most) = (0, f64::INFINITY, 0.0f64);
     for seed in seeds(3) {
         for name in ["arm-swing", "glass-quiet"] {
-            let answers = answers_of_s2(&run(text(name), seed));
+            let answers = answers_of_s2(&run(&text(name), seed));
             println!("{name}, seed {seed}: {answers:.2?}");
             all += answers.len();
             least = answers.iter().copied().fold(least, f64::min);
@@ -141,7 +138,8 @@ fn closes_before(outcome: &Outcome, frame: u32) -> bool {
 
 #[test]
 fn a_load_that_comes_at_once_is_kept_and_slides_no_further_than_without_s2() {
-    let calm = text("arm-swing").split("[[swing]]").next().expect("its beginning");
+    let swings = text("arm-swing");
+    let calm = swings.split("[[swing]]").next().expect("its beginning");
     let calm = calm.replace("duration_s = 40", "duration_s = 14");
     let deaf = "\n[[command]]\nat_s = 0.1\nkind = \"set-s2-permille\"\nvalue = 1000\n";
     for seed in seeds(4) {

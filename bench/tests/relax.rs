@@ -1,17 +1,15 @@
 //! What the reflex added and takes back: by the friction that slip has shown, never below what the hand was closed to.
 
-use std::path::Path;
+mod common;
 
+use common::{parsed, text};
 use tenax_bench::report::Report;
-use tenax_bench::session::{self, Board};
 
 /// The wet patch's friction.
 const MU_S: f64 = 0.25;
 
 fn ran(name: &str, seed: u64) -> Report {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scenes").join(name).with_extension("toml");
-    let file = session::load_scene(path.to_str().unwrap()).unwrap();
-    session::scene(&file, seed, &Board::Host, &mut |_| {}).unwrap().report
+    common::ran(&parsed(&text(name)), seed).report
 }
 
 // Shows R10.
@@ -68,8 +66,7 @@ fn a_pull_afterwards_is_answered() {
 // Shows R10.
 #[test]
 fn who_has_not_chosen_it_keeps_what_was_added() {
-    let file = session::load_scene("glass").unwrap();
-    let outcome = session::scene(&file, 1, &Board::Host, &mut |_| {}).unwrap();
-    assert!(outcome.report.added.added_n > 1.0);
-    assert_eq!(outcome.report.added.relaxed_n, 0.0);
+    let report = ran("glass", 1);
+    assert!(report.added.added_n > 1.0);
+    assert_eq!(report.added.relaxed_n, 0.0);
 }

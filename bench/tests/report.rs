@@ -1,5 +1,8 @@
 //! The report's keys: other people's programs read them.
 
+mod common;
+
+use common::{parsed, ran, text};
 use serde_json::Value;
 use tenax_bench::report::bound::{Bound, SAME_MM};
 use tenax_bench::report::fate::Fate;
@@ -85,8 +88,7 @@ fn played(csv: &str, recipe: Option<&str>) -> Value {
 
 #[test]
 fn a_scenes_keys_are_stable() {
-    let file = session::load_scene(session::DEFAULT_SCENE).unwrap();
-    let outcome = session::scene(&file, 1, &Board::Host, &mut |_| {}).unwrap();
+    let outcome = ran(&parsed(&text(session::DEFAULT_SCENE)), 1);
     let report = serde_json::to_value(&outcome.report).unwrap();
     assert_eq!(found(&report), expected("replay"));
     let events = &report["detectors"]["s1"]["events"];
@@ -113,8 +115,8 @@ fn no_hand_and_no_control_is_better_than_the_bound() {
     let scenes: Vec<&str> = if whole { all.collect() } else { few.to_vec() };
     let mut worse = Vec::new();
     for scene in scenes {
-        let file = session::load_scene(scene).unwrap();
-        let outcome = session::scene(&file, 1, &Board::Host, &mut |_| {}).unwrap();
+        let file = parsed(&text(scene));
+        let outcome = ran(&file, 1);
         let controls = if whole { controls::runs(&file, 1, &outcome.truth) } else { Vec::new() };
         for (name, fate) in std::iter::once(("the hand".to_owned(), outcome.truth)).chain(controls) {
             let bound = controls::bound(&file, 1, &fate);
@@ -131,8 +133,7 @@ fn no_hand_and_no_control_is_better_than_the_bound() {
 
 #[test]
 fn a_push_is_planned_for() {
-    let file = session::load_scene("push-gentle").unwrap();
-    let bound = controls::bound(&file, 1, &Fate::default());
+    let bound = controls::bound(&parsed(&text("push-gentle")), 1, &Fate::default());
     // A screwdriver of 0.29 N that is pushed down with 3 N: half of it on each finger, by 0.6 of a patch's hold.
     assert!(bound.kept() && bound.distance_mm < SAME_MM, "{bound:?}");
     let least_n = (0.03 * 9.81 + 3.0) / 2.0 / 0.6;
@@ -141,8 +142,8 @@ fn a_push_is_planned_for() {
 
 #[test]
 fn the_controls_of_a_scene_are_worse_than_the_reflex() {
-    let file = session::load_scene("array-pour").unwrap();
-    let outcome = session::scene(&file, 1, &Board::Host, &mut |_| {}).unwrap();
+    let file = parsed(&text("array-pour"));
+    let outcome = ran(&file, 1);
     let controls = controls::controls(&file, 1, &outcome.truth);
     let names: Vec<&str> = controls.iter().map(|control| control.name.as_str()).collect();
     let each = ["s1", "s2", "hebbian", "mlp"];

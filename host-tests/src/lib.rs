@@ -15,10 +15,11 @@ use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::front_end::{MYO_REST_MV, fsr_mv, fsr_quadrants_n};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::{Job, slot_of};
-use tenax_hal_shim::wire::{Event, EventKind, Slow};
-use tenax_hal_shim::words::{Cause, GripMode, Kept};
+use tenax_hal_shim::wire::{Down, Event, EventKind, Setting, Slow, TickRecord};
+use tenax_hal_shim::words::{Cause, DriveSource, GripMode, Kept};
 use tenax_logic::emg::model::EmgModel;
 use tenax_logic::fingertip::Fingertip;
+use tenax_logic::setting::SettingId;
 use tenax_logic::store::payload;
 
 /// Every channel at rest, the muscles at the wearer's.
@@ -42,6 +43,11 @@ pub fn calibrated() -> Fingertip {
 /// Never: this wearer's contractions separate.
 pub fn wearer() -> EmgModel {
     EmgModel::of_uv([50_000; 2], [900_000, 95_000], [80_000, 560_000]).expect("they separate")
+}
+
+/// The command that gives a setting this value.
+pub fn set(id: SettingId, value: i32) -> Down {
+    Down::Set(Setting { id: id.number(), value })
 }
 
 /// A fingertip whose pins are set by hand. The converter's noise is +-2 of a 14-bit sample, from a seed.
@@ -73,8 +79,13 @@ pub struct Bench {
 impl Bench {
     /// Everything at rest. The line is trusted: what needs consent has tests of its own (`tests/consent.rs`).
     pub fn new(seed: u64) -> Self {
+        Self::of(calibrated(), seed)
+    }
+
+    /// The same with this fingertip.
+    pub fn of(fingertip: Fingertip, seed: u64) -> Self {
         Self {
-            fingertip: calibrated(),
+            fingertip,
             pins_mv: relaxed(),
             events: Vec::new(),
             slows: Vec::new(),
@@ -200,6 +211,16 @@ impl Bench {
     /// Gives many frames; how the motor was driven in each.
     pub fn run(&mut self, frames: u32) -> Vec<MotorDrive> {
         (0..frames).map(|_| self.step()).collect()
+    }
+
+    /// What was decided in every tick of the slow frames so far.
+    pub fn ticks(&self) -> impl Iterator<Item = &TickRecord> {
+        self.slows.iter().flat_map(|slow| &slow.ticks)
+    }
+
+    /// Ticks in which the reflex drove the motor.
+    pub fn by_reflex(&self) -> usize {
+        self.ticks().filter(|tick| tick.source == DriveSource::Reflex).count()
     }
 
     /// How the reflex came into the mode it is in.

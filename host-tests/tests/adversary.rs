@@ -12,9 +12,9 @@ use tenax_hal_shim::channel::{
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::front_end::MYO_REST_MV;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
-use tenax_hal_shim::wire::{Down, Setting};
+use tenax_hal_shim::wire::Down;
 use tenax_hal_shim::words::{DriveSource, Kept};
-use tenax_host_tests::{Bench, calibrated};
+use tenax_host_tests::{Bench, calibrated, set};
 use tenax_logic::setting::SettingId;
 
 /// The seed of every run.
@@ -71,10 +71,6 @@ struct Adversary {
     pins_since: [(Pin, u32); 2],
     /// Where each stands, mV above rest, and since when.
     stands: [(i32, u32); 2],
-}
-
-fn set(id: SettingId, value: i32) -> Down {
-    Down::Set(Setting { id: id.number(), value })
 }
 
 impl Adversary {
@@ -188,7 +184,7 @@ impl Adversary {
         let accepted = self.bench.fingertip.command(&command).is_ok();
         self.no_wearer = self.bench.fingertip.config().no_wearer;
         // A bench whose line is not trusted any more would only hear refusals from then on.
-        if matches!(command, Down::Set(Setting { id, value: 0 }) if id == SettingId::LineTrusted.number()) {
+        if command == set(SettingId::LineTrusted, 0) {
             self.restart(step);
         }
         if let (true, Down::Drive { drive, hold_ms }) = (accepted, command) {

@@ -4,9 +4,9 @@ use tenax_hal_shim::behaviour::{Behaviour, CameraView, Ending, MARKERS};
 use tenax_hal_shim::channel::{ARRAY, ARRAY_COUNT, FSR, PVDF};
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{Down, EventKind, Refusal, Setting};
+use tenax_hal_shim::wire::{Down, EventKind, Refusal};
 use tenax_hal_shim::words::DriveSource;
-use tenax_host_tests::Bench;
+use tenax_host_tests::{Bench, set};
 use tenax_logic::setting::SettingId;
 
 fn view(moving_e4: u16, normal: u8, shear: i8) -> Down {
@@ -132,10 +132,7 @@ fn holding_never_silences_the_reflex() {
     bench.vibration_mv = 800.0;
     bench.slows.clear();
     watch(&mut bench, 400, &view(0, 20, 0));
-    let by_reflex = |bench: &Bench| {
-        bench.slows.iter().flat_map(|slow| slow.ticks).any(|tick| tick.source == DriveSource::Reflex)
-    };
-    assert!(by_reflex(&bench));
+    assert!(bench.by_reflex() > 0);
 }
 
 #[test]
@@ -174,8 +171,7 @@ fn the_wearer_ends_every_behaviour() {
         assert_eq!(bench.fingertip.command(&Down::Begin(what)), Err(Refusal::WearerActive));
         bench.slows.clear();
         watch(&mut bench, 200, &view(200, 20, 100));
-        let mut ticks = bench.slows.iter().flat_map(|slow| slow.ticks);
-        assert!(ticks.all(|tick| tick.source != DriveSource::Behaviour), "{what:?}");
+        assert!(bench.ticks().all(|tick| tick.source != DriveSource::Behaviour), "{what:?}");
     }
 }
 
@@ -188,8 +184,10 @@ fn what_opens_needs_consent_as_long_as_it_lasts() {
         bench.run(200);
         begin(&mut bench, Behaviour::HandOver);
         if revoked {
-            let revoke = Down::Set(Setting { id: SettingId::LineTrusted.number(), value: 0 });
-            bench.fingertip.command(&revoke).expect("a trusted line may give it back");
+            bench
+                .fingertip
+                .command(&set(SettingId::LineTrusted, 0))
+                .expect("a trusted line may give it back");
         }
         // What consent there was at power-up is over long before.
         bench.run(22_000);
@@ -208,9 +206,8 @@ fn a_turn_that_falls_is_the_reflexs() {
     bench.vibration_mv = 800.0;
     bench.slows.clear();
     watch(&mut bench, 1_400, &view(200, 20, 0));
-    let ticks = || bench.slows.iter().flat_map(|slow| slow.ticks);
-    assert!(ticks().any(|tick| tick.source == DriveSource::Reflex));
-    assert!(ticks().all(|tick| !tick.drive.opens()), "it slips: nothing is loosened");
+    assert!(bench.by_reflex() > 0);
+    assert!(bench.ticks().all(|tick| !tick.drive.opens()), "it slips: nothing is loosened");
 }
 
 // Shows R7.
@@ -280,9 +277,8 @@ fn a_turn_in_which_nothing_slips_gives_up_before_the_object_falls() {
 fn a_row_of_hand_overs_silences_the_reflex_as_long_as_the_consent() {
     let mut bench = Bench::holding(14);
     bench.press(300.0);
-    let distrust = Down::Set(Setting { id: SettingId::LineTrusted.number(), value: 0 });
     bench.run(600);
-    bench.fingertip.command(&distrust).expect("a trusted line may give it back");
+    bench.fingertip.command(&set(SettingId::LineTrusted, 0)).expect("a trusted line may give it back");
     let mut silent = 0;
     for step in 0..400_000_u32 {
         bench.fingertip.button((100..400).contains(&step));

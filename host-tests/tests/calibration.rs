@@ -32,8 +32,7 @@ fn calibrate(bench: &mut Bench, phases: [[f64; 2]; 3]) -> Vec<Calibration> {
 }
 
 fn uncalibrated(seed: u64) -> Bench {
-    let mut bench = Bench::new(seed);
-    bench.fingertip = Fingertip::default();
+    let mut bench = Bench::of(Fingertip::default(), seed);
     bench.lively = 0.12;
     bench.run(400);
     bench

@@ -2,9 +2,9 @@
 
 use tenax_hal_shim::behaviour::Behaviour;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
-use tenax_hal_shim::wire::{Answer, Down, EventKind, Received, Refusal, Setting, Up};
-use tenax_hal_shim::words::{Code, Consent, DriveSource, GripMode, Line};
-use tenax_host_tests::Bench;
+use tenax_hal_shim::wire::{Answer, Down, EventKind, Received, Refusal, Up};
+use tenax_hal_shim::words::{Code, Consent, GripMode, Line};
+use tenax_host_tests::{Bench, set};
 use tenax_logic::device::Device;
 use tenax_logic::fingertip::Fingertip;
 use tenax_logic::setting::SettingId;
@@ -12,10 +12,6 @@ use tenax_logic::setting::SettingId;
 const OPEN: Down = Down::Drive { drive: MotorDrive::Open(Duty::FULL), hold_ms: 250 };
 const CLOSE: Down = Down::Drive { drive: MotorDrive::Close(Duty::FULL), hold_ms: 250 };
 const COAST: Down = Down::Drive { drive: MotorDrive::Coast, hold_ms: 250 };
-
-fn set(id: SettingId, value: i32) -> Down {
-    Down::Set(Setting { id: id.number(), value })
-}
 
 fn all_that_change() -> Vec<Down> {
     let mut all = vec![
@@ -36,8 +32,7 @@ fn all_that_change() -> Vec<Down> {
 
 /// A hand of a wearer that holds a glass.
 fn strangers(seed: u64) -> Bench {
-    let mut bench = Bench::new(seed);
-    bench.fingertip = Fingertip::default();
+    let mut bench = Bench::of(Fingertip::default(), seed);
     bench.run(200);
     bench.load(4.0, 0.4);
     bench.run(1_000);
@@ -51,11 +46,6 @@ fn press(bench: &mut Bench) {
     bench.fingertip.button(true);
     bench.run(100);
     bench.fingertip.button(false);
-}
-
-fn reflex_frames(bench: &Bench) -> usize {
-    let ticks = bench.slows.iter().flat_map(|slow| &slow.ticks);
-    ticks.filter(|tick| tick.source == DriveSource::Reflex).count()
 }
 
 // Shows L1.
@@ -96,8 +86,7 @@ fn the_button_and_both_muscles_consent_for_a_minute_and_it_is_told() {
 // Shows L2.
 #[test]
 fn an_empty_hand_just_switched_on_consents_but_not_to_trust_for_ever() {
-    let mut bench = Bench::new(3);
-    bench.fingertip = Fingertip::default();
+    let mut bench = Bench::of(Fingertip::default(), 3);
     bench.run(200);
     let trust = set(SettingId::LineTrusted, 1);
     assert_eq!(bench.fingertip.command(&set(SettingId::S1, 120)), Ok(()));
@@ -121,8 +110,7 @@ fn an_empty_hand_just_switched_on_consents_but_not_to_trust_for_ever() {
 // Shows L2.
 #[test]
 fn a_restart_by_the_watchdog_is_no_consent() {
-    let mut bench = Bench::new(4);
-    bench.fingertip = Fingertip::default();
+    let mut bench = Bench::of(Fingertip::default(), 4);
     bench.fingertip.was_reset();
     bench.run(400);
     assert_eq!(bench.fingertip.command(&OPEN), Err(Refusal::NotArmed));
@@ -189,7 +177,7 @@ fn to_coast_silences_no_reflex() {
         bench.fingertip.command(&COAST).unwrap();
         bench.run(200);
     }
-    assert!(reflex_frames(&bench) > 500, "{}", reflex_frames(&bench));
+    assert!(bench.by_reflex() > 500, "{}", bench.by_reflex());
 }
 
 /// By consent, of an untrusted line: a gripper's may hold for as long as it likes.
@@ -206,7 +194,7 @@ fn a_link_that_holds_for_ever_gives_the_reflex_back() {
         refused += u32::from(bench.fingertip.command(&hold) == Err(Refusal::HeldTooLong));
         bench.run(200);
     }
-    assert!(refused > 20 && reflex_frames(&bench) > 500, "{refused}, {}", reflex_frames(&bench));
+    assert!(refused > 20 && bench.by_reflex() > 500, "{refused}, {}", bench.by_reflex());
 }
 
 fn answer(device: &mut Device, sequence: u16, message: Down) -> Answer {

@@ -9,10 +9,10 @@ use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::front_end::MYO_REST_MV;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
-use tenax_hal_shim::wire::{DRIVE_HOLD_MAX_MS, Down, EventKind, Setting};
+use tenax_hal_shim::wire::{DRIVE_HOLD_MAX_MS, Down, EventKind};
 use tenax_hal_shim::words::{Cause, Code, DriveSource};
-use tenax_host_tests::Bench;
 use tenax_host_tests::teaching::SLIP_MV;
+use tenax_host_tests::{Bench, set};
 use tenax_logic::config::Config;
 use tenax_logic::setting::SettingId;
 
@@ -57,10 +57,6 @@ fn disturb(bench: &mut Bench, rng: &mut ChaCha8Rng) {
         }
         _ => bench.load(rng.random_range(3.0..8.0), rng.random_range(0.0..4.0)),
     }
-}
-
-fn set(id: SettingId, value: i32) -> Down {
-    Down::Set(Setting { id: id.number(), value })
 }
 
 fn random_command(rng: &mut ChaCha8Rng) -> Down {

@@ -5,14 +5,9 @@ use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::front_end::{FSR_REST_MV, fsr_mv};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::EventKind;
-use tenax_hal_shim::words::{DriveSource, Fault, GripMode, Reason};
+use tenax_hal_shim::words::{Fault, GripMode, Reason};
 use tenax_host_tests::Bench;
 use tenax_logic::mode;
-
-fn reflex_ticks(bench: &Bench) -> usize {
-    let by_reflex = |source: DriveSource| source == DriveSource::Reflex;
-    bench.slows.iter().flat_map(|slow| &slow.ticks).filter(|tick| by_reflex(tick.source)).count()
-}
 
 /// Presses each quadrant by so many newtons.
 fn press(bench: &mut Bench, newtons: [f64; 4]) {
@@ -32,7 +27,7 @@ fn one_pressed_quadrant_of_an_empty_hand_closes_nothing() {
             pressed[quadrant] = newtons;
             press(&mut bench, pressed);
             bench.run(8_000);
-            assert_eq!(reflex_ticks(&bench), 0, "{newtons} N on quadrant {quadrant}");
+            assert_eq!(bench.by_reflex(), 0, "{newtons} N on quadrant {quadrant}");
         }
     }
     // The control: the same ratio on a load that all quadrants carry.
@@ -40,7 +35,7 @@ fn one_pressed_quadrant_of_an_empty_hand_closes_nothing() {
     bench.run(800);
     bench.load(4.0, 2.2);
     bench.run(8_000);
-    assert!(reflex_ticks(&bench) > 100);
+    assert!(bench.by_reflex() > 100);
 }
 
 // Shows R4.
@@ -57,7 +52,7 @@ fn a_quadrant_that_drifts_in_a_grasp_closes_nothing_and_is_told() {
             press(&mut bench, if rigid { sheared } else { [1.1, 1.1 + drifted_n, 0.9, 0.9] });
             bench.run(1);
         }
-        assert_eq!(reflex_ticks(&bench) > 0, closes, "rigid: {rigid}");
+        assert_eq!(bench.by_reflex() > 0, closes, "rigid: {rigid}");
         let told = Fault::SensorLost { channel: FSR as u8 + 1, reason: Reason::Creep };
         let is_told = bench.events.iter().any(|event| event.kind == EventKind::Fault(told));
         assert_eq!(is_told, !rigid);
@@ -75,8 +70,8 @@ fn what_cannot_slip_at_any_friction_closes_nothing_however_loud_it_is() {
         bench.sliding_mv = sliding_mv;
         bench.vibration_mv = 400.0;
         bench.run(2_000);
-        assert!(bench.slows.iter().flat_map(|slow| &slow.ticks).any(|tick| !tick.said.is_empty()));
-        assert_eq!(reflex_ticks(&bench) > 0, closes, "{shear_n} N of shear on 4 N, {sliding_mv} mV");
+        assert!(bench.ticks().any(|tick| !tick.said.is_empty()));
+        assert_eq!(bench.by_reflex() > 0, closes, "{shear_n} N of shear on 4 N, {sliding_mv} mV");
     }
 }
 
@@ -151,7 +146,7 @@ fn one_humming_film_closes_the_hand_once_and_is_masked() {
         bench.pins_mv[PVDF + 4] = rest_mv + 200.0 * phase.sin();
         bench.run(1);
     }
-    let closed = reflex_ticks(&bench);
+    let closed = bench.by_reflex();
     assert!((1..=600).contains(&closed), "{closed} ticks of 40 000");
     let lost = EventKind::Fault(Fault::SensorLost { channel: (PVDF + 4) as u8, reason: Reason::Noisy });
     assert_eq!(bench.events.iter().filter(|event| event.kind == lost).count(), 1);
@@ -160,7 +155,7 @@ fn one_humming_film_closes_the_hand_once_and_is_masked() {
     bench.pins_mv[PVDF + 4] = rest_mv;
     bench.vibration_mv = 400.0;
     bench.run(400);
-    assert!(reflex_ticks(&bench) > 20);
+    assert!(bench.by_reflex() > 20);
 }
 
 // Shows R6.

@@ -3,10 +3,10 @@
 
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{Down, EventKind, Setting};
+use tenax_hal_shim::wire::EventKind;
 use tenax_hal_shim::words::Cause;
-use tenax_host_tests::Bench;
 use tenax_host_tests::teaching::{SLIP_MV, SLIPS_UP};
+use tenax_host_tests::{Bench, set};
 use tenax_logic::setting::SettingId;
 
 /// What is held, N.
@@ -37,8 +37,7 @@ fn taught_on_something_slippery(seed: u64) -> Bench {
 }
 
 fn looking_ahead(mut bench: Bench, ms: i32) -> Bench {
-    let id = SettingId::HebbianAhead.number();
-    bench.fingertip.command(&Down::Set(Setting { id, value: ms })).expect("in its range");
+    bench.fingertip.command(&set(SettingId::HebbianAhead, ms)).expect("in its range");
     bench
 }
 

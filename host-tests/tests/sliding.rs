@@ -3,25 +3,20 @@
 use tenax_hal_shim::channel::PVDF;
 use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{Down, EventKind, Setting};
-use tenax_hal_shim::words::{Cause, DriveSource, GripMode};
-use tenax_host_tests::Bench;
+use tenax_hal_shim::wire::EventKind;
+use tenax_hal_shim::words::{Cause, GripMode};
+use tenax_host_tests::{Bench, set};
 use tenax_logic::setting::SettingId;
 
 /// What rubs, mV: a quarter of S1.
 const RUBS_MV: f64 = 35.0;
 const LOAD_N: f64 = 4.0;
 
-fn reflex_ticks(bench: &Bench) -> usize {
-    let ticks = bench.slows.iter().flat_map(|slow| &slow.ticks);
-    ticks.filter(|tick| tick.source == DriveSource::Reflex).count()
-}
-
 #[test]
 fn an_object_that_rubs_quietly_is_held_more_firmly_with_small_pulses() {
     let mut bench = Bench::holding(61);
     bench.run(2_000);
-    assert_eq!(reflex_ticks(&bench), 0);
+    assert_eq!(bench.by_reflex(), 0);
     bench.vibration_mv = RUBS_MV;
     let drives = bench.run(2_000);
     assert_eq!(bench.last_cause(), Some(Cause::PulseOver));
@@ -45,7 +40,7 @@ fn films_that_hummed_when_the_grasp_began_slide_no_more_than_quiet_ones() {
     bench.run(800);
     bench.load(LOAD_N, 0.4);
     bench.run(20_000);
-    assert_eq!(reflex_ticks(&bench), 0);
+    assert_eq!(bench.by_reflex(), 0);
     // Two that begin to hum in a grasp are their own fault.
     let mut bench = Bench::holding(63);
     bench.run(2_000);
@@ -54,7 +49,7 @@ fn films_that_hummed_when_the_grasp_began_slide_no_more_than_quiet_ones() {
         bench.pins_mv[PVDF..PVDF + 2].fill(1_650.0 + RUBS_MV * phase.sin());
         bench.run(1);
     }
-    assert_eq!(reflex_ticks(&bench), 0);
+    assert_eq!(bench.by_reflex(), 0);
 }
 
 /// What the hand presses with in the end while it hears sliding all the time, N, against so many N/mm, where this shear is on a finger, N.
@@ -89,8 +84,7 @@ fn closing_that_does_not_help_ends_at_half_as_much_again() {
 #[test]
 fn with_s1_deaf_to_it_a_loud_slip_is_a_warning_still() {
     let mut bench = Bench::holding(65);
-    let deaf = 250;
-    bench.fingertip.command(&Down::Set(Setting { id: SettingId::S1.number(), value: deaf })).unwrap();
+    bench.fingertip.command(&set(SettingId::S1, 250)).unwrap();
     bench.run(2_000);
     bench.vibration_mv = 300.0;
     bench.run(1_000);

@@ -22,8 +22,7 @@ fn untaught_it_says_nothing_and_taught_it_answers_a_slip_that_s1_does_not_hear()
     untaught.fingertip.act_on(alone);
     untaught.vibration_mv = SLIP_MV;
     assert!(!closes(&untaught.run(2_000)));
-    let says =
-        |bench: &Bench| bench.slows.iter().flat_map(|slow| &slow.ticks).any(|tick| tick.outputs != [0; 2]);
+    let says = |bench: &Bench| bench.ticks().any(|tick| tick.outputs != [0; 2]);
     assert!(!says(&untaught));
 
     let mut bench = Bench::taught(1);

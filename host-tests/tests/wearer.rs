@@ -13,21 +13,17 @@ use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::front_end::MYO_REST_MV;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
-use tenax_hal_shim::wire::{Down, Setting};
-use tenax_hal_shim::words::{Cause, DriveSource, GripMode};
-use tenax_host_tests::Bench;
+use tenax_hal_shim::wire::Down;
+use tenax_hal_shim::words::{Cause, GripMode};
+use tenax_host_tests::{Bench, set};
 use tenax_logic::config::Config;
 use tenax_logic::setting::SettingId;
 
 /// Two slow frames.
 const OPEN_WITHIN_FRAMES: u32 = 50;
 
-fn set(id: SettingId, value: i32) -> Down {
-    Down::Set(Setting { id: id.number(), value })
-}
-
 fn said(bench: &Bench, id: DetectorId) -> bool {
-    bench.slows.iter().flat_map(|slow| &slow.ticks).any(|tick| tick.said.contains(id))
+    bench.ticks().any(|tick| tick.said.contains(id))
 }
 
 // Shows W1.
@@ -40,9 +36,7 @@ fn the_same_vibration_fires_without_a_muscle_and_is_silent_with_one() {
         bench.vibration_mv = 800.0;
         bench.slows.clear();
         bench.run(1_000);
-        let reflex =
-            bench.slows.iter().flat_map(|slow| slow.ticks).any(|tick| tick.source == DriveSource::Reflex);
-        assert_eq!(reflex, fires, "flexor at {flexor_mv} mV");
+        assert_eq!(bench.by_reflex() > 0, fires, "flexor at {flexor_mv} mV");
     }
 }
 
@@ -57,23 +51,18 @@ fn sliding(seed: u64) -> Bench {
     bench
 }
 
-fn by_reflex(bench: &Bench) -> usize {
-    let ticks = bench.slows.iter().flat_map(|slow| &slow.ticks);
-    ticks.filter(|tick| tick.source == DriveSource::Reflex).count()
-}
-
 // Shows W1.
 #[test]
 fn the_array_closes_a_hand_at_rest_and_not_one_that_its_wearer_moves() {
     let mut bench = sliding(11);
     bench.run(2_000);
-    assert!(by_reflex(&bench) > 100);
+    assert!(bench.by_reflex() > 100);
     bench.muscles(400.0, 50.0);
     bench.run(50);
     bench.slows.clear();
     bench.run(4_000);
     assert!(said(&bench, DetectorId::Mlp), "it says so all the same");
-    assert_eq!(by_reflex(&bench), 0);
+    assert_eq!(bench.by_reflex(), 0);
 }
 
 // Shows R7.
@@ -87,7 +76,7 @@ fn what_the_array_said_does_not_outlive_the_frames_that_would_renew_it() {
         run_losing(&mut bench, &lost, 2_000);
         bench.slows.clear();
         run_losing(&mut bench, &lost, 2_000);
-        assert_eq!(by_reflex(&bench), 0, "places {lost:?} are lost in every slow frame");
+        assert_eq!(bench.by_reflex(), 0, "places {lost:?} are lost in every slow frame");
     }
 }
 
@@ -108,7 +97,7 @@ fn an_array_that_hears_slip_in_an_empty_hand_closes_no_full_one() {
     // The control: it does hear slip in that.
     let mut bench = Bench::holding(16);
     noisy(&mut bench, &mut rng, 5);
-    assert!(by_reflex(&bench) > 100);
+    assert!(bench.by_reflex() > 100);
     bench.load(0.0, 0.0);
     noisy(&mut bench, &mut rng, 5);
     bench.load(4.0, 0.4);
@@ -116,7 +105,7 @@ fn an_array_that_hears_slip_in_an_empty_hand_closes_no_full_one() {
     bench.slows.clear();
     noisy(&mut bench, &mut rng, 10);
     assert!(said(&bench, DetectorId::Mlp), "it says so all the same");
-    assert_eq!(by_reflex(&bench), 0);
+    assert_eq!(bench.by_reflex(), 0);
 }
 
 /// Gives many frames, of which those at these places of the slow frame are lost; how the motor was driven in each.
@@ -350,9 +339,9 @@ fn a_myosensor_that_stands_still_is_no_muscle_and_one_that_moves_may_be() {
             bench.vibration_mv = 800.0;
             bench.slows.clear();
             stand(&mut bench, 1_800);
-            assert_eq!(by_reflex(&bench), 0, "it may be a muscle for 1 s");
+            assert_eq!(bench.by_reflex(), 0, "it may be a muscle for 1 s");
             stand(&mut bench, 6_000);
-            assert_eq!(by_reflex(&bench) > 20, by_mv == 0.0);
+            assert_eq!(bench.by_reflex() > 20, by_mv == 0.0);
         }
     }
 }
@@ -377,7 +366,7 @@ fn a_myosensor_that_comes_back_to_where_it_hummed_may_be_a_muscle_again() {
                 bench.pins_mv[lifted] = f64::from(MYO_REST_MV) + [390.0, 410.0][n % 2];
                 bench.run(100);
             }
-            assert_eq!(by_reflex(&bench), 0);
+            assert_eq!(bench.by_reflex(), 0);
         }
     }
 }
@@ -397,7 +386,7 @@ fn a_lost_myosensor_renews_no_budget() {
             bench.run(8_000);
         }
         let budget = Config::default().grip.blind_frames as usize;
-        assert!((1..=budget + 1).contains(&by_reflex(&bench)), "{} frames", by_reflex(&bench));
+        assert!((1..=budget + 1).contains(&bench.by_reflex()), "{} frames", bench.by_reflex());
     }
 }
 

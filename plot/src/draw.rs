@@ -21,7 +21,8 @@ const GAP: i32 = 14;
 const STRIP: f64 = 0.09;
 const SLIP: RGBColor = super::figure::colour::PURPLE;
 const LEVEL: RGBColor = super::figure::colour::VERMILLION;
-const INK: RGBColor = RGBColor(40, 40, 40);
+/// What words and axes are drawn in.
+pub const INK: RGBColor = RGBColor(40, 40, 40);
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
@@ -168,6 +169,6 @@ fn range(panel: &Panel) -> (f64, f64) {
 }
 
 /// plotters' error as ours; it does not go through `?` because it borrows.
-fn drawn<T, E: std::fmt::Display>(result: Result<T, E>) -> anyhow::Result<T> {
+pub(crate) fn drawn<T, E: std::fmt::Display>(result: Result<T, E>) -> anyhow::Result<T> {
     result.map_err(|error| anyhow!("the plot cannot be drawn: {error}"))
 }

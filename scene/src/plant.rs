@@ -1,6 +1,7 @@
 //! What a board sees of a world: voltages on its pins, and a motor that moves something.
 
 use tenax_hal_shim::channel::{CHANNELS, CODE_MAX, COUNT, REFERENCE_MV};
+use tenax_hal_shim::frame::{Frame, scan_of_pins};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::Down;
 
@@ -68,6 +69,18 @@ pub trait Plant: Send {
 
     /// Goes on by one scan period (125 us) under `drive` and gives the voltages at the pins at its end.
     fn scan(&mut self, drive: MotorDrive) -> &Pins;
+
+    /// Goes on by a frame: what the board samples of it, and what came down the line meanwhile.
+    fn frame(&mut self, sequence: u32, drive: MotorDrive) -> (Frame, Vec<Down>) {
+        let select = Frame::lost(sequence).select();
+        let mut commands = Vec::new();
+        let scans = std::array::from_fn(|_| {
+            let scan = scan_of_pins(&self.scan(drive).codes(), select);
+            commands.extend(self.commands());
+            scan
+        });
+        (Frame::from_scans(sequence, &scans), commands)
+    }
 
     /// Commands that somebody sends over the serial line at this instant.
     fn commands(&mut self) -> Vec<Down> {

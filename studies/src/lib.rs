@@ -10,6 +10,7 @@
 
 pub mod chart;
 pub mod dataset;
+pub mod equations;
 pub mod evaluate;
 pub mod learn;
 pub mod photoelastic;

@@ -3,6 +3,5 @@
 pub mod balance;
 pub mod bench;
 pub mod force;
-pub mod least_squares;
 pub mod rate;
 pub mod region;

@@ -4,6 +4,7 @@ use tenax_bench::array::events::{card, stretches};
 use tenax_bench::array::network::Network;
 use tenax_bench::array::{readings, verdicts};
 use tenax_bench::labelled::{self, Part, Recording, Step, library};
+use tenax_bench::live::Use;
 use tenax_bench::scorer::{Card, Counts, Doing, SlipSpan, onsets};
 use tenax_bench::session::{self, Board};
 use tenax_hal_shim::detector::DetectorId;
@@ -101,7 +102,8 @@ fn run_and_evaluate_say_the_same_of_the_same_scene() {
     for scene in ["array-pour", "array-disturb", "array-rotation", "array-opening"] {
         let file = session::load_scene(scene).unwrap();
         let mut ran = ran::Steps::default();
-        let outcome = session::scene_with(&file, 1, &Board::Host, &mut ran, &mut |_| {}).unwrap();
+        let outcome =
+            session::scene_served(&file, 1, &Board::Host, Use::default(), &mut ran, &mut |_| {}).unwrap();
         let mut detector = ShippedDetector::default();
         let said = verdicts(|reading| detector.push(reading).slip, &ran.steps);
         let truth = &outcome.truth;

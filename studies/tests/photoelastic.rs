@@ -1,6 +1,7 @@
 //! The photoelastic head on its bench and in a hand. Seeds are those of no calibration.
 
 use tenax_bench::board::Run;
+use tenax_bench::live::Use;
 use tenax_bench::session::{self, Board, Outcome};
 use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::wire::Slow;
@@ -80,7 +81,8 @@ fn head_alone(seed: u64, change: impl Fn(&str) -> String) -> (Outcome, Run) {
     let (_, text) = tenax_scene::builtin().iter().find(|(name, _)| *name == "head-alone").expect("the scene");
     let scene = SceneFile::parse(&change(text), "head-alone").unwrap_or_else(|error| panic!("{error}"));
     let mut run = Run::default();
-    let outcome = session::scene_with(&scene, seed, &Board::Host, &mut run, &mut |_| {}).unwrap();
+    let outcome =
+        session::scene_served(&scene, seed, &Board::Host, Use::default(), &mut run, &mut |_| {}).unwrap();
     (outcome, run)
 }
 

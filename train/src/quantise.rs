@@ -1,6 +1,7 @@
 //! The network in the firmware's integers.
 
-use anyhow::{Context, anyhow};
+use anyhow::anyhow;
+use tenax_bench::array::network::{fixed, square};
 use tenax_logic::array::{FEATURES, Layer, LookBack, Mlp};
 
 use crate::features::Sequence;
@@ -126,15 +127,6 @@ impl Quantised {
         });
         Ok(logits.collect())
     }
-}
-
-fn fixed<T: Clone, const N: usize>(values: &[T]) -> anyhow::Result<[T; N]> {
-    <[T; N]>::try_from(values.to_vec()).ok().context("a layer of another size")
-}
-
-fn square<const I: usize, const O: usize>(rows: &[Vec<i16>]) -> anyhow::Result<[[i16; I]; O]> {
-    let rows: Vec<[i16; I]> = rows.iter().map(|row| fixed(row)).collect::<Result<_, _>>()?;
-    fixed(&rows)
 }
 
 /// The same network with its first layer's units scaled.

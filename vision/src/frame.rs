@@ -50,16 +50,6 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// Sorts interleaved red, green, blue (`rgb24`) into planes (`gbrp`); what lies past either end is left alone.
-pub fn planes_of_rgb(rgb: &[u8], gbrp: &mut [u8; FRAME_BYTES]) {
-    let (green, rest) = gbrp.split_at_mut(PIXELS);
-    let (blue, red) = rest.split_at_mut(PIXELS);
-    let planes = green.iter_mut().zip(blue).zip(red);
-    for (pixel, ((green, blue), red)) in rgb.chunks_exact(3).zip(planes) {
-        (*red, *green, *blue) = (pixel[0], pixel[1], pixel[2]);
-    }
-}
-
 /// A place in a picture, pixels; the middle of the top left pixel is (0, 0), x goes right and y down.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Point {
@@ -82,13 +72,10 @@ mod tests {
     use alloc::vec;
 
     #[test]
-    fn planes_and_interleaved_pixels_are_the_same_picture() {
-        let rgb: alloc::vec::Vec<u8> = (0..FRAME_BYTES).map(|at| (at * 7 % 251) as u8).collect();
-        let mut planes: alloc::boxed::Box<[u8; FRAME_BYTES]> =
-            vec![0; FRAME_BYTES].into_boxed_slice().try_into().unwrap();
-        planes_of_rgb(&rgb, &mut planes);
-        let frame = Frame::from_gbrp(&planes[..]).unwrap();
-        assert_eq!((frame.red[9], frame.green[9], frame.blue[9]), (rgb[27], rgb[28], rgb[29]));
+    fn a_picture_s_planes_are_green_blue_and_red_and_one_of_another_size_is_none() {
+        let planes: alloc::vec::Vec<u8> = (0..FRAME_BYTES).map(|at| (at / PIXELS) as u8).collect();
+        let frame = Frame::from_gbrp(&planes).unwrap();
+        assert_eq!((frame.green[9], frame.blue[9], frame.red[9]), (0, 1, 2));
         assert!(Frame::from_gbrp(&planes[1..]).is_none());
     }
 

@@ -161,11 +161,13 @@ impl Saved {
     }
 }
 
-fn fixed<T: Clone, const N: usize>(values: &[T]) -> anyhow::Result<[T; N]> {
+/// Values of a layer of this size. Fails if there are more or fewer.
+pub fn fixed<T: Clone, const N: usize>(values: &[T]) -> anyhow::Result<[T; N]> {
     <[T; N]>::try_from(values.to_vec()).ok().context("a layer of another size")
 }
 
-fn square<const I: usize, const O: usize>(rows: &[Vec<i16>]) -> anyhow::Result<[[i16; I]; O]> {
+/// Weights of a layer of this size. Fails if they are of another.
+pub fn square<const I: usize, const O: usize>(rows: &[Vec<i16>]) -> anyhow::Result<[[i16; I]; O]> {
     let rows: Vec<[i16; I]> = rows.iter().map(|row| fixed(row)).collect::<Result<_, _>>()?;
     fixed(&rows)
 }

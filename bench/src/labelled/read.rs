@@ -35,8 +35,8 @@ pub fn parse(source: impl Read, recipe: &ArrayRecipe, file: &str) -> Result<Vec<
         let line = record.position().map_or(0, csv::Position::line);
         let wrong = |what| CsvError::Row { file: file.to_owned(), line, what };
         let row = columns.row(&record, recipe).map_err(wrong)?;
-        let place = *places.entry(row.name.clone()).or_insert_with(|| {
-            order.push(Open::begin(&row));
+        let place = *places.entry(row.about.name.clone()).or_insert_with(|| {
+            order.push(Open::new(row.about.clone()));
             order.len() - 1
         });
         order[place].take(row, recipe).map_err(wrong)?;
@@ -59,13 +59,19 @@ struct Columns {
     onsets: Option<usize>,
 }
 
-/// A row, understood.
-struct Row {
+/// Which recording a row is of, and what its file says of that.
+#[derive(Clone, PartialEq)]
+struct About {
     name: String,
     session: String,
     material: String,
     part: Option<Part>,
     doing: Doing,
+}
+
+/// A row, understood.
+struct Row {
+    about: About,
     t_s: Option<f64>,
     samples: [f64; ARRAY_COUNT],
     slip: bool,
@@ -122,17 +128,20 @@ impl Columns {
         let text = |place: Option<usize>| place.map(|place| record[place].to_owned());
         let name = text(self.name).unwrap_or_else(|| "recording".into());
         let session = text(self.session).unwrap_or_else(|| name.clone());
-        Ok(Row {
+        let about = About {
             material: text(self.material).unwrap_or_else(|| session.clone()),
             part: self.part.map(|place| record[place].parse::<Part>()).transpose()?,
+            doing: self.task.map_or(Doing::Unknown, |place| Doing::named(&record[place])),
+            name,
+            session,
+        };
+        Ok(Row {
+            about,
             t_s: match (self.time, &recipe.array.time) {
                 (Some(place), Some(column)) => Some(number(place, column.get_ref())?),
                 _ => None,
             },
-            doing: self.task.map_or(Doing::Unknown, |place| Doing::named(&record[place])),
             slips: self.onsets.map_or(Ok(Vec::new()), |place| onsets::parse(&record[place]))?,
-            name,
-            session,
             samples,
             slip,
         })
@@ -141,11 +150,7 @@ impl Columns {
 
 /// A recording whose rows are still coming.
 struct Open {
-    name: String,
-    session: String,
-    material: String,
-    part: Option<Part>,
-    doing: Doing,
+    about: About,
     t_s: Vec<f64>,
     samples: Vec<[f64; ARRAY_COUNT]>,
     labels: Vec<bool>,
@@ -153,25 +158,14 @@ struct Open {
 }
 
 impl Open {
-    fn begin(row: &Row) -> Self {
-        Self {
-            name: row.name.clone(),
-            session: row.session.clone(),
-            material: row.material.clone(),
-            part: row.part,
-            doing: row.doing,
-            t_s: Vec::new(),
-            samples: Vec::new(),
-            labels: Vec::new(),
-            slips: Vec::new(),
-        }
+    const fn new(about: About) -> Self {
+        Self { about, t_s: Vec::new(), samples: Vec::new(), labels: Vec::new(), slips: Vec::new() }
     }
 
     fn take(&mut self, row: Row, recipe: &ArrayRecipe) -> Result<(), String> {
-        if (&self.session, &self.material, self.part, self.doing)
-            != (&row.session, &row.material, row.part, row.doing)
-        {
-            return Err(format!("recording `{}` changes its session, material, part or task here", row.name));
+        let name = &self.about.name;
+        if self.about != row.about {
+            return Err(format!("recording `{name}` changes its session, material, part or task here"));
         }
         let t_s = match (row.t_s, &recipe.array.rate_hz) {
             (Some(t_s), _) => t_s,
@@ -180,16 +174,12 @@ impl Open {
         };
         if let Some(&before) = self.t_s.last() {
             if t_s < before {
-                return Err(format!(
-                    "time goes backwards in recording `{}`, from {before} s to {t_s} s",
-                    row.name
-                ));
+                return Err(format!("time goes backwards in recording `{name}`, from {before} s to {t_s} s"));
             }
             if t_s - before > GAP_MAX_S {
                 return Err(format!(
-                    "recording `{}` has a gap of {:.3} s, longer than {GAP_MAX_S} s; make it two recordings (is its \
+                    "recording `{name}` has a gap of {:.3} s, longer than {GAP_MAX_S} s; make it two recordings (is its \
                      time in seconds?)",
-                    row.name,
                     t_s - before
                 ));
             }
@@ -218,17 +208,8 @@ impl Open {
             self.slips = onsets::of_labels(steps.iter().map(|step| step.slip), first_s);
         }
         self.slips.sort_by(|a, b| a.micro_onset_s.total_cmp(&b.micro_onset_s));
-        Recording {
-            name: self.name,
-            session: self.session,
-            material: self.material,
-            part: self.part,
-            doing: self.doing,
-            first_s,
-            steps,
-            slips: self.slips,
-            exact,
-        }
+        let About { name, session, material, part, doing } = self.about;
+        Recording { name, session, material, part, doing, first_s, steps, slips: self.slips, exact }
     }
 }
 

@@ -2,10 +2,34 @@
 #![allow(dead_code, reason = "each test file uses its own part of this one")]
 
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
 use tenax_bench::recipe::Kind;
 use tenax_bench::replay::{Recipe, Recording};
 use tenax_bench::session::{self, Board, Outcome};
+use tenax_scene::{SceneFile, builtin};
+
+/// A number that is asked for by an environment variable.
+pub fn asked<N: FromStr>(name: &str) -> Option<N> {
+    std::env::var(name).ok().and_then(|text| text.parse().ok())
+}
+
+/// A scene of the repository, or one of `tests/scenes/`.
+pub fn text(name: &str) -> String {
+    let own = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/scenes/");
+    let read = || std::fs::read_to_string(format!("{own}{name}.toml")).expect("a scene of these tests");
+    builtin::find(name).map_or_else(read, |(_, text)| text.into_owned())
+}
+
+/// A scene from its text.
+pub fn parsed(text: &str) -> SceneFile {
+    SceneFile::parse(text, "scene").unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// What became of a scene and its bound on the host's logic.
+pub fn ran(scene: &SceneFile, seed: u64) -> Outcome {
+    session::scene(scene, seed, &Board::Host, &mut |_| {}).expect("it runs")
+}
 
 /// A shared recording. They are never part of the project: where they are not, their tests are ignored.
 pub fn shared(name: &str) -> PathBuf {

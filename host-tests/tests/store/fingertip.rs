@@ -2,9 +2,9 @@
 
 use tenax_hal_shim::channel::{FSR, FSR_COUNT};
 use tenax_hal_shim::front_end::FSR_REST_MV;
-use tenax_hal_shim::wire::{Down, EventKind, Setting};
+use tenax_hal_shim::wire::{Down, EventKind};
 use tenax_hal_shim::words::{Fault, Kept};
-use tenax_host_tests::Bench;
+use tenax_host_tests::{Bench, set};
 use tenax_logic::fingertip::Fingertip;
 use tenax_logic::setting::SettingId;
 use tenax_logic::store::keeper::Keeper;
@@ -63,7 +63,7 @@ fn zero_and_settings_survive_and_a_fingertip_without_them_differs() {
     let untouched = fn_mn(&bench);
     assert!(untouched > 100, "{untouched} mN");
     bench.fingertip.command(&Down::Zero).unwrap();
-    bench.fingertip.command(&Down::Set(Setting { id: SettingId::S2.number(), value: 420 })).unwrap();
+    bench.fingertip.command(&set(SettingId::S2, 420)).unwrap();
     assert_eq!(save_all(&mut bench.fingertip, &mut keeper, &mut flash), [Kept::Settings, Kept::Zero]);
 
     let after = off_zero(booted(&mut flash));

@@ -11,6 +11,7 @@ use crate::check::side_by_side::{Group, measure};
 use crate::check::{Bar, Verdict, array, default_scene, learn, mistakes, pages, recordings, wearer};
 use tenax_bench::board::Run;
 use tenax_bench::budgets::Line;
+use tenax_bench::live::Use;
 use tenax_bench::report::text::Text;
 use tenax_bench::session::{self, Board};
 
@@ -89,7 +90,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
 fn default_scene(root: &Path, board: &Board, args: &Args, told: &Mutex<String>) -> anyhow::Result<Vec<Bar>> {
     let file = session::load_scene(session::DEFAULT_SCENE)?;
     let mut run = Run::default();
-    let outcome = session::scene_with(&file, 1, board, &mut run, &mut |_| {})?;
+    let outcome = session::scene_served(&file, 1, board, Use::default(), &mut run, &mut |_| {})?;
     run.summary = outcome.run.clone();
     *told.lock().unwrap() += &Text(&outcome.report).to_string();
     let mut bars = default_scene::bars(&outcome, (!args.host).then_some(&run));

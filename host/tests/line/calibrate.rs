@@ -1,10 +1,10 @@
 //! `tenax calibrate` on served scenes, in which weights are put on and surfaces are stroked at known instants: nobody presses a
 //! key. The muscles are calibrated in `journey.rs`.
 
-use std::process::{Command, Output};
 use std::thread;
 
 use crate::serving::Serving;
+use crate::tool::tenax;
 
 const HEAD: &str = "name = \"bench\"
 title = \"A bench\"
@@ -29,14 +29,7 @@ fn bench(duration_s: f64, presses: &[(f64, f64, f64)], sweeps: &[(f64, f64)]) ->
 }
 
 fn calibrate(place: &str, args: &[&str]) -> (bool, String, String) {
-    let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_tenax-host"))
-        .arg("calibrate")
-        .args(args)
-        .args(["--port", place])
-        .output()
-        .unwrap();
-    let [out, error] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
-    (status.success(), out, error)
+    tenax(&[&["calibrate"], args, &["--port", place]].concat())
 }
 
 /// The number that follows these words.
@@ -65,13 +58,9 @@ fn known_weights_show_how_far_the_force_sensor_is_off() {
     assert!((0.78..0.87).contains(&gain), "{out}");
     assert!((number(proposed, "force-ceiling-mn=") - 40_000.0 * gain).abs() < 30.0, "{proposed}");
     assert!((number(proposed, "loaded-mn=") - 600.0 * gain).abs() < 1.0, "{proposed}");
-    let set = Command::new(env!("CARGO_BIN_EXE_tenax-host"))
-        .arg("config")
-        .args(proposed.split(' '))
-        .args(["--port", &served.places[0]])
-        .output()
-        .unwrap();
-    assert!(set.status.success(), "{set:?}");
+    let words: Vec<&str> = proposed.split(' ').collect();
+    let (set, _, error) = tenax(&[&["config"], &words[..], &["--port", &served.places[0]]].concat());
+    assert!(set, "{error}");
     served.kill();
 }
 

@@ -1,19 +1,12 @@
 //! `tenax config` against a served board: every setting is set, read back, exported, imported and reset.
 
-use std::process::{Command, Output};
-
 use tenax_logic::setting::SettingId;
 
 use crate::serving::Serving;
+use crate::tool::tenax;
 
 fn config(place: &str, args: &[&str]) -> (bool, String, String) {
-    let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_tenax-host"))
-        .args(["config", "--port", place])
-        .args(args)
-        .output()
-        .unwrap();
-    let [out, error] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
-    (status.success(), out, error)
+    tenax(&[&["config", "--port", place], args].concat())
 }
 
 #[test]

@@ -1,13 +1,13 @@
 //! The bytes that the host's board writes up its line: numbered, whole, and what the report is made from.
 
-use std::process::{Command, Stdio};
-
 use tenax_bench::board::line_log::LineLog;
 use tenax_bench::board::{Run, Summary};
 use tenax_bench::session::{Board, load_scene};
 use tenax_hal_shim::wire::Up;
 use tenax_scene::World;
 use tenax_serial::link::{Counts, Inbox};
+
+use crate::tool::tenax;
 
 const SCENE: &str = "rig";
 
@@ -61,12 +61,7 @@ fn hello_is_first_and_the_counters_come_ten_times_a_second() {
 #[test]
 fn the_file_holds_these_bytes() {
     let folder = tempfile::tempdir().unwrap();
-    let done = Command::new(env!("CARGO_BIN_EXE_tenax-host"))
-        .args(["run", "--host", "--scene", SCENE, "--out"])
-        .arg(folder.path())
-        .stdout(Stdio::null())
-        .status()
-        .unwrap();
-    assert!(done.success());
+    let out = folder.path().to_str().unwrap();
+    assert!(tenax(&["run", "--host", "--scene", SCENE, "--out", out]).0);
     assert!(std::fs::read(folder.path().join("rig.line.bin")).unwrap() == run().line);
 }

@@ -30,5 +30,6 @@ mod served_noise;
 mod serving;
 #[cfg(unix)]
 mod suggest;
+mod tool;
 #[cfg(unix)]
 mod vision_served;

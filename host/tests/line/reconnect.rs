@@ -7,14 +7,15 @@ use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use ratatui::Terminal;
-use ratatui::backend::TestBackend;
+use crc::{CRC_32_ISO_HDLC, Crc};
 use serialport::{SerialPort, TTYPort};
 use tenax_hal_shim::wire::{Counters, FRAME_MAX, Up, VERSION, encode};
 use tenax_serial::link::Target;
-use tenax_serial::monitor::screen::{Shown, draw};
+use tenax_serial::monitor::screen::Shown;
 use tenax_serial::monitor::source::{News, Places, start};
 use tenax_serial::monitor::view::View;
+
+use crate::tool::picture;
 
 const WITHIN: Duration = Duration::from_secs(20);
 
@@ -26,32 +27,12 @@ fn frame(sequence: u16) -> Vec<u8> {
 /// The same of another version: its CRC is right.
 fn foreign() -> Vec<u8> {
     let mut plain = vec![VERSION + 1, 0, 3, 0];
-    plain.extend(crc32(&plain).to_le_bytes());
-    let mut framed = vec![0; 32];
-    let length = cobs(&plain, &mut framed);
-    framed.truncate(length);
+    let crc = Crc::<u32>::new(&CRC_32_ISO_HDLC).checksum(&plain);
+    plain.extend(crc.to_le_bytes());
+    let mut framed = vec![0; cobs::max_encoding_length(plain.len()) + 1];
+    let length = cobs::encode(&plain, &mut framed);
+    framed.truncate(length + 1);
     framed
-}
-
-/// ISO-HDLC.
-fn crc32(bytes: &[u8]) -> u32 {
-    let step = |crc: u32| (0..8).fold(crc, |crc, _| crc >> 1 ^ if crc & 1 == 1 { 0xEDB8_8320 } else { 0 });
-    !bytes.iter().fold(!0, |crc, &byte| step(crc ^ u32::from(byte)))
-}
-
-fn cobs(plain: &[u8], out: &mut [u8]) -> usize {
-    let (mut code_at, mut at) = (0, 1);
-    for &byte in plain {
-        if byte == 0 {
-            out[code_at] = (at - code_at) as u8;
-            code_at = at;
-        } else {
-            out[at] = byte;
-        }
-        at += 1;
-    }
-    out[code_at] = (at - code_at) as u8;
-    at + 1
 }
 
 struct Screen {
@@ -71,14 +52,6 @@ impl Screen {
         Self { view: View::default(), news, shown, _commands: commands }
     }
 
-    fn picture(&self) -> String {
-        let mut terminal = Terminal::new(TestBackend::new(80, 24)).unwrap();
-        terminal.draw(|frame| draw(frame, &self.view, &self.shown)).unwrap();
-        let buffer = terminal.backend().buffer();
-        let line = |y| (0..80).map(|x| buffer[(x, y)].symbol()).collect::<String>();
-        (0..24).map(|y| line(y) + "\n").collect()
-    }
-
     /// Draws until the picture is as wanted.
     fn shows(&mut self, what: &str, is_wanted: impl Fn(&str, &View) -> bool) {
         let began = Instant::now();
@@ -86,7 +59,7 @@ impl Screen {
             while let Ok(news) = self.news.try_recv() {
                 self.view.take(news);
             }
-            let picture = self.picture();
+            let picture = picture(&self.view, &self.shown, 80, 24);
             if is_wanted(&picture, &self.view) {
                 return;
             }

@@ -17,6 +17,7 @@ use tenax_serial::link::captured::line_of;
 use tenax_serial::record::Recording;
 
 use crate::serving::Serving;
+use crate::tool::tenax;
 
 const SCENE: &str = "pick-up-reflex";
 
@@ -60,9 +61,8 @@ fn a_recording_decides_the_same_bit_for_bit() {
     let outcome = Recorded::of(&line).unwrap().replay();
     assert_eq!(outcome.difference, None);
     assert!(outcome.frames >= 11_990 && outcome.slows >= 479 && outcome.events > 5, "{outcome:?}");
-    let run =
-        Command::new(env!("CARGO_BIN_EXE_tenax-host")).args(["run", "--replay"]).arg(&path).output().unwrap();
-    assert_eq!(String::from_utf8(run.stdout).unwrap().trim(), outcome.to_string());
+    let (_, said, _) = tenax(&["run", "--replay", path.to_str().unwrap()]);
+    assert_eq!(said.trim(), outcome.to_string());
     // The control: one bit of one sample is another decision, or at least another checksum.
     let torn = changed(&line, |mut raw| {
         if raw.first == 4_000 {
@@ -128,14 +128,7 @@ fn the_public_reader_finds_the_numbers_of_the_csv() {
     let path = folder.path().join("scene.mcap");
     record(&path, true);
     let csv = folder.path().join("csv");
-    let played = Command::new(env!("CARGO_BIN_EXE_tenax-host"))
-        .arg("play")
-        .arg(&path)
-        .arg("--csv")
-        .arg(&csv)
-        .output()
-        .unwrap();
-    assert!(played.status.success());
+    assert!(tenax(&["play", path.to_str().unwrap(), "--csv", csv.to_str().unwrap()]).0);
     let read = Command::new(&python).args(["-c", READER]).arg(&path).arg(&csv).output().unwrap();
     assert!(read.status.success(), "{}", String::from_utf8_lossy(&read.stderr));
     let compared: u32 = String::from_utf8(read.stdout).unwrap().trim().parse().unwrap();
@@ -210,22 +203,17 @@ fn the_seconds_before_a_fault_are_a_recording() {
     // From the middle of a message on, as a box is that was written round.
     let kept = line[line.len() - 40_003..].to_vec();
     let (place, path) = (keeper(kept.clone()), folder.path().join("fault.mcap"));
-    let tenax = |args: &[&str]| {
-        let Output { status, stderr, .. } =
-            Command::new(env!("CARGO_BIN_EXE_tenax-host")).args(args).output().unwrap();
-        (status.success(), String::from_utf8(stderr).unwrap())
-    };
     let (file, csv) = (path.to_str().unwrap(), folder.path().join("csv"));
     let args = ["record", "--last", "--port", &place, "--out", file];
-    let (done, said) = tenax(&args);
+    let (done, _, said) = tenax(&args);
     assert!(done && said.contains(" (scan.rs:7): ") && said.contains(" bytes, 2."), "{said}");
     let first = kept.iter().position(|&byte| byte == 0).unwrap() + 1;
     assert!(line_of(&path).unwrap() == kept[first..], "every whole message");
-    let (again, said) = tenax(&args);
+    let (again, _, said) = tenax(&args);
     assert!(!again && said.contains("the board keeps nothing"), "{said}");
 
     assert!(tenax(&["play", file, "--csv", csv.to_str().unwrap()]).0);
     assert!(std::fs::read_to_string(csv.join("state.csv")).unwrap().lines().count() > 160);
-    let (drawn, said) = tenax(&["plot", file]);
+    let (drawn, _, said) = tenax(&["plot", file]);
     assert!(drawn && path.with_extension("png").exists(), "{said}");
 }

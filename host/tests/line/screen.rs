@@ -2,8 +2,6 @@
 
 use std::time::Instant;
 
-use ratatui::Terminal;
-use ratatui::backend::TestBackend;
 use tenax_bench::board::Run;
 use tenax_bench::session::{Board, load_scene};
 use tenax_hal_shim::channel::{MYO_EXTENSOR, MYO_FLEXOR, PVDF_COUNT, mv_from_sample, sample_from_mv};
@@ -11,10 +9,12 @@ use tenax_hal_shim::wire::{Answer, BadFrame, Down, Refusal, Senses, VERSION};
 use tenax_logic::setting::SettingId;
 use tenax_scene::World;
 use tenax_serial::link::Inbox;
-use tenax_serial::monitor::screen::{Edit, Shown, draw};
+use tenax_serial::monitor::screen::{Edit, Shown};
 use tenax_serial::monitor::source::News;
 use tenax_serial::monitor::view::View;
 use tenax_serial::truth::Truth;
+
+use crate::tool::picture;
 
 /// A view that has heard a scene's line.
 fn heard(scene: &str, seconds: f64) -> View {
@@ -31,14 +31,6 @@ fn heard(scene: &str, seconds: f64) -> View {
         }
     }
     view
-}
-
-fn picture(view: &View, shown: &Shown, width: u16, height: u16) -> String {
-    let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
-    terminal.draw(|frame| draw(frame, view, shown)).unwrap();
-    let buffer = terminal.backend().buffer();
-    let line = |y| (0..width).map(|x| buffer[(x, y)].symbol()).collect::<String>();
-    (0..height).map(|y| line(y) + "\n").collect()
 }
 
 #[test]

@@ -1,7 +1,5 @@
 //! Thresholds suggested from recordings of scenes in which it is known what they should be.
 
-use std::process::{Command, Output};
-
 use tenax_bench::board::Run;
 use tenax_bench::session::{Board, load_scene};
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
@@ -11,6 +9,7 @@ use tenax_scene::{SceneFile, World};
 use tenax_serial::suggest::{Suggestion, Suggestions};
 
 use crate::serving::Serving;
+use crate::tool::tenax;
 
 fn scene(name: &str, more: &str) -> (Run, World) {
     let text =
@@ -107,13 +106,8 @@ fn what_is_suggested_is_printed_with_its_reason_and_set() {
     let file = served.folder.path().join("glass.line.bin");
     std::fs::write(&file, &run.line).unwrap();
     let config = |args: &[&str]| {
-        let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_tenax-host"))
-            .args(["config", "--port", &served.places[0]])
-            .args(args)
-            .output()
-            .unwrap();
-        let [out, error] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
-        assert!(status.success(), "{out}{error}");
+        let (done, out, error) = tenax(&[&["config", "--port", &served.places[0]], args].concat());
+        assert!(done, "{out}{error}");
         out
     };
     let out = config(&["suggest", file.to_str().unwrap(), "--write"]);

@@ -47,12 +47,6 @@ pub struct Judgement {
     pub off_frames: u8,
 }
 
-impl Judgement {
-    /// A verdict for each frame by itself, at even odds.
-    pub const EVEN: Self =
-        Self { logit_per_nat: 1 << 16, on_permille: 500, off_permille: 500, on_frames: 1, off_frames: 1 };
-}
-
 /// A trained detector on windows of `N` differences and `M` sums: everything about it that is not state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model<

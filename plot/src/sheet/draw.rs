@@ -1,21 +1,18 @@
 //! Draws a sheet as SVG.
 
-use anyhow::anyhow;
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::{Axis, Cell, Mark, Panel, Series, Sheet};
-use crate::draw::FONTS;
+use crate::draw::{FONTS, INK, drawn};
 
 const WIDTH: u32 = 1_200;
 const PANEL_HEIGHT: u32 = 340;
 const TITLE_HEIGHT: u32 = 72;
 const FOOT_HEIGHT: u32 = 74;
 const MARGIN: i32 = 26;
-/// What words and axes are drawn in.
-pub const INK: RGBColor = RGBColor(40, 40, 40);
 const FAILED: RGBColor = RGBColor(225, 225, 225);
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -224,9 +221,4 @@ fn power(place: f64) -> String {
             )
         }
     }
-}
-
-/// plotters' error as ours; it does not go through `?` because it borrows.
-fn drawn<T, E: std::fmt::Display>(result: Result<T, E>) -> anyhow::Result<T> {
-    result.map_err(|error| anyhow!("the chart cannot be drawn: {error}"))
 }

@@ -1,9 +1,10 @@
 //! What of a board's messages goes where in a recording: topics, their fields, and the values, for MCAP and CSV alike.
 
 use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ, mv_from_sample};
-use tenax_hal_shim::detector::{DetectorId, DetectorSet};
+use tenax_hal_shim::detector::{DetectorId, Evidence};
+use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{About, Answer, Counters, Setting, Slow, TickRecord, Up};
+use tenax_hal_shim::wire::{Answer, Counters, Forces, Setting, Slow, TickRecord, Up};
 use tenax_logic::setting::SettingId;
 
 use crate::link::captured;
@@ -72,67 +73,135 @@ impl Topic {
 
     /// The fields of its messages.
     pub fn fields(self) -> Vec<(String, Kind)> {
-        use Kind::{Bytes, Flag, Number, Numbers, Text};
-        let named =
-            |fields: &[(&str, Kind)]| fields.iter().map(|(name, kind)| ((*name).to_owned(), *kind)).collect();
         match self {
-            Self::Line => named(&[("data", Bytes)]),
-            Self::State => named(&[
-                ("mode", Text),
-                ("fn_n", Number),
-                ("load_n", Number),
-                ("fx_n", Number),
-                ("fy_n", Number),
-                ("ft_n", Number),
-                ("ratio", Number),
-                ("s2", Number),
-                ("margin_mn", Number),
-                ("flexor_mv", Number),
-                ("extensor_mv", Number),
-                ("wearer_active", Flag),
-                ("line", Text),
-            ]),
-            Self::Tick => named(&[
-                ("vibration_mv", Number),
-                ("o1", Number),
-                ("o2", Number),
-                ("drive", Number),
-                ("source", Text),
-                ("said", Text),
-                ("believed", Text),
-                ("acted", Text),
-            ]),
-            Self::Detector(_) => named(&[
-                ("slip", Flag),
-                ("incipient", Flag),
-                ("confidence", Number),
-                ("direction", Text),
-                ("health", Text),
-                ("raw", Number),
-                ("decided_s", Number),
-            ]),
-            Self::Frame => {
-                named(&[("valid", Flag), ("films", Numbers), ("switch_a", Number), ("switch_b", Number)])
-            }
+            Self::Line => vec![("data".to_owned(), Kind::Bytes)],
+            Self::State => fields(&STATE),
+            Self::Tick => fields(&TICK),
+            Self::Detector(_) => fields(&DETECTOR),
+            Self::Frame => fields(&FRAME),
             Self::Sensors => {
-                let channels = CHANNELS.iter().map(|channel| (identifier(channel.name, "mv"), Number));
-                channels.chain([("film_envelopes_mv".to_owned(), Numbers)]).collect()
+                let channels = CHANNELS.iter().map(|channel| (identifier(channel.name, "mv"), Kind::Number));
+                channels.chain([("film_envelopes_mv".to_owned(), Kind::Numbers)]).collect()
             }
-            Self::Event => named(&[("text", Text)]),
-            Self::Counters => named(&[
-                ("frames", Number),
-                ("frames_lost", Number),
-                ("overruns", Number),
-                ("ticks_late", Number),
-                ("telemetry_dropped", Number),
-                ("bad_frames", Number),
-                ("commands_skipped", Number),
-                ("control_us_max", Number),
-                ("control_permille", Number),
-            ]),
-            Self::Setting => named(&[("name", Text), ("value", Number)]),
+            Self::Event => fields(&EVENT),
+            Self::Counters => fields(&COUNTERS),
+            Self::Setting => fields(&SETTING),
         }
     }
+}
+
+/// How a field is read from what the board said.
+enum Read<T> {
+    Number(fn(&T) -> f64),
+    /// NaN: there was none.
+    Maybe(fn(&T) -> Option<f64>),
+    Numbers(fn(&T) -> Vec<f64>),
+    Flag(fn(&T) -> bool),
+    Text(fn(&T) -> String),
+}
+
+/// A field: its name, and how it is read.
+type Field<T> = (&'static str, Read<T>);
+
+use Read::{Flag, Maybe, Number, Numbers, Text};
+
+const STATE: [Field<Slow>; 13] = [
+    ("mode", Text(|slow| format!("{:?}", slow.mode))),
+    ("fn_n", Maybe(|slow| newtons(slow, |forces| forces.fn_mn))),
+    ("load_n", Maybe(|slow| newtons(slow, |forces| forces.load_mn))),
+    ("fx_n", Maybe(|slow| newtons(slow, |forces| forces.fx_mn))),
+    ("fy_n", Maybe(|slow| newtons(slow, |forces| forces.fy_mn))),
+    ("ft_n", Maybe(|slow| newtons(slow, |forces| forces.ft_mn))),
+    ("ratio", Maybe(|slow| Some(f64::from(slow.forces?.ratio_permille?) / 1e3))),
+    ("s2", Number(|slow| f64::from(slow.s2_permille) / 1e3)),
+    ("margin_mn", Maybe(|slow| Some(slow.forces?.margin_mn(slow.s2_permille)?.into()))),
+    ("flexor_mv", Maybe(|slow| slow.flexor_mv.map(f64::from))),
+    ("extensor_mv", Maybe(|slow| slow.extensor_mv.map(f64::from))),
+    ("wearer_active", Flag(|slow| slow.wearer_active)),
+    ("line", Text(|slow| format!("{:?}", slow.line))),
+];
+
+const TICK: [Field<TickRecord>; 8] = [
+    ("vibration_mv", Number(|tick| mv_from_sample(tick.vibration).into())),
+    ("o1", Number(|tick| f64::from(tick.outputs[0]) / 128.0)),
+    ("o2", Number(|tick| f64::from(tick.outputs[1]) / 128.0)),
+    ("drive", Number(|tick| duty(tick.drive))),
+    ("source", Text(|tick| format!("{:?}", tick.source))),
+    ("said", Text(|tick| names(tick.said))),
+    ("believed", Text(|tick| names(tick.believed))),
+    ("acted", Text(|tick| names(tick.acted))),
+];
+
+const DETECTOR: [Field<Evidence>; 7] = [
+    ("slip", Flag(|evidence| evidence.slip)),
+    ("incipient", Flag(|evidence| evidence.incipient)),
+    ("confidence", Number(|evidence| f64::from(evidence.confidence_permille) / 1e3)),
+    ("direction", Text(|evidence| format!("{:?}", evidence.direction))),
+    ("health", Text(|evidence| format!("{:?}", evidence.health))),
+    ("raw", Number(|evidence| evidence.raw.into())),
+    ("decided_s", Number(|evidence| seconds(evidence.decided_at))),
+];
+
+const FRAME: [Field<Frame>; 4] = [
+    ("valid", Flag(|frame| frame.valid)),
+    ("films", Numbers(|frame| frame.pvdf.map(f64::from).to_vec())),
+    ("switch_a", Number(|frame| frame.switch_a.into())),
+    ("switch_b", Number(|frame| frame.switch_b.into())),
+];
+
+const EVENT: [Field<Up>; 1] = [("text", Text(|message| Words(message).to_string()))];
+
+const COUNTERS: [Field<Counters>; 9] = [
+    ("frames", Number(|counters| counters.frames.into())),
+    ("frames_lost", Number(|counters| counters.frames_lost.into())),
+    ("overruns", Number(|counters| counters.overruns.into())),
+    ("ticks_late", Number(|counters| counters.ticks_late.into())),
+    ("telemetry_dropped", Number(|counters| counters.telemetry_dropped.into())),
+    ("bad_frames", Number(|counters| counters.bad_frames.into())),
+    ("commands_skipped", Number(|counters| counters.commands_skipped.into())),
+    ("control_us_max", Number(|counters| counters.control_us_max.into())),
+    ("control_permille", Number(|counters| counters.control_permille.into())),
+];
+
+const SETTING: [Field<Setting>; 2] =
+    [("name", Text(|setting| setting_name(setting.id))), ("value", Number(|setting| setting.value.into()))];
+
+fn fields<T>(all: &[Field<T>]) -> Vec<(String, Kind)> {
+    let kind = |read: &Read<T>| match read {
+        Number(_) | Maybe(_) => Kind::Number,
+        Numbers(_) => Kind::Numbers,
+        Flag(_) => Kind::Flag,
+        Text(_) => Kind::Text,
+    };
+    all.iter().map(|(name, read)| ((*name).to_owned(), kind(read))).collect()
+}
+
+fn values<T>(all: &[Field<T>], of: &T) -> Vec<Value> {
+    let value = |(_, read): &Field<T>| match read {
+        Number(read) => Value::Number(read(of)),
+        Maybe(read) => Value::Number(read(of).unwrap_or(f64::NAN)),
+        Numbers(read) => Value::Numbers(read(of)),
+        Flag(read) => Value::Flag(read(of)),
+        Text(read) => Value::Text(read(of)),
+    };
+    all.iter().map(value).collect()
+}
+
+fn newtons(slow: &Slow, force: fn(&Forces) -> i32) -> Option<f64> {
+    slow.forces.as_ref().map(|forces| f64::from(force(forces)) / 1e3)
+}
+
+/// From -1, opening, to 1, closing.
+fn duty(drive: MotorDrive) -> f64 {
+    match drive {
+        MotorDrive::Coast => 0.0,
+        MotorDrive::Close(duty) => f64::from(duty.as_per_mille()) / 1e3,
+        MotorDrive::Open(duty) => -f64::from(duty.as_per_mille()) / 1e3,
+    }
+}
+
+fn setting_name(id: u8) -> String {
+    SettingId::from_number(id).map_or_else(|| format!("setting {id}"), |id| id.row().name.to_owned())
 }
 
 /// A channel's name as protobuf takes it.
@@ -150,18 +219,16 @@ pub fn seconds(frame: u32) -> f64 {
 /// What a message says, each with the frame that it is of. `last` is the frame that was heard of last, for messages that
 /// name none.
 pub fn rows(message: &Up, last: u32) -> Vec<(Topic, u32, Vec<Value>)> {
+    let text = |frame: u32| (Topic::Event, frame, values(&EVENT, message));
+    let settings = |all: &[Setting], frame: u32| {
+        let row = |setting| (Topic::Setting, frame, values(&SETTING, setting));
+        [text(frame)].into_iter().chain(all.iter().map(row)).collect()
+    };
     match message {
         Up::Slow(slow) => slow_rows(slow),
-        Up::Raw(raw) => raw
-            .frames()
-            .iter()
-            .map(|frame| {
-                let films = frame.pvdf.iter().map(|&sample| f64::from(sample)).collect();
-                let switches = [frame.switch_a, frame.switch_b].map(|sample| Value::Number(sample.into()));
-                let values = [Value::Flag(frame.valid), Value::Numbers(films)].into_iter().chain(switches);
-                (Topic::Frame, frame.sequence, values.collect())
-            })
-            .collect(),
+        Up::Raw(raw) => {
+            raw.frames().iter().map(|frame| (Topic::Frame, frame.sequence, values(&FRAME, frame))).collect()
+        }
         Up::Senses(senses) => {
             let mv = |sample: &u16| f64::from(mv_from_sample(*sample));
             let films = Value::Numbers(senses.films.iter().map(mv).collect());
@@ -169,109 +236,26 @@ pub fn rows(message: &Up, last: u32) -> Vec<(Topic, u32, Vec<Value>)> {
                 senses.samples.iter().map(|sample| Value::Number(mv(sample))).chain([films]).collect();
             vec![(Topic::Sensors, senses.frame, values)]
         }
-        Up::Counters(counters) => vec![(Topic::Counters, last, counter_values(counters))],
-        Up::About(about) => text_and_settings(message, about, last),
+        Up::Counters(counters) => vec![(Topic::Counters, last, values(&COUNTERS, counters))],
+        Up::About(about) => settings(&about.settings, last),
         Up::Answer { frame, answer, .. } => match answer {
-            Answer::About(about) => text_and_settings(message, about, *frame),
-            Answer::Setting(setting) => vec![text(message, *frame), setting_row(setting, *frame)],
-            Answer::Settings(all) => {
-                let settings = all.iter().map(|setting| setting_row(setting, *frame));
-                [text(message, *frame)].into_iter().chain(settings).collect()
-            }
-            _ => vec![text(message, *frame)],
+            Answer::About(about) => settings(&about.settings, *frame),
+            Answer::Setting(setting) => settings(&[*setting], *frame),
+            Answer::Settings(all) => settings(all, *frame),
+            _ => vec![text(*frame)],
         },
-        Up::Event(event) => vec![text(message, event.frame)],
-        Up::Saved { frame, .. } => vec![text(message, *frame)],
-        Up::Taken { before, .. } => vec![text(message, before.wrapping_sub(1))],
-        _ => vec![text(message, last)],
+        Up::Event(event) => vec![text(event.frame)],
+        Up::Saved { frame, .. } => vec![text(*frame)],
+        Up::Taken { before, .. } => vec![text(before.wrapping_sub(1))],
+        _ => vec![text(last)],
     }
 }
 
-fn text(message: &Up, frame: u32) -> (Topic, u32, Vec<Value>) {
-    (Topic::Event, frame, vec![Value::Text(Words(message).to_string())])
-}
-
-fn text_and_settings(message: &Up, about: &About, frame: u32) -> Vec<(Topic, u32, Vec<Value>)> {
-    let settings = about.settings.iter().map(|setting| setting_row(setting, frame));
-    [text(message, frame)].into_iter().chain(settings).collect()
-}
-
-fn setting_row(setting: &Setting, frame: u32) -> (Topic, u32, Vec<Value>) {
-    let name = SettingId::from_number(setting.id)
-        .map_or_else(|| format!("setting {}", setting.id), |id| id.row().name.to_owned());
-    (Topic::Setting, frame, vec![Value::Text(name), Value::Number(setting.value.into())])
-}
-
 fn slow_rows(slow: &Slow) -> Vec<(Topic, u32, Vec<Value>)> {
-    let number = |value: Option<f64>| Value::Number(value.unwrap_or(f64::NAN));
-    let force = |value: fn(&tenax_hal_shim::wire::Forces) -> i32| {
-        number(slow.forces.as_ref().map(|forces| f64::from(value(forces)) / 1e3))
-    };
-    let ratio = slow.forces.and_then(|forces| forces.ratio_permille).map(|ratio| f64::from(ratio) / 1e3);
-    let state = vec![
-        Value::Text(format!("{:?}", slow.mode)),
-        force(|forces| forces.fn_mn),
-        force(|forces| forces.load_mn),
-        force(|forces| forces.fx_mn),
-        force(|forces| forces.fy_mn),
-        force(|forces| forces.ft_mn),
-        number(ratio),
-        number(Some(f64::from(slow.s2_permille) / 1e3)),
-        number(slow.forces.and_then(|forces| forces.margin_mn(slow.s2_permille)).map(f64::from)),
-        number(slow.flexor_mv.map(f64::from)),
-        number(slow.extensor_mv.map(f64::from)),
-        Value::Flag(slow.wearer_active),
-        Value::Text(format!("{:?}", slow.line)),
-    ];
     let first = slow.frame.wrapping_sub(slow.ticks.len() as u32 - 1);
     let ticks =
-        slow.ticks.iter().zip(0..).map(|(tick, n)| (Topic::Tick, first.wrapping_add(n), tick_values(tick)));
-    let evidence = slow.evidence.iter().map(|(id, evidence)| {
-        let values = vec![
-            Value::Flag(evidence.slip),
-            Value::Flag(evidence.incipient),
-            Value::Number(f64::from(evidence.confidence_permille) / 1e3),
-            Value::Text(format!("{:?}", evidence.direction)),
-            Value::Text(format!("{:?}", evidence.health)),
-            Value::Number(evidence.raw.into()),
-            Value::Number(seconds(evidence.decided_at)),
-        ];
-        (Topic::Detector(*id), slow.frame, values)
-    });
-    ticks.chain([(Topic::State, slow.frame, state)]).chain(evidence).collect()
-}
-
-fn tick_values(tick: &TickRecord) -> Vec<Value> {
-    let names = |set: DetectorSet| Value::Text(names(set));
-    let drive = match tick.drive {
-        MotorDrive::Coast => 0.0,
-        MotorDrive::Close(duty) => f64::from(duty.as_per_mille()) / 1e3,
-        MotorDrive::Open(duty) => -f64::from(duty.as_per_mille()) / 1e3,
-    };
-    vec![
-        Value::Number(mv_from_sample(tick.vibration).into()),
-        Value::Number(f64::from(tick.outputs[0]) / 128.0),
-        Value::Number(f64::from(tick.outputs[1]) / 128.0),
-        Value::Number(drive),
-        Value::Text(format!("{:?}", tick.source)),
-        names(tick.said),
-        names(tick.believed),
-        names(tick.acted),
-    ]
-}
-
-fn counter_values(counters: &Counters) -> Vec<Value> {
-    [
-        counters.frames,
-        counters.frames_lost,
-        counters.overruns,
-        counters.ticks_late,
-        counters.telemetry_dropped,
-        counters.bad_frames,
-        counters.commands_skipped,
-        counters.control_us_max,
-        counters.control_permille.into(),
-    ]
-    .map(|count| Value::Number(count.into()))
-    .to_vec()
+        (0..).zip(&slow.ticks).map(|(n, tick)| (Topic::Tick, first.wrapping_add(n), values(&TICK, tick)));
+    let evidence =
+        slow.evidence.iter().map(|(id, own)| (Topic::Detector(*id), slow.frame, values(&DETECTOR, own)));
+    ticks.chain([(Topic::State, slow.frame, values(&STATE, slow))]).chain(evidence).collect()
 }

@@ -1,9 +1,8 @@
 //! A fingertip on the host that goes from one world to the next and keeps what it has learned.
 
 use anyhow::{Context, anyhow};
-use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, PVDF_COUNT, SCANS_PER_FRAME, SLOW_HZ};
+use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, PVDF_COUNT, SLOW_HZ};
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
-use tenax_hal_shim::frame::{Frame, Scan, scan_of_pins};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Down, NETWORK_OUTPUTS, NetworkState, RECEPTORS, Setting, Slow};
 use tenax_hal_shim::words;
@@ -72,18 +71,11 @@ impl Bench {
         let (mut drive, mut ahead) = (MotorDrive::Coast, Ahead::default());
         let slow_frames = slow_frames(&world).min((for_s * f64::from(SLOW_HZ)) as usize);
         for _ in 0..slow_frames * usize::from(FRAMES_PER_SLOW_FRAME) {
-            let select = Frame::lost(self.frame).select();
-            let mut scans = [Scan::default(); SCANS_PER_FRAME];
-            let mut commands: Vec<Down> = Vec::new();
-            for scan in &mut scans {
-                *scan = scan_of_pins(&world.scan(drive).codes(), select);
-                commands.extend(world.commands());
-            }
+            let (frame_in, commands) = world.frame(self.frame, drive);
             for command in &commands {
                 // A refusal goes back to whoever sent it; there is no line here.
                 let _ = self.fingertip.command(command);
             }
-            let frame_in = Frame::from_scans(self.frame, &scans);
             self.frame = self.frame.wrapping_add(1);
             let told = match judge {
                 Judge::Touch | Judge::Bound => None,

@@ -155,14 +155,8 @@ impl Trial {
     /// The stretches in which the network said this.
     pub fn verdicts(&self, word: Word) -> Vec<Verdict> {
         let mut all: Vec<Verdict> = Vec::new();
-        let mut before = false;
-        for (tick, now) in self.said.iter().map(|&said| word.is_in(said)).enumerate() {
-            match (before, now, all.last_mut()) {
-                (false, true, _) => all.push(Verdict::new(Self::time_s(tick), f64::INFINITY)),
-                (true, false, Some(last)) => last.to_s = Self::time_s(tick),
-                _ => {}
-            }
-            before = now;
+        for (tick, &said) in self.said.iter().enumerate() {
+            Verdict::go_on(&mut all, Self::time_s(tick), word.is_in(said));
         }
         all
     }

@@ -11,7 +11,7 @@ use tenax_scene::sensor::photoelastic::curve::{Day, Making, receiver_mv};
 use tenax_scene::sensor::photoelastic::optics::Layer;
 
 use super::bench::{Bench, mean_head};
-use super::least_squares::LeastSquares;
+use crate::equations::Equations;
 
 /// A gram, N.
 const GRAM_N: f64 = 9.806_65e-3;
@@ -154,14 +154,14 @@ fn knots(phases: &[(f64, f64)]) -> [f64; KNOTS] {
     let step = f64::from(HALF_TURN) / KNOTS as f64;
     std::array::from_fn(|n| {
         let knot = (n + 1) as f64 * step;
-        let mut fit = LeastSquares::<3>::default();
+        let mut fit = Equations::new(3);
         for (phase, force_n) in phases {
             let off = (phase - knot) / step;
             // Where the light hardly changes, its noise is a large phase: at the peak and at the ends.
             let sure = (std::f64::consts::TAU * phase / f64::from(HALF_TURN)).sin().powi(2) + 0.01;
-            fit.add([1.0, off, off * off], *force_n, sure * (1.0 - off * off).max(0.0));
+            let weight = sure * (1.0 - off * off).max(0.0);
+            fit.add(&[1.0, off, off * off], weight, weight * force_n);
         }
-        let [at_knot, ..] = fit.solve();
-        at_knot
+        fit.solve()[0]
     })
 }

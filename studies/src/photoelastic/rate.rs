@@ -15,7 +15,7 @@ use tenax_serial::quantile::middle;
 
 use super::balance;
 use super::bench::{Bench, between, over_decades};
-use super::least_squares::LeastSquares;
+use crate::equations::Equations;
 
 /// Friction of one material differs by this part from day to day: grease, dust, wear. Assumed.
 const DAILY: f64 = 0.1;
@@ -170,16 +170,16 @@ pub fn slips(making_seed: u64, day_seed: u64, material: Material, count: usize) 
 
 /// The fit of all slips that swing (least squares of logarithms).
 pub fn fit<'a>(slips: impl IntoIterator<Item = &'a Seen>) -> RateFit {
-    let mut equations = LeastSquares::<4>::default();
+    let mut equations = Equations::new(4);
     for seen in slips {
         if let Some((amplitude, period_q4, force_mn)) = seen.swing {
             let [a, f, n] =
                 RateFit::features(amplitude, period_q4, force_mn).map(|log| f64::from(log) / 1_024.0);
-            equations.add([1.0, a, f, n], (seen.rate_mm_s * 1e3).log2(), 1.0);
+            equations.add(&[1.0, a, f, n], 1.0, (seen.rate_mm_s * 1e3).log2());
         }
     }
-    let [constant, amplitude, frequency, force] =
-        equations.solve().map(|factor| (factor * 1_024.0).round() as i32);
+    let factors = equations.solve();
+    let [constant, amplitude, frequency, force] = [0, 1, 2, 3].map(|n| (factors[n] * 1_024.0).round() as i32);
     RateFit { constant, amplitude, frequency, force }
 }
 

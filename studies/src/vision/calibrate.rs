@@ -14,6 +14,7 @@ use tenax_vision::loads::{Features, Loads, NORMAL_FEATURES, SHEAR_FEATURES};
 use tenax_vision::markers::{Calibration, Marker, Markers};
 
 use super::source::Source;
+use crate::equations::Equations;
 
 /// Ridge of the shear's weights, px^2.
 const SHEAR_RIDGE: f64 = 1.0;
@@ -248,33 +249,13 @@ fn unshrunk(samples: &[Sample], axis: usize, by: f64, row: impl Fn(&Sample) -> V
     weights
 }
 
-/// Ridge regression by the normal equations and Cholesky's factors.
+/// Ridge regression.
 fn ridge(rows: &[Vec<f64>], targets: &[f64], ridge: f64) -> Vec<f64> {
-    let n = rows.first().map_or(0, Vec::len);
-    let mut a = vec![vec![0.0; n]; n];
-    let mut b = vec![0.0; n];
-    for (row, target) in rows.iter().zip(targets) {
-        for i in 0..n {
-            if row[i] != 0.0 {
-                b[i] += row[i] * target;
-                (0..=i).for_each(|j| a[i][j] += row[i] * row[j]);
-            }
-        }
-    }
-    (0..n).for_each(|i| a[i][i] += ridge);
-    for i in 0..n {
-        for j in 0..=i {
-            let dot: f64 = (0..j).map(|k| a[i][k] * a[j][k]).sum();
-            a[i][j] = if i == j { (a[i][i] - dot).sqrt() } else { (a[i][j] - dot) / a[j][j] };
-        }
-    }
-    for i in 0..n {
-        b[i] = (b[i] - (0..i).map(|k| a[i][k] * b[k]).sum::<f64>()) / a[i][i];
-    }
-    for i in (0..n).rev() {
-        b[i] = (b[i] - (i + 1..n).map(|k| a[k][i] * b[k]).sum::<f64>()) / a[i][i];
-    }
-    b
+    let unknowns = rows.first().map_or(0, Vec::len);
+    let mut equations = Equations::new(unknowns);
+    rows.iter().zip(targets).for_each(|(row, target)| equations.add(row, 1.0, *target));
+    (0..unknowns).for_each(|n| equations.add_to(n, ridge, 0.0));
+    equations.solve()
 }
 
 /// How weights do on samples.
@@ -328,19 +309,4 @@ pub fn left_out(samples: &[Sample], masses_g: &[f64]) -> (Vec<Sample>, Vec<Sampl
         samples.iter().filter(is).cloned().collect(),
         samples.iter().filter(|sample| !is(sample)).cloned().collect(),
     )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_ridge_finds_the_line_and_shrinks_it() {
-        let rows: Vec<Vec<f64>> =
-            (0..20).map(|at| vec![f64::from(at), f64::from(at * at % 7), 0.0]).collect();
-        let targets: Vec<f64> = rows.iter().map(|row| 2.0 * row[0] - 3.0 * row[1]).collect();
-        let exact = ridge(&rows, &targets, 1e-9);
-        assert!((exact[0] - 2.0).abs() < 1e-6 && (exact[1] + 3.0).abs() < 1e-6 && exact[2].abs() < 1e-6);
-        assert!(ridge(&rows, &targets, 1e3)[1].abs() < 3.0);
-    }
 }

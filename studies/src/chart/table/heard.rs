@@ -2,9 +2,9 @@
 
 use anyhow::Context;
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
-use tenax_hal_shim::channel::{ARRAY_COUNT, FRAMES_PER_SLOW_FRAME, SCANS_PER_FRAME, frames};
+use tenax_hal_shim::channel::{ARRAY_COUNT, FRAMES_PER_SLOW_FRAME, frames};
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
-use tenax_hal_shim::frame::{Frame, Scan, scan_of_pins};
+use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::Down;
 use tenax_logic::array::{Features, Preprocessor, Reading};
@@ -209,24 +209,12 @@ impl Fingertip {
             if world.now_s() >= span_s.1 || world.truth().dropped {
                 break;
             }
-            let select = Frame::lost(sequence).select();
-            let mut scans = [Scan::default(); SCANS_PER_FRAME];
-            let mut commands = Vec::new();
-            for scan in &mut scans {
-                *scan = scan_of_pins(&world.scan(drive).codes(), select);
-                commands.extend(world.commands());
-            }
+            let (frame, commands) = world.frame(sequence, drive);
             slid += u32::from(world.slipping());
-            let frame = Frame::from_scans(sequence, &scans);
             let t_s = world.now_s();
             ears.take(&frame, drive, &mut |felt| {
                 for (judge, said) in judges.iter_mut().zip(&mut said) {
-                    let stands = said.last().is_some_and(|last| last.to_s == f64::INFINITY);
-                    match (stands, judge.hear(felt), said.last_mut()) {
-                        (false, true, _) => said.push(Verdict::new(t_s, f64::INFINITY)),
-                        (true, false, Some(last)) => last.to_s = t_s,
-                        _ => {}
-                    }
+                    Verdict::go_on(said, t_s, judge.hear(felt));
                 }
                 if let Some(features) = felt.features {
                     steps(features, 2 * slid > u32::from(FRAMES_PER_SLOW_FRAME));

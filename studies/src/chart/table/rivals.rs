@@ -9,6 +9,7 @@ use tenax_hal_shim::detector::DetectorId;
 use tenax_logic::array::{FEATURES, Features};
 
 use super::heard::{CONTROLS, Felt, Judge};
+use crate::equations::Equations;
 use crate::learn::control::Control;
 
 #[path = "../../../../firmware/src/bin/frames/rivals.rs"]
@@ -238,8 +239,7 @@ pub fn learn(steps: &[(Features, bool)], count: usize) -> Logistic {
         (0..count).map(|k| steps.iter().map(|(own, _)| at(own, k)).sum::<f64>() / total).collect();
     let mut weights = vec![0.0; n];
     for _ in 0..ROUNDS {
-        let (mut gradient, mut curve) = (vec![0.0; n], vec![0.0; n * n]);
-        let mut row = vec![0.0; n];
+        let (mut equations, mut row) = (Equations::new(n), vec![0.0; n]);
         for (features, slips) in steps {
             for k in 0..count {
                 row[k] = at(features, k) - mean[k];
@@ -248,20 +248,11 @@ pub fn learn(steps: &[(Features, bool)], count: usize) -> Logistic {
             let logit: f64 = row.iter().zip(&weights).map(|(x, weight)| x * weight).sum();
             let p = 1.0 / (1.0 + (-logit).exp());
             let (miss, weight) = (f64::from(*slips) - p, (p * (1.0 - p)).max(1e-6));
-            for i in 0..n {
-                gradient[i] += miss * row[i];
-                let x = weight * row[i];
-                for (cell, y) in curve[i * n..=i * n + i].iter_mut().zip(&row) {
-                    *cell += x * y;
-                }
-            }
+            equations.add(&row, weight, miss);
         }
-        for k in 0..count {
-            gradient[k] -= RIDGE * weights[k];
-            curve[k * n + k] += RIDGE;
-        }
-        curve[n * n - 1] += 1e-9;
-        for (weight, step) in weights.iter_mut().zip(solved(curve, gradient)) {
+        (0..count).for_each(|k| equations.add_to(k, RIDGE, -RIDGE * weights[k]));
+        equations.add_to(count, 1e-9, 0.0);
+        for (weight, step) in weights.iter_mut().zip(equations.solve()) {
             *weight += step;
         }
     }
@@ -275,27 +266,3 @@ pub fn learn(steps: &[(Features, bool)], count: usize) -> Logistic {
 const ROUNDS: usize = 8;
 const RIDGE: f64 = 10.0;
 const _: () = assert!(OF_PAPER < FEATURES);
-
-/// `curve x = right` by Cholesky; of the matrix only the lower half is read.
-fn solved(mut curve: Vec<f64>, mut right: Vec<f64>) -> Vec<f64> {
-    let n = right.len();
-    for j in 0..n {
-        for i in j..n {
-            let less: f64 = (0..j).map(|k| curve[i * n + k] * curve[j * n + k]).sum();
-            curve[i * n + j] = if i == j {
-                (curve[i * n + i] - less).max(1e-12).sqrt()
-            } else {
-                (curve[i * n + j] - less) / curve[j * n + j]
-            };
-        }
-    }
-    for i in 0..n {
-        let less: f64 = (0..i).map(|k| curve[i * n + k] * right[k]).sum();
-        right[i] = (right[i] - less) / curve[i * n + i];
-    }
-    for i in (0..n).rev() {
-        let less: f64 = (i + 1..n).map(|k| curve[k * n + i] * right[k]).sum();
-        right[i] = (right[i] - less) / curve[i * n + i];
-    }
-    right
-}

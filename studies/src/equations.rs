@@ -1,0 +1,74 @@
+//! Normal equations of least squares, for few unknowns as for a hundred.
+
+/// `matrix x = right`. The matrix is symmetric and positive definite; its lower half is kept.
+#[derive(Clone, Debug)]
+pub struct Equations {
+    matrix: Vec<Vec<f64>>,
+    right: Vec<f64>,
+}
+
+impl Equations {
+    pub fn new(unknowns: usize) -> Self {
+        Self { matrix: (1..=unknowns).map(|cells| vec![0.0; cells]).collect(), right: vec![0.0; unknowns] }
+    }
+
+    /// One more row: its factors times the unknowns are `pull / weight`, and it counts `weight`.
+    pub fn add(&mut self, factors: &[f64], weight: f64, pull: f64) {
+        for ((row, right), own) in self.matrix.iter_mut().zip(&mut self.right).zip(factors) {
+            if *own != 0.0 {
+                *right += pull * own;
+                let own = weight * own;
+                row.iter_mut().zip(factors).for_each(|(cell, other)| *cell += own * other);
+            }
+        }
+    }
+
+    /// The same for one unknown alone: a ridge.
+    pub fn add_to(&mut self, unknown: usize, weight: f64, pull: f64) {
+        self.matrix[unknown][unknown] += weight;
+        self.right[unknown] += pull;
+    }
+
+    /// The unknowns, by Cholesky's factors.
+    pub fn solve(self) -> Vec<f64> {
+        let Self { matrix: mut rows, mut right } = self;
+        for i in 0..right.len() {
+            for j in 0..=i {
+                let less: f64 = (0..j).map(|k| rows[i][k] * rows[j][k]).sum();
+                let left = rows[i][j] - less;
+                rows[i][j] = if i == j { left.max(1e-12).sqrt() } else { left / rows[j][j] };
+            }
+        }
+        for i in 0..right.len() {
+            right[i] = (right[i] - (0..i).map(|k| rows[i][k] * right[k]).sum::<f64>()) / rows[i][i];
+        }
+        for i in (0..right.len()).rev() {
+            let known: f64 = (i + 1..right.len()).map(|k| rows[k][i] * right[k]).sum();
+            right[i] = (right[i] - known) / rows[i][i];
+        }
+        right
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_parabola_is_found_through_its_points_and_a_ridge_shrinks_it() {
+        let fit = |ridge: f64| {
+            let mut fit = Equations::new(3);
+            for x in (-3..4).map(f64::from) {
+                let weight = 1.0 + x.abs();
+                fit.add(&[1.0, x, x * x], weight, weight * (2.0 - x + 0.5 * x * x));
+            }
+            (0..3).for_each(|n| fit.add_to(n, ridge, 0.0));
+            fit.solve()
+        };
+        let exact = fit(0.0);
+        for (found, right) in exact.iter().zip([2.0, -1.0, 0.5]) {
+            assert!((found - right).abs() < 1e-9, "{exact:?}");
+        }
+        assert!(fit(1e3).iter().zip(&exact).all(|(shrunk, exact)| shrunk.abs() < exact.abs()));
+    }
+}
