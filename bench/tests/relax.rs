@@ -2,14 +2,14 @@
 
 mod common;
 
-use common::{parsed, text};
+use common::loaded;
 use tenax_bench::report::Report;
 
 /// The wet patch's friction.
 const MU_S: f64 = 0.25;
 
 fn ran(name: &str, seed: u64) -> Report {
-    common::ran(&parsed(&text(name)), seed).report
+    common::ran(&loaded(name), seed).report
 }
 
 // Shows R10.

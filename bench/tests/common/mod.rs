@@ -21,6 +21,13 @@ pub fn text(name: &str) -> String {
     builtin::find(name).map_or_else(read, |(_, text)| text.into_owned())
 }
 
+/// The same, read: it may be based on another one of `tests/scenes/`.
+pub fn loaded(name: &str) -> SceneFile {
+    let own = format!("{}/tests/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let asked = if Path::new(&own).exists() { &own } else { name };
+    session::load_scene(asked).unwrap_or_else(|error| panic!("{error}"))
+}
+
 /// A scene from its text.
 pub fn parsed(text: &str) -> SceneFile {
     SceneFile::parse(text, "scene").unwrap_or_else(|error| panic!("{error}"))
