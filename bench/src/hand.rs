@@ -2,6 +2,8 @@
 
 mod board;
 pub mod bus;
+#[cfg(feature = "emulator")]
+pub mod emulated;
 pub mod report;
 
 use rand::rngs::ChaCha8Rng;
@@ -27,8 +29,8 @@ use crate::board::kept;
 const fn slot_of(scan: u64) -> u64 {
     scan * SLOT_HZ as u64 / SCAN_HZ as u64
 }
-/// An answer begins so long after its question, us: 7700 instructions on the emulated core at 1.5 cycles each; and so much later by
-/// chance, where a control tick comes between (assumed).
+/// An answer begins so long after its question, us (assumed: 7700 instructions at 1.5 cycles each, where the image has come to take 5500);
+/// and so much later by chance, where a control tick comes between (assumed).
 const TURN_US: f64 = 115.0;
 const TURN_JITTER_US: f64 = 45.0;
 /// A finger's interrupt is so late at most, us (assumed: behind control's).

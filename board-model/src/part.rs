@@ -9,9 +9,10 @@ use rigless::soc::{Bus, Error, Width};
 use rigless::time::VirtualNanos;
 
 use super::Models;
-use super::line::Line;
-use super::scan_path::{self, ScanPath};
-use super::serial_path::{self, SerialPath};
+use super::dma2::Shared;
+use super::line::{BusEnd, Line};
+use super::scan_path;
+use super::serial_path::{self, STLINK, SerialPath};
 use super::unwatched::UnwatchedTimer;
 
 const ADC1_CR2: u64 = 0x4001_2008;
@@ -19,6 +20,8 @@ const CR2_SWSTART: u64 = 1 << 30;
 const TIM3_CNT: u64 = 0x4000_0424;
 /// The serial port of the ST-LINK, USART2, in the order of the chip's ports.
 const USART2: usize = 1;
+/// The port of the palm's bus, in the same order.
+const USART1: usize = 0;
 /// TIM3, in the order of the chip's general timers.
 const TIM3: usize = 1;
 
@@ -36,11 +39,12 @@ pub struct Part {
 /// What takes the place of some of them.
 #[derive(Debug)]
 struct Own {
-    scan: ScanPath,
+    shared: Shared,
     timer: UnwatchedTimer,
-    serial: SerialPath,
+    serial: SerialPath<Line>,
     scan_controller: usize,
     port: usize,
+    bus_port: usize,
     answers: Box<[Answers]>,
 }
 
@@ -48,7 +52,10 @@ struct Own {
 #[derive(Clone, Copy, Debug)]
 enum Answers {
     Chip,
-    Scan(scan_path::Asked),
+    Converter,
+    /// DMA2: of the scan and of the palm's bus.
+    Shared,
+    BusPort,
     ScanTimer,
     Serial(serial_path::Asked),
     /// The registers hold what is written to them, and nothing happens.
@@ -58,19 +65,21 @@ enum Answers {
 impl Own {
     fn new(bus: &Bus, line: Line) -> Result<Self, Error> {
         let mut answers = vec![Answers::Chip; bus.slots().len()].into_boxed_slice();
-        let [scan_controller, port] = [bus.slot("DMA2")?, bus.slot("USART2")?];
-        answers[scan_controller] = Answers::Scan(scan_path::Asked::Controller);
-        answers[bus.slot("ADC1")?] = Answers::Scan(scan_path::Asked::Converter);
+        let [scan_controller, port, bus_port] = [bus.slot("DMA2")?, bus.slot("USART2")?, bus.slot("USART1")?];
+        answers[scan_controller] = Answers::Shared;
+        answers[bus.slot("ADC1")?] = Answers::Converter;
+        answers[bus_port] = Answers::BusPort;
         answers[bus.slot("TIM3")?] = Answers::ScanTimer;
         answers[port] = Answers::Serial(serial_path::Asked::Port);
         answers[bus.slot("DMA1")?] = Answers::Serial(serial_path::Asked::Controller);
         answers[bus.slot(BRIDGE)?] = Answers::RegistersAlone;
         Ok(Self {
-            scan: ScanPath::new(),
+            shared: Shared::new()?,
             timer: UnwatchedTimer::new(TIM3)?,
-            serial: SerialPath::new(Some(line))?,
+            serial: SerialPath::new(&STLINK, Some(line))?,
             scan_controller,
             port,
+            bus_port,
             answers,
         })
     }
@@ -84,6 +93,7 @@ impl Part {
             Models::Quick => Some(Own::new(chip.bus(), line)?),
             Models::Rigless => {
                 chip.usart[USART2].attach(line);
+                chip.usart[USART1].attach(BusEnd::default());
                 None
             }
         };
@@ -96,7 +106,7 @@ impl Part {
         match own {
             Some(own) => {
                 let (_, mut context) = chip.bus_mut().drive(now, own.scan_controller);
-                own.scan.put(codes, &mut context);
+                own.shared.scan.put(codes, &mut context);
             }
             None => {
                 for (channel, code) in codes {
@@ -116,6 +126,18 @@ impl Part {
                 own.serial.line(&mut context)
             }
             None => chip.usart[USART2].chip_mut::<Line>(),
+        }
+    }
+
+    /// The wires of the palm's bus, as they are now.
+    pub fn bus_end(&mut self, now: VirtualNanos) -> Option<&mut BusEnd> {
+        let Self { chip, own } = self;
+        match own {
+            Some(own) => {
+                let (_, mut context) = chip.bus_mut().drive(now, own.bus_port);
+                own.shared.bus.of(serial_path::Asked::Port).line(&mut context)
+            }
+            None => chip.usart[USART1].chip_mut::<BusEnd>(),
         }
     }
 
@@ -145,7 +167,7 @@ impl Part {
         match own {
             Some(own) => {
                 let (registers, mut context) = chip.bus_mut().drive(now, own.scan_controller);
-                own.scan.trigger(registers, &mut context);
+                own.shared.scan.trigger(registers, &mut context);
             }
             None => {
                 let started = chip
@@ -169,19 +191,22 @@ impl Mcu for Part {
     fn reset(&mut self, at: VirtualNanos, cause: ResetCause) {
         self.chip.reset(at, cause);
         if let Some(own) = &mut self.own {
-            own.scan.restarted();
+            own.shared.scan.restarted();
             own.timer.restarted();
             own.serial.restarted(at);
+            own.shared.bus.restarted(at);
         }
     }
 
-    /// Only the serial line has a far end.
+    /// Only the serial ports have a far end.
     fn poll(&mut self, now: VirtualNanos) {
         let Self { chip, own } = self;
         match own {
             Some(own) => {
                 let (_, mut context) = chip.bus_mut().drive(now, own.port);
                 own.serial.look(&mut context);
+                let (_, mut context) = chip.bus_mut().drive(now, own.bus_port);
+                own.shared.bus.of(serial_path::Asked::Port).look(&mut context);
             }
             None => chip.poll(now),
         }
@@ -195,7 +220,9 @@ impl Mcu for Part {
         // A window that is added has a slot past the chip's own.
         match own.answers.get(slot).copied().unwrap_or(Answers::Chip) {
             Answers::Chip => chip.split(slot),
-            Answers::Scan(asked) => (chip.bus_mut(), Some(own.scan.of(asked))),
+            Answers::Converter => (chip.bus_mut(), Some(own.shared.scan.of(scan_path::Asked::Converter))),
+            Answers::Shared => (chip.bus_mut(), Some(&mut own.shared)),
+            Answers::BusPort => (chip.bus_mut(), Some(own.shared.bus.of(serial_path::Asked::Port))),
             Answers::Serial(asked) => (chip.bus_mut(), Some(own.serial.of(asked))),
             Answers::ScanTimer => (chip.bus_mut(), Some(&mut own.timer)),
             Answers::RegistersAlone => (chip.bus_mut(), None),

@@ -7,25 +7,67 @@
 
 mod pair;
 
+use std::marker::PhantomData;
+
 use rigless::device::{DeviceContext, ErasedDevice, RegisterFile, RequestChange};
 use rigless::emulator::InterruptLine;
 use rigless::mcu::Operate;
-use rigless::soc::stm32f427::generated::dma2::{self, Register::S6cr as S6CR};
 use rigless::soc::stm32f427::generated::usart6::Register;
-use rigless::soc::{Error, Layout, RegisterSpec, Width};
+use rigless::soc::stm32f427::generated::{DMA1, DMA2, USART1, USART2, dma2};
+use rigless::soc::{Error, Layout, Peripheral, RegisterSpec, Width};
 use rigless::time::{EventId, VirtualNanos};
 
 use self::pair::Pair;
-use super::line::Line;
+use super::line::FarEnd;
 
-const USART2: u64 = 0x4000_4400;
-const DMA1: u64 = 0x4002_6000;
+/// Which port, and which streams serve it.
+#[derive(Clone, Copy, Debug)]
+pub struct Lane {
+    port: &'static Peripheral,
+    dma: &'static Peripheral,
+    /// The controller, in the order of the chip's.
+    controller: usize,
+    /// Of the transmitter (RM0383, tables 27 and 28).
+    up: usize,
+    /// Of the receiver.
+    down: usize,
+}
+
+/// The ST-LINK's.
+pub static STLINK: Lane = Lane { port: &USART2, dma: &DMA1, controller: 0, up: 6, down: 5 };
+/// The palm's bus.
+pub static PALM: Lane = Lane { port: &USART1, dma: &DMA2, controller: 1, up: 7, down: 5 };
+
+/// Of a stream's registers, the first of which is the first stream's control: six in a row.
+#[derive(Clone, Copy)]
+enum Row {
+    Control,
+    Left,
+    Memory = 3,
+}
+
+impl Lane {
+    const fn row(stream: usize, row: Row) -> usize {
+        dma2::Register::S0cr as usize + 6 * stream + row as usize
+    }
+
+    /// Whether a register of the controller is this lane's.
+    pub fn has(&self, row: usize) -> bool {
+        let is_of = |stream: usize| {
+            row >= Self::row(stream, Row::Control) && row < Self::row(stream + 1, Row::Control)
+        };
+        is_of(self.up) || is_of(self.down)
+    }
+}
+
 const CR1_OVER8: u64 = 1 << 15;
 const CR2_STOP: u64 = 0b11 << 12;
-/// Interrupts of the transmitter: empty, and all sent.
-const CR1_TXEIE_TCIE: u64 = 1 << 7 | 1 << 6;
-/// USART2's transmitter is served by stream 6 of DMA1 (RM0383, table 27).
-const UP: usize = 6;
+/// The transmitter's interrupt that it is empty.
+const CR1_TXEIE: u64 = 1 << 7;
+const CR1_RXNEIE: u64 = 1 << 5;
+const CR1_TCIE: u64 = 1 << 6;
+const CR3_DMAR: u64 = 1 << 6;
+const CR_TCIE: u64 = 1 << 4;
 const CR_EN: u64 = 1;
 const CR_HTIE: u64 = 1 << 3;
 const CR_DIR: u64 = 0b11 << 6;
@@ -40,15 +82,17 @@ const IDLE_FRAMES: u64 = 4;
 /// Which of the two is asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Asked {
-    /// The port, USART2.
+    /// The port.
     Port,
-    /// The controller, DMA1.
+    /// The controller.
     Controller,
 }
 
 /// The port and its DMA.
 #[derive(Debug)]
-pub struct SerialPath {
+pub struct SerialPath<F> {
+    lane: &'static Lane,
+    far_end: PhantomData<F>,
     pair: Pair,
     clock_hz: u64,
     asked: Asked,
@@ -65,14 +109,15 @@ struct Starting {
     missing: usize,
 }
 
-impl SerialPath {
-    /// The two out of reset, `line` at the far end.
-    pub fn new(line: Option<Line>) -> Result<Self, Error> {
-        let mut pair = Pair::new()?;
-        if let Some(line) = line {
-            pair.port.attach(line);
+impl<F: FarEnd> SerialPath<F> {
+    /// The two out of reset, `far_end` at the far end.
+    pub fn new(lane: &'static Lane, far_end: Option<F>) -> Result<Self, Error> {
+        let mut pair = Pair::new(lane)?;
+        if let Some(far_end) = far_end {
+            pair.port.attach(far_end);
         }
-        Ok(Self { pair, clock_hz: 0, asked: Asked::Port, wakes: None, starting: None })
+        let far_end = PhantomData;
+        Ok(Self { lane, far_end, pair, clock_hz: 0, asked: Asked::Port, wakes: None, starting: None })
     }
 
     /// The model of one of the two.
@@ -84,21 +129,21 @@ impl SerialPath {
     /// As a reset of the chip leaves it. The far end has heard what was sent before.
     pub fn restarted(&mut self, at: VirtualNanos) {
         self.pair.run_to(at);
-        let mut fresh = Self::new(None).expect("what was built once is built again");
+        let mut fresh = Self::new(self.lane, None).expect("what was built once is built again");
         fresh.pair.port.inherit(&mut self.pair.port);
         *self = fresh;
     }
 
     /// The far end as it is now. What is handed over is the port's.
-    pub fn line(&mut self, context: &mut DeviceContext<'_>) -> Option<&mut Line> {
+    pub fn line(&mut self, context: &mut DeviceContext<'_>) -> Option<&mut F> {
         self.catch_up(context);
-        self.pair.port.chip_mut::<Line>()
+        self.pair.port.chip_mut::<F>()
     }
 
     /// The far end is looked at, as it is at every stop.
     pub fn look(&mut self, context: &mut DeviceContext<'_>) {
         let now = context.now();
-        if self.pair.port.chip_mut::<Line>().is_some_and(|line| !line.down.is_empty()) {
+        if self.pair.port.chip_mut::<F>().is_some_and(|line| line.ready(now, 0) > 0) {
             self.pair.run_to(now);
             self.pair.ask_far_end(now);
             self.settle(context);
@@ -135,28 +180,42 @@ impl SerialPath {
     /// No later than the next instant at which the core is interrupted.
     fn next_to_notice(&mut self, now: VirtualNanos) -> Option<VirtualNanos> {
         let next = self.pair.next_event()?;
-        let [cr1, cr2, brr] =
-            [Register::Cr1, Register::Cr2, Register::Brr].map(|row| self.pair.port_holds(row));
+        let [cr1, cr2, cr3, brr] =
+            [Register::Cr1, Register::Cr2, Register::Cr3, Register::Brr].map(|row| self.pair.port_holds(row));
         let frame_ns = (FRAME_BITS * brr * NS_PER_S).checked_div(self.clock_hz).unwrap_or(0);
-        let hears = self.pair.port.chip_mut::<Line>().is_none_or(|line| {
-            !line.down.is_empty() || line.last_down.is_some_and(|at| now.0 < at.0 + IDLE_FRAMES * frame_ns)
-        });
-        let unusual =
-            cr1 & (CR1_TXEIE_TCIE | CR1_OVER8) | cr2 & CR2_STOP | self.pair.dma_holds(S6CR) & CR_HTIE;
-        if hears || unusual != 0 {
+        let [up, down] = [self.lane.up, self.lane.down].map(|stream| self.control(stream));
+        let [ready, heard_at] = match self.pair.port.chip_mut::<F>() {
+            Some(line) => [line.ready(now, frame_ns), line.last_down().map_or(0, |at| at.0)],
+            None => [1, now.0],
+        };
+        let hears = ready > 0 || heard_at + IDLE_FRAMES * frame_ns > now.0 && heard_at > 0;
+        let unusual = cr1 & (CR1_TXEIE | CR1_OVER8) | cr2 & CR2_STOP | up & CR_HTIE;
+        let by_itself = cr1 & CR1_RXNEIE | down & (CR_HTIE | CR_TCIE) == 0 && cr3 & CR3_DMAR != 0;
+        let left = self.pair.left(self.lane.up);
+        if unusual != 0 || hears && !(by_itself && left == 0 && ready > 0) {
             return Some(next);
         }
-        match self.pair.left(UP) {
+        if hears {
+            // DMA takes what comes; who hears of it waits for the pause behind.
+            return Some(VirtualNanos(next.0 + (ready - 1) * frame_ns));
+        }
+        match left {
+            0 if cr1 & CR1_TCIE != 0 => Some(next),
             // All handed over: how it goes out changes nothing but flags.
             0 => None,
             left => Some(VirtualNanos(next.0 + (left - 1) * frame_ns)),
         }
     }
 
+    /// The control register of a stream.
+    fn control(&self, stream: usize) -> u64 {
+        self.pair.dma_holds(dma2::Register::ALL[Lane::row(stream, Row::Control)])
+    }
+
     fn address(&self, row: usize) -> u64 {
         match self.asked {
-            Asked::Port => USART2 + u64::from(Register::REGISTERS[row].offset),
-            Asked::Controller => DMA1 + u64::from(dma2::Register::REGISTERS[row].offset),
+            Asked::Port => self.lane.port.base + u64::from(Register::REGISTERS[row].offset),
+            Asked::Controller => self.lane.dma.base + u64::from(dma2::Register::REGISTERS[row].offset),
         }
     }
 
@@ -170,8 +229,8 @@ impl SerialPath {
     /// Asks for the message that the stream is to carry.
     fn start(&mut self, control: u64, context: &mut DeviceContext<'_>) {
         assert!(control & CR_SIZES == 0, "messages go up byte by byte: {control:#x}");
-        let begins = self.pair.dma_holds(dma2::Register::S6m0ar);
-        let length = self.pair.dma_holds(dma2::Register::S6ndtr);
+        let [begins, length] = [Row::Memory, Row::Left]
+            .map(|row| self.pair.dma_holds(dma2::Register::ALL[Lane::row(self.lane.up, row)]));
         for offset in 0..length {
             context.read_from(begins + offset, Width::W8, offset);
         }
@@ -186,12 +245,12 @@ impl SerialPath {
         if let Some(starting) = self.starting.take() {
             self.pair.carry(starting.begins, starting.message);
             self.asked = Asked::Controller;
-            self.write_own(S6CR as usize, starting.control, context);
+            self.write_own(Lane::row(self.lane.up, Row::Control), starting.control, context);
         }
     }
 }
 
-impl ErasedDevice for SerialPath {
+impl<F: FarEnd> ErasedDevice for SerialPath<F> {
     fn layout(&self) -> &'static [RegisterSpec] {
         match self.asked {
             Asked::Port => Register::REGISTERS,
@@ -220,9 +279,9 @@ impl ErasedDevice for SerialPath {
         context: &mut DeviceContext<'_>,
     ) {
         self.pair.run_to(context.now());
-        let on = self.pair.dma_holds(S6CR) & CR_EN != 0;
-        let switched_on =
-            self.asked == Asked::Controller && row == S6CR as usize && value & CR_EN != 0 && !on;
+        let on = self.control(self.lane.up) & CR_EN != 0;
+        let is_control = self.asked == Asked::Controller && row == Lane::row(self.lane.up, Row::Control);
+        let switched_on = is_control && value & CR_EN != 0 && !on;
         if switched_on && value & CR_DIR == CR_DIR_UP {
             self.start(value, context);
         } else {

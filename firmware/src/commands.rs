@@ -23,13 +23,19 @@ pub async fn commands(mut line: RingBufferedUartRx<'static>) -> ! {
             continue;
         };
         for &byte in bytes.iter().take(count) {
-            match receiver.push_if::<Down>(byte, || allowance.admits(counts::last_frame())) {
-                None => {}
-                // Never waits: while it did, bytes that came would be lost in the middle of a frame.
-                Some(Ok(command)) if allowance.affords(&command.message) && mail::hand_over(command) => {}
-                Some(Ok(_) | Err(BadFrame::Skipped)) => counts::COMMANDS_SKIPPED.add_one(),
-                Some(Err(_)) => counts::BAD_FRAMES.add_one(),
-            }
+            take(&mut receiver, &mut allowance, byte);
         }
+    }
+}
+
+/// Takes a byte of a line. Not inlined: there are two lines.
+#[inline(never)]
+pub fn take(receiver: &mut Receiver, allowance: &mut Allowance, byte: u8) {
+    match receiver.push_if::<Down>(byte, || allowance.admits(counts::last_frame())) {
+        None => {}
+        // Never waits: while it did, bytes that came would be lost in the middle of a frame.
+        Some(Ok(command)) if allowance.affords(&command.message) && mail::hand_over(command) => {}
+        Some(Ok(_) | Err(BadFrame::Skipped)) => counts::COMMANDS_SKIPPED.add_one(),
+        Some(Err(_)) => counts::BAD_FRAMES.add_one(),
     }
 }

@@ -15,6 +15,8 @@ use embassy_stm32::timer::low_level::Timer;
 use embassy_stm32::{Peri, interrupt::Priority};
 use embassy_sync::waitqueue::AtomicWaker;
 
+use crate::bus;
+
 /// Who waits: control alone, for one thing at a time.
 pub static WAITING: AtomicWaker = AtomicWaker::new();
 
@@ -36,6 +38,11 @@ impl Micros {
     /// Time since an earlier instant, us.
     pub const fn since(self, earlier: Self) -> u32 {
         self.0.wrapping_sub(earlier.0)
+    }
+
+    /// What the clock showed.
+    pub const fn us(self) -> u32 {
+        self.0
     }
 
     /// Whether this instant is later than the other.
@@ -104,8 +111,32 @@ pub struct OnDeadline;
 
 impl Handler<typelevel::TIM2> for OnDeadline {
     unsafe fn on_interrupt() {
-        // Flags are cleared by writing 0.
-        pac::TIM2.sr().write(|w| w.0 = 0);
+        let seen = pac::TIM2.sr().read();
+        // Those that were seen are cleared, by writing 0.
+        pac::TIM2.sr().write(|w| w.0 = !seen.0);
         WAITING.wake();
+        if seen.ccif(SLOT) && pac::TIM2.dier().read().ccie(SLOT) {
+            pac::TIM2.dier().modify(|w| w.set_ccie(SLOT, false));
+            bus::begin();
+        }
+    }
+}
+
+/// The compare register of the bus's slots.
+const SLOT: usize = 1;
+
+/// When an answer on the bus may begin. The bus alone asks for one.
+pub struct Slot;
+
+impl Slot {
+    /// Lets it begin at this instant, some us from now.
+    pub fn at(us: u32) {
+        pac::TIM2.ccr(SLOT).write_value(us);
+        // Only this flag: a written one leaves the deadline's.
+        pac::TIM2.sr().write(|w| {
+            w.0 = u32::MAX;
+            w.set_ccif(SLOT, false);
+        });
+        pac::TIM2.dier().modify(|w| w.set_ccie(SLOT, true));
     }
 }

@@ -5,8 +5,9 @@
 //! | who | runs in | priority | worst if it were wrong |
 //! |---|---|---|---|
 //! | `bridge::off` in a panic or fault | the faulting context | all interrupts off | the motor stays driven |
-//! | scan's DMA, its deadline, time driver | their interrupts | 1 | a deadline is noticed late: a lost frame stays unnoticed |
+//! | scan's DMA, its deadline, time driver, the bus's pauses and ends | their interrupts | 1 | a deadline is noticed late: a lost frame stays unnoticed |
 //! | [`control`]: frame, logic, bridge, watchdog | executor in interrupt I2C3_ER | 2 | switches step late, ticks run late |
+//! | the bus, what came | I2C3_EV | 4 | an answer to the palm is late and left out |
 //! | the serial line's interrupts | USART2, DMA1 | 6 | below control or control jitters by them |
 //! | [`telemetry`], [`commands`] | thread executor | none | messages are dropped and counted, control goes on |
 //! | [`store`]: a word of flash after every fourth tick | thread executor | none | the core stalls in a tick |
@@ -19,6 +20,7 @@
 
 mod black_box;
 mod bridge;
+mod bus;
 mod button;
 mod chip;
 mod clock;
@@ -179,6 +181,8 @@ async fn main(spawner: Spawner) {
         }
     });
     spawner.spawn(once(store::store(flash, log)));
+    // A fingertip whose control does not run says nothing on the bus.
+    bus::start(p.USART1, (p.DMA2_CH5, p.DMA2_CH7), (p.PA15, p.PA10), p.PA12, identity::of(cause).chip);
     let urgent = URGENT.start(interrupt::I2C3_ER);
     urgent.spawn(once(control::control(scan, control)));
 }

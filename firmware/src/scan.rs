@@ -21,6 +21,7 @@ use tenax_hal_shim::channel::{FRAME_HZ, SCAN, SCAN_HZ, SCAN_LEN};
 use tenax_hal_shim::frame::Frame;
 
 use crate::bridge::align;
+use crate::bus;
 use crate::chip::ADC_COMMON;
 use crate::counts;
 use crate::deadline::{Deadline, Micros};
@@ -114,6 +115,7 @@ impl Scan {
                 // Then the switches do not show yet what the following frame is reading.
                 let began = self.deadline.now();
                 let behind = began.is_after(following_begins);
+                bus::frame_ended(began.us());
                 on_frame(&frame);
                 counts::FRAMES.add_one();
                 let ended = self.deadline.now();

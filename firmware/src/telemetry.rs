@@ -9,7 +9,7 @@ use embassy_time::{Duration, Instant, Ticker};
 use static_cell::ConstStaticCell;
 use tenax_hal_shim::wire::{FRAME_MAX, Received, Up, encode};
 
-use crate::{black_box, counts, mail};
+use crate::{black_box, bus, counts, mail};
 
 const COUNTERS_PERIOD: Duration = Duration::from_hz(10);
 
@@ -37,6 +37,7 @@ pub async fn telemetry(mut line: UartTx<'static, Async>) -> ! {
             // An error of the line shows as a gap in the numbers at its other end.
             Some(frame) => {
                 black_box::write(&posted.message, frame);
+                bus::said(posted, frame);
                 if line.write(frame).await.is_err() {
                     counts::TELEMETRY_DROPPED.add_one();
                 }

@@ -29,6 +29,12 @@ const LET_GO_MN: i32 = 150;
 const CHANGED_PART: u16 = 100;
 /// A wish that is no further above the load is fulfilled, mN: the force sensor's noise.
 const NEAR_MN: i32 = 50;
+/// Bytes that tell whom a frame concerns: two counts' places, version, number, address, word.
+const HEAD: usize = 7;
+/// The words' places in their list that a finger need not decode.
+const HERE: u8 = 1;
+const POLL: u8 = 4;
+const STATE: u8 = 5;
 /// Bytes of the finger's line that wait.
 const LINE_UP_MAX: usize = 2_048;
 const LINE_DOWN_MAX: usize = 256;
@@ -40,8 +46,9 @@ pub struct Finger {
     address: u8,
     session: Session,
     receiver: Receiver,
-    /// Bytes of the frame that comes.
+    /// Bytes of the frame that comes, and the first of them.
     bytes: u32,
+    head: [u8; HEAD],
     number: u16,
     clock: Clock,
     polled_us: u32,
@@ -82,6 +89,7 @@ impl Finger {
             session,
             receiver: Receiver::new(),
             bytes: 0,
+            head: [0; HEAD],
             number: 0,
             clock: Clock::default(),
             polled_us: 0,
@@ -113,6 +121,9 @@ impl Finger {
 
     /// A byte is over at `now_us` by this chip's clock. Some if it asks for an answer, which is in `out` then.
     pub fn hear(&mut self, byte: u8, now_us: u32, out: &mut [u8]) -> Option<Answer> {
+        if let Some(place) = self.head.get_mut(self.bytes as usize) {
+            *place = byte;
+        }
         self.bytes = self.bytes.saturating_add(1).min(2 * FRAME_MAX as u32);
         if byte != 0 {
             // Only a zero ends a frame.
@@ -120,7 +131,8 @@ impl Finger {
             return None;
         }
         let bytes = core::mem::take(&mut self.bytes);
-        let received = self.receiver.push::<Packet>(byte)?.ok()?;
+        let concerns = concerns(&self.head, self.address);
+        let received = self.receiver.push_if::<Packet>(byte, || concerns)?.ok()?;
         let Packet { address, word } = received.message;
         let own = address != ALL && address == self.address;
         match word {
@@ -299,6 +311,58 @@ impl Finger {
     }
 }
 
+/// Whether a frame that begins so may concern a finger of this address. To decode what its neighbours answer would make its own answer
+/// later by 50 us. What is garbled is for who decodes it.
+fn concerns(head: &[u8; HEAD], own: u8) -> bool {
+    // COBS (see `wire`): a count of what comes before the next zero, in whose place the next count stands.
+    let mut zero_in = 0u8;
+    let mut bytes = head.iter().enumerate().filter_map(|(n, &byte)| {
+        zero_in = zero_in.saturating_sub(1);
+        if zero_in > 0 {
+            return Some(byte);
+        }
+        zero_in = byte;
+        (n > 0).then_some(0)
+    });
+    let _version = bytes.next();
+    // The number, in up to three parts of seven bits.
+    let _number = bytes.find(|part| part & 0x80 == 0);
+    match (bytes.next(), bytes.next()) {
+        (Some(address), Some(POLL)) => address == own,
+        (_, Some(HERE | STATE)) => false,
+        _ => true,
+    }
+}
+
 const _: () = assert!(LINE_DOWN < LINE_DOWN_MAX);
 /// A line of bytes for a poll.
 pub type Line = Vec<u8, LINE_DOWN>;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frame_concerns_whoever_acts_on_it_and_no_neighbour() {
+        let words = [
+            (Word::Claim { round: 0, slots: 1 }, [true; 2]),
+            (Word::Here { chip: [1; 3], nonce: 0 }, [false; 2]),
+            (Word::Assign { chip: [0; 3], nonce: 9 }, [true; 2]),
+            (Word::Release, [true; 2]),
+            (Word::Poll(Poll::default()), [true, false]),
+            (Word::State(State::default()), [false; 2]),
+        ];
+        for (word, expected) in words {
+            for number in [0, 1, 127, 128, 256, 16_384, u16::MAX] {
+                for address in [ALL, 2] {
+                    let mut frame = [0; FRAME_MAX];
+                    let packet = Packet { address, word: word.clone() };
+                    encode(number, &packet, &mut frame).unwrap();
+                    let head = *frame.first_chunk().unwrap();
+                    let found = [address, 3].map(|own| concerns(&head, own));
+                    assert_eq!(found, expected, "{number} {packet:?}");
+                }
+            }
+        }
+    }
+}

@@ -1,10 +1,10 @@
 //! The emulated board: the real image, instruction by instruction, with a plant at its pins.
 
 mod commands;
-mod cost;
+pub(crate) mod cost;
 pub mod kernels;
 mod mishaps;
-mod wires;
+pub(crate) mod wires;
 mod world;
 
 pub use tenax_board_model::Models;

@@ -10,6 +10,9 @@ use object::{File, Object, ObjectSection, ObjectSymbol};
 pub(crate) const TICK: &str = "tenax_control_tick";
 /// The name of what gives the logic a command.
 const COMMAND: &str = "tenax_control_command";
+/// The names of what its end of the bus does.
+const BUS: [&str; 3] = ["tenax_bus_hear", "tenax_bus_tick", "tenax_bus_said"];
+const BUS_DOES: &str = "TENAX_BUS_DOES";
 
 /// Addresses in an image.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -20,6 +23,10 @@ pub struct Symbols {
     pub after_tick: u64,
     /// The first instruction of taking a command.
     pub command: u64,
+    /// What its end of the bus does: reads what came, takes a tick, takes a message.
+    pub bus: [u64; 3],
+    /// The words that say with what.
+    pub bus_does: u64,
     /// RAM above the image's variables: the stack grows down into it.
     pub stack: Range<u64>,
 }
@@ -35,9 +42,12 @@ impl Symbols {
         let file = File::parse(elf).context("not an ELF file")?;
         let (tick, after_tick) = entry_and_return(&file, TICK)?;
         let command = entry(&file, COMMAND)?;
+        let [hear, tick_of_bus, said] = BUS.map(|name| entry(&file, name));
+        let bus = [hear?, tick_of_bus?, said?];
+        let bus_does = address_of(&file, BUS_DOES)?;
         let stack = address_of(&file, "__sheap")?..address_of(&file, "_stack_start")?;
         ensure!(stack.start < stack.end, "leaves no RAM for the stack");
-        Ok(Self { tick, after_tick, command, stack })
+        Ok(Self { tick, after_tick, command, bus, bus_does, stack })
     }
 }
 

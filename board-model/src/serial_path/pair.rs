@@ -1,4 +1,4 @@
-//! USART2 and DMA1 on a bus of their own: `rigless`'s models, which stop nobody and are told of no other's requests.
+//! A serial port and its DMA on a bus of their own: `rigless`'s models, which stop nobody and are told of no other's requests.
 
 use std::collections::VecDeque;
 
@@ -6,7 +6,7 @@ use rigless::device::{ErasedDevice, InterruptChange, ResetCause};
 use rigless::emulator::{Error as MemoryError, Memory};
 use rigless::mcu::{Mcu, Operate};
 use rigless::soc::stm32f427::CPU;
-use rigless::soc::stm32f427::generated::{DMA1, USART2, dma2, usart6};
+use rigless::soc::stm32f427::generated::{dma2, usart6};
 use rigless::soc::stm32f427::peripherals::CONTROLLERS;
 use rigless::soc::stm32f427::peripherals::dma::Dma;
 use rigless::soc::stm32f427::peripherals::usart::{Kind, Usart};
@@ -21,6 +21,8 @@ const RESET_SR: u64 = 0xC0;
 /// Where DMA may read and write.
 static MEMORY: [Region; 2] =
     [Region::ram("sram", 0x2000_0000, 128 << 10), Region::system("flash", 0x0800_0000, 512 << 10)];
+
+use super::Lane;
 
 /// The two models.
 #[derive(Debug)]
@@ -67,17 +69,18 @@ impl Memory for Carried {
 
 impl Pair {
     /// The two out of reset, nothing at the line's far end.
-    pub fn new() -> Result<Self, Error> {
-        let bus = Bus::builder(CPU, &MEMORY, [DMA1, USART2])
-            .reset(USART2.name, "SR", RESET_SR)
-            .reads_requests(DMA1.name)
+    pub fn new(lane: &Lane) -> Result<Self, Error> {
+        let Lane { port, dma, controller, .. } = *lane;
+        let bus = Bus::builder(CPU, &MEMORY, [*dma, *port])
+            .reset(port.name, "SR", RESET_SR)
+            .reads_requests(dma.name)
             .build()?;
-        let controller = &CONTROLLERS[0];
+        let controller = &CONTROLLERS[controller];
         let mut pair = Self {
             port: Usart::with_clock(Kind::Usart, RESET_CLOCK_HZ),
             dma: Dma::new(controller.wiring, controller.last_data, controller.reaches_memory),
-            port_slot: bus.slot(USART2.name)?,
-            dma_slot: bus.slot(DMA1.name)?,
+            port_slot: bus.slot(port.name)?,
+            dma_slot: bus.slot(dma.name)?,
             bus,
             memory: Carried::default(),
         };
@@ -114,7 +117,7 @@ impl Pair {
     /// Carries out what an access or an event led to.
     pub fn follow(&mut self) {
         let mut memory = std::mem::take(&mut self.memory);
-        let refused = self.settle(&mut memory).expect("DMA1 reads messages that it was given");
+        let refused = self.settle(&mut memory).expect("DMA reads messages that it was given");
         debug_assert!(refused.is_empty(), "{refused:?}");
         self.memory = memory;
     }

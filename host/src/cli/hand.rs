@@ -4,6 +4,7 @@ use std::process::ExitCode;
 
 use tenax_bench::hand::report::{self, Report};
 use tenax_bench::session::load_scene;
+use tenax_scene::SceneFile;
 
 use super::format::Format;
 use super::out;
@@ -15,7 +16,9 @@ use super::progress::Progress;
   tenax hand                            four scenes, five seeds each, and 40 parts that break
   tenax hand --scene ice --seeds 40     one scene
   tenax hand --seeds 1 --cuts 1000      a finger, the palm or the bus breaks at 1000 instants
-  tenax hand --report json > hand.json  for programs")]
+  tenax hand --report json > hand.json  for programs
+  tenax hand --emulated                 two images on one bus with the host's palm
+  tenax hand --emulated --scene ice --until 6   five")]
 pub struct Args {
     /// Scenes of scenes/hand/, or files like them [default: all of them]
     #[arg(long, value_name = "NAME|FILE.toml")]
@@ -26,6 +29,13 @@ pub struct Args {
     /// Runs in which a finger, the palm or the bus breaks at a random instant
     #[arg(long, default_value_t = 40)]
     cuts: u64,
+    /// Run each scene once with every fingertip an image on an emulated board, held against the host's build byte for byte [default
+    /// scene: pinch]
+    #[arg(long, conflicts_with_all = ["seeds", "cuts"])]
+    emulated: bool,
+    /// Until then, s
+    #[arg(long, value_name = "SECONDS", requires = "emulated")]
+    until: Option<f64>,
     /// How to print the report
     #[arg(long, value_enum, default_value_t = Format::Text)]
     report: Format,
@@ -33,10 +43,19 @@ pub struct Args {
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let all = || tenax_scene::builtin::hands().iter().map(|(name, _)| (*name).to_owned()).collect();
-    let names: Vec<String> = if args.scene.is_empty() { all() } else { args.scene.clone() };
+    let names: Vec<String> = if args.scene.is_empty() && args.emulated {
+        vec!["pinch".to_owned()]
+    } else if args.scene.is_empty() {
+        all()
+    } else {
+        args.scene.clone()
+    };
     let files = names.iter().map(|name| load_scene(name)).collect::<anyhow::Result<Vec<_>>>()?;
     if let Some(file) = files.iter().find(|file| file.finger_count() < 2) {
         anyhow::bail!("{} has no [fingers]: it is a scene of one fingertip, for `tenax run`", file.name);
+    }
+    if args.emulated {
+        return emulated(args, &files);
     }
     let progress = Progress::new("hand", files.len() as f64);
     let mut scenes = Vec::new();
@@ -51,4 +70,29 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         out::note!("something that must never happen did");
     }
     Ok(ExitCode::from(u8::from(!report.holds())))
+}
+
+/// The images, and whether they do as the host's build does.
+#[cfg(feature = "emulator")]
+fn emulated(args: &Args, files: &[SceneFile]) -> anyhow::Result<ExitCode> {
+    use super::workspace;
+    use tenax_bench::hand::emulated::{Options, run};
+
+    let image = tenax_bench::image::build(&workspace::root()?)?;
+    let options = Options { until_s: args.until.unwrap_or(f64::INFINITY), ..Options::default() };
+    let mut holds = true;
+    for file in files {
+        let outcome = run(&image, file, &options)?;
+        holds &= outcome.holds();
+        args.report.print(&outcome, &outcome)?;
+    }
+    if !holds {
+        out::note!("an image differs from the host's build, lost something, or was late");
+    }
+    Ok(ExitCode::from(u8::from(!holds)))
+}
+
+#[cfg(not(feature = "emulator"))]
+fn emulated(_args: &Args, _files: &[SceneFile]) -> anyhow::Result<ExitCode> {
+    anyhow::bail!("this tool was built without the emulated board: use `cargo tenax`")
 }
