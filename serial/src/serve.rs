@@ -14,7 +14,7 @@ mod tcp;
 
 use std::fmt::{self, Display};
 use std::path::PathBuf;
-use std::sync::mpsc::{Receiver, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
@@ -22,7 +22,7 @@ use std::time::{Duration, Instant};
 use self::client::Ends;
 use self::framer::Framer;
 use self::hub::Hub;
-use crate::truth::Truth;
+use crate::truth::{Bench, Key, Truth};
 
 /// Frames on their way down to the board; a client that sends more waits.
 const DOWN_FRAMES: usize = 64;
@@ -40,6 +40,8 @@ pub struct Options {
     pub tcp: Option<u16>,
     /// What really happens in the scene, on this TCP port of 127.0.0.1; 0 is any that is free.
     pub truth: Option<u16>,
+    /// What somebody may do at the bench, told to whoever hears that.
+    pub keys: Vec<Key>,
 }
 
 /// Who was served.
@@ -72,6 +74,7 @@ pub struct Server {
     framer: Framer,
     places: Vec<String>,
     truth: Option<(String, Arc<Hub>)>,
+    acts: Option<Receiver<Vec<u8>>>,
     doors: Vec<JoinHandle<()>>,
 }
 
@@ -80,7 +83,7 @@ impl Server {
     pub fn start(options: &Options) -> anyhow::Result<(Self, Down)> {
         let (down, bytes) = sync_channel(DOWN_FRAMES);
         let hub = Arc::new(Hub::default());
-        let ends = Ends { hub: Arc::clone(&hub), down };
+        let ends = Ends { hub: Arc::clone(&hub), down, end: 0 };
         let (mut places, mut doors) = (Vec::new(), Vec::new());
         if options.pty {
             #[cfg(unix)]
@@ -98,10 +101,11 @@ impl Server {
             places.push(tcp.place()?);
             doors.push(thread::spawn(move || tcp.serve(&ends)));
         }
-        let truth = options.truth.map(|port| truth_at(port, &mut doors)).transpose()?;
+        let (act, acts) = sync_channel(DOWN_FRAMES);
+        let truth = options.truth.map(|port| truth_at(port, &options.keys, act, &mut doors)).transpose()?;
         let teller = Teller(truth.as_ref().map(|(_, hub)| Arc::clone(hub)));
         Ok((
-            Self { hub, framer: Framer::default(), places, truth, doors },
+            Self { hub, framer: Framer::default(), places, truth, acts: Some(acts), doors },
             Down { bytes: Arc::new(Mutex::new(bytes)), teller },
         ))
     }
@@ -118,6 +122,11 @@ impl Server {
     /// Where what really happens is told, as `tenax monitor --truth` takes it.
     pub fn truth_place(&self) -> Option<&str> {
         self.truth.as_ref().map(|(place, _)| place.as_str())
+    }
+
+    /// Lines that say what is done at the bench, once. They come where what really happens is told, never on the board's line.
+    pub const fn take_acts(&mut self) -> Option<Receiver<Vec<u8>>> {
+        self.acts.take()
     }
 
     /// Where it serves, as `tenax monitor --port` takes it.
@@ -150,11 +159,16 @@ impl Server {
     }
 }
 
-/// A port on which what really happens is told, and who hears it. What is sent to it goes nowhere.
-fn truth_at(port: u16, doors: &mut Vec<JoinHandle<()>>) -> anyhow::Result<(String, Arc<Hub>)> {
-    let (down, _nowhere) = sync_channel(1);
-    let hub = Arc::new(Hub::default());
-    let ends = Ends { hub: Arc::clone(&hub), down };
+/// A port on which what really happens is told, and who hears it. Lines that are sent to it are done at the bench.
+fn truth_at(
+    port: u16,
+    keys: &[Key],
+    down: SyncSender<Vec<u8>>,
+    doors: &mut Vec<JoinHandle<()>>,
+) -> anyhow::Result<(String, Arc<Hub>)> {
+    let bench = serde_json::to_string(&Bench { keys: keys.to_vec() })?;
+    let hub = Arc::new(Hub::greeting(format!("{bench}\n").as_bytes()));
+    let ends = Ends { hub: Arc::clone(&hub), down, end: b'\n' };
     let tcp = tcp::Tcp::new(port)?;
     let place = tcp.place()?;
     doors.push(thread::spawn(move || tcp.serve(&ends)));

@@ -5,11 +5,12 @@
 //! this address may ask: a page of somebody else's in the same browser may not.
 
 mod json;
+mod wizard;
 
 use std::io::{self, BufRead, BufReader, Write};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
 use std::sync::mpsc::{Sender, channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Duration;
 
@@ -18,6 +19,7 @@ use tenax_hal_shim::wire::{Down, Setting};
 use tenax_logic::setting::SettingId;
 
 use self::json::After;
+use self::wizard::Wizard;
 use crate::monitor::source::{self, Places};
 use crate::monitor::view::View;
 
@@ -25,12 +27,23 @@ const PAGE: &str = include_str!("web/page.html");
 const EVENT_EVERY: Duration = Duration::from_millis(50);
 /// A request's head is no longer than this.
 const HEAD_MAX: usize = 8 << 10;
+/// What is done at the bench is said in no more bytes.
+const ACT_MAX: usize = 40;
+
+/// What is known, and the test that goes on.
+#[derive(Default)]
+struct Seen {
+    view: View,
+    wizard: Wizard,
+}
 
 /// What every connection works with.
 #[derive(Clone)]
 struct Shared {
-    view: Arc<Mutex<View>>,
+    seen: Arc<Mutex<Seen>>,
     commands: Sender<Down>,
+    /// What is done at the bench of a scene. No command of the board's line is among it.
+    bench: Sender<String>,
     place: String,
     control: bool,
     port: u16,
@@ -51,17 +64,19 @@ impl Web {
         let port = listener.local_addr()?.port();
         let (commands, waiting) = channel();
         let (sender, news) = channel();
-        let view = Arc::new(Mutex::new(View::default()));
-        source::start(places, waiting, sender);
-        let taken = Arc::clone(&view);
+        let seen = Arc::<Mutex<Seen>>::default();
+        let bench = source::start(places, waiting, sender);
+        let taken = Arc::clone(&seen);
         thread::spawn(move || {
             for news in news {
-                taken.lock().unwrap_or_else(PoisonError::into_inner).take(news);
+                let mut seen = taken.lock().unwrap_or_else(PoisonError::into_inner);
+                seen.wizard.take(&news);
+                seen.view.take(news);
             }
         });
         Ok(Self {
             listener,
-            shared: Shared { view, commands, place: places.line.to_string(), control, port },
+            shared: Shared { seen, commands, bench, place: places.line.to_string(), control, port },
         })
     }
 
@@ -124,29 +139,65 @@ fn answer(stream: &TcpStream, shared: &Shared) -> io::Result<()> {
     if !request.is_ours {
         return reply(stream, "403 Forbidden", "text/plain", "only pages of this address may ask");
     }
-    let view = || shared.view.lock().unwrap_or_else(PoisonError::into_inner);
     match (request.method.as_str(), request.path.as_str()) {
         ("GET", "/") => reply(stream, "200 OK", "text/html; charset=utf-8", PAGE),
         ("GET", "/settings") => {
-            let text = json::settings(&view(), shared.control).to_string();
+            let text = json::settings(&shared.seen().view, shared.control).to_string();
             reply(stream, "200 OK", "application/json", &text)
         }
         ("GET", "/events") => events(stream, shared),
-        ("POST", path) => match command(path) {
-            None => reply(stream, "404 Not Found", "text/plain", "no such command"),
-            Some(_) if !shared.control => reply(
-                stream,
-                "403 Forbidden",
-                "text/plain",
-                "read only: start with --control to change anything",
-            ),
-            Some(command) => match shared.commands.send(command) {
-                Ok(()) => reply(stream, "202 Accepted", "text/plain", "sent"),
-                Err(_) => reply(stream, "503 Service Unavailable", "text/plain", "there is no line"),
-            },
-        },
+        ("POST", path) => {
+            let (status, text) = told(path, shared);
+            reply(stream, status, "text/plain", &text)
+        }
         _ => reply(stream, "404 Not Found", "text/plain", "there is no such page"),
     }
+}
+
+impl Shared {
+    fn seen(&self) -> MutexGuard<'_, Seen> {
+        self.seen.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Does what the page asks for, if that is allowed: the answer's status and text.
+fn told(path: &str, shared: &Shared) -> (&'static str, String) {
+    let answer = |status, text: &str| (status, text.to_owned());
+    if let Some(words) = path.strip_prefix("/selftest/") {
+        let words: Vec<String> = words.split('/').map(str::to_owned).collect();
+        let Seen { view, wizard } = &mut *shared.seen();
+        return match wizard.command(view, &words) {
+            Ok(()) => answer("202 Accepted", "done"),
+            Err(why) => ("409 Conflict", format!("{why:#}")),
+        };
+    }
+    let act = act(path);
+    let command = command(path);
+    if act.is_none() && command.is_none() {
+        return answer("404 Not Found", "no such command");
+    }
+    if !shared.control {
+        return answer("403 Forbidden", "read only: start with --control to change anything");
+    }
+    let sent = match (act, command) {
+        (Some(act), _) => {
+            let view = &mut shared.seen().view;
+            if view.bench.is_none() {
+                return answer("404 Not Found", "no bench: only a served scene has one, where --truth says");
+            }
+            view.say(format!("at the bench: {act}"));
+            shared.bench.send(act).is_ok()
+        }
+        (None, command) => command.is_some_and(|command| shared.commands.send(command).is_ok()),
+    };
+    if sent { answer("202 Accepted", "sent") } else { answer("503 Service Unavailable", "there is no line") }
+}
+
+/// The line for the bench that a path stands for: `/bench/tap/pvdf_3`.
+fn act(path: &str) -> Option<String> {
+    let is_word = |c: char| c.is_ascii_alphanumeric() || ['_', '.', '/'].contains(&c);
+    let act = path.strip_prefix("/bench/").filter(|act| act.len() <= ACT_MAX && act.chars().all(is_word))?;
+    Some(act.replace('/', " "))
 }
 
 /// The command that a path stands for.
@@ -180,15 +231,15 @@ fn events(mut stream: &TcpStream, shared: &Shared) -> io::Result<()> {
     let mut after = After::NOTHING;
     loop {
         let text = {
-            let view = shared.view.lock().unwrap_or_else(PoisonError::into_inner);
-            let all = After::all(&view);
+            let seen = shared.seen();
+            let all = After::all(&seen);
             if all.points_s < after.points_s {
                 after.points_s = f64::MIN;
             }
             if all.truth_s < after.truth_s {
                 after.truth_s = f64::MIN;
             }
-            let event = json::event(&view, &shared.place, &after);
+            let event = json::event(&seen, &shared.place, &after);
             after = all;
             event.to_string()
         };
@@ -206,6 +257,8 @@ mod tests {
         let set = Down::Set(Setting { id: SettingId::S1.number(), value: 120 });
         assert_eq!(command("/set/s1-mv/120"), Some(set));
         assert_eq!(command("/zero"), Some(Down::Zero));
+        assert_eq!(act("/bench/tap/pvdf_3").as_deref(), Some("tap pvdf_3"));
+        assert_eq!((act("/bench/g%0ao"), act("/zero"), command("/bench/g")), (None, None, None));
         for wrong in ["/", "/set/s1-mv", "/set/s1/120", "/set/s1-mv/x", "/drive"] {
             assert_eq!(command(wrong), None, "{wrong}");
         }

@@ -4,6 +4,7 @@ use std::fs;
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::mpsc::Receiver;
 use std::thread;
 
 use anyhow::Context;
@@ -106,8 +107,8 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let mut line = LineFile::new(path("line.bin"));
     let (mut server, down) = served(args)?.unzip();
     let person = Person::default();
-    if down.is_some() {
-        listen(&person);
+    if let Some(server) = &mut server {
+        listen(&person, server.take_acts());
     }
     let live = down.as_ref().map(|down| live_of(down, &person));
     if let (true, Subject::Scene(file), Some(server), Some(down)) =
@@ -162,6 +163,12 @@ fn served(args: &Args) -> anyhow::Result<Option<(Server, Down)>> {
         at: args.serve_at.clone(),
         tcp: args.serve_tcp,
         truth: args.serve_truth,
+        keys: [(BUTTON, CONSENTS)]
+            .into_iter()
+            .chain(KEYS.map(|(key, what, _)| (key, what)))
+            .chain([("weight 5", "lay 5 N on the finger")])
+            .map(|(key, what)| (key.to_owned(), what.to_owned()))
+            .collect(),
     };
     let (server, down) = Server::start(&options)?;
     for place in server.places() {
@@ -179,25 +186,45 @@ fn live_of(down: &Down, person: &Person) -> Live {
     Live::new(down.clone(), slow).with_person(person.clone())
 }
 
-/// Does what a person at the keyboard types, or what a program pipes, such as the prompts of `tenax selftest`.
-fn listen(person: &Person) {
+/// The line that presses the button, and what that is for a person.
+const BUTTON: &str = "button";
+const CONSENTS: &str = "press the blue button: consent to what the line sends, for a minute";
+
+/// Does what a person at the keyboard types, or what a program pipes, such as the prompts of `tenax selftest`; and what comes from
+/// the page where the truth is told.
+fn listen(person: &Person, acts: Option<Receiver<Vec<u8>>>) {
     let is_typed = io::stdin().is_terminal();
     if is_typed {
-        out::note!("Enter presses the blue button: consent to what the line sends, for a minute");
+        out::note!("Enter: {CONSENTS}");
         let keys = KEYS.map(|(key, what, _)| format!("{key} {what}"));
         out::note!("with Enter: {},\n{}", keys[..4].join(", "), keys[4..].join(", "));
         out::note!("`weight 5` lays 5 N on the finger, `tap pvdf_3` taps a film");
     }
-    let person = person.clone();
-    let does = move |line: String| match line.parse() {
-        Ok(act) => person.act(act),
-        Err(()) if line == "button" || is_typed && line.is_empty() => person.press(),
-        Err(()) if is_typed => out::note!("no key: {line}"),
+    let own = person.clone();
+    let does = move |line: String| match line.as_str() {
+        "" if is_typed => own.press(),
+        line if !act(&own, line) && is_typed => out::note!("no key: {line}"),
         // A program says other things, too.
-        Err(()) => {}
+        _ => {}
     };
-    // It ends with the process.
+    // They end with the process.
     thread::spawn(move || io::stdin().lines().map_while(Result::ok).for_each(does));
+    let own = person.clone();
+    thread::spawn(move || {
+        for line in acts.into_iter().flatten() {
+            _ = act(&own, String::from_utf8_lossy(&line).trim_end());
+        }
+    });
+}
+
+/// Does at the bench what a line says. False: it says nothing that can be done.
+fn act(person: &Person, line: &str) -> bool {
+    match line.parse() {
+        Ok(act) => person.act(act),
+        Err(()) if line == BUTTON => person.press(),
+        Err(()) => return false,
+    }
+    true
 }
 
 /// One run after the other on the same served line, until somebody ends the process.

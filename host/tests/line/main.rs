@@ -16,6 +16,8 @@ mod monitor;
 #[cfg(unix)]
 mod page;
 #[cfg(unix)]
+mod page_bench;
+#[cfg(unix)]
 mod python;
 #[cfg(unix)]
 mod reconnect;

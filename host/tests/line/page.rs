@@ -1,41 +1,15 @@
 //! `tenax monitor --web` in a real browser: what a person sees of a scene that runs, and does with it.
 
-use std::io::{BufRead, BufReader};
-use std::process::{Child, Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use tenax_logic::setting::SettingId;
 
 use crate::browser::Page;
+use crate::page_bench::Web;
 use crate::serving::Serving;
 
 const WITHIN: Duration = Duration::from_secs(40);
-
-/// `tenax monitor --web`, and where its page is.
-struct Web(Child, String);
-
-impl Web {
-    fn watching(place: &str, truth: &str) -> Self {
-        let mut monitor = Command::new(env!("CARGO_BIN_EXE_tenax-host"))
-            .args(["monitor", "--web", "0", "--control", "--port", place, "--truth", truth])
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
-        let mut said = String::new();
-        BufReader::new(monitor.stderr.take().unwrap()).read_line(&mut said).unwrap();
-        let url =
-            said.split(' ').find(|word| word.starts_with("http://")).unwrap_or_else(|| panic!("{said}"));
-        Self(monitor, url.to_owned())
-    }
-}
-
-impl Drop for Web {
-    fn drop(&mut self) {
-        let _gone = self.0.kill();
-        let _gone = self.0.wait();
-    }
-}
 
 fn until(page: &mut Page, condition: &str) {
     let began = Instant::now();
@@ -63,8 +37,8 @@ fn a_person_sees_the_board_beside_the_truth_zooms_pauses_and_sets_a_setting() {
     let glass = include_str!("../../../scenes/glass.toml");
     let glass = glass.replacen("\n[contact]", "\nline_trusted = true\n\n[contact]", 1);
     let mut served = Serving::start_telling(&glass);
-    let web = Web::watching(&served.places[0], &served.places[1]);
-    let Some(mut page) = Page::open(&web.1) else { return served.kill() };
+    let web = Web::watching(&served.places[0], &["--control", "--truth", &served.places[1]]);
+    let Some(mut page) = Page::open(&web.url) else { return served.kill() };
 
     until(&mut page, "at('mode').textContent !== '-' && points.length > 40");
     let settings = format!("document.querySelectorAll('#settings tr').length === {}", SettingId::ALL.len());

@@ -91,7 +91,7 @@ fn set_and_read_back(target: &Target, mv: i32) {
 fn a_setting_is_set_and_read_back_on_a_pty_on_its_symlink_and_on_tcp() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path().join("board");
-    let options = Options { pty: true, at: Some(at.clone()), tcp: Some(0), truth: None };
+    let options = Options { pty: true, at: Some(at.clone()), tcp: Some(0), ..Options::default() };
     let (run, tally) = serve(&options, 6.0, |places| {
         assert_eq!(places.len(), 3);
         for (target, mv) in places.iter().zip([120, 130, 140]) {
@@ -109,7 +109,7 @@ fn a_setting_is_set_and_read_back_on_a_pty_on_its_symlink_and_on_tcp() {
 /// Somebody who runs one command after the other: no writer of the client before is left to double what the next one hears.
 #[test]
 fn clients_that_follow_each_other_at_once_hear_everything_once() {
-    let (run, _) = serve(&Options { pty: true, at: None, tcp: None, truth: None }, 8.0, |places| {
+    let (run, _) = serve(&Options { pty: true, ..Options::default() }, 8.0, |places| {
         for wait_ms in (0..30).map(|n| 11 + n % 5) {
             let mut client = Client::open(&places[0]).unwrap();
             let began = Instant::now();
@@ -127,7 +127,7 @@ fn clients_that_follow_each_other_at_once_hear_everything_once() {
 /// With a client that never reads on each, far more comes up than any of them has room for.
 #[test]
 fn a_client_that_never_reads_holds_up_nothing() {
-    let (mut server, _live) = start(&Options { pty: true, at: None, tcp: Some(0), truth: None });
+    let (mut server, _live) = start(&Options { pty: true, tcp: Some(0), ..Options::default() });
     let targets: Vec<Target> = server.places().iter().map(|place| place.parse().unwrap()).collect();
     let clients: Vec<_> = targets.iter().map(|target| target.open().unwrap()).collect();
     let joined = Instant::now();
@@ -151,7 +151,7 @@ fn a_client_that_never_reads_holds_up_nothing() {
 
 #[test]
 fn who_comes_and_goes_and_who_never_reads_changes_nothing_in_the_run() {
-    let options = Options { pty: true, at: None, tcp: Some(0), truth: None };
+    let options = Options { pty: true, tcp: Some(0), ..Options::default() };
     let (run, tally) = serve(&options, 2.0, |places| {
         let _silent: Vec<_> = places.iter().map(|place| place.open().unwrap()).collect();
         for _ in 0..5 {
@@ -229,7 +229,7 @@ fn the_monitor_sets_a_setting_of_a_scene_that_runs() {
 fn a_place_that_cannot_be_had_is_named() {
     let file = tempfile::NamedTempFile::new().unwrap();
     let error = |options: &Options| format!("{:#}", Server::start(options).err().unwrap());
-    let at = Options { pty: true, at: Some(file.path().to_owned()), tcp: None, truth: None };
+    let at = Options { pty: true, at: Some(file.path().to_owned()), ..Options::default() };
     assert!(error(&at).contains("no symlink: choose another path"), "{}", error(&at));
     let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let port = taken.local_addr().unwrap().port();

@@ -2,19 +2,18 @@
 //!
 //! [`Selftest`] only hears readings and says lines, so a test can run it beside a board that knows no real time. A prompt
 //! begins with what is to be done and the channel's name: whoever serves a scene can pipe it to the bench (`tenax run --serve`).
+//! [`Session`] runs it on a line; the terminal and the page each show one.
 
-use std::time::{Duration, Instant};
+mod session;
 
-use anyhow::{Context, bail};
+pub use self::session::{Session, named, run};
+
 use tenax_hal_shim::channel::{
     CHANNELS, COUNT, Channel, FRAME_HZ, Input, MOTOR_CURRENT, OPENING, PVDF, PVDF_COUNT, REFERENCE_MV, Role,
-    SAMPLE_MAX, by_name,
+    SAMPLE_MAX,
 };
-use tenax_hal_shim::wire::{Answer, Down, Senses, Up};
-use tenax_logic::setting::SettingId;
+use tenax_hal_shim::wire::Senses;
 
-use super::{ANSWER_WITHIN, Say, ask};
-use crate::link::Client;
 use crate::wiring::input;
 
 /// How long the hand is watched at rest, and how long a touch is watched once something moves, in frames.
@@ -36,6 +35,9 @@ const ALIKE_LOUD: f64 = 0.7;
 const BROTHERS: f64 = 0.5;
 /// So many exchanged wires of one switch are its select lines.
 const SELECT_LINES: usize = 3;
+
+/// What is to be done first.
+const REST_PROMPT: &str = "Touch nothing and relax for 2 s.";
 
 /// What a sensor moves at least when it is touched; and how far below and above its rest it may stand, mV.
 const fn demands(role: Role) -> (f64, [f64; 2]) {
@@ -87,6 +89,16 @@ fn mean(rows: &[Row]) -> Row {
     std::array::from_fn(|n| rows.iter().map(|row| row[n]).sum::<f64>() / rows.len() as f64)
 }
 
+/// What the channel that is asked for does now.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Level {
+    /// Its reading, mV.
+    pub mv: f64,
+    /// How far it is from its rest, a film by its envelope, and how far is a touch, mV.
+    pub moved_mv: f64,
+    pub needed_mv: f64,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Step {
     Rest,
@@ -104,6 +116,8 @@ pub struct Selftest {
     limit: u32,
     step: Step,
     began: Option<u32>,
+    /// The newest reading's frame.
+    last: u32,
     rows: Vec<Row>,
     /// Of the last readings in which nothing moved: what is held, creeps or drifts is no touch.
     rest_mv: Row,
@@ -120,6 +134,7 @@ impl Selftest {
             limit: limit_s * FRAME_HZ,
             step: Step::Rest,
             began: None,
+            last: 0,
             rows: Vec::new(),
             rest_mv: [0.0; COUNT + PVDF_COUNT],
             noise_mv: [0.0; COUNT + PVDF_COUNT],
@@ -137,10 +152,46 @@ impl Selftest {
         self.verdicts[channel]
     }
 
+    /// Whether any reading was heard.
+    pub const fn has_begun(&self) -> bool {
+        self.began.is_some()
+    }
+
+    /// The channels that are tested, in their order.
+    pub fn channels(&self) -> &[usize] {
+        &self.channels
+    }
+
+    /// What is to be done now, for whoever does not see the lines.
+    pub fn prompt(&self) -> String {
+        match self.step {
+            Step::Rest => REST_PROMPT.to_owned(),
+            Step::Asked(n, again, _) => self.asks(n, again),
+            Step::Stills(..) => "Let go: the next follows when nothing moves".to_owned(),
+            Step::Over => "The test is over".to_owned(),
+        }
+    }
+
+    /// How loud the channel is that is asked for. None while none is.
+    pub fn level(&self) -> Option<Level> {
+        let Step::Asked(n, ..) = self.step else { return None };
+        let (asked, row) = (self.channels[n], self.rows.last()?);
+        let needed_mv = demands(self.roles[asked]).0.max(OVER_NOISE * self.noise_mv[asked]);
+        Some(Level { mv: row[asked], moved_mv: self.moved(row, asked) * needed_mv, needed_mv })
+    }
+
+    /// Leaves out the channel that is asked for; what a person is told then.
+    pub fn skip(&mut self) -> Vec<String> {
+        let Step::Asked(n, ..) = self.step else { return Vec::new() };
+        self.begin(Step::Stills(n + 1, false), self.last);
+        vec!["   left out".to_owned()]
+    }
+
     /// Takes readings; what a person is told then.
     pub fn hear(&mut self, senses: &Senses) -> Vec<String> {
         let since = senses.frame.wrapping_sub(*self.began.get_or_insert(senses.frame));
         let row = row(senses);
+        self.last = senses.frame;
         self.rows.push(row);
         match self.step {
             Step::Rest if since >= REST => {
@@ -213,6 +264,11 @@ impl Selftest {
             return self.summary();
         };
         self.begin(Step::Asked(n, again, None), frame);
+        vec![self.asks(n, again)]
+    }
+
+    /// The prompt for the channel in this place.
+    fn asks(&self, n: usize, again: bool) -> String {
         let channel = self.channels[n];
         let (name, of) = (CHANNELS[channel].name, self.channels.len());
         let hint = match channel {
@@ -221,12 +277,7 @@ impl Selftest {
             _ => "",
         };
         let again = if again { ", once more" } else { "" };
-        vec![format!(
-            "{} {name}{hint}{again} ({}; {} of {of})",
-            self.roles[channel].verb(),
-            input(channel),
-            n + 1
-        )]
+        format!("{} {name}{hint}{again} ({}; {} of {of})", self.roles[channel].verb(), input(channel), n + 1)
     }
 
     /// Holds the sides of exchanged wires against each other. What passes, or was not asked, has moved in no other's place: then the
@@ -335,7 +386,7 @@ impl Selftest {
     }
 
     /// A verdict for a person.
-    fn words(&self, channel: usize, verdict: Verdict) -> String {
+    pub fn words(&self, channel: usize, verdict: Verdict) -> String {
         let Channel { rest_mv, name, .. } = CHANNELS[channel];
         let wire = |other: usize| format!("{} ({})", CHANNELS[other].name, input(other));
         match verdict {
@@ -361,7 +412,12 @@ impl Selftest {
                 self.channels.iter().copied().filter(|&n| is_on(&CHANNELS[n].input)).collect();
             let exchanged =
                 on.iter().filter(|&&n| matches!(self.verdicts[n], Some(Verdict::Moved(_)))).count();
-            if on.len() > 1 && on.iter().all(bad) {
+            // Where wires are only exchanged the switch works; and what was left out says nothing.
+            let fails = |channel: &usize| {
+                let verdict = self.verdicts[*channel];
+                verdict.is_some_and(|verdict| !matches!(verdict, Verdict::Pass(_) | Verdict::Moved(_)))
+            };
+            if on.len() > 1 && on.iter().all(fails) {
                 lines.push(format!(
                     "All of switch {switch} fails: its supply, its enable, its output's wire."
                 ));
@@ -372,8 +428,11 @@ impl Selftest {
             }
         }
         for &channel in self.channels.iter().filter(|channel| bad(channel)) {
-            let Some(verdict) = self.verdicts[channel] else { continue };
             let place = format!("{} ({})", CHANNELS[channel].name, input(channel));
+            let Some(verdict) = self.verdicts[channel] else {
+                lines.push(format!("{place}: left out, not tested"));
+                continue;
+            };
             match verdict {
                 // The other side may have been said already.
                 Verdict::Moved(other)
@@ -400,50 +459,4 @@ impl Selftest {
     pub fn passes(&self) -> bool {
         self.channels.iter().all(|&channel| matches!(self.verdicts[channel], Some(Verdict::Pass(_))))
     }
-}
-
-/// The channels that are called so, or whose names begin so; without any word, all. Fails on a word that fits none.
-pub fn named(words: &[String]) -> anyhow::Result<Vec<usize>> {
-    let fits = |n: usize, word: &String| match by_name(word) {
-        Some(only) => n == only,
-        None => CHANNELS[n].name.starts_with(word.as_str()),
-    };
-    if let Some(word) = words.iter().find(|word| !(0..COUNT).any(|n| fits(n, word))) {
-        bail!("no channel begins with `{word}`: docs/wiring.md has them");
-    }
-    Ok((0..COUNT).filter(|&n| words.is_empty() || words.iter().any(|word| fits(n, word))).collect())
-}
-
-/// Runs the test to its end; whether all pass. A gripper without a wearer has no muscles to contract.
-pub fn run(client: &mut Client, words: &[String], limit_s: u32, say: Say<'_>) -> anyhow::Result<bool> {
-    let mut flag = |id: SettingId| -> anyhow::Result<bool> {
-        match client.ask(&Down::Get(id.number()), ANSWER_WITHIN)? {
-            Answer::Setting(own) => Ok(own.value != 0),
-            other => bail!("the board does not say its settings: {other:?}"),
-        }
-    };
-    let (head, no_wearer) = (flag(SettingId::Head)?, flag(SettingId::NoWearer)?);
-    let mut channels = named(words)?;
-    if words.is_empty() && no_wearer {
-        channels.retain(|&channel| Role::of(channel, head) != Role::Muscle);
-    }
-    let mut test = Selftest::new(channels, head, limit_s);
-    say("The hand is empty: the reflex may close it on what is pressed.")?;
-    say(&format!("Touch nothing and relax for {} s.", REST / FRAME_HZ))?;
-    let stream = Down::Stream { raw: false, senses: true, hold_s: 10 };
-    let (mut asked, mut heard) = (None::<Instant>, Instant::now());
-    while !test.is_over() {
-        if asked.is_none_or(|at| at.elapsed() > Duration::from_secs(4)) {
-            ask(client, stream)?;
-            asked = Some(Instant::now());
-        }
-        let message = client.next_message().context("the line ended")?.map(|heard| heard.received.message);
-        if let Some(Up::Senses(senses)) = message {
-            heard = Instant::now();
-            test.hear(&senses).iter().try_for_each(|line| say(line))?;
-        } else if heard.elapsed() > 2 * ANSWER_WITHIN {
-            bail!("the board sends no readings");
-        }
-    }
-    Ok(test.passes())
 }

@@ -24,7 +24,8 @@ const PICTURE_AGE_MS: u16 = 33;
 pub fn show(places: &Places, control: bool) -> anyhow::Result<()> {
     let (commands, waiting) = channel();
     let (sender, news) = channel();
-    source::start(places, waiting, sender);
+    // The bench has its keys in the terminal that serves it.
+    let _bench = source::start(places, waiting, sender);
     let shown = Shown { place: places.line.to_string(), control, ..Shown::default() };
     let mut app = App { view: View::default(), shown, commands, recording: None, marks: 0, over: false };
     let mut terminal = ratatui::try_init().context("this is no terminal: use --plain")?;

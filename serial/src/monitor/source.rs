@@ -1,14 +1,14 @@
 //! The board's line on a thread of its own: it is opened again whenever it ends, commands go down it, and all that comes
 //! up is handed on.
 
-use std::sync::mpsc::{Receiver, Sender, TryRecvError};
+use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use tenax_hal_shim::wire::{Answer, BadFrame, Down};
 
 use crate::link::{Client, Counts, Heard, Target};
-use crate::truth::{self, Truth};
+use crate::truth::{self, Bench, Told, Truth};
 
 /// How long a board may take to answer.
 const ANSWER_WITHIN: Duration = Duration::from_secs(2);
@@ -28,6 +28,8 @@ pub enum News {
     Frame(Result<Heard, BadFrame>, Counts, Instant),
     /// What really happens in the scene.
     Truth(Truth),
+    /// What can be done at the scene's bench; None: there is none any more.
+    Bench(Option<Bench>),
     /// What was asked, and the answer.
     Answered(Down, Result<Answer, String>),
 }
@@ -41,14 +43,24 @@ pub struct Places {
     pub truth: Option<Target>,
 }
 
-/// Watches all of it on threads of their own, which end when nobody listens any more.
-pub fn start(places: &Places, commands: Receiver<Down>, news: Sender<News>) {
+/// Watches all of it on threads of their own, which end when nobody listens any more. Lines that are sent to what it returns are
+/// done at the bench of a scene that tells the truth; anywhere else they go nowhere.
+pub fn start(places: &Places, commands: Receiver<Down>, news: Sender<News>) -> Sender<String> {
+    let (bench, acts) = channel();
     if let Some(target) = places.truth.clone() {
         let news = news.clone();
-        thread::spawn(move || truth::watch(&target, &mut |truth| news.send(News::Truth(truth)).is_ok()));
+        let mut tell = move |told| {
+            let told = match told {
+                Told::Truth(truth) => News::Truth(truth),
+                Told::Bench(bench) => News::Bench(bench),
+            };
+            news.send(told).is_ok()
+        };
+        thread::spawn(move || truth::watch(&target, &acts, &mut tell));
     }
     let target = places.line.clone();
     thread::spawn(move || watch(&target, &commands, &news));
+    bench
 }
 
 /// Watches a line until nobody listens any more.

@@ -14,7 +14,7 @@ use tenax_logic::setting::SettingId;
 
 use super::source::News;
 use crate::link::{Counts, Heard};
-use crate::truth::Truth;
+use crate::truth::{Bench, Truth};
 use crate::words::{AnswerWords, Words, why};
 
 /// Slow frames whose readings are drawn: ten seconds.
@@ -76,6 +76,8 @@ pub struct View {
     pub counts: Counts,
     /// What really happens, if there is a scene that tells, the oldest first.
     pub truth: VecDeque<Truth>,
+    /// What can be done at the scene's bench, if there is one.
+    pub bench: Option<Bench>,
     /// Messages of another version were heard.
     pub other_version: Option<String>,
     said: u64,
@@ -115,6 +117,7 @@ impl View {
                 }
                 self.truth.push_back(truth);
             }
+            News::Bench(bench) => self.bench = bench,
             News::Answered(command, answer) => self.answered(&command, answer),
         }
     }

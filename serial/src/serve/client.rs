@@ -17,6 +17,8 @@ pub struct Ends {
     pub hub: Arc<Hub>,
     /// What goes down, frame by frame.
     pub down: SyncSender<Vec<u8>>,
+    /// What a frame that goes down ends with.
+    pub end: u8,
 }
 
 impl Ends {
@@ -41,7 +43,7 @@ impl Ends {
 
     /// Passes on what a client sends until it leaves or nobody is served any more.
     pub fn read(&self, client: &mut dyn Read) -> io::Result<()> {
-        let (mut framer, mut buffer) = (Framer::default(), [0; 4096]);
+        let (mut framer, mut buffer) = (Framer::ending(self.end), [0; 4096]);
         while !self.hub.is_closed() {
             match client.read(&mut buffer) {
                 Ok(0) => break,

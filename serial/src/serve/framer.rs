@@ -1,4 +1,4 @@
-//! A stream of bytes, cut after each zero: what a receiver takes for one frame. What is in it is not looked at.
+//! A stream of bytes, cut after each zero, what a receiver takes for one frame, or after each line. What is in it is not looked at.
 
 use tenax_hal_shim::wire::FRAME_MAX;
 
@@ -6,15 +6,22 @@ use tenax_hal_shim::wire::FRAME_MAX;
 #[derive(Debug, Default)]
 pub struct Framer {
     bytes: Vec<u8>,
+    /// What each ends with.
+    end: u8,
 }
 
 impl Framer {
+    /// Gathers what ends so.
+    pub const fn ending(end: u8) -> Self {
+        Self { bytes: Vec::new(), end }
+    }
+
     /// Takes a byte; gives the frame that it ends. Of one that is too long to be any, as much as shows that.
     pub fn push(&mut self, byte: u8) -> Option<Vec<u8>> {
-        if byte == 0 || self.bytes.len() <= FRAME_MAX {
+        if byte == self.end || self.bytes.len() <= FRAME_MAX {
             self.bytes.push(byte);
         }
-        (byte == 0).then(|| std::mem::take(&mut self.bytes))
+        (byte == self.end).then(|| std::mem::take(&mut self.bytes))
     }
 
     /// Forgets what has no end yet.

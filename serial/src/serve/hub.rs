@@ -25,16 +25,28 @@ pub struct Hub {
 
 #[derive(Debug, Default)]
 struct Clients {
+    /// The first that each is sent, if there is any.
+    greeting: Option<Frame>,
     senders: Vec<SyncSender<Frame>>,
     no_more: bool,
 }
 
 impl Hub {
+    /// One that sends this to whoever comes.
+    pub fn greeting(frame: &[u8]) -> Self {
+        let clients = Clients { greeting: Some(Frame::from(frame)), ..Clients::default() };
+        Self { clients: Mutex::new(clients), ..Self::default() }
+    }
+
     /// A client has come: what it is to be sent, from the next frame on. It leaves by dropping this.
     pub fn join(&self) -> Receiver<Frame> {
         let (sender, frames) = sync_channel(CLIENT_FRAMES);
         let mut clients = self.clients();
         if !clients.no_more {
+            if let Some(greeting) = &clients.greeting {
+                // There is room.
+                let _sent = sender.try_send(Arc::clone(greeting));
+            }
             clients.senders.push(sender);
             self.served.fetch_add(1, Relaxed);
         }

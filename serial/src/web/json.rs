@@ -5,7 +5,11 @@ use tenax_hal_shim::channel::{CHANNELS, Channel, mv_from_sample};
 use tenax_hal_shim::detector::DetectorId;
 use tenax_logic::setting::SettingId;
 
+use super::Seen;
+use super::wizard::Wizard;
+use crate::guide::selftest::Verdict;
 use crate::monitor::view::View;
+use crate::wiring::input;
 
 /// Lines of the log in one event at most.
 const LINES_MAX: usize = 50;
@@ -19,23 +23,26 @@ pub struct After {
     pub truth_s: f64,
     /// Lines of the log.
     pub lines: u64,
+    /// The self-test, by its number, and lines of it.
+    pub selftest: (u64, usize),
 }
 
 impl After {
-    pub const NOTHING: Self = Self { points_s: f64::MIN, truth_s: f64::MIN, lines: 0 };
+    pub const NOTHING: Self = Self { points_s: f64::MIN, truth_s: f64::MIN, lines: 0, selftest: (0, 0) };
 
     /// All that there is. A board or a scene that started anew counts from 0 again.
-    pub fn all(view: &View) -> Self {
+    pub fn all(Seen { view, wizard }: &Seen) -> Self {
         Self {
             points_s: view.t_s(),
             truth_s: view.truth.back().map_or(f64::MIN, |truth| truth.t_s),
             lines: view.said(),
+            selftest: (wizard.number(), wizard.lines()),
         }
     }
 }
 
 /// What is new, and the state.
-pub fn event(view: &View, place: &str, after: &After) -> Value {
+pub fn event(Seen { view, wizard }: &Seen, place: &str, after: &After) -> Value {
     let points: Vec<Value> = view
         .history
         .iter()
@@ -101,6 +108,38 @@ pub fn event(view: &View, place: &str, after: &After) -> Value {
         "detectors": detectors,
         "points": points,
         "log": log,
+        "bench": view.bench.as_ref().map(|bench| &bench.keys),
+        "selftest": selftest(wizard, after.selftest),
+    })
+}
+
+/// How the self-test stands; its lines and verdicts only where there are new ones.
+fn selftest(wizard: &Wizard, (number, lines): (u64, usize)) -> Value {
+    let Some(session) = wizard.session() else { return Value::Null };
+    let (test, said) = (session.test(), session.said());
+    let known = if number == wizard.number() { lines.min(said.len()) } else { 0 };
+    let is_new = known < said.len() || number != wizard.number();
+    let results = || -> Vec<Value> {
+        let row = |&channel: &usize| {
+            let verdict = test.verdict(channel);
+            let state = verdict.map(|verdict| matches!(verdict, Verdict::Pass(_)));
+            let words = verdict.map(|verdict| test.words(channel, verdict));
+            json!([CHANNELS[channel].name, input(channel), state, words])
+        };
+        test.channels().iter().map(row).collect()
+    };
+    let level = test
+        .level()
+        .map(|level| json!({ "mv": level.mv, "moved_mv": level.moved_mv, "needed_mv": level.needed_mv }));
+    json!({
+        "number": wizard.number(),
+        "prompt": test.prompt(),
+        "over": test.is_over(),
+        "passes": test.passes(),
+        "failed": wizard.failed(),
+        "level": level,
+        "lines": &said[known..],
+        "results": is_new.then(results),
     })
 }
 
