@@ -188,14 +188,14 @@ fn live_of(down: &Down, person: &Person) -> Live {
 
 /// The line that presses the button, and what that is for a person.
 const BUTTON: &str = "button";
-const CONSENTS: &str = "press the blue button: consent to what the line sends, for a minute";
+const CONSENTS: &str = "press the blue button (consent for a minute)";
 
 /// Does what a person at the keyboard types, or what a program pipes, such as the prompts of `tenax selftest`; and what comes from
 /// the page where the truth is told.
 fn listen(person: &Person, acts: Option<Receiver<Vec<u8>>>) {
     let is_typed = io::stdin().is_terminal();
     if is_typed {
-        out::note!("Enter: {CONSENTS}");
+        out::note!("Enter alone: {CONSENTS}");
         let keys = KEYS.map(|(key, what, _)| format!("{key} {what}"));
         out::note!("with Enter: {},\n{}", keys[..4].join(", "), keys[4..].join(", "));
         out::note!("`weight 5` lays 5 N on the finger, `tap pvdf_3` taps a film");

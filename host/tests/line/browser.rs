@@ -77,10 +77,17 @@ impl Page {
         answer["result"]["value"].clone()
     }
 
-    /// Its picture, as a PNG in base64.
-    pub fn picture(&mut self) -> String {
+    /// Makes its window as large as this, in pixels.
+    pub fn size(&mut self, width: u32, height: u32) {
+        let size = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 800 });
+        self.ask("Emulation.setDeviceMetricsOverride", size);
+    }
+
+    /// Writes its picture, as a PNG in base64, where `TENAX_PICTURE` says, with this after the name; else nowhere.
+    pub fn picture(&mut self, name: &str) {
+        let Ok(path) = std::env::var("TENAX_PICTURE") else { return };
         let shot = self.ask("Page.captureScreenshot", json!({ "format": "png" }));
-        shot["data"].as_str().unwrap().to_owned()
+        std::fs::write(path + name, shot["data"].as_str().unwrap()).unwrap();
     }
 
     fn ask(&mut self, method: &str, params: Value) -> Value {

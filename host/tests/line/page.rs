@@ -75,9 +75,7 @@ fn a_person_sees_the_board_beside_the_truth_zooms_pauses_and_sets_a_setting() {
     until(&mut page, "last.rates !== null");
     let rates = page.value("last.rates");
     assert!((1_500.0..2_500.0).contains(&rates[0].as_f64().unwrap()), "{rates}");
-    if let Ok(path) = std::env::var("TENAX_PICTURE") {
-        std::fs::write(path, page.picture()).unwrap();
-    }
+    page.picture("");
 
     page.value("at('pause').click()");
     let paused = page.value("at('time').textContent");
@@ -88,5 +86,74 @@ fn a_person_sees_the_board_beside_the_truth_zooms_pauses_and_sets_a_setting() {
 
     served.kill();
     until(&mut page, "at('gone').textContent.includes('no line, trying again')");
+    assert!(page.errors.is_empty(), "{:?}", page.errors);
+}
+
+#[test]
+fn a_person_tests_the_wires_and_grips_at_the_bench_in_the_page() {
+    let bench = include_str!("../../../scenes/parts/bench.toml");
+    let dead = "\n[[fault]]\nat_s = 0\nchannel = \"fsr_b\"\nkind = \"dead\"\nreason = \"a test\"\n";
+    let mut served = Serving::start_telling(&format!("{bench}{dead}"));
+    let web = Web::watching(&served.places[0], &["--control", "--truth", &served.places[1]]);
+    let Some(mut page) = Page::open(&web.url) else { return served.kill() };
+    until(
+        &mut page,
+        "at('keys').childElementCount === 8 && !at('keys').firstChild.disabled && points.length > 40",
+    );
+
+    page.value("(() => { at('of').value = 'fsr'; at('start').click(); return true; })()");
+    until(&mut page, "at('prompt').textContent.startsWith('press fsr_a (') && !at('touch').hidden");
+    page.value("at('touch').click()");
+    until(&mut page, "at('level').value > 1 && at('levels').textContent.includes('a touch is')");
+    page.picture("-touched");
+    page.size(390, 844);
+    until(&mut page, "at('prompt').getBoundingClientRect().bottom < innerHeight");
+    page.picture("-390-touched");
+    page.size(1_280, 900);
+    until(&mut page, "at('verdict').className === 'good' && at('verdict').textContent.startsWith('pass, ')");
+    until(&mut page, "at('prompt').textContent.startsWith('press fsr_c (') && !at('skip').hidden");
+    page.value("at('skip').click()");
+    until(&mut page, "at('prompt').textContent.startsWith('press fsr_d (')");
+    page.value("at('touch').click()");
+    until(
+        &mut page,
+        "at('prompt').textContent === '2 of 4 channels pass' && at('prompt').className === 'bad'",
+    );
+    assert!(
+        page.value("at('lines').textContent")
+            .as_str()
+            .unwrap()
+            .contains("fsr_b (switch A, 13): 0 mV: a cut wire")
+    );
+    assert_eq!(
+        page.value("[...at('results').children].map(span => span.className).join()"),
+        "good,bad,off,good"
+    );
+
+    // A key is a button's; typed into a field it is not.
+    page.value("document.body.dispatchEvent(new KeyboardEvent('keydown', { key: 'g', bubbles: true }))");
+    page.value("at('of').dispatchEvent(new KeyboardEvent('keydown', { key: 'w', bubbles: true }))");
+    until(&mut page, "last.truth.now.needed_n > 0 && at('truth').textContent.includes('kept')");
+    page.value("[...at('keys').children].find(button => button.textContent === 'p: pull').click()");
+    until(&mut page, "at('log').textContent.includes('at the bench: p')");
+    assert_eq!(page.value("at('log').textContent.includes('at the bench: w')"), false);
+    for (width, height) in [(1_280, 900), (390, 844)] {
+        page.size(width, height);
+        until(&mut page, &format!("innerWidth === {width} && at('load').width === at('load').clientWidth"));
+        assert_eq!(
+            page.value("document.documentElement.scrollWidth <= innerWidth"),
+            true,
+            "nothing is cut at {width}"
+        );
+        page.picture(&format!("-{width}"));
+        page.value("at('lines').scrollIntoView({ block: 'end' })");
+        page.picture(&format!("-{width}-test"));
+        page.value("scrollTo(0, 0)");
+    }
+
+    page.value("at('stop').click()");
+    until(&mut page, "at('test').hidden");
+    served.kill();
+    until(&mut page, "at('bench').hidden");
     assert!(page.errors.is_empty(), "{:?}", page.errors);
 }
