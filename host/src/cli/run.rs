@@ -70,7 +70,7 @@ pub struct Args {
     #[arg(long, value_name = "PORT")]
     serve_tcp: Option<u16>,
     /// Beside the line, tell what really happens in the scene on this TCP port of 127.0.0.1, for `tenax monitor --truth`: a
-    /// line of JSON 50 times a second; 0: any that is free
+    /// line of JSON 50 times a second; 0: any that is free. Keys that its page sends there are done at the bench
     #[arg(long, value_name = "PORT", conflicts_with = "replay")]
     serve_truth: Option<u16>,
     /// Run the scene again and again, each time with the next seed, as a bench that stays on; Ctrl-C ends it

@@ -33,10 +33,11 @@ pub struct Args {
     /// One line a message instead of the screen, as always where the output is no terminal
     #[arg(long)]
     plain: bool,
-    /// Instead of the screen, a page in the browser, on this port of 127.0.0.1; 0: any that is free
+    /// Instead of the screen, a page in the browser, on this port of 127.0.0.1; 0: any that is free. It has the self-test, too
     #[arg(long, value_name = "HTTP_PORT", num_args = 0..=1, default_missing_value = "7780", conflicts_with = "plain")]
     web: Option<u16>,
-    /// Beside what the board says, show what really happens in its scene: where `tenax run --serve-truth` tells it
+    /// Beside what the board says, show what really happens in its scene: where `tenax run --serve-truth` tells it. With
+    /// --control, --web has the keys of the scene's bench
     #[arg(long, value_name = "tcp:HOST:PORT", conflicts_with = "plain")]
     truth: Option<Target>,
     /// Let the screen's keys change something: settings, zero, calibration, the teacher

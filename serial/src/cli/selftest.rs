@@ -7,6 +7,7 @@ use super::out;
 use crate::guide::selftest;
 
 const EXAMPLES: &str = "\
+`tenax monitor --web` has the same test in its page.
 Examples:
   tenax selftest                                        the board that is plugged in, every channel
   tenax selftest fsr array_3                            only channels whose names begin so
