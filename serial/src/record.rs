@@ -18,7 +18,7 @@ use tenax_hal_shim::wire::{About, Answer, FRAME_MAX, Received, Up, encode};
 use self::topics::{Topic, rows, seconds};
 use crate::link::Inbox;
 use crate::link::captured::is_recording;
-use crate::mcap::Writer;
+use crate::mcap::{Packing, Writer};
 use crate::protobuf::{self, PACKAGE, Value};
 use crate::settings;
 
@@ -40,9 +40,19 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// A recording in a new file. The board's time 0 is now.
+    /// A recording of every topic in a new file. The board's time 0 is now.
     /// Fails if the file cannot be written, is there already, or is not called `*.mcap`.
     pub fn create(path: &Path) -> anyhow::Result<Self> {
+        Self::of(path, Topic::all(), Packing::FAST)
+    }
+
+    /// One for hours: the line, and what a person draws first.
+    /// Fails as [`create`](Self::create) does.
+    pub fn compact(path: &Path) -> anyhow::Result<Self> {
+        Self::of(path, Topic::compact(), Packing::SMALL)
+    }
+
+    fn of(path: &Path, topics: Vec<Topic>, packing: Packing) -> anyhow::Result<Self> {
         let name = path.display();
         if !is_recording(path) {
             bail!(
@@ -58,8 +68,8 @@ impl Recording {
             other => other.with_context(cannot)?,
         };
         let out = BufWriter::new(file);
-        let mut file = Writer::new(out).with_context(cannot)?;
-        let channels = Topic::all()
+        let mut file = Writer::new(out, packing).with_context(cannot)?;
+        let channels = topics
             .into_iter()
             .map(|topic| {
                 let message = topic.message();
@@ -93,8 +103,8 @@ impl Recording {
         let line = bytes.map(|bytes| (Topic::Line, self.last, vec![Value::Bytes(bytes)]));
         for (topic, frame, values) in line.into_iter().chain(rows) {
             let at_ns = self.began_ns + (seconds(frame) * 1e9) as u64;
-            let channel = self.channels.iter().find(|(own, _)| *own == topic).map_or(0, |(_, id)| *id);
-            if let Err(error) = self.file.message(channel, at_ns, came_ns, &protobuf::message(&values)) {
+            let Some((_, channel)) = self.channels.iter().find(|(own, _)| *own == topic) else { continue };
+            if let Err(error) = self.file.message(*channel, at_ns, came_ns, &protobuf::message(&values)) {
                 self.error.get_or_insert(error);
             }
         }

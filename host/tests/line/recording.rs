@@ -1,10 +1,11 @@
 //! Recordings: what is in them is what was on the line, and decides the same once more.
 
-use std::io::{Read, Write};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpListener;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Child, Command, Output, Stdio};
 use std::thread;
+use std::time::{Duration, Instant};
 
 use tenax_bench::again::Recorded;
 use tenax_bench::board::Recorder;
@@ -14,6 +15,7 @@ use tenax_hal_shim::wire::{Answer, Down, FRAME_MAX, Last, PIECE_MAX, Raw, Receiv
 use tenax_hal_shim::words::Fault;
 use tenax_scene::World;
 use tenax_serial::link::captured::line_of;
+use tenax_serial::link::{Client, Target};
 use tenax_serial::record::Recording;
 
 use crate::serving::Serving;
@@ -165,6 +167,68 @@ fn a_recording_overwrites_nothing_says_what_it_lacks_and_names_its_board() {
     let (done, said) = record(&["--out", "foo.csv"]);
     assert!(!done && said.contains("call it foo.mcap"), "{said}");
     drop(served.end());
+}
+
+#[test]
+fn an_hour_is_less_than_60_mb_and_is_played_from_any_second() {
+    // Somebody is busy at the bench all the time.
+    let mut served = Serving::start(include_str!("../../../scenes/parts/bench.toml"), &[]);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("compact.mcap");
+    let mut record = Command::new(env!("CARGO_BIN_EXE_tenax-host"))
+        .args(["record", "--compact", "--seconds", "24", "--port", &served.places[0], "--out"])
+        .arg(&path)
+        .spawn()
+        .unwrap();
+    for key in ["g", "w", "p", "d"].repeat(2) {
+        served.tell(key);
+        thread::sleep(Duration::from_secs(3));
+    }
+    assert!(record.wait().unwrap().success());
+    served.kill();
+    let bytes = std::fs::metadata(&path).unwrap().len();
+    println!("{bytes} bytes of 24 s");
+    assert!(bytes * 3_600 / 24 < 60_000_000, "{bytes} bytes of 24 s");
+
+    // All that is left out is made of the line.
+    let csv = folder.path().join("csv");
+    assert!(tenax(&["play", path.to_str().unwrap(), "--csv", csv.to_str().unwrap()]).0);
+    let ticks = std::fs::read_to_string(csv.join("tick.csv")).unwrap().lines().count();
+    assert!(ticks > 24 * 1_900, "{ticks}");
+
+    // From its twentieth second, and again from there.
+    let play = Command::new(env!("CARGO_BIN_EXE_tenax-host"))
+        .args(["play", "--serve-tcp", "0", "--from", "20", "--loop", "--speed", "8"])
+        .arg(&path)
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut play = Ends(play);
+    let mut said = String::new();
+    BufReader::new(play.0.stderr.take().unwrap()).read_line(&mut said).unwrap();
+    let target: Target = said.trim().strip_prefix("serving on ").unwrap().parse().unwrap();
+    let mut client = Client::open(&target).unwrap();
+    let (mut frames, began) = (Vec::new(), Instant::now());
+    while frames.windows(2).filter(|pair| pair[0] > pair[1]).count() < 2 {
+        assert!(began.elapsed() < Duration::from_secs(30), "it is not played again");
+        if let Some(heard) = client.next_message().unwrap()
+            && let Up::Slow(slow) = heard.received.message
+        {
+            frames.push(slow.frame);
+        }
+    }
+    let (first, last) = (frames.iter().min().unwrap(), frames.iter().max().unwrap());
+    assert!((4_000..10_000).contains(&(last - first)), "4 of 24 s: {first} to {last}");
+}
+
+/// Ends a command that would go on.
+struct Ends(Child);
+
+impl Drop for Ends {
+    fn drop(&mut self) {
+        let _gone = self.0.kill();
+        let _gone = self.0.wait();
+    }
 }
 
 /// A stand-in for a board that has kept these bytes: where it is. It serves two clients, one after the other.

@@ -6,11 +6,12 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::bail;
+use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::wire::Up;
 
 use super::out;
 use crate::link::captured::line_of;
-use crate::link::{Encoder, Inbox};
+use crate::link::{Counts, Encoder, Inbox};
 use crate::record::csv;
 use crate::record::topics::seconds;
 use crate::serve::{Options, Server};
@@ -32,6 +33,12 @@ pub struct Args {
     /// Times as fast as it was recorded
     #[arg(long, value_name = "TIMES", default_value_t = 1.0)]
     speed: f64,
+    /// Begin so many seconds after the recording's beginning
+    #[arg(long, value_name = "S", default_value_t = 0.0)]
+    from: f64,
+    /// When it is over, play it again; Ctrl-C ends it
+    #[arg(long = "loop")]
+    repeat: bool,
 }
 
 /// Plays a recording.
@@ -57,18 +64,38 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     while server.tally().clients == 0 {
         thread::sleep(Duration::from_millis(50));
     }
-    let (mut inbox, mut encoder, mut last) = (Inbox::default(), Encoder::default(), None);
-    let began = Instant::now();
-    for heard in line.iter().filter_map(|&byte| inbox.push(byte)).flatten() {
-        if let Up::Slow(slow) = &heard.received.message {
-            let first = *last.get_or_insert(slow.frame);
-            let due = Duration::from_secs_f64(
-                (seconds(slow.frame) - seconds(first)).max(0.0) / args.speed.max(0.01),
-            );
-            thread::sleep(due.saturating_sub(began.elapsed()));
+    let mut encoder = Encoder::default();
+    let counts = loop {
+        let counts = play(&line, args, &mut |message| server.line(encoder.frame(message).1));
+        if !args.repeat {
+            break counts;
         }
-        server.line(encoder.frame(&heard.received.message).1);
-    }
-    out::note!("{}; {}", inbox.counts(), server.close());
+        // Who watches has to know that time begins anew.
+        server.line(encoder.frame(&Up::Hello { frame_hz: FRAME_HZ as u16, after: None }).1);
+    };
+    out::note!("{counts}; {}", server.close());
     Ok(ExitCode::SUCCESS)
+}
+
+/// Says each message when it is due; before the beginning only what stays so: who the board is, and its settings.
+fn play(line: &[u8], args: &Args, say: &mut dyn FnMut(&Up)) -> Counts {
+    let mut inbox = Inbox::default();
+    let (mut first, mut played) = (None, None);
+    for heard in line.iter().filter_map(|&byte| inbox.push(byte)).flatten() {
+        let message = &heard.received.message;
+        if let Up::Slow(slow) = message {
+            let at_s = seconds(slow.frame);
+            let from_s = *first.get_or_insert(at_s) + args.from;
+            if at_s >= from_s {
+                let (began, begin_s) = *played.get_or_insert((Instant::now(), at_s));
+                let due = Duration::from_secs_f64((at_s - begin_s).max(0.0) / args.speed.max(0.01));
+                thread::sleep(due.saturating_sub(began.elapsed()));
+            }
+        }
+        let stays = matches!(message, Up::Hello { .. } | Up::About(_) | Up::Answer { .. });
+        if played.is_some() || stays || args.from <= 0.0 {
+            say(message);
+        }
+    }
+    inbox.counts()
 }

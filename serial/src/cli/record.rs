@@ -34,8 +34,12 @@ pub struct Args {
     /// Leave out the frames, which take three fifths of the line; then it cannot be replayed
     #[arg(long)]
     no_frames: bool,
+    /// For hours: without frames, and only the topics /line, /state, /event, /counters and /setting. `tenax play --csv` makes
+    /// all of the line
+    #[arg(long, conflicts_with = "no_frames")]
+    compact: bool,
     /// Instead, what the board still has of the seconds before its last run ended in a fault. It then keeps it no longer
-    #[arg(long, conflicts_with_all = ["seconds", "no_frames"])]
+    #[arg(long, conflicts_with_all = ["seconds", "no_frames", "compact"])]
     last: bool,
 }
 
@@ -43,6 +47,7 @@ const EXAMPLES: &str = "\
 Examples:
   tenax record --out walk.mcap                 until Ctrl-C, with every frame
   tenax record --seconds 60 --no-frames        a minute of what was decided, a fifth of the line
+  tenax record --compact                       less than 60 MB an hour
   tenax record --last --out fault.mcap         the board has restarted: what it did in the seconds before
   tenax plot fault.mcap                        draws any of them
 
@@ -57,7 +62,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if args.last {
         return last(&mut client, &path);
     }
-    let mut recording = Recording::create(&path)?;
+    let mut recording = if args.compact { Recording::compact(&path) } else { Recording::create(&path) }?;
     let stopped = Arc::new(AtomicBool::new(false));
     signal_hook::flag::register(signal_hook::consts::SIGINT, Arc::clone(&stopped))
         .context("cannot listen for Ctrl-C")?;
@@ -72,7 +77,11 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     };
     while !is_over() {
         if client.can_send() && asked.is_none_or(|at| at.elapsed().as_secs() >= u64::from(HOLD_S) / 2) {
-            client.send(&Down::Stream { raw: !args.no_frames, senses: true, hold_s: HOLD_S })?;
+            client.send(&Down::Stream {
+                raw: !args.no_frames && !args.compact,
+                senses: true,
+                hold_s: HOLD_S,
+            })?;
             asked = Some(Instant::now());
         }
         match client.next_message() {

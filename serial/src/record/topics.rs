@@ -41,6 +41,11 @@ impl Topic {
         [Self::Line].into_iter().chain(rest).chain(detectors).collect()
     }
 
+    /// Those of a compact recording: the line, from which all others can be made again, and what a person draws first.
+    pub fn compact() -> Vec<Self> {
+        vec![Self::Line, Self::State, Self::Event, Self::Counters, Self::Setting]
+    }
+
     /// What it is called in the file.
     pub fn name(self) -> String {
         match self {
