@@ -18,10 +18,8 @@ use zenoh::{Session, Wait};
 
 const WITHIN: Duration = Duration::from_secs(10);
 
-/// A gripper that stands about a block and touches nothing: at its start the board consents.
-const CONSENTING: &str = "name = \"open\"\nbase = \"block\"\ntitle = \"An open gripper\"\nfrom = \"assumed\"\nduration_s = 60\n\n\
-    [[fault]]\nat_s = 0\nchannel = \"myo_flexor\"\nkind = \"dead\"\nreason = \"not fitted\"\n\n\
-    [[fault]]\nat_s = 0\nchannel = \"myo_extensor\"\nkind = \"dead\"\nreason = \"not fitted\"\n";
+/// A gripper that touches nothing: at its start the board consents.
+const CONSENTING: &str = include_str!("../examples/open.toml");
 
 struct Ros<'a> {
     session: &'a Session,
