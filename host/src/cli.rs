@@ -1,5 +1,6 @@
 //! The command line: one file a subcommand.
 
+mod bridge;
 mod calibrate;
 mod chart;
 mod check;
@@ -88,6 +89,8 @@ enum Command {
     Vision(vision::Args),
     #[command(flatten)]
     Serial(Shared),
+    /// Bring fingertips into ROS 2 over zenoh, without a ROS install
+    Bridge(bridge::Args),
     /// Draw a recording
     Plot(plot::Args),
     /// Flash, RAM, worst stack and instructions a tick of the image, beside their budgets
@@ -116,6 +119,7 @@ pub fn main() -> ExitCode {
         Command::Evaluate(args) => evaluate::main(&args),
         Command::Vision(args) => vision::main(&args),
         Command::Serial(command) => command.run(),
+        Command::Bridge(args) => bridge::main(&args),
         Command::Plot(args) => plot::main(&args),
         Command::Size(args) => size::main(&args),
         Command::LintImage => lint_image::main(),

@@ -20,6 +20,11 @@ pub const BUILD: [&str; 6] =
     ["--release", "--ignore-rust-version", "--package", "tenax", "--features", "tenax/emulator"];
 /// How the serial tools alone are built.
 const BUILD_SERIAL: [&str; 3] = ["--release", "--package", "tenax-serial"];
+/// How the bridge into ROS 2 is built, which nothing else compiles.
+const BUILD_BRIDGE: [&str; 4] = ["--release", "--ignore-rust-version", "--package", "tenax-bridge"];
+
+/// The bridge's command.
+const BRIDGE: &str = "bridge";
 
 /// What runs a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,11 +32,16 @@ pub enum Tool {
     Whole,
     /// The serial tools, which take no emulator and no plots: built in a minute and a half, the whole tool in minutes.
     Serial,
+    /// `bridge`, whose zenoh nobody else is to wait for.
+    Bridge,
 }
 
 impl Tool {
     /// The smaller one that has this command, or the whole if only that is built. Fails if this program is not in a target folder.
     pub fn of(root: &Path, arguments: &[OsString]) -> Result<Self> {
+        if arguments.first().is_some_and(|command| command == BRIDGE) {
+            return Ok(Self::Bridge);
+        }
         let [whole, serial] = [Self::Whole, Self::Serial];
         let is_small = is_serial(arguments)
             && (serial.program(root, &target()?).is_fresh() || !whole.program(root, &target()?).is_fresh());
@@ -42,6 +52,7 @@ impl Tool {
         match self {
             Self::Whole => &BUILD,
             Self::Serial => &BUILD_SERIAL,
+            Self::Bridge => &BUILD_BRIDGE,
         }
     }
 
@@ -50,6 +61,7 @@ impl Tool {
         let name = match self {
             Self::Whole => "tenax-host",
             Self::Serial => "tenax",
+            Self::Bridge => "tenax-bridge",
         };
         let file = target.join("release").join(format!("{name}{EXE_SUFFIX}"));
         Program { root, file, how: self.build().join(" ") }
@@ -79,7 +91,8 @@ impl Tool {
         let path = self.program(root, &target()?).file;
         ensure!(path.exists(), "the build succeeded, but there is no {}", path.display());
         let mut tool = Command::new(&path);
-        tool.args(arguments);
+        // It has no other command.
+        tool.args(arguments.iter().skip(usize::from(self == Self::Bridge)));
         #[cfg(unix)]
         {
             use std::os::unix::process::CommandExt;
@@ -143,6 +156,16 @@ mod tests {
         for whole in ["run", "plot a.mcap", "calibrate photoelastic", "calibrate --help", "--help", ""] {
             assert!(!serial(whole), "{whole}");
         }
+    }
+
+    #[test]
+    fn the_bridge_has_a_tool_of_its_own() {
+        let of = |line: &str| {
+            Tool::of(Path::new("/"), &line.split(' ').map(OsString::from).collect::<Vec<_>>()).unwrap()
+        };
+        assert_eq!(of("bridge"), Tool::Bridge);
+        assert_eq!(of("bridge --port tcp:a:1 --help"), Tool::Bridge);
+        assert_ne!(of("run bridge"), Tool::Bridge);
     }
 
     #[test]

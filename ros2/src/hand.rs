@@ -1,0 +1,231 @@
+//! What a board's line says as ROS 2's messages, and a gripper command as the line's.
+
+use tenax_hal_shim::behaviour::Behaviour;
+use tenax_hal_shim::channel::{SLOW_HZ, mv_from_sample};
+use tenax_hal_shim::motor::{Duty, MotorDrive};
+use tenax_hal_shim::wire::{About, Counters, Down, Senses, Slow};
+use tenax_hal_shim::words::Line;
+
+use crate::message::{
+    DiagnosticArray, DiagnosticStatus, GripperCommand, Header, JointState, KeyValue, Margin, Slip, Tactile,
+    Time,
+};
+
+/// The setting that is the ceiling of forces, mN (`tenax_logic::setting::SettingId`).
+const FORCE_CEILING: u8 = 4;
+/// A drive holds for two slow frames: of a line that is cut the motor is off after so long, ms.
+const HOLD_MS: u16 = 25;
+/// The longest that one command drives, slow frames: 5 s closing, 2 s opening.
+const CLOSES_FOR: u32 = 5 * SLOW_HZ;
+const OPENS_FOR: u32 = 2 * SLOW_HZ;
+/// How long it opens on after nothing is felt any more, slow frames.
+const OPENS_ON_FOR: u32 = SLOW_HZ / 4;
+/// What is felt as nothing, mN.
+const NOTHING_MN: i32 = 300;
+/// How hard it opens, and the least with which a motor moves, per mille.
+const OPEN_PERMILLE: u16 = 400;
+const CLOSE_PERMILLE_MIN: u16 = 150;
+
+/// Head of a message of a hand.
+#[must_use]
+pub fn header(hand: &str, at_ns: u64) -> Header {
+    Header { stamp: Time::of_ns(at_ns), frame_id: hand.to_owned() }
+}
+
+fn newtons(mn: i32) -> f64 {
+    f64::from(mn) / 1e3
+}
+
+/// The grip as a joint's effort.
+#[must_use]
+pub fn joint_state(header: Header, slow: &Slow) -> JointState {
+    let effort = slow.forces.iter().map(|forces| newtons(forces.load_mn)).collect();
+    let name = vec![format!("{}_grip", header.frame_id)];
+    JointState { header, name, effort, ..JointState::default() }
+}
+
+/// What it concluded.
+#[must_use]
+pub fn slip(header: Header, slow: &Slow) -> Slip {
+    let mut message = Slip {
+        header,
+        mode: slow.mode as u8,
+        wearer_active: slow.wearer_active,
+        line_may_command: slow.line != Line::Reading,
+        ..Slip::default()
+    };
+    for tick in &slow.ticks {
+        message.said |= tick.said.bits();
+        message.believed |= tick.believed.bits();
+        message.acted |= tick.acted.bits();
+        message.vibration_mv = message.vibration_mv.max(mv_from_sample(tick.vibration) as u16);
+    }
+    message.slipping = message.believed != 0;
+    message
+}
+
+/// How far it is from sliding.
+#[must_use]
+pub fn margin(header: Header, slow: &Slow) -> Margin {
+    let permille = |permille: u16| f64::from(permille) / 1e3;
+    let margin = slow.forces.and_then(|forces| forces.margin_mn(slow.s2_permille));
+    Margin {
+        header,
+        valid: margin.is_some(),
+        margin: margin.map_or(0.0, newtons),
+        ratio: slow.forces.and_then(|forces| forces.ratio_permille).map_or(0.0, permille),
+        limit: permille(slow.s2_permille),
+    }
+}
+
+/// What it reads.
+#[must_use]
+pub fn tactile(header: Header, slow: &Slow, senses: Option<&Senses>) -> Tactile {
+    let forces = slow.forces.as_ref();
+    Tactile {
+        header,
+        forces_valid: forces.is_some(),
+        load: forces.map_or(0.0, |forces| newtons(forces.load_mn)),
+        shear_x: forces.map_or(0.0, |forces| newtons(forces.fx_mn)),
+        shear_y: forces.map_or(0.0, |forces| newtons(forces.fy_mn)),
+        samples: senses.map_or_else(Vec::new, |senses| senses.samples.to_vec()),
+        films: senses.map_or_else(Vec::new, |senses| senses.films.to_vec()),
+    }
+}
+
+/// The ceiling of forces that a board says of itself, mN.
+#[must_use]
+pub fn ceiling_mn(about: &About) -> Option<i32> {
+    about.settings.iter().find(|setting| setting.id == FORCE_CEILING).map(|setting| setting.value)
+}
+
+/// How a hand is.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Health {
+    /// Why its line is not open.
+    pub gone: Option<String>,
+    /// What became of the last command.
+    pub command: String,
+    /// Who it is.
+    pub about: Option<About>,
+    /// What it counts.
+    pub counters: Option<Counters>,
+    /// Messages missing on the line, and frames that were none.
+    pub missed: u64,
+    /// See there.
+    pub bad_frames: u64,
+}
+
+impl Health {
+    /// As ROS says it.
+    #[must_use]
+    pub fn diagnostics(&self, hand: &str, at_ns: u64) -> DiagnosticArray {
+        let counters = self.counters.unwrap_or_default();
+        let lossy = counters.frames_lost > 0 || counters.ticks_late > 0 || self.missed > 0;
+        let (level, message) = match &self.gone {
+            Some(why) => (2, why.clone()),
+            None if self.counters.is_none() => (3, "nothing heard yet".to_owned()),
+            None if lossy => (1, "frames were lost, late or missed".to_owned()),
+            None => (0, "running".to_owned()),
+        };
+        let value = |key: &str, value: String| KeyValue { key: key.to_owned(), value };
+        let chip = self.about.as_ref().map_or([0; 3], |about| about.identity.chip);
+        let status = DiagnosticStatus {
+            level,
+            name: format!("{hand}: fingertip"),
+            message,
+            hardware_id: chip.map(|part| format!("{part:08x}")).concat(),
+            values: vec![
+                value("last command", self.command.clone()),
+                value("frames lost", counters.frames_lost.to_string()),
+                value("ticks late", counters.ticks_late.to_string()),
+                value("messages missed", self.missed.to_string()),
+                value("bad frames", self.bad_frames.to_string()),
+                value("control per mille", counters.control_permille.to_string()),
+            ],
+        };
+        DiagnosticArray { header: header("", at_ns), status: vec![status] }
+    }
+}
+
+/// What is done about a command next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Step {
+    /// This goes down the line.
+    Send(Down),
+    /// It is over, and why.
+    Over(&'static str),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Aim {
+    /// Until it is felt: the board's own gentle grasp.
+    Felt,
+    /// Until the load is this, mN, with this duty.
+    Load { mn: i32, permille: u16 },
+    /// Until nothing was felt for so many slow frames.
+    Open { nothing_for: u32 },
+}
+
+/// A gripper command that is carried out, a step each slow frame. The board is asked anew each time, for two slow frames:
+/// consent, the wearer and the ceiling are decided there, and of a line or a bridge that is gone nothing drives on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Grasp {
+    aim: Aim,
+    steps: u32,
+}
+
+impl Grasp {
+    /// Of a command, for a board with this ceiling. Fails if it is no command, or the ceiling is not known.
+    pub fn of(command: &GripperCommand, ceiling_mn: Option<i32>) -> Result<Self, &'static str> {
+        let GripperCommand { position, max_effort } = *command;
+        if !position.is_finite() || !max_effort.is_finite() {
+            return Err("refused: a position or an effort that is no number");
+        }
+        if position < 0.0 || max_effort < 0.0 {
+            return Err("refused: a position or an effort below 0");
+        }
+        let aim = if position > 0.0 {
+            Aim::Open { nothing_for: 0 }
+        } else if max_effort > 0.0 {
+            let ceiling_mn =
+                ceiling_mn.filter(|&mn| mn > 0).ok_or("refused: the ceiling is not known yet")?;
+            // A number too large is the ceiling.
+            let mn = ((max_effort * 1e3) as i32).clamp(1, ceiling_mn);
+            // A motor stalls at about the ceiling with its full duty.
+            let permille = (i64::from(mn) * 1_000 / i64::from(ceiling_mn)) as u16;
+            Aim::Load { mn, permille: permille.saturating_add(100).clamp(CLOSE_PERMILLE_MIN, 1_000) }
+        } else {
+            Aim::Felt
+        };
+        Ok(Self { aim, steps: 0 })
+    }
+
+    /// The next step, with the load that the slow frame says, mN.
+    pub fn step(&mut self, load_mn: Option<i32>) -> Step {
+        let step = self.steps;
+        self.steps += 1;
+        match &mut self.aim {
+            Aim::Felt if step == 0 => Step::Send(Down::Begin(Behaviour::GentleGrasp)),
+            Aim::Felt => Step::Over("the board closes until the object is felt"),
+            Aim::Load { mn, permille } => match load_mn {
+                None => Step::Over("ended: the force sensor gives no number"),
+                Some(load) if load >= *mn => Step::Over("the force is reached"),
+                _ if step >= CLOSES_FOR => Step::Over("ended: the force was not reached in 5 s"),
+                Some(_) => drive(MotorDrive::Close(Duty::per_mille(*permille))),
+            },
+            Aim::Open { nothing_for } => {
+                *nothing_for = if load_mn.is_some_and(|mn| mn < NOTHING_MN) { *nothing_for + 1 } else { 0 };
+                if *nothing_for > OPENS_ON_FOR || step >= OPENS_FOR {
+                    Step::Over("open")
+                } else {
+                    drive(MotorDrive::Open(Duty::per_mille(OPEN_PERMILLE)))
+                }
+            }
+        }
+    }
+}
+
+const fn drive(drive: MotorDrive) -> Step {
+    Step::Send(Down::Drive { drive, hold_ms: HOLD_MS })
+}

@@ -1,0 +1,113 @@
+//! Where rmw_zenoh looks: a topic's key, an entity's liveliness token and id, and what is attached to each message.
+
+use xxhash_rust::xxh3::xxh3_128;
+
+use crate::message::Message;
+
+/// Bytes of an entity's id.
+pub const GID: usize = 16;
+/// Bytes of an attachment: number, time, and the id after its length.
+const ATTACHMENT: usize = 8 + 8 + 1 + GID;
+
+/// A node: one of a session.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Node {
+    /// ROS_DOMAIN_ID.
+    pub domain: u32,
+    /// The session's zenoh id, as zenoh writes it.
+    pub session: String,
+    /// Its number in the session.
+    pub id: u32,
+    /// Its name, in the namespace `/`.
+    pub name: String,
+}
+
+/// What a topic is to a node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// It publishes it.
+    Publisher,
+    /// It listens to it.
+    Subscription,
+}
+
+/// The key of a topic: `0/left/joint_states/sensor_msgs::msg::dds_::JointState_/RIHS01_...`.
+#[must_use]
+pub fn topic<M: Message>(domain: u32, name: &str) -> String {
+    format!("{domain}/{}/{}/{}", name.trim_matches('/'), M::dds_name(), M::type_hash())
+}
+
+impl Node {
+    /// The token that it lives.
+    #[must_use]
+    pub fn token(&self) -> String {
+        let Self { domain, session, id, name } = self;
+        format!("@ros2_lv/{domain}/{session}/{id}/{id}/NN/%/%/{name}")
+    }
+
+    /// The token of one of its topics, `depth` messages of which are kept; the rest is rmw_zenoh's default: reliable, volatile.
+    #[must_use]
+    pub fn endpoint<M: Message>(&self, role: Role, entity: u32, topic: &str, depth: u32) -> String {
+        let Self { domain, session, id, name } = self;
+        let role = match role {
+            Role::Publisher => "MP",
+            Role::Subscription => "MS",
+        };
+        let topic = topic.replace('/', "%");
+        let (kind, hash) = (M::dds_name(), M::type_hash());
+        format!(
+            "@ros2_lv/{domain}/{session}/{id}/{entity}/{role}/%/%/{name}/{topic}/{kind}/{hash}/::,{depth}:,:,:,,"
+        )
+    }
+}
+
+/// An entity's id: the hash of its token.
+#[must_use]
+pub fn gid(token: &str) -> [u8; GID] {
+    // The low half first, each little-endian.
+    xxh3_128(token.as_bytes()).to_le_bytes()
+}
+
+/// What is attached to a message.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Attachment {
+    /// From 1 on.
+    pub sequence: i64,
+    /// When it was published, ns since 1970.
+    pub time_ns: i64,
+    /// Who published it.
+    pub gid: [u8; GID],
+}
+
+impl Attachment {
+    /// Its bytes.
+    #[must_use]
+    pub fn bytes(&self) -> Vec<u8> {
+        let (number, time) = (self.sequence.to_le_bytes(), self.time_ns.to_le_bytes());
+        [&number[..], &time, &[GID as u8], &self.gid].concat()
+    }
+
+    /// That of these bytes, if they are one.
+    #[must_use]
+    pub fn of(bytes: &[u8]) -> Option<Self> {
+        let bytes: &[u8; ATTACHMENT] = bytes.try_into().ok()?;
+        let (sequence, rest) = bytes.split_first_chunk::<8>()?;
+        let (time, rest) = rest.split_first_chunk::<8>()?;
+        let (&length, gid) = rest.split_first()?;
+        (usize::from(length) == GID).then_some(Self {
+            sequence: i64::from_le_bytes(*sequence),
+            time_ns: i64::from_le_bytes(*time),
+            gid: gid.try_into().ok()?,
+        })
+    }
+}
+
+/// Whether a hand may be called so: what ROS allows in a name, and no more.
+#[must_use]
+pub fn is_name(name: &str) -> bool {
+    let first = name.bytes().next().is_some_and(|sign| sign.is_ascii_alphabetic());
+    first
+        && name.len() <= 64
+        && !name.contains("__")
+        && name.bytes().all(|sign| sign.is_ascii_alphanumeric() || sign == b'_')
+}

@@ -1,0 +1,195 @@
+//! The messages of the bridge. A struct's fields are in the order of its .msg text.
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use crate::describe::{Definition, hash};
+
+/// Every type, with those that they are made of.
+pub const DEFINITIONS: [Definition; 10] = [
+    Definition { name: "builtin_interfaces/msg/Time", text: "int32 sec\nuint32 nanosec" },
+    Definition { name: "std_msgs/msg/Header", text: "builtin_interfaces/Time stamp\nstring frame_id" },
+    Definition {
+        name: JointState::NAME,
+        text: "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort",
+    },
+    Definition { name: GripperCommand::NAME, text: "float64 position\nfloat64 max_effort" },
+    Definition { name: "diagnostic_msgs/msg/KeyValue", text: "string key\nstring value" },
+    Definition {
+        name: "diagnostic_msgs/msg/DiagnosticStatus",
+        text: "byte level\nstring name\nstring message\nstring hardware_id\nKeyValue[] values",
+    },
+    Definition { name: DiagnosticArray::NAME, text: "std_msgs/Header header\nDiagnosticStatus[] status" },
+    Definition { name: Tactile::NAME, text: include_str!("../tenax_msgs/msg/Tactile.msg") },
+    Definition { name: Slip::NAME, text: include_str!("../tenax_msgs/msg/Slip.msg") },
+    Definition { name: Margin::NAME, text: include_str!("../tenax_msgs/msg/Margin.msg") },
+];
+
+/// A message that is published or heard.
+pub trait Message: Serialize + DeserializeOwned {
+    /// Its type's full name.
+    const NAME: &'static str;
+
+    /// Its type's hash. Empty for a type of no definition, which the tests look for.
+    #[must_use]
+    fn type_hash() -> String {
+        hash(Self::NAME, &DEFINITIONS).unwrap_or_default()
+    }
+
+    /// Its type as DDS calls it, which is how keys name it: `sensor_msgs::msg::dds_::JointState_`.
+    #[must_use]
+    fn dds_name() -> String {
+        let (path, name) = Self::NAME.rsplit_once('/').unwrap_or(("", Self::NAME));
+        format!("{}::dds_::{name}_", path.replace('/', "::"))
+    }
+}
+
+/// `builtin_interfaces/msg/Time`: since 1970.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Time {
+    /// Seconds.
+    pub sec: i32,
+    /// And nanoseconds.
+    pub nanosec: u32,
+}
+
+impl Time {
+    /// Nanoseconds since 1970.
+    #[must_use]
+    pub fn of_ns(ns: u64) -> Self {
+        Self {
+            sec: i32::try_from(ns / 1_000_000_000).unwrap_or(i32::MAX),
+            nanosec: (ns % 1_000_000_000) as u32,
+        }
+    }
+}
+
+/// `std_msgs/msg/Header`.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Header {
+    /// When it came up the line.
+    pub stamp: Time,
+    /// The hand.
+    pub frame_id: String,
+}
+
+/// `sensor_msgs/msg/JointState`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct JointState {
+    /// When, and of which hand.
+    pub header: Header,
+    /// Joints.
+    pub name: Vec<String>,
+    /// Empty: a fingertip's opening is calibrated to no length.
+    pub position: Vec<f64>,
+    /// Empty.
+    pub velocity: Vec<f64>,
+    /// Grip force, N. Empty while the force sensor gives no number.
+    pub effort: Vec<f64>,
+}
+
+impl Message for JointState {
+    const NAME: &'static str = "sensor_msgs/msg/JointState";
+}
+
+/// `control_msgs/msg/GripperCommand`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct GripperCommand {
+    /// Gap, m: 0 closes, more opens.
+    pub position: f64,
+    /// Grip force to close to, N; 0: until the object is felt, and no further.
+    pub max_effort: f64,
+}
+
+impl Message for GripperCommand {
+    const NAME: &'static str = "control_msgs/msg/GripperCommand";
+}
+
+/// `diagnostic_msgs/msg/KeyValue`.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct KeyValue {
+    /// Name.
+    pub key: String,
+    /// Value.
+    pub value: String,
+}
+
+/// `diagnostic_msgs/msg/DiagnosticStatus`.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct DiagnosticStatus {
+    /// 0 well, 1 warning, 2 error, 3 stale.
+    pub level: u8,
+    /// Of which part.
+    pub name: String,
+    /// In words.
+    pub message: String,
+    /// The chip.
+    pub hardware_id: String,
+    /// In numbers.
+    pub values: Vec<KeyValue>,
+}
+
+/// `diagnostic_msgs/msg/DiagnosticArray`.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct DiagnosticArray {
+    /// When.
+    pub header: Header,
+    /// One a hand.
+    pub status: Vec<DiagnosticStatus>,
+}
+
+impl Message for DiagnosticArray {
+    const NAME: &'static str = "diagnostic_msgs/msg/DiagnosticArray";
+}
+
+/// `tenax_msgs/msg/Tactile`: see its .msg.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[allow(missing_docs, reason = "the .msg text says what each field is")]
+pub struct Tactile {
+    pub header: Header,
+    pub forces_valid: bool,
+    pub load: f64,
+    pub shear_x: f64,
+    pub shear_y: f64,
+    pub samples: Vec<u16>,
+    pub films: Vec<u16>,
+}
+
+impl Message for Tactile {
+    const NAME: &'static str = "tenax_msgs/msg/Tactile";
+}
+
+/// `tenax_msgs/msg/Slip`: see its .msg.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[allow(missing_docs, reason = "the .msg text says what each field is")]
+#[allow(clippy::struct_excessive_bools, reason = "a message")]
+pub struct Slip {
+    pub header: Header,
+    pub mode: u8,
+    pub slipping: bool,
+    pub said: u8,
+    pub believed: u8,
+    pub acted: u8,
+    pub vibration_mv: u16,
+    pub wearer_active: bool,
+    pub line_may_command: bool,
+}
+
+impl Message for Slip {
+    const NAME: &'static str = "tenax_msgs/msg/Slip";
+}
+
+/// `tenax_msgs/msg/Margin`: see its .msg.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[allow(missing_docs, reason = "the .msg text says what each field is")]
+pub struct Margin {
+    pub header: Header,
+    pub valid: bool,
+    pub margin: f64,
+    pub ratio: f64,
+    pub limit: f64,
+}
+
+impl Message for Margin {
+    const NAME: &'static str = "tenax_msgs/msg/Margin";
+}
