@@ -18,6 +18,8 @@ pub struct Journal {
     samples: SamplesSum,
     events: Deque<Event, EVENTS>,
     events_lost: u16,
+    /// Something was lost that the wearer should hear of.
+    lost: bool,
 }
 
 impl Journal {
@@ -65,9 +67,18 @@ impl Journal {
     /// Something happened. Not inlined: it rarely does, and everybody who tells of it would carry the queue.
     #[inline(never)]
     pub fn event(&mut self, kind: EventKind) {
+        self.lost |= matches!(
+            kind,
+            EventKind::Fault(Fault::SensorLost { .. } | Fault::CapabilityLost(_)) | EventKind::Motor(Some(_))
+        );
         if self.events.push_back(Event { frame: self.frame, kind }).is_err() {
             self.events_lost = self.events_lost.saturating_add(1);
         }
+    }
+
+    /// Whether a sensor, a sense or the motor was lost since this was last asked.
+    pub const fn take_lost(&mut self) -> bool {
+        core::mem::replace(&mut self.lost, false)
     }
 
     /// Whether there is one.
