@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | the force reaches 1 N, and each doubling up to 32 N | one burst | rises from burst to burst |
 //! | the reflex answers slip, at most twice a second | one burst | full |
-//! | a sensor, a sense or the motor is lost, at most each 10 s | two bursts | full |
+//! | a sensor or a sense is lost, the motor is hot or its bridge off; at most each 10 s | two bursts | full |
 //!
 //! Bursts at events, not a hum that goes on: the DESC-finger tells contact so (doi 10.1109/ICORR.2017.8009402). Lengths, steps and
 //! duties are a choice; nobody has worn it.

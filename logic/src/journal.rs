@@ -3,7 +3,7 @@
 use heapless::Deque;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::wire::{Event, EventKind, SamplesSum, TickRecord};
-use tenax_hal_shim::words::{Cause, Fault, GripMode};
+use tenax_hal_shim::words::{Cause, Fault, GripMode, MotorStop};
 
 use crate::health::Change;
 
@@ -69,7 +69,8 @@ impl Journal {
     pub fn event(&mut self, kind: EventKind) {
         self.lost |= matches!(
             kind,
-            EventKind::Fault(Fault::SensorLost { .. } | Fault::CapabilityLost(_)) | EventKind::Motor(Some(_))
+            EventKind::Fault(Fault::SensorLost { .. } | Fault::CapabilityLost(_))
+                | EventKind::Motor(Some(MotorStop::Hot | MotorStop::BridgeOff))
         );
         if self.events.push_back(Event { frame: self.frame, kind }).is_err() {
             self.events_lost = self.events_lost.saturating_add(1);
