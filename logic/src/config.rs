@@ -57,7 +57,7 @@ settings! {
     42 NoWearer "no-wearer-flag" "flag" [0, 1] = 0 => Flag(no_wearer);
     /// Detectors that the reflex does not act on, the sum of: 1 Hebbian, 2 MLP, 4 photoelastic, 8 S2, 16 S1
     74 DetectorsOff "detectors-off-mask" "mask" [0, 7, trusted 0, 31] = 0 => Mask(detectors_off);
-    /// Vibration motor that tells the wearer of force, slip and lost sensors: 0 off, 1 discreet, 2 strong
+    /// Vibration motor that tells the wearer of force, slip and losses: 0 off, 1 discreet, 2 strong
     78 Feedback "feedback-choice" "choice" [0, 2] = 0 => Number(feedback);
 }
 
