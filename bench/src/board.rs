@@ -14,7 +14,7 @@ pub mod simulated;
 use std::ops::{Deref, DerefMut};
 
 use tenax_hal_shim::frame::Scan;
-use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{Answer, Counters, Down, Event, NetworkState, Received, Slow, Up};
 use tenax_hal_shim::words::{Fault, Kept};
 use tenax_logic::emg::model::EmgModel;
@@ -52,6 +52,8 @@ pub struct Summary {
     pub answers: Vec<(u16, Answer)>,
     /// What was saved, with the sequence number of the last frame before.
     pub saved: Vec<(u32, Kept)>,
+    /// How the vibration motor was driven from which frame on, whenever that changed.
+    pub feedback: Vec<(u32, Duty)>,
     /// Why the board started, each time it did.
     pub starts: Vec<Option<Fault>>,
     /// The last counters.
@@ -113,6 +115,13 @@ impl Summary {
             Answer::Network(network) => Some(network),
             _ => None,
         })
+    }
+
+    /// The vibration motor is driven so from this frame on.
+    fn vibrates(&mut self, frame: u32, duty: Duty) {
+        if self.feedback.last().map_or(Duty::default(), |last| last.1) != duty {
+            self.feedback.push((frame, duty));
+        }
     }
 
     /// Puts a message where it belongs.

@@ -12,6 +12,7 @@ pub mod wearer;
 
 use serde::Serialize;
 use tenax_hal_shim::channel::{FRAME_HZ, MYO_EXTENSOR, MYO_FLEXOR};
+use tenax_hal_shim::motor::Duty;
 use tenax_hal_shim::wire::{Event, EventKind};
 use tenax_hal_shim::words::Fault;
 use tenax_serial::words::in_words;
@@ -226,6 +227,8 @@ impl Report {
             }),
             wearer: wearer::Wearer {
                 none: nobody_wears_it(run),
+                vibration_steps: run.feedback.len(),
+                vibration_s: vibrates_s(run),
                 ..subject.judge.verdict(timeline.wearer(&run.events).first().copied(), myosensors_lost(run))
             },
             detectors: scores::Detectors::of(timeline, &run.events, subject.truth),
@@ -248,6 +251,15 @@ fn nobody_wears_it(run: &Summary) -> bool {
         _ => None,
     });
     told.unwrap_or(false)
+}
+
+/// For how long the vibration motor was driven, s. One that a run ends on is not counted to the end.
+fn vibrates_s(run: &Summary) -> f64 {
+    let frames = |pair: &[(u32, Duty)]| match pair {
+        [(from, duty), (to, _)] if *duty > Duty::default() => to - from,
+        _ => 0,
+    };
+    f64::from(run.feedback.windows(2).map(frames).sum::<u32>()) / f64::from(FRAME_HZ)
 }
 
 fn myosensors_lost(run: &Summary) -> usize {

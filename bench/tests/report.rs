@@ -20,6 +20,7 @@ const KEYS: &str = "
     grip.peak_force_n grip.needed_force_n grip.crushed_at_s grip.dent_mm grip.broken_at_s
     wearer.none wearer.reflex_while_active wearer.open_latency_ms wearer.active_first_s wearer.active_permille wearer.reflex_ticks
     wearer.closing_s wearer.opening_s wearer.longest_open_ms wearer.longest_close_ms wearer.faults
+    wearer.vibration_steps wearer.vibration_s
     margin.least_mn margin.last_mn
     reflex.pulses reflex.without_slip reflex.added_n reflex.added_without_need_n reflex.relaxed_n
     added_n added_without_need_n relaxed_n object.kept object.left_behind

@@ -25,8 +25,8 @@ const USART1: usize = 0;
 /// TIM3, in the order of the chip's general timers.
 const TIM3: usize = 1;
 
-/// The motor bridge's timer. Its registers are read and nobody needs its 20 800 edges a second.
-const BRIDGE: &str = "TIM1";
+/// The timers of the motor bridge and of the vibration motor. Their registers are read and nobody needs 20 000 edges a second.
+const PWM: [&str; 2] = ["TIM1", "TIM4"];
 
 /// An STM32F427, whose peripherals contain the F411's.
 #[derive(Debug)]
@@ -72,7 +72,9 @@ impl Own {
         answers[bus.slot("TIM3")?] = Answers::ScanTimer;
         answers[port] = Answers::Serial(serial_path::Asked::Port);
         answers[bus.slot("DMA1")?] = Answers::Serial(serial_path::Asked::Controller);
-        answers[bus.slot(BRIDGE)?] = Answers::RegistersAlone;
+        for timer in PWM {
+            answers[bus.slot(timer)?] = Answers::RegistersAlone;
+        }
         Ok(Self {
             shared: Shared::new()?,
             timer: UnwatchedTimer::new(TIM3)?,

@@ -20,6 +20,7 @@ use crate::last_words;
 use crate::mail;
 use crate::scan::Scan;
 use crate::switches::Switches;
+use crate::vibrator::Vibrator;
 
 /// The watchdog's period, us. Control feeds it 200 times in one; nobody else does.
 pub const WATCHDOG_US: u32 = 100_000;
@@ -28,6 +29,7 @@ pub const WATCHDOG_US: u32 = 100_000;
 pub struct Control {
     device: Device,
     bridge: Bridge,
+    vibrator: Vibrator,
     switches: Switches,
     button: Button,
     watchdog: IndependentWatchdog<'static, IWDG>,
@@ -41,12 +43,12 @@ const LIVED_WELL: u16 = 10 * SLOW_HZ as u16;
 impl Control {
     /// A hand at rest.
     pub fn new(
-        bridge: Bridge,
+        (bridge, vibrator): (Bridge, Vibrator),
         switches: Switches,
         button: Button,
         watchdog: IndependentWatchdog<'static, IWDG>,
     ) -> Self {
-        Self { device: Device::default(), bridge, switches, button, watchdog, slow_frames: 0 }
+        Self { device: Device::default(), bridge, vibrator, switches, button, watchdog, slow_frames: 0 }
     }
 
     /// Lets the device take up what was kept, before the first tick.
@@ -94,6 +96,7 @@ impl Control {
         self.device.slow_frame_passed();
         self.button.light(self.device.light());
         self.device.bridge(self.button.bridge_is_off());
+        self.vibrator.drive(self.device.feedback());
         self.slow_frames = self.slow_frames.saturating_add(1);
         if self.slow_frames == LIVED_WELL {
             last_words::lived_well();

@@ -12,7 +12,7 @@ use cortex_m_rt::{ExceptionFrame, exception};
 use embassy_stm32::pac;
 use tenax_logic::restart::{self, Flags, Mark, Start};
 
-use crate::{black_box, bridge};
+use crate::{black_box, bridge, vibrator};
 
 /// Why the image ended, as words in RAM. Any other value is what RAM held at power-on.
 const MARKS: [(Mark, u32); 3] =
@@ -63,6 +63,7 @@ fn keep(place: usize, word: u32) {
 pub fn give_up(mark: Mark, why: &str) -> ! {
     cortex_m::interrupt::disable();
     bridge::off();
+    vibrator::off();
     if let Some((_, word)) = MARKS.iter().find(|(own, _)| *own == mark) {
         keep(MARK, *word);
     }

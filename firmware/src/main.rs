@@ -39,6 +39,7 @@ mod store;
 mod supply;
 mod switches;
 mod telemetry;
+mod vibrator;
 
 use cortex_m::peripheral::SCB;
 use defmt_rtt as _;
@@ -140,6 +141,7 @@ async fn main(spawner: Spawner) {
     let scan = scan::Scan::new(p.ADC1, p.TIM3, p.DMA2_CH0, SCAN_RING.take(), deadline, pins);
     let switches = switches::Switches::new(p.PB12, p.PB13, p.PB14, p.PB15);
     let button = button::Button::new(p.PC13, p.PC6, p.PC8);
+    let vibrator = vibrator::Vibrator::new(p.TIM4, p.PB6);
     let watchdog = IndependentWatchdog::new(p.IWDG, control::WATCHDOG_US);
 
     let mut line = usart::Config::default();
@@ -166,7 +168,7 @@ async fn main(spawner: Spawner) {
         core::future::pending::<()>().await;
     }
     spawner.spawn(once(commands::commands(down.into_ring_buffered(COMMAND_RING.take()))));
-    let control = CONTROL.init_with(|| control::Control::new(bridge, switches, button, watchdog));
+    let control = CONTROL.init_with(|| control::Control::new((bridge, vibrator), switches, button, watchdog));
     control.restore(|device| store::restore(device, &flash, &found));
     if !switched_on {
         control.restore(Device::was_reset);

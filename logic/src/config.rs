@@ -43,6 +43,8 @@ pub struct Config {
     pub no_wearer: bool,
     /// Detectors that the reflex does not act on.
     pub detectors_off: DetectorSet,
+    /// Feedback to the wearer: 0 off, 1 discreet, 2 strong.
+    pub feedback: u16,
 }
 
 settings! {
@@ -55,6 +57,8 @@ settings! {
     42 NoWearer "no-wearer-flag" "flag" [0, 1] = 0 => Flag(no_wearer);
     /// Detectors that the reflex does not act on, the sum of: 1 Hebbian, 2 MLP, 4 photoelastic, 8 S2, 16 S1
     74 DetectorsOff "detectors-off-mask" "mask" [0, 7, trusted 0, 31] = 0 => Mask(detectors_off);
+    /// Vibration motor that tells the wearer of force, slip and losses: 0 off, 1 discreet, 2 strong
+    78 Feedback "feedback-choice" "choice" [0, 2] = 0 => Number(feedback);
 }
 
 /// Every table of rows: a sense that joins adds its own here, and its part to what follows.
@@ -85,6 +89,7 @@ impl Default for Config {
             stream_at_start: false,
             no_wearer: false,
             detectors_off: DetectorSet::NONE,
+            feedback: 0,
         };
         for id in SettingId::ALL {
             config.put(id, id.row().default);

@@ -23,7 +23,7 @@ use crate::setting::SettingId;
 use heapless::Vec;
 use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
 use tenax_hal_shim::frame::Frame;
-use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::wire::{
     About, Answer, Down, Identity, Last, Received, Refusal, SCHEMA, Senses, Setting, Up,
@@ -130,6 +130,11 @@ impl Device {
     #[must_use]
     pub fn light(&self) -> bool {
         self.fingertip.light()
+    }
+
+    /// How to drive the vibration motor, once a slow frame: [`feedback`](crate::feedback).
+    pub fn feedback(&mut self) -> Duty {
+        self.fingertip.feedback()
     }
 
     /// This start was a reset, not somebody who switched the hand on. To be said before the first tick.

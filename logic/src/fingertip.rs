@@ -26,6 +26,7 @@ use crate::behaviours::Running;
 use crate::button::Button;
 use crate::config::Config;
 use crate::detectors::{Detectors, Said};
+use crate::feedback::Feedback;
 use crate::grip::relax::Reading;
 use crate::grip::{Grip, Reflex};
 use crate::journal::Journal;
@@ -70,6 +71,7 @@ pub struct Fingertip {
     line: Line,
     told_no_wearer: bool,
     journal: Journal,
+    feedback: Feedback,
     slow: Option<Slow>,
     save_asked: bool,
     /// What the last tick was asked for, and how it drove the motor.
@@ -375,6 +377,7 @@ impl Fingertip {
         self.reflex.enter(to, self.senses.grip);
         if to == GripMode::Slip {
             self.detectors.s2.slips();
+            self.feedback.slips();
         }
         if matches!(cause, Cause::Incipient(DetectorId::S2)) {
             self.detectors.tightened();

@@ -3,7 +3,7 @@
 use heapless::Deque;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::wire::{Event, EventKind, SamplesSum, TickRecord};
-use tenax_hal_shim::words::{Cause, Fault, GripMode};
+use tenax_hal_shim::words::{Cause, Fault, GripMode, MotorStop};
 
 use crate::health::Change;
 
@@ -18,6 +18,8 @@ pub struct Journal {
     samples: SamplesSum,
     events: Deque<Event, EVENTS>,
     events_lost: u16,
+    /// Something was lost that the wearer should hear of.
+    lost: bool,
 }
 
 impl Journal {
@@ -65,9 +67,19 @@ impl Journal {
     /// Something happened. Not inlined: it rarely does, and everybody who tells of it would carry the queue.
     #[inline(never)]
     pub fn event(&mut self, kind: EventKind) {
+        self.lost |= matches!(
+            kind,
+            EventKind::Fault(Fault::SensorLost { .. } | Fault::CapabilityLost(_))
+                | EventKind::Motor(Some(MotorStop::Hot | MotorStop::BridgeOff))
+        );
         if self.events.push_back(Event { frame: self.frame, kind }).is_err() {
             self.events_lost = self.events_lost.saturating_add(1);
         }
+    }
+
+    /// Whether a sensor, a sense or the motor was lost since this was last asked.
+    pub const fn take_lost(&mut self) -> bool {
+        core::mem::replace(&mut self.lost, false)
     }
 
     /// Whether there is one.

@@ -8,7 +8,7 @@
 //! | one sense each: readings, what they mean, its detector | [`vibration`], [`force`], [`strain`], [`mod@array`], [`hebbian`], [`photoelastic`]; [`emg`] and [`gate`] of the wearer |
 //! | a frame through all of them | [`senses`] |
 //! | whether the object slips | [`detectors`], the list of them; [`plausibility`] guards |
-//! | what to do | [`mode`] and [`grip`], the reflex; [`behaviours`] above it; [`arbiter`]; [`motor`] stops what stalls |
+//! | what to do | [`mode`] and [`grip`], the reflex; [`behaviours`] above it; [`arbiter`]; [`motor`] stops what stalls; [`feedback`] to the wearer |
 //! | the whole | [`fingertip`]; [`journal`] is what it reports |
 //! | a fingertip on a line | [`device`]: frames and commands in, drives and messages out. Begin there |
 //! | whose commands it carries out | [`session`], [`arming`] |
@@ -32,6 +32,7 @@ pub mod config;
 pub mod detectors;
 pub mod device;
 pub mod emg;
+pub mod feedback;
 pub mod fingertip;
 pub mod force;
 pub mod gate;

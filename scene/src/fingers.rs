@@ -312,7 +312,7 @@ impl Finger {
         }
         let Pins(pins_v) = &mut self.pins;
         *pins_v = skin.slow_v;
-        let films_v = skin.films.step(t_s, touch, gripper.speed_part());
+        let films_v = skin.films.step(t_s, touch, gripper.speed_part(), 0.0);
         pins_v[PVDF..PVDF + PVDF_COUNT].copy_from_slice(&films_v);
         skin.converter.step(pins_v);
     }

@@ -2,7 +2,7 @@
 
 use tenax_hal_shim::channel::{CHANNELS, CODE_MAX, COUNT, REFERENCE_MV};
 use tenax_hal_shim::frame::{Frame, scan_of_pins};
-use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::Down;
 
 use crate::act::Act;
@@ -90,6 +90,13 @@ pub trait Plant: Send {
     /// Bytes that somebody sends down the serial line at this instant, whatever they are.
     fn line_bytes(&mut self) -> Vec<u8> {
         self.within_mut().map_or_else(Vec::new, Plant::line_bytes)
+    }
+
+    /// The board drives its vibration motor so, from now on. A recording takes no notice.
+    fn vibrate(&mut self, duty: Duty) {
+        if let Some(within) = self.within_mut() {
+            within.vibrate(duty);
+        }
     }
 
     /// Somebody at the bench does something, from now on. A recording takes no notice.

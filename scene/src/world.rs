@@ -4,7 +4,7 @@ use tenax_hal_shim::channel::{
     ARRAY, COUNT, FSR, HEAD, MYO_EXTENSOR, MYO_FLEXOR, OPENING, PVDF, PVDF_COUNT, SCAN_HZ, SCANS_PER_FRAME,
     STRAIN,
 };
-use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::Down;
 
 use crate::act::{Act, REACTS_S, Touches};
@@ -16,6 +16,7 @@ use crate::physics::grasp::Grasp;
 use crate::physics::gripper::Gripper;
 use crate::physics::hand::Hand;
 use crate::physics::stroke::Stroke;
+use crate::physics::vibrator::Vibrator;
 use crate::physics::wearer::{Effort, Wearer};
 use crate::physics::{TOUCH_N, Touch};
 use crate::plant::{Calibrated, Pins, Plant};
@@ -45,6 +46,8 @@ pub struct World {
     floor_mm_s: f64,
     wearer: Wearer,
     gripper: Gripper,
+    /// It tells the wearer.
+    vibrator: Option<Vibrator>,
     jams: Vec<Span>,
     task: Task,
     touch: Touch,
@@ -104,6 +107,7 @@ impl World {
             floor_mm_s: scene.slip_floor_mm_s(),
             wearer: Wearer::new(&scene.muscle),
             gripper: Gripper::new(&scene.gripper),
+            vibrator: scene.vibrator.as_ref().map(Vibrator::new),
             jams: scene.jam.iter().map(|jam| Span::new(jam.at_s.get_ref().get(), jam.for_s.get())).collect(),
             task,
             touch: Touch::default(),
@@ -283,6 +287,7 @@ impl Plant for World {
             t_s,
             &self.touch,
             self.gripper.speed_part(),
+            self.vibrator.as_mut().map_or(0.0, Vibrator::step),
         ));
         if let Some(head) = &mut self.head {
             pins_v[HEAD] = head.step(t_s, &self.touch);
@@ -303,6 +308,12 @@ impl Plant for World {
         commands.extend(self.eye.teach(t_s));
         commands.extend(self.skin.as_mut().and_then(|skin| skin.take(t_s)).map(Down::View));
         commands
+    }
+
+    fn vibrate(&mut self, duty: Duty) {
+        if let Some(vibrator) = &mut self.vibrator {
+            vibrator.drive(duty);
+        }
     }
 
     fn act(&mut self, act: Act) {

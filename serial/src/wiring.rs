@@ -16,6 +16,7 @@ This page is for anybody who connects a sensor: which channel is on which pin, a
 |---|---|
 | select lines S0 to S3, shared by both CD74HC4067 switches | PB12 to PB15 |
 | motor bridge, 20 kHz: close, open | PA8 (TIM1 channel 1), PA9 (TIM1 channel 2) |
+| [vibration motor](hardware.md#vibration-motor), 20 kHz | PB6 (TIM4 channel 1) |
 | button to ground; light, an LED with its resistor to ground; bridge's nFAULT | PC13, PC6, PC8 |
 | [palm's bus](hand.md#the-image), USART1: to the transceiver, from it, DE with /RE | PA15, PA10, PA12 |
 | serial line USART2 through the ST-LINK: to the PC, from it | PA2, PA3 |

@@ -6,6 +6,8 @@ use std::fmt;
 use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, SCANS_PER_FRAME};
 use tenax_hal_shim::detector::DetectorSet;
 use tenax_hal_shim::frame::{Frame, Scan};
+use tenax_hal_shim::motor::Duty;
+use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::wire::{Answer, Down, Event, EventKind, Received, Slow, Up};
 use tenax_hal_shim::words::Consent;
 use tenax_logic::arming::DEBOUNCE_FRAMES;
@@ -22,6 +24,8 @@ pub struct Said {
     pub events: Vec<Event>,
     /// The answer to each command.
     pub answers: Vec<Answer>,
+    /// How the vibration motor is driven from which frame on.
+    pub feedback: Vec<(u32, Duty)>,
     /// The detectors that say slip, and those that warn of it, tick for tick: the line tells both in one.
     pub slip_and_warning: Vec<[DetectorSet; 2]>,
 }
@@ -57,7 +61,14 @@ pub fn host_says(
         }
         device
             .button(pressed.iter().any(|at| (at - at.min(&(DEBOUNCE_FRAMES - 1))..=*at).contains(&sequence)));
-        device.tick(&Frame::from_scans(sequence, scans));
+        let frame = Frame::from_scans(sequence, scans);
+        device.tick(&frame);
+        if frame.slot() == slot_of(Job::Save) {
+            let duty = device.feedback();
+            if said.feedback.last().map_or(Duty::default(), |last| last.1) != duty {
+                said.feedback.push((sequence, duty));
+            }
+        }
         let fingertip = device.fingertip();
         said.slip_and_warning.push([fingertip.slip(), fingertip.incipient()]);
         std::iter::from_fn(|| device.next_message()).for_each(|message| said.take(message));
@@ -78,6 +89,7 @@ pub struct Agreement {
     events: usize,
     commands: usize,
     networks: usize,
+    feedback: usize,
     difference: Option<String>,
 }
 
@@ -100,6 +112,7 @@ impl Agreement {
             events: run.events.len(),
             commands: run.taken.len(),
             networks: run.networks().count(),
+            feedback: run.feedback.len(),
             difference: difference(run, &host),
         };
         (agreement, host)
@@ -124,6 +137,9 @@ impl fmt::Display for Agreement {
         if self.networks > 0 {
             write!(f, ", the network {} times", self.networks)?;
         }
+        if self.feedback > 0 {
+            write!(f, ", the vibration motor's {} steps", self.feedback)?;
+        }
         f.write_str(", equal")
     }
 }
@@ -145,6 +161,10 @@ fn difference(run: &Run, host: &Said) -> Option<String> {
         run.answers.iter().take(run.taken.len()).map(|(_, answer)| answer.clone()).collect();
     first("event", &run.events, &host.events, due)
         .or_else(|| first("answer", &answers, &host.answers, run.taken.len()))
+        .or_else(|| {
+            let due = host.feedback.iter().filter(|(frame, _)| *frame < end).count();
+            first("step of the vibration motor", &run.feedback, &host.feedback, due)
+        })
 }
 
 /// Where two lists begin to differ, of which the image's has at least `due`.

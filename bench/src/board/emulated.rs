@@ -22,7 +22,7 @@ use rigless::time::VirtualNanos;
 use tenax_board_model::flash::FlashArray;
 use tenax_board_model::line::Line;
 use tenax_board_model::nucleo::Nucleo;
-use tenax_hal_shim::channel::SCAN_HZ;
+use tenax_hal_shim::channel::{SCAN_HZ, SCANS_PER_FRAME};
 use tenax_scene::plant::Plant;
 
 use self::cost::CostMeter;
@@ -200,11 +200,15 @@ fn closed_loop(
     // What the last scans led to had time to come up the line; what came after them was no part of the run.
     let mut taken = world.commands.taken(&heard.answers);
     taken.retain(|(before, _)| *before < frames);
+    // What a frame decides is on the pin in the scans of the next.
+    let frame_of = |scan: usize| (scan / SCANS_PER_FRAME).saturating_sub(1) as u32;
+    let feedback = world.feedback.iter().map(|&(scan, duty)| (frame_of(scan), duty)).collect();
     Ok(Summary {
         virtual_s: scanned as f64 / f64::from(SCAN_HZ),
         wall_s: began.elapsed().as_secs_f64(),
         trusts_line: provision.trusts_line,
         taken,
+        feedback,
         tick_cost: world.tick_cost,
         tick_cycles: world.followed.and_then(|followed| followed.mean()),
         stack_bytes: world.stack_bytes,

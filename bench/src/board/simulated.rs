@@ -132,6 +132,9 @@ fn closed_loop(
         }
         if frame.slot() == slot_of(Job::Save) {
             device.slow_frame_passed();
+            let duty = device.feedback();
+            plant.vibrate(duty);
+            up.summary().vibrates(sequence, duty);
             if store.is_free()
                 && let Some(record) = device.next_record()
             {

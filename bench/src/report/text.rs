@@ -187,7 +187,17 @@ fn wearer(f: &mut fmt::Formatter<'_>, report: &Report) -> fmt::Result {
         wearer.reflex_while_active,
         wearer.reflex_ticks - wearer.reflex_while_active,
         Or(wearer.open_latency_ms, "ms")
-    )
+    )?;
+    if wearer.vibration_steps > 0 {
+        line!(
+            f,
+            "vibration",
+            "{:.3} s of the feedback's motor, in {} steps",
+            wearer.vibration_s,
+            wearer.vibration_steps
+        )?;
+    }
+    Ok(())
 }
 
 fn detector(f: &mut fmt::Formatter<'_>, label: &str, detector: &Detector) -> fmt::Result {

@@ -50,6 +50,9 @@ pub struct Wearer {
     pub longest_close_ms: f64,
     /// How often a myosensor was lost, for whatever reason.
     pub faults: usize,
+    /// How often the vibration motor changed its drive, and for how long it ran, s.
+    pub vibration_steps: usize,
+    pub vibration_s: f64,
 }
 
 /// What the two muscles' pins last read, mV above rest.
@@ -254,6 +257,8 @@ impl Judge {
             longest_open_ms: 1e3 * seconds(self.opened_by_muscle.longest),
             longest_close_ms: 1e3 * seconds(self.closed.longest),
             faults,
+            vibration_steps: 0,
+            vibration_s: 0.0,
         }
     }
 }

@@ -5,6 +5,7 @@ mod agreement;
 mod behaviours;
 mod converter;
 mod faults;
+mod feedback;
 mod hand;
 mod head;
 mod last;

@@ -2,11 +2,14 @@
 
 use tenax_hal_shim::channel::PVDF_COUNT;
 use tenax_hal_shim::detector::DetectorSet;
+use tenax_hal_shim::motor::Duty;
 use tenax_hal_shim::wire::{Event, NetworkState, Slow};
 use tenax_hal_shim::words::GripMode;
 
 use super::Fingertip;
 use crate::config::Config;
+use crate::feedback::Felt;
+use crate::grip::Grip;
 use crate::hebbian::Learned;
 use crate::vibration::Q;
 
@@ -61,6 +64,14 @@ impl Fingertip {
     #[must_use]
     pub const fn incipient(&self) -> DetectorSet {
         self.detectors.incipient()
+    }
+
+    /// How to drive the vibration motor until this is asked again. Ask it once a slow frame.
+    #[inline(never)]
+    pub fn feedback(&mut self) -> Duty {
+        let load_mn = if let Grip::Holds(mn) = self.senses.grip { Some(mn) } else { None };
+        let (unloaded, lost) = (self.senses.unloaded, self.journal.take_lost());
+        self.feedback.step(self.config.feedback, &Felt { mode: self.mode, load_mn, unloaded, lost })
     }
 
     /// What the reflex is doing.

@@ -25,7 +25,7 @@ use quantity::{Duration, Speed};
 use sections::{
     Arm, Array, Camera, Command, CommandKind, Contact, ElectrodeLift, Fill, Fingers, Fsr, Gripper, Hum, Jam,
     Knock, Move, Muscle, Myo, Object, Photoelastic, Pitch, Press, Pull, Pvdf, Robot, SensorFault, Skin,
-    Strain, Sweep, Swing, Table, Wet,
+    Strain, Sweep, Swing, Table, Vibrator, Wet,
 };
 
 /// A whole scene, every number in it checked.
@@ -66,6 +66,7 @@ pub struct SceneFile {
     pub(crate) camera: Camera,
     pub(crate) photoelastic: Option<Photoelastic>,
     pub(crate) skin: Option<Skin>,
+    pub(crate) vibrator: Option<Vibrator>,
     #[serde(default)]
     pub(crate) wet: Vec<Wet>,
     #[serde(default)]

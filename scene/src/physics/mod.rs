@@ -13,6 +13,7 @@ pub mod pitch;
 pub(crate) mod pull;
 pub mod stribeck;
 pub mod stroke;
+pub(crate) mod vibrator;
 pub mod wearer;
 
 /// Standard gravity, m/s^2.

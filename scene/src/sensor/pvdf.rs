@@ -99,8 +99,15 @@ impl Films {
         }
     }
 
-    /// Voltages at the pins after one scan that ends at `t_s`. `motor_speed` is a part of the fastest.
-    pub(crate) fn step(&mut self, t_s: f64, touch: &Touch, motor_speed: f64) -> [f64; PVDF_COUNT] {
+    /// Voltages at the pins after one scan that ends at `t_s`. `motor_speed` is a part of the fastest; `vibrates_mv` is what else shakes
+    /// the whole hand.
+    pub(crate) fn step(
+        &mut self,
+        t_s: f64,
+        touch: &Touch,
+        motor_speed: f64,
+        vibrates_mv: f64,
+    ) -> [f64; PVDF_COUNT] {
         let p = &self.parameters;
         // Pressure over its peak at the edge of what slides: the brush's s.
         let edge = if touch.sticks { (1.0 - touch.stuck_part).max(0.0).sqrt() } else { 1.0 };
@@ -128,7 +135,8 @@ impl Films {
             p.motor_mv.get() * motor_speed.sqrt() * libm::sin(TAU * self.motor_phase)
         } else {
             0.0
-        } + p.mains_mv.get() * libm::sin(TAU * p.mains_hz.get() * t_s)
+        } + vibrates_mv
+            + p.mains_mv.get() * libm::sin(TAU * p.mains_hz.get() * t_s)
             + self
                 .hums
                 .iter()

@@ -17,11 +17,18 @@ const TIM1_ARR: u64 = 0x4001_002C;
 const TIM1_CCR1: u64 = 0x4001_0034;
 const TIM1_CCR2: u64 = 0x4001_0038;
 const TIM1_BDTR: u64 = 0x4001_0044;
+const GPIOB_MODER: u64 = 0x4002_0400;
+const GPIOB_AFRL: u64 = 0x4002_0420;
+const TIM4_CR1: u64 = 0x4000_0800;
+const TIM4_CCER: u64 = 0x4000_0820;
+const TIM4_ARR: u64 = 0x4000_082C;
+const TIM4_CCR1: u64 = 0x4000_0834;
 const ADC1_CR2: u64 = 0x4001_2008;
 
 const BDTR_MOE: u32 = 1 << 15;
 const CCER_CC1E: u32 = 1;
 const CCER_CC2E: u32 = 1 << 4;
+const CR1_CEN: u32 = 1;
 const CR2_ADON: u32 = 1;
 const CR2_EXTSEL: u32 = 0xF << 24;
 const CR2_EXTSEL_TIM3_TRGO: u32 = 0x8 << 24;
@@ -29,6 +36,7 @@ const CR2_EXTEN: u32 = 0x3 << 28;
 const PULL_UP: u32 = 0b01;
 const PULL_DOWN: u32 = 0b10;
 const MODER_ALTERNATE: u32 = 0b10;
+const AF_TIM4: u32 = 2;
 
 /// The chip at one instant.
 pub struct Wires<'a> {
@@ -71,6 +79,18 @@ impl<'a> Wires<'a> {
         let on = self.peek(TIM1_BDTR) & BDTR_MOE != 0 && self.peek(TIM1_CCER) & enable != 0;
         let per_mille = (compare * 1_000).div_ceil(self.peek(TIM1_ARR) + 1);
         (alternate && on).then_some(Duty::per_mille(per_mille as u16))
+    }
+
+    /// How the vibration motor on PB6 is driven: the pin is the timer's, the timer counts, and its output is on.
+    pub fn vibration(&mut self) -> Duty {
+        let compare = self.peek(TIM4_CCR1);
+        let wired = compare > 0
+            && self.peek(GPIOB_MODER) >> 12 & 0b11 == MODER_ALTERNATE
+            && self.peek(GPIOB_AFRL) >> 24 & 0xF == AF_TIM4
+            && self.peek(TIM4_CR1) & CR1_CEN != 0
+            && self.peek(TIM4_CCER) & CCER_CC1E != 0;
+        let per_mille = (compare * 1_000).div_ceil(self.peek(TIM4_ARR) + 1);
+        if wired { Duty::per_mille(per_mille as u16) } else { Duty::default() }
     }
 
     /// Puts codes on the converter's pins.

@@ -10,7 +10,7 @@ use rigless::session::Session;
 use rigless::time::VirtualNanos;
 use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, SCAN_HZ, SCANS_PER_FRAME};
 use tenax_hal_shim::frame::{Scan, scan_of_pins};
-use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{Down, Received, Receiver};
 use tenax_scene::plant::Plant;
 
@@ -73,6 +73,8 @@ pub struct World {
     encoder: Encoder,
     /// Finds the commands among the bytes that are sent down as they are.
     sent: Receiver,
+    /// How the vibration motor was driven in each scan in which that had changed.
+    pub feedback: Vec<(usize, Duty)>,
     mishaps: Mishaps,
     resets: usize,
     executed: Option<(VirtualNanos, u64)>,
@@ -111,6 +113,7 @@ impl World {
             codes: Scan::default(),
             encoder: Encoder::default(),
             sent: Receiver::new(),
+            feedback: Vec::new(),
             mishaps,
             resets: 0,
             executed: None,
@@ -136,6 +139,11 @@ impl World {
                 self.broken = Some(Broken::BothSides { at_s: seconds(stop.at) });
                 return None;
             };
+            let vibration = wires.vibration();
+            if self.feedback.last().map_or(Duty::default(), |last| last.1) != vibration {
+                self.feedback.push((self.scanned, vibration));
+                plant.vibrate(vibration);
+            }
             let pins = plant.scan(drive).codes();
             self.codes = scan_of_pins(&pins, wires.select());
             self.stretch.scans.push((self.codes, drive, plant.slipping()));

@@ -45,6 +45,18 @@ pub struct Hum {
     pub hum_hz: Hertz,
 }
 
+/// The motor that tells the wearer by vibrating, and how much of it the films hear. There is none that they hear without this table.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Vibrator {
+    /// Peak at a film of mean gain, at full speed.
+    pub film_mv: Millivolts,
+    /// Turns a second at full duty.
+    pub full_hz: Hertz,
+    /// Time constant with which it speeds up and runs down.
+    pub spin_ms: Milliseconds,
+}
+
 /// An electrode lifts off the skin: it hears no muscle, and more mains.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]

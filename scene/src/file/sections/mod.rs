@@ -19,7 +19,7 @@ pub use contact::{Contact, Level, Wet};
 pub use fingers::{Drag, Finger, Fingers, Tilt};
 pub use gripper::Gripper;
 pub use head::Photoelastic;
-pub use mishap::{ElectrodeLift, FaultKind, Hum, Jam, Knock, SensorFault};
+pub use mishap::{ElectrodeLift, FaultKind, Hum, Jam, Knock, SensorFault, Vibrator};
 pub use object::{Fill, Object, Pitch, Table};
 pub use person::{Command, CommandKind, Intent, Muscle};
 pub use pull::Pull;

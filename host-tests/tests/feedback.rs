@@ -1,0 +1,136 @@
+//! What holds of the vibration motor's duty whatever is felt. `bench/tests/feedback.rs` shows that the films do not mind it.
+
+use proptest::prelude::*;
+use tenax_hal_shim::motor::Duty;
+use tenax_hal_shim::words::GripMode::{self, Incipient, Settle, Slip, Standby, Watch, Wearer};
+use tenax_logic::feedback::{Feedback, Felt};
+
+const OFF: Duty = Duty::per_mille(0);
+/// A burst, and the longest pattern, slow frames.
+const BURST: usize = 5;
+const PATTERN: usize = 15;
+
+fn modes() -> impl Strategy<Value = GripMode> {
+    prop::sample::select(vec![Standby, Wearer, Watch, Slip, Incipient, Settle])
+}
+
+/// What is felt in a slow frame, and whether the reflex begins to answer slip before it.
+fn felt() -> impl Strategy<Value = (Felt, bool)> {
+    let load = prop_oneof![Just(None), any::<i32>().prop_map(Some), (0..40_000).prop_map(Some)];
+    (modes(), load, any::<bool>(), prop::bool::weighted(0.1), prop::bool::weighted(0.1))
+        .prop_map(|(mode, load_mn, unloaded, lost, slips)| (Felt { mode, load_mn, unloaded, lost }, slips))
+}
+
+fn holds(mode: GripMode, load_mn: i32) -> Felt {
+    Felt { mode, load_mn: Some(load_mn), ..Felt::default() }
+}
+
+/// The duties of so many slow frames in which the same is felt.
+fn for_frames(feedback: &mut Feedback, frames: usize, felt: Felt) -> Vec<Duty> {
+    (0..frames).map(|_| feedback.step(2, &felt)).collect()
+}
+
+fn bursts(duties: &[Duty]) -> usize {
+    let on = |n: usize| duties.get(n).is_some_and(|duty| *duty > OFF);
+    (0..duties.len()).filter(|&n| on(n) && (n == 0 || !on(n - 1))).count()
+}
+
+// Shows R11.
+proptest! {
+    #[test]
+    fn it_runs_only_where_the_reflex_does_not_listen(
+        choice in 0_u16..4,
+        seen in prop::collection::vec(felt(), 1..400),
+    ) {
+        let mut feedback = Feedback::default();
+        let mut since_slip = usize::MAX;
+        for (felt, slips) in seen {
+            since_slip = since_slip.saturating_add(1);
+            if slips {
+                feedback.slips();
+                since_slip = 0;
+            }
+            let duty = feedback.step(choice, &felt);
+            prop_assert!(duty <= Duty::per_mille([0, 760, 1_000, 1_000][usize::from(choice)]), "{:?}", duty);
+            if duty > OFF {
+                let may = match felt.mode {
+                    Standby => true,
+                    Wearer => !felt.unloaded,
+                    Slip | Settle => since_slip < BURST,
+                    Watch | Incipient => false,
+                };
+                prop_assert!(may, "{:?} in {:?}, {} after a slip", duty, felt, since_slip);
+            }
+        }
+    }
+
+    #[test]
+    fn it_falls_silent_when_nothing_happens_any_more(
+        seen in prop::collection::vec(felt(), 0..100),
+        (last, _) in felt(),
+    ) {
+        let mut feedback = Feedback::default();
+        for (felt, slips) in seen {
+            if slips {
+                feedback.slips();
+            }
+            feedback.step(2, &felt);
+        }
+        let last = Felt { lost: false, ..last };
+        // A warning that waits may come once more, 3 s after the one before.
+        for_frames(&mut feedback, 240 + PATTERN, last);
+        prop_assert!(for_frames(&mut feedback, 1_000, last).iter().all(|duty| *duty == OFF));
+    }
+}
+
+#[test]
+fn each_doubling_of_the_force_is_one_burst_and_a_trembling_load_is_told_once() {
+    let mut feedback = Feedback::default();
+    let mut last = OFF;
+    for newtons in [1, 2, 4, 8, 16, 32] {
+        for_frames(&mut feedback, 20, holds(Wearer, newtons * 950));
+        let duties = for_frames(&mut feedback, 20, holds(Wearer, newtons * 1_000));
+        assert_eq!(duties.iter().filter(|duty| **duty > OFF).count(), BURST, "{newtons} N");
+        assert!(duties[0] > last, "{newtons} N");
+        last = duties[0];
+        for _ in 0..20 {
+            let down = for_frames(&mut feedback, 3, holds(Wearer, newtons * 850));
+            let up = for_frames(&mut feedback, 3, holds(Wearer, newtons * 1_050));
+            assert!(down.iter().chain(&up).all(|duty| *duty == OFF), "{newtons} N trembles");
+        }
+    }
+    assert!(for_frames(&mut feedback, 20, holds(Wearer, 0)).iter().all(|duty| *duty == OFF));
+    assert_eq!(bursts(&for_frames(&mut feedback, 20, holds(Wearer, 5_000))), 1, "told anew, at once");
+}
+
+#[test]
+fn what_the_reflex_adds_is_told_by_its_slip_alone() {
+    let mut feedback = Feedback::default();
+    for_frames(&mut feedback, 20, holds(Wearer, 3_000));
+    for_frames(&mut feedback, 20, holds(Watch, 3_000));
+    feedback.slips();
+    let mut duties = for_frames(&mut feedback, 3, holds(Slip, 5_000));
+    duties.extend(for_frames(&mut feedback, 6, holds(Settle, 5_000)));
+    duties.extend(for_frames(&mut feedback, 20, holds(Watch, 5_000)));
+    assert_eq!(duties[..BURST], [Duty::FULL; BURST]);
+    assert!(duties[BURST..].iter().all(|duty| *duty == OFF));
+    feedback.slips();
+    assert_eq!(bursts(&for_frames(&mut feedback, 9, holds(Slip, 5_000))), 0, "a third of a second later");
+    for_frames(&mut feedback, 40, holds(Watch, 5_000));
+    feedback.slips();
+    assert_eq!(bursts(&for_frames(&mut feedback, 9, holds(Slip, 5_000))), 1);
+}
+
+#[test]
+fn a_loss_is_two_bursts_that_wait_until_the_films_are_not_asked() {
+    let mut feedback = Feedback::default();
+    let lost = Felt { lost: true, ..holds(Watch, 500) };
+    assert_eq!(bursts(&for_frames(&mut feedback, 1, lost)), 0);
+    assert_eq!(bursts(&for_frames(&mut feedback, 1_000, holds(Watch, 500))), 0, "the reflex listens");
+    assert_eq!(bursts(&for_frames(&mut feedback, 1_000, holds(Wearer, 500))), 2);
+    assert_eq!(
+        bursts(&for_frames(&mut feedback, 1_000, Felt { lost: true, ..holds(Standby, 0) })),
+        10,
+        "each 3 s"
+    );
+}

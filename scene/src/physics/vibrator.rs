@@ -1,0 +1,73 @@
+//! The motor that tells the wearer by vibrating: an eccentric mass on the socket, which the films hear through the hand.
+
+use std::f64::consts::TAU;
+
+use tenax_hal_shim::motor::Duty;
+
+use crate::file::sections;
+use crate::schedule::STEP_S;
+
+/// The mass turns as fast as the duty says, one time constant later, and pulls outward with the square of its speed.
+#[derive(Clone, Debug)]
+pub(crate) struct Vibrator {
+    film_mv: f64,
+    full_hz: f64,
+    spin_s: f64,
+    /// Parts of the whole.
+    duty: f64,
+    speed: f64,
+    phase: f64,
+}
+
+impl Vibrator {
+    pub(crate) fn new(parameters: &sections::Vibrator) -> Self {
+        Self {
+            film_mv: parameters.film_mv.get(),
+            full_hz: parameters.full_hz.get(),
+            spin_s: parameters.spin_ms.get() / 1e3,
+            duty: 0.0,
+            speed: 0.0,
+            phase: 0.0,
+        }
+    }
+
+    /// Drives it from now on.
+    pub(crate) fn drive(&mut self, duty: Duty) {
+        self.duty = f64::from(duty.as_per_mille()) / 1e3;
+    }
+
+    /// What a film of mean gain hears after one scan more, mV.
+    pub(crate) fn step(&mut self) -> f64 {
+        self.speed += (self.duty - self.speed) * (1.0 - libm::exp(-STEP_S / self.spin_s));
+        self.phase = (self.phase + self.full_hz * self.speed * STEP_S).fract();
+        self.film_mv * self.speed * self.speed * libm::sin(TAU * self.phase)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::file::quantity::{Hertz, Milliseconds, Millivolts};
+
+    #[test]
+    fn it_spins_up_to_its_amplitude_and_frequency_and_rings_down() {
+        let mut motor = Vibrator::new(&sections::Vibrator {
+            film_mv: Millivolts::of(8.0),
+            full_hz: Hertz::of(200.0),
+            spin_ms: Milliseconds::of(40.0),
+        });
+        let heard = |motor: &mut Vibrator, ms| -> Vec<f64> { (0..8 * ms).map(|_| motor.step()).collect() };
+        assert!(heard(&mut motor, 100).iter().all(|mv| *mv == 0.0));
+        motor.drive(Duty::FULL);
+        heard(&mut motor, 400);
+        let second = heard(&mut motor, 1_000);
+        let peak = |mv: &[f64]| mv.iter().fold(0.0_f64, |peak, mv| peak.max(mv.abs()));
+        let turns = second.windows(2).filter(|two| two[0] < 0.0 && two[1] >= 0.0).count();
+        assert!((peak(&second) - 8.0).abs() < 0.1 && turns.abs_diff(200) <= 1, "{turns}");
+        motor.drive(Duty::default());
+        let rings = heard(&mut motor, 60);
+        // After 40 ms the speed is 1/e, and the force its square.
+        let ratio = peak(&rings[8 * 40..8 * 60]) / 8.0;
+        assert!((0.04..=0.14).contains(&ratio), "{ratio}");
+    }
+}
