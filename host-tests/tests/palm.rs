@@ -95,6 +95,22 @@ fn a_wish_closes_in_pulses_until_its_budget_is_spent_and_a_muscle_renews_it() {
 
 // Shows L7.
 #[test]
+fn a_wish_that_comes_and_goes_spends_the_same_budget() {
+    let mut wished = Wished::holding();
+    let mut closed = 0;
+    for n in 0..40_000 {
+        if n % 400 == 0 {
+            wished.bench.load(4.0 + f64::from(n) / 4_000.0, 0.8);
+        }
+        // One poll in ten wishes.
+        wished.want_mn = (n / 4 % 10 == 0).then_some(30_000);
+        closed += wished.run(1);
+    }
+    assert!((200..=460).contains(&closed), "{closed} frames");
+}
+
+// Shows L7.
+#[test]
 fn a_force_sensor_that_comes_and_goes_renews_nothing() {
     let mut wished = Wished::holding();
     wished.want_mn = Some(30_000);

@@ -104,7 +104,7 @@ pub struct State {
     pub frame: u32,
     /// When that frame ended, by the palm's clock, us.
     pub frame_at_us: u32,
-    /// A muscle is active, or no sensor says that none is.
+    /// A muscle is active. Where no sensor says that none is, the finger itself bounds what it closes.
     pub wearer: bool,
     /// Detectors that say slip, and those that warn.
     pub slip: DetectorSet,

@@ -60,6 +60,8 @@ pub struct Finger {
     tries: u8,
     tried_mn: u16,
     pulses: bool,
+    /// The reflex was warned in the last tick.
+    warned: bool,
     /// The last tick, and when it was here.
     state: State,
     frame_us: u32,
@@ -100,6 +102,7 @@ impl Finger {
             tries: 0,
             tried_mn: 0,
             pulses: false,
+            warned: false,
             state: State::default(),
             frame_us: 0,
             line_up: Deque::new(),
@@ -180,6 +183,9 @@ impl Finger {
 
     fn leave(&mut self) {
         (self.address, self.want_mn, self.slips) = (ALL, None, 0);
+        // Another palm begins with whole frames.
+        self.line_up.clear();
+        self.line_down.clear();
     }
 
     fn polled(&mut self, poll: &Poll, now_us: u32, bytes: u32, out: &mut [u8]) -> Option<Answer> {
@@ -250,7 +256,7 @@ impl Finger {
         } else if unheard_us > WISH_US {
             (self.want_mn, self.slips) = (None, 0);
         }
-        if wearer || self.has_let_go {
+        if fingertip.wearer_renews() || self.has_let_go {
             self.left_frames = BUDGET_FRAMES;
         }
         let load_mn = self.state.felt.map_or(0, |felt| felt.load_mn);
@@ -260,11 +266,13 @@ impl Finger {
         let lacks = self.want_mn.map(i32::from).filter(|&want_mn| i32::from(load_mn) + NEAR_MN < want_mn);
         let may = self.left_frames > 0 && self.tries < TRIES_MAX && self.state.felt.is_some() && !wearer;
         let wish_mn = lacks.filter(|_| may);
-        let pulses = wish_mn.is_some() && fingertip.mode() == GripMode::Incipient;
+        // Warned in the frame before, it may have begun in this one, and goes on whether it is still wished or not.
+        let warned = core::mem::replace(&mut self.warned, wish_mn.is_some());
+        let pulses = fingertip.mode() == GripMode::Incipient && (warned || self.pulses || wish_mn.is_some());
         if pulses {
-            self.left_frames -= 1;
+            self.left_frames = self.left_frames.saturating_sub(1);
         } else if core::mem::replace(&mut self.pulses, pulses) {
-            self.tries += 1;
+            self.tries = self.tries.saturating_add(1);
         }
         self.pulses = pulses;
         fingertip.inject(Said { slip: false, incipient: wish_mn.is_some() });

@@ -310,13 +310,15 @@ impl Palm {
         if seat.state.is_none() {
             let _full = self.reports.push_back(Report::Found(n as u8 + 1));
         }
+        // Who contracts moves the hand alone, from this answer on, not from the next sharing.
+        let contracts = state.wearer && !seat.state.as_ref().is_some_and(|before| before.wearer);
         let begins = !state.slip.is_empty() && seat.slips_until.is_none();
         if !state.slip.is_empty() {
             seat.slips_until = Some(now_us.wrapping_add(SLIP_US));
         }
         (seat.missed, seat.held_mn) = (0, None);
         seat.state = Some(state);
-        if begins {
+        if begins || contracts {
             self.allot();
         }
     }

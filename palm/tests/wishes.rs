@@ -86,7 +86,9 @@ fn a_thumb_that_bears_enough_is_wished_nothing() {
 fn an_active_muscle_at_any_finger_silences_the_palm() {
     let mut pair = Hand::at(&[0.0, 180.0]);
     pair.states = vec![Some(felt(4_000)); 2];
+    assert_eq!(pair.wishes(20), [Some(5.0), Some(5.0)]);
     pair.states[1].as_mut().unwrap().wearer = true;
+    assert_eq!(pair.wishes(1), [None, None], "at once");
     assert_eq!(pair.wishes(20), [None, None]);
     pair.states[1].as_mut().unwrap().wearer = false;
     assert_eq!(pair.wishes(20), [Some(5.0), Some(5.0)]);

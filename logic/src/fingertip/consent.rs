@@ -39,7 +39,7 @@ impl Fingertip {
             button: self.button_is_down,
             unloaded: self.senses.forces.map(|_| self.senses.unloaded),
         });
-        if gate.is_active() && (gate.is_known() || gate.is_releasing() || self.senses.muscles().is_heard()) {
+        if self.wearer_renews() {
             self.reflex.renew();
         }
         self.press();

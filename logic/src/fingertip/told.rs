@@ -86,6 +86,14 @@ impl Fingertip {
         self.senses.gate.is_active()
     }
 
+    /// Whether somebody has taken over for sure: only then budgets of closing begin anew. A lost myosensor, active for want of one that says
+    /// otherwise, is nobody.
+    #[must_use]
+    pub fn wearer_renews(&self) -> bool {
+        let gate = &self.senses.gate;
+        gate.is_active() && (gate.is_known() || gate.is_releasing() || self.senses.muscles().is_heard())
+    }
+
     /// What the Hebbian network has learned, with the maxima that its weights belong to.
     #[must_use]
     pub fn learned(&self) -> Learned {
