@@ -21,6 +21,7 @@ use embassy_stm32::peripherals::{DMA2_CH5, DMA2_CH7, PA10, PA12, PA15, USART1};
 use embassy_stm32::{Peri, interrupt};
 use tenax_hal_shim::wire::{Received, Receiver, Up};
 use tenax_logic::allowance::Allowance;
+use tenax_logic::detectors::Said;
 use tenax_logic::fingertip::Fingertip;
 use tenax_palm::bus::{BAUD, BEGINS_US, Chip, FRAME_MAX, bytes_us};
 use tenax_palm::finger::{Answer, Finger};
@@ -36,6 +37,8 @@ const CHANNEL: u8 = 4;
 const RING_LEN: usize = 256;
 /// USART1's clock, APB2.
 const CLOCK_HZ: u32 = 100_000_000;
+/// Ticks after which what a palm wished is void, if nothing could be said to its end since: as long as a wish lasts.
+const WISH_TICKS_MAX: u8 = 16;
 /// Ticks after which an answer that is still being sent is given up, and with it the wires.
 const SENDING_MAX: u8 = 4;
 
@@ -60,6 +63,8 @@ static HELD: AtomicBool = AtomicBool::new(false);
 static JOINED: AtomicBool = AtomicBool::new(false);
 /// A tick was over while the end was held.
 static LATE: AtomicBool = AtomicBool::new(false);
+/// Times that the end was held as something was to be said to it, in a row: twice a tick.
+static UNSAID: AtomicU8 = AtomicU8::new(0);
 /// When the last frame ended, us.
 static FRAME_US: AtomicU32 = AtomicU32::new(0);
 /// An answer is being sent, or waits for its slot; and ticks since.
@@ -173,7 +178,10 @@ fn tenax_bus_hear(end: &mut End, at_us: u32, to: u32) {
         // SAFETY: within the ring, which DMA writes behind the compiler's back.
         let byte = unsafe { addr_of!(RING).cast::<u8>().add(end.read).read_volatile() };
         end.read = (end.read + 1) % RING_LEN;
-        if let Some(answer) = end.finger.hear(byte, at_us, &mut out) {
+        // More has come since: the pause that is known is not this poll's.
+        if let Some(answer) = end.finger.hear(byte, at_us, &mut out)
+            && end.read == to as usize % RING_LEN
+        {
             JOINED.store(true, Relaxed);
             say(answer, at_us, &out);
         }
@@ -185,20 +193,26 @@ fn tenax_bus_hear(end: &mut End, at_us: u32, to: u32) {
 
 /// Sends an answer, unless it comes too late or one is on its way.
 fn say(answer: Answer, at_us: u32, out: &[u8; FRAME_MAX]) {
-    let due_us = at_us.wrapping_add(answer.after_us);
-    let late_us = clock_us().wrapping_sub(due_us).cast_signed();
-    if late_us > LATEST_US || SENDING.load(Relaxed) {
+    if SENDING.load(Relaxed) {
         return;
     }
-    SENDING.store(true, Relaxed);
     // SAFETY: nobody sends from it: see above.
     unsafe { addr_of_mut!(ANSWER).write(*out) };
     pac::DMA2.st(TX).ndtr().write_value(Ndtr(answer.length as u32));
-    if late_us < -SOON_US {
-        Slot::at(due_us);
-    } else {
-        begin();
-    }
+    let due_us = at_us.wrapping_add(answer.after_us);
+    // Between a look at the clock and the wires nothing comes, so that neither what is late is begun nor a slot is missed.
+    cortex_m::interrupt::free(|_| {
+        let late_us = clock_us().wrapping_sub(due_us).cast_signed();
+        if late_us > LATEST_US {
+            return;
+        }
+        SENDING.store(true, Relaxed);
+        if late_us < -SOON_US {
+            Slot::at(due_us);
+        } else {
+            begin();
+        }
+    });
 }
 
 /// An answer that would begin later is left out: with long wires, the palm has gone on when its first byte is over.
@@ -239,6 +253,7 @@ fn let_go() {
     pac::GPIOA.bsrr().write(|w| w.set_br(12, true));
     pac::USART1.cr1().modify(|w| w.set_tcie(false));
     pac::DMA2.st(TX).cr().write(|w| w.set_en(false));
+    Slot::cancel();
     SENDING.store(false, Relaxed);
 }
 
@@ -276,8 +291,17 @@ fn after(fingertip: &mut Fingertip) {
 
 #[inline(never)]
 fn tell(fingertip: &mut Fingertip) {
-    if !HELD.load(Relaxed) {
+    if HELD.load(Relaxed) {
+        // A flood keeps it: what was wished before does not go on for that.
+        let ticks = UNSAID.load(Relaxed).saturating_add(1);
+        UNSAID.store(ticks, Relaxed);
+        if ticks > 2 * WISH_TICKS_MAX {
+            fingertip.inject(Said::default());
+            fingertip.wish(None);
+        }
+    } else {
         LATE.store(false, Relaxed);
+        UNSAID.store(0, Relaxed);
         // SAFETY: a palm was answered, so it is set up; nobody has it, and nobody who could take it runs before this is over.
         let end = unsafe { &mut *addr_of_mut!(END).cast::<End>() };
         let [_, _, tick_us, _] = &TENAX_BUS_DOES;

@@ -139,4 +139,9 @@ impl Slot {
         });
         pac::TIM2.dier().modify(|w| w.set_ccie(SLOT, true));
     }
+
+    /// It does not begin any more.
+    pub fn cancel() {
+        pac::TIM2.dier().modify(|w| w.set_ccie(SLOT, false));
+    }
 }
