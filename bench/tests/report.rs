@@ -142,6 +142,13 @@ fn a_push_is_planned_for() {
 }
 
 #[test]
+fn a_wearer_who_grips_enough_for_a_swing_needs_no_plan() {
+    let outcome = ran(&parsed(&text("swung")), 1);
+    let own_n = outcome.truth.peak_grip_n.unwrap();
+    assert!(outcome.truth.kept() && outcome.report.bound.peak_force_n == Some(own_n), "{:?}", outcome.report.bound);
+}
+
+#[test]
 fn the_controls_of_a_scene_are_worse_than_the_reflex() {
     let file = parsed(&text("array-pour"));
     let outcome = ran(&file, 1);
