@@ -48,11 +48,11 @@ settings! {
     26 IncipientDuty "incipient-duty-permille" "per mille" [350, 1_000, trusted 100, 1_000] = 400 => Number(incipient_duty_permille);
     /// Length of the pulse that answers incipient slip
     27 IncipientPulse "incipient-pulse-ms" "ms" [5, 50] = 15 => Ms(incipient_frames);
-    /// How long the object is given to settle after a pulse, longer than the motor's dead time
+    /// Time after a pulse in which no slip is answered, longer than the motor's dead time
     28 Settle "settle-ms" "ms" [75, 90, trusted 40, 150] = 80 => Ms(settle_frames);
-    /// How long the reflex may close altogether while no force is known, until a muscle takes over once
+    /// Blind budget: closing time of the reflex in all while the force is unknown or an electrode is lost; an active muscle renews it
     29 Blind "blind-ms" "ms" [0, 400] = 200 => Ms(blind_frames);
-    /// After 5 s without slip the reflex takes back what it added, down to what stops a sliding object: 0 never, 1 where there is no
+    /// After 5 s without slip the reflex releases the force that it added, down to what stops a sliding object: 0 never, 1 without a
     /// wearer, 2 always
     75 Relax "relax-choice" "choice" [0, 2] = 1 => Number(relax);
 }

@@ -36,24 +36,24 @@ impl HebbianConfig {
 
 settings! {
     HebbianConfig:
-    /// Hebbian: how far below 0 the PVDF part of o1 means slip
+    /// Hebbian: slip is reported while the PVDF part of o1 is below minus this value
     5 HebbianSlip "hebbian-slip-permille" "per mille" [10, 1_000] = 100 => Number(slip_permille);
-    /// Hebbian: how long o1 must mean slip if only some PVDF channels show it
+    /// Hebbian: time below the threshold before slip is reported, if only some PVDF channels show it
     11 HebbianTime "hebbian-ms" "ms" [1, 100] = 15 => Ms(slip_frames);
-    /// Hebbian: how long if all PVDF channels show it, longer than an impact
+    /// Hebbian: the same if all PVDF channels show it, longer than an impact
     12 HebbianEverywhere "hebbian-everywhere-ms" "ms" [1, 500] = 40 => Ms(everywhere_frames);
-    /// Hebbian: how long after an impact or a fast run of the motor it is not evaluated
+    /// Hebbian: time after an impact or a fast run of the motor in which it is not evaluated
     13 HebbianAfterNoise "hebbian-after-noise-ms" "ms" [0, 1_000] = 100 => Ms(loud_frames);
-    /// Motor duty from which its noise disturbs the Hebbian detector
+    /// Motor duty above which the motor's noise disturbs the Hebbian detector
     14 NoisyDuty "noisy-duty-permille" "per mille" [10, 1_000] = 100 => Number(loud_duty_permille);
-    /// Age of a teacher's picture beyond which it teaches nothing
+    /// Teacher's pictures older than this are ignored
     15 TeacherFresh "teacher-fresh-ms" "ms" [40, 1_000] = 120 => Number(teacher.fresh_ms);
     /// Hebbian: learning rate alpha of one update (Tada 2006, equation 5)
     16 HebbianAlpha "hebbian-alpha-ppb" "ppb" [0, 16_000_000] = 50_000 => Number(learning.alpha_ppb);
     /// Hebbian: forgetting rate beta of one update (Tada 2006, equation 5)
     17 HebbianBeta "hebbian-beta-ppb" "ppb" [0, 16_000_000] = 10_000 => Number(learning.beta_ppb);
-    /// Hebbian: weight delta that every connection has for the variable rate (Tada 2006, equation 6)
+    /// Hebbian: delta, the constant share of each connection in the variable learning rate (Tada 2006, equation 6)
     18 HebbianDelta "hebbian-delta-ppm" "ppm" [1_000, 8_000_000] = 300_000 => Number(learning.delta_ppm);
-    /// Hebbian: how far ahead rising shear is looked at: it warns if Ft/Fn will by then be where the camera saw slip; 0: it never does
+    /// Hebbian: time by which Ft/Fn is extrapolated; it warns if the result reaches the ratio at which the camera saw slip; 0: no warnings
     72 HebbianAhead "hebbian-ahead-ms" "ms" [0, 250] = 75 => Number(ahead_ms);
 }

@@ -20,14 +20,14 @@ pub struct VibrationConfig {
 
 settings! {
     VibrationConfig:
-    /// S1: vibration envelope of a PVDF channel that means slip
+    /// S1: threshold of a PVDF channel's vibration envelope above which it reports slip
     1 S1 "s1-mv" "mV" [30, 150, trusted 20, 1_500] = 100 => Mv(s1);
-    /// Vibration above the slip band that an impact has at least
+    /// Least vibration above the slip band that counts as an impact
     6 ImpactLevel "impact-level-mv" "mV" [10, 100, trusted 10, 300] = 20 => Mv(impact_level);
-    /// A vibration with more than this part of its envelope above the slip band is an impact
+    /// Vibration is an impact if more than this part of its envelope is above the slip band
     7 ImpactRatio "impact-ratio-permille" "per mille" [300, 1_000, trusted 300, 3_000] = 500 => Number(impact_permille);
-    /// An impact is over after this long; what lasts longer is slip
+    /// Longest impact; vibration that lasts longer is slip
     8 ImpactLength "impact-ms" "ms" [12, 80, trusted 5, 100] = 45 => Ms(impact_frames);
-    /// The mains, whose hum is taken off the PVDF films, is at 60 Hz (1), not at 50 (0)
+    /// Mains frequency whose hum is removed from the PVDF films: 1 60 Hz, 0 50 Hz
     73 Mains60Hz "mains-60-hz-flag" "flag" [0, 1] = 0 => Flag(mains_60_hz);
 }
