@@ -82,9 +82,9 @@ impl Ending {
 pub const MARKERS: usize = 24;
 /// The normal force of a marker that is not tracked.
 pub const UNTRACKED: u8 = u8::MAX;
-/// One step of a marker's normal force, mN.
+/// Resolution of a marker's normal force on the wire, mN.
 pub const NORMAL_STEP_MN: i32 = 10;
-/// One step of a marker's shear, mN.
+/// Resolution of a marker's shear on the wire, mN.
 pub const SHEAR_STEP_MN: i32 = 20;
 
 /// What the camera behind the skin saw in one picture (FingerVision 2017, sections III and IV).
@@ -92,7 +92,7 @@ pub const SHEAR_STEP_MN: i32 = 20;
 pub struct CameraView {
     /// Age of the picture when this is sent, ms.
     pub age_ms: u16,
-    /// Moving points on the object, of the whole picture, in 1/10,000.
+    /// Moving points on the object as a part of the picture's area, 1/10 000 (0 to 10 000).
     pub moving_e4: u16,
     /// The object's orientation, tenths of a degree. None while it is out of view, or partly.
     pub angle_ddeg: Option<i16>,

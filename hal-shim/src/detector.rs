@@ -44,7 +44,7 @@ impl DetectorId {
         }
     }
 
-    /// What it goes by, for a person.
+    /// Its name with the signal that it uses, for people.
     #[must_use]
     pub const fn title(self) -> &'static str {
         match self {

@@ -89,7 +89,7 @@ impl Frame {
     }
 }
 
-/// The codes that one scan reads when every channel's pin has the code in `pins`, and the select lines show `select`.
+/// The codes of one scan if the channels' pins have the codes in `pins` (0 to 4095) and the select lines show `select` (0 to 15).
 ///
 /// This is the wiring seen from outside: an emulated or simulated board uses it to put pins on the converter.
 #[must_use]

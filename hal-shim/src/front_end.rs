@@ -22,8 +22,8 @@ pub fn fsr_mv(force_n: f64, powf: fn(f64, f64) -> f64) -> f64 {
     f64::from(FSR_REST_MV) + FSR_MV_AT_1N * powf(force_n.max(0.0), FSR_EXPONENT)
 }
 
-/// The tilting element: newtons of difference between opposite pairs of quadrants for 1 N of shear on top of it
-/// (Prosthesis, figure 1; the height of the rubber cylinder over the lever arm of the quadrants, assumed).
+/// Difference between opposite pairs of quadrants for 1 N of shear at the top of the rubber cylinder, N
+/// (Prosthesis, figure 1; the cylinder's height over the lever arm of the quadrants, assumed).
 pub const FSR_TILT: f64 = 1.0;
 
 /// Forces on quadrants A, B, C and D, N, under a normal force and a shear at the tilting element.

@@ -274,7 +274,7 @@ pub enum Kept {
 }
 
 impl Kept {
-    /// All of it.
+    /// Every kind of record, in wire order.
     pub const ALL: [Self; 4] = [Self::Network, Self::Zero, Self::Settings, Self::Emg];
 }
 

@@ -19,7 +19,7 @@ use crate::vibration::settings::VibrationConfig;
 /// All of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Config {
-    /// S1.
+    /// S1's settings.
     pub vibration: VibrationConfig,
     /// S2.
     pub friction: FrictionConfig,

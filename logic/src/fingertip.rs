@@ -204,7 +204,7 @@ impl Fingertip {
         self.detectors.injected.inject(said);
     }
 
-    /// The load that whoever injects a warning wishes for, mN: its pulse goes no further.
+    /// Sets the load at which the pulse of an injected warning ends, mN. None: no limit of its own.
     pub const fn wish(&mut self, load_mn: Option<i32>) {
         self.wish_mn = load_mn;
     }

@@ -89,7 +89,7 @@ impl Default for Reflex {
 }
 
 impl Reflex {
-    /// Whether a pulse may begin or go on.
+    /// Whether a pulse may begin or go on: the finger holds something below the force ceiling, and blind budget is left if it is needed.
     #[must_use]
     pub const fn may_close(&self, config: &GripConfig, grip: Grip) -> bool {
         match grip {

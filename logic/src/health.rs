@@ -3,12 +3,12 @@
 use tenax_hal_shim::channel::{Channel, sample_from_mv};
 use tenax_hal_shim::words::Reason;
 
-/// What an honest sensor's readings look like.
+/// Limits that the readings of a healthy sensor keep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Lowest sample.
+    /// Lowest sample (14 bits).
     pub low: u16,
-    /// Highest sample.
+    /// Highest sample (14 bits).
     pub high: u16,
     /// Equal readings in a row that no working sensor gives, given the noise of its front end and of the converter.
     pub stuck_after: u32,
@@ -19,7 +19,7 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// For a channel read `per_second` times a second: lost after 25 ms, back after a second, stuck after two.
+    /// For a channel with this many readings a second: lost after 25 ms of bad ones, back after 1 s of good, stuck after 2 s of equal ones.
     #[must_use]
     pub const fn of(channel: &Channel, per_second: u32) -> Self {
         let lost_after = per_second / 40;

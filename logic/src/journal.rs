@@ -59,12 +59,12 @@ impl Journal {
         self.event(EventKind::Mode { from, to, cause });
     }
 
-    /// Something went wrong, or came back.
+    /// Queues an event: this fault began, or what it names works again.
     pub fn fault(&mut self, fault: Fault) {
         self.event(EventKind::Fault(fault));
     }
 
-    /// Something happened. Not inlined: it rarely does, and everybody who tells of it would carry the queue.
+    /// Queues an event. Not inlined: events are rare, and each caller would carry a copy of the queue's code.
     #[inline(never)]
     pub fn event(&mut self, kind: EventKind) {
         self.lost |= matches!(

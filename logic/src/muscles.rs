@@ -167,7 +167,7 @@ impl Muscles {
         self.watch = Watch::default();
     }
 
-    /// Asks the wearer to show what they do, from this frame on.
+    /// Begins a calibration at this frame: the light asks for rest, closing and opening. The caller refuses it while something is held.
     pub fn begin_calibration(&mut self, frame: u32) {
         self.lesson = Some(Lesson { calibration: Calibration::begin(frame), asked: None });
     }

@@ -14,13 +14,13 @@ pub const RESTARTS_MAX: u32 = 5;
 /// The chip's reset flags.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Flags {
-    /// The supply came from nothing.
+    /// Power-on reset: the supply was off.
     pub power_on: bool,
-    /// The supply fell below the brown-out level, or came from nothing.
+    /// Brown-out reset, or power-on: the supply was below the brown-out level.
     pub brown_out: bool,
-    /// The watchdog.
+    /// Reset by the watchdog.
     pub watchdog: bool,
-    /// Software.
+    /// Reset by software.
     pub software: bool,
     /// The reset pin, or any other reset.
     pub pin: bool,

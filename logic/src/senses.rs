@@ -240,7 +240,7 @@ impl Senses {
         &self.head
     }
 
-    /// Whether vibration can be heard at all.
+    /// Whether enough films work for vibration to be judged.
     #[must_use]
     pub const fn hears(&self) -> bool {
         self.films_usable

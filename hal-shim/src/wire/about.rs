@@ -41,7 +41,7 @@ pub struct Identity {
     pub reset: ResetCause,
 }
 
-/// Who the board is.
+/// What identifies the board: build, chip, schema of the messages, settings.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct About {
     /// Chip and image.

@@ -38,9 +38,9 @@ pub enum Refusal {
 /// A setting's number (`tenax_logic::setting::SettingId`) and its value, in its unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Setting {
-    /// Its number.
+    /// The setting's number.
     pub id: u8,
-    /// Its value.
+    /// Its value, in the unit of its name.
     pub value: i32,
 }
 

@@ -18,7 +18,7 @@ pub const NETWORK_OUTPUTS: usize = 2;
 /// The force sensor's readings of a slow frame (Prosthesis, section 4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Forces {
-    /// The paper's Fn, mN: see `tenax_logic::force::sensor` for what it is not.
+    /// Fn of Prosthesis, section 4, mN: `2 sqrt(A^2 + B^2 + C^2 + D^2)`, which is the load only if the quadrants are equal.
     pub fn_mn: i32,
     /// The load, mN: the sum of the quadrants. What is decided by a force is decided by this.
     pub load_mn: i32,
@@ -52,7 +52,7 @@ pub const DETECTORS_MAX: usize = 8;
 pub struct Slow {
     /// Sequence number of its last frame.
     pub frame: u32,
-    /// Its ticks.
+    /// Its 25 ticks, the oldest first.
     pub ticks: [TickRecord; FRAMES_PER_SLOW_FRAME as usize],
     /// The mode after its last tick.
     pub mode: GripMode,

@@ -15,7 +15,7 @@ pub struct Counters {
     pub frames: u32,
     /// Frames lost.
     pub frames_lost: u32,
-    /// Times the converter or its DMA overran and was restarted.
+    /// Times the converter or its DMA overran and was restarted, since the start.
     pub overruns: u32,
     /// Control ticks run.
     pub ticks: u32,

@@ -23,7 +23,7 @@ pub struct ArrayVerdict {
     pub slip: bool,
     /// How likely that is, per mille: the calibrated logit's logistic function.
     pub confidence_permille: u16,
-    /// How long ago, at the end of the last slow frame, there was something to judge by, ms: 0 while the detector works.
+    /// Time since the detector last had valid features, at the end of the last slow frame, ms, at most 65 535; 0 while it works.
     pub age_ms: u16,
 }
 
@@ -64,7 +64,7 @@ pub struct Model<
     pub judgement: Judgement,
 }
 
-/// The detector of one array.
+/// Slip detector of ten taxels (Bamshad 2023): features, the network of a [`Model`], and the verdict with its two thresholds.
 #[derive(Clone, Debug)]
 pub struct ArrayDetector<
     'm,

@@ -9,7 +9,7 @@ pub const FEATURE_Q: u32 = 9;
 /// Fraction bits of a single.
 const SINGLE_Q: u32 = 23;
 
-/// Where a logarithm turns from straight to logarithmic.
+/// The feature value (samples^2) below which the scale is about linear and above which it is logarithmic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Knee {
     value: f32,

@@ -127,8 +127,8 @@ impl<const I: usize, const O: usize> Layer<I, O> {
     }
 }
 
-/// The network. `I` inputs, `H1` units in the first hidden layer, `L` slow frames of which are seen by the `H2` units of
-/// the second: 1 looks at the present only.
+/// The network: `I` inputs, `H1` units in the first hidden layer, `H2` in the second. The second layer sees the first layer's outputs of
+/// the last `L` slow frames; with 1 only the present ones.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mlp<const I: usize, const H1: usize, const L: usize, const H2: usize> {
     first: Layer<I, H1>,

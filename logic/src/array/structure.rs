@@ -8,7 +8,7 @@
 //! slip for as long as it is long; here each lag has six windows, one behind the other, so that the end of a slip is seen too.
 //!
 //! Where contacts are new ones within a frame, a fast slip is as white as noise, and only the level tells them apart. So the
-//! oldest window of the shortest lag is shown as its **quiet level**: the least that it was, slowly forgotten. More noise
+//! feature of the shortest lag's oldest window is its **quiet level**: its minimum, slowly forgotten. More noise
 //! than a detector was trained with, from a bad supply or a motor's cable, is then no slip.
 //!
 //! What all elements do together, an impact or the motor, is taken off: `n sum(q^2) - (sum q)^2` of the `n` changes `q` is `n`

@@ -10,17 +10,17 @@ use crate::button::Press;
 use crate::grip::Grip;
 
 impl Fingertip {
-    /// Whether the button at the hand is down, until this says otherwise.
+    /// Sets whether the button at the hand is down, until the next call.
     pub const fn button(&mut self, is_down: bool) {
         self.button_is_down = is_down;
     }
 
-    /// Whether the motor's bridge says that it has switched itself off, until this says otherwise.
+    /// Sets whether the motor bridge reports that it has switched itself off, until the next call.
     pub const fn bridge(&mut self, is_off: bool) {
         self.senses.motor.bridge(is_off);
     }
 
-    /// This start was a reset, not somebody who switched the hand on. To be said before the first tick.
+    /// This start was a reset, not a power-up: no consent follows from it. Call it before the first tick.
     pub const fn was_reset(&mut self) {
         self.arming.was_reset();
     }
@@ -31,7 +31,7 @@ impl Fingertip {
         self.arming.line(self.config.line_trusted)
     }
 
-    /// Looks for consent, and renews what somebody at the hand renews.
+    /// Looks for consent, and renews the budgets that an act at the hand renews.
     pub(super) fn consent(&mut self) {
         let gate = &self.senses.gate;
         let consent = self.arming.tick(Signs {

@@ -52,7 +52,7 @@ pub enum Cells {
 /// The drift of all four cells.
 #[derive(Clone, Debug, Default)]
 pub struct Drift {
-    /// The cell that is blamed.
+    /// The quadrant (0 to 3: A to D) that is judged to drift against the others. None if none is.
     blamed: Option<u8>,
     /// How far the cells contradict each other beyond their gains: SIGNS times the drift of the blamed one, mN.
     off_mn: i32,
@@ -69,7 +69,7 @@ pub struct Drift {
 }
 
 impl Drift {
-    /// The cell that is blamed.
+    /// The quadrant (0 to 3: A to D) that is judged to drift against the others. None if none is.
     pub fn blamed(&self) -> Option<usize> {
         // The compiler is to see that it is one of them.
         self.blamed.map(|cell| usize::from(cell) % FSR_COUNT)

@@ -52,7 +52,7 @@ impl Stroke {
 /// What a stroke measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Measured {
-    /// The smallest peak of Ft/Fn, per mille.
+    /// Static friction: the smallest of the stroke's peaks of Ft/Fn, per mille.
     pub mu_s_permille: u16,
     /// S2 from it, per mille.
     pub s2_permille: u16,
@@ -194,12 +194,12 @@ impl FrictionDetector {
         self.ratio_permille
     }
 
-    /// Begins a stroke.
+    /// Begins to measure mu_s in a stroke; one that is under way starts anew.
     pub fn begin_stroke(&mut self) {
         self.stroke = Some(Stroke::default());
     }
 
-    /// Ends it; gives what it measured, None if the finger never slid. The caller sets S2.
+    /// Ends the stroke. Gives what it measured, None if the finger never slid. The caller sets S2.
     pub fn end_stroke(&mut self, config: &FrictionConfig) -> Option<Measured> {
         let mu_s_permille = self.stroke.take()?.mu_s?;
         let s2 = u32::from(mu_s_permille) * u32::from(config.s2_of_mu_s_permille) / 1_000;

@@ -96,13 +96,13 @@ impl ForceSensor {
         &self.zero_uv
     }
 
-    /// Takes up zeros that were taken before, none further than [`ZERO_LIMIT_UV`].
+    /// Restores zeros of quadrants A to D, uV above rest. The caller has checked that none is beyond [`ZERO_LIMIT_UV`].
     pub const fn restore_zero(&mut self, zero_uv: [i32; FSR_COUNT]) {
         self.zero_uv = zero_uv;
     }
 }
 
-/// The paper's formulas on quadrant forces in mN, below 24 000 each: sums stay below 2^17, squares below 2^34.
+/// Forces (Prosthesis, section 4) of quadrants A to D, each 0 to 24 000 mN. Ft/Fn is None for a load below `loaded_mn`.
 #[must_use]
 pub fn forces([a, b, c, d]: [i32; FSR_COUNT], loaded_mn: i32) -> Forces {
     let fn_mn = 2 * root([a, b, c, d]);

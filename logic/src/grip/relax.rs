@@ -18,7 +18,7 @@ const KEPT_PERMILLE: i32 = 1_050;
 /// Duty at which the hand opens, per mille.
 const DUTY_PERMILLE: u16 = 100;
 
-/// What a reading tells.
+/// One reading of the force sensor, with the friction that is known.
 #[derive(Clone, Copy, Debug)]
 pub struct Reading {
     /// The load, mN.
@@ -29,7 +29,7 @@ pub struct Reading {
     pub slid_permille: Option<u16>,
 }
 
-/// What may be taken back, and what of a step is still to be opened.
+/// How much of the reflex's closing may be released, and what is left of the present step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Relax {
     /// The load that the hand was closed to, or that it had before a step that was answered by a word, mN. None: nobody knows yet.
@@ -46,18 +46,18 @@ pub struct Relax {
 }
 
 impl Relax {
-    /// Somebody else moves the hand, or it holds nothing: what follows is another grasp.
+    /// Ends the grasp: the muscles, the line or a behaviour moves the hand, or it holds nothing.
     pub fn forget(&mut self) {
         *self = Self::default();
     }
 
-    /// The reflex closes in this frame at this duty.
+    /// Notes that the reflex closes in this frame at this duty (0 to 1000 per mille): so much may be released later.
     pub const fn closes(&mut self, duty_permille: u16) {
         self.closed = self.closed.saturating_add(duty_permille as u32);
         self.left = 0;
     }
 
-    /// A detector says something, or the reflex is busy with it. A step that was heard has gone too far.
+    /// A detector reports slip or a warning. If that came after a step, the step went too far: the load before it becomes the floor.
     pub fn hear(&mut self) {
         self.floor_mn = self.floor_mn.map(|floor_mn| floor_mn.max(self.before_mn));
         (self.quiet, self.left) = (0, 0);
@@ -93,7 +93,7 @@ impl Relax {
         self.left > 0
     }
 
-    /// The duty at which the hand opens in this frame, per mille; 0 if it does not.
+    /// The duty at which the hand opens in this frame, per mille; 0 if it does not. Call it once a frame.
     pub fn opens(&mut self) -> u16 {
         let duty = (self.left.min(DUTY_PERMILLE.into())) as u16;
         self.left -= u32::from(duty);

@@ -288,7 +288,7 @@ impl HebbianDetector {
         self.updates
     }
 
-    /// Weights, activations and what goes on, for whoever asks.
+    /// Snapshot for telemetry at this frame: weights, activations, age of the teacher's picture, lesson.
     #[must_use]
     pub fn state(&self, frame: u32) -> NetworkState {
         let mut activations = self.activations;

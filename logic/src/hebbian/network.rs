@@ -58,7 +58,7 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Default for Network<INPUTS, OUTP
 }
 
 impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
-    /// Equations 3 and 4. Codes of [`Code::Zero`] give what touch alone says.
+    /// Outputs, -1 to 1 (Tada 2006, equations 3 and 4). With codes of [`Code::Zero`] they come from touch alone.
     pub fn output(&self, activations: &Activations<INPUTS>, codes: &[Code; OUTPUTS]) -> [Output; OUTPUTS] {
         let mut outputs = [Output::default(); OUTPUTS];
         for ((output, weights), &code) in outputs.iter_mut().zip(&self.weights).zip(codes) {

@@ -1,8 +1,8 @@
-//! What the films hear of the object, and what that adds to o1.
+//! The films' vibration above their quiet level, and what it adds to o1.
 //!
-//! What a film hears all the time, noise and what is left of hum, is none of the object's: its quiet level is taken off its
-//! envelope. It follows the envelope's median while the finger is known to be unloaded, and stands still in a grasp. A finger that
-//! was switched on in a grasp, by a reset for one, cannot tell noise from slip: its films are not heard until it lets go.
+//! Noise and the rest of hum are always there and do not come from the object, so each film's quiet level is subtracted from its
+//! envelope. It follows the envelope's median while the finger is known to be unloaded, and is held in a grasp. A finger that starts
+//! in a grasp, for example after a reset, cannot tell noise from slip: its films are not used until it lets go.
 
 use tenax_hal_shim::channel::PVDF_COUNT;
 

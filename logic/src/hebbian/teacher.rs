@@ -64,7 +64,7 @@ impl Teacher {
         self.age_ms = age_ms;
     }
 
-    /// A millisecond passes.
+    /// Ages the newest picture by 1 ms. Call it in every second frame.
     pub fn tick_ms(&mut self) {
         self.age_ms = self.age_ms.saturating_add(1);
     }

@@ -43,7 +43,7 @@ fn exp2(x: i32) -> i32 {
 }
 
 impl RateFit {
-    /// What the fit takes: logarithms, Q10, of amplitude, frequency and force.
+    /// Inputs of the fit: log2, Q10, of amplitude (samples, Q20), frequency (mHz, of a period in 1/16 frames) and force (mN).
     #[must_use]
     pub fn features(amplitude_q20: i32, period_q4: u16, force_mn: i32) -> [i32; 3] {
         // 2000 frames a second in 1/16: 32 000 000 mHz over the period. A quarter of it has room.

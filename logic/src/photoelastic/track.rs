@@ -55,13 +55,13 @@ pub struct Force {
 }
 
 impl Force {
-    /// In the middle of what it can be, mN.
+    /// Middle of the range from least to most, mN.
     #[must_use]
     pub const fn mn(&self) -> i32 {
         (self.least_mn + self.most_mn) / 2
     }
 
-    /// How far the true one may be from the middle, mN.
+    /// Half the width of that range, mN: the true force is within [`mn`](Self::mn) +- this.
     #[must_use]
     pub const fn uncertainty_mn(&self) -> i32 {
         self.most_mn - self.mn()
@@ -73,7 +73,7 @@ impl Force {
 pub struct Hints {
     /// The hand is surely open.
     pub unloaded: bool,
-    /// What another sensor measures, mN.
+    /// Load by the force sensor, mN. None: it gives no number.
     pub force_mn: Option<i32>,
 }
 

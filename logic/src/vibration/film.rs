@@ -49,12 +49,12 @@ pub struct Film {
     primed: bool,
 }
 
-/// What one film says, Q16 samples.
+/// Vibration of one film, Q16 samples (14 bits).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Levels {
-    /// Envelope in the slip band.
+    /// Envelope in the slip band, `BAND_LOW_HZ` to `BAND_HIGH_HZ`.
     pub envelope: i32,
-    /// Size of the vibration above it.
+    /// Mean size of the vibration above the slip band.
     pub above: i32,
 }
 
