@@ -5,11 +5,11 @@ use crate::setting::settings;
 /// Thresholds of the friction detector.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrictionConfig {
-    /// S2: Ft/Fn that means incipient slip, per mille, until a stroke has measured it.
+    /// S2: threshold of Ft/Fn above which it warns, per mille, until a stroke has measured it.
     pub s2_permille: u16,
     /// The part of a measured mu_s that becomes S2, per mille.
     pub s2_of_mu_s_permille: u16,
-    /// Fn from which the finger counts as loaded, mN: below, noise divided by a small Fn would be a large ratio.
+    /// Load from which the finger counts as loaded, mN: below, noise divided by a small Fn would be a large ratio.
     pub loaded_mn: i32,
 }
 

@@ -1,12 +1,12 @@
-//! Taking back the force that the reflex added, where somebody has chosen that it may.
+//! Releases the force that the reflex added, if `relax-choice` allows it.
 //!
-//! Only while nobody moves the hand and no detector has said anything for [`QUIET_READINGS`]; only by the friction at which this object slid
-//! in this grasp; never below the load that the hand was closed to, and never by more travel than the reflex closed. A step is small and
-//! waits for its effect. Whatever a detector says ends it: the reflex answers as always, and the load of that moment is kept from then on.
+//! Only while no source moves the hand and no detector has reported anything for [`QUIET_READINGS`]; only down to the load that the friction
+//! at which this object slid needs; never below the load that the hand was closed to, and never by more travel than the reflex closed. A step
+//! is small and waits for its effect. A report ends it: the reflex answers as always, and the load before the step is kept from then on.
 
 use super::stiffness::Stiffness;
 
-/// Readings of 12.5 ms without a word, 5 s.
+/// Readings of 12.5 ms without a report, 5 s.
 const QUIET_READINGS: u16 = 400;
 /// Readings between two steps, 0.25 s: a step's travel, the motor's dead time, and the force that follows.
 const STEP_READINGS: u16 = 20;
@@ -32,16 +32,16 @@ pub struct Reading {
 /// How much of the reflex's closing may be released, and what is left of the present step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Relax {
-    /// The load that the hand was closed to, or that it had before a step that was answered by a word, mN. None: nobody knows yet.
+    /// The load that the hand was closed to, or that it had before a step that a detector answered, mN. None: not known yet.
     floor_mn: Option<i32>,
     /// The load before the last step, mN.
     before_mn: i32,
     /// The greatest shear of the last seconds and of those before, mN.
     most_mn: [i32; 2],
     quiet: u16,
-    /// What the reflex has closed and nobody has opened, per mille of duty times frames.
+    /// Travel that the reflex has closed and not released, per mille of duty times frames.
     closed: u32,
-    /// What this step has still to open.
+    /// Travel left of this step, per mille of duty times frames.
     left: u32,
 }
 
@@ -63,7 +63,7 @@ impl Relax {
         (self.quiet, self.left) = (0, 0);
     }
 
-    /// Takes a reading while nobody moves the hand. Call it once a slow frame.
+    /// Takes a reading while no source moves the hand, and may begin a step. Call it once a slow frame.
     #[inline(never)]
     pub fn feel(&mut self, reading: &Reading, stiffness: &Stiffness) {
         let Reading { load_mn, ft_mn, slid_permille } = *reading;
@@ -88,7 +88,7 @@ impl Relax {
         }
     }
 
-    /// Whether a step goes on.
+    /// Whether a step is under way.
     pub const fn is_on(&self) -> bool {
         self.left > 0
     }
