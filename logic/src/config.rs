@@ -16,12 +16,12 @@ use crate::photoelastic::HeadConfig;
 use crate::setting::{Row, SettingId, Settings, settings};
 use crate::vibration::settings::VibrationConfig;
 
-/// All of it.
+/// The configuration of one fingertip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Config {
     /// S1's settings.
     pub vibration: VibrationConfig,
-    /// S2.
+    /// S2's settings.
     pub friction: FrictionConfig,
     /// The Hebbian detector.
     pub hebbian: HebbianConfig,
@@ -29,9 +29,9 @@ pub struct Config {
     pub gate: GateConfig,
     /// The reflex.
     pub grip: GripConfig,
-    /// What the motor bears.
+    /// The motor's limits.
     pub motor: MotorConfig,
-    /// What is above it.
+    /// The behaviours.
     pub behaviour: BehaviourConfig,
     /// The photoelastic head.
     pub head: HeadConfig,
@@ -39,7 +39,7 @@ pub struct Config {
     pub line_trusted: bool,
     /// Frames are streamed from the start on.
     pub stream_at_start: bool,
-    /// There is no wearer: a myosensor that gives no number is not missed.
+    /// There is no wearer: the reflex works without myosensors.
     pub no_wearer: bool,
     /// Detectors that the reflex does not act on.
     pub detectors_off: DetectorSet,

@@ -1,4 +1,4 @@
-//! The flow chart of Prosthesis, figure 9, as a machine whose every legal step is one row of a table.
+//! The reflex's state machine (Prosthesis, figure 9): every legal step is one row of a table.
 
 use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::words::{Cause, GripMode};

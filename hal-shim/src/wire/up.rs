@@ -34,7 +34,7 @@ pub struct Counters {
     pub control_permille: u16,
 }
 
-/// Something that happened once.
+/// An event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Event {
     /// Sequence number of the frame in which it happened.
@@ -106,7 +106,7 @@ pub enum Up {
     },
     /// A slow frame.
     Slow(Slow),
-    /// Something that happened once.
+    /// An event.
     Event(Event),
     /// The counters, ten times a second.
     Counters(Counters),

@@ -1,4 +1,4 @@
-//! What the serial line may do in a tick: consent, and the limits of its drive.
+//! Consent to commands of the serial line, and the limits of its drive.
 
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::EventKind;
@@ -25,7 +25,7 @@ impl Fingertip {
         self.arming.was_reset();
     }
 
-    /// What the serial line may do.
+    /// The commands that the serial line may give.
     #[must_use]
     pub fn line(&self) -> Line {
         self.arming.line(self.config.line_trusted)
@@ -73,7 +73,7 @@ impl Fingertip {
         self.senses.muscles().light(self.journal.frame())
     }
 
-    /// What somebody at the hand asks for with its button.
+    /// Carries out the request of the button.
     #[inline(never)]
     fn press(&mut self) {
         let empty = matches!(self.senses.grip, Grip::Unloaded);
@@ -94,7 +94,7 @@ impl Fingertip {
         }
     }
 
-    /// What the line asks for and may have: it closes no harder than the reflex might.
+    /// The line's drive within its limits: it closes no harder than the reflex may.
     pub(super) fn link_drive(&self) -> Option<MotorDrive> {
         let drive = self.link.drive()?;
         let grip = self.senses.grip;

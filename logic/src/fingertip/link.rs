@@ -1,4 +1,4 @@
-//! The drive that the serial line asks for, and how long it may keep the reflex silent.
+//! The drive of the serial line, and the time for which it may silence the reflex.
 
 use tenax_hal_shim::motor::MotorDrive;
 
@@ -57,19 +57,19 @@ impl Link {
         }
     }
 
-    /// Somebody at the hand is there: the line may hold again.
+    /// Renews the time: a muscle is active, or consent was given.
     pub const fn renew(&mut self) {
         self.held = 0;
         self.exhausted = false;
     }
 
-    /// Whether it held too long.
+    /// Whether its time is used up.
     #[must_use]
     pub const fn is_exhausted(&self) -> bool {
         self.exhausted
     }
 
-    /// What it asks for, None while nothing.
+    /// The drive that holds. None: the line asks for nothing.
     #[must_use]
     pub fn drive(&self) -> Option<MotorDrive> {
         (self.drive != MotorDrive::Coast).then_some(self.drive)
