@@ -1,4 +1,4 @@
-//! A logarithm that a mild slip and a violent one both fit in.
+//! Logarithmic scale of the features, for weak and strong slip.
 //!
 //! The bits of a positive IEEE 754 number, read as an integer, are its base-2 logarithm: exact at powers of two, straight
 //! lines between (Mitchell 1962), and at most 0.086 too small. It is monotonic, which is all that a network needs, and

@@ -1,15 +1,15 @@
-//! What can be chosen about behaviours.
+//! Settings of the behaviours.
 
 use crate::setting::settings;
 
-/// What a behaviour may be told.
+/// Settings of the behaviours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BehaviourConfig {
     /// Duty of its movements, per mille.
     pub duty_permille: u16,
     /// Length of a small movement, in frames.
     pub movement_frames: u32,
-    /// How long it waits after one for what it does to show, in frames (section II-D: 0.1 s).
+    /// Pause after a small movement, in frames (section II-D: 0.1 s).
     pub wait_frames: u32,
     /// The sum of the scores beyond which an object is held gently (section II-A).
     pub gentle_score: u16,
@@ -17,7 +17,7 @@ pub struct BehaviourConfig {
     pub changed_cells: u16,
     /// Moving points that are slip, in 1/10,000 of the picture.
     pub moving_e4: u16,
-    /// How far ahead of what is seen a turn is foreseen, in frames; 0: not at all, as in the paper.
+    /// Time by which the camera's angle is extrapolated, in frames; 0: not at all, as in the paper.
     pub turn_lead_frames: u32,
 }
 

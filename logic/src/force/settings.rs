@@ -1,4 +1,4 @@
-//! What can be chosen about S2.
+//! Settings of S2.
 
 use crate::setting::settings;
 

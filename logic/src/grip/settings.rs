@@ -1,4 +1,4 @@
-//! What can be chosen about the reflex.
+//! Settings of the reflex.
 
 use crate::setting::settings;
 

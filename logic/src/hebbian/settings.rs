@@ -1,27 +1,27 @@
-//! What can be chosen about the Hebbian detector.
+//! Settings of the Hebbian detector.
 
 use super::{LearningConfig, Rule, TeacherConfig};
 use crate::setting::settings;
 
-/// What the network's output means, and how it learns.
+/// Thresholds of the Hebbian detector, and how it learns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct HebbianConfig {
-    /// How far below 0 the films' part of o1 means slip, per mille.
+    /// Slip is reported while the films' part of o1 is below minus this, per mille.
     pub slip_permille: u16,
-    /// For how long, in frames, if only some films hear it: slip begins somewhere.
+    /// Time below the threshold before slip is reported if only some films show it, in frames.
     pub slip_frames: u32,
-    /// For how long if all of them hear it, in frames: longer than an impact.
+    /// The same if all films show it, in frames: longer than an impact.
     pub everywhere_frames: u32,
-    /// How long after an impact or a run of the motor it means nothing, in frames: what the envelopes still have of it, and
+    /// Time after an impact or a run of the motor in which it is not evaluated, in frames: the envelopes' decay and
     /// the motor's dead time.
     pub loud_frames: u32,
-    /// How far ahead rising shear is looked at, ms; 0: it never warns.
+    /// Time by which Ft/Fn is extrapolated, ms; 0: no warnings.
     pub ahead_ms: u16,
     /// From this duty on the motor runs fast, per mille. Closing more slowly is a way to take something, and to learn.
     pub loud_duty_permille: u16,
-    /// When a teacher is believed.
+    /// When a teacher's codes are used.
     pub teacher: TeacherConfig,
-    /// How fast it is learned from.
+    /// Learning rates.
     pub learning: LearningConfig,
     /// The same in the formats of the update.
     pub rule: Rule,

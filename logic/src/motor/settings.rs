@@ -1,4 +1,4 @@
-//! What can be chosen about the motor's current.
+//! Settings of the motor's current.
 
 use crate::setting::settings;
 

@@ -1,4 +1,4 @@
-//! How fast it slips, from amplitude and frequency of the ac part.
+//! Rate of slip, from amplitude and frequency of the ac part.
 //!
 //! Both rise with the rate, and neither follows a law that holds for all materials: the amplitude grows with the drop of
 //! friction, too. So the rate is a fit of logarithms, calibrated with one material (`tenax calibrate photoelastic`):

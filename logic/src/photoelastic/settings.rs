@@ -1,9 +1,9 @@
-//! What can be chosen about the photoelastic head.
+//! Settings of the photoelastic head.
 
 use super::curve::Curve;
 use crate::setting::settings;
 
-/// What can be chosen about the head.
+/// Settings of the head.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct HeadConfig {
     /// Whether a photoelastic head is in the place of film 12.

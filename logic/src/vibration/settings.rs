@@ -1,4 +1,4 @@
-//! What can be chosen about S1.
+//! Settings of S1.
 
 use crate::setting::settings;
 
