@@ -11,6 +11,8 @@ const HEAD: &str = "\
 
 This page lists the pin of each channel and its valid voltages, for builders who connect sensors. [Hardware](hardware.md) has the circuits.
 
+![sensors, switches, board and outputs](figures/wiring.svg)
+
 <!-- Printed from hal-shim/src/channel.rs by cargo tenax wiring; do not edit. -->
 
 | other signals of the NUCLEO-F411RE | pins |
