@@ -1,13 +1,15 @@
 //! MCAP files (mcap.dev, version 0): written in chunks that zstd compresses, with an index of the chunks; read from begin to
-//! end.
+//! end, or chunk by chunk.
 //!
 //! The crate `mcap` does this too, but its derive macros turn on a feature of `proc-macro2` with which everything that has
 //! macros, the emulator included, is compiled anew.
 
-use std::collections::BTreeMap;
-use std::io::{self, Read, Write};
+mod read;
 
-use anyhow::{Context, bail};
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+
+pub use self::read::{Chunk, Topics, chunk, chunks, read};
 
 const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 const HEADER: u8 = 1;
@@ -23,8 +25,6 @@ const METADATA_INDEX: u8 = 13;
 const DATA_END: u8 = 15;
 /// How chunks are compressed, as the file says.
 const ZSTD: &[u8] = b"zstd";
-/// No chunk of a file that is read may be longer than this.
-const CHUNK_BYTES_MAX: u64 = 256 << 20;
 
 /// A record's content as it grows.
 #[derive(Default)]
@@ -219,98 +219,6 @@ impl<W: Write> Writer<W> {
     fn put(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.at += bytes.len() as u64;
         self.out.write_all(bytes)
-    }
-}
-
-/// Hands every message of a file to `each`: its topic, its time and its data. A file that ends early, because whoever wrote
-/// it was killed, is read as far as it goes. Fails if it is no such file, or is compressed.
-pub fn read(file: &[u8], each: &mut dyn FnMut(&str, u64, &[u8])) -> anyhow::Result<()> {
-    let records = file.strip_prefix(MAGIC).context("this is no MCAP file")?;
-    let mut topics = BTreeMap::new();
-    walk(records, &mut topics, each)
-}
-
-fn walk(
-    mut rest: &[u8],
-    topics: &mut BTreeMap<u16, String>,
-    each: &mut dyn FnMut(&str, u64, &[u8]),
-) -> anyhow::Result<()> {
-    while let Some((opcode, content)) = next(&mut rest) {
-        match opcode {
-            CHANNEL => {
-                let mut fields = Fields(content);
-                if let (Some(id), Some(_), Some(topic)) = (fields.u16(), fields.u16(), fields.text()) {
-                    topics.insert(id, topic);
-                }
-            }
-            MESSAGE => {
-                let mut fields = Fields(content);
-                if let (Some(id), Some(_), Some(at_ns), Some(_)) =
-                    (fields.u16(), fields.take(4), fields.u64(), fields.u64())
-                    && let Some(topic) = topics.get(&id)
-                {
-                    each(topic, at_ns, fields.0);
-                }
-            }
-            CHUNK => {
-                let mut fields = Fields(content);
-                let compression = fields.take(28).and_then(|_| fields.text());
-                if fields.u64().is_none() {
-                    continue;
-                }
-                match compression.as_deref() {
-                    Some("") => walk(fields.0, topics, each)?,
-                    Some("zstd") => {
-                        let mut records = Vec::new();
-                        let unpacked = zstd::Decoder::new(fields.0)
-                            .and_then(|chunk| chunk.take(CHUNK_BYTES_MAX).read_to_end(&mut records));
-                        // Of a chunk that is damaged, what was whole.
-                        let _damaged = unpacked.is_err();
-                        walk(&records, topics, each)?;
-                    }
-                    Some(other) => {
-                        bail!("this MCAP file is compressed ({other}): `mcap convert` undoes that")
-                    }
-                    None => {}
-                }
-            }
-            DATA_END | FOOTER => break,
-            _ => {}
-        }
-    }
-    Ok(())
-}
-
-/// The next record: its kind and its content.
-fn next<'a>(rest: &mut &'a [u8]) -> Option<(u8, &'a [u8])> {
-    let mut fields = Fields(rest);
-    let opcode = fields.take(1)?[0];
-    let length = usize::try_from(fields.u64()?).ok()?;
-    let content = fields.take(length)?;
-    *rest = fields.0;
-    Some((opcode, content))
-}
-
-struct Fields<'a>(&'a [u8]);
-
-impl<'a> Fields<'a> {
-    fn take(&mut self, length: usize) -> Option<&'a [u8]> {
-        let (taken, rest) = self.0.split_at_checked(length)?;
-        self.0 = rest;
-        Some(taken)
-    }
-
-    fn u16(&mut self) -> Option<u16> {
-        Some(u16::from_le_bytes(self.take(2)?.try_into().ok()?))
-    }
-
-    fn u64(&mut self) -> Option<u64> {
-        Some(u64::from_le_bytes(self.take(8)?.try_into().ok()?))
-    }
-
-    fn text(&mut self) -> Option<String> {
-        let length = u32::from_le_bytes(self.take(4)?.try_into().ok()?);
-        String::from_utf8(self.take(length as usize)?.to_vec()).ok()
     }
 }
 

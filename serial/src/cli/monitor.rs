@@ -9,7 +9,7 @@ use anyhow::{Context, bail};
 use tenax_hal_shim::wire::{Answer, Down, SETTINGS_PER_ANSWER, Setting};
 use tenax_logic::setting::SettingId;
 
-use super::{out, port};
+use super::{config, out, port};
 use crate::link::{Client, Target};
 use crate::monitor::app;
 use crate::monitor::source::Places;
@@ -27,7 +27,7 @@ pub struct Args {
     /// only board that is plugged in]
     #[arg(long, value_name = "PORT")]
     port: Option<Target>,
-    /// A captured line, such as out/glass.line.bin of `tenax run`
+    /// A recording (MCAP), or a captured line such as out/glass.line.bin of `tenax run`
     #[arg(long, value_name = "FILE", conflicts_with = "port")]
     file: Option<PathBuf>,
     /// One line a message instead of the screen, as always where the output is no terminal
@@ -40,6 +40,9 @@ pub struct Args {
     /// --control, --web has the keys of the scene's bench
     #[arg(long, value_name = "tcp:HOST:PORT", conflicts_with = "plain")]
     truth: Option<Target>,
+    /// Compare the settings on the screen with those that this file names
+    #[arg(long, value_name = "FILE.toml", conflicts_with_all = ["plain", "web"])]
+    against: Option<PathBuf>,
     /// Let the screen's keys change something: settings, zero, calibration, the teacher
     #[arg(long, conflicts_with = "plain")]
     control: bool,
@@ -109,9 +112,10 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let told =
         !args.send.is_empty() || !args.set.is_empty() || !args.get.is_empty() || args.settings || args.teach;
-    let plain = args.plain || told || !io::stdout().is_terminal() || matches!(target, Target::File(_));
+    let plain = args.plain || told || !io::stdout().is_terminal();
     if !plain {
-        app::show(&places, args.control)?;
+        let against = args.against.as_deref().map(config::of_file).transpose()?.unwrap_or_default();
+        app::show(&places, args.control, settings::by_number(&against))?;
         return Ok(ExitCode::SUCCESS);
     }
     let mut client = Client::open(&target)?;
