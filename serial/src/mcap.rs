@@ -1,4 +1,4 @@
-//! MCAP files (mcap.dev, version 0): written in chunks that zstd compresses, with an index of the chunks; read from begin to
+//! MCAP files (mcap.dev, version 0): written in chunks that zstd compresses, with an index of chunks and messages; read from begin to
 //! end, or chunk by chunk.
 //!
 //! The crate `mcap` does this too, but its derive macros turn on a feature of `proc-macro2` with which everything that has
@@ -18,6 +18,7 @@ const SCHEMA: u8 = 3;
 const CHANNEL: u8 = 4;
 const MESSAGE: u8 = 5;
 const CHUNK: u8 = 6;
+const MESSAGE_INDEX: u8 = 7;
 const CHUNK_INDEX: u8 = 8;
 const STATISTICS: u8 = 11;
 const METADATA: u8 = 12;
@@ -85,6 +86,9 @@ struct Indexed {
     length: u64,
     content: u64,
     compressed: u64,
+    /// Where the index of each channel's messages is, and how long all of them are.
+    messages: Vec<u8>,
+    messages_length: u64,
 }
 
 /// Writes a file.
@@ -96,6 +100,8 @@ pub struct Writer<W: Write> {
     counts: BTreeMap<u16, u64>,
     chunk: Vec<u8>,
     span_ns: Option<(u64, u64)>,
+    /// Of each channel's messages in the chunk, time and place.
+    places: BTreeMap<u16, Vec<u8>>,
     index: Vec<Indexed>,
     /// Index records of what was told of the file.
     metadata: Vec<Vec<u8>>,
@@ -112,6 +118,7 @@ impl<W: Write> Writer<W> {
             counts: BTreeMap::new(),
             chunk: Vec::new(),
             span_ns: None,
+            places: BTreeMap::new(),
             index: Vec::new(),
             metadata: Vec::new(),
         };
@@ -157,6 +164,8 @@ impl<W: Write> Writer<W> {
         let count = self.counts.entry(channel).or_default();
         let content = Content::default().u16(channel).u32(*count as u32).u64(at_ns).u64(came_ns).raw(data);
         *count += 1;
+        let place = Content::default().u64(at_ns).u64(self.chunk.len() as u64);
+        self.places.entry(channel).or_default().extend_from_slice(&place.0);
         self.chunk.extend_from_slice(&content.record(MESSAGE));
         let (first, last) = self.span_ns.unwrap_or((at_ns, at_ns));
         self.span_ns = Some((first.min(at_ns), last.max(at_ns)));
@@ -175,8 +184,8 @@ impl<W: Write> Writer<W> {
             (first, last) = (first.min(chunk.first_ns), last.max(chunk.last_ns));
             let content =
                 Content::default().u64(chunk.first_ns).u64(chunk.last_ns).u64(chunk.at).u64(chunk.length);
-            // No index of single messages: a chunk is read whole.
-            let content = content.u32(0).u64(0).bytes(ZSTD).u64(chunk.compressed).u64(chunk.content);
+            let content = content.bytes(&chunk.messages).u64(chunk.messages_length);
+            let content = content.bytes(ZSTD).u64(chunk.compressed).u64(chunk.content);
             self.put(&content.record(CHUNK_INDEX))?;
         }
         let metadata = std::mem::take(&mut self.metadata);
@@ -211,9 +220,27 @@ impl<W: Write> Writer<W> {
         let chunk =
             Content::default().u64(first_ns).u64(last_ns).u64(content).u32(0).bytes(ZSTD).u64(compressed);
         let record = chunk.raw(&packed).record(CHUNK);
-        let length = record.len() as u64;
-        self.index.push(Indexed { first_ns, last_ns, at: self.at, length, content, compressed });
-        self.put(&record)
+        let (at, length) = (self.at, record.len() as u64);
+        self.put(&record)?;
+        // Foxglove's reader takes no chunk without it.
+        let begin = self.at;
+        let mut messages = Content::default();
+        for (channel, places) in std::mem::take(&mut self.places) {
+            messages = messages.u16(channel).u64(self.at);
+            self.put(&Content::default().u16(channel).bytes(&places).record(MESSAGE_INDEX))?;
+        }
+        let (messages, messages_length) = (messages.0, self.at - begin);
+        self.index.push(Indexed {
+            first_ns,
+            last_ns,
+            at,
+            length,
+            content,
+            compressed,
+            messages,
+            messages_length,
+        });
+        Ok(())
     }
 
     fn put(&mut self, bytes: &[u8]) -> io::Result<()> {

@@ -123,7 +123,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if told && !args.plain && !args.teach {
         return Ok(ExitCode::from(u8::from(refused)));
     }
-    let end = match print(&mut client, &mut io::stdout().lock()) {
+    let end = match monitor::watch(&mut client, &mut io::stdout().lock()) {
         // Whoever read our output has read enough.
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(ExitCode::SUCCESS),
         other => other.context("cannot print")?,
@@ -133,18 +133,6 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         (io::ErrorKind::UnexpectedEof, Target::File(_)) => Ok(ExitCode::SUCCESS),
         (io::ErrorKind::UnexpectedEof, _) => bail!(target.after_end(None)),
         _ => bail!(target.after_end(Some(&end))),
-    }
-}
-
-/// Prints what comes until the line ends, and says how it ended.
-fn print(client: &mut Client, out: &mut dyn io::Write) -> io::Result<io::Error> {
-    loop {
-        match client.next_frame() {
-            Ok(Some(frame)) => monitor::print(&frame, out)?,
-            // Nothing more has come so far.
-            Ok(None) => out.flush()?,
-            Err(end) => return out.flush().map(|()| end),
-        }
     }
 }
 
