@@ -9,7 +9,6 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
-use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::wire::Up;
 
 pub use self::reel::Reel;
@@ -73,6 +72,8 @@ impl FromStr for Control {
 #[derive(Debug)]
 pub enum Told {
     Message(Box<Heard>),
+    /// It goes on elsewhere: what was heard so far is no more so.
+    Again,
     At(Playing),
     /// It is over, and does not begin again.
     Over,
@@ -94,18 +95,13 @@ pub fn play(
         let from_s = player.playing.at_s.clamp(0.0, reel.length_s());
         let mut n = reel.piece_at(from_s);
         player.playing.at_s = from_s;
-        // Who watches has to know that time begins anew.
-        let hello = Up::Hello { frame_hz: FRAME_HZ as u16, after: None };
-        let again =
-            Heard { received: tenax_hal_shim::wire::Received { sequence: 0, message: hello }, missed: 0 };
-        let mut before: Vec<Heard> = if is_first { Vec::new() } else { vec![again] };
-        if from_s > 0.0 {
-            let early =
-                beginning.iter().filter(|(at_s, heard)| *at_s < from_s && stays(&heard.received.message));
-            before.extend(early.map(|(_, heard)| heard.clone()));
+        if !is_first && !(player.tell)(Told::Again) {
+            return Ok(());
         }
         is_first = false;
-        if !before.into_iter().all(|heard| (player.tell)(Told::Message(Box::new(heard)))) {
+        let mut early =
+            beginning.iter().filter(|(at_s, heard)| *at_s < from_s && stays(&heard.received.message));
+        if !early.all(|(_, heard)| (player.tell)(Told::Message(Box::new(heard.clone())))) {
             return Ok(());
         }
         let mut next = player.piece(&reel.piece(n)?.unwrap_or_default(), from_s);
@@ -123,7 +119,7 @@ pub fn play(
 }
 
 fn stays(message: &Up) -> bool {
-    matches!(message, Up::Hello { .. } | Up::About(_) | Up::Answer { .. })
+    matches!(message, Up::About(_) | Up::Answer { .. })
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]

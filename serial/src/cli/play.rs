@@ -8,6 +8,8 @@ use std::thread;
 use std::time::Duration;
 
 use anyhow::bail;
+use tenax_hal_shim::channel::FRAME_HZ;
+use tenax_hal_shim::wire::Up;
 
 use super::out;
 use crate::link::Encoder;
@@ -92,11 +94,19 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let playing = Playing { at_s: args.from, speed, repeat: args.repeat, ..Playing::new(&reel) };
     let (mut encoder, mut messages) = (Encoder::default(), 0_u64);
     play(&mut reel, playing, &controls, &mut |told| {
-        if let Told::Message(heard) = &told {
-            messages += 1;
-            server.line(encoder.frame(&heard.received.message).1);
+        match told {
+            Told::Message(heard) => {
+                messages += 1;
+                server.line(encoder.frame(&heard.received.message).1);
+            }
+            // Who watches has to know that time begins anew.
+            Told::Again => {
+                server.line(encoder.frame(&Up::Hello { frame_hz: FRAME_HZ as u16, after: None }).1);
+            }
+            Told::At(_) => {}
+            Told::Over => return false,
         }
-        !matches!(told, Told::Over)
+        true
     })?;
     out::note!("{messages} messages; {}", server.close());
     Ok(ExitCode::SUCCESS)

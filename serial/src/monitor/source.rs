@@ -34,6 +34,8 @@ pub enum News {
     Bench(Option<Bench>),
     /// Where the recording is that is watched.
     Playing(Playing),
+    /// It goes on elsewhere.
+    Rewound,
     /// What was asked, and the answer.
     Answered(Down, Result<Answer, String>),
 }
@@ -89,6 +91,7 @@ fn watch_recording(path: &Path, controls: &Receiver<String>, news: &Sender<News>
                 counts.missed += u64::from(heard.missed);
                 News::Frame(Ok(*heard), counts, Instant::now())
             }
+            Played::Again => News::Rewound,
             Played::At(playing) => News::Playing(playing),
             Played::Over => return true,
         };

@@ -124,6 +124,7 @@ impl View {
             }
             News::Bench(bench) => self.bench = bench,
             News::Playing(playing) => self.playing = Some(playing),
+            News::Rewound => self.begin_anew(),
             News::Answered(command, answer) => self.answered(&command, answer),
         }
     }
@@ -183,9 +184,7 @@ impl View {
             }
             Up::Answer { answer, .. } => self.learn(answer),
             Up::Hello { .. } => {
-                self.faults.clear();
-                self.history.clear();
-                self.fates = Default::default();
+                self.begin_anew();
                 self.say(Words(&received.message).to_string());
             }
             Up::Event(event) => {
@@ -201,6 +200,12 @@ impl View {
             Up::Raw(_) | Up::Taken { .. } => {}
             message => self.say(Words(message).to_string()),
         }
+    }
+
+    fn begin_anew(&mut self) {
+        self.faults.clear();
+        self.history.clear();
+        self.fates = Default::default();
     }
 
     fn slow(&mut self, slow: Slow, now: Instant) {
