@@ -45,7 +45,8 @@ pub struct Recording {
     batch: (Vec<u8>, u32, u32),
 }
 
-/// Slow frames in a message of a compact recording's line: each message takes 16 bytes of an index that nothing compresses.
+/// Slow frames in a message of a compact recording's line, and for each of its states: a message takes 16 bytes of an index that
+/// nothing compresses.
 const BATCH: u32 = 4;
 
 impl Recording {
@@ -55,7 +56,7 @@ impl Recording {
         Self::of(path, Topic::all(), Packing::FAST, 1)
     }
 
-    /// One for hours: the line, and what a person draws first.
+    /// One for hours: the line, and what a person draws first, 20 times a second.
     /// Fails as [`create`](Self::create) does.
     pub fn compact(path: &Path) -> anyhow::Result<Self> {
         Self::of(path, Topic::compact(), Packing::SMALL, BATCH)
@@ -125,10 +126,11 @@ impl Recording {
         let bytes = encode(received.sequence, &received.message, &mut buffer);
         self.batch.0.extend_from_slice(bytes.unwrap_or_default());
         self.batch.1 += u32::from(matches!(received.message, Up::Slow(_)));
-        if self.batch.2 == 1 || self.batch.1 >= self.batch.2 {
+        let ends = self.batch.2 == 1 || self.batch.1 >= self.batch.2;
+        if ends {
             self.end_batch();
         }
-        for (topic, frame, values) in rows {
+        for (topic, frame, values) in rows.into_iter().filter(|(topic, ..)| ends || *topic != Topic::State) {
             self.put(topic, frame, came_ns, &values);
         }
     }

@@ -39,7 +39,7 @@ pub struct Args {
     /// Leave out the frames, which take three fifths of the line; then it cannot be replayed
     #[arg(long)]
     no_frames: bool,
-    /// For hours: without frames, and only the topics /line, /state, /event, /counters and /setting. `tenax play --csv` makes
+    /// For hours: without frames, and only the topics /line, /state (20 a second), /event, /counters and /setting. `tenax play --csv` makes
     /// all of the line
     #[arg(long, conflicts_with = "no_frames")]
     compact: bool,
