@@ -1,4 +1,4 @@
-//! The flow chart of Prosthesis, figure 9, as a machine whose every legal step is one row of a table.
+//! The reflex's state machine (Prosthesis, figure 9): every legal step is one row of a table.
 
 use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::words::{Cause, GripMode};
@@ -14,7 +14,7 @@ const ANY: DetectorId = DetectorId::S1;
 /// Every legal step: from, why, to. A cause that has no row for the mode changes nothing; which detector says slip or warns
 /// of it makes no difference.
 ///
-/// Who may enter: [`Slip`] and [`Incipient`], the only two that close the hand, are entered from [`Watch`] alone (and
+/// Rules for entering: [`Slip`] and [`Incipient`], the only two that close the hand, are entered from [`Watch`] alone (and
 /// [`Slip`] from [`Incipient`]), and [`Watch`] is left for [`Wearer`] or [`Standby`] before a detector is asked.
 pub const TRANSITIONS: [(GripMode, Cause, GripMode); 17] = [
     (Standby, SensorsReady, Watch),

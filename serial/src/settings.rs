@@ -15,14 +15,16 @@ use crate::words::AboutWords;
 const HEAD: &str = "\
 # Settings
 
-This page is for anybody who changes a number of the fingertip. Printed from `logic/src/*/settings.rs` by `cargo tenax settings`; do not edit.
+This page lists the numbers that a user can change.
 
-`cargo tenax config set NAME=VALUE` changes one; a scene uses `kind = \"set-NAME\"` with `value`. A change needs [consent](safety.md#the-cable) at the hand,
-and outlives a power cut. Ranges are wider where the line is trusted. No pair of values opens or deafens (`host-tests/tests/ranges.rs`), no mix drops or
-crushes (`bench/tests/mixes.rs`). The number is the name on wire and flash.
+<!-- Printed from logic/src/*/settings.rs by cargo tenax settings; do not edit. -->
 
-| number | name | unit | range | default | meaning |
-|---|---|---|---|---|---|
+Press the blue button shortly ([consent](safety.md#the-cable)), then run `cargo tenax config set NAME=VALUE`. The value outlives a power cut. A scene uses
+`kind = \"set-NAME\"` with `value`. A trusted line has wider ranges. Within the others, no two settings together open the hand or switch slip detection off. The number
+is the setting's name on wire and in flash.
+
+| number | name with unit | range | default | meaning |
+|---|---|---|---|---|
 ";
 
 /// The whole page.
@@ -34,9 +36,8 @@ pub fn markdown() -> String {
         // Writing into a String cannot fail.
         let _ = writeln!(
             page,
-            "| {number} | `{}` | {} | {} to {}{} | {} | {} |",
+            "| {number} | `{}` | {} to {}{} | {} | {} |",
             row.name,
-            row.unit,
             range.start(),
             range.end(),
             match row.range_in_force(true) {

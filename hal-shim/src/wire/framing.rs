@@ -1,4 +1,4 @@
-//! Messages to bytes and back: the frames of the serial line, and a receiver that survives anything on it.
+//! Frames of the serial line: encoding of messages, and a receiver that skips every bad frame.
 
 use crc::{CRC_32_ISO_HDLC, Crc};
 use postcard::de_flavors::crc::from_bytes_u32;
@@ -41,7 +41,7 @@ pub fn encode<'a, T: Serialize>(sequence: u16, message: &T, buffer: &'a mut [u8]
     serializer.output.finalize().ok()
 }
 
-/// Takes bytes as they come and gives messages. Survives anything; counts nothing itself, says what it skipped.
+/// Decodes bytes as they come into messages. It skips bad frames and reports each to the caller.
 #[derive(Debug)]
 pub struct Receiver {
     buffer: [u8; FRAME_MAX],
@@ -56,7 +56,7 @@ impl Default for Receiver {
 }
 
 impl Receiver {
-    /// One that has heard nothing yet.
+    /// A receiver without any bytes.
     #[must_use]
     pub const fn new() -> Self {
         Self { buffer: [0; FRAME_MAX], length: 0, overlong: false }

@@ -62,7 +62,7 @@ impl SettingId {
         all
     };
 
-    /// The setting with this number, if there is one.
+    /// The setting with this number. None: there is no such setting.
     #[must_use]
     pub fn from_number(number: u8) -> Option<Self> {
         Self::ALL.into_iter().find(|id| id.number() == number)

@@ -1,4 +1,4 @@
-//! What a command does to the fingertip.
+//! Commands of the serial line.
 
 use core::ops::RangeInclusive;
 
@@ -16,7 +16,7 @@ impl Fingertip {
     /// Carries out a command.
     ///
     /// # Errors
-    /// Says why it was not carried out; then nothing has changed.
+    /// The reason why it was not carried out; nothing has changed then.
     pub fn command(&mut self, command: &Down) -> Result<(), Refusal> {
         if !command.reads() {
             self.consents_to(command)?;

@@ -1,4 +1,4 @@
-//! What the fingertip makes of its detectors' verdicts: said, believed, acted on.
+//! From the detectors' reports to those that are believed and acted on.
 
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 
@@ -21,7 +21,7 @@ impl Acting {
     }
 }
 
-/// What the detectors say in one tick: all of it, and what of it is believed and may be acted on.
+/// The detectors' reports in one tick: all, and those that are believed and may be acted on.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Verdicts {
     /// All that is said.
@@ -33,7 +33,7 @@ pub(super) struct Verdicts {
 }
 
 impl Verdicts {
-    /// `cannot`: by the force sensor no friction is so low that the object could slip. One sense alone is not believed against it.
+    /// `cannot`: Ft/Fn is below the lowest friction of any object. A single sense is then not believed.
     pub fn of(detectors: &Detectors, Acting(acting): Acting, cannot: bool) -> Self {
         let (slip, incipient) = (detectors.slip(), detectors.incipient());
         let heard = |said: DetectorSet| said.without(detectors.ignored());
