@@ -146,7 +146,10 @@ fn a_push_is_planned_for() {
 fn a_grip_that_is_enough_by_itself_is_its_own_bound() {
     let outcome = ran(&parsed(&text("swung")), 1);
     let bound = controls::bound(&parsed(&text("swung")), 1, &outcome.truth);
-    assert!(outcome.truth.kept() && bound.kept() && bound.peak_grip_n < outcome.truth.peak_grip_n, "{bound:?}");
+    assert!(
+        outcome.truth.kept() && bound.kept() && bound.peak_grip_n < outcome.truth.peak_grip_n,
+        "{bound:?}"
+    );
 }
 
 #[test]
