@@ -2,6 +2,8 @@
 
 mod pieces;
 
+use core::ops::Range;
+
 use crate::frame::{HEIGHT, PIXELS, Point, WIDTH};
 
 /// Pixels in a word of a row.
@@ -123,33 +125,49 @@ impl Mask {
         }
     }
 
-    /// Grows it by a pixel in all eight directions, `times` over. What has grown by r pixels and is laid beside itself at most 2 r + 1
-    /// away has no gap, so that few steps are needed.
+    /// Grows it by a pixel in all eight directions, `times` over, fewer than twice what a word has.
     pub fn dilate(&mut self, times: usize) {
-        let mut grown = 0;
-        while grown < times {
-            let step = (2 * grown + 1).min(times - grown).min(BITS - 1);
-            for row in &mut self.rows {
-                *row = wider(row, step);
-            }
-            // The rows so far above are those from before this step.
-            let mut above = [[0; WORDS]; BITS];
-            for y in 0..HEIGHT {
-                let (row, below) = (self.rows[y], self.rows.get(y + step).copied().unwrap_or_default());
-                let above = core::mem::replace(&mut above[y % step], row);
-                for word in 0..WORDS {
-                    self.rows[y][word] = above[word] | row[word] | below[word];
-                }
-            }
-            grown += step;
-        }
+        let rows = self.extent();
+        self.sweep::<true>(rows.start.saturating_sub(times)..(rows.end + times).min(HEIGHT), times);
     }
 
     /// Shrinks it by a pixel in all eight directions, `times` over; outside of the picture counts as inside.
     pub fn erode(&mut self, times: usize) {
-        self.invert();
-        self.dilate(times);
-        self.invert();
+        self.sweep::<false>(self.extent(), times);
+    }
+
+    /// The rows that are not empty, and those between them.
+    fn extent(&self) -> Range<usize> {
+        let is_used = |row: &[Word; WORDS]| row.iter().fold(0, |all, word| all | word) != 0;
+        let first = self.rows.iter().position(is_used).unwrap_or(HEIGHT);
+        first..self.rows.iter().rposition(is_used).map_or(first, |last| last + 1)
+    }
+
+    /// Joins each pixel of some rows with all that are at most `times` away: right and left, below and above. What is joined with a pixel
+    /// that far ahead, and then again, reaches twice as far, so that few steps are needed.
+    fn sweep<const GROWS: bool>(&mut self, rows: Range<usize>, times: usize) {
+        let steps = || {
+            let mut reach = 0;
+            core::iter::from_fn(move || {
+                let step = (reach + 1).min(times - reach);
+                reach += step;
+                (step > 0).then_some(step)
+            })
+        };
+        for row in &mut self.rows[rows.clone()] {
+            steps().for_each(|step| *row = ahead::<GROWS>(row, step));
+            steps().for_each(|step| *row = behind::<GROWS>(row, step));
+        }
+        for step in steps() {
+            for y in rows.start..rows.end.min(HEIGHT - step) {
+                self.rows[y] = joined::<GROWS>(&self.rows[y], &self.rows[y + step]);
+            }
+        }
+        for step in steps() {
+            for y in (rows.start.max(step)..rows.end).rev() {
+                self.rows[y] = joined::<GROWS>(&self.rows[y], &self.rows[y - step]);
+            }
+        }
     }
 
     /// Keeps and adds the pixels of which at least five of the nine around them, their own included, are in it: single pixels
@@ -234,6 +252,23 @@ impl Mask {
         }
     }
 
+    /// Calls `each` with the place of every `every`th pixel.
+    #[inline]
+    pub fn for_every(&self, every: u32, mut each: impl FnMut(usize)) {
+        // Pixels until the next.
+        let mut until = every - 1;
+        for (number, &word) in self.rows.iter().flatten().enumerate().filter(|(_, word)| **word != 0) {
+            let (mut left, mut count) = (word, word.count_ones());
+            while until < count {
+                (0..until).for_each(|_| left &= left - 1);
+                each(BITS * number + left.trailing_zeros() as usize);
+                left &= left - 1;
+                (count, until) = (count - until - 1, every - 1);
+            }
+            until -= count;
+        }
+    }
+
     /// How it lies. None of an empty set.
     pub fn moments(&self) -> Option<Moments> {
         let (mut n, mut sx, mut sy, mut sxx, mut sxy, mut syy) = (0u64, 0, 0, 0, 0, 0);
@@ -278,15 +313,26 @@ pub fn eight_bits(bytes: [u8; 8]) -> u8 {
     (u64::from_le_bytes(bytes).wrapping_mul(0x0102_0408_1020_4080) >> 56) as u8
 }
 
-/// A row and what is `by` pixels to the left and right, fewer than a word has.
-fn wider(row: &[Word; WORDS], by: usize) -> [Word; WORDS] {
-    let mut wide = *row;
-    for word in 0..WORDS {
-        let from_left = if word > 0 { row[word - 1] >> (BITS - by) } else { 0 };
-        let from_right = if word + 1 < WORDS { row[word + 1] << (BITS - by) } else { 0 };
-        wide[word] |= row[word] << by | row[word] >> by | from_left | from_right;
-    }
-    wide
+/// Two rows as one: what is in either, or in both.
+#[inline]
+fn joined<const GROWS: bool>(a: &[Word; WORDS], b: &[Word; WORDS]) -> [Word; WORDS] {
+    core::array::from_fn(|word| if GROWS { a[word] | b[word] } else { a[word] & b[word] })
+}
+
+/// A row joined with what is `by` pixels to the right of each, fewer than a word has.
+#[inline]
+fn ahead<const GROWS: bool>(row: &[Word; WORDS], by: usize) -> [Word; WORDS] {
+    let outside = if GROWS { 0 } else { Word::MAX };
+    let next = |word: usize| if word + 1 < WORDS { row[word + 1] } else { outside };
+    joined::<GROWS>(row, &core::array::from_fn(|word| row[word] >> by | next(word) << (BITS - by)))
+}
+
+/// A row joined with what is `by` pixels to the left of each.
+#[inline]
+fn behind<const GROWS: bool>(row: &[Word; WORDS], by: usize) -> [Word; WORDS] {
+    let outside = if GROWS { 0 } else { Word::MAX };
+    let last = |word: usize| if word > 0 { row[word - 1] } else { outside };
+    joined::<GROWS>(row, &core::array::from_fn(|word| row[word] << by | last(word) >> (BITS - by)))
 }
 
 /// How many of each pixel and its neighbours to the left and right are set: the bits of one and of two.

@@ -204,12 +204,10 @@ fn is_inside((x, y): (f32, f32)) -> bool {
 #[inline]
 fn sample(grey: &Plane, (x, y): (f32, f32)) -> i32 {
     // To 32 bits with a sign it is one instruction, on a PC and on a microcontroller.
-    let (column, row) = (x as i32, y as i32);
-    let (right, down) = (((x - column as f32) * 256.0) as i32, ((y - row as f32) * 256.0) as i32);
-    let at = (row * WIDTH as i32 + column) as usize;
-    let between = |at: usize| match grey.get(at..at + 2) {
-        Some(&[left, next]) => i32::from(left) * (256 - right) + i32::from(next) * right,
-        _ => 0,
-    };
-    between(at) * (256 - down) + between(at + WIDTH) * down
+    let (x, y) = ((x * 256.0) as i32, (y * 256.0) as i32);
+    let (right, down) = (x & 255, y & 255);
+    let at = ((y >> 8) * WIDTH as i32 + (x >> 8)) as usize;
+    let Some(near) = grey.get(at..).and_then(|rest| rest.first_chunk::<{ WIDTH + 2 }>()) else { return 0 };
+    let between = |at: usize| i32::from(near[at]) * (256 - right) + i32::from(near[at + 1]) * right;
+    between(0) * (256 - down) + between(WIDTH) * down
 }
