@@ -1,10 +1,11 @@
 //! A set of pixels, one bit each: growing and shrinking it are shifts of whole words.
 
+mod grow;
 mod pieces;
 
 use core::ops::Range;
 
-use crate::frame::{HEIGHT, PIXELS, Point, WIDTH};
+use crate::frame::{Frame, HEIGHT, PIXELS, Point, WIDTH};
 
 /// Pixels in a word of a row.
 #[cfg(not(feature = "quarter"))]
@@ -45,12 +46,7 @@ impl Mask {
 
     /// The pixels whose byte is 1 and not 0.
     pub fn pack(&mut self, bytes: &[u8; PIXELS]) {
-        for (word, bytes) in self.words_mut().zip(bytes.chunks_exact(BITS)) {
-            *word = 0;
-            for (place, eight) in bytes.chunks_exact(8).enumerate() {
-                *word |= Word::from(eight_bits(eight.try_into().unwrap_or_default())) << (8 * place);
-            }
-        }
+        self.words_mut().zip(bytes.as_chunks().0).for_each(|(word, bytes)| *word = packed(bytes));
     }
 
     /// 1 for a pixel that is in the set, 0 for another.
@@ -68,6 +64,20 @@ impl Mask {
     /// Puts a pixel in.
     pub fn insert(&mut self, x: usize, y: usize) {
         self.rows[y][x / BITS] |= 1 << (x % BITS);
+    }
+
+    /// Puts in the pixels of some columns of some rows.
+    pub fn insert_block(&mut self, columns: Range<usize>, rows: Range<usize>) {
+        let row: [Word; WORDS] = core::array::from_fn(|word| {
+            // Those of its pixels that are in no column from here on.
+            let below = |end: usize| match end.saturating_sub(BITS * word) {
+                all if all >= BITS => Word::MAX,
+                part => (1 << part) - 1,
+            };
+            below(columns.end) & !below(columns.start)
+        });
+        let rows = self.rows.get_mut(rows).into_iter().flatten();
+        rows.for_each(|into| into.iter_mut().zip(row).for_each(|(into, word)| *into |= word));
     }
 
     /// Whether a pixel is in it.
@@ -122,51 +132,6 @@ impl Mask {
     pub fn unite(&mut self, other: &Self) {
         for (word, other) in self.words_mut().zip(other.rows.iter().flatten()) {
             *word |= other;
-        }
-    }
-
-    /// Grows it by a pixel in all eight directions, `times` over, fewer than twice what a word has.
-    pub fn dilate(&mut self, times: usize) {
-        let rows = self.extent();
-        self.sweep::<true>(rows.start.saturating_sub(times)..(rows.end + times).min(HEIGHT), times);
-    }
-
-    /// Shrinks it by a pixel in all eight directions, `times` over; outside of the picture counts as inside.
-    pub fn erode(&mut self, times: usize) {
-        self.sweep::<false>(self.extent(), times);
-    }
-
-    /// The rows that are not empty, and those between them.
-    fn extent(&self) -> Range<usize> {
-        let is_used = |row: &[Word; WORDS]| row.iter().fold(0, |all, word| all | word) != 0;
-        let first = self.rows.iter().position(is_used).unwrap_or(HEIGHT);
-        first..self.rows.iter().rposition(is_used).map_or(first, |last| last + 1)
-    }
-
-    /// Joins each pixel of some rows with all that are at most `times` away: right and left, below and above. What is joined with a pixel
-    /// that far ahead, and then again, reaches twice as far, so that few steps are needed.
-    fn sweep<const GROWS: bool>(&mut self, rows: Range<usize>, times: usize) {
-        let steps = || {
-            let mut reach = 0;
-            core::iter::from_fn(move || {
-                let step = (reach + 1).min(times - reach);
-                reach += step;
-                (step > 0).then_some(step)
-            })
-        };
-        for row in &mut self.rows[rows.clone()] {
-            steps().for_each(|step| *row = ahead::<GROWS>(row, step));
-            steps().for_each(|step| *row = behind::<GROWS>(row, step));
-        }
-        for step in steps() {
-            for y in rows.start..rows.end.min(HEIGHT - step) {
-                self.rows[y] = joined::<GROWS>(&self.rows[y], &self.rows[y + step]);
-            }
-        }
-        for step in steps() {
-            for y in (rows.start.max(step)..rows.end).rev() {
-                self.rows[y] = joined::<GROWS>(&self.rows[y], &self.rows[y - step]);
-            }
         }
     }
 
@@ -240,6 +205,28 @@ impl Mask {
         *self = outside;
     }
 
+    /// Keeps the pixels whose colour, red, green and blue, is `kept`.
+    #[inline]
+    pub fn keep(&mut self, frame: &Frame, kept: impl Fn(u8, u8, u8) -> bool) {
+        let colours = [frame.red, frame.green, frame.blue].map(|plane| plane.as_chunks::<BITS>().0);
+        for (number, word) in self.words_mut().enumerate().filter(|(_, word)| **word != 0) {
+            let [red, green, blue] = colours.map(|plane| &plane[number]);
+            let is_kept = |bit: usize| kept(red[bit], green[bit], blue[bit]);
+            if word.count_ones() > Word::BITS / 4 {
+                // All of them at once is faster than one after the other.
+                let bytes: [u8; BITS] = core::array::from_fn(|bit| u8::from(is_kept(bit)));
+                *word &= packed(&bytes);
+            } else {
+                let mut left = *word;
+                while left != 0 {
+                    let bit = left.trailing_zeros();
+                    *word ^= Word::from(!is_kept(bit as usize)) << bit;
+                    left &= left - 1;
+                }
+            }
+        }
+    }
+
     /// Calls `each` with every pixel's place in a plane.
     #[inline]
     pub fn for_each(&self, mut each: impl FnMut(usize)) {
@@ -306,33 +293,18 @@ impl Mask {
     }
 }
 
+/// Bytes that are 0 or 1 as the bits of a word.
+#[inline]
+fn packed(bytes: &[u8; BITS]) -> Word {
+    let eights = bytes.as_chunks::<8>().0.iter().enumerate();
+    eights.map(|(place, eight)| Word::from(eight_bits(*eight)) << (8 * place)).sum()
+}
+
 /// Eight bytes that are 0 or 1 as the bits of one, the first in the lowest bit.
 #[inline]
 pub fn eight_bits(bytes: [u8; 8]) -> u8 {
     // They slide into the top byte.
     (u64::from_le_bytes(bytes).wrapping_mul(0x0102_0408_1020_4080) >> 56) as u8
-}
-
-/// Two rows as one: what is in either, or in both.
-#[inline]
-fn joined<const GROWS: bool>(a: &[Word; WORDS], b: &[Word; WORDS]) -> [Word; WORDS] {
-    core::array::from_fn(|word| if GROWS { a[word] | b[word] } else { a[word] & b[word] })
-}
-
-/// A row joined with what is `by` pixels to the right of each, fewer than a word has.
-#[inline]
-fn ahead<const GROWS: bool>(row: &[Word; WORDS], by: usize) -> [Word; WORDS] {
-    let outside = if GROWS { 0 } else { Word::MAX };
-    let next = |word: usize| if word + 1 < WORDS { row[word + 1] } else { outside };
-    joined::<GROWS>(row, &core::array::from_fn(|word| row[word] >> by | next(word) << (BITS - by)))
-}
-
-/// A row joined with what is `by` pixels to the left of each.
-#[inline]
-fn behind<const GROWS: bool>(row: &[Word; WORDS], by: usize) -> [Word; WORDS] {
-    let outside = if GROWS { 0 } else { Word::MAX };
-    let last = |word: usize| if word > 0 { row[word - 1] } else { outside };
-    joined::<GROWS>(row, &core::array::from_fn(|word| row[word] << by | last(word) >> (BITS - by)))
 }
 
 /// How many of each pixel and its neighbours to the left and right are set: the bits of one and of two.

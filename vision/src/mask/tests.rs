@@ -3,8 +3,10 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 fn rectangle(left: usize, top: usize, right: usize, bottom: usize) -> Mask {
-    let mut mask = Mask::EMPTY;
+    let (mut mask, mut block) = (Mask::EMPTY, Mask::EMPTY);
     (top..bottom).for_each(|y| (left..right).for_each(|x| mask.insert(x, y)));
+    block.insert_block(left..right, top..bottom);
+    assert_eq!(mask, block);
     mask
 }
 
@@ -151,7 +153,7 @@ fn growing_and_shrinking_are_what_is_around_each_pixel() {
         let mut mask = Mask::EMPTY;
         for at in 0..PIXELS {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            if (state >> 8) % share == 0 {
+            if (state >> 8).is_multiple_of(share) {
                 mask.insert(at % WIDTH, at / WIDTH);
             }
         }
