@@ -112,7 +112,7 @@ impl Running {
         let (course, longest) = match &mut self.doing {
             Doing::Stroke => (Course::On(Wish::Rest), STROKE_FRAMES_MAX),
             Doing::GentleGrasp(grasp) => (grasp.step(config, felt), GRASP_FRAMES_MAX),
-            // Whoever holds something holds it until something else is asked for.
+            // Holding has no longest time: it lasts until another request.
             Doing::Hold(hold) => (hold.step(config, felt), u32::MAX),
             Doing::HandOver(hand_over) => (hand_over.step(config, felt), HAND_OVER_FRAMES_MAX),
             Doing::Turn(turn) => (turn.step(config, felt), TURN_FRAMES_MAX),

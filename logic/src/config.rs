@@ -127,7 +127,7 @@ impl Config {
     /// # Errors
     /// If the value is not accepted: the values that are. Then nothing has changed.
     pub fn set(&mut self, id: SettingId, value: i32) -> Result<(), RangeInclusive<i32>> {
-        // A stroke may have measured what nobody may choose: it comes back from a file.
+        // A stroke may have measured a value outside the range; an exported file brings it back.
         if value == self.get(id) {
             return Ok(());
         }
@@ -153,12 +153,12 @@ impl Config {
         is_friction
     }
 
-    /// Whoever relies on consent relies on the narrower ranges too.
+    /// Brings every setting into the range of a line that is not trusted.
     fn bound(&mut self) {
         for id in SettingId::ALL {
             let (min, max) = id.row().range_in_force(self.line_trusted).into_inner();
             let value = self.get(id);
-            // Not by `clamp`, which panics where nobody can see that one is the lower.
+            // Not by `clamp`, which panics unless the compiler can see that `min` is not above `max`.
             let within = value.max(min).min(max);
             if value != within {
                 self.put(id, within);

@@ -207,7 +207,7 @@ impl Device {
             (Ok(()), Down::Samples) => Answer::Samples(self.samples.in_order()),
             (Ok(()), Down::Hello) => Answer::Nonce(self.session.offer()),
             (Ok(()), Down::About) => Answer::About(self.about()),
-            // Whoever has a memory that outlives a reset puts into it what it holds.
+            // The image, whose memory outlives a reset, fills in the bytes.
             (Ok(()), Down::Last(from)) => Answer::Last(Last::nothing(from)),
             (Ok(()), Down::Network) => Answer::Network(self.fingertip.network()),
             (Ok(()), _) => Answer::Done,

@@ -36,13 +36,13 @@ use crate::store::keeper::{Keeper, Now};
 use crate::store::payload;
 use crate::store::record::Record;
 
-/// Consent is looked for in this slot of each step: the array's heaviest share is in another.
+/// Slot of each step in which consent is checked: the array's heaviest share is in another.
 const CONSENT_SLOT: u32 = 0;
-/// One of these slots, after the force's: what the grip lacks. Thinking has no time left for it.
+/// The slot, one of these and after the forces', in which the missing force is computed; `think` has no time left for it.
 const FEEL_SLOT: u8 = 20;
 const _: () = assert!(FEEL_SLOT > slot_of(Job::Forces) && FEEL_SLOT as u32 % STEP_FRAMES == CONSENT_SLOT);
 
-/// Another: what the motor bears. Neither the array nor the forces have work in it.
+/// Another one, in which the motor's limits are judged. Neither the array nor the forces have work in it.
 const MOTOR_SLOT: u8 = 5;
 const _: () =
     assert!(MOTOR_SLOT as u32 % STEP_FRAMES == CONSENT_SLOT && MOTOR_SLOT < slot_of(Job::ArrayBegins));
@@ -175,7 +175,7 @@ impl Fingertip {
     fn feel(&mut self) {
         let held = self.senses.forces.filter(|_| matches!(self.senses.grip, Grip::Holds(_)));
         let slides = self.reflex.slides(self.mode);
-        // What a detector of its own warns of is answered as ever.
+        // A warning of the finger's own detectors is answered without the limit of a wish.
         let own = self.detectors.incipient().without(DetectorSet::only(DetectorId::Injected));
         let s2 = &mut self.detectors.s2;
         let lacks = held.map(|forces| s2.lacks(&self.config.friction, &forces, slides));
@@ -245,15 +245,15 @@ impl Fingertip {
         if u32::from(frame.slot()) % STEP_FRAMES == CONSENT_SLOT {
             self.consent();
             if self.senses.muscles().is_calibrating() && !matches!(self.senses.grip, Grip::Unloaded) {
-                // The muscles must be able to open a hand that holds something, or may.
+                // The muscles must be able to open a hand that holds something or may hold something.
                 self.senses.muscles_mut().give_up(CalibrationRefusal::Loaded, &mut self.journal);
             }
             if frame.slot() == FEEL_SLOT {
                 self.feel();
             }
-            // Before this frame drives: what the last ones did.
+            // The drive of the last frames, before this one drives.
             let striking = matches!(self.mode, GripMode::Slip | GripMode::Settle);
-            // A hand that stalls at its stop as it opens is open.
+            // A hand that stalls while opening is at its stop, so the request counts.
             let did = if self.asked.opens() { self.asked } else { self.drive };
             self.senses.driven(did, core::mem::take(&mut self.took_back), striking, STEP_FRAMES);
             self.senses.motor.step(self.asked, self.drive);
@@ -284,10 +284,10 @@ impl Fingertip {
             reflex: self.reflex.drive(&self.config.grip, self.mode),
             behaviour,
         };
-        // A lost frame says nothing about anybody's wish, so nobody's is carried out.
+        // A lost frame shows no wish, so none is carried out.
         let (asked, source) = if frame.valid { arbitrate(wishes) } else { Default::default() };
         self.asked = asked;
-        // The place of a behaviour, where none is: the reflex takes back.
+        // Without a behaviour its place belongs to the reflex, which releases force.
         let source = match source {
             DriveSource::Behaviour if self.behaviour.is_none() => DriveSource::Reflex,
             source => source,

@@ -82,9 +82,9 @@ pub struct Motor {
     /// What it was driven with in this cycle: the sum of [`STEPS`] looks; the most since it began to stall.
     duty_sum: u16,
     duty_most: u16,
-    /// Somebody asked for a drive in this cycle.
+    /// A drive was asked for in this slow frame.
     asked: bool,
-    /// The last one to be asked for opens.
+    /// The drive that was asked for last opens.
     opens: bool,
     /// Slow frames of stall, less those without.
     stall: u8,
@@ -196,7 +196,7 @@ impl Motor {
         self.tell(journal);
     }
 
-    /// The stall is over: somebody asks for another drive, or the fingers move.
+    /// Ends the stall: another drive is asked for, or the fingers move.
     const fn free(&mut self) {
         (self.stall, self.stalled, self.duty_most) = (0, false, 0);
         self.close_ways();

@@ -7,7 +7,7 @@ use tenax_hal_shim::wire::{FRAMES_PER_RAW, Raw};
 
 const _: () = assert!((FRAMES_PER_SLOW_FRAME as usize).is_multiple_of(FRAMES_PER_RAW));
 
-/// For ever: until somebody asks for something else.
+/// Without end, until another request.
 const EVER: u32 = u32::MAX;
 
 /// The slot whose tick sends the readings: nothing long is decided or sent in it.

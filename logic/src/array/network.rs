@@ -15,7 +15,7 @@
 //! | weight | `i16`, of which a model uses 8 bits or what its sums leave | see [`Layer::new`] |
 //! | bias, sum, logit | `i32` | cannot overflow: [`Layer::new`] refuses a layer whose sums could |
 //!
-//! A shift rounds down: who wants it to round to nearest adds half a step to the bias.
+//! A shift rounds down; to round to nearest, add half a step to the bias.
 
 use core::ops::Range;
 

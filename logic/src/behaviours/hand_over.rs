@@ -1,4 +1,4 @@
-//! Hand-over: let go as soon as somebody pulls at the object (FingerVision 2017, section II-C).
+//! Hand-over: let go as soon as the object is pulled (FingerVision 2017, section II-C).
 //!
 //! A broken sensor must not let go of anything: slip, of a detector or the camera, counts only if the skin feels
 //! another force, too, and a skin without valid readings ends the hand-over with the fingers as they are.

@@ -16,7 +16,7 @@ const COUNT: usize = {
     }
     count
 };
-// Whoever adds the next one finds out here, and not when the board starts.
+// A missing place is found here, at compile time, and not when the board starts.
 const _: () = assert!(COUNT <= SETTINGS_MAX);
 
 /// Every row, in the order of the numbers.

@@ -98,7 +98,7 @@ impl Fingertip {
 
     /// Whether the line may carry this out.
     fn consents_to(&self, command: &Down) -> Result<(), Refusal> {
-        // Who trusts the line for ever, or says that nobody wears the hand, has to be at the hand: that nothing is held at
+        // Trusting the line for good, or declaring that there is no wearer, needs consent by muscles or button: that of
         // power-up is not enough.
         let for_ever = matches!(*command, Down::Set(Setting { id, .. })
             if [SettingId::LineTrusted.number(), SettingId::NoWearer.number()].contains(&id));

@@ -44,7 +44,7 @@ impl Fingertip {
         }
         self.press();
         let gate = &self.senses.gate;
-        // Who trusts the line has consented for good.
+        // A trusted line has consent for good.
         if gate.is_active() || consent.is_some() || self.config.line_trusted {
             self.link.renew();
         }

@@ -35,7 +35,7 @@ impl Link {
 
     /// Counts one frame off; without any left the drive is `Coast`.
     pub fn tick(&mut self) {
-        // Nobody asks for anything, and what was held is forgotten: nearly always.
+        // The usual tick: no command holds, and the time held before has run down.
         if self.frames_left == 0
             && self.held == 0
             && self.drive == MotorDrive::Coast

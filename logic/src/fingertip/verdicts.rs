@@ -4,7 +4,7 @@ use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 
 use crate::detectors::Detectors;
 
-/// The detectors that the reflex may act on: all, unless somebody says otherwise.
+/// The detectors that the reflex may act on: by default all.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Acting(pub DetectorSet);
 
@@ -44,7 +44,7 @@ impl Verdicts {
     }
 }
 
-/// Whether films, array, head and whoever is outside agree, at least two of them.
+/// Whether at least two of these report slip: films, array, head, injected reports.
 fn by_two_senses(slip: DetectorSet) -> bool {
     let films = slip.contains(DetectorId::S1) || slip.contains(DetectorId::Hebbian);
     let others = [DetectorId::Mlp, DetectorId::Photoelastic, DetectorId::Injected];
