@@ -64,6 +64,7 @@ impl Deadline {
     /// Starts the clock.
     pub fn new(timer: Peri<'static, TIM2>) -> Self {
         pac::RCC.apb1enr().modify(|w| w.set_tim2en(true));
+        pac::TIM2.arr().write_value(u32::MAX);
         pac::TIM2.psc().write_value((CORE_HZ / 1_000_000 - 1) as u16);
         pac::TIM2.ccr(BEAT).write_value(BEAT_US);
         // The update takes the prescaler up.
