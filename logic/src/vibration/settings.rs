@@ -27,7 +27,7 @@ settings! {
     /// A vibration with more than this part of its envelope above the slip band is an impact
     7 ImpactRatio "impact-ratio-permille" "per mille" [300, 1_000, trusted 300, 3_000] = 500 => Number(impact_permille);
     /// An impact is over after this long; what lasts longer is slip
-    8 ImpactLength "impact-ms" "ms" [12, 80, trusted 5, 100] = 45 => Ms(impact_frames);
+    8 ImpactLength "impact-ms" "ms" [20, 80, trusted 5, 100] = 45 => Ms(impact_frames);
     /// The mains, whose hum is taken off the PVDF films, is at 60 Hz (1), not at 50 (0)
     73 Mains60Hz "mains-60-hz-flag" "flag" [0, 1] = 0 => Flag(mains_60_hz);
 }
