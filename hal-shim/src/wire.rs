@@ -26,6 +26,7 @@ mod raw;
 mod samples;
 mod senses;
 mod slow;
+mod stuffing;
 mod tick;
 mod up;
 

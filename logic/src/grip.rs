@@ -304,6 +304,8 @@ impl Reflex {
 #[cfg(test)]
 mod edges;
 #[cfg(test)]
+mod proofs;
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::config::Config;

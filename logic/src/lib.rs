@@ -47,6 +47,7 @@ pub mod motor;
 pub mod muscles;
 pub mod photoelastic;
 pub mod plausibility;
+pub mod rescue;
 pub mod restart;
 mod samples;
 pub mod senses;

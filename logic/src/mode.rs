@@ -105,6 +105,33 @@ mod tests {
         }
     }
 
+    /// Figure 9 as a drawing: every mode with every cause, in the causes' order below. A letter is the mode that it leads to.
+    const FIGURE: [&str; MODES] = [
+        "W.......", // Standby
+        ".S.E....", // Wearer
+        ".SU.LI..", // Watch
+        ".SU...E.", // Slip
+        ".SU.L.W.", // Incipient
+        ".SU....W", // Settle
+    ];
+
+    // Shows R1.
+    #[test]
+    fn every_mode_goes_on_as_drawn_with_every_cause() {
+        let ids = [DetectorId::S1, DetectorId::S2];
+        for ((from, steps), (n, id)) in
+            ALL.into_iter().zip(FIGURE).flat_map(|row| ids.map(|id| (row, (row.0 as usize, id))))
+        {
+            let causes =
+                [SensorsReady, SensorsLost, TakenOver, Released, Slips(id), Warned(id), PulseOver, Settled];
+            for (cause, letter) in causes.into_iter().zip(steps.chars()) {
+                let to = "SUWLIE".find(letter).map(|place| ALL[place]);
+                assert_eq!(next(from, cause), to, "{from:?}, {cause:?}");
+            }
+            assert_eq!(closes(from), n == 3 || n == 4, "{from:?}");
+        }
+    }
+
     // Shows R1.
     #[test]
     fn closing_is_entered_by_a_detector_alone() {

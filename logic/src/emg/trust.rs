@@ -169,10 +169,9 @@ impl Trust {
     fn judge(&mut self, active: i32, uv: i32) {
         let (middle, far) = (self.before(LAG), self.before(2 * LAG));
         let curve_uv = (uv - 2 * middle + far).abs();
-        if let Some(oldest) = self.past_uv.get_mut(usize::from(self.place)) {
-            *oldest = uv;
-        }
-        self.place = (self.place + 1) % (2 * LAG) as u8;
+        let place = usize::from(self.place) % (2 * LAG);
+        self.past_uv[place] = uv;
+        self.place = (place as u8 + 1) % (2 * LAG) as u8;
 
         let is_active = level_of(uv) >= active;
         self.active_for = if is_active { self.active_for.saturating_add(1) } else { 0 };
