@@ -34,10 +34,37 @@ pub struct Options {
     pub fisheye: bool,
 }
 
+/// What a session has that is harder than drawn, one thing at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stress {
+    /// How much brighter than the wall the object is, or darker where there is no room, levels.
+    pub apart: Option<f64>,
+    /// How much nearer to cyan than the wall it is, as bright, levels.
+    pub colour: Option<f64>,
+    /// Contrast of the pattern on it, levels.
+    pub texture: Option<f64>,
+    /// How many times as far it slides and turns in the same time.
+    pub speed: f64,
+    /// By which part the light of the mains goes up and down.
+    pub flicker: f64,
+    /// The part of the markers that is gone from the grasp on.
+    pub markers_lost: f64,
+}
+
+impl Default for Stress {
+    fn default() -> Self {
+        Self { apart: None, colour: None, texture: None, speed: 1.0, flicker: 0.0, markers_lost: 0.0 }
+    }
+}
+
+/// How often light of the mains goes up and down, Hz.
+const FLICKER_HZ: f64 = 100.0;
+
 /// A camera's session.
 #[derive(Clone, Debug)]
 pub struct Session {
     options: Options,
+    stress: Stress,
     story: Story,
     lens: Lens,
     background: Texture,
@@ -82,6 +109,11 @@ pub struct Truth {
 impl Session {
     /// Draws a session.
     pub fn new(options: Options) -> Self {
+        Self::under(options, Stress::default())
+    }
+
+    /// Draws the same session, but for what is harder.
+    pub fn under(options: Options, stress: Stress) -> Self {
         let mut noise = Noise::new(options.seed, Source::Picture);
         let middle = ((WIDTH as f64 - 1.0) / 2.0, (HEIGHT as f64 - 1.0) / 2.0);
         let focal_px = if options.fisheye { noise.between(190.0, 300.0) } else { f64::INFINITY };
@@ -90,11 +122,20 @@ impl Session {
         let base = [0.0; 3].map(|_: f64| wall * noise.between(0.85, 1.1));
         let background = Texture::drawn(&mut noise, base, 30.0, 60);
         // An object that differs from the wall in colour or in brightness, and may share parts of both.
-        let own = [0.0; 3].map(|_: f64| noise.between(30.0, 220.0));
+        let mut own = [0.0; 3].map(|_: f64| noise.between(30.0, 220.0));
+        if let Some(apart) = stress.apart {
+            let sign = if wall + apart < 220.0 { 1.0 } else { -1.0 };
+            own = base.map(|level| level + sign * apart);
+        }
+        if let Some(colour) = stress.colour {
+            // Of this sum grey is made: half of it is green.
+            let [red, green, blue] = base;
+            own = [red - colour, green + colour / 3.0, blue + colour / 3.0];
+        }
         let contrast = noise.between(15.0, 45.0);
-        let surface = Texture::drawn(&mut noise, own, contrast, 500);
+        let surface = Texture::drawn(&mut noise, own, stress.texture.unwrap_or(contrast), 500);
         let half = (noise.between(65.0, 95.0), noise.between(16.0, 30.0));
-        let story = Story::drawn(&mut noise);
+        let story = Story::drawn(&mut noise, stress.speed);
         let (pitch, radius_px) = (noise.between(38.0, 48.0), noise.between(3.6, 5.4));
         let level = noise.between(10.0, 32.0);
         let mut markers = Vec::new();
@@ -124,6 +165,7 @@ impl Session {
             .collect();
         Self {
             options,
+            stress,
             story,
             lens,
             background,
@@ -161,15 +203,16 @@ impl Session {
         let (green, rest) = gbrp.split_at_mut(PIXELS);
         let (blue, red) = rest.split_at_mut(PIXELS);
         for y in 0..HEIGHT {
-            let state = self.story.at(self.row_time_s(t_s, y as f64));
-            let near = self.near(&state, y as f64);
+            let row_s = self.row_time_s(t_s, y as f64);
+            let state = self.story.at(row_s);
+            let mains = libm::sin(std::f64::consts::TAU * FLICKER_HZ * row_s);
+            let light = (state.exposure * (1.0 + self.stress.flicker * mains)) as f32;
+            let near = self.near(&state, (row_s, y as f64));
             for x in 0..WIDTH {
                 let at = y * WIDTH + x;
                 let colour = self.colour(&state, &near, at);
                 let grain = |plane: usize| self.noise[(start + 3 * at + plane) % NOISE] * self.sigma as f32;
-                let level = |plane: usize| {
-                    (colour[plane] * state.exposure as f32 + grain(plane)).round().clamp(0.0, 255.0)
-                };
+                let level = |plane: usize| (colour[plane] * light + grain(plane)).round().clamp(0.0, 255.0);
                 (red[at], green[at], blue[at]) = (level(0) as u8, level(1) as u8, level(2) as u8);
             }
         }
@@ -182,9 +225,12 @@ impl Session {
     }
 
     /// Markers that a row may cross, moved: flat middle, radius, level.
-    fn near(&self, state: &State, y: f64) -> Vec<((f64, f64), f64, f32)> {
-        let moved =
-            self.markers.iter().map(|marker| (self.moved(state, marker.at), marker.radius_px, marker.level));
+    fn near(&self, state: &State, (row_s, y): (f64, f64)) -> Vec<((f64, f64), f64, f32)> {
+        let lost = if row_s < story::GRASPED_S { 0.0 } else { self.stress.markers_lost };
+        // Lost ones lie everywhere: each step of the golden ratio is far from those before.
+        let is_there = |number: usize| (number as f64 * 0.618_034).fract() >= lost;
+        let there = self.markers.iter().enumerate().filter(|(number, _)| is_there(*number));
+        let moved = there.map(|(_, marker)| (self.moved(state, marker.at), marker.radius_px, marker.level));
         moved.filter(|(at, radius, _)| (self.lens.seen(*at).1 - y).abs() < radius + 3.0).collect()
     }
 

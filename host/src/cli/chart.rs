@@ -50,7 +50,7 @@ enum Subject {
     Table,
     /// What a photoelastic head tells of normal force and slip: its curve, force followed, rates, where slip is seen
     Photoelastic,
-    /// What a camera behind the skin tells, on recordings: ways to find the object, speed against accuracy; known loads
+    /// What a camera behind the skin tells: known loads on a recording; where drawn sessions get too hard
     Vision,
 }
 
@@ -68,10 +68,9 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         }
         Subject::Vision => {
             let folder = workspace::root()?.join(RECORDINGS).join("fingervision");
-            let video = folder.join("skin_video_54fps.m4v");
             vec![
                 with_bar("loads", |progress| chart::loads::chart(&folder.join("loads.csv"), progress))?,
-                with_bar("choices", |progress| chart::vision::choices(&video, progress))?,
+                with_bar("failures", |progress| chart::vision::failures(progress))?,
             ]
         }
         Subject::Emg => {

@@ -10,6 +10,7 @@ use std::time::Duration;
 use anyhow::{Context, bail};
 use tenax_hal_shim::behaviour::Behaviour;
 use tenax_hal_shim::wire::{Answer, Down, Event, EventKind, Up};
+use tenax_scene::picture::Stress;
 use tenax_vision::quality::Blind;
 
 use super::folder;
@@ -286,7 +287,7 @@ fn drawn(args: &Args) -> anyhow::Result<ExitCode> {
     if args.sessions == 0 {
         bail!("--sessions must be at least 1");
     }
-    args.report.show(&scored::score(args.seed, args.sessions)?)?;
+    args.report.show(&scored::score(args.seed, args.sessions, Stress::default())?)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result};
 use serde::Serialize;
 use tenax_scene::picture::story::State;
-use tenax_scene::picture::{Options, Session, Truth};
+use tenax_scene::picture::{Options, Session, Stress, Truth};
 use tenax_vision::frame::{FRAME_BYTES, Frame};
 use tenax_vision::object::Config;
 use tenax_vision::rectify::Rectifier;
@@ -190,15 +190,15 @@ impl Scores {
     }
 }
 
-/// Draws and follows sessions. Fails if a picture has another size than the camera wants, which no session draws.
-pub fn score(seed: u64, sessions: u64) -> Result<Report> {
+/// Draws and follows sessions under some stress. Fails if a picture has another size than the camera wants, which no session draws.
+pub fn score(seed: u64, sessions: u64, stress: Stress) -> Result<Report> {
     let mut scores = Scores::default();
     let (mut frames, mut worked) = (0, Duration::ZERO);
     let mut by_session = Vec::new();
     for session in 0..sessions {
         let seed = seed.wrapping_add(session);
         let mut own = Scores::default();
-        follow(seed, &mut own, &mut frames, &mut worked)?;
+        follow(seed, stress, &mut own, (&mut frames, &mut worked))?;
         scores.add(&own);
         by_session.push(own.by_session(seed));
     }
@@ -225,8 +225,13 @@ pub fn score(seed: u64, sessions: u64) -> Result<Report> {
     })
 }
 
-fn follow(seed: u64, scores: &mut Scores, frames: &mut usize, worked: &mut Duration) -> Result<()> {
-    let mut session = Session::new(Options { seed, rate_hz: RATE_HZ, fisheye: true });
+fn follow(
+    seed: u64,
+    stress: Stress,
+    scores: &mut Scores,
+    (frames, worked): (&mut usize, &mut Duration),
+) -> Result<()> {
+    let mut session = Session::under(Options { seed, rate_hz: RATE_HZ, fisheye: true }, stress);
     let mut camera = Camera::new(Config::default());
     camera.rectify(Rectifier::new(session.lens().focal_px as f32));
     let mut planes = vec![0; FRAME_BYTES];
