@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use tenax_hal_shim::channel::SCAN_HZ;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::BAUD;
+use tenax_hal_shim::words::Kept;
 use tenax_scene::Act;
 use tenax_scene::plant::{Pins, Plant};
 
@@ -44,6 +45,9 @@ pub struct Person(Arc<Mutex<Hands>>);
 struct Hands {
     pressed: Option<Instant>,
     acts: VecDeque<Act>,
+    /// The board's flash, whose run may be followed by another.
+    flash: Vec<(Kept, Vec<u8>)>,
+    resets: bool,
 }
 
 impl Person {
@@ -55,6 +59,16 @@ impl Person {
     /// Does it at the next instant of the scene.
     pub fn act(&self, act: Act) {
         self.hands().acts.push_back(act);
+    }
+
+    /// Presses the board's reset button: its run ends.
+    pub fn reset(&self) {
+        self.hands().resets = true;
+    }
+
+    /// Lets go of it. False: it was not pressed.
+    pub fn lets_go(&self) -> bool {
+        std::mem::take(&mut self.hands().resets)
     }
 
     fn hands(&self) -> MutexGuard<'_, Hands> {
@@ -201,6 +215,23 @@ impl<P: Plant> Plant for Served<P> {
 
     fn button(&self) -> bool {
         self.plant.button() || self.live.as_ref().is_some_and(|live| live.person.is_pressing())
+    }
+
+    fn kept(&self) -> Vec<(Kept, Vec<u8>)> {
+        let Some(live) = &self.live else { return Vec::new() };
+        live.person.hands().flash.clone()
+    }
+
+    fn keep(&mut self, kept: Kept, payload: &[u8]) {
+        if let Some(live) = &self.live {
+            let flash = &mut live.person.hands().flash;
+            flash.retain(|(own, _)| *own != kept);
+            flash.push((kept, payload.to_vec()));
+        }
+    }
+
+    fn resets(&self) -> bool {
+        self.live.as_ref().is_some_and(|live| live.person.hands().resets)
     }
 
     fn streams_at_start(&self) -> bool {

@@ -141,6 +141,17 @@ fn a_push_is_planned_for() {
     assert!((1.0..1.3).contains(&(bound.peak_grip_n.unwrap() / least_n)), "{bound:?}");
 }
 
+/// Its search would not end: no plan, however small, makes this grip worse.
+#[test]
+fn a_grip_that_is_enough_by_itself_is_its_own_bound() {
+    let outcome = ran(&parsed(&text("swung")), 1);
+    let bound = controls::bound(&parsed(&text("swung")), 1, &outcome.truth);
+    assert!(
+        outcome.truth.kept() && bound.kept() && bound.peak_grip_n < outcome.truth.peak_grip_n,
+        "{bound:?}"
+    );
+}
+
 #[test]
 fn the_controls_of_a_scene_are_worse_than_the_reflex() {
     let file = parsed(&text("array-pour"));

@@ -1,60 +1,69 @@
 //! The motor bridge: TIM1 channel 1 closes (PA8), channel 2 opens (PA9), 20 kHz.
 
-use embassy_stm32::gpio::OutputType;
+use embassy_stm32::Peri;
 use embassy_stm32::pac;
-use embassy_stm32::pac::gpio::vals::Moder;
-use embassy_stm32::pac::timer::vals::Ossi;
+use embassy_stm32::pac::gpio::vals::{Moder, Ospeedr};
+use embassy_stm32::pac::timer::vals::{Ocm, Ossi};
 use embassy_stm32::peripherals::{PA8, PA9, TIM1};
-use embassy_stm32::time::Hertz;
-use embassy_stm32::timer::low_level::CountingMode;
-use embassy_stm32::timer::simple_pwm::{PwmPin, SimplePwm, SimplePwmChannel, SimplePwmChannels};
-use embassy_stm32::{Peri, timer};
 use tenax_hal_shim::motor::{Duty, MotorBridge, MotorDrive};
 
-/// Above what a person hears, and 5000 timer ticks a period at 100 MHz: five for each per mille.
-const PWM_HZ: Hertz = Hertz(20_000);
+use crate::clock::CORE_HZ;
+
+/// Above what a person hears, and 5000 timer ticks a period: five for each per mille.
+const PWM_HZ: u32 = 20_000;
+const PERIOD: u16 = (CORE_HZ / PWM_HZ) as u16;
+const TICKS_PER_MILLE: u16 = PERIOD / Duty::FULL.as_per_mille();
 
 /// The timer's channels of both sides, counted from 0.
 const CLOSE: usize = 0;
 const OPEN: usize = 1;
+/// Their pins of port A, and the function of both that is the timer's (DS10314, table 9).
+const PINS: [usize; 2] = [8, 9];
+const TIM1_PINS: u8 = 1;
 
 /// Both sides of the bridge. A side that is not driven is low.
 pub struct Bridge {
-    _sides: [SimplePwmChannel<'static, TIM1>; 2],
-    /// What a side is compared with to be driven all the time, timer ticks.
-    full: u32,
+    _taken: (),
 }
 
 impl Bridge {
     /// Takes the timer and the pins; neither side is driven.
-    pub fn new(timer: Peri<'static, TIM1>, close: Peri<'static, PA8>, open: Peri<'static, PA9>) -> Self {
-        let pwm = SimplePwm::new(
-            timer,
-            Some(PwmPin::<_, timer::Ch1>::new(close, OutputType::PushPull)),
-            Some(PwmPin::<_, timer::Ch2>::new(open, OutputType::PushPull)),
-            None,
-            None,
-            PWM_HZ,
-            CountingMode::EdgeAlignedUp,
-        );
-        let SimplePwmChannels { ch1, ch2, .. } = pwm.split();
-        let mut sides = [ch1, ch2];
-        let full = sides[0].max_duty_cycle();
+    pub fn new(_timer: Peri<'static, TIM1>, _close: Peri<'static, PA8>, _open: Peri<'static, PA9>) -> Self {
+        pac::RCC.apb2enr().modify(|w| w.set_tim1en(true));
+        let timer = pac::TIM1;
+        timer.arr().write(|w| w.set_arr(PERIOD - 1));
+        timer.ccmr_output(0).write(|w| {
+            for side in [CLOSE, OPEN] {
+                w.set_ocm(side, Ocm::PWM_MODE1);
+                w.set_ocpe(side, true);
+            }
+        });
+        timer.ccer().write(|w| {
+            w.set_cce(CLOSE, true);
+            w.set_cce(OPEN, true);
+        });
         // Where the timer's outputs are off they are low and not left to float. A debugger that halts the core stops this timer, and the
         // chip then switches its outputs off (RM0090, section 38.16.2: "as if the MOE bit was reset"): a probe may stop the watchdog,
         // too, and a halted core would drive the motor until somebody goes on.
-        pac::TIM1.bdtr().modify(|w| w.set_ossi(Ossi::IDLE_LEVEL));
+        timer.bdtr().write(|w| {
+            w.set_ossi(Ossi::IDLE_LEVEL);
+            w.set_moe(true);
+        });
         pac::DBGMCU.apb2fzr().modify(|w| w.set_tim1(true));
-        for side in &mut sides {
-            side.set_duty_cycle_fully_off();
-            side.enable();
+        timer.cr1().write(|w| w.set_arpe(true));
+        timer.egr().write(|w| w.set_ug(true));
+        timer.cr1().modify(|w| w.set_cen(true));
+        for pin in PINS {
+            pac::GPIOA.ospeedr().modify(|w| w.set_ospeedr(pin, Ospeedr::VERY_HIGH_SPEED));
+            pac::GPIOA.afr(1).modify(|w| w.set_afr(pin - 8, TIM1_PINS));
+            pac::GPIOA.moder().modify(|w| w.set_moder(pin, Moder::ALTERNATE));
         }
-        Self { _sides: sides, full }
+        Self { _taken: () }
     }
 
     fn drive_side<const DRIVEN: usize, const RELEASED: usize>(&self, duty: Duty) {
         compare::<RELEASED>(0);
-        compare::<DRIVEN>(u32::from(duty.as_per_mille()) * self.full / u32::from(Duty::FULL.as_per_mille()));
+        compare::<DRIVEN>(duty.as_per_mille() * TICKS_PER_MILLE);
     }
 }
 
@@ -68,12 +77,11 @@ pub fn align() {
 }
 
 /// Ticks of the timer's period that are over when the scans' timer starts, whose first trigger comes 125 us later.
-const PHASE: u16 = 5_000 - 1_360;
+const PHASE: u16 = PERIOD - 1_360;
 
-/// Drives a side for so many ticks of each period. embassy's own function asserts what holds here by itself, and no tick may
-/// have a way to panic.
-fn compare<const SIDE: usize>(ticks: u32) {
-    pac::TIM1.ccr(SIDE).write(|w| w.set_ccr(ticks as u16));
+/// Drives a side for so many ticks of each period.
+fn compare<const SIDE: usize>(ticks: u16) {
+    pac::TIM1.ccr(SIDE).write(|w| w.set_ccr(ticks));
 }
 
 impl MotorBridge for Bridge {
@@ -106,7 +114,7 @@ pub fn off() {
 /// Both pins low, from the first instants of a start on: they float after a reset, and the clock may be waited for.
 pub fn hold_low() {
     pac::RCC.ahb1enr().modify(|w| w.set_gpioaen(true));
-    for pin in [8, 9] {
+    for pin in PINS {
         pac::GPIOA.bsrr().write(|w| w.set_br(pin, true));
         pac::GPIOA.moder().modify(|w| w.set_moder(pin, Moder::OUTPUT));
     }

@@ -1,15 +1,19 @@
-//! The clock tree: 100 MHz from the ST-LINK's 8 MHz.
+//! The clock tree: 100 MHz from the ST-LINK's 8 MHz. Through the PAC: embassy's configuration has ways to panic.
 
-use embassy_stm32::rcc::{
-    AHBPrescaler, APBPrescaler, Hse, HseMode, Pll, PllMul, PllPDiv, PllPreDiv, PllSource, Sysclk,
-};
-use embassy_stm32::time::Hertz;
-use embassy_stm32::{Config, pac};
+use embassy_stm32::pac::flash::vals::Latency;
+use embassy_stm32::pac::pwr::vals::Vos;
+use embassy_stm32::pac::rcc::vals::{Hpre, Pllm, Plln, Pllp, Pllsrc, Ppre, Sw};
+use embassy_stm32::pac::{DBGMCU, FLASH, PWR, RCC};
+
+/// Of AHB, APB2 and all timers (RM0383, figure 12), so a scan period is a whole number of their ticks and of microseconds.
+pub const CORE_HZ: u32 = 100_000_000;
+/// Of APB1.
+pub const APB1_HZ: u32 = CORE_HZ / 2;
 
 /// Lets the flash fetch ahead and cache instructions: at 100 MHz it has three wait states, which the chip otherwise pays
 /// at every jump (RM0383, section 3.4). Its data cache stays off, so that what was programmed is what is read.
 pub fn accelerate_flash() {
-    pac::FLASH.acr().modify(|acr| {
+    FLASH.acr().modify(|acr| {
         acr.set_prften(true);
         acr.set_icen(true);
     });
@@ -20,39 +24,61 @@ const CRYSTAL_LOOPS: u32 = 1_000_000;
 
 /// Whether the crystal's clock comes. Asked before anything waits for it without an end.
 pub fn has_crystal() -> bool {
-    pac::RCC.cr().modify(|w| {
+    RCC.cr().modify(|w| {
         w.set_hsebyp(true);
         w.set_hseon(true);
     });
-    (0..CRYSTAL_LOOPS).any(|_| pac::RCC.cr().read().hserdy())
+    (0..CRYSTAL_LOOPS).any(|_| RCC.cr().read().hserdy())
 }
 
 /// Lets the chip say when the crystal stops: to the handler of the non-maskable interrupt.
 pub fn watch_crystal() {
-    pac::RCC.cr().modify(|w| w.set_csson(true));
+    RCC.cr().modify(|w| w.set_csson(true));
 }
 
-/// The chip's configuration: HSE bypassed at 8 MHz, PLL to 100 MHz, AHB and APB2 at 100 MHz, APB1 at 50 MHz.
+/// Starts the clocks, out of a reset: HSE bypassed at 8 MHz, PLL to 100 MHz, AHB and APB2 at 100 MHz, APB1 at 50 MHz; and those of the
+/// pins, the DMA controllers and the supply's guard.
 ///
 /// HSI only where there is no crystal: its tolerance overruns the serial line at 921 600 baud, but a hand that nobody hears is
-/// better than one that nobody can open. Timers on APB1 count at 100 MHz as well (RM0383, figure 12), so a scan period is a
-/// whole number of their ticks and of the time driver's microseconds.
-pub fn config(crystal: bool) -> Config {
-    let mut config = Config::default();
-    config.rcc.hsi = !crystal;
-    config.rcc.hse = crystal.then_some(Hse { freq: Hertz(8_000_000), mode: HseMode::Bypass });
-    config.rcc.pll_src = if crystal { PllSource::HSE } else { PllSource::HSI };
-    config.rcc.pll = Some(Pll {
-        // 2 MHz from either.
-        prediv: if crystal { PllPreDiv::DIV4 } else { PllPreDiv::DIV8 },
-        mul: PllMul::MUL100,
-        divp: Some(PllPDiv::DIV2),
-        divq: None,
-        divr: None,
+/// better than one that nobody can open.
+pub fn start(crystal: bool) {
+    // A debugger is heard while the core sleeps.
+    DBGMCU.cr().modify(|w| {
+        w.set_dbg_sleep(true);
+        w.set_dbg_stop(true);
+        w.set_dbg_standby(true);
     });
-    config.rcc.sys = Sysclk::PLL1_P;
-    config.rcc.ahb_pre = AHBPrescaler::DIV1;
-    config.rcc.apb1_pre = APBPrescaler::DIV2;
-    config.rcc.apb2_pre = APBPrescaler::DIV1;
-    config
+    RCC.ahb1enr().modify(|w| {
+        w.set_gpioaen(true);
+        w.set_gpioben(true);
+        w.set_gpiocen(true);
+        w.set_dma1en(true);
+        w.set_dma2en(true);
+    });
+    RCC.apb1enr().modify(|w| w.set_pwren(true));
+    PWR.cr1().modify(|w| w.set_vos(Vos::SCALE1));
+    if !crystal {
+        RCC.cr().modify(|w| w.set_hseon(false));
+    }
+    RCC.pllcfgr().modify(|w| {
+        // 2 MHz from either.
+        w.set_pllm(if crystal { Pllm::DIV4 } else { Pllm::DIV8 });
+        w.set_plln(Plln::MUL100);
+        w.set_pllp(Pllp::DIV2);
+        w.set_pllsrc(if crystal { Pllsrc::HSE } else { Pllsrc::HSI });
+    });
+    RCC.cr().modify(|w| w.set_pllon(true));
+    while !RCC.cr().read().pllrdy() {}
+    FLASH.acr().write(|w| w.set_latency(Latency::WS3));
+    while FLASH.acr().read().latency() != Latency::WS3 {}
+    RCC.cfgr().modify(|w| {
+        w.set_sw(Sw::PLL1_P);
+        w.set_hpre(Hpre::DIV1);
+        w.set_ppre1(Ppre::DIV2);
+        w.set_ppre2(Ppre::DIV1);
+    });
+    while RCC.cfgr().read().sws() != Sw::PLL1_P {}
+    if crystal {
+        RCC.cr().modify(|w| w.set_hsion(false));
+    }
 }

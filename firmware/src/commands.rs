@@ -1,23 +1,19 @@
 //! The commands task: bytes come down the serial line, commands go to control. Anything else is counted and skipped, and so
 //! is what comes faster than an [`Allowance`], before its CRC is looked at.
 
-use embassy_stm32::usart::RingBufferedUartRx;
 use tenax_hal_shim::wire::{BadFrame, Down, Receiver};
 use tenax_logic::allowance::Allowance;
 
-use crate::{counts, mail};
-
-/// Bytes that DMA writes around in: 11 ms of a full line, and this task needs far less to get its turn.
-pub const RING_LEN: usize = 1024;
+use crate::{counts, line, mail};
 
 /// Listens for ever.
 #[embassy_executor::task]
-pub async fn commands(mut line: RingBufferedUartRx<'static>) -> ! {
+pub async fn commands(mut line: line::Down) -> ! {
     let mut receiver = Receiver::new();
     let mut allowance = Allowance::default();
     let mut bytes = [0; 64];
     loop {
-        // After an error of the line the next read starts it anew; the frame it fell into fails its CRC.
+        // The frame that lost bytes fails its CRC.
         let Ok(count) = line.read(&mut bytes).await else {
             counts::BAD_FRAMES.add_one();
             continue;

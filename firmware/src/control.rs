@@ -1,7 +1,5 @@
 //! The control task: a frame in, a motor drive out, every 0.5 ms. It waits for nothing but the next frame.
 
-use embassy_stm32::peripherals::IWDG;
-use embassy_stm32::wdg::IndependentWatchdog;
 use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, SLOW_HZ};
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::{MotorBridge, MotorDrive};
@@ -21,9 +19,7 @@ use crate::mail;
 use crate::scan::Scan;
 use crate::switches::Switches;
 use crate::vibrator::Vibrator;
-
-/// The watchdog's period, us. Control feeds it 200 times in one; nobody else does.
-pub const WATCHDOG_US: u32 = 100_000;
+use crate::watchdog::Watchdog;
 
 /// What a tick works with.
 pub struct Control {
@@ -32,7 +28,7 @@ pub struct Control {
     vibrator: Vibrator,
     switches: Switches,
     button: Button,
-    watchdog: IndependentWatchdog<'static, IWDG>,
+    watchdog: Watchdog,
     /// Slow frames so far, as far as they count.
     slow_frames: u16,
 }
@@ -46,7 +42,7 @@ impl Control {
         (bridge, vibrator): (Bridge, Vibrator),
         switches: Switches,
         button: Button,
-        watchdog: IndependentWatchdog<'static, IWDG>,
+        watchdog: Watchdog,
     ) -> Self {
         Self { device: Device::default(), bridge, vibrator, switches, button, watchdog, slow_frames: 0 }
     }
@@ -68,7 +64,7 @@ impl Control {
         bus::before_tick(self.device.fingertip_mut());
         let drive = tenax_control_tick(self.device.fingertip_mut(), frame);
         self.bridge.drive(drive);
-        self.watchdog.pet();
+        self.watchdog.feed();
         counts::TICKS.add_one();
 
         self.device.sampled(frame);
@@ -164,6 +160,6 @@ fn tenax_control_command(device: &mut Device, command: &Received<Down>) -> Resul
 /// Runs control from frame to frame, for ever.
 #[embassy_executor::task]
 pub async fn control(scan: Scan, control: &'static mut Control) -> ! {
-    control.watchdog.unleash();
+    control.watchdog.start();
     scan.run(|frame| control.on_frame(frame)).await
 }

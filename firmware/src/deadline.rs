@@ -10,12 +10,11 @@ use core::task::Poll;
 use embassy_stm32::interrupt::typelevel::{self, Handler, Interrupt};
 use embassy_stm32::pac;
 use embassy_stm32::peripherals::TIM2;
-use embassy_stm32::time::Hertz;
-use embassy_stm32::timer::low_level::Timer;
 use embassy_stm32::{Peri, interrupt::Priority};
 use embassy_sync::waitqueue::AtomicWaker;
 
-use crate::bus;
+use crate::clock::CORE_HZ;
+use crate::{bus, mail};
 
 /// Who waits: control alone, for one thing at a time.
 pub static WAITING: AtomicWaker = AtomicWaker::new();
@@ -58,20 +57,24 @@ pub fn clock_us() -> u32 {
 
 /// The clock and its compare register.
 pub struct Deadline {
-    _timer: Timer<'static, TIM2>,
+    _timer: Peri<'static, TIM2>,
 }
 
 impl Deadline {
     /// Starts the clock.
     pub fn new(timer: Peri<'static, TIM2>) -> Self {
-        let mut timer = Timer::new(timer);
-        timer.set_tick_freq(Hertz(1_000_000));
-        // Before the period is written nothing is compared; the update takes the prescaler up.
+        pac::RCC.apb1enr().modify(|w| w.set_tim2en(true));
         pac::TIM2.arr().write_value(u32::MAX);
+        pac::TIM2.psc().write_value((CORE_HZ / 1_000_000 - 1) as u16);
+        pac::TIM2.ccr(BEAT).write_value(BEAT_US);
+        // The update takes the prescaler up.
         pac::TIM2.egr().write(|w| w.set_ug(true));
         pac::TIM2.sr().write(|w| w.0 = 0);
-        pac::TIM2.dier().write(|w| w.set_ccie(0, true));
-        timer.start();
+        pac::TIM2.dier().write(|w| {
+            w.set_ccie(0, true);
+            w.set_ccie(BEAT, true);
+        });
+        pac::TIM2.cr1().write(|w| w.set_cen(true));
         typelevel::TIM2::set_priority(Priority::P1);
         // SAFETY: the handler is bound in `main`, and nothing is in a critical section yet.
         unsafe { typelevel::TIM2::enable() };
@@ -119,9 +122,16 @@ impl Handler<typelevel::TIM2> for OnDeadline {
             pac::TIM2.dier().modify(|w| w.set_ccie(SLOT, false));
             bus::begin();
         }
+        if seen.ccif(BEAT) {
+            pac::TIM2.ccr(BEAT).write_value(pac::TIM2.ccr(BEAT).read().wrapping_add(BEAT_US));
+            mail::counters_due();
+        }
     }
 }
 
+/// The compare register of what telemetry does ten times a second, and from one to the next.
+const BEAT: usize = 2;
+const BEAT_US: u32 = 100_000;
 /// The compare register of the bus's slots.
 const SLOT: usize = 1;
 

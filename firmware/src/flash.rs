@@ -13,8 +13,9 @@ use embassy_stm32::pac::FLASH as INTERFACE;
 use embassy_stm32::pac::flash::regs::Cr;
 use embassy_stm32::pac::flash::vals::Psize;
 use embassy_stm32::peripherals::FLASH;
-use embassy_time::{Duration, Instant};
 use tenax_hal_shim::flash::{BLANK, FlashArea, FlashFailed, Sector};
+
+use crate::deadline::clock_us;
 
 unsafe extern "C" {
     static __store_start: u32;
@@ -27,8 +28,8 @@ const FIRST_SECTOR: u8 = 6;
 /// RM0383, section 3.5.1.
 const KEYS: [u32; 2] = [0x4567_0123, 0xCDEF_89AB];
 /// Longer than any word and any sector takes (DS10314, flash memory programming).
-const PATIENCE_WORD: Duration = Duration::from_millis(1);
-const PATIENCE_SECTOR: Duration = Duration::from_secs(4);
+const PATIENCE_WORD_US: u32 = 1_000;
+const PATIENCE_SECTOR_US: u32 = 4_000_000;
 
 /// The two sectors, and the interface that programs them.
 pub struct Flash {
@@ -42,7 +43,7 @@ impl Flash {
     }
 
     /// Unlocks the interface for one operation, which `start` begins, and locks it again.
-    fn operate(&mut self, control: Cr, patience: Duration, start: impl FnOnce()) -> Result<(), FlashFailed> {
+    fn operate(&mut self, control: Cr, patience_us: u32, start: impl FnOnce()) -> Result<(), FlashFailed> {
         if INTERFACE.cr().read().lock() {
             for key in KEYS {
                 INTERFACE.keyr().write_value(key);
@@ -52,7 +53,7 @@ impl Flash {
         INTERFACE.sr().modify(|_| {});
         INTERFACE.cr().write_value(control);
         start();
-        let ended = wait(patience);
+        let ended = wait(patience_us);
         let status = INTERFACE.sr().read();
         INTERFACE.cr().write(|w| w.set_lock(true));
         let failed = status.wrperr() || status.pgaerr() || status.pgperr() || status.pgserr();
@@ -61,10 +62,10 @@ impl Flash {
 }
 
 /// Whether the interface got ready in time.
-fn wait(patience: Duration) -> bool {
-    let deadline = Instant::now() + patience;
+fn wait(patience_us: u32) -> bool {
+    let begun = clock_us();
     while INTERFACE.sr().read().bsy() {
-        if Instant::now() > deadline {
+        if clock_us().wrapping_sub(begun) > patience_us {
             return false;
         }
     }
@@ -96,7 +97,7 @@ impl FlashArea for Flash {
         control.set_pg(true);
         control.set_psize(Psize::PSIZE32);
         // SAFETY: an aligned word of the two sectors, which hold no code and no variable, and nobody else writes them.
-        self.operate(control, PATIENCE_WORD, || unsafe { address.write_volatile(value) })
+        self.operate(control, PATIENCE_WORD_US, || unsafe { address.write_volatile(value) })
     }
 
     fn erase(&mut self, sector: Sector) -> Result<(), FlashFailed> {
@@ -104,6 +105,6 @@ impl FlashArea for Flash {
         control.set_ser(true);
         control.set_snb(FIRST_SECTOR + sector as u8);
         control.set_psize(Psize::PSIZE32);
-        self.operate(control, PATIENCE_SECTOR, || INTERFACE.cr().modify(|w| w.set_strt(true)))
+        self.operate(control, PATIENCE_SECTOR_US, || INTERFACE.cr().modify(|w| w.set_strt(true)))
     }
 }

@@ -11,7 +11,6 @@ use core::task::Poll;
 
 use embassy_sync::blocking_mutex::Mutex;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
-use embassy_sync::signal::Signal;
 use embassy_sync::waitqueue::AtomicWaker;
 use heapless::Deque;
 use tenax_hal_shim::wire::{Down, Received, Up};
@@ -58,6 +57,8 @@ impl<T, const N: usize> Mailbox<T, N> {
 /// Messages on their way up. With everything on, eight come in a slow frame and take 11.7 of its 12.5 ms on the line; twenty events
 /// may come with them at once, and an answer that takes 4 ms. What does not fit is dropped.
 static UP: Mailbox<Received<Up>, 32> = Mailbox::new();
+/// Telemetry says its counters next.
+static COUNTERS_DUE: AtomicBool = AtomicBool::new(false);
 /// Telemetry, while it waits for one.
 static UP_WAITING: AtomicWaker = AtomicWaker::new();
 /// Number of the next message.
@@ -69,8 +70,8 @@ static RECORD: Mutex<CriticalSectionRawMutex, Cell<Option<Record>>> = Mutex::new
 static RECORD_WAITS: AtomicBool = AtomicBool::new(false);
 /// The store, while it waits for one.
 static RECORD_WAITING: AtomicWaker = AtomicWaker::new();
-/// Control has just ended a tick; signalled only while the store waits for one.
-static TICK: Signal<CriticalSectionRawMutex, ()> = Signal::new();
+/// The store waits for the end of a tick.
+static TICK_WAITING: AtomicWaker = AtomicWaker::new();
 static TICK_WANTED: AtomicBool = AtomicBool::new(false);
 /// When that was, us.
 static TICK_AT: AtomicU32 = AtomicU32::new(0);
@@ -105,16 +106,31 @@ pub fn post_beside_control(message: Up) {
     UP_WAITING.wake();
 }
 
-/// Brings the oldest message posted to this place; waits for one.
-pub async fn next_message(place: &mut MaybeUninit<Received<Up>>) -> &Received<Up> {
-    poll_fn(|context| {
+/// The counters are due.
+pub fn counters_due() {
+    COUNTERS_DUE.store(true, Relaxed);
+    UP_WAITING.wake();
+}
+
+/// Brings the oldest message posted to this place; waits for one. None: the counters are due, or the place was given away already.
+///
+/// Not an `async fn`: one that has an end can be asked again after it, which is a way to panic.
+pub fn next_message(place: &mut MaybeUninit<Received<Up>>) -> impl Future<Output = Option<&Received<Up>>> {
+    let mut place = Some(place);
+    poll_fn(move |context| {
         // Before it is asked: what comes in between wakes.
         UP_WAITING.register(context.waker());
-        if UP.take_to(place) { Poll::Ready(()) } else { Poll::Pending }
+        if COUNTERS_DUE.swap(false, Relaxed) {
+            return Poll::Ready(None);
+        }
+        let Some(free) = place.take() else { return Poll::Ready(None) };
+        if UP.take_to(free) {
+            // SAFETY: it was put there just now.
+            return Poll::Ready(Some(unsafe { free.assume_init_ref() }));
+        }
+        place = Some(free);
+        Poll::Pending
     })
-    .await;
-    // SAFETY: it was put there just now.
-    unsafe { place.assume_init_ref() }
 }
 
 /// Hands a command to control. Never waits: false if control has not taken the ones before, and no more than are earned
@@ -155,7 +171,8 @@ pub fn next_record() -> impl Future<Output = Record> {
 pub fn end_tick() {
     if TICK_WANTED.load(Relaxed) {
         TICK_AT.store(clock_us(), Relaxed);
-        TICK.signal(());
+        TICK_WANTED.store(false, Relaxed);
+        TICK_WAITING.wake();
     }
 }
 
@@ -164,10 +181,12 @@ pub fn since_tick_us() -> u32 {
     clock_us().wrapping_sub(TICK_AT.load(Relaxed))
 }
 
-/// Waits for the end of the tick to come.
-pub async fn tick_over() {
-    TICK.reset();
+/// Waits for the end of the tick to come. Not an `async fn`, as above.
+pub fn tick_over() -> impl Future<Output = ()> {
     TICK_WANTED.store(true, Relaxed);
-    TICK.wait().await;
-    TICK_WANTED.store(false, Relaxed);
+    poll_fn(|context| {
+        TICK_WAITING.register(context.waker());
+        let over = !TICK_WANTED.load(Relaxed);
+        if over { Poll::Ready(()) } else { Poll::Pending }
+    })
 }

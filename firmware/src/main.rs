@@ -5,7 +5,7 @@
 //! | who | runs in | priority | worst if it were wrong |
 //! |---|---|---|---|
 //! | `bridge::off` in a panic or fault | the faulting context | all interrupts off | the motor stays driven |
-//! | scan's DMA, its deadline, time driver, the bus's pauses and ends | their interrupts | 1 | a deadline is noticed late: a lost frame stays unnoticed |
+//! | scan's DMA, its deadline, the bus's pauses and ends | their interrupts | 1 | a deadline is noticed late: a lost frame stays unnoticed |
 //! | [`control`]: frame, logic, bridge, watchdog | executor in interrupt I2C3_ER | 2 | switches step late, ticks run late |
 //! | the bus, what came | I2C3_EV | 4 | an answer to the palm is late and left out |
 //! | the serial line's interrupts | USART2, DMA1 | 6 | below control or control jitters by them |
@@ -32,6 +32,7 @@ mod flash;
 mod halves;
 mod identity;
 mod last_words;
+mod line;
 mod mail;
 mod scan;
 mod stack;
@@ -40,32 +41,31 @@ mod supply;
 mod switches;
 mod telemetry;
 mod vibrator;
+mod watchdog;
 
 use cortex_m::peripheral::SCB;
 use defmt_rtt as _;
 use embassy_executor::{InterruptExecutor, SpawnError, SpawnToken, Spawner};
-use embassy_stm32::adc::AdcChannel;
-use embassy_stm32::gpio::Pull;
-use embassy_stm32::interrupt;
 use embassy_stm32::interrupt::{InterruptExt, Priority};
-use embassy_stm32::usart::{self, Uart};
-use embassy_stm32::wdg::IndependentWatchdog;
-use embassy_stm32::{bind_interrupts, dma, peripherals};
-use embassy_time::Timer;
+use embassy_stm32::{Peripherals, bind_interrupts, interrupt};
 use static_cell::{ConstStaticCell, StaticCell};
 use tenax_hal_shim::channel::FRAME_HZ;
-use tenax_hal_shim::wire::{BAUD, ResetCause, Up};
+use tenax_hal_shim::motor::MotorBridge;
+use tenax_hal_shim::wire::{ResetCause, Up};
 use tenax_hal_shim::words::Fault;
 use tenax_logic::device::Device;
+use tenax_logic::rescue::{self, Rescue};
 use tenax_logic::restart::Start;
 use tenax_logic::store::Erase;
+
+use crate::bridge::Bridge;
+use crate::button::Button;
+use crate::deadline::Deadline;
+use crate::watchdog::Watchdog;
 
 bind_interrupts!(struct Irqs {
     DMA2_STREAM0 => halves::OnHalf;
     TIM2 => deadline::OnDeadline;
-    DMA1_STREAM5 => dma::InterruptHandler<peripherals::DMA1_CH5>;
-    DMA1_STREAM6 => dma::InterruptHandler<peripherals::DMA1_CH6>;
-    USART2 => usart::InterruptHandler<peripherals::USART2>;
 });
 
 /// Runs control, above the thread executor. I2C3 itself is not used; every chip of the family has its interrupt.
@@ -79,8 +79,6 @@ unsafe fn I2C3_ER() {
 
 /// The box that a DMA ring stands in for as long as the image runs.
 static SCAN_RING: ConstStaticCell<[u32; halves::RING_LEN]> = ConstStaticCell::new([0; halves::RING_LEN]);
-static COMMAND_RING: ConstStaticCell<[u8; commands::RING_LEN]> =
-    ConstStaticCell::new([0; commands::RING_LEN]);
 
 /// What control works with: built once and never moved, for every move of it by value is a copy on the stack.
 static CONTROL: StaticCell<control::Control> = StaticCell::new();
@@ -97,11 +95,12 @@ async fn main(spawner: Spawner) {
     }
     black_box::start(after, switched_on);
     let crystal = clock::has_crystal();
-    let mut config = clock::config(crystal);
-    config.dma_interrupt_priority = Priority::P6;
-    let p = embassy_stm32::init(config);
+    clock::start(crystal);
+    // SAFETY: nobody else takes them, and embassy's own start, which would, is not used: it has ways to panic.
+    let p = unsafe { Peripherals::steal() };
     // Before anything that could take time: from here on both sides are held low.
-    let bridge = bridge::Bridge::new(p.TIM1, p.PA8, p.PA9);
+    let bridge = Bridge::new(p.TIM1, p.PA8, p.PA9);
+    let deadline = Deadline::new(p.TIM2);
     let supplied = supply::watch();
     if crystal {
         clock::watch_crystal();
@@ -116,41 +115,16 @@ async fn main(spawner: Spawner) {
     let (log, found) = tenax_logic::store::open(&mut flash, erase);
     clock::accelerate_flash();
     interrupt::DMA2_STREAM0.set_priority(Priority::P1);
-    interrupt::TIM5.set_priority(Priority::P1);
+    // SAFETY: its handler is bound above, and its stream is not running yet.
+    unsafe { interrupt::DMA2_STREAM0.enable() };
     interrupt::I2C3_ER.set_priority(Priority::P2);
-    interrupt::USART2.set_priority(Priority::P6);
     defmt::info!("tenax: started, after {}", after.is_some());
 
-    let pins = [
-        p.PA0.degrade_adc(),
-        p.PA1.degrade_adc(),
-        p.PA4.degrade_adc(),
-        p.PA5.degrade_adc(),
-        p.PA6.degrade_adc(),
-        p.PA7.degrade_adc(),
-        p.PB0.degrade_adc(),
-        p.PB1.degrade_adc(),
-        p.PC0.degrade_adc(),
-        p.PC1.degrade_adc(),
-        p.PC2.degrade_adc(),
-        p.PC3.degrade_adc(),
-        p.PC4.degrade_adc(),
-        p.PC5.degrade_adc(),
-    ];
-    let deadline = deadline::Deadline::new(p.TIM2);
-    let scan = scan::Scan::new(p.ADC1, p.TIM3, p.DMA2_CH0, SCAN_RING.take(), deadline, pins);
     let switches = switches::Switches::new(p.PB12, p.PB13, p.PB14, p.PB15);
-    let button = button::Button::new(p.PC13, p.PC6, p.PC8);
+    let button = Button::new(p.PC13, p.PC6, p.PC8);
     let vibrator = vibrator::Vibrator::new(p.TIM4, p.PB6);
-    let watchdog = IndependentWatchdog::new(p.IWDG, control::WATCHDOG_US);
-
-    let mut line = usart::Config::default();
-    line.baudrate = BAUD;
-    // Nobody may be at the other end.
-    line.rx_pull = Pull::Up;
-    let uart = Uart::new(p.USART2, p.PA3, p.PA2, p.DMA1_CH6, p.DMA1_CH5, Irqs, line)
-        .expect("921 600 baud divides 50 MHz");
-    let (up, down) = uart.split();
+    let watchdog = Watchdog::new(p.IWDG);
+    let (up, down) = line::open(p.USART2, (p.DMA1_CH5, p.DMA1_CH6), (p.PA2, p.PA3));
 
     // The first of all messages: a hello that comes after others would look like a second start.
     let after = if supplied { after } else { Some(Fault::SupplySagged) };
@@ -159,15 +133,33 @@ async fn main(spawner: Spawner) {
     if !supplied {
         // It is told why, and starts anew when there is enough to drive a motor with.
         while supply::is_low() {
-            Timer::after_millis(10).await;
+            deadline.until(deadline.now().after(10_000), || None::<()>).await;
         }
         SCB::sys_reset();
     }
     if stay_off {
-        // Neither control nor what feeds the watchdog: the bridge stays as it is, off.
-        core::future::pending::<()>().await;
+        // No control, for it may be what failed: the button opens.
+        wait_for_button(&deadline, bridge, &button, watchdog).await
     }
-    spawner.spawn(once(commands::commands(down.into_ring_buffered(COMMAND_RING.take()))));
+    spawner.spawn(once(commands::commands(down)));
+    let pins = [
+        p.PA0.into(),
+        p.PA1.into(),
+        p.PA4.into(),
+        p.PA5.into(),
+        p.PA6.into(),
+        p.PA7.into(),
+        p.PB0.into(),
+        p.PB1.into(),
+        p.PC0.into(),
+        p.PC1.into(),
+        p.PC2.into(),
+        p.PC3.into(),
+        p.PC4.into(),
+        p.PC5.into(),
+    ];
+    let scan = scan::Scan::new(p.ADC1, p.TIM3, p.DMA2_CH0, SCAN_RING.take(), deadline, pins);
+
     let control = CONTROL.init_with(|| control::Control::new((bridge, vibrator), switches, button, watchdog));
     control.restore(|device| store::restore(device, &flash, &found));
     if !switched_on {
@@ -187,6 +179,24 @@ async fn main(spawner: Spawner) {
     bus::start(p.USART1, (p.DMA2_CH5, p.DMA2_CH7), (p.PA15, p.PA10), p.PA12, identity::of(cause).chip);
     let urgent = URGENT.start(interrupt::I2C3_ER);
     urgent.spawn(once(control::control(scan, control)));
+}
+
+/// What is left after too many restarts. A watchdog that is not fed ends this, too, with the bridge off.
+async fn wait_for_button(
+    deadline: &Deadline,
+    mut bridge: Bridge,
+    button: &Button,
+    mut watchdog: Watchdog,
+) -> ! {
+    let mut rescue = Rescue::default();
+    let mut next = deadline.now();
+    watchdog.start();
+    loop {
+        bridge.drive(rescue.step(button.is_down()));
+        watchdog.feed();
+        next = next.after(rescue::STEP_US);
+        deadline.until(next, || None::<()>).await;
+    }
 }
 
 /// A task that is started here and nowhere else.

@@ -9,20 +9,20 @@
 //! sequence numbers go on where time has got to.
 
 use embassy_stm32::Peri;
-use embassy_stm32::adc::{Adc, AnyAdcChannel};
+use embassy_stm32::gpio::AnyPin;
 use embassy_stm32::pac;
 use embassy_stm32::pac::adc::regs::{Smpr1, Smpr2, Sqr1, Sqr2, Sqr3};
 use embassy_stm32::pac::adc::vals::{Dds, Exten, SampleTime};
 use embassy_stm32::pac::adccommon::vals::Adcpre;
+use embassy_stm32::pac::timer::vals::Mms;
 use embassy_stm32::peripherals::{ADC1, DMA2_CH0, TIM3};
-use embassy_stm32::time::Hertz;
-use embassy_stm32::timer::low_level::{MasterMode, RoundTo, Timer as HardwareTimer};
 use tenax_hal_shim::channel::{FRAME_HZ, SCAN, SCAN_HZ, SCAN_LEN};
 use tenax_hal_shim::frame::Frame;
 
 use crate::bridge::align;
 use crate::bus;
 use crate::chip::ADC_COMMON;
+use crate::clock::CORE_HZ;
 use crate::counts;
 use crate::deadline::{Deadline, Micros};
 use crate::halves::{Halves, RING_LEN};
@@ -38,10 +38,10 @@ const PATIENCE_US: u32 = SCAN_US;
 
 /// The converter, its timer and its DMA.
 pub struct Scan {
-    _adc: Adc<'static, ADC1>,
+    _adc: Peri<'static, ADC1>,
     stream: Peri<'static, DMA2_CH0>,
     ring: &'static mut [u32; RING_LEN],
-    timer: HardwareTimer<'static, TIM3>,
+    _timer: Peri<'static, TIM3>,
     deadline: Deadline,
     due: Due,
 }
@@ -63,25 +63,24 @@ impl Due {
 impl Scan {
     /// Takes the hardware; nothing is converted before [`run`](Self::run).
     ///
-    /// `pins` are proof that nobody else uses them, and must be those of the channel map.
+    /// `pins` are proof that nobody else uses them.
     pub fn new(
         adc: Peri<'static, ADC1>,
         timer: Peri<'static, TIM3>,
         stream: Peri<'static, DMA2_CH0>,
         ring: &'static mut [u32; RING_LEN],
         deadline: Deadline,
-        pins: [AnyAdcChannel<'static, ADC1>; SCAN_LEN],
+        _pins: [Peri<'static, AnyPin>; SCAN_LEN],
     ) -> Self {
-        for (pin, rank) in pins.iter().zip(&SCAN) {
-            assert!(pin.get_hw_channel() == rank.adc, "{} is not wired as the channel map says", rank.pin);
+        for (port, analog) in [pac::GPIOA, pac::GPIOB, pac::GPIOC].into_iter().zip(ANALOG) {
+            port.moder().modify(|w| w.0 |= analog);
         }
-        let timer = HardwareTimer::new(timer);
-        timer.set_frequency(Hertz(SCAN_HZ), RoundTo::Faster);
-        timer.set_master_mode(MasterMode::UPDATE);
+        pac::RCC.apb2enr().modify(|w| w.set_adc1en(true));
+        pac::RCC.apb1enr().modify(|w| w.set_tim3en(true));
+        pac::TIM3.arr().write(|w| w.set_arr((CORE_HZ / SCAN_HZ - 1) as u16));
+        pac::TIM3.cr2().write(|w| w.set_mms(Mms::UPDATE));
         let due = Due { sequence: 0, begins: deadline.now() };
-        // Its clock, and proof that nobody else has it.
-        let _adc = Adc::new(adc);
-        Self { _adc, stream, ring, timer, deadline, due }
+        Self { _adc: adc, stream, ring, _timer: timer, deadline, due }
     }
 
     /// Hands every frame to `on_frame` as soon as its last code has been converted, for ever. Frames that are lost are
@@ -91,7 +90,7 @@ impl Scan {
     /// function: an `async fn` that has an end can be asked again after it, which is a way to panic.
     pub async fn run(mut self, mut on_frame: impl FnMut(&Frame)) -> ! {
         align();
-        self.timer.start();
+        pac::TIM3.cr1().write(|w| w.set_cen(true));
         // The first trigger comes one period after the start.
         self.due.begins = self.deadline.now().after(SCAN_US);
         loop {
@@ -174,6 +173,23 @@ fn listen(converter: pac::adc::Adc) {
     });
 }
 
+/// What makes the scan's pins analogue, of ports A, B and C: two bits a pin. The converter's inputs 0 to 7 are PA0 to PA7, then come PB0
+/// and PB1, and from 10 on PC0 to PC5 (DS10314, table 8).
+const ANALOG: [u32; 3] = {
+    let mut analog = [0; 3];
+    let mut index = 0;
+    while index < SCAN_LEN {
+        let input = SCAN[index].adc;
+        let (port, pin) = match input {
+            0..8 => (0, input),
+            8..10 => (1, input - 8),
+            _ => (2, input - 10),
+        };
+        analog[port] |= 0b11 << (2 * pin);
+        index += 1;
+    }
+    analog
+};
 /// SQR3, SQR2 and SQR1: six ranks of five bits in each, the first in the lowest (RM0383, section 11.12.9).
 const SEQUENCE: [u32; 3] = {
     let mut sequence = [0; 3];

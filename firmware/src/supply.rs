@@ -8,17 +8,16 @@
 
 use embassy_stm32::interrupt;
 use embassy_stm32::interrupt::{InterruptExt, Priority};
-use embassy_stm32::pac::{EXTI, FLASH, PWR, RCC};
-use embassy_time::{Duration, Instant};
-
+use embassy_stm32::pac::{EXTI, FLASH, PWR};
 use tenax_logic::restart::Mark;
 
+use crate::deadline::clock_us;
 use crate::last_words;
 
 /// PLS: 2.93 V falling, 3.03 V rising.
 const LEVEL_6: u8 = 6;
 /// How long a supply may take to rise. A battery behind a regulator is there within some ms.
-const RISE: Duration = Duration::from_secs(1);
+const RISE_US: u32 = 1_000_000;
 /// The line of the voltage detector's output among the external interrupts (RM0383, section 10.2.5).
 const LINE: usize = 16;
 /// BOR_LEV: reset below 2.83 V.
@@ -26,19 +25,18 @@ const BROWN_OUT_LEVEL_3: u8 = 0;
 /// RM0383, section 3.6.2.
 const OPTION_KEYS: [u32; 2] = [0x0819_2A3B, 0x4C5D_6E7F];
 /// Longer than the option bytes take (DS10314, flash memory programming).
-const PATIENCE: Duration = Duration::from_secs(4);
+const PATIENCE_US: u32 = 4_000_000;
 
 /// Waits for the supply, and watches it from then on. Nothing moves meanwhile. False: it is too low, and nothing watches it.
 #[must_use]
 pub fn watch() -> bool {
-    RCC.apb1enr().modify(|w| w.set_pwren(true));
     PWR.cr1().modify(|w| {
         w.set_pls(LEVEL_6);
         w.set_pvde(true);
     });
-    let deadline = Instant::now() + RISE;
+    let begun = clock_us();
     while is_low() {
-        if Instant::now() >= deadline {
+        if clock_us().wrapping_sub(begun) >= RISE_US {
             return false;
         }
     }
@@ -72,7 +70,7 @@ pub fn hold_in_reset_when_too_low() {
     }
     FLASH.optcr().modify(|w| w.set_bor_lev(BROWN_OUT_LEVEL_3));
     FLASH.optcr().modify(|w| w.set_optstrt(true));
-    let deadline = Instant::now() + PATIENCE;
-    while FLASH.sr().read().bsy() && Instant::now() < deadline {}
+    let begun = clock_us();
+    while FLASH.sr().read().bsy() && clock_us().wrapping_sub(begun) < PATIENCE_US {}
     FLASH.optcr().modify(|w| w.set_optlock(true));
 }

@@ -1,20 +1,20 @@
-//! Behaviours: what the hand can be asked to do above the reflex (FingerVision 2017, section II), and what a camera behind
-//! a clear skin tells them.
+//! Behaviours: movements that the line can request in addition to the reflex (FingerVision 2017, section II), and the message of
+//! the camera behind a clear skin.
 
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-/// What the hand is asked to do. It goes on until it ends by itself, by [`Down::End`](crate::wire::Down::End), or because
-/// the wearer's muscles take over.
+/// A behaviour. It lasts until it ends by itself, by [`Down::End`](crate::wire::Down::End), or because
+/// a muscle becomes active.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Behaviour {
-    /// Somebody strokes the finger over a surface to measure its friction: slip is expected and answered by nothing.
+    /// The finger is stroked over a surface to measure its friction: slip is expected and not answered.
     Stroke,
     /// Close until the object is felt, and no further (section II-A).
     GentleGrasp,
     /// Close by a small movement whenever the object slips (section II-B).
     Hold,
-    /// Let go as soon as somebody pulls at the object (section II-C).
+    /// Let go as soon as the object is pulled (section II-C).
     HandOver,
     /// Turn the object in the hand by loosening and tightening the grasp (section II-D).
     Turn {
@@ -24,7 +24,7 @@ pub enum Behaviour {
 }
 
 impl Behaviour {
-    /// What it is called where a person reads it.
+    /// Its name, for people.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -54,14 +54,14 @@ pub enum Ending {
     Ceiling,
     /// Nothing is held any more.
     Dropped,
-    /// It was loosened as far as it may be, and nothing slipped: the grasp is as firm as before.
+    /// The grasp was loosened as far as allowed and nothing slipped; it is as firm as before.
     NoSlip,
-    /// The line may not command any more: what opens the hand needs consent as long as it lasts.
+    /// Consent ended: a behaviour that opens the hand needs it to its end.
     NotArmed,
 }
 
 impl Ending {
-    /// What a person reads.
+    /// The ending in words.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -82,19 +82,19 @@ impl Ending {
 pub const MARKERS: usize = 24;
 /// The normal force of a marker that is not tracked.
 pub const UNTRACKED: u8 = u8::MAX;
-/// One step of a marker's normal force, mN.
+/// Resolution of a marker's normal force on the wire, mN.
 pub const NORMAL_STEP_MN: i32 = 10;
-/// One step of a marker's shear, mN.
+/// Resolution of a marker's shear on the wire, mN.
 pub const SHEAR_STEP_MN: i32 = 20;
 
-/// What the camera behind the skin saw in one picture (FingerVision 2017, sections III and IV).
+/// One picture of the camera behind the skin (FingerVision 2017, sections III and IV).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct CameraView {
     /// Age of the picture when this is sent, ms.
     pub age_ms: u16,
-    /// Moving points on the object, of the whole picture, in 1/10,000.
+    /// Moving points on the object as a part of the picture's area, 1/10 000 (0 to 10 000).
     pub moving_e4: u16,
-    /// The object's orientation, tenths of a degree. None while it is out of view, or partly.
+    /// The object's angle, tenths of a degree. None while it is not wholly in view.
     pub angle_ddeg: Option<i16>,
     /// Normal force of each marker, in steps of [`NORMAL_STEP_MN`]; [`UNTRACKED`] of those that are not tracked.
     pub normal: [u8; MARKERS],

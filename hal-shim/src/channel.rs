@@ -1,7 +1,7 @@
-//! The channel map: which signal is on which pin, how fast it is read, and which voltages it can honestly have.
+//! The channel map: pin, rate and valid voltages of each signal.
 //!
 //! This table is the only place that knows the wiring. The firmware programs its converter from [`SCAN`], the logic
-//! names what it reads by the index constants, a recording's columns are called [`Channel::name`], and
+//! names channels by the index constants, a recording's columns are called [`Channel::name`], and
 //! `docs/wiring.md` is printed from it (`tenax wiring`).
 
 use crate::front_end;
@@ -12,7 +12,7 @@ pub const SCANS_PER_FRAME: usize = 4;
 pub const SCAN_HZ: u32 = 8_000;
 /// Rate of frames, Hz: the rate of every pin that is not behind a switch.
 pub const FRAME_HZ: u32 = SCAN_HZ / SCANS_PER_FRAME as u32;
-/// Frames in one slow frame: each switched signal is read once in it.
+/// Frames in one slow frame: each switched signal is read once in it, myosensors three times.
 pub const FRAMES_PER_SLOW_FRAME: u8 = 25;
 /// Rate of slow frames, Hz: the rate of each switched signal.
 pub const SLOW_HZ: u32 = FRAME_HZ / FRAMES_PER_SLOW_FRAME as u32;
@@ -68,9 +68,9 @@ pub enum Input {
 /// One signal of the fingertip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Channel {
-    /// What it is called in recordings, scene files, reports and faults.
+    /// Its name in recordings, scene files, reports and faults.
     pub name: &'static str,
-    /// Where it comes in.
+    /// Its input.
     pub input: Input,
     /// Voltage at the pin when nothing happens, mV. Never 0: a cut wire must not look like a sensor at rest.
     pub rest_mv: u32,
@@ -81,7 +81,7 @@ pub struct Channel {
 }
 
 impl Channel {
-    /// How often it is read, Hz.
+    /// Rate of its readings, Hz, without the myosensors' two more in a slow frame.
     #[must_use]
     pub const fn rate_hz(&self) -> u32 {
         match self.input {
@@ -91,7 +91,7 @@ impl Channel {
     }
 }
 
-/// What a channel's sensor measures: the map says where it is, this says what the fingertip takes it for.
+/// The kind of a channel's sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// A PVDF film.
@@ -111,7 +111,7 @@ pub enum Role {
 }
 
 impl Role {
-    /// Of a channel. `head_is_fitted`: a photoelastic head is in the place of film 12.
+    /// The role of a channel (index in [`CHANNELS`]). `head_is_fitted`: a photoelastic head is in the place of film 12.
     #[must_use]
     pub const fn of(channel: usize, head_is_fitted: bool) -> Self {
         match channel {
@@ -125,7 +125,7 @@ impl Role {
         }
     }
 
-    /// How a person makes such a sensor move: the first word of what `tenax selftest` asks for.
+    /// The verb for a person who moves such a sensor, as `tenax selftest` asks for it.
     #[must_use]
     pub const fn verb(self) -> &'static str {
         match self {

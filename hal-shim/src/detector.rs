@@ -1,6 +1,6 @@
-//! What detectors say, in the same words for all of them.
+//! Names and reports of the detectors.
 //!
-//! Three things are kept apart. A detector **says** slip: its own verdict, whoever listens. It is **believed** unless the
+//! A detector **says** slip: its own report. The report is **believed** unless the
 //! plausibility guard ignores it. It is **acted** on while the reflex closes because of it.
 
 use postcard_schema::Schema;
@@ -18,7 +18,7 @@ pub enum DetectorId {
     Hebbian,
     /// The multilayer perceptron on normal forces (Bamshad 2023).
     Mlp,
-    /// Evidence from outside: somebody who knows whether it slips.
+    /// Reports from outside: of a scene that knows whether it slips, or of the palm.
     Injected,
     /// The flicker of a photoelastic head (Dubey 2006).
     Photoelastic,
@@ -31,7 +31,7 @@ impl DetectorId {
     /// How many there are.
     pub const COUNT: usize = Self::ALL.len();
 
-    /// What it is called in reports and on the command line.
+    /// Its name in reports and on the command line.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -44,7 +44,7 @@ impl DetectorId {
         }
     }
 
-    /// What it goes by, for a person.
+    /// Its name with the signal that it uses, for people.
     #[must_use]
     pub const fn title(self) -> &'static str {
         match self {
@@ -111,7 +111,7 @@ impl DetectorSet {
         self.0 & 1 << id as u8 != 0
     }
 
-    /// The one with the lowest number.
+    /// The detector with the lowest number, None if the set is empty.
     #[must_use]
     pub const fn first(self) -> Option<DetectorId> {
         // Asked in every tick, and nearly always of none.
@@ -128,14 +128,14 @@ impl DetectorSet {
         self.0
     }
 
-    /// From bits. None if one of them is no detector's.
+    /// The set with these bits. None if one of them is no detector's.
     #[must_use]
     pub const fn from_bits(bits: u8) -> Option<Self> {
         if bits & !Self::ALL.0 == 0 { Some(Self(bits)) } else { None }
     }
 }
 
-/// Where to an object slips, if the detector can tell.
+/// The direction in which the object slips.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Direction {
     /// The detector cannot tell.
@@ -147,7 +147,7 @@ pub enum Direction {
     Up,
 }
 
-/// Whether a detector has something to judge by.
+/// Whether a detector has the input that it needs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum DetectorHealth {
     /// Not yet: its windows fill, or it has not seen the finger unloaded.
@@ -159,28 +159,28 @@ pub enum DetectorHealth {
     Blind,
 }
 
-/// What a detector concluded when it last decided.
+/// A detector's last conclusion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Evidence {
     /// The object slips.
     pub slip: bool,
-    /// It is about to.
+    /// The object is about to slip.
     pub incipient: bool,
-    /// How sure it is, per mille: 500 where it changes its mind.
+    /// Confidence, 0 to 1000 per mille; 500 at the threshold.
     pub confidence_permille: u16,
-    /// Where to.
+    /// Direction of slip.
     pub direction: Direction,
     /// Sequence number of the frame in which it decided this.
     pub decided_at: u32,
-    /// Whether it can be asked at all.
+    /// Whether it has the input that it needs.
     pub health: DetectorHealth,
-    /// What it decided by, on its own scale: the envelope (S1, 14-bit samples), Ft/Fn (S2, per mille), the PVDF part of o1
-    /// (Hebbian, per mille), the logit (MLP), how fast it slips (photoelastic, um/s).
+    /// The number that it compares with its threshold: the envelope (S1, 14-bit samples), Ft/Fn (S2, per mille), the PVDF part of o1
+    /// (Hebbian, per mille), the logit (MLP), the rate of slip (photoelastic, um/s).
     pub raw: i32,
 }
 
 impl Evidence {
-    /// Whether it says anything.
+    /// Whether it reports slip or a warning.
     #[must_use]
     pub const fn says(&self) -> bool {
         self.slip || self.incipient

@@ -1,6 +1,6 @@
 //! The part of a board's flash that outlives a power cut: two sectors of words.
 
-/// What a word reads before it is programmed.
+/// Value of an erased word.
 pub const BLANK: u32 = u32::MAX;
 
 /// One of the two sectors. Each is erased as a whole.
@@ -16,7 +16,7 @@ impl Sector {
     /// Both.
     pub const BOTH: [Self; 2] = [Self::A, Self::B];
 
-    /// The one that this is not.
+    /// The other sector.
     #[must_use]
     pub const fn other(self) -> Self {
         match self {
@@ -26,13 +26,13 @@ impl Sector {
     }
 }
 
-/// The flash did not do what it was told: worn, protected, or the word was programmed before.
+/// Programming or erasing failed: the flash is worn, protected, or the word was programmed before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FlashFailed;
 
 /// Two sectors of flash.
 ///
-/// Whoever implements it promises:
+/// An implementation guarantees:
 /// - a programmed word reads as what it was programmed with until its sector is erased, also without power; an erased
 ///   one reads [`BLANK`];
 /// - a power cut during [`program`](Self::program) changes that word only, one during [`erase`](Self::erase) that sector

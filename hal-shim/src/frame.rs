@@ -1,4 +1,4 @@
-//! What a board hands to the logic every 0.5 ms.
+//! The samples that a board gives to the logic every 0.5 ms.
 
 use crate::channel::{
     CHANNELS, COUNT, FRAMES_PER_SLOW_FRAME, Input, PVDF_COUNT, RANK_SWITCH_A, RANK_SWITCH_B, SCAN_LEN,
@@ -64,19 +64,19 @@ impl Frame {
         Self { sequence, valid: true, pvdf, switch_a, switch_b }
     }
 
-    /// A frame that was lost: its samples say nothing.
+    /// A lost frame with this number: its samples are not valid.
     #[must_use]
     pub const fn lost(sequence: u32) -> Self {
         Self { sequence, valid: false, pvdf: [0; PVDF_COUNT], switch_a: 0, switch_b: 0 }
     }
 
-    /// Slot in the cycle, 0 to 24.
+    /// Its slot in the slow frame, 0 to 24.
     #[must_use]
     pub const fn slot(&self) -> u8 {
         (self.sequence % FRAMES_PER_SLOW_FRAME as u32) as u8
     }
 
-    /// What the select lines showed while it was taken.
+    /// State of the select lines while it was sampled, 0 to 15.
     #[must_use]
     pub const fn select(&self) -> u8 {
         select_of_slot(self.slot())
@@ -89,7 +89,7 @@ impl Frame {
     }
 }
 
-/// The codes that one scan reads when every channel's pin has the code in `pins`, and the select lines show `select`.
+/// The codes of one scan if the channels' pins have the codes in `pins` (0 to 4095) and the select lines show `select` (0 to 15).
 ///
 /// This is the wiring seen from outside: an emulated or simulated board uses it to put pins on the converter.
 #[must_use]

@@ -1,9 +1,9 @@
-//! The analogue front ends between the sensors and the pins, as the numbers that both sides need: the logic to turn
-//! volts back into newtons, a scene or a recording's recipe to turn newtons into volts.
+//! Constants of the analogue front ends between sensors and pins: the logic turns
+//! volts into newtons with them, a scene or a recording's recipe newtons into volts.
 //!
 //! Every sensor has a live zero: at rest its pin is well above 0 V, so that a cut wire is noticed.
 
-/// PVDF: charge amplifier around the middle of the supply, mV.
+/// PVDF: voltage at rest, the middle of the supply, mV.
 pub const PVDF_REST_MV: u32 = 1_650;
 
 /// FSR: voltage of an unloaded quadrant, mV.
@@ -16,14 +16,14 @@ pub const FSR_EXPONENT: f64 = 0.9;
 
 /// FSR: voltage at the pin of a quadrant under `force_n` newtons, mV, before the converter clips it.
 ///
-/// `powf` is not in `core`, so the caller brings it: `f64::powf` on a PC.
+/// `powf` is not in `core`, so the caller passes it: `f64::powf` on a PC.
 #[must_use]
 pub fn fsr_mv(force_n: f64, powf: fn(f64, f64) -> f64) -> f64 {
     f64::from(FSR_REST_MV) + FSR_MV_AT_1N * powf(force_n.max(0.0), FSR_EXPONENT)
 }
 
-/// The tilting element: newtons of difference between opposite pairs of quadrants for 1 N of shear on top of it
-/// (Prosthesis, figure 1; the height of the rubber cylinder over the lever arm of the quadrants, assumed).
+/// Difference between opposite pairs of quadrants for 1 N of shear at the top of the rubber cylinder, N
+/// (Prosthesis, figure 1; the cylinder's height over the lever arm of the quadrants, assumed).
 pub const FSR_TILT: f64 = 1.0;
 
 /// Forces on quadrants A, B, C and D, N, under a normal force and a shear at the tilting element.

@@ -1,10 +1,10 @@
 //! The line between Tenax's logic and its hardware.
 //!
-//! What crosses it, in the order in which data goes: [`channel`] says which signal is on which pin, [`schedule`] in which
-//! slot it is read, [`frame`] is what a board hands to the logic every 0.5 ms, [`motor`] is what the logic hands back.
-//! [`detector`] lists the detectors; [`words`] are the states and faults that both sides and
-//! a person watching call by the same names. [`wire`] is how all of it travels over the serial line, and [`flash`] is where
-//! a board keeps what must outlive a power cut. Nothing here decides anything.
+//! In the order of the data: [`channel`] maps signals to pins, [`schedule`] to
+//! slots; [`frame`] holds the samples that a board gives to the logic every 0.5 ms, [`motor`] the drive that it gets back.
+//! [`detector`] lists the detectors; [`words`] has the names of states and faults;
+//! [`wire`] has the messages of the serial line; [`flash`] is the trait of the memory
+//! that outlives a power cut. Nothing here decides anything.
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -1,24 +1,24 @@
-//! What the logic hands back: how to drive the motor that closes and opens the hand.
+//! Drive of the motor that closes and opens the hand.
 
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-/// Part of the full supply on the motor, 0 to 1000 per mille.
+/// Part of the full motor voltage, 0 to 1000 per mille.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, Schema)]
 #[serde(from = "u16", into = "u16")]
 pub struct Duty(u16);
 
 impl Duty {
-    /// The whole supply.
+    /// Full motor voltage.
     pub const FULL: Self = Self(1_000);
 
-    /// This many per mille; more than 1000 is 1000.
+    /// So many per mille of full motor voltage; more than 1000 is taken as 1000.
     #[must_use]
     pub const fn per_mille(value: u16) -> Self {
         Self(if value > 1_000 { 1_000 } else { value })
     }
 
-    /// Per mille of the full supply, 0 to 1000.
+    /// Per mille of full motor voltage, 0 to 1000.
     #[must_use]
     pub const fn as_per_mille(self) -> u16 {
         self.0
@@ -37,7 +37,7 @@ impl From<Duty> for u16 {
     }
 }
 
-/// How the motor is driven for the next 0.5 ms.
+/// Drive of the motor for the next 0.5 ms.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum MotorDrive {
     /// Not driven. The gear does not run backwards, so the hand keeps what it holds.
@@ -65,7 +65,7 @@ impl MotorDrive {
 
 /// A board's motor bridge.
 ///
-/// Whoever implements it promises:
+/// An implementation guarantees:
 /// - [`drive`](Self::drive) takes effect at once, never blocks, and never drives both sides at the same time, not even
 ///   between two calls;
 /// - before the first call, after [`MotorDrive::Coast`], and after a panic or a reset by the watchdog, neither side is

@@ -1,43 +1,43 @@
-//! What happens in which of the 25 slots of a cycle (a slow frame): which inputs of the switches are shown, which channels
+//! Schedule of the 25 slots of a slow frame: which inputs the switches show, which channels
 //! are read from them, and which job of the logic runs.
 //!
-//! Derived from the channel map; nobody counts slots by himself. Sixteen slots show each input once. The wearer comes
-//! first, so the nine slots left over read the myosensors twice more: their readings are never more than 6.5 ms apart. In
-//! between the lines rest on input 0, which has long settled when its turn comes; what is read there counts for nothing.
+//! It is derived from the channel map. Sixteen slots show each input once. The nine slots left over read the myosensors
+//! twice more, so that their readings are never more than 6.5 ms apart. In the other slots
+//! the lines rest on input 0, which has long settled when its turn comes; those readings are not used.
 
 use crate::channel::{
     ARRAY, ARRAY_COUNT, CHANNELS, FRAMES_PER_SLOW_FRAME, FSR, FSR_COUNT, Input, MYO_EXTENSOR, MYO_FLEXOR,
     SWITCH_INPUTS,
 };
 
-/// Slots in a cycle.
+/// Slots in a slow frame.
 pub const SLOTS: usize = FRAMES_PER_SLOW_FRAME as usize;
 
 /// Slots that share the array's work, one after the other: in fewer, a tick would last into the next frame.
 pub const ARRAY_SHARES: u8 = 5;
 
-/// A job that runs once a cycle.
+/// A job that runs once a slow frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Job {
-    /// All quadrants of the force sensor have been read: forces, Ft/Fn, S2. What a photoelastic head says of force, too: it
-    /// stands in where the quadrants say nothing.
+    /// All quadrants of the force sensor have been read: computes forces, Ft/Fn and S2, or a photoelastic head's force if the
+    /// quadrants give none.
     Forces,
-    /// All elements of the array have been read: the first of [`ARRAY_SHARES`] shares of what there is to compute.
+    /// All elements of the array have been read: computes the first of [`ARRAY_SHARES`] shares of the features and the network.
     ArrayBegins,
-    /// The last of them: the MLP's verdict.
+    /// Computes the last share: the MLP's verdict.
     MlpDecides,
-    /// Muscles and films are thought about: the lines rest, and the last slot, which has the most to do, is far.
+    /// Slow work on muscles and films, far from the last slot, which has the most to do.
     Think,
-    /// The fingertip is asked for something to save: the lines rest, too.
+    /// The board asks the fingertip for a record to save.
     Save,
-    /// The record of the cycle is closed.
+    /// The slow frame's message is completed.
     EndOfCycle,
 }
 
 /// One slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slot {
-    /// What the select lines show.
+    /// State of the select lines, 0 to 15.
     pub select: u8,
     /// The channel that is read from switch A, an index in [`CHANNELS`].
     pub switch_a: Option<u8>,
@@ -58,7 +58,7 @@ const AGAIN: [Option<usize>; SLOTS - SWITCH_INPUTS as usize] = [
     None,
 ];
 
-/// Every slot of a cycle.
+/// Every slot of a slow frame.
 pub static SCHEDULE: [Slot; SLOTS] = {
     let mut slots = [Slot { select: 0, switch_a: None, switch_b: None }; SLOTS];
     let mut select = 0;
@@ -117,7 +117,7 @@ pub const fn slot_of(job: Job) -> u8 {
     }
 }
 
-/// What the select lines show in this slot. A number above 24 is taken modulo 25.
+/// State of the select lines in this slot, 0 to 15. A slot above 24 is taken modulo 25.
 #[must_use]
 pub const fn select_of_slot(slot: u8) -> u8 {
     SCHEDULE[(slot % FRAMES_PER_SLOW_FRAME) as usize].select

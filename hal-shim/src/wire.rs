@@ -26,6 +26,7 @@ mod raw;
 mod samples;
 mod senses;
 mod slow;
+mod stuffing;
 mod tick;
 mod up;
 
@@ -45,10 +46,10 @@ pub use self::up::{Counters, Event, EventKind, Up};
 
 /// The version of every message below. A receiver refuses frames of another.
 pub const VERSION: u8 = 6;
-/// What the messages are made of, as one number: both directions' names, order and types. A board and a tool of one version whose
-/// numbers differ were built from different sources.
+/// Hash of the names, order and types of all messages. A board and a tool of one version whose
+/// hashes differ were built from different sources.
 pub const SCHEMA: u64 = u64::from_le_bytes(Key::for_path::<(Up, Down)>("tenax").to_bytes());
 /// The serial line's rate, baud, 8N1.
 pub const BAUD: u32 = 921_600;
-/// The longest frame, bytes, the final zero included: what a sender's and a receiver's buffer must hold.
+/// The longest frame, bytes, the final zero included: the size of a sender's and a receiver's buffer.
 pub const FRAME_MAX: usize = 512;

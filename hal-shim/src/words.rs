@@ -1,4 +1,4 @@
-//! The states, causes and faults that the fingertip, the wire and a person watching call by the same names.
+//! Names of states, causes and faults, the same in the logic, on the wire and for people.
 //!
 //! New ones are added at the end: their place is their number on the wire.
 
@@ -11,23 +11,23 @@ use serde::{Deserialize, Serialize};
 
 use crate::detector::DetectorId;
 
-/// What the grip reflex is doing (Prosthesis, figure 9).
+/// Mode of the grip reflex (Prosthesis, figure 9).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum GripMode {
-    /// Something that the reflex cannot do without is missing (at boot: not yet seen). It commands nothing; the wearer
+    /// A sensor that the reflex needs is missing (at boot: not yet seen). The reflex commands nothing; the wearer
     /// still drives the hand.
     #[default]
     Standby,
-    /// A myosensor is active, a drive command holds, or a behaviour expects slip and answers it itself: the hand is theirs,
+    /// A myosensor is active, a drive command holds, or a behaviour answers slip itself:
     /// the reflex commands nothing.
     Wearer,
-    /// Nobody else drives the hand: vibration and Ft/Fn are watched.
+    /// No other source drives the hand: the detectors are watched.
     Watch,
-    /// Vibration passed S1: the object slips, the hand closes.
+    /// A detector reports slip: the hand closes.
     Slip,
-    /// Ft/Fn passed S2: it is about to slip, the hand tightens.
+    /// A detector warns, such as S2: the hand closes a little.
     Incipient,
-    /// After closing: the object settles in the grasp, and what the films hear of that is not slip.
+    /// After closing: the object settles in the grasp, and reports are not answered.
     Settle,
 }
 
@@ -36,15 +36,15 @@ pub enum GripMode {
 pub enum Cause {
     /// Every sensor that the reflex needs gives readings.
     SensorsReady,
-    /// One that it needs does not.
+    /// A sensor that the reflex needs gives none.
     SensorsLost,
     /// A myosensor became active, a drive command came, or a behaviour answers slip itself.
     TakenOver,
-    /// None of that any more.
+    /// The muscles, the line and the behaviour no longer move the hand.
     Released,
-    /// This detector says that the object slips.
+    /// This detector reports slip.
     Slip(DetectorId),
-    /// This one warns that it is about to.
+    /// This detector warns of slip.
     Incipient(DetectorId),
     /// The closing pulse is over, or the force ceiling is reached.
     PulseOver,
@@ -57,25 +57,25 @@ pub enum Cause {
 pub enum Reason {
     /// Below its live zero: a cut wire, a lost supply.
     Dead,
-    /// Against the upper end of its range: a short, or loaded beyond what it can tell.
+    /// Above its range: a short, or an overload.
     Saturated,
     /// The same code for longer than the noise of any working sensor allows.
     Stuck,
-    /// Loud by itself, again and again, while its neighbours are quiet: hum, a bad contact, a crack.
+    /// A film that alone reports vibration again and again: hum, a bad contact, a crack.
     Noisy,
     /// A myosensor without contact: no number, far below the wearer's rest, or as restless as a loose electrode.
     NoContact,
     /// A myosensor's envelope stands still and mains is in it.
     Hum,
-    /// It climbs or sinks without a cause: a myosensor's envelope, or a quadrant of the force sensor against the other three.
+    /// It drifts: a myosensor's envelope, or a quadrant of the force sensor against the other three.
     Creep,
-    /// A myosensor's envelope stands still, as none of a muscle does.
+    /// A myosensor's envelope stands still, which no muscle's does.
     Flat,
-    /// A myosensor has been active for longer than anybody keeps up.
+    /// A myosensor has been active for longer than a muscle can be.
     Endless,
 }
 
-/// What the fingertip can no longer do.
+/// An ability that the fingertip may lose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Capability {
     /// Feel vibration: S1.
@@ -86,10 +86,10 @@ pub enum Capability {
     WearerIntent,
 }
 
-/// Who drives the motor in a tick.
+/// The source that drives the motor in a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum DriveSource {
-    /// Nobody: the motor is not driven.
+    /// None: the motor is not driven.
     #[default]
     Nobody,
     /// The wearer's muscles.
@@ -117,9 +117,9 @@ pub enum Fault {
         /// Index in [`CHANNELS`](crate::channel::CHANNELS).
         channel: u8,
     },
-    /// Too few sensors are left for this.
+    /// Too few sensors are left for this ability.
     CapabilityLost(Capability),
-    /// Enough of them are back.
+    /// Enough sensors for this ability are back.
     CapabilityBack(Capability),
     /// Frames were lost: the converter or its DMA fell behind and was restarted.
     FramesLost {
@@ -131,39 +131,39 @@ pub enum Fault {
     /// The last run ended in a panic.
     PanicReset,
     /// The force sensor was loaded when the hand was switched on. Its readings still count from the calibrated zero,
-    /// which is never taken by itself, but whoever relies on them should know.
+    /// which the board never takes by itself.
     PressedAtBoot {
         /// Index in [`CHANNELS`](crate::channel::CHANNELS).
         channel: u8,
     },
     /// The newest record of this is damaged, or power was lost while it was saved. The one before is used, or the default.
     RecordDamaged(Kept),
-    /// There is no room to save this. The next start makes room; until then the hand works on and forgets.
+    /// There is no room to save this. The next start makes room; until then changes are lost at power-off.
     StoreFull(Kept),
-    /// The flash did not take this: it is worn, or protected.
+    /// The flash failed to save this: it is worn or protected.
     StoreFailed(Kept),
     /// The supply fell below what the chip needs, and it was reset.
     SupplySagged,
     /// The crystal stopped, or does not start: the board runs on the chip's own oscillator, a per cent too fast or too slow. The
     /// serial line may not be understood.
     CrystalLost,
-    /// It has restarted too often in a row: nothing moves before it is switched off and on.
+    /// The board has restarted too often in a row: it drives nothing until it is switched off and on.
     TooManyRestarts,
-    /// The hand is surely open, and the force sensor still reads a load that is no offset: nothing is ever known to be unloaded.
-    /// What is learned from an empty hand stays unknown, and nobody consents by switching on.
+    /// The hand is surely open, and the force sensor still reads a load that is no offset. So the hand is never known to be empty:
+    /// zeros and noise floors are not learned, and there is no power-up consent.
     NeverUnloaded,
 }
 
-/// Why the motor is not driven although somebody asks for it.
+/// Why the motor is not driven although a source asks for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum MotorStop {
-    /// It stalled as it closed the hand. It may open it.
+    /// It stalled while closing. Opening is allowed.
     ClosingStalled,
-    /// It stalled as it opened the hand: at its stop, or the gear is jammed. To be asked for again, it is tried again.
+    /// It stalled while opening: at its stop, or the gear is jammed. A new opening command is tried again.
     OpeningStalled,
-    /// It has carried too much current for too long: it closes no further before it has cooled. It may open the hand.
+    /// Too much current for too long: closing is stopped until the motor has cooled. Opening is allowed.
     Hot,
-    /// The bridge has switched itself off and says so: a short, too hot, or too low a supply of its own.
+    /// The motor bridge reports that it has switched itself off: a short, heat, or a low supply of its own.
     BridgeOff,
 }
 
@@ -217,24 +217,24 @@ impl Code {
 /// Relative motion (v1, equation 1) and direction (v2, equation 2).
 pub type Codes = [Code; 2];
 
-/// Why the network has nothing to learn at the moment.
+/// Why the network learns nothing at the moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum NoLesson {
-    /// No teacher, or it has said less than it takes to believe it.
+    /// No teacher, or too few codes yet.
     Absent,
     /// Its last picture is too old.
     Late,
-    /// It has said opposite things in a short time, or that the hand moves while nothing does.
+    /// Its codes were opposite within a short time, or disagree: v1 says that nothing moves, v2 that the hand does.
     Contradicting,
     /// It says that neither hand nor object moves.
     NothingMoves,
     /// Nothing is held.
     NoGrasp,
-    /// The receptors feel something else: the reflex or the wearer moves the hand, or something strikes it.
+    /// The receptors are disturbed: the reflex or the wearer moves the hand, or an impact rings.
     Disturbed,
 }
 
-/// How somebody at the hand consents to what the serial line may do.
+/// How a person at the hand consents to commands of the serial line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Consent {
     /// Switched on with a finger that is known to hold nothing.
@@ -245,40 +245,40 @@ pub enum Consent {
     Button,
 }
 
-/// What the serial line may do at the moment.
+/// The commands that the serial line may give at the moment.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Line {
-    /// Read.
+    /// Reading only.
     #[default]
     Reading,
-    /// Command too, by consent.
+    /// Reading and commands, by consent.
     Armed {
-        /// For so long still, s.
+        /// Time left, s.
         left_s: u8,
     },
-    /// Command without consent: the setting `line-trusted-flag`.
+    /// Commands without consent: the setting `line-trusted-flag`.
     Trusted,
 }
 
-/// What outlives a power cut.
+/// Kind of record that outlives a power cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Kept {
-    /// What the network learned.
+    /// The network's weights.
     Network,
     /// The force sensor's zero.
     Zero,
-    /// What was set from outside, or measured by a stroke.
+    /// Settings that differ from their default.
     Settings,
     /// The wearer's calibration of the myosensors.
     Emg,
 }
 
 impl Kept {
-    /// All of it.
+    /// Every kind of record, in wire order.
     pub const ALL: [Self; 4] = [Self::Network, Self::Zero, Self::Settings, Self::Emg];
 }
 
-/// What the wearer is asked to do during the calibration of the myosensors.
+/// Prompt to the wearer during the calibration of the myosensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Prompt {
     /// Relax.
@@ -314,7 +314,7 @@ pub enum CalibrationRefusal {
     SameDirection,
     /// The states differ, but by less than they fluctuate.
     Overlap,
-    /// An envelope stood still during a contraction, as none of a muscle does.
+    /// An envelope stood still during a contraction, which no muscle's does.
     NotAMuscle,
     /// An envelope was at the top of its range.
     Saturated,
@@ -322,9 +322,9 @@ pub enum CalibrationRefusal {
     SensorLost,
     /// The words are not those of a model.
     Damaged,
-    /// The hand came to hold something, or its force sensor gave no number, and whoever holds something must be able to let it go.
+    /// The hand came to hold something, or its force sensor gave no number: the muscles must be able to open it.
     Loaded,
-    /// Somebody pressed the button again.
+    /// The button was pressed again.
     Stopped,
 }
 
@@ -354,15 +354,15 @@ impl core::fmt::Display for CalibrationRefusal {
     }
 }
 
-/// Whether what the electrodes do still fits the calibration of the myosensors.
+/// Whether contractions still fit the calibration of the myosensors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Fit {
-    /// It does, or is not known not to.
+    /// They do, or it is not known.
     #[default]
     Fits,
-    /// It does not: the electrodes have moved, or the wearer contracts otherwise. They shall calibrate anew.
+    /// They do not: the electrodes have moved, or the wearer contracts otherwise. A new calibration is needed.
     Moved,
-    /// The contractions are those that were calibrated with the electrodes exchanged.
+    /// They fit with the electrodes exchanged.
     Exchanged,
 }
 

@@ -11,6 +11,9 @@ use std::path::Path;
 use anyhow::Context;
 use serde::Serialize;
 
+/// The tests that are to be there, by requirement: one that is deleted is missed, though others show the same.
+const NAMED: &str = "docs/safety/tests.txt";
+
 /// Where `tenax test` leaves what each test said, below the workspace.
 pub const RESULTS: &str = "target/test-results.txt";
 
@@ -76,11 +79,38 @@ impl Matrix {
                 None => matrix.problems.push(format!("{file}: {test} shows {id}, which is no requirement")),
             }
         }
+        matrix.compare(&read(NAMED)?);
         matrix.hazards(&read("docs/safety.md")?);
         let results = fs::read_to_string(root.join(RESULTS)).ok();
         matrix.results(results.as_deref().unwrap_or_default());
         matrix.judge(tested, results.is_some());
         Ok(matrix)
+    }
+
+    /// Every requirement with each of its tests, as [`NAMED`] has them: in an order of their own.
+    pub fn named(&self) -> String {
+        let line = |id: &str, Test { name, file, .. }: &Test| format!("{id} {file} {name}\n");
+        let mut lines: Vec<String> = self
+            .requirements
+            .iter()
+            .flat_map(|own| own.tests.iter().map(|test| line(&own.id, test)))
+            .collect();
+        lines.sort();
+        lines.concat()
+    }
+
+    /// The tests that are there have to be those that are named.
+    fn compare(&mut self, named: &str) {
+        let now = self.named();
+        let only_in = |one: &str, other: &str| -> Vec<String> {
+            one.lines().filter(|line| !other.lines().any(|own| own == *line)).map(str::to_owned).collect()
+        };
+        self.problems
+            .extend(only_in(named, &now).iter().map(|line| format!("{line} is gone, and {NAMED} names it")));
+        let new = only_in(&now, named);
+        self.problems.extend(
+            new.iter().map(|line| format!("{line} is new: run   cargo tenax safety --named > {NAMED}")),
+        );
     }
 
     /// Both tables have to say the same of which hazard names which requirement.
@@ -248,7 +278,7 @@ mod tests {
     fn problems(of: &str, change: impl Fn(&str) -> String) -> Vec<String> {
         let copy = tempfile::tempdir().unwrap();
         let mut files: Vec<String> = shown(workspace()).unwrap().into_iter().map(|(file, ..)| file).collect();
-        files.extend(["docs/safety.md", "docs/safety/requirements.md"].map(str::to_owned));
+        files.extend(["docs/safety.md", "docs/safety/requirements.md", NAMED].map(str::to_owned));
         files.sort();
         files.dedup();
         for file in files {
@@ -267,13 +297,31 @@ mod tests {
         // The only test of its kind: with its comment gone the requirement has none.
         let file = "logic/src/mode.rs";
         let lost = problems(file, |text| text.replace("// Shows R1.", ""));
-        assert_eq!(lost, Vec::<String>::new(), "two others show it");
+        assert_eq!(lost.len(), 2, "two others show it, and both of this file are missed: {lost:?}");
+        assert!(lost.iter().all(|problem| problem.contains("is gone")), "{lost:?}");
         let lost = problems("docs/safety/requirements.md", |text| text.replace("| W4 |", "| W9 |"));
         assert!(lost.iter().any(|problem| problem.contains("shows W4, which is no requirement")), "{lost:?}");
         assert!(lost.iter().any(|problem| problem.contains("names W4, which is no requirement")), "{lost:?}");
         assert!(lost.iter().any(|problem| problem.contains("W9 has no test")), "{lost:?}");
         let lost = problems("docs/safety.md", |text| text.replace(" | R8 |", " | |"));
         assert!(lost.iter().any(|problem| problem.contains("names no requirement")), "{lost:?}");
+    }
+
+    #[test]
+    fn any_named_test_that_is_deleted_is_a_problem() {
+        let matrix = Matrix::of(workspace(), false).unwrap();
+        for (place, requirement) in matrix.requirements.iter().enumerate() {
+            for (n, test) in requirement.tests.iter().enumerate() {
+                let mut without = Matrix { problems: Vec::new(), ..matrix.clone() };
+                without.requirements[place].tests.remove(n);
+                without.compare(&matrix.named());
+                let expected = format!("{} {} {} is gone", requirement.id, test.file, test.name);
+                assert!(
+                    without.problems.len() == 1 && without.problems[0].starts_with(&expected),
+                    "{without}"
+                );
+            }
+        }
     }
 
     #[test]

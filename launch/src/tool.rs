@@ -112,7 +112,7 @@ fn is_serial(arguments: &[OsString]) -> bool {
     let mut words = arguments.iter().map(|argument| argument.to_str());
     match words.next().flatten() {
         Some("calibrate") => matches!(words.next().flatten(), Some("emg" | "force" | "friction")),
-        Some("config" | "flash" | "monitor" | "play" | "record" | "settings" | "wiring") => true,
+        Some("config" | "flash" | "monitor" | "play" | "record" | "selftest" | "settings" | "wiring") => true,
         _ => false,
     }
 }

@@ -9,7 +9,7 @@ pub const BURST: u32 = 32;
 /// What a command costs whose answer fills a quarter of a slow frame's time on the line.
 const LONG_ANSWER: u32 = 6;
 
-/// A bucket of commands that may be taken.
+/// A token bucket for commands.
 #[derive(Clone, Copy, Debug)]
 pub struct Allowance {
     left: u32,
@@ -23,7 +23,7 @@ impl Default for Allowance {
 }
 
 impl Allowance {
-    /// Whether a frame that came when `frame` was the last one ticked is decoded at all. If not, it costs no CRC.
+    /// Whether a message that came after the tick of `frame` is decoded at all. If not, it costs no CRC.
     pub fn admits(&mut self, frame: u32) -> bool {
         let earned = frame.wrapping_sub(self.earned_at) / FRAMES_EACH;
         self.earned_at = self.earned_at.wrapping_add(earned * FRAMES_EACH);

@@ -49,22 +49,29 @@ mod tests {
     use super::*;
     use tenax_hal_shim::motor::Duty;
 
-    // Shows W2.
+    /// Every wish of a source, told apart from the others' by its duty, which is only passed on.
+    fn wishes(duty: u16) -> [MotorDrive; 3] {
+        let duty = Duty::per_mille(duty);
+        [MotorDrive::Coast, MotorDrive::Close(duty), MotorDrive::Open(duty)]
+    }
+
+    // Shows W1, W2.
     #[test]
     fn the_contract_over_every_combination() {
-        let drives = [MotorDrive::Coast, MotorDrive::Close(Duty::FULL), MotorDrive::Open(Duty::FULL)];
-        let links = [None, Some(drives[0]), Some(drives[1]), Some(drives[2])];
-        for wearer in drives {
-            for link in links {
+        let mut checked = 0;
+        for wearer in wishes(1) {
+            for link in [None].into_iter().chain(wishes(2).map(Some)) {
                 for (reflex, behaviour) in
-                    drives.into_iter().flat_map(|reflex| drives.map(|behaviour| (reflex, behaviour)))
+                    wishes(3).into_iter().flat_map(|reflex| wishes(4).map(|behaviour| (reflex, behaviour)))
                 {
                     for wearer_active in [false, true] {
                         check(Wishes { wearer_active, wearer, link, reflex, behaviour });
+                        checked += 1;
                     }
                 }
             }
         }
+        assert_eq!(checked, 3 * 4 * 3 * 3 * 2);
     }
 
     fn check(wishes: Wishes) {
@@ -76,6 +83,15 @@ mod tests {
         let behaves = free && !reflex.closes() && behaviour != MotorDrive::Coast;
         let open_asked = wearer.opens() || link_opens || (behaves && behaviour.opens());
         assert_eq!(drive.opens(), open_asked, "nothing else opens, and nothing stops the wearer");
+        let own = match source {
+            DriveSource::Wearer => wearer,
+            DriveSource::Link => link.unwrap_or_default(),
+            DriveSource::Reflex => reflex,
+            DriveSource::Behaviour => behaviour,
+            DriveSource::Nobody => MotorDrive::Coast,
+        };
+        assert_eq!(drive, own, "as its source asked");
+        assert_eq!(source == DriveSource::Wearer, wearer != MotorDrive::Coast);
         assert!(!(wearer_asks && source == DriveSource::Link));
         assert!(link != Some(MotorDrive::Coast) || source != DriveSource::Link);
         assert_eq!(source == DriveSource::Reflex, free && reflex.closes());

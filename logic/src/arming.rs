@@ -1,6 +1,6 @@
-//! Arming: whose consent the serial line has to move the hand or to change what bears on its safety.
+//! Arming: consent for commands of the serial line that move the hand or bear on its safety.
 //!
-//! Reading is always free. Everything else needs consent that only somebody at the hand can give:
+//! Reading is always free. Everything else needs consent that only a person at the hand can give:
 //!
 //! | consent | how | lasts |
 //! |---|---|---|
@@ -8,15 +8,15 @@
 //! | [`Consent::Button`] | the blue button pressed | 60 s |
 //! | [`Consent::PowerUp`] | switched on with a finger that is known to hold nothing | until it holds something, 10 s at most |
 //!
-//! A consent is an act, not a state: a muscle that hums for ever or a button that is stuck consents once. A *trusted* line
-//! (setting `line-trusted-flag`) needs none: a gripper on a robot has nobody to ask.
+//! Consent is an act, not a state: a humming electrode or a stuck button consents at most once. A *trusted* line
+//! (setting `line-trusted-flag`) needs none, for a gripper on a robot.
 
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::words::{Consent, Line};
 
 use tenax_hal_shim::channel::frames;
 
-/// Frames from one look to the next, a fifth of a cycle: whoever consents takes longer than that.
+/// Frames from one step to the next, a fifth of a slow frame: every consent takes longer.
 pub const STEP_FRAMES: u32 = 5;
 /// How long a co-contraction or a press of the button counts, in steps.
 const CONSENT_STEPS: u32 = frames(60_000) / STEP_FRAMES;
@@ -29,7 +29,7 @@ pub const DEBOUNCE_STEPS: u32 = DEBOUNCE_FRAMES / STEP_FRAMES;
 /// How long a hand that was switched on empty consents, in steps.
 const POWER_UP_STEPS: u32 = frames(10_000) / STEP_FRAMES;
 
-/// What arming looks at in a step.
+/// The signs of consent in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Signs {
     /// Both muscles are active.
@@ -67,7 +67,7 @@ impl Act {
     }
 }
 
-/// What the hand has consented to.
+/// State of the consents and of the time that is left.
 #[derive(Clone, Debug)]
 pub struct Arming {
     left: u32,
@@ -91,12 +91,12 @@ impl Default for Arming {
 }
 
 impl Arming {
-    /// This start was a reset, not somebody who switched the hand on: it is no consent.
+    /// This start was a reset, not a power-up: no consent follows from it.
     pub const fn was_reset(&mut self) {
         self.power_up_left = 0;
     }
 
-    /// Goes on by one step of [`STEP_FRAMES`]. Some if a consent was given in it.
+    /// Advances by one step of [`STEP_FRAMES`]. Some if consent was given in it.
     pub fn tick(&mut self, signs: Signs) -> Option<Consent> {
         self.left = self.left.saturating_sub(1);
         self.power_up_left = match signs.unloaded {
@@ -114,13 +114,13 @@ impl Arming {
         (self.power_up && !began).then_some(Consent::PowerUp)
     }
 
-    /// Somebody at the hand consented, by muscle or button, and not too long ago.
+    /// Whether consent by muscles or button is in force.
     #[must_use]
     pub const fn is_deliberate(&self) -> bool {
         self.left > 0
     }
 
-    /// How the line stands.
+    /// The commands that the line may give. `trusted`: the setting `line-trusted-flag`.
     #[must_use]
     pub fn line(&self, trusted: bool) -> Line {
         let left = if self.power_up { self.left.max(self.power_up_left) } else { self.left };

@@ -1,8 +1,8 @@
-//! Behaviours above the reflex: what the hand does of its own accord when it is asked to (FingerVision 2017, section II).
+//! Behaviours: movements on request of the line, in addition to the reflex (FingerVision 2017, section II).
 //!
-//! A behaviour says in each tick whether it would tighten or relax the grasp. It never drives the motor itself: the reflex
-//! may tighten at any time, the wearer and the line come before both, and a wish to relax has rules of its own
-//! ([`may_relax`]). What a behaviour feels with are senses ([`Felt`]), whether a camera behind the skin gives them or the
+//! A behaviour asks in each tick to tighten or to relax the grasp. It never drives the motor itself: the reflex
+//! may tighten at any time, the wearer and the line come before both, and a request to relax has rules of its own
+//! ([`may_relax`]). Its input ([`Felt`]) comes from a camera behind the skin or from the
 //! finger's own sensors.
 //!
 //! Two behaviours expect slip and answer it themselves ([`Running::answers_slip`]): a stroke, and a hand that gives
@@ -31,7 +31,7 @@ use tenax_hal_shim::channel::frames;
 pub use self::settings::BehaviourConfig;
 pub use felt::{Felt, Skin};
 
-/// What a behaviour asks for in one tick.
+/// Request of a behaviour in one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wish {
     /// Nothing.
@@ -43,7 +43,7 @@ pub enum Wish {
     Relax(Duty),
 }
 
-/// What one tick of a behaviour comes to.
+/// Result of one tick of a behaviour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Course {
     /// It goes on, and asks for this.
@@ -58,7 +58,7 @@ const GRASP_FRAMES_MAX: u32 = frames(20_000);
 const HAND_OVER_FRAMES_MAX: u32 = frames(20_000);
 const TURN_FRAMES_MAX: u32 = frames(60_000);
 
-/// The behaviour that goes on.
+/// The behaviour that is under way.
 #[derive(Clone, Debug)]
 pub struct Running {
     what: Behaviour,
@@ -76,7 +76,7 @@ enum Doing {
 }
 
 impl Running {
-    /// Begins a behaviour. None if what it cannot do without is not there.
+    /// Begins a behaviour. None if a sensor or the camera that it needs is missing.
     #[must_use]
     pub fn begin(what: Behaviour, felt: &Felt<'_>) -> Option<Self> {
         let doing = match what {
@@ -90,7 +90,7 @@ impl Running {
         Some(Self { what, elapsed: 0, doing })
     }
 
-    /// What was asked for.
+    /// The behaviour.
     #[must_use]
     pub const fn what(&self) -> Behaviour {
         self.what
@@ -106,13 +106,13 @@ impl Running {
         }
     }
 
-    /// Goes on by one tick.
+    /// Advances by one tick.
     pub fn step(&mut self, config: &BehaviourConfig, felt: &Felt<'_>) -> Course {
         self.elapsed = self.elapsed.saturating_add(1);
         let (course, longest) = match &mut self.doing {
             Doing::Stroke => (Course::On(Wish::Rest), STROKE_FRAMES_MAX),
             Doing::GentleGrasp(grasp) => (grasp.step(config, felt), GRASP_FRAMES_MAX),
-            // Whoever holds something holds it until something else is asked for.
+            // Holding has no longest time: it lasts until another request.
             Doing::Hold(hold) => (hold.step(config, felt), u32::MAX),
             Doing::HandOver(hand_over) => (hand_over.step(config, felt), HAND_OVER_FRAMES_MAX),
             Doing::Turn(turn) => (turn.step(config, felt), TURN_FRAMES_MAX),
@@ -124,8 +124,8 @@ impl Running {
     }
 }
 
-/// Whether a behaviour may relax the grasp in this tick: the line that asked for it may still command, the finger knows what
-/// it holds, and the reflex has nothing to tighten.
+/// Whether a behaviour may relax the grasp in this tick: the line may still command, the load is
+/// known, and the reflex is not closing.
 #[must_use]
 pub const fn may_relax(line: Line, grip: Grip, mode: GripMode) -> bool {
     let commands = matches!(line, Line::Armed { .. } | Line::Trusted);

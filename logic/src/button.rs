@@ -1,4 +1,4 @@
-//! The button at the hand: what a wearer can do without a PC. Any press consents as well ([`arming`](crate::arming)).
+//! The button at the hand, for a wearer without a PC. Any press consents as well ([`arming`](crate::arming)).
 //!
 //! | the finger | pressed | the hand |
 //! |---|---|---|
@@ -15,14 +15,14 @@ use crate::arming::{DEBOUNCE_STEPS, STEP_FRAMES};
 const RELEASE_STEPS: u32 = frames(1_000) / STEP_FRAMES;
 const CALIBRATE_STEPS: u32 = frames(3_000) / STEP_FRAMES;
 
-/// What a press asks for.
+/// Request of a press.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Press {
-    /// To open a hand that holds.
+    /// Open a hand that holds.
     Release,
-    /// To learn the wearer's muscles anew.
+    /// Calibrate the wearer's muscles.
     Calibrate,
-    /// To stop doing so.
+    /// Stop the release or calibration.
     Stop,
 }
 
@@ -38,8 +38,8 @@ pub struct Button {
 }
 
 impl Button {
-    /// Goes on by one step. `empty`: the finger is known to hold nothing; `busy`: it does what a press has
-    /// asked for.
+    /// Advances by one step of [`STEP_FRAMES`](crate::arming::STEP_FRAMES). `empty`: the finger is known to hold nothing. `busy`: a
+    /// release or calibration is under way.
     pub fn tick(&mut self, is_down: bool, empty: bool, busy: bool) -> Option<Press> {
         if !is_down {
             self.up = self.up.saturating_add(1);

@@ -16,12 +16,12 @@ use crate::photoelastic::HeadConfig;
 use crate::setting::{Row, SettingId, Settings, settings};
 use crate::vibration::settings::VibrationConfig;
 
-/// All of it.
+/// The configuration of one fingertip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Config {
-    /// S1.
+    /// S1's settings.
     pub vibration: VibrationConfig,
-    /// S2.
+    /// S2's settings.
     pub friction: FrictionConfig,
     /// The Hebbian detector.
     pub hebbian: HebbianConfig,
@@ -29,9 +29,9 @@ pub struct Config {
     pub gate: GateConfig,
     /// The reflex.
     pub grip: GripConfig,
-    /// What the motor bears.
+    /// The motor's limits.
     pub motor: MotorConfig,
-    /// What is above it.
+    /// The behaviours.
     pub behaviour: BehaviourConfig,
     /// The photoelastic head.
     pub head: HeadConfig,
@@ -39,7 +39,7 @@ pub struct Config {
     pub line_trusted: bool,
     /// Frames are streamed from the start on.
     pub stream_at_start: bool,
-    /// There is no wearer: a myosensor that gives no number is not missed.
+    /// There is no wearer: the reflex works without myosensors.
     pub no_wearer: bool,
     /// Detectors that the reflex does not act on.
     pub detectors_off: DetectorSet,
@@ -49,15 +49,17 @@ pub struct Config {
 
 settings! {
     Config:
-    /// 1: the serial line moves the hand without consent (a gripper on a robot). Set by muscle or button only
+    /// 1: the serial line moves the hand without consent (a gripper on a robot). Setting it needs consent by muscles or button, not by
+    /// power-up
     40 LineTrusted "line-trusted-flag" "flag" [0, 1] = 0 => Flag(line_trusted);
     /// 1: frames are streamed from the start on, so that a recording can be replayed bit for bit
     41 StreamAtStart "stream-at-start-flag" "flag" [0, 1] = 0 => Flag(stream_at_start);
-    /// 1: no wearer, the reflex works without myosensors (a gripper on a robot). Set by muscle or button only
+    /// 1: no wearer, the reflex works without myosensors (a gripper on a robot). Setting it needs consent by muscles or button, not by
+    /// power-up
     42 NoWearer "no-wearer-flag" "flag" [0, 1] = 0 => Flag(no_wearer);
     /// Detectors that the reflex does not act on, the sum of: 1 Hebbian, 2 MLP, 4 photoelastic, 8 S2, 16 S1
     74 DetectorsOff "detectors-off-mask" "mask" [0, 7, trusted 0, 31] = 0 => Mask(detectors_off);
-    /// Vibration motor that tells the wearer of force, slip and losses: 0 off, 1 discreet, 2 strong
+    /// Vibration motor that signals force, slip and losses to the wearer: 0 off, 1 discreet, 2 strong
     78 Feedback "feedback-choice" "choice" [0, 2] = 0 => Number(feedback);
 }
 
@@ -125,7 +127,7 @@ impl Config {
     /// # Errors
     /// If the value is not accepted: the values that are. Then nothing has changed.
     pub fn set(&mut self, id: SettingId, value: i32) -> Result<(), RangeInclusive<i32>> {
-        // A stroke may have measured what nobody may choose: it comes back from a file.
+        // A stroke may have measured a value outside the range; an exported file brings it back.
         if value == self.get(id) {
             return Ok(());
         }
@@ -151,12 +153,12 @@ impl Config {
         is_friction
     }
 
-    /// Whoever relies on consent relies on the narrower ranges too.
+    /// Brings every setting into the range of a line that is not trusted.
     fn bound(&mut self) {
         for id in SettingId::ALL {
             let (min, max) = id.row().range_in_force(self.line_trusted).into_inner();
             let value = self.get(id);
-            // Not by `clamp`, which panics where nobody can see that one is the lower.
+            // Not by `clamp`, which panics unless the compiler can see that `min` is not above `max`.
             let within = value.max(min).min(max);
             if value != within {
                 self.put(id, within);

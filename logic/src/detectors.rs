@@ -1,4 +1,4 @@
-//! The detectors: one trait, one static list, one record of what was said and what is believed.
+//! The detectors: one trait, one static list, one record of what they report and which reports are believed.
 //!
 //! `docs/adding-a-detector.md` says what one more takes.
 
@@ -22,14 +22,14 @@ use crate::vibration::detector::S1;
 
 pub use injected::Injected;
 
-/// What was sensed in one frame, conditioned: what every detector judges by.
+/// Conditioned signals of one frame: the input of every detector.
 #[derive(Clone, Copy, Debug)]
 pub struct Sensed<'a> {
     /// Sequence number of the frame.
     pub frame: u32,
-    /// Its slot in the cycle, 0 to 24.
+    /// Its slot in the slow frame, 0 to 24.
     pub slot: u8,
-    /// Whether the frame came in whole. Then only time has passed.
+    /// Whether the frame is valid. If not, it has no samples and only time has passed.
     pub valid: bool,
     /// The vibration of all PVDF channels.
     pub vibration: Vibration,
@@ -45,13 +45,13 @@ pub struct Sensed<'a> {
     pub forces_are_new: bool,
     /// The normal-force array's last readings.
     pub taxels: &'a Reading,
-    /// The photoelastic head. While its place is a film's it has heard nothing.
+    /// The photoelastic head; without readings while a film is in its place.
     pub head: &'a Head,
     /// The finger is known to touch nothing.
     pub unloaded: bool,
     /// The finger holds something.
     pub grasp: bool,
-    /// The motor runs fast, or an impact rings: vibration that is not the object's.
+    /// The motor runs fast, or an impact rings: vibration does not come from the object.
     pub noisy: bool,
     /// The reflex or the wearer moves the hand.
     pub moves: bool,
@@ -59,40 +59,40 @@ pub struct Sensed<'a> {
     pub wearer: bool,
 }
 
-/// What a detector says: the object slips, or is about to.
+/// A detector's report: the object slips, or is about to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Said {
-    /// It slips.
+    /// The object slips.
     pub slip: bool,
-    /// It is about to.
+    /// The object is about to slip: a warning.
     pub incipient: bool,
 }
 
 impl Said {
-    /// Nothing.
+    /// Neither slip nor a warning.
     pub const NOTHING: Self = Self { slip: false, incipient: false };
 
-    /// It slips, or nothing.
+    /// Slip or not, without a warning.
     #[must_use]
     pub const fn slip(slip: bool) -> Self {
         Self { slip, incipient: false }
     }
 }
 
-/// The rest of a detector's evidence. Computed once a cycle, so it may cost something.
+/// The rest of a detector's evidence, computed once a slow frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Description {
-    /// How sure it is, per mille.
+    /// Confidence that the object slips, 0 to 1000 per mille.
     pub confidence_permille: u16,
-    /// Where to the object slips.
+    /// The direction of slip.
     pub direction: Direction,
-    /// Whether it can be asked at all.
+    /// Whether the detector has the input that it needs.
     pub health: DetectorHealth,
-    /// What it decided by, on its own scale: see [`Evidence::raw`].
+    /// The number that it compares with its threshold, on its own scale: see [`Evidence::raw`].
     pub raw: i32,
 }
 
-/// A detector. Its state is its own, its configuration is not.
+/// A detector. It owns its state; its configuration is passed in.
 ///
 /// ```
 /// use tenax_hal_shim::detector::DetectorId;
@@ -118,19 +118,19 @@ pub struct Description {
 pub trait Detector {
     /// Its row in the list of detectors.
     const ID: DetectorId;
-    /// Cycles in a row for which it may report slip of an empty hand before it is ignored.
+    /// Slow frames in a row for which it may report slip of an empty hand before it is ignored.
     const IMPLAUSIBLE_AFTER: u16 = 0;
-    /// What can be chosen about it.
+    /// Its settings.
     type Config;
 
-    /// Takes one frame. None if it decides nothing in it: what it said before stands.
+    /// Takes one frame. None: no new conclusion, and the last report stands.
     fn step(&mut self, config: &Self::Config, sensed: &Sensed<'_>) -> Option<Said>;
 
     /// The rest of its evidence: confidence, direction, health, raw number.
     fn describe(&self, config: &Self::Config) -> Description;
 }
 
-/// The slot in which the detectors are guarded that decide more often than once a cycle.
+/// The slot in which plausibility of all detectors but the MLP is judged.
 const OTHERS_GUARDED: u8 = slot_of(Job::Think) + 1;
 
 /// Runs a piece of code with each detector and its configuration: the static list of them.
@@ -163,22 +163,22 @@ macro_rules! for_each_detector {
     }};
 }
 
-/// All detectors, and what they say.
+/// All detectors and their reports.
 #[derive(Clone, Debug, Default)]
 pub struct Detectors {
     s1: S1,
-    /// S2, which a stroke measures.
+    /// S2; strokes measure its threshold.
     pub s2: FrictionDetector,
     /// The Hebbian network, which a teacher teaches.
     pub hebbian: HebbianDetector,
     mlp: MlpDetector,
-    /// Evidence from outside.
+    /// Reports from outside.
     pub injected: Injected,
     photoelastic: PhotoelasticDetector,
     record: Record,
 }
 
-/// What each detector said, when it decided so, and whether the guard ignores it.
+/// Last report of each detector, its frame, and whether the guard ignores it.
 #[derive(Clone, Debug, Default)]
 struct Record {
     slip: DetectorSet,
@@ -250,7 +250,7 @@ impl Detectors {
         });
     }
 
-    /// The reflex tightens because S2 warns: nothing was said to slip.
+    /// The reflex tightens because S2 warns: the array's next reports may come from that.
     #[inline(never)]
     pub const fn tightened(&mut self) {
         self.record.disturbance.begin();
@@ -262,7 +262,7 @@ impl Detectors {
         self.record.slip
     }
 
-    /// The detectors that warn of it.
+    /// The detectors that warn of slip.
     #[must_use]
     pub const fn incipient(&self) -> DetectorSet {
         self.record.incipient
@@ -274,7 +274,7 @@ impl Detectors {
         self.record.ignored
     }
 
-    /// What each detector concluded last.
+    /// Each detector's last conclusion.
     #[must_use]
     #[inline(never)]
     pub fn evidence(&mut self, config: &Config) -> Vec<(DetectorId, Evidence), DETECTORS_MAX> {

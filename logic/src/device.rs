@@ -1,6 +1,6 @@
 //! The fingertip as a device on a line: frames and commands in, drives, messages and records out.
 //!
-//! The flashed image, the host's board and the comparison of the two share it, so that what a command is answered with is
+//! The flashed image, the host's board and the comparison of the two share it, so that answers to commands are
 //! decided in one place.
 //!
 //! ```
@@ -37,7 +37,7 @@ use crate::store::keeper::Keeper;
 use crate::store::record::Record;
 use crate::stream::Stream;
 
-/// A fingertip, and what it takes to answer for it.
+/// A fingertip with its session, command answers, records and outgoing messages.
 #[derive(Clone, Debug)]
 pub struct Device {
     fingertip: Fingertip,
@@ -55,7 +55,7 @@ impl Default for Device {
 }
 
 impl Device {
-    /// With a fingertip that has not ticked yet.
+    /// A device with this fingertip, which has not ticked yet.
     #[must_use]
     pub fn new(fingertip: Fingertip) -> Self {
         let keeper = fingertip.keeper();
@@ -69,7 +69,7 @@ impl Device {
         }
     }
 
-    /// One whose line needs no consent: a gripper's, or a bench's.
+    /// A device whose line needs no consent: for a gripper or a bench.
     #[must_use]
     pub fn trusting() -> Self {
         Self::new(Fingertip::trusting())
@@ -81,18 +81,18 @@ impl Device {
         &self.fingertip
     }
 
-    /// The fingertip, to be ticked by somebody who measures it: see [`tick`](Self::tick).
+    /// The fingertip, for a caller that ticks and measures it: see [`tick`](Self::tick).
     pub const fn fingertip_mut(&mut self) -> &mut Fingertip {
         &mut self.fingertip
     }
 
-    /// Takes up what was kept through a power cut, before the first tick.
+    /// Restores a saved record of this kind. Call it before the first tick.
     pub fn restore(&mut self, kept: Kept, payload: &[u8]) {
         self.fingertip.restore(kept, payload);
         self.keeper = self.fingertip.keeper();
     }
 
-    /// Says who it is, once everything that was kept is taken up: the message that comes after the hello.
+    /// The message `About`, which follows the hello. Call it after all records are restored.
     #[inline(never)]
     pub fn start(&mut self, identity: Identity) -> Up {
         self.identity = identity;
@@ -111,45 +111,45 @@ impl Device {
         About { identity: self.identity, schema: SCHEMA, frames: self.stream.next(), settings }
     }
 
-    /// Reports something that went wrong outside.
+    /// Reports a fault that was found outside the logic.
     pub fn report(&mut self, fault: Fault) {
         self.fingertip.report(fault);
     }
 
-    /// Whether the button at the hand is down, until this says otherwise.
+    /// Sets whether the button at the hand is down, until the next call.
     pub const fn button(&mut self, is_down: bool) {
         self.fingertip.button(is_down);
     }
 
-    /// Whether the motor's bridge says that it has switched itself off, until this says otherwise. Say it once a slow frame.
+    /// Sets whether the motor bridge reports that it has switched itself off, until the next call. Call it once a slow frame.
     pub const fn bridge(&mut self, is_off: bool) {
         self.fingertip.bridge(is_off);
     }
 
-    /// Whether the light at the hand is on: it shows what a calibration asks for, and what came of it.
+    /// Whether the light at the hand is on: it shows what a calibration asks for, and its result.
     #[must_use]
     pub fn light(&self) -> bool {
         self.fingertip.light()
     }
 
-    /// How to drive the vibration motor, once a slow frame: [`feedback`](crate::feedback).
+    /// Duty of the vibration motor ([`feedback`](crate::feedback)). Call it once a slow frame.
     pub fn feedback(&mut self) -> Duty {
         self.fingertip.feedback()
     }
 
-    /// This start was a reset, not somebody who switched the hand on. To be said before the first tick.
+    /// This start was a reset, not a power-up: no consent follows from it. Call it before the first tick.
     pub const fn was_reset(&mut self) {
         self.fingertip.was_reset();
     }
 
-    /// Takes one frame, and says how to drive the motor until the next.
+    /// Takes one frame and gives the motor's drive until the next, 0.5 ms later.
     pub fn tick(&mut self, frame: &Frame) -> MotorDrive {
         let drive = self.fingertip.tick(frame);
         self.sampled(frame);
         drive
     }
 
-    /// What a frame read, for whoever asks, and what is thought about once a slow frame. Part of [`tick`](Self::tick).
+    /// Streams the frame's samples if asked, and does the work of a slow frame. Part of [`tick`](Self::tick).
     pub fn sampled(&mut self, frame: &Frame) {
         self.samples.record(frame);
         self.stream.record(frame);
@@ -165,7 +165,7 @@ impl Device {
         self.answer(received, done)
     }
 
-    /// What is to be told of a command, before its answer, if frames are streamed.
+    /// The message `Taken` of a command, to be sent before its answer, if frames are streamed.
     #[must_use]
     pub fn taken(&self, received: &Received<Down>) -> Option<Up> {
         let Received { sequence: of, message: command } = *received;
@@ -175,7 +175,7 @@ impl Device {
     /// Carries out a command. Part of [`command`](Self::command).
     ///
     /// # Errors
-    /// Says why it was not carried out; then nothing has changed.
+    /// The reason why it was not carried out; nothing has changed then.
     pub fn carry_out(&mut self, received: &Received<Down>) -> Result<(), Refusal> {
         match received.message {
             Down::Open { nonce } => self.session.open(nonce, received.sequence)?,
@@ -188,7 +188,7 @@ impl Device {
         self.fingertip.command(&received.message)
     }
 
-    /// The answer to a command that was `done`. Part of [`command`](Self::command).
+    /// The answer to a command with this result. Part of [`command`](Self::command).
     pub fn answer(&mut self, received: &Received<Down>, done: Result<(), Refusal>) -> Up {
         let answer = match (done, received.message) {
             (Err(refusal), _) => Answer::Refused(refusal),
@@ -207,7 +207,7 @@ impl Device {
             (Ok(()), Down::Samples) => Answer::Samples(self.samples.in_order()),
             (Ok(()), Down::Hello) => Answer::Nonce(self.session.offer()),
             (Ok(()), Down::About) => Answer::About(self.about()),
-            // Whoever has a memory that outlives a reset puts into it what it holds.
+            // The image, whose memory outlives a reset, fills in the bytes.
             (Ok(()), Down::Last(from)) => Answer::Last(Last::nothing(from)),
             (Ok(()), Down::Network) => Answer::Network(self.fingertip.network()),
             (Ok(()), _) => Answer::Done,
@@ -225,7 +225,7 @@ impl Device {
         Setting { id: id.number(), value: self.fingertip.config().get(id) }
     }
 
-    /// Whether there is a message that was not taken yet.
+    /// Whether a message waits to be sent.
     #[must_use]
     pub fn has_message(&self) -> bool {
         self.fingertip.has_slow()
@@ -234,7 +234,7 @@ impl Device {
             || self.fingertip.has_event()
     }
 
-    /// The oldest message that was not taken yet. Ask after every tick.
+    /// Takes the oldest message that waits to be sent. Call it after every tick until it gives None.
     pub fn next_message(&mut self) -> Option<Up> {
         // Moving a slow frame that is not there would cost as much as moving one that is.
         if self.fingertip.has_slow() {
@@ -255,12 +255,12 @@ impl Device {
         None
     }
 
-    /// What has to be kept and is not yet. Ask once a slow frame; who asks saves it: it is given once.
+    /// The next record to save. Call it once a slow frame and save the result: each record is given once.
     pub fn next_record(&mut self) -> Option<Record> {
         self.fingertip.next_record(&mut self.keeper)
     }
 
-    /// A slow frame has gone by: what was saved is a while ago. Call it once a slow frame.
+    /// Advances the pauses between saves by a slow frame. Call it once in each.
     pub fn slow_frame_passed(&mut self) {
         self.keeper.pass(FRAMES_PER_SLOW_FRAME.into());
     }

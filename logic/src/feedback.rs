@@ -30,20 +30,20 @@ const STEPS: u8 = 6;
 const WHOLE: u8 = 20;
 const STEP_0: u8 = 14;
 
-/// What is felt in a slow frame.
+/// Input of the feedback in a slow frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Felt {
-    /// What the reflex is doing.
+    /// Mode of the reflex.
     pub mode: GripMode,
-    /// Load on the finger, mN; None of one that holds nothing or is not known.
+    /// Load on the finger, mN. None: it holds nothing, or the force is unknown.
     pub load_mn: Option<i32>,
     /// The finger is known to touch nothing.
     pub unloaded: bool,
-    /// Something that the hand needs was lost since the last slow frame.
+    /// A sensor, an ability or the motor was lost since the last slow frame.
     pub lost: bool,
 }
 
-/// The patterns, from slow frame to slow frame.
+/// State of the patterns.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Feedback {
     /// What is still to come of a pattern, its part of the full duty, and whether it tells slip.
@@ -68,7 +68,7 @@ impl Feedback {
         }
     }
 
-    /// Takes a slow frame: how to drive the vibration motor until the next. `choice`: 0 off, 1 discreet, 2 strong.
+    /// Takes a slow frame and gives the vibration motor's duty until the next. `choice`: 0 off, 1 discreet, 2 strong.
     pub fn step(&mut self, choice: u16, felt: &Felt) -> Duty {
         self.slip_in = self.slip_in.saturating_sub(1);
         self.warning_in = self.warning_in.saturating_sub(1);

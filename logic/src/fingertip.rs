@@ -1,7 +1,7 @@
 //! The whole fingertip: a frame goes in, a motor drive comes out.
 //!
-//! In each tick the senses take the frame, the machine of figure 9 asks them its questions in the paper's order (first
-//! the wearer, then S1, then S2), and the arbiter says who drives the motor.
+//! In each tick the senses take the frame, the state machine (Prosthesis, figure 9) asks in the paper's order (first
+//! the wearer, then S1, then S2), and the arbiter chooses the source that drives the motor.
 
 mod behave;
 mod commands;
@@ -36,22 +36,22 @@ use crate::store::keeper::{Keeper, Now};
 use crate::store::payload;
 use crate::store::record::Record;
 
-/// Consent is looked for in this slot of each step: the array's heaviest share is in another.
+/// Slot of each step in which consent is checked: the array's heaviest share is in another.
 const CONSENT_SLOT: u32 = 0;
-/// One of these slots, after the force's: what the grip lacks. Thinking has no time left for it.
+/// The slot, one of these and after the forces', in which the missing force is computed; `think` has no time left for it.
 const FEEL_SLOT: u8 = 20;
 const _: () = assert!(FEEL_SLOT > slot_of(Job::Forces) && FEEL_SLOT as u32 % STEP_FRAMES == CONSENT_SLOT);
 
-/// Another: what the motor bears. Neither the array nor the forces have work in it.
+/// Another one, in which the motor's limits are judged. Neither the array nor the forces have work in it.
 const MOTOR_SLOT: u8 = 5;
 const _: () =
     assert!(MOTOR_SLOT as u32 % STEP_FRAMES == CONSENT_SLOT && MOTOR_SLOT < slot_of(Job::ArrayBegins));
 
-/// The fingertip's memory between ticks.
+/// State of one fingertip: configuration, senses, detectors, reflex and journal.
 #[derive(Clone, Debug, Default)]
 pub struct Fingertip {
     config: Config,
-    /// Changes of the settings, so that nobody has to compare them all.
+    /// Counts changes of the settings, so that they need not be compared.
     settings_changed: u32,
     /// Calibrations of the myosensors since the start.
     calibrated: u32,
@@ -67,19 +67,19 @@ pub struct Fingertip {
     arming: Arming,
     button_is_down: bool,
     button: Button,
-    /// What was last told about the line, and about the wearer.
+    /// State of the line and of `no_wearer` that was reported last.
     line: Line,
     told_no_wearer: bool,
     journal: Journal,
     feedback: Feedback,
     slow: Option<Slow>,
     save_asked: bool,
-    /// What the last tick was asked for, and how it drove the motor.
+    /// Drive that the arbiter chose in the last tick, and the drive after the motor's limit.
     asked: MotorDrive,
     drive: MotorDrive,
-    /// What is wished from outside: see [`wish`](Self::wish).
+    /// Load limit of an injected warning, mN: see [`wish`](Self::wish).
     wish_mn: Option<i32>,
-    /// Since the last look at the drive it opened by what the reflex had added.
+    /// Since the last look at the drive the reflex has released force that it had added.
     took_back: bool,
 }
 
@@ -90,14 +90,14 @@ impl Fingertip {
         Self { config, ..Self::default() }
     }
 
-    /// One whose line needs no consent: a gripper's, or a bench's.
+    /// A fingertip whose line needs no consent: for a gripper or a bench.
     #[must_use]
     pub fn trusting() -> Self {
         Self::new(Config { line_trusted: true, ..Config::default() })
     }
 
-    /// Takes up what was kept through a power cut, before the first tick. What it cannot use it reports; the defaults
-    /// stay.
+    /// Restores a saved record of this kind. Call it before the first tick. A record that cannot be used is reported as a
+    /// fault, and the defaults stay.
     #[inline(never)]
     pub fn restore(&mut self, kept: Kept, payload: &[u8]) {
         let restored = match kept {
@@ -117,13 +117,13 @@ impl Fingertip {
         }
     }
 
-    /// Decides when changes are saved; what there is now counts as saved.
+    /// A keeper that decides when changes are saved. The present state counts as saved.
     #[must_use]
     pub fn keeper(&self) -> Keeper {
         Keeper::new(&self.now())
     }
 
-    /// The next record to save, None if there is none. Call it regularly, and save what it gives: each record is given once.
+    /// The next record to save, None if there is none. Call it regularly and save the result: each record is given once.
     #[inline(never)]
     pub fn next_record(&mut self, keeper: &mut Keeper) -> Option<Record> {
         let now = self.now();
@@ -138,7 +138,7 @@ impl Fingertip {
         })
     }
 
-    /// What there is to keep.
+    /// The state that the keeper compares.
     fn now(&self) -> Now {
         Now {
             settings_changed: self.settings_changed,
@@ -150,20 +150,20 @@ impl Fingertip {
         }
     }
 
-    /// Tells of something that went wrong outside.
+    /// Reports a fault that was found outside the logic.
     pub fn report(&mut self, fault: Fault) {
         self.journal.fault(fault);
     }
 
-    /// Takes one frame, decides, and says how to drive the motor until the next.
+    /// Takes one frame and gives the motor's drive until the next, 0.5 ms later.
     ///
-    /// Frames come one by one, lost ones included ([`Frame::lost`]): time is counted by them.
+    /// Every frame must be passed, lost ones too ([`Frame::lost`]), since time is counted in frames.
     pub fn tick(&mut self, frame: &Frame) -> MotorDrive {
         self.sense(frame);
         self.act(frame)
     }
 
-    /// What about muscles and films takes too long for a tick. Call it once a slow frame, always after the same tick.
+    /// Computes on muscles and films what takes too long for a tick. Call it once a slow frame, always after the same tick.
     pub fn think(&mut self) {
         self.senses.think(&self.config, &mut self.journal);
         if self.senses.muscles_mut().think(&mut self.journal) {
@@ -171,11 +171,11 @@ impl Fingertip {
         }
     }
 
-    /// What the grip lacks, for the pulse that is on or comes.
+    /// Gives the reflex the load and the missing force, for the present or the next pulse.
     fn feel(&mut self) {
         let held = self.senses.forces.filter(|_| matches!(self.senses.grip, Grip::Holds(_)));
         let slides = self.reflex.slides(self.mode);
-        // What a detector of its own warns of is answered as ever.
+        // A warning of the finger's own detectors is answered without the limit of a wish.
         let own = self.detectors.incipient().without(DetectorSet::only(DetectorId::Injected));
         let s2 = &mut self.detectors.s2;
         let lacks = held.map(|forces| s2.lacks(&self.config.friction, &forces, slides));
@@ -190,7 +190,7 @@ impl Fingertip {
         self.reflex.relax(self.mode, reading.filter(|_| self.may_relax()).as_ref());
     }
 
-    /// Whether what the reflex added may be taken back: that was chosen, and nobody else moves the hand.
+    /// Whether the reflex may release force that it added: `relax-choice` allows it, and no other source moves the hand.
     fn may_relax(&self) -> bool {
         self.config.grip.may_relax(self.config.no_wearer)
             && self.senses.all_ready(&self.config)
@@ -199,22 +199,22 @@ impl Fingertip {
             && self.behaviour.is_none()
     }
 
-    /// Evidence from outside, from the next frame on.
+    /// Sets the report of the detector `injected`, from the next frame on.
     pub const fn inject(&mut self, said: Said) {
         self.detectors.injected.inject(said);
     }
 
-    /// The load that whoever injects a warning wishes for, mN: its pulse goes no further.
+    /// Sets the load at which the pulse of an injected warning ends, mN. None: no limit of its own.
     pub const fn wish(&mut self, load_mn: Option<i32>) {
         self.wish_mn = load_mn;
     }
 
-    /// The reflex acts on these detectors alone from now on: for a scene's controls and its bound.
+    /// Restricts the reflex to these detectors from now on: for a scene's controls and its bound.
     pub const fn act_on(&mut self, detectors: DetectorSet) {
         self.acting = Acting(detectors);
     }
 
-    /// Nobody moves the hand and nobody teaches.
+    /// Whether no source moves the hand and no lesson is on.
     fn is_at_rest(&self) -> bool {
         let listening = matches!(self.mode, GripMode::Standby | GripMode::Watch);
         listening
@@ -245,15 +245,15 @@ impl Fingertip {
         if u32::from(frame.slot()) % STEP_FRAMES == CONSENT_SLOT {
             self.consent();
             if self.senses.muscles().is_calibrating() && !matches!(self.senses.grip, Grip::Unloaded) {
-                // The muscles must be able to open a hand that holds something, or may.
+                // The muscles must be able to open a hand that holds something or may hold something.
                 self.senses.muscles_mut().give_up(CalibrationRefusal::Loaded, &mut self.journal);
             }
             if frame.slot() == FEEL_SLOT {
                 self.feel();
             }
-            // Before this frame drives: what the last ones did.
+            // The drive of the last frames, before this one drives.
             let striking = matches!(self.mode, GripMode::Slip | GripMode::Settle);
-            // A hand that stalls at its stop as it opens is open.
+            // A hand that stalls while opening is at its stop, so the request counts.
             let did = if self.asked.opens() { self.asked } else { self.drive };
             self.senses.driven(did, core::mem::take(&mut self.took_back), striking, STEP_FRAMES);
             self.senses.motor.step(self.asked, self.drive);
@@ -284,10 +284,10 @@ impl Fingertip {
             reflex: self.reflex.drive(&self.config.grip, self.mode),
             behaviour,
         };
-        // A lost frame says nothing about anybody's wish, so nobody's is carried out.
+        // A lost frame shows no wish, so none is carried out.
         let (asked, source) = if frame.valid { arbitrate(wishes) } else { Default::default() };
         self.asked = asked;
-        // The place of a behaviour, where none is: the reflex takes back.
+        // Without a behaviour its place belongs to the reflex, which releases force.
         let source = match source {
             DriveSource::Behaviour if self.behaviour.is_none() => DriveSource::Reflex,
             source => source,
@@ -325,7 +325,7 @@ impl Fingertip {
         drive
     }
 
-    /// The flow chart, asked from the top in every tick.
+    /// Steps the flow chart of Prosthesis, figure 9, from its top.
     fn step_mode(&mut self, verdicts: Verdicts, grip: Grip) {
         let config = self.config.grip;
         let answered = self.behaviour.as_ref().is_some_and(Running::answers_slip);
@@ -355,7 +355,7 @@ impl Fingertip {
         }
     }
 
-    /// Says why a pulse begins.
+    /// Reports why a pulse begins: margin, detectors that report, detectors that are believed.
     #[inline(never)]
     fn explain(&mut self, Verdicts { said, slip, incipient }: Verdicts) {
         let s2_permille = self.detectors.s2.s2_permille(&self.config.friction);
@@ -363,7 +363,7 @@ impl Fingertip {
         self.journal.event(EventKind::Pulse { margin_mn, said, believed: slip.or(incipient) });
     }
 
-    /// Lets a cause do what the table says, if it says anything: nearly always it does not.
+    /// Changes the mode if the table has a step for this cause; mostly it has none.
     #[inline]
     fn cause(&mut self, cause: Cause) {
         if let Some(to) = mode::next(self.mode, cause) {
@@ -385,7 +385,7 @@ impl Fingertip {
         self.journal.mode(from, to, cause);
     }
 
-    /// A stroke is over, by command or because somebody took over: what it measured becomes S2, if that is allowed.
+    /// Ends a stroke, by command or because another source took over: sets S2 from it, if the value is allowed.
     #[inline(never)]
     fn measured(&mut self) {
         let Some(measured) = self.detectors.s2.end_stroke(&self.config.friction) else {

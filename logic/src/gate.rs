@@ -1,9 +1,9 @@
-//! The myoelectric gate: what the wearer asks for, and whether they ask for anything (Prosthesis, section 5: "the sensor
+//! The myoelectric gate: the wearer's drive, and whether a muscle is active (Prosthesis, section 5: "the sensor
 //! system should be activated only in case the myosensors are not active").
 //!
-//! What the two envelopes mean is decided in [`emg`](crate::emg). Here it becomes a motor drive, and activity is held for
-//! a while, so that the reflex does not speak between two contractions. A wish that is not proven moves a hand that may hold
-//! something slowly, and by little: a fault of an electrode drops nothing.
+//! [`emg`](crate::emg) turns the two envelopes into a wish. The gate turns the wish into a motor drive and holds activity for
+//! a while, so that the reflex stays silent between two contractions. An unproven wish moves a hand that may hold
+//! something slowly and by little, so that a fault of an electrode drops nothing.
 
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 
@@ -11,17 +11,17 @@ use crate::emg::Verdict;
 use crate::emg::decide::Wish;
 use crate::emg::settings::GateConfig;
 
-/// What an unproven opening may travel, as frames times per mille of duty: 0.7 mm with a gripper of 120 mm/s.
+/// Travel of an unproven opening at most, frames times per mille of duty: 0.7 mm with a gripper of 120 mm/s.
 const OPENS_AT_MOST: u32 = 11_600;
-/// Frames for which an unproven closing may: 92 ms.
+/// Frames of an unproven closing at most: 92 ms.
 const CLOSES_AT_MOST: u32 = 184;
-/// Frames for which a release opens, at most, 4 s: at the slowest duty all of the range. And after nothing is felt any more.
+/// Frames for which a release opens at most, 4 s: the whole range at the slowest duty. And after nothing is felt any more.
 const RELEASE_FRAMES: u32 = 8_000;
 const RELEASED_FRAMES: u32 = 1_000;
-/// Frames of known rest that renew both: 4 s.
+/// Frames of known rest that renew both limits: 4 s.
 const RENEWED_AFTER: u32 = 8_000;
 
-/// Both muscles.
+/// State of both muscles, the hold time and the limits of unproven wishes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Gate {
     verdict: Verdict,
@@ -31,7 +31,7 @@ pub struct Gate {
     half_known_frames: u32,
     /// Frames of known rest in a row.
     rest_frames: u32,
-    /// What unproven wishes have opened and closed since they were last renewed.
+    /// Travel of unproven openings and frames of unproven closings since the limits were renewed.
     opened: u32,
     closed: u32,
     /// The finger touches nothing.
@@ -41,37 +41,37 @@ pub struct Gate {
 }
 
 impl Gate {
-    /// Takes what the muscles say from now on.
+    /// Takes the muscles' verdict, which holds until the next.
     pub const fn take(&mut self, verdict: Verdict) {
         self.verdict = verdict;
     }
 
-    /// Takes a muscle's envelope above rest, mV, none where the sensor gives no number: 0 the flexor's, others the
-    /// extensor's. It is only told, not decided on.
+    /// Takes a muscle's envelope above rest, mV, None if the sensor gives no number. Muscle 0 is the flexor, others the
+    /// extensor. For telemetry only.
     pub const fn show(&mut self, muscle: usize, mv: Option<i16>) {
         self.mv[if muscle == 0 { 0 } else { 1 }] = mv;
     }
 
-    /// Opens slowly from now on, whatever the sensors say, until nothing is felt or a muscle closes the hand: somebody at the
-    /// hand has pressed its button.
+    /// Begins (or ends) a release by the button: the hand opens slowly, whatever the sensors say, until nothing is felt or a
+    /// muscle closes it.
     pub const fn release(&mut self, on: bool) {
         self.release = if on { RELEASE_FRAMES } else { 0 };
     }
 
-    /// Goes on by so many frames of a release.
+    /// Advances a release by so many frames.
     pub fn step_release(&mut self, frames: u32) {
         let most = if self.empty { RELEASED_FRAMES } else { RELEASE_FRAMES };
         let closes = matches!(self.verdict, Verdict { wish: Wish::Close, proven: true, .. });
         self.release = if closes { 0 } else { self.release.saturating_sub(frames).min(most) };
     }
 
-    /// Whether it opens after a release.
+    /// Whether a release is under way.
     #[must_use]
     pub const fn is_releasing(&self) -> bool {
         self.release > 0
     }
 
-    /// Goes on by one frame. `empty`: the finger is known to touch nothing.
+    /// Advances by one frame. `empty`: the finger is known to touch nothing.
     pub fn tick(&mut self, config: &GateConfig, empty: bool) {
         if self.verdict.active || self.release > 0 {
             self.hold = config.hold_frames;
@@ -94,7 +94,7 @@ impl Gate {
         }
     }
 
-    /// Whether the wish may do what it wants: it is a muscle's, or there is nothing to drop or to crush.
+    /// Whether the wish is carried out in full: it is proven, or the hand is empty.
     const fn is_trusted(&self) -> bool {
         self.verdict.proven || self.empty
     }
@@ -105,44 +105,44 @@ impl Gate {
         self.hold > 0
     }
 
-    /// Whether both sensors can be believed, so that "not active" is known and not just unseen.
+    /// Whether both myosensors are healthy, so that "not active" is known.
     #[must_use]
     pub const fn is_known(&self) -> bool {
         self.verdict.known
     }
 
-    /// Whether both could be for as long as a muscle's activity is held: before, it could have ended unseen.
+    /// Whether both have been healthy for the hold time: activity before may have ended unseen.
     #[must_use]
     pub const fn is_certain(&self, config: &GateConfig) -> bool {
         self.known_frames >= config.hold_frames
     }
 
-    /// The same where one of them is lost and can be no muscle at work.
+    /// The same if one of them is lost and cannot be an active muscle.
     #[must_use]
     pub const fn is_half_certain(&self, config: &GateConfig) -> bool {
         self.half_known_frames >= config.hold_frames
     }
 
-    /// The flexor's envelope above rest, mV.
+    /// The flexor's envelope above rest, mV. None: the sensor gives no number.
     #[must_use]
     pub const fn flexor_mv(&self) -> Option<i16> {
         self.mv[0]
     }
 
-    /// The extensor's.
+    /// The extensor's envelope above rest, mV. None: the sensor gives no number.
     #[must_use]
     pub const fn extensor_mv(&self) -> Option<i16> {
         self.mv[1]
     }
 
-    /// Whether both muscles are above the level of activity, whatever they ask for.
+    /// Whether both muscles are above `emg-on-mv`, whatever they ask for.
     #[must_use]
     pub fn is_co_contracted(&self, config: &GateConfig) -> bool {
         self.is_known()
             && self.mv.iter().all(|mv| mv.is_some_and(|mv| i32::from(mv) >= i32::from(config.on_mv)))
     }
 
-    /// What the muscles ask for, the faster the stronger they do; an unproven opening as slowly as the hand moves.
+    /// The wearer's drive: faster for a stronger contraction; an unproven opening at the slowest duty.
     #[must_use]
     pub fn wish(&self, config: &GateConfig) -> MotorDrive {
         let trusted = self.is_trusted();
@@ -158,8 +158,8 @@ impl Gate {
     }
 }
 
-/// The slowest duty at the weakest contraction that is a wish, all of it at the strongest. The strength is a difference of
-/// logarithms: its square is about proportional to the envelope over the decade between, and a light contraction is slow.
+/// Duty of a contraction: the slowest at the weakest wish, full at the strongest. The strength is a difference of
+/// logarithms; its square is about proportional to the envelope over a decade, so a light contraction is slow.
 fn duty(config: &GateConfig, strength_permille: u16) -> Duty {
     let slowest = u32::from(config.slowest_permille.min(1_000));
     let strength = u32::from(strength_permille.min(1_000));

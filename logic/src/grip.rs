@@ -1,13 +1,13 @@
 //! The grip reflex: how much to close, once slip or incipient slip is known.
 //!
-//! A pulse ends when the force that the grip lacks ([`Lacks`]) is there, by the force that is felt and by what the motor has travelled since
-//! at the stiffness that closing has shown ([`Stiffness`]). The lack is taken anew with each reading. Where it is not known, a pulse has
-//! the length that is set; in any case a slip's pulse, at full speed, lasts no longer than is set, and a warning's is slower. After each,
-//! the object settles for longer than the motor's dead time before the detectors are asked again. Slip that goes on is answered with pulses
-//! that grow, for force or stiffness may be wrong; warnings are answered no more once pulses have raised nothing.
+//! A pulse ends when the missing force ([`Lacks`]) is there: by the measured force, plus the motor's travel that the force does not show yet
+//! times the stiffness that closing has shown ([`Stiffness`]). Each reading updates the missing force. Where it is unknown, a pulse has the
+//! set length; a pulse against slip, at full speed, never lasts longer than the set maximum, and a warning's is slower. After a pulse
+//! against slip the object settles for longer than the motor's dead time before detectors count again. Pulses grow while slip continues,
+//! since force or stiffness may be wrong. Warnings are ignored once pulses have raised no force.
 //!
-//! No pulse begins on a finger that is known to hold nothing or to press as hard as it may; without a known
-//! force, the pulses share a small budget that only the wearer can renew.
+//! No pulse begins on a finger that is known to hold nothing or to press at the force ceiling; while the force is unknown,
+//! all pulses share a small budget that only the wearer can renew.
 
 pub mod lacks;
 pub mod relax;
@@ -23,32 +23,32 @@ use self::relax::Relax;
 use self::settings::GripConfig;
 use self::stiffness::Stiffness;
 
-/// What the reflex knows about force.
+/// The load of the finger, as the reflex knows it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Grip {
     /// The force sensor gives no number.
     #[default]
     Unknown,
-    /// The finger touches nothing, or hardly.
+    /// The load is below `loaded-mn`: the finger holds nothing.
     Unloaded,
-    /// It holds with this Fn, mN.
+    /// The finger holds something with this load, mN.
     Holds(i32),
 }
 
-/// The part of a load by which a pulse that is not in vain changes it: beyond the force sensor's noise.
+/// A pulse has raised the force if the load changed by more than this part of it: beyond the force sensor's noise.
 const RAISES_PART: i32 = 200;
 /// Pulses in a row that raised nothing, after which no warning is answered until the load changes or a muscle was active.
 const IN_VAIN_MAX: u16 = 8;
 
-/// A pulse is no shorter, frames: 3 ms.
+/// The shortest pulse, frames: 3 ms.
 const LEAST_FRAMES: u32 = 6;
-/// Slip that is said again within this goes on, frames: its pulse is at least twice as long as the one before, up to 48 ms.
+/// Slip that is reported again within this continues, frames: its pulse is at least twice as long as the one before, up to 48 ms.
 const AT_ONCE_FRAMES: u32 = 60;
 const ROW_MAX: u8 = 5;
-/// The quadrants show the friction of what slides so long after slip was said, in frames: two readings.
+/// Time after a report of slip until Ft/Fn is the sliding friction, in frames: two readings.
 const SHOWS_FRAMES: u32 = frames(25);
 
-/// The reflex's memory.
+/// State of the reflex.
 #[derive(Clone, Copy, Debug)]
 pub struct Reflex {
     elapsed: u32,
@@ -64,7 +64,7 @@ pub struct Reflex {
     relax: Relax,
     /// The force that the grip lacked by the last reading.
     lacks: Lacks,
-    /// What the pulse has still to travel, per mille of duty times frames. None where its length is the settings'.
+    /// Travel left of the pulse, per mille of duty times frames. None: the pulse has the set length.
     left: Option<u32>,
     /// Pulses that answered slip in a row, each as soon as the one before had settled.
     row: u8,
@@ -89,7 +89,7 @@ impl Default for Reflex {
 }
 
 impl Reflex {
-    /// Whether a pulse may begin or go on.
+    /// Whether a pulse may begin or go on: the finger holds something below the force ceiling, and blind budget is left if it is needed.
     #[must_use]
     pub const fn may_close(&self, config: &GripConfig, grip: Grip) -> bool {
         match grip {
@@ -103,12 +103,12 @@ impl Reflex {
         self.blind < config.blind_frames
     }
 
-    /// From now on closing spends the budget, whatever is felt, or not: a muscle that wants otherwise might not be heard.
+    /// Sets whether closing spends the blind budget even if the force is known: an electrode is lost, and a muscle might be missed.
     pub const fn bind(&mut self, bound: bool) {
         self.bound = bound;
     }
 
-    /// Whether a drive command may close: an empty hand, or one that the reflex might close.
+    /// Whether a drive command of the line may close: below the force ceiling, or with blind budget left if the force is unknown.
     #[must_use]
     pub const fn link_may_close(&self, config: &GripConfig, grip: Grip) -> bool {
         match grip {
@@ -118,7 +118,7 @@ impl Reflex {
         }
     }
 
-    /// The mode has changed: what is timed begins now.
+    /// The mode has changed: starts its time, and sizes a pulse.
     #[inline(never)]
     pub fn enter(&mut self, mode: GripMode, grip: Grip) {
         match mode {
@@ -137,12 +137,12 @@ impl Reflex {
         self.size(mode);
     }
 
-    /// Whether the load is another one than when the last pulse began.
+    /// Whether the load differs from that at the last pulse's begin.
     fn has_changed(&self, load_mn: i32) -> bool {
         self.began_mn.is_none_or(|began| (load_mn - began).abs() > began / RAISES_PART)
     }
 
-    /// Takes what the force sensor says of the load, mN, and of the force that the grip lacks. Call it once a slow frame.
+    /// Takes the load, mN (None: unknown, or nothing is held), and the missing force. Call it once a slow frame.
     #[inline(never)]
     pub fn feel(&mut self, mode: GripMode, load_mn: Option<i32>, lacks: Lacks) {
         self.stiffness.feel(load_mn);
@@ -154,7 +154,7 @@ impl Reflex {
         self.size(mode);
     }
 
-    /// What Ft/Fn tells of the friction of what slides.
+    /// Whether the present Ft/Fn is the sliding friction.
     #[must_use]
     pub const fn slides(&self, mode: GripMode) -> Slides {
         match mode {
@@ -166,7 +166,7 @@ impl Reflex {
         }
     }
 
-    /// Sizes the pulse by what the grip lacks and what closing has shown of the stiffness.
+    /// Sizes the pulse by the missing force and the stiffness.
     #[inline(never)]
     fn size(&mut self, mode: GripMode) {
         let lacks_mn = match mode {
@@ -174,12 +174,12 @@ impl Reflex {
             GripMode::Incipient => self.lacks.warning_mn,
             _ => None,
         };
-        // No more than as much again as it pressed when the pulse began.
+        // A pulse at most doubles the load at its begin.
         let most_mn = self.began_mn.unwrap_or(0);
         self.left = lacks_mn.and_then(|lacks_mn| self.stiffness.travel_for(lacks_mn.min(most_mn)));
     }
 
-    /// The motor closes in this frame. What somebody else closes is not to be taken back.
+    /// Notes that the motor closes in this frame. Only what the reflex closed may be released later.
     pub fn closes(&mut self, duty: Duty, by_reflex: bool) {
         self.stiffness.close(duty.as_per_mille());
         if by_reflex {
@@ -192,8 +192,8 @@ impl Reflex {
         }
     }
 
-    /// Takes back what the reflex added, if it may; else what may be taken back stands, or is forgotten where somebody else moves the hand or it
-    /// holds nothing. Call it once a slow frame, after [`feel`](Self::feel).
+    /// Releases force that the reflex added, with a reading (`held`) in mode `Watch`; in other modes waits. Without a reading the amount is
+    /// forgotten: another source moves the hand, or it holds nothing. Call it once a slow frame, after [`feel`](Self::feel).
     #[inline(never)]
     pub fn relax(&mut self, mode: GripMode, held: Option<&relax::Reading>) {
         match (mode, held) {
@@ -203,18 +203,18 @@ impl Reflex {
         }
     }
 
-    /// Whether it takes something back.
+    /// Whether a release step is under way.
     #[must_use]
     pub const fn is_relaxing(&self) -> bool {
         self.relax.is_on()
     }
 
-    /// A detector says something.
+    /// A detector reports slip or a warning: ends a release step.
     pub fn hear(&mut self) {
         self.relax.hear();
     }
 
-    /// How the hand opens in this frame to take back what the reflex added.
+    /// The drive of the release step in this frame; `Coast` if none is under way.
     pub fn relaxes(&mut self) -> MotorDrive {
         match self.relax.opens() {
             0 => MotorDrive::Coast,
@@ -222,12 +222,12 @@ impl Reflex {
         }
     }
 
-    /// A muscle is active: whoever sees the hand has taken over, and the budget of the blind begins anew.
+    /// Renews the blind budget: a muscle is active, and its wearer sees the hand.
     pub const fn renew(&mut self) {
         (self.blind, self.began_mn, self.in_vain) = (0, None, 0);
     }
 
-    /// A drive command closes in this frame: without a known force it spends the same budget.
+    /// Spends a frame of the blind budget if the force is unknown: another source closes.
     pub fn spend(&mut self, grip: Grip) {
         if grip == Grip::Unknown {
             self.blind = self.blind.saturating_add(1);
@@ -240,7 +240,7 @@ impl Reflex {
         self.elapsed
     }
 
-    /// Goes on by one frame.
+    /// Advances by one frame.
     pub fn tick(&mut self, mode: GripMode, grip: Grip) {
         self.elapsed = self.elapsed.saturating_add(1);
         self.since_incipient = self.since_incipient.saturating_add(1);
@@ -268,8 +268,8 @@ impl Reflex {
         done || self.elapsed >= length || !self.may_close(config, grip)
     }
 
-    /// Whether incipient slip may be answered again: the last answer has had its time to show in Ft/Fn, and the last ones were not in
-    /// vain. Slip itself is answered meanwhile.
+    /// Whether a warning may be answered again: the last answer has had its time to show in Ft/Fn, and the last ones raised the
+    /// force. Slip itself is answered meanwhile.
     #[must_use]
     pub fn may_tighten(&self, config: &GripConfig, grip: Grip) -> bool {
         let changed = matches!(grip, Grip::Holds(mn) if self.has_changed(mn));
@@ -282,7 +282,7 @@ impl Reflex {
         self.elapsed >= config.settle_frames
     }
 
-    /// How the reflex drives the motor in this mode. A small pulse that raised nothing has stalled: the next is stronger by as much.
+    /// The reflex's drive in this mode. A small pulse that raised no force has stalled: the next is stronger by as much.
     #[must_use]
     pub fn drive(&self, config: &GripConfig, mode: GripMode) -> MotorDrive {
         match mode {
@@ -303,6 +303,8 @@ impl Reflex {
 
 #[cfg(test)]
 mod edges;
+#[cfg(test)]
+mod proofs;
 #[cfg(test)]
 mod tests {
     use super::*;

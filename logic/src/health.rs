@@ -3,12 +3,12 @@
 use tenax_hal_shim::channel::{Channel, sample_from_mv};
 use tenax_hal_shim::words::Reason;
 
-/// What an honest sensor's readings look like.
+/// Limits that the readings of a healthy sensor keep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Lowest sample.
+    /// Lowest sample (14 bits).
     pub low: u16,
-    /// Highest sample.
+    /// Highest sample (14 bits).
     pub high: u16,
     /// Equal readings in a row that no working sensor gives, given the noise of its front end and of the converter.
     pub stuck_after: u32,
@@ -19,7 +19,7 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// For a channel read `per_second` times a second: lost after 25 ms, back after a second, stuck after two.
+    /// For a channel with this many readings a second: lost after 25 ms of bad ones, back after 1 s of good, stuck after 2 s of equal ones.
     #[must_use]
     pub const fn of(channel: &Channel, per_second: u32) -> Self {
         let lost_after = per_second / 40;
@@ -33,12 +33,12 @@ impl Limits {
     }
 }
 
-/// A change that somebody should hear of.
+/// A change of a sensor's health that is to be reported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Change {
-    /// It gives no number any more.
+    /// The sensor gives no valid reading any more.
     Lost(Reason),
-    /// It does again.
+    /// The sensor gives valid readings again.
     Back,
 }
 
@@ -54,7 +54,7 @@ pub struct SensorHealth {
 }
 
 impl SensorHealth {
-    /// Takes a reading that is like nearly every reading of nearly every sensor: in range, different from the last, of a
+    /// Takes a 14-bit reading if it is plain, the usual case: in range, different from the last, of a
     /// sensor that is not lost. False, and nothing changed, if it is not.
     #[inline]
     #[must_use]
@@ -67,7 +67,7 @@ impl SensorHealth {
         plain
     }
 
-    /// Readings went by that were plain, the last of them this one, of a sensor that is not lost: as if each had been
+    /// Notes plain readings of a sensor that is not lost, the last of them this one, as if each had been
     /// taken.
     pub const fn was_plain(&mut self, last: u16) {
         self.last = last;
@@ -75,7 +75,7 @@ impl SensorHealth {
         self.bad = 0;
     }
 
-    /// Takes a reading: its value, or why it has none; and what changed with it.
+    /// Takes a 14-bit reading. Gives its value or the reason why it has none, and a change of the sensor's health.
     pub fn take(&mut self, limits: &Limits, sample: u16) -> (Result<u16, Reason>, Option<Change>) {
         self.same = if self.last == sample { self.same.saturating_add(1) } else { 0 };
         self.last = sample;
@@ -124,13 +124,13 @@ impl SensorHealth {
         self.same
     }
 
-    /// Why it gives no number any more, if it does not.
+    /// Why the sensor is lost. None: it is not.
     #[must_use]
     pub const fn lost(&self) -> Option<Reason> {
         self.lost
     }
 
-    /// Whether it gives no number any more.
+    /// Whether the sensor is lost.
     #[must_use]
     pub const fn is_lost(&self) -> bool {
         self.lost.is_some()

@@ -1,4 +1,4 @@
-//! Telemetry of every tick: the record of a cycle (slow frame), and the events in between.
+//! Telemetry of every tick: the records of a slow frame, and the events in between.
 
 use heapless::Deque;
 use tenax_hal_shim::frame::Frame;
@@ -10,7 +10,7 @@ use crate::health::Change;
 /// Events kept until they are taken: more than all sensors failing at once.
 const EVENTS: usize = 32;
 
-/// The fingertip's memory of what it has to tell.
+/// Queue of events, and the tick records of the present slow frame.
 #[derive(Clone, Debug, Default)]
 pub struct Journal {
     frame: u32,
@@ -18,12 +18,12 @@ pub struct Journal {
     samples: SamplesSum,
     events: Deque<Event, EVENTS>,
     events_lost: u16,
-    /// Something was lost that the wearer should hear of.
+    /// A sensor, an ability or the motor was lost, which the wearer is to be told.
     lost: bool,
 }
 
 impl Journal {
-    /// A frame begins: what is told from now on happened in it.
+    /// Begins a frame: events from now on have its number.
     pub fn begin(&mut self, frame: &Frame) {
         self.frame = frame.sequence;
         if frame.slot() == 0 {
@@ -40,31 +40,31 @@ impl Journal {
         self.frame
     }
 
-    /// The tick of this frame.
+    /// Stores the record of this frame's tick at its slot, 0 to 24.
     pub fn tick(&mut self, place: u8, record: TickRecord) {
         if let Some(slot) = self.ticks.get_mut(usize::from(place)) {
             *slot = record;
         }
     }
 
-    /// The ticks of the slow frame, and the checksum of what they were given; a new one begins.
+    /// Takes the ticks of the slow frame and the checksum of their samples; a new slow frame begins.
     pub fn take_slow(
         &mut self,
     ) -> ([TickRecord; tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME as usize], u32) {
         (self.ticks, self.samples.take())
     }
 
-    /// The mode changed.
+    /// Queues a change of mode.
     pub fn mode(&mut self, from: GripMode, to: GripMode, cause: Cause) {
         self.event(EventKind::Mode { from, to, cause });
     }
 
-    /// Something went wrong, or came back.
+    /// Queues an event: this fault began, or what it names works again.
     pub fn fault(&mut self, fault: Fault) {
         self.event(EventKind::Fault(fault));
     }
 
-    /// Something happened. Not inlined: it rarely does, and everybody who tells of it would carry the queue.
+    /// Queues an event. Not inlined: events are rare, and each caller would carry a copy of the queue's code.
     #[inline(never)]
     pub fn event(&mut self, kind: EventKind) {
         self.lost |= matches!(
@@ -77,18 +77,18 @@ impl Journal {
         }
     }
 
-    /// Whether a sensor, a sense or the motor was lost since this was last asked.
+    /// Whether a sensor, an ability or the motor was lost since the last call.
     pub const fn take_lost(&mut self) -> bool {
         core::mem::replace(&mut self.lost, false)
     }
 
-    /// Whether there is one.
+    /// Whether an event waits.
     #[must_use]
     pub fn has_event(&self) -> bool {
         !self.events.is_empty() || self.events_lost > 0
     }
 
-    /// The oldest event not yet taken.
+    /// Takes the oldest event that waits.
     pub fn next_event(&mut self) -> Option<Event> {
         self.events.pop_front().or_else(|| {
             let lost = core::mem::take(&mut self.events_lost);
@@ -97,7 +97,7 @@ impl Journal {
     }
 }
 
-/// Says what changed with a sensor. A converter has far fewer channels than a `u8` has values.
+/// Queues the fault of a sensor's change, if there is one. A converter has far fewer channels than a `u8` has values.
 pub fn report(journal: &mut Journal, channel: usize, change: Option<Change>) {
     let channel = channel as u8;
     match change {

@@ -1,4 +1,4 @@
-//! The latest of something, the newest first.
+//! Short histories as arrays, the newest value first.
 
 /// Puts the newest first and drops the oldest. Not `rotate_right`, which links a memmove of 1.6 kB.
 pub fn push<T: Copy, const N: usize>(latest: &mut [T; N], newest: T) {

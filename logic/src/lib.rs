@@ -1,19 +1,19 @@
-//! What the fingertip decides. No heap, no I/O, no clock of its own: time arrives as frames.
+//! The decisions of the fingertip: sensor samples in, motor drive out. No heap, no I/O, no clock: time is counted in frames of 0.5 ms.
 //!
-//! Data goes one way, and so do the modules:
+//! The modules, in the order in which data passes them:
 //!
 //! | step | modules |
 //! |---|---|
 //! | which readings can be used | [`health`] |
-//! | one sense each: readings, what they mean, its detector | [`vibration`], [`force`], [`strain`], [`mod@array`], [`hebbian`], [`photoelastic`]; [`emg`] and [`gate`] of the wearer |
+//! | one sense each: readings, quantities, detector | [`vibration`], [`force`], [`strain`], [`mod@array`], [`hebbian`], [`photoelastic`]; [`emg`] and [`gate`] of the wearer |
 //! | a frame through all of them | [`senses`] |
 //! | whether the object slips | [`detectors`], the list of them; [`plausibility`] guards |
-//! | what to do | [`mode`] and [`grip`], the reflex; [`behaviours`] above it; [`arbiter`]; [`motor`] stops what stalls; [`feedback`] to the wearer |
-//! | the whole | [`fingertip`]; [`journal`] is what it reports |
+//! | what to do | [`mode`] and [`grip`], the reflex; [`behaviours`]; [`arbiter`]; [`motor`] limits stall and heat; [`feedback`] to the wearer |
+//! | the whole fingertip | [`fingertip`]; [`journal`] collects its reports |
 //! | a fingertip on a line | [`device`]: frames and commands in, drives and messages out. Begin there |
-//! | whose commands it carries out | [`session`], [`arming`] |
+//! | whether a command is accepted | [`session`], [`arming`] |
 //!
-//! [`config`] and [`setting`] hold every number that can be chosen, and [`store`] keeps what must outlive a power cut.
+//! [`config`] and [`setting`] hold every number that can be chosen; [`store`] saves settings, zero, weights and calibration.
 #![no_std]
 // One measured kernel is excepted, `array::dual`; nothing else may be.
 #![deny(unsafe_code)]
@@ -47,6 +47,7 @@ pub mod motor;
 pub mod muscles;
 pub mod photoelastic;
 pub mod plausibility;
+pub mod rescue;
 pub mod restart;
 mod samples;
 pub mod senses;

@@ -20,7 +20,7 @@ pub struct LowPass {
 }
 
 impl LowPass {
-    /// Of a corner, Hz, at one sample a frame: above 0, below 300.
+    /// A low-pass with this corner frequency, above 0 and below 300 Hz, at one sample a frame (2 kHz).
     #[must_use]
     pub const fn of(hz: f64) -> Self {
         assert!(hz > 0.0 && hz < 300.0, "k is below 1/2, or a step response would overshoot");

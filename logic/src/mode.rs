@@ -1,4 +1,4 @@
-//! The flow chart of Prosthesis, figure 9, as a machine whose every legal step is one row of a table.
+//! The reflex's state machine (Prosthesis, figure 9): every legal step is one row of a table.
 
 use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::words::{Cause, GripMode};
@@ -14,7 +14,7 @@ const ANY: DetectorId = DetectorId::S1;
 /// Every legal step: from, why, to. A cause that has no row for the mode changes nothing; which detector says slip or warns
 /// of it makes no difference.
 ///
-/// Who may enter: [`Slip`] and [`Incipient`], the only two that close the hand, are entered from [`Watch`] alone (and
+/// Rules for entering: [`Slip`] and [`Incipient`], the only two that close the hand, are entered from [`Watch`] alone (and
 /// [`Slip`] from [`Incipient`]), and [`Watch`] is left for [`Wearer`] or [`Standby`] before a detector is asked.
 pub const TRANSITIONS: [(GripMode, Cause, GripMode); 17] = [
     (Standby, SensorsReady, Watch),
@@ -102,6 +102,33 @@ mod tests {
         for mode in ALL {
             assert!(matches!(mode, Standby | Wearer) || next(mode, TakenOver) == Some(Wearer), "{mode:?}");
             assert!(mode == Standby || next(mode, SensorsLost) == Some(Standby), "{mode:?}");
+        }
+    }
+
+    /// Figure 9 as a drawing: every mode with every cause, in the causes' order below. A letter is the mode that it leads to.
+    const FIGURE: [&str; MODES] = [
+        "W.......", // Standby
+        ".S.E....", // Wearer
+        ".SU.LI..", // Watch
+        ".SU...E.", // Slip
+        ".SU.L.W.", // Incipient
+        ".SU....W", // Settle
+    ];
+
+    // Shows R1.
+    #[test]
+    fn every_mode_goes_on_as_drawn_with_every_cause() {
+        let ids = [DetectorId::S1, DetectorId::S2];
+        for ((from, steps), (n, id)) in
+            ALL.into_iter().zip(FIGURE).flat_map(|row| ids.map(|id| (row, (row.0 as usize, id))))
+        {
+            let causes =
+                [SensorsReady, SensorsLost, TakenOver, Released, Slips(id), Warned(id), PulseOver, Settled];
+            for (cause, letter) in causes.into_iter().zip(steps.chars()) {
+                let to = "SUWLIE".find(letter).map(|place| ALL[place]);
+                assert_eq!(next(from, cause), to, "{from:?}, {cause:?}");
+            }
+            assert_eq!(closes(from), n == 3 || n == 4, "{from:?}");
         }
     }
 

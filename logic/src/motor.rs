@@ -1,4 +1,4 @@
-//! The motor's limit: a stall stops it, and so does heat. What stops it leaves it undriven: the gear holds what is held.
+//! Limits of the motor: it is stopped by stall and by heat. A stopped motor is not driven, and the gear holds the object.
 //!
 //! The bridge's mirror shows the current only while the bridge drives, so the filtered pin reads duty times the winding's current
 //! (DRV8874, section 7.3.3; docs/hardware.md). Of a blocked motor that is duty squared times the stall current.
@@ -8,8 +8,8 @@
 //! | stall: half of a blocked motor's current or more, and the fingers stand still | current and opening, or the one that is left | the way it was driven |
 //! | heat: the current shown times the stall current, which is the winding's squared if it is blocked and more if it turns | current, or else the duty | closing |
 //!
-//! A stalled way is free again once nobody has asked for it for 0.15 s, when somebody asks for the other one, or for a drive that is
-//! stronger by an eighth. So an opening always wins: over a stalled closing at once, over a stall of its own by being asked for again.
+//! A stalled direction is driven again after 0.15 s without a request for it, after a request for the other direction, or for a drive that
+//! is stronger by an eighth. So an opening always wins: at once after a stalled closing, and after its own stall by a new request.
 //! Heat never stops an opening: a hand that cannot let go is worse than a hot motor, and a stall ends each try.
 
 pub mod settings;
@@ -72,7 +72,7 @@ impl Sensor {
     }
 }
 
-/// What is known of the motor, and whether it may be driven.
+/// Current, opening, stall and heat of the motor.
 #[derive(Clone, Debug, Default)]
 pub struct Motor {
     current: Sensor,
@@ -82,9 +82,9 @@ pub struct Motor {
     /// What it was driven with in this cycle: the sum of [`STEPS`] looks; the most since it began to stall.
     duty_sum: u16,
     duty_most: u16,
-    /// Somebody asked for a drive in this cycle.
+    /// A drive was asked for in this slow frame.
     asked: bool,
-    /// The last one to be asked for opens.
+    /// The drive that was asked for last opens.
     opens: bool,
     /// Slow frames of stall, less those without.
     stall: u8,
@@ -107,19 +107,19 @@ pub struct Motor {
 }
 
 impl Motor {
-    /// Takes a reading of the motor's current or of the opening, None if the frame that shows it was lost. Judged later: the array has work
-    /// in the same slots.
+    /// Takes a 14-bit reading of the motor's current or of the opening, None if its frame was lost. [`judge`](Self::judge) uses it later:
+    /// the array has work in the same slots.
     pub const fn take(&mut self, channel: usize, sample: Option<u16>) {
         let sensor = if channel == OPENING { &mut self.opening } else { &mut self.current };
         sensor.sample = sample;
     }
 
-    /// Whether the bridge says that it has switched itself off, until this says otherwise.
+    /// Sets whether the bridge reports that it has switched itself off, until the next call.
     pub const fn bridge(&mut self, is_off: bool) {
         self.bridge_is_off = is_off;
     }
 
-    /// Whether it may be driven so.
+    /// Whether the limits allow this drive.
     #[must_use]
     #[inline]
     pub const fn allows(&self, drive: MotorDrive) -> bool {
@@ -135,7 +135,7 @@ impl Motor {
         }
     }
 
-    /// What was asked for in the last frame, and how it was driven. Call it every [`STEP_FRAMES`].
+    /// Takes the drive that was asked for in the last frame, and the one that was allowed. Call it every [`STEP_FRAMES`].
     pub const fn step(&mut self, asked: MotorDrive, drive: MotorDrive) {
         let opens = match asked {
             MotorDrive::Coast => return,
@@ -156,7 +156,7 @@ impl Motor {
         }
     }
 
-    /// Judges a slow frame. Call it once in each, always in the same slot.
+    /// Judges stall and heat, and reports changes. Call it once a slow frame, always in the same slot.
     #[inline(never)]
     pub fn judge(&mut self, config: &MotorConfig, journal: &mut Journal) {
         let duty = u32::from(take(&mut self.duty_sum)) / STEPS;
@@ -196,7 +196,7 @@ impl Motor {
         self.tell(journal);
     }
 
-    /// The stall is over: somebody asks for another drive, or the fingers move.
+    /// Ends the stall: another drive is asked for, or the fingers move.
     const fn free(&mut self) {
         (self.stall, self.stalled, self.duty_most) = (0, false, 0);
         self.close_ways();

@@ -1,4 +1,4 @@
-//! Both myosensors: which of them can be believed, what they mean, and their calibration to a wearer.
+//! Both myosensors: their health, the wearer's wish, and the calibration to a wearer.
 
 use tenax_hal_shim::channel::{CHANNELS, MYO_EXTENSOR, MYO_FLEXOR, SLOW_HZ, frames};
 use tenax_hal_shim::wire::EventKind;
@@ -63,7 +63,7 @@ const REST_FRAMES: [u32; 2] = [frames(1_000), frames(100)];
 const ASK_FRAMES: u32 = frames(4_000);
 
 impl Muscles {
-    /// Takes a sample: 0 the flexor's, others the extensor's. The envelope above the live zero, uV, none where the sensor
+    /// Takes a 14-bit sample of muscle 0 (flexor) or another (extensor). Gives the envelope above the live zero, uV, None if the sensor
     /// gives no number.
     pub fn take(&mut self, muscle: usize, sample: u16, journal: &mut Journal) -> Option<i32> {
         let n = muscle.min(1);
@@ -84,8 +84,8 @@ impl Muscles {
         uv
     }
 
-    /// The frame that shows this muscle was lost: time goes on with its last reading, for whatever is counted in readings is
-    /// meant as a time. True if it has no reading of now any more.
+    /// The frame of this muscle was lost: its last reading counts once more, since readings measure
+    /// time. True if too many were lost for it to have a reading.
     pub fn miss(&mut self, muscle: usize, journal: &mut Journal) -> bool {
         let n = muscle.min(1);
         self.missed[n] = self.missed[n].saturating_add(1);
@@ -125,7 +125,7 @@ impl Muscles {
         self.lost[n] = lost;
     }
 
-    /// What the wearer wants. While they calibrate, nothing, and nobody else moves the hand.
+    /// The wearer's wish and activity. During a calibration the wish is rest, and no other source may move the hand.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         let mut verdict = self.emg.verdict();
@@ -148,26 +148,26 @@ impl Muscles {
         }
     }
 
-    /// Whether a muscle is active whose sensor is believed.
+    /// Whether a muscle with a healthy sensor is active.
     #[must_use]
     pub fn is_heard(&self) -> bool {
         self.emg.is_active(0) || self.emg.is_active(1)
     }
 
-    /// The wearer that they are calibrated to.
+    /// The wearer's calibration. None: not calibrated.
     #[must_use]
     pub const fn model(&self) -> Option<&EmgModel> {
         self.model.as_ref()
     }
 
-    /// From now on for this wearer.
+    /// Sets the wearer's calibration from now on.
     pub fn calibrate(&mut self, model: EmgModel) {
         self.emg.calibrate(Some(&model));
         self.model = Some(model);
         self.watch = Watch::default();
     }
 
-    /// Asks the wearer to show what they do, from this frame on.
+    /// Begins a calibration at this frame: the light asks for rest, closing and opening. The caller refuses it while something is held.
     pub fn begin_calibration(&mut self, frame: u32) {
         self.lesson = Some(Lesson { calibration: Calibration::begin(frame), asked: None });
     }
@@ -231,7 +231,7 @@ impl Muscles {
         }
     }
 
-    /// What takes too long for a tick: the spectrum of one electrode, or the conclusion of a calibration. Call it once a
+    /// Does the work that takes too long for a tick: the spectrum of one electrode, or the end of a calibration. Call it once a
     /// slow frame, always after the same tick. True if there is a new calibration.
     #[inline(never)]
     pub fn think(&mut self, journal: &mut Journal) -> bool {

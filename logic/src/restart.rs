@@ -1,8 +1,8 @@
 //! Why the chip started, from the flags that its resets leave and a mark in RAM, and whether it has restarted too often.
 //!
 //! RM0383, section 6.3.20: any reset sets the pin's flag, a brown-out its own as well, and switching on those and its own.
-//! Flags stay until the next start clears them, so a reset in the first instants of a start adds to the ones before: the one
-//! that takes most away is told.
+//! Flags stay until the next start clears them, so a reset in the first instants of a start adds to the ones before: the most
+//! severe one is reported.
 
 use tenax_hal_shim::wire::ResetCause;
 use tenax_hal_shim::words::Fault;
@@ -14,19 +14,19 @@ pub const RESTARTS_MAX: u32 = 5;
 /// The chip's reset flags.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Flags {
-    /// The supply came from nothing.
+    /// Power-on reset: the supply was off.
     pub power_on: bool,
-    /// The supply fell below the brown-out level, or came from nothing.
+    /// Brown-out reset, or power-on: the supply was below the brown-out level.
     pub brown_out: bool,
-    /// The watchdog.
+    /// Reset by the watchdog.
     pub watchdog: bool,
-    /// Software.
+    /// Reset by software.
     pub software: bool,
     /// The reset pin, or any other reset.
     pub pin: bool,
 }
 
-/// What the run before wrote down before it reset the chip.
+/// Mark in RAM that the run before left when it reset the chip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
     /// A panic or a fault of the core.
@@ -37,7 +37,7 @@ pub enum Mark {
     CrystalLost,
 }
 
-/// How a run began.
+/// Cause of this start, and restarts before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Start {
     /// Why the chip started.
@@ -46,14 +46,14 @@ pub struct Start {
     pub after: Option<Fault>,
     /// Restarts in a row, to be kept until the next start.
     pub restarts: u32,
-    /// It has restarted too often: nothing is to move any more.
+    /// More than [`RESTARTS_MAX`] restarts in a row: nothing is driven.
     pub stay_off: bool,
 }
 
-/// How this run began; `restarts` is what was kept.
+/// Judges the cause of this start. `restarts`: the kept count of restarts in a row.
 ///
-/// A restart counts if the hand brought it about: its software by a panic or by hanging, its motor by pulling the supply down.
-/// A lost clock is the board's and is survived on the chip's own oscillator: it neither counts nor clears the count.
+/// A restart counts if the hand caused it: its software by a panic or by hanging, its motor by pulling the supply down.
+/// A lost crystal neither counts nor clears the count: the chip continues on its own oscillator.
 #[must_use]
 pub fn judge(flags: Flags, mark: Option<Mark>, restarts: u32) -> Start {
     let mark = mark.filter(|_| flags.software);

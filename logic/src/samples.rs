@@ -1,4 +1,4 @@
-//! The last sample of every channel, for whoever asks over the line.
+//! The last sample of every channel, on request over the line.
 
 use tenax_hal_shim::channel::{CHANNELS, COUNT, Input, PVDF_COUNT, SWITCH_INPUTS};
 use tenax_hal_shim::frame::Frame;
@@ -13,7 +13,7 @@ pub struct LastSamples {
 }
 
 impl LastSamples {
-    /// Takes in what a frame read.
+    /// Takes a frame's samples.
     pub fn record(&mut self, frame: &Frame) {
         if !frame.valid {
             return;

@@ -1,4 +1,4 @@
-//! Conditions a frame: which sensors are valid, and what they measure.
+//! Conditions a frame: which sensors are valid, and the quantities that they measure.
 
 mod force;
 
@@ -39,17 +39,17 @@ const STALE_FRAMES: u32 = tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME as u32;
 /// Readings in a row that a quadrant may miss, its frames lost, before its last one is no reading of now. A tick that is
 /// always late loses the same places of every slow frame, and never enough in a row to be [`STALE_FRAMES`].
 const QUADRANT_MISSES: u8 = 2;
-/// The hand is surely open when it has been opened for this long since it was last closed, in frames: at its slowest it has
-/// gone 2 cm.
+/// The hand is surely open after it has been opened for this long since it was last closed, in frames: at its slowest it has
+/// moved 2 cm.
 const OPEN_FRAMES: u32 = frames(600);
-/// Cycles in which a hand that is surely open reads a load before that is told: 4 s, several times what a zero takes to follow.
+/// Slow frames in which a hand that is surely open reads a load before that is reported: 4 s, several times what a zero takes to follow.
 const DOUBTED_AFTER: u16 = 4 * SLOW_HZ as u16;
 /// A quadrant this far above its zero when the hand is switched on is pressed, uV.
 const PRESSED_UV: i32 = 100_000;
 
 static FSR_LIMITS: Limits = Limits::of(&CHANNELS[FSR], SLOW_HZ);
 
-/// What the fingertip knows.
+/// Every sensor with its health and filters, and the quantities of the last frame.
 #[derive(Clone, Debug, Default)]
 pub struct Senses {
     films: PvdfQuality,
@@ -59,9 +59,9 @@ pub struct Senses {
     fsr_missed: [u8; FSR_COUNT],
     fsr_seen: bool,
     pressed: bool,
-    /// The quadrant that was told to contradict the others.
+    /// The quadrant (0 to 3) that was reported to contradict the others.
     blamed: Option<u8>,
-    /// Ft/Fn is below the least friction.
+    /// Ft/Fn is below the least friction, `LEAST_PERMILLE`.
     cannot_slip: bool,
     force_sensor: ForceSensor,
     detector: VibrationDetector,
@@ -77,29 +77,29 @@ pub struct Senses {
     still_frames: u32,
     /// The reflex answers slip, or lets the object settle after it.
     striking: bool,
-    /// Cycles in which it was surely open and read a load.
+    /// Slow frames in which the hand was surely open and read a load.
     open_and_loaded: u16,
     frames_lost: u32,
     films_usable: bool,
     lost: [bool; 3],
-    /// What the films say.
+    /// Vibration of all films together.
     pub vibration: Vibration,
-    /// What the force sensor says, None while it gives no number.
+    /// Forces of the force sensor or the photoelastic head, None while neither gives a number.
     pub forces: Option<Forces>,
     /// Whether this frame brought new forces.
     pub forces_are_new: bool,
-    /// What the muscles say.
+    /// The wearer's wish and activity.
     pub gate: Gate,
-    /// What the motor bears.
+    /// Stall and heat of the motor.
     pub motor: Motor,
-    /// What is known about force.
+    /// Load class: unknown, unloaded, or the load.
     pub grip: Grip,
-    /// Known to touch nothing at all: far below where a finger counts as loaded.
+    /// The finger is known to touch nothing: its load is below a quarter of `loaded-mn`.
     pub unloaded: bool,
 }
 
 impl Senses {
-    /// Takes a frame that came in whole.
+    /// Takes a valid frame.
     pub fn process(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
         if self.frames_lost > 0 {
             journal.fault(Fault::FramesLost { count: self.frames_lost });
@@ -122,8 +122,8 @@ impl Senses {
         }
     }
 
-    /// This frame was lost: the films say nothing, the element that it shows has no reading, and what else is behind the
-    /// switches is soon too old to be believed.
+    /// Takes a lost frame: the films give nothing, the switched channel of its slot has no reading, and the others expire
+    /// after a slow frame of lost frames.
     pub fn lose(&mut self, config: &Config, frame: &Frame, journal: &mut Journal) {
         self.frames_lost = self.frames_lost.saturating_add(1);
         self.vibration = Vibration { masked: self.vibration.masked, ..Vibration::default() };
@@ -144,7 +144,7 @@ impl Senses {
         self.capabilities(journal);
     }
 
-    /// What the detectors judge by in a frame that was taken or lost. `duty_permille` is what drives the motor, `moves` whether the reflex
+    /// The detectors' input of this frame. `duty_permille`: the motor's drive, 0 to 1000. `moves`: the reflex
     /// moves the hand or lets it settle.
     #[inline(always)]
     #[must_use]
@@ -170,8 +170,8 @@ impl Senses {
         }
     }
 
-    /// How the motor was driven in the last so many frames: what has been opened for a while, and not closed since, holds
-    /// nothing. `took_back`: it opened by what the reflex had added. `striking`: the reflex answers slip, or lets the object settle after it, and the hand itself is loud.
+    /// Takes the motor's drive of the last so many frames: a hand that was opened for long enough, and not closed since, is open.
+    /// `took_back`: the reflex released force. `striking`: the reflex answers slip or lets the object settle, so the hand is loud.
     pub const fn driven(&mut self, drive: MotorDrive, took_back: bool, striking: bool, frames: u32) {
         self.striking = striking;
         let still = !took_back && matches!(drive, MotorDrive::Coast);
@@ -200,7 +200,7 @@ impl Senses {
         &self.force_sensor
     }
 
-    /// The force sensor, to take up a zero that was kept.
+    /// The force sensor, to restore a saved zero.
     pub const fn force_sensor_mut(&mut self) -> &mut ForceSensor {
         &mut self.force_sensor
     }
@@ -234,26 +234,26 @@ impl Senses {
         self.taxels.reading()
     }
 
-    /// The photoelastic head. While its place is a film's it has heard nothing.
+    /// The photoelastic head; without readings while a film is in its place.
     #[must_use]
     pub const fn head(&self) -> &Head {
         &self.head
     }
 
-    /// Whether vibration can be heard at all.
+    /// Whether enough films work for vibration to be judged.
     #[must_use]
     pub const fn hears(&self) -> bool {
         self.films_usable
     }
 
-    /// Whether the reflex has all that it cannot do without: a muscle known, and the other if it can be at work, if there is a wearer;
-    /// and a way to feel slip.
+    /// Whether the reflex may work: slip can be felt, and (with a wearer) both muscles are known, or one is and the other cannot be
+    /// active.
     #[must_use]
     pub fn ready(&self, config: &Config) -> bool {
         self.feels() && (config.no_wearer || self.gate.is_half_certain(&config.gate))
     }
 
-    /// The same with both muscles known: for who moves the hand otherwise than by closing it a little.
+    /// The same with both muscles known: for sources that do more than close the hand a little.
     #[must_use]
     pub fn all_ready(&self, config: &Config) -> bool {
         self.feels() && (config.no_wearer || self.gate.is_certain(&config.gate))
@@ -264,7 +264,7 @@ impl Senses {
             && (self.films_usable || self.forces.is_some() || self.head.is_usable())
     }
 
-    /// What is known about force, once a tick: many ask.
+    /// Computes `grip` and `unloaded` once a tick, since many ask for them.
     fn weigh(&mut self, config: &Config) {
         let loaded_mn = config.friction.loaded_mn;
         (self.grip, self.unloaded) = match self.forces {
@@ -276,7 +276,7 @@ impl Senses {
         };
     }
 
-    /// Whether there is a force, and by it no friction is so low that the object could slip.
+    /// Whether the force is known and Ft/Fn is below the lowest friction of any object.
     #[must_use]
     pub const fn cannot_slip(&self) -> bool {
         self.cannot_slip && self.forces.is_some()
@@ -291,7 +291,7 @@ impl Senses {
         }
     }
 
-    /// Takes the samples of the films, which are the first so many.
+    /// Takes the samples of the first `films` films.
     #[inline(always)]
     fn condition_pvdf(
         &mut self,
@@ -321,8 +321,8 @@ impl Senses {
         self.detector.slow(&Hand { forces, wearer: self.gate.is_active(), striking: self.striking });
     }
 
-    /// The head takes its sample. What the films are given in its place is a film that is whole and hears nothing: the middle of
-    /// the range, and one count of dither, so that it does not look frozen.
+    /// Gives the head its sample. The films get a healthy silent film in its place: the middle of
+    /// the range with one count of dither, so that it does not look frozen.
     ///
     /// The films' part is compiled twice, here and for twelve films, which then cost nothing more. Most hands have no head.
     #[cold]
@@ -346,7 +346,7 @@ impl Senses {
         self.condition_pvdf(config, &pvdf, films, journal);
     }
 
-    /// The head's force, once a cycle, after the quadrants' if they give one.
+    /// Computes the head's force, once a slow frame, after the quadrants'.
     #[inline(never)]
     fn track(&mut self, config: &Config) {
         let force_mn = self.forces.filter(|_| !self.pressed).map(|forces| forces.load_mn);
@@ -357,7 +357,7 @@ impl Senses {
         }
     }
 
-    /// Reports the films that are masked now and were not, or the other way round.
+    /// Reports films whose masking changed.
     #[inline(never)]
     fn mask(&self, changed: u16, journal: &mut Journal) {
         for film in (0..PVDF_COUNT).filter(|film| changed >> film & 1 != 0) {
@@ -387,7 +387,7 @@ impl Senses {
         }
     }
 
-    /// The frame that shows this channel was lost.
+    /// The frame of this channel was lost.
     fn miss(&mut self, channel: usize, journal: &mut Journal) {
         match channel {
             FSR..ARRAY => {

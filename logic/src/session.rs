@@ -1,12 +1,12 @@
-//! Sessions on the serial line: a command that was recorded and is sent again is refused.
+//! Sessions on the serial line refuse a command that was recorded and is sent again.
 //!
 //! The board offers a number ([`Down::Hello`](tenax_hal_shim::wire::Down::Hello)), the peer gives it back
 //! ([`Down::Open`](tenax_hal_shim::wire::Down::Open)), and from then on the numbers of its frames may only rise, by at most
 //! [`WINDOW`] at a time. A number is offered once and accepted once, so a recorded opening opens nothing. Before the 16 bits
 //! of a frame's number come round, the session is over.
 //!
-//! This is no authentication: who can write to the line can open a session of their own. That is what
-//! [`arming`](crate::arming) is for. A trusted line needs no session, but what it sends has its window all the same.
+//! This is no authentication: everybody who can write to the line can open a session. [`arming`](crate::arming) protects against
+//! that. A trusted line needs no session, but its frames keep the window, too.
 
 use tenax_hal_shim::wire::Refusal;
 
@@ -15,7 +15,7 @@ pub const WINDOW: u16 = 1_024;
 /// Numbers that a session may use before it is over: what was recorded in it never lies in its window again.
 const NUMBERS_MAX: u16 = u16::MAX - 2 * WINDOW;
 
-/// What the board remembers of its peer's numbers.
+/// The offered number, and the last sequence number of the peer.
 #[derive(Clone, Debug, Default)]
 pub struct Session {
     /// What the converter's noise has been stirred into.
@@ -27,12 +27,12 @@ pub struct Session {
 }
 
 impl Session {
-    /// Takes something in that nobody can foretell: the checksum of a slow frame's samples.
+    /// Stirs unpredictable bits into the next number: the checksum of a slow frame's samples.
     pub fn stir(&mut self, noise: u32) {
         self.pool = mixed(self.pool.rotate_left(5) ^ noise);
     }
 
-    /// A number for an opening. The one before is void.
+    /// Offers a new number for an opening. The one before is void.
     pub fn offer(&mut self) -> u32 {
         self.pool = mixed(self.pool.wrapping_add(0x9E37_79B9));
         let nonce = mixed(self.pool ^ 0x5EED_0FF1);
@@ -40,7 +40,7 @@ impl Session {
         nonce
     }
 
-    /// Opens a session, whose next frame has a number after this one's.
+    /// Opens a session; its next frame must have a number after `sequence`.
     ///
     /// # Errors
     /// If the number was never offered, or was already used.
@@ -52,7 +52,7 @@ impl Session {
         Ok(())
     }
 
-    /// Admits a frame that changes something.
+    /// Admits a frame whose command changes something.
     ///
     /// # Errors
     /// Without a session, or if the number of this frame has been seen or is too far ahead.
@@ -63,7 +63,7 @@ impl Session {
         if self.advance(sequence) { Ok(()) } else { Err(Refusal::Replayed) }
     }
 
-    /// A frame that only reads is answered in any case; it uses its number up.
+    /// Notes the number of a frame that only reads: such a frame is always answered.
     pub fn read(&mut self, sequence: u16) {
         if self.is_open {
             self.advance(sequence);

@@ -9,31 +9,31 @@ use core::ops::RangeInclusive;
 use tenax_hal_shim::channel::{FRAME_HZ, frames, mv_from_sample, sample_from_mv};
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 
-/// What a person needs to know of a setting.
+/// Description of a setting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Row {
-    /// Which it is.
+    /// The setting.
     pub id: SettingId,
-    /// What it is called on the command line and in scene files. It ends with the unit.
+    /// Its name on the command line and in scene files. It ends with the unit.
     pub name: &'static str,
     /// Its unit, for a person.
     pub unit: &'static str,
     /// The lowest value that is accepted.
     pub min: i32,
-    /// The highest: no mix of values in these ranges drops, crushes or deafens (`bench/tests/mixes.rs`).
+    /// The highest value. No mix within these ranges drops or crushes an object or disables detection (`bench/tests/mixes.rs`).
     pub max: i32,
-    /// The lowest where the line is trusted, for a laboratory.
+    /// The lowest value on a trusted line.
     pub min_if_trusted: i32,
-    /// The highest there: a detector may be silenced.
+    /// The highest value on a trusted line: it may disable a detector.
     pub max_if_trusted: i32,
-    /// Its value until somebody changes it.
+    /// Its default.
     pub default: i32,
-    /// What it does.
+    /// Its meaning, for people.
     pub meaning: &'static str,
 }
 
 impl Row {
-    /// The values that are accepted where nobody trusts the line.
+    /// The values that are accepted on a line that is not trusted.
     #[must_use]
     pub const fn range(&self) -> RangeInclusive<i32> {
         self.min..=self.max

@@ -1,15 +1,15 @@
-//! What outlives a power cut: a log of records in two sectors of flash.
+//! Storage through power cuts: a log of records in two sectors of flash.
 //!
 //! Records are appended to one sector, word after word ([`record`]); the newest whole one of each kind counts. Nothing is
-//! erased while the hand works, because an erase stalls the core for a second or two. That is left to [`open`], which is
-//! called at boot: it finds what counts, and when the sector is half full it erases the other one, copies there what
-//! counts, and makes that the one to append to. The old sector is left as it is until its turn comes again, so there is
-//! a second copy of everything for as long. A boot after a reset postpones that ([`Erase`]): something may be held.
+//! erased while the hand works, because an erase stalls the core for a second or two. [`open`] does it
+//! at boot: it finds the records that count, and when the sector is half full it erases the other one, copies them
+//! there, and appends there from then on. The old sector is left as it is until its turn comes again, so it is
+//! a second copy of everything until then. A boot after a reset postpones that ([`Erase`]): something may be held.
 //!
 //! A power cut at any instant leaves, of each kind, the record before or the record after, whole. Why:
 //! - a record counts only with its CRC and, programmed after it, its commit word;
 //! - only a record that counts is skipped by its length, so a tag that was cut hides nothing that was appended later;
-//! - what a session appends begins with a word of zeros: the first blank word may be one that a power cut left half
+//! - the records of a session begin with a word of zeros: the first blank word may be one that a power cut left half
 //!   programmed, and would not read blank the next time;
 //! - only the sector that holds nothing that counts is ever erased;
 //! - a copy has the sequence number of the original, so half a copied sector is never newer than the original, and its
@@ -35,7 +35,7 @@ use tenax_hal_shim::words::Kept;
 use record::{MARK, Saving, Tag};
 use sector::{Entry, OPENING_WORDS, Survey};
 
-/// Where the next record goes.
+/// The log: its sector and the place of the next record.
 #[derive(Clone, Debug)]
 pub struct Log {
     sector: Sector,
@@ -60,16 +60,16 @@ pub enum Refused {
     Length,
 }
 
-/// Whether [`open`] may erase a sector, which takes a second or two in which nobody can move the hand.
+/// Whether [`open`] may erase a sector, which takes a second or two in which the hand cannot move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Erase {
-    /// Somebody has just switched the hand on.
+    /// The hand has just been switched on.
     Allowed,
-    /// The hand was reset in the middle of its work, and may hold something: what room there is must do.
+    /// The hand was reset and may hold something: only the room that is left is used.
     Postponed,
 }
 
-/// What [`open`] found.
+/// The records that [`open`] found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Found {
     newest: [Option<Entry>; Kept::ALL.len()],
@@ -92,9 +92,9 @@ impl Found {
     }
 }
 
-/// Finds what counts and makes room. If it may erase, it may stall the core for seconds: at boot, before anything moves.
+/// Finds the records that count and makes room. Call it at boot, before anything moves: an erase stalls the core for seconds.
 ///
-/// A flash that fails costs the log, never what was found in it.
+/// If the flash fails, nothing more is saved, but the records that were found stay valid.
 pub fn open(area: &mut impl FlashArea, erase: Erase) -> (Log, Found) {
     let [a, b] = Sector::BOTH.map(|sector| Survey::of(area, sector));
     let (active, stale) = if b.rank() > a.rank() { (b, a) } else { (a, b) };
@@ -126,7 +126,7 @@ impl Log {
     /// whether it is finished or not.
     ///
     /// # Errors
-    /// Says why it is not saved.
+    /// Why it is not saved.
     pub fn begin<'a>(&mut self, kept: Kept, payload: &'a [u8]) -> Result<Saving<'a>, Refused> {
         if self.failed {
             return Err(Refused::Failed);

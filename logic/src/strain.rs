@@ -1,8 +1,8 @@
-//! The strain gauges' zeros: what is left of a reading is load.
+//! The strain gauges: reading less zero is load.
 //!
-//! A foil gauge in silicone is off by as much as a light grasp and drifts by some mV a minute. Whether the finger is
-//! unloaded is known from another sensor, the FSR, so the zeros can follow by themselves: while it is, a gauge's zero goes
-//! after its readings. From the first load on they stay as they are.
+//! A foil gauge in silicone is off by as much as a light grasp and drifts by some mV a minute. The FSR tells whether the
+//! finger is unloaded; while it is, each gauge's zero follows
+//! its readings. In a grasp the zeros are held.
 
 use tenax_hal_shim::channel::{CHANNELS, SLOW_HZ, STRAIN, STRAIN_COUNT, sample_from_mv};
 use tenax_hal_shim::words::Reason;
@@ -38,7 +38,7 @@ impl Default for Gauges {
 }
 
 impl Gauges {
-    /// Takes a reading of one gauge (14 bits). `unloaded`: the finger is known to touch nothing.
+    /// Takes a 14-bit reading of a gauge (0 to 11). `unloaded`: the finger is known to touch nothing. Gives a change of its health.
     pub fn read(&mut self, gauge: usize, sample: u16, unloaded: bool) -> Option<Change> {
         let gauge = self.0.get_mut(gauge)?;
         let (reading, change) = if gauge.health.is_plain(&LIMITS, sample) {
@@ -50,7 +50,7 @@ impl Gauges {
         change
     }
 
-    /// Takes the last readings as zeros. For the caller to allow: never during a grasp.
+    /// Takes the last readings as zeros. The caller makes sure that nothing is held.
     pub fn zero(&mut self) {
         for gauge in &mut self.0 {
             gauge.zero += gauge.load << FOLLOW_SHIFT;
@@ -58,13 +58,13 @@ impl Gauges {
         }
     }
 
-    /// One of the [`loads`](Self::loads); None of a gauge that is not there.
+    /// One of the [`loads`](Self::loads), 1/16 of a sample; None for a gauge above 11.
     #[must_use]
     pub fn load(&self, gauge: usize) -> Option<i32> {
         self.0.get(gauge).map(|gauge| gauge.load)
     }
 
-    /// Loads above zero, 1/16 of a sample. A gauge that gives no number has none.
+    /// Loads, 1/16 of a sample, positive or negative; 0 of a lost gauge.
     #[must_use]
     pub fn loads(&self) -> [i32; STRAIN_COUNT] {
         core::array::from_fn(|n| self.0[n].load)

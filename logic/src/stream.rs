@@ -1,5 +1,5 @@
-//! What goes up the line beyond the usual while somebody asks for it: frames as they were sampled, and every sensor's
-//! reading. It only looks; nothing that is decided depends on it.
+//! Messages on request ([`Down::Stream`](tenax_hal_shim::wire::Down::Stream)): the samples of every frame, and every sensor's
+//! reading. No decision depends on it.
 
 use tenax_hal_shim::channel::{FRAME_HZ, FRAMES_PER_SLOW_FRAME};
 use tenax_hal_shim::frame::Frame;
@@ -7,13 +7,13 @@ use tenax_hal_shim::wire::{FRAMES_PER_RAW, Raw};
 
 const _: () = assert!((FRAMES_PER_SLOW_FRAME as usize).is_multiple_of(FRAMES_PER_RAW));
 
-/// For ever: until somebody asks for something else.
+/// Without end, until another request.
 const EVER: u32 = u32::MAX;
 
 /// The slot whose tick sends the readings: nothing long is decided or sent in it.
 pub const SENSES_SLOT: u8 = 2;
 
-/// What is asked for, and what has gathered.
+/// The requests, and the frames collected for the next message.
 #[derive(Clone, Debug, Default)]
 pub struct Stream {
     /// Sequence number of the frame to come.
@@ -34,20 +34,20 @@ pub struct Stream {
 }
 
 impl Stream {
-    /// From the first frame on.
+    /// Streams frames from the first one on, without end.
     pub const fn start(&mut self) {
         self.raw = true;
         self.left = EVER;
     }
 
-    /// Somebody asks.
+    /// Takes a request for so many seconds; 0 ends it.
     pub fn ask(&mut self, raw: bool, senses: bool, hold_s: u16) {
         self.is_torn |= raw && !self.raw && !(self.next as usize).is_multiple_of(FRAMES_PER_RAW);
         self.left = u32::from(hold_s) * FRAME_HZ;
         (self.raw, self.senses) = (raw && hold_s > 0, senses && hold_s > 0);
     }
 
-    /// A frame had its tick.
+    /// Takes a frame after its tick.
     pub fn record(&mut self, frame: &Frame) {
         self.next = frame.sequence.wrapping_add(1);
         if self.left > 0 || self.is_whole {
@@ -98,7 +98,7 @@ impl Stream {
         self.senses_are_due
     }
 
-    /// They were.
+    /// Notes that they were sent.
     pub const fn gave_senses(&mut self) {
         self.senses_are_due = false;
     }

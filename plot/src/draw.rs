@@ -78,7 +78,16 @@ fn draw_panel(area: &Area, figure: &Figure, panel: &Panel, foot: i32) -> anyhow:
     if foot > 0 {
         mesh.x_desc("time, s");
     }
+    if !panel.names.is_empty() {
+        // Their places are no ticks of plotters' choice.
+        mesh.y_labels(0).disable_y_mesh();
+    }
     drawn(mesh.draw())?;
+    for (at, name) in &panel.names {
+        let style = (FONTS, 13).into_font().color(&INK).pos(Pos::new(HPos::Right, VPos::Center));
+        let y = chart.backend_coord(&(from_s, *at)).1 - area.get_base_pixel().1;
+        drawn(area.draw(&Text::new(name.clone(), (LEFT - 8, y), style)))?;
+    }
     let strip_top = low + (high - low) * STRIP;
     for stretch in &panel.strip {
         let corners = [(stretch.from_s, low), (stretch.to_s, strip_top)];
@@ -98,7 +107,9 @@ fn draw_panel(area: &Area, figure: &Figure, panel: &Panel, foot: i32) -> anyhow:
     let middle = (area.dim_in_pixel().1 as i32 - foot + GAP) / 2;
     let label = (FONTS, 15).into_font().transform(FontTransform::Rotate270).color(&INK);
     let label = label.pos(Pos::new(HPos::Center, VPos::Center));
-    drawn(area.draw(&Text::new(panel.label.clone(), (20, middle), label)))?;
+    if panel.names.is_empty() {
+        drawn(area.draw(&Text::new(panel.label.clone(), (20, middle), label)))?;
+    }
     legend(area, panel)
 }
 
@@ -112,13 +123,19 @@ fn plain(value: &f64) -> String {
 fn legend(area: &Area, panel: &Panel) -> anyhow::Result<()> {
     let left = SIZE.0 as i32 - RIGHT + 14;
     let mut y = GAP + 10;
+    if !panel.names.is_empty() {
+        // On the axis they have its place.
+        let style = (FONTS, 14).into_font().color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
+        drawn(area.draw(&Text::new(panel.label.clone(), (left, y), style)))?;
+        y += 19;
+    }
     let mut name = |name: &str| {
         let style = (FONTS, 14).into_font().color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
         let drew = drawn(area.draw(&Text::new(name.to_owned(), (left + 27, y), style)));
         y += 19;
         drew.map(|()| y - 19)
     };
-    for curve in &panel.curves {
+    for curve in panel.curves.iter().filter(|curve| !curve.name.is_empty()) {
         let y = name(&curve.name)?;
         drawn(area.draw(&PathElement::new([(left, y), (left + 20, y)], curve.colour.stroke_width(3))))?;
     }

@@ -26,7 +26,7 @@ pub mod colour {
 
 #[derive(Clone, Debug)]
 pub struct Curve {
-    /// What it is, at the panel's right.
+    /// What it is, at the panel's right; empty where the axis names it.
     pub name: String,
     pub colour: RGBColor,
     /// Its points; a gap is a point whose value is NaN.
@@ -60,6 +60,8 @@ pub struct Panel {
     pub levels: Vec<Level>,
     /// A strip of states at its foot.
     pub strip: Vec<Stretch>,
+    /// Names on the axis in the place of numbers, each at its value.
+    pub names: Vec<(f64, String)>,
     /// The least that the axis spans.
     pub at_least: (f64, f64),
     /// Its height, in parts of the figure's.

@@ -1,48 +1,92 @@
-"""Reads a Tenax fingertip's serial line.
-
-    import tenax
-
-    with tenax.open("/dev/ttyACM0") as board:      # or tcp:127.0.0.1:7777, a pseudo-terminal, a captured line
-        board.stream(raw=True)
-        for message in board:
-            if message.kind == "Raw":
-                print(tenax.array(message))        # 5 x 12 samples
+"""Reads a Tenax fingertip's serial line, its recordings (MCAP) and captured lines. README.md begins with examples.
 
 `message.kind` is the message's name in docs/protocol.md, `message.sequence` its number; `board.missed` counts the numbers
-that are missing, `board.bad` the frames that were no message.
+that are missing, `board.bad` the frames that were no message. Types of all messages: messages.pyi.
 """
+
+from __future__ import annotations
 
 import io
 import os
 import socket
 import time
+from typing import TYPE_CHECKING, Any, Dict, Iterable, Iterator, List, Protocol
 
 from . import wire
 from .wire import BAUD, FRAME_HZ, Garbled
 
-__all__ = ["Board", "Garbled", "array", "open", "seconds"]
+if TYPE_CHECKING:
+    import numpy
+
+    from . import messages
+
+__all__ = ["Board", "Columns", "Garbled", "MV", "array", "open", "seconds", "states", "ticks"]
 
 FRAME_MAX = 512
 
 
-def seconds(frame):
+def seconds(frame: int) -> float:
     """When a frame ended, s since the board's start."""
     return (frame + 1) / FRAME_HZ
 
 
-def array(raw):
+def array(raw: messages.Up_Raw) -> numpy.ndarray:
     """The films of a message of frames, a row a frame, as a numpy array."""
     import numpy
 
     return numpy.array([frame.films for frame in raw.frames], dtype=numpy.uint16)
 
 
+# Columns of a table, by their names.
+Columns = Dict[str, List[Any]]
+# Of a 14-bit sample.
+MV = 3300 / 16384
+
+
+def states(board: Iterable[messages.Up]) -> Columns:
+    """Mode, forces (N) and muscles (mV) of each slow frame, as columns: pandas.DataFrame takes them. None: there was none."""
+    columns: Columns = {name: [] for name in ("time_s", "mode", *_FORCES, "ratio", "s2", *_MUSCLES, "wearer_active")}
+    for slow in board:
+        if slow.kind != "Slow":
+            continue
+        row: dict[str, Any] = {"time_s": seconds(slow.frame), "mode": slow.mode, "s2": slow.s2_permille / 1000, "wearer_active": slow.wearer_active}
+        row.update({name: getattr(slow, name) for name in _MUSCLES})
+        if slow.forces is not None:
+            row.update({name: getattr(slow.forces, name[:-1] + "mn") / 1000 for name in _FORCES})
+            ratio = slow.forces.ratio_permille
+            row["ratio"] = None if ratio is None else ratio / 1000
+        for name, column in columns.items():
+            column.append(row.get(name))
+    return columns
+
+
+_FORCES, _MUSCLES = ("fn_n", "load_n", "fx_n", "fy_n", "ft_n"), ("flexor_mv", "extensor_mv")
+
+
+def ticks(board: Iterable[messages.Up]) -> Columns:
+    """What each of the 2000 ticks a second decided, as columns. Sets of detectors have a bit each, as docs/protocol.md says."""
+    columns: Columns = {name: [] for name in ("time_s", "vibration_mv", "o1", "o2", "drive", "source", "said", "believed", "acted")}
+    for slow in board:
+        if slow.kind == "Slow":
+            for n, tick in enumerate(slow.ticks):
+                row = dict(vars(tick), time_s=seconds(slow.frame - len(slow.ticks) + 1 + n), vibration_mv=tick.vibration * MV)
+                for name, column in columns.items():
+                    column.append(row[name])
+    return columns
+
+
+class _Line(Protocol):
+    def read(self) -> bytes: ...
+    def write(self, data: bytes) -> None: ...
+    def close(self) -> None: ...
+
+
 class _Socket:
-    def __init__(self, host, port):
+    def __init__(self, host: str, port: int) -> None:
         self.socket = socket.create_connection((host, port), timeout=3)
         self.socket.settimeout(0.1)
 
-    def read(self):
+    def read(self) -> bytes:
         try:
             data = self.socket.recv(4096)
         except socket.timeout:
@@ -51,34 +95,55 @@ class _Socket:
             raise EOFError
         return data
 
-    def write(self, data):
+    def write(self, data: bytes) -> None:
         self.socket.sendall(data)
 
-    def close(self):
+    def close(self) -> None:
         self.socket.close()
 
 
 class _File:
-    def __init__(self, path):
+    def __init__(self, path: str) -> None:
         self.file = io.open(path, "rb")
 
-    def read(self):
+    def read(self) -> bytes:
         data = self.file.read(4096)
         if not data:
             raise EOFError
         return data
 
-    def write(self, data):
+    def write(self, data: bytes) -> None:
         raise OSError("a captured line cannot be told anything")
 
-    def close(self):
+    def close(self) -> None:
         self.file.close()
+
+
+class _Recording(_File):
+    """The topic /line of an MCAP file, through the public reader."""
+
+    def __init__(self, path: str) -> None:
+        from mcap.reader import make_reader
+
+        super().__init__(path)
+        self.messages = make_reader(self.file).iter_messages(topics=["/line"], log_time_order=False)
+
+    def read(self) -> bytes:
+        try:
+            data = next(self.messages)[2].data
+        except StopIteration:
+            raise EOFError from None
+        # A protobuf message of one field of bytes: its tag, and its length in seven bits a byte.
+        start = 1
+        while data[start] & 0x80:
+            start += 1
+        return bytes(data[start + 1:])
 
 
 class _Terminal:
     """A pseudo-terminal, or a serial port that is set up already."""
 
-    def __init__(self, path):
+    def __init__(self, path: str) -> None:
         import termios
         import tty
 
@@ -89,41 +154,44 @@ class _Terminal:
         attributes[6][termios.VMIN], attributes[6][termios.VTIME] = 0, 1
         termios.tcsetattr(self.fd, termios.TCSANOW, attributes)
 
-    def read(self):
+    def read(self) -> bytes:
         try:
             return os.read(self.fd, 4096)
         except OSError as error:
             raise EOFError from error
 
-    def write(self, data):
+    def write(self, data: bytes) -> None:
         while data:
             data = data[os.write(self.fd, data):]
 
-    def close(self):
+    def close(self) -> None:
         os.close(self.fd)
 
 
 class _Serial:
-    def __init__(self, port):
+    def __init__(self, port: str) -> None:
         import serial
 
         self.port = serial.Serial(port, BAUD, timeout=0.1)
 
-    def read(self):
-        return self.port.read(max(1, self.port.in_waiting))
+    def read(self) -> bytes:
+        return bytes(self.port.read(max(1, self.port.in_waiting)))
 
-    def write(self, data):
+    def write(self, data: bytes) -> None:
         self.port.write(data)
 
-    def close(self):
+    def close(self) -> None:
         self.port.close()
 
 
-def open(place):
-    """The board at a serial port, a pseudo-terminal, `tcp:HOST:PORT` or in a captured line."""
+def open(place: str | os.PathLike[str]) -> Board:
+    """The board at a serial port, a pseudo-terminal, `tcp:HOST:PORT`, in a recording (*.mcap) or in a captured line."""
+    place = os.fspath(place)
     if place.startswith("tcp:"):
         host, port = place[4:].rsplit(":", 1)
         return Board(_Socket(host.strip("[]"), int(port)))
+    if place.lower().endswith(".mcap"):
+        return Board(_Recording(place))
     if os.path.isfile(place):
         return Board(_File(place))
     if os.path.realpath(place).startswith("/dev/pts/"):
@@ -134,24 +202,25 @@ def open(place):
 class Board:
     """One end of a line."""
 
-    def __init__(self, line):
-        self.line, self.buffer, self.sequence, self.expected = line, bytearray(), 0, None
+    def __init__(self, line: _Line) -> None:
+        self.line, self.buffer, self.sequence = line, bytearray(), 0
+        self.expected: int | None = None
         self.missed = self.bad = self.messages = 0
 
-    def __enter__(self):
+    def __enter__(self) -> Board:
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: object) -> None:
         self.line.close()
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[messages.Up]:
         while True:
             try:
                 yield from self.read()
             except EOFError:
                 return
 
-    def read(self):
+    def read(self) -> list[messages.Up]:
         """The messages that have come; waits a tenth of a second for the first."""
         self.buffer += self.line.read()
         messages = []
@@ -175,23 +244,23 @@ class Board:
             del self.buffer[:-FRAME_MAX]
         return messages
 
-    def send(self, *command):
+    def send(self, *command: Any) -> int:
         """Sends a command, such as send("Set", 1, 120); returns its number."""
         sequence = self.sequence
         self.sequence = (sequence + 1) & 0xFFFF
         self.line.write(wire.encode(sequence, *command))
         return sequence
 
-    def ask(self, *command, within=2.0):
+    def ask(self, *command: Any, within: float = 2.0) -> messages.Answer:
         """Sends a command and returns its answer. Messages that come before it are lost to the iterator."""
-        answer = self._ask(*command, within=within)
+        answer: messages.Answer = self._ask(*command, within=within)
         if answer.kind == "Refused" and answer.refusal.kind in ("NoSession", "Replayed"):
             # What changes something needs a session.
             self._ask("Open", self._ask("Hello", within=within).nonce, within=within)
             answer = self._ask(*command, within=within)
         return answer
 
-    def _ask(self, *command, within):
+    def _ask(self, *command: Any, within: float) -> Any:
         number, until = self.send(*command), time.monotonic() + within
         while time.monotonic() < until:
             for message in self.read():
@@ -199,6 +268,6 @@ class Board:
                     return message.answer
         raise TimeoutError(f"no answer to {command[0]} in {within} s")
 
-    def stream(self, raw=False, senses=False, hold_s=300):
+    def stream(self, raw: bool = False, senses: bool = False, hold_s: int = 300) -> None:
         """Asks for frames and readings, for a while."""
         self.send("Stream", raw, senses, hold_s)

@@ -4,19 +4,26 @@ The types are the board's own (wire.json, out of the firmware's sources). A type
 ["vec", T], ["arr", n, T], ["tuple", [T, ...]].
 """
 
+from __future__ import annotations
+
 import json
 import pathlib
 import zlib
 from types import SimpleNamespace
+from typing import Any, Dict, Tuple
 
 _WIRE = json.loads((pathlib.Path(__file__).parent / "wire.json").read_text())
 VERSION = _WIRE["version"]
 SCHEMA = int(_WIRE["schema"], 16)
-TYPES = _WIRE["types"]
+TYPES: Dict[str, Any] = _WIRE["types"]
 # A message of each kind: its direction, its name, its frame.
 GOLDEN = [(direction, name, bytes.fromhex(data)) for direction, name, data in _WIRE["golden"]]
 BAUD = 921_600
 FRAME_HZ = 2_000
+
+
+# In a class that has a method of that name.
+Bytes = bytes
 
 
 class Garbled(Exception):
@@ -26,19 +33,19 @@ class Garbled(Exception):
 class Reader:
     """Reads values one after the other."""
 
-    def __init__(self, data):
+    def __init__(self, data: bytes) -> None:
         self.data, self.at = data, 0
 
-    def byte(self):
+    def byte(self) -> int:
         if self.at >= len(self.data):
             raise Garbled("too short")
         self.at += 1
         return self.data[self.at - 1]
 
-    def bytes(self, count):
+    def bytes(self, count: int) -> Bytes:
         return bytes(self.byte() for _ in range(count))
 
-    def varint(self):
+    def varint(self) -> int:
         value = shift = 0
         while True:
             byte = self.byte()
@@ -49,7 +56,7 @@ class Reader:
             if shift > 63:
                 raise Garbled("a number without an end")
 
-    def value(self, kind):
+    def value(self, kind: Any) -> Any:
         if isinstance(kind, str):
             return self._named(TYPES[kind]) if kind in TYPES else getattr(self, "_" + kind)()
         if kind[0] == "opt":
@@ -60,7 +67,7 @@ class Reader:
             return [self.value(kind[1]) for _ in range(self.varint())]
         return tuple(self.value(own) for own in kind[1])
 
-    def _named(self, of):
+    def _named(self, of: Any) -> Any:
         if "struct" in of:
             return SimpleNamespace(**{name: self.value(own) for name, own in of["struct"]})
         number, variants = self.varint(), of["enum"]
@@ -71,25 +78,25 @@ class Reader:
             return variant
         return SimpleNamespace(kind=variant, **{name: self.value(own) for name, own in fields})
 
-    def _u8(self):
+    def _u8(self) -> int:
         return self.byte()
 
-    def _bool(self):
+    def _bool(self) -> bool:
         return self.byte() != 0
 
-    def _i8(self):
+    def _i8(self) -> int:
         byte = self.byte()
         return byte - 256 if byte > 127 else byte
 
     _u16 = _u32 = _u64 = varint
 
-    def _i32(self):
+    def _i32(self) -> int:
         number = self.varint()
         return (number >> 1) ^ -(number & 1)
 
     _i16 = _i32
 
-    def _tick(self):
+    def _tick(self) -> SimpleNamespace:
         word, o1, o2 = int.from_bytes(self.bytes(2), "little"), self.byte(), self.byte()
         drive = int.from_bytes(self.bytes(2), "little") if word & 1 << 14 else 0
         said, believed, acted = self.bytes(3) if word & 1 << 15 else (0, 0, 0)
@@ -100,7 +107,7 @@ class Reader:
             drive=(0, duty, -duty)[drive >> 10 & 3] / 1000, source=("nobody", "wearer", "link", "reflex", "behaviour")[drive >> 12 & 7],
         )
 
-    def _frame(self):
+    def _frame(self) -> SimpleNamespace:
         data = self.bytes(25)
         films = []
         for group in range(3):
@@ -112,7 +119,7 @@ class Reader:
         )
 
 
-def uncobs(data):
+def uncobs(data: bytes) -> bytes:
     """COBS without its final zero, decoded."""
     out, at = bytearray(), 0
     while at < len(data):
@@ -126,7 +133,7 @@ def uncobs(data):
     return bytes(out)
 
 
-def cobs(data):
+def cobs(data: bytes) -> bytes:
     """COBS, the final zero included."""
     out = bytearray()
     for part in bytes(data).split(b"\0"):
@@ -137,7 +144,7 @@ def cobs(data):
     return bytes(out) + b"\0"
 
 
-def decode(frame, kind="Up"):
+def decode(frame: bytes, kind: str = "Up") -> Tuple[int, Any]:
     """The number and the message of a frame without its final zero."""
     data = uncobs(frame)
     if len(data) < 6:
@@ -155,7 +162,7 @@ def decode(frame, kind="Up"):
     return sequence, message
 
 
-def _varint(value):
+def _varint(value: int) -> bytes:
     out = bytearray()
     while value >= 0x80:
         out.append(value & 0x7F | 0x80)
@@ -163,7 +170,7 @@ def _varint(value):
     return bytes(out) + bytes([value])
 
 
-def _write(kind, value):
+def _write(kind: Any, value: Any) -> bytes:
     if kind in ("u8", "bool"):
         return bytes([int(value)])
     if kind == "i8":
@@ -186,7 +193,7 @@ def _write(kind, value):
     return _varint(number) + b"".join(_write(own, given) for (_, own), given in zip(variants[number][1], values))
 
 
-def encode(sequence, *command):
+def encode(sequence: int, *command: Any) -> bytes:
     """A command as a frame: encode(7, "Set", 1, 120)."""
     body = bytes([VERSION]) + _varint(sequence) + _write("Down", command)
     return cobs(body + zlib.crc32(body).to_bytes(4, "little"))

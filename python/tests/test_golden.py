@@ -1,8 +1,9 @@
 """Every frame that the firmware's own tests hold (tenax/wire.json), decoded to its last byte."""
 
+import pathlib
 import unittest
 
-from tenax import wire
+from tenax import stubs, wire
 
 
 class Golden(unittest.TestCase):
@@ -17,6 +18,10 @@ class Golden(unittest.TestCase):
                     self.assertEqual(wire.encode(sequence, name, *values), data, name)
                 names.add(name)
             self.assertEqual(names, {name for name, _ in wire.TYPES[direction]["enum"]})
+
+    def test_the_types_are_those_of_the_messages(self):
+        held = (pathlib.Path(stubs.__file__).parent / "messages.pyi").read_text()
+        self.assertEqual(held, stubs.stubs(), "python -m tenax.stubs > tenax/messages.pyi")
 
     def packed(self, kind):
         return wire.Reader(next(data for direction, _, data in wire.GOLDEN if direction == kind))

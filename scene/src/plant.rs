@@ -4,6 +4,7 @@ use tenax_hal_shim::channel::{CHANNELS, CODE_MAX, COUNT, REFERENCE_MV};
 use tenax_hal_shim::frame::{Frame, scan_of_pins};
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::Down;
+use tenax_hal_shim::words::Kept;
 
 use crate::act::Act;
 
@@ -114,6 +115,23 @@ pub trait Plant: Send {
     /// Whether the board streams its frames from the start (the setting `stream-at-start-flag`, kept in its flash from before).
     fn streams_at_start(&self) -> bool {
         self.within().is_some_and(Plant::streams_at_start)
+    }
+
+    /// What the board's flash has kept from before.
+    fn kept(&self) -> Vec<(Kept, Vec<u8>)> {
+        self.within().map_or_else(Vec::new, Plant::kept)
+    }
+
+    /// The board has saved this.
+    fn keep(&mut self, kept: Kept, payload: &[u8]) {
+        if let Some(within) = self.within_mut() {
+            within.keep(kept, payload);
+        }
+    }
+
+    /// Whether the board is reset at this instant: its run is over.
+    fn resets(&self) -> bool {
+        self.within().is_some_and(Plant::resets)
     }
 
     /// Whether somebody holds the board's button down at this instant.

@@ -1,13 +1,15 @@
-//! MCAP files (mcap.dev, version 0): written in chunks that zstd compresses, with an index of the chunks; read from begin to
-//! end.
+//! MCAP files (mcap.dev, version 0): written in chunks that zstd compresses, with an index of chunks and messages; read from begin to
+//! end, or chunk by chunk.
 //!
 //! The crate `mcap` does this too, but its derive macros turn on a feature of `proc-macro2` with which everything that has
 //! macros, the emulator included, is compiled anew.
 
-use std::collections::BTreeMap;
-use std::io::{self, Read, Write};
+mod read;
 
-use anyhow::{Context, bail};
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+
+pub use self::read::{Chunk, Topics, chunk, chunks, read};
 
 const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 const HEADER: u8 = 1;
@@ -16,6 +18,7 @@ const SCHEMA: u8 = 3;
 const CHANNEL: u8 = 4;
 const MESSAGE: u8 = 5;
 const CHUNK: u8 = 6;
+const MESSAGE_INDEX: u8 = 7;
 const CHUNK_INDEX: u8 = 8;
 const STATISTICS: u8 = 11;
 const METADATA: u8 = 12;
@@ -23,8 +26,6 @@ const METADATA_INDEX: u8 = 13;
 const DATA_END: u8 = 15;
 /// How chunks are compressed, as the file says.
 const ZSTD: &[u8] = b"zstd";
-/// No chunk of a file that is read may be longer than this.
-const CHUNK_BYTES_MAX: u64 = 256 << 20;
 
 /// A record's content as it grows.
 #[derive(Default)]
@@ -85,6 +86,9 @@ struct Indexed {
     length: u64,
     content: u64,
     compressed: u64,
+    /// Where the index of each channel's messages is, and how long all of them are.
+    messages: Vec<u8>,
+    messages_length: u64,
 }
 
 /// Writes a file.
@@ -96,6 +100,8 @@ pub struct Writer<W: Write> {
     counts: BTreeMap<u16, u64>,
     chunk: Vec<u8>,
     span_ns: Option<(u64, u64)>,
+    /// Of each channel's messages in the chunk, time and place.
+    places: BTreeMap<u16, Vec<u8>>,
     index: Vec<Indexed>,
     /// Index records of what was told of the file.
     metadata: Vec<Vec<u8>>,
@@ -112,6 +118,7 @@ impl<W: Write> Writer<W> {
             counts: BTreeMap::new(),
             chunk: Vec::new(),
             span_ns: None,
+            places: BTreeMap::new(),
             index: Vec::new(),
             metadata: Vec::new(),
         };
@@ -157,6 +164,8 @@ impl<W: Write> Writer<W> {
         let count = self.counts.entry(channel).or_default();
         let content = Content::default().u16(channel).u32(*count as u32).u64(at_ns).u64(came_ns).raw(data);
         *count += 1;
+        let place = Content::default().u64(at_ns).u64(self.chunk.len() as u64);
+        self.places.entry(channel).or_default().extend_from_slice(&place.0);
         self.chunk.extend_from_slice(&content.record(MESSAGE));
         let (first, last) = self.span_ns.unwrap_or((at_ns, at_ns));
         self.span_ns = Some((first.min(at_ns), last.max(at_ns)));
@@ -175,8 +184,8 @@ impl<W: Write> Writer<W> {
             (first, last) = (first.min(chunk.first_ns), last.max(chunk.last_ns));
             let content =
                 Content::default().u64(chunk.first_ns).u64(chunk.last_ns).u64(chunk.at).u64(chunk.length);
-            // No index of single messages: a chunk is read whole.
-            let content = content.u32(0).u64(0).bytes(ZSTD).u64(chunk.compressed).u64(chunk.content);
+            let content = content.bytes(&chunk.messages).u64(chunk.messages_length);
+            let content = content.bytes(ZSTD).u64(chunk.compressed).u64(chunk.content);
             self.put(&content.record(CHUNK_INDEX))?;
         }
         let metadata = std::mem::take(&mut self.metadata);
@@ -211,106 +220,32 @@ impl<W: Write> Writer<W> {
         let chunk =
             Content::default().u64(first_ns).u64(last_ns).u64(content).u32(0).bytes(ZSTD).u64(compressed);
         let record = chunk.raw(&packed).record(CHUNK);
-        let length = record.len() as u64;
-        self.index.push(Indexed { first_ns, last_ns, at: self.at, length, content, compressed });
-        self.put(&record)
+        let (at, length) = (self.at, record.len() as u64);
+        self.put(&record)?;
+        // Foxglove's reader takes no chunk without it.
+        let begin = self.at;
+        let mut messages = Content::default();
+        for (channel, places) in std::mem::take(&mut self.places) {
+            messages = messages.u16(channel).u64(self.at);
+            self.put(&Content::default().u16(channel).bytes(&places).record(MESSAGE_INDEX))?;
+        }
+        let (messages, messages_length) = (messages.0, self.at - begin);
+        self.index.push(Indexed {
+            first_ns,
+            last_ns,
+            at,
+            length,
+            content,
+            compressed,
+            messages,
+            messages_length,
+        });
+        Ok(())
     }
 
     fn put(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.at += bytes.len() as u64;
         self.out.write_all(bytes)
-    }
-}
-
-/// Hands every message of a file to `each`: its topic, its time and its data. A file that ends early, because whoever wrote
-/// it was killed, is read as far as it goes. Fails if it is no such file, or is compressed.
-pub fn read(file: &[u8], each: &mut dyn FnMut(&str, u64, &[u8])) -> anyhow::Result<()> {
-    let records = file.strip_prefix(MAGIC).context("this is no MCAP file")?;
-    let mut topics = BTreeMap::new();
-    walk(records, &mut topics, each)
-}
-
-fn walk(
-    mut rest: &[u8],
-    topics: &mut BTreeMap<u16, String>,
-    each: &mut dyn FnMut(&str, u64, &[u8]),
-) -> anyhow::Result<()> {
-    while let Some((opcode, content)) = next(&mut rest) {
-        match opcode {
-            CHANNEL => {
-                let mut fields = Fields(content);
-                if let (Some(id), Some(_), Some(topic)) = (fields.u16(), fields.u16(), fields.text()) {
-                    topics.insert(id, topic);
-                }
-            }
-            MESSAGE => {
-                let mut fields = Fields(content);
-                if let (Some(id), Some(_), Some(at_ns), Some(_)) =
-                    (fields.u16(), fields.take(4), fields.u64(), fields.u64())
-                    && let Some(topic) = topics.get(&id)
-                {
-                    each(topic, at_ns, fields.0);
-                }
-            }
-            CHUNK => {
-                let mut fields = Fields(content);
-                let compression = fields.take(28).and_then(|_| fields.text());
-                if fields.u64().is_none() {
-                    continue;
-                }
-                match compression.as_deref() {
-                    Some("") => walk(fields.0, topics, each)?,
-                    Some("zstd") => {
-                        let mut records = Vec::new();
-                        let unpacked = zstd::Decoder::new(fields.0)
-                            .and_then(|chunk| chunk.take(CHUNK_BYTES_MAX).read_to_end(&mut records));
-                        // Of a chunk that is damaged, what was whole.
-                        let _damaged = unpacked.is_err();
-                        walk(&records, topics, each)?;
-                    }
-                    Some(other) => {
-                        bail!("this MCAP file is compressed ({other}): `mcap convert` undoes that")
-                    }
-                    None => {}
-                }
-            }
-            DATA_END | FOOTER => break,
-            _ => {}
-        }
-    }
-    Ok(())
-}
-
-/// The next record: its kind and its content.
-fn next<'a>(rest: &mut &'a [u8]) -> Option<(u8, &'a [u8])> {
-    let mut fields = Fields(rest);
-    let opcode = fields.take(1)?[0];
-    let length = usize::try_from(fields.u64()?).ok()?;
-    let content = fields.take(length)?;
-    *rest = fields.0;
-    Some((opcode, content))
-}
-
-struct Fields<'a>(&'a [u8]);
-
-impl<'a> Fields<'a> {
-    fn take(&mut self, length: usize) -> Option<&'a [u8]> {
-        let (taken, rest) = self.0.split_at_checked(length)?;
-        self.0 = rest;
-        Some(taken)
-    }
-
-    fn u16(&mut self) -> Option<u16> {
-        Some(u16::from_le_bytes(self.take(2)?.try_into().ok()?))
-    }
-
-    fn u64(&mut self) -> Option<u64> {
-        Some(u64::from_le_bytes(self.take(8)?.try_into().ok()?))
-    }
-
-    fn text(&mut self) -> Option<String> {
-        let length = u32::from_le_bytes(self.take(4)?.try_into().ok()?);
-        String::from_utf8(self.take(length as usize)?.to_vec()).ok()
     }
 }
 

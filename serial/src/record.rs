@@ -2,9 +2,11 @@
 //!
 //! The topic `/line` holds the bytes as they came; all other topics are made from them. So a recording is played, watched
 //! and replayed like a captured line, and what a later tool knows better it takes from the bytes again. A message's log time is the
-//! board's, its publish time this computer's. The metadata `tenax` tell tool, chip, build, schema and settings.
+//! board's, from where it was by this computer's clock at the beginning; its publish time is this computer's. The metadata `tenax` tell tool, chip, build, schema and settings.
 
 pub mod csv;
+#[cfg(feature = "parquet")]
+pub mod parquet;
 pub mod topics;
 
 use std::fs::File;
@@ -32,27 +34,35 @@ pub fn name_now() -> PathBuf {
 pub struct Recording {
     file: Writer<BufWriter<File>>,
     channels: Vec<(Topic, u16)>,
+    /// When the file was begun, and when the board's time 0 was by this computer's clock, if that is known.
     began_ns: u64,
+    zero_ns: Option<u64>,
     last: u32,
     about: Option<About>,
     error: Option<io::Error>,
     inbox: Inbox,
+    /// Bytes of the line that wait to be one message, the slow frames in them, and how many of these it has.
+    batch: (Vec<u8>, u32, u32),
 }
 
+/// Slow frames in a message of a compact recording's line, and for each of its states: a message takes 16 bytes of an index that
+/// nothing compresses.
+const BATCH: u32 = 4;
+
 impl Recording {
-    /// A recording of every topic in a new file. The board's time 0 is now.
+    /// A recording of every topic in a new file.
     /// Fails if the file cannot be written, is there already, or is not called `*.mcap`.
     pub fn create(path: &Path) -> anyhow::Result<Self> {
-        Self::of(path, Topic::all(), Packing::FAST)
+        Self::of(path, Topic::all(), Packing::FAST, 1)
     }
 
-    /// One for hours: the line, and what a person draws first.
+    /// One for hours: the line, and what a person draws first, 20 times a second.
     /// Fails as [`create`](Self::create) does.
     pub fn compact(path: &Path) -> anyhow::Result<Self> {
-        Self::of(path, Topic::compact(), Packing::SMALL)
+        Self::of(path, Topic::compact(), Packing::SMALL, BATCH)
     }
 
-    fn of(path: &Path, topics: Vec<Topic>, packing: Packing) -> anyhow::Result<Self> {
+    fn of(path: &Path, topics: Vec<Topic>, packing: Packing, batch: u32) -> anyhow::Result<Self> {
         let name = path.display();
         if !is_recording(path) {
             bail!(
@@ -81,10 +91,12 @@ impl Recording {
             file,
             channels,
             began_ns: now_ns(),
+            zero_ns: None,
             last: 0,
             about: None,
             error: None,
             inbox: Inbox::default(),
+            batch: (Vec::new(), 0, batch),
         })
     }
 
@@ -94,20 +106,55 @@ impl Recording {
             self.about = Some(about.clone());
         }
         let came_ns = now_ns();
+        if matches!(received.message, Up::Hello { .. }) {
+            self.end_batch();
+            // A board that starts anew counts from 0 again: in the file, its time goes on.
+            (self.zero_ns, self.last) = (Some(came_ns.max(self.at_ns(self.last) + 1)), 0);
+        }
         let rows = rows(&received.message, self.last);
         if let Some(last) = rows.iter().map(|(_, frame, _)| *frame).max() {
             self.last = self.last.max(last);
         }
-        let mut buffer = [0; FRAME_MAX];
-        let bytes = encode(received.sequence, &received.message, &mut buffer).map(|bytes| bytes.to_vec());
-        let line = bytes.map(|bytes| (Topic::Line, self.last, vec![Value::Bytes(bytes)]));
-        for (topic, frame, values) in line.into_iter().chain(rows) {
-            let at_ns = self.began_ns + (seconds(frame) * 1e9) as u64;
-            let Some((_, channel)) = self.channels.iter().find(|(own, _)| *own == topic) else { continue };
-            if let Err(error) = self.file.message(*channel, at_ns, came_ns, &protobuf::message(&values)) {
-                self.error.get_or_insert(error);
+        if self.zero_ns.is_none() {
+            // What was said before the first time was is of no time.
+            if self.last == 0 {
+                return;
             }
+            self.zero_ns = Some(came_ns.saturating_sub(in_ns(self.last)));
         }
+        let mut buffer = [0; FRAME_MAX];
+        let bytes = encode(received.sequence, &received.message, &mut buffer);
+        self.batch.0.extend_from_slice(bytes.unwrap_or_default());
+        self.batch.1 += u32::from(matches!(received.message, Up::Slow(_)));
+        let ends = self.batch.2 == 1 || self.batch.1 >= self.batch.2;
+        if ends {
+            self.end_batch();
+        }
+        for (topic, frame, values) in rows.into_iter().filter(|(topic, ..)| ends || *topic != Topic::State) {
+            self.put(topic, frame, came_ns, &values);
+        }
+    }
+
+    /// Writes what there is of the line's bytes.
+    fn end_batch(&mut self) {
+        let bytes = std::mem::take(&mut self.batch.0);
+        self.batch.1 = 0;
+        if !bytes.is_empty() {
+            self.put(Topic::Line, self.last, now_ns(), &[Value::Bytes(bytes)]);
+        }
+    }
+
+    fn put(&mut self, topic: Topic, frame: u32, came_ns: u64, values: &[Value]) {
+        let at_ns = self.at_ns(frame);
+        let Some((_, channel)) = self.channels.iter().find(|(own, _)| *own == topic) else { return };
+        if let Err(error) = self.file.message(*channel, at_ns, came_ns, &protobuf::message(values)) {
+            self.error.get_or_insert(error);
+        }
+    }
+
+    /// When a frame ended, by the file's time.
+    fn at_ns(&self, frame: u32) -> u64 {
+        self.zero_ns.unwrap_or(0) + in_ns(frame)
     }
 
     /// Takes in what comes up a line, as it comes.
@@ -148,12 +195,17 @@ impl Recording {
 
     /// Ends the file. Fails if it could not be written whole.
     pub fn finish(mut self) -> io::Result<()> {
+        self.end_batch();
         if let Err(error) = self.file.metadata("tenax", &self.metadata()) {
             self.error.get_or_insert(error);
         }
         let finished = self.file.finish().map(drop);
         self.error.map_or(finished, Err)
     }
+}
+
+fn in_ns(frame: u32) -> u64 {
+    (seconds(frame) * 1e9) as u64
 }
 
 fn now_ns() -> u64 {

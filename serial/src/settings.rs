@@ -2,21 +2,29 @@
 
 use std::fmt::Write;
 
+use std::collections::BTreeMap;
+use std::time::SystemTime;
+
 use anyhow::Context;
-use tenax_hal_shim::wire::Setting;
+use serde::Serialize;
+use tenax_hal_shim::wire::{About, Setting, VERSION};
 use tenax_logic::setting::SettingId;
+
+use crate::words::AboutWords;
 
 const HEAD: &str = "\
 # Settings
 
-This page is for anybody who changes a number of the fingertip. Printed from `logic/src/*/settings.rs` by `cargo tenax settings`; do not edit.
+This page lists the numbers that a user can change.
 
-`cargo tenax config set NAME=VALUE` changes one; a scene uses `kind = \"set-NAME\"` with `value`. A change needs [consent](safety.md#the-cable) at the hand,
-and outlives a power cut. Ranges are wider where the line is trusted. No pair of values opens or deafens (`host-tests/tests/ranges.rs`), no mix drops or
-crushes (`bench/tests/mixes.rs`). The number is the name on wire and flash.
+<!-- Printed from logic/src/*/settings.rs by cargo tenax settings; do not edit. -->
 
-| number | name | unit | range | default | meaning |
-|---|---|---|---|---|---|
+Press the blue button shortly ([consent](safety.md#the-cable)), then run `cargo tenax config set NAME=VALUE`. The value outlives a power cut. A scene uses
+`kind = \"set-NAME\"` with `value`. A trusted line has wider ranges. Within the others, no two settings together open the hand or switch slip detection off. The number
+is the setting's name on wire and in flash.
+
+| number | name with unit | range | default | meaning |
+|---|---|---|---|---|
 ";
 
 /// The whole page.
@@ -28,9 +36,8 @@ pub fn markdown() -> String {
         // Writing into a String cannot fail.
         let _ = writeln!(
             page,
-            "| {number} | `{}` | {} | {} to {}{} | {} | {} |",
+            "| {number} | `{}` | {} to {}{} | {} | {} |",
             row.name,
-            row.unit,
             range.start(),
             range.end(),
             match row.range_in_force(true) {
@@ -57,10 +64,76 @@ pub fn trusts_line(settings: &[Setting]) -> bool {
     settings.contains(&Setting { id: SettingId::LineTrusted.number(), value: 1 })
 }
 
+/// The trace of a screen or page that shows what a setting moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Trace {
+    Vibration,
+    Ratio,
+    Load,
+    Muscles,
+}
+
+impl Trace {
+    /// None: no trace shows it.
+    pub fn of(id: SettingId) -> Option<Self> {
+        let name = id.row().name;
+        let is = |stems: &[&str]| stems.iter().any(|stem| name.starts_with(stem));
+        if is(&["s1-", "impact-"]) {
+            Some(Self::Vibration)
+        } else if is(&["s2-", "loaded-", "hebbian-ahead"]) {
+            Some(Self::Ratio)
+        } else if is(&["force-ceiling", "slip-", "incipient-", "settle-", "blind-"]) {
+            Some(Self::Load)
+        } else if is(&["emg-"]) {
+            Some(Self::Muscles)
+        } else {
+            None
+        }
+    }
+}
+
+/// Which settings there are, and in which units (FNV-1a): a file from other ones says so.
+pub fn schema() -> u32 {
+    let rows = SettingId::ALL.map(|id| format!("{} {} {}\n", id.number(), id.row().name, id.row().unit));
+    rows.concat().bytes().fold(0x811c_9dc5, |hash, byte| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193))
+}
+
+/// What stands before [`schema`] in a file.
+const SCHEMA: &str = "# Schema of the settings: ";
+
+/// A board's settings as a TOML file that says whose they are.
+pub fn backup(about: &About, settings: &[Setting]) -> String {
+    let now = humantime::format_rfc3339_seconds(SystemTime::now());
+    format!(
+        "# Saved {now} by tenax {}, wire version {VERSION}, schema {:016x}.\n# Board: {}.\n{SCHEMA}{:08x}\n{}",
+        env!("CARGO_PKG_VERSION"),
+        about.schema,
+        AboutWords(about),
+        schema(),
+        toml(settings)
+    )
+}
+
+/// Of the text of a backup: what there is to say of it if it was saved by a tool that has other settings.
+pub fn of_other_schema(text: &str) -> Option<String> {
+    let (own, other) =
+        (format!("{:08x}", schema()), text.lines().find_map(|line| line.strip_prefix(SCHEMA))?);
+    (own != other).then(|| {
+        format!(
+            "was saved with other settings (schema {other}; this tool has {own}): look through what is set"
+        )
+    })
+}
+
+/// Those of a list by their numbers.
+pub fn by_number(settings: &[Setting]) -> BTreeMap<u8, i32> {
+    settings.iter().map(|setting| (setting.id, setting.value)).collect()
+}
+
 /// Settings as a TOML file, with what each does.
 pub fn toml(settings: &[Setting]) -> String {
-    let mut text =
-        String::from("# Settings of a Tenax board. `tenax config import` sets what is named here.\n");
+    let mut text = String::from("# `tenax config import` sets what is named here.\n");
     let trusted = trusts_line(settings);
     for setting in settings {
         if let Some(id) = SettingId::from_number(setting.id) {
@@ -110,6 +183,24 @@ mod tests {
             let error = format!("{:#}", of_toml(wrong).unwrap_err());
             assert!(error.contains(word), "{error}");
         }
+    }
+
+    #[test]
+    fn a_backup_names_its_board_and_what_moves_a_trace_is_known() {
+        let about =
+            About { identity: Default::default(), schema: 0x1234, frames: 0, settings: Default::default() };
+        let text = backup(&about, &[Setting { id: SettingId::S1.number(), value: 120 }]);
+        for word in
+            ["the host's own build", "schema 0000000000001234", &format!("settings: {:08x}", schema())]
+        {
+            assert!(text.contains(word), "{text}");
+        }
+        assert_eq!(by_number(&of_toml(&text).unwrap())[&SettingId::S1.number()], 120);
+        assert_eq!(
+            [SettingId::S1, SettingId::S2].map(Trace::of),
+            [Some(Trace::Vibration), Some(Trace::Ratio)]
+        );
+        assert_eq!(Trace::of(SettingId::LineTrusted), None);
     }
 
     #[test]

@@ -22,6 +22,7 @@ use self::json::After;
 use self::wizard::Wizard;
 use crate::monitor::source::{self, Places};
 use crate::monitor::view::View;
+use crate::settings;
 
 const PAGE: &str = include_str!("web/page.html");
 const EVENT_EVERY: Duration = Duration::from_millis(50);
@@ -145,6 +146,10 @@ fn answer(stream: &TcpStream, shared: &Shared) -> io::Result<()> {
             let text = json::settings(&shared.seen().view, shared.control).to_string();
             reply(stream, "200 OK", "application/json", &text)
         }
+        ("GET", "/settings.toml") => match backup(&shared.seen().view) {
+            Some(text) => reply(stream, "200 OK", "application/toml", &text),
+            None => reply(stream, "404 Not Found", "text/plain", "the board has not said who it is"),
+        },
         ("GET", "/events") => events(stream, shared),
         ("POST", path) => {
             let (status, text) = told(path, shared);
@@ -171,7 +176,13 @@ fn told(path: &str, shared: &Shared) -> (&'static str, String) {
             Err(why) => ("409 Conflict", format!("{why:#}")),
         };
     }
-    let act = act(path);
+    if let Some(control) = words(path, "/play/") {
+        return match shared.bench.send(control) {
+            Ok(()) => answer("202 Accepted", "done"),
+            Err(_) => answer("404 Not Found", "this is no recording"),
+        };
+    }
+    let act = words(path, "/bench/");
     let command = command(path);
     if act.is_none() && command.is_none() {
         return answer("404 Not Found", "no such command");
@@ -193,10 +204,16 @@ fn told(path: &str, shared: &Shared) -> (&'static str, String) {
     if sent { answer("202 Accepted", "sent") } else { answer("503 Service Unavailable", "there is no line") }
 }
 
-/// The line for the bench that a path stands for: `/bench/tap/pvdf_3`.
-fn act(path: &str) -> Option<String> {
-    let is_word = |c: char| c.is_ascii_alphanumeric() || ['_', '.', '/'].contains(&c);
-    let act = path.strip_prefix("/bench/").filter(|act| act.len() <= ACT_MAX && act.chars().all(is_word))?;
+/// The settings as a file, as soon as the board has said who it is.
+fn backup(view: &View) -> Option<String> {
+    let settings: Vec<Setting> = view.settings.iter().map(|(&id, &value)| Setting { id, value }).collect();
+    view.about.as_ref().map(|about| settings::backup(about, &settings))
+}
+
+/// The line for the bench, or for what plays a recording, that a path stands for: `/bench/tap/pvdf_3`, `/play/+5`.
+fn words(path: &str, stem: &str) -> Option<String> {
+    let is_word = |c: char| c.is_ascii_alphanumeric() || "_./+-".contains(c);
+    let act = path.strip_prefix(stem).filter(|act| act.len() <= ACT_MAX && act.chars().all(is_word))?;
     Some(act.replace('/', " "))
 }
 
@@ -257,8 +274,10 @@ mod tests {
         let set = Down::Set(Setting { id: SettingId::S1.number(), value: 120 });
         assert_eq!(command("/set/s1-mv/120"), Some(set));
         assert_eq!(command("/zero"), Some(Down::Zero));
+        let act = |path| words(path, "/bench/");
         assert_eq!(act("/bench/tap/pvdf_3").as_deref(), Some("tap pvdf_3"));
         assert_eq!((act("/bench/g%0ao"), act("/zero"), command("/bench/g")), (None, None, None));
+        assert_eq!(words("/play/+5", "/play/").as_deref(), Some("+5"));
         for wrong in ["/", "/set/s1-mv", "/set/s1/120", "/set/s1-mv/x", "/drive"] {
             assert_eq!(command(wrong), None, "{wrong}");
         }

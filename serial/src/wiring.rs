@@ -9,17 +9,23 @@ use tenax_hal_shim::channel::{
 const HEAD: &str = "\
 # Wiring
 
-This page is for anybody who connects a sensor: which channel is on which pin, and its valid voltages. Circuits and values are in
-[hardware](hardware.md). Printed from `hal-shim/src/channel.rs` by `cargo tenax wiring`; do not edit.
+This page lists the pin of each channel and its valid voltages, for builders who connect sensors. [Hardware](hardware.md) has the circuits.
+
+![sensors, switches, board and outputs](figures/wiring.svg)
+
+<!-- Printed from hal-shim/src/channel.rs by cargo tenax wiring; do not edit. -->
 
 | other signals of the NUCLEO-F411RE | pins |
 |---|---|
 | select lines S0 to S3, shared by both CD74HC4067 switches | PB12 to PB15 |
 | motor bridge, 20 kHz: close, open | PA8 (TIM1 channel 1), PA9 (TIM1 channel 2) |
 | [vibration motor](hardware.md#vibration-motor), 20 kHz | PB6 (TIM4 channel 1) |
-| button to ground; light, an LED with its resistor to ground; bridge's nFAULT | PC13, PC6, PC8 |
-| [palm's bus](hand.md#the-image), USART1: to the transceiver, from it, DE with /RE | PA15, PA10, PA12 |
+| button to ground | PC13 |
+| light: series resistor and LED to ground | PC6 |
+| nFAULT of the motor bridge | PC8 |
+| [palm's bus](hand.md#the-bus), USART1: to the transceiver, from it, DE with /RE | PA15, PA10, PA12 |
 | serial line USART2 through the ST-LINK: to the PC, from it | PA2, PA3 |
+| free inputs | switch B, 14 and 15 |
 
 ";
 
@@ -29,8 +35,10 @@ pub fn markdown() -> String {
     // Writing into a String cannot fail.
     let _ = writeln!(
         page,
-        "Every pin is read {SCAN_HZ} times a second. Direct pins give {FRAME_HZ} samples a second, switched signals {SLOW_HZ}. \
-         A voltage\nbelow `low` is a cut wire, above `high` a short or a sensor out of range.\n"
+        "Every pin is read {SCAN_HZ} times a second. Direct pins give {FRAME_HZ} samples a second, switched signals {SLOW_HZ}, myosensors {}. \
+         A\nvoltage below `low` is a cut wire, above `high` a short or a sensor out of range. Cut wires of [films](hardware.md#pvdf-films) and \
+         myosensors can\nstay within these limits.\n",
+        3 * SLOW_HZ
     );
     page += "| channel | pin | ADC1 input | switch, select | rest mV | low mV | high mV |\n";
     page += "|---|---|---|---|---|---|---|\n";

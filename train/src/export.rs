@@ -52,7 +52,7 @@ const fn layer<const I: usize, const O: usize>(weights: [[i16; I]; O], bias: [i3
     }}
 }}
 
-/// The detector.
+/// Settings of the features, weights and thresholds of the shipped detector.
 pub static MODEL: Model<{H1}, {back}, {H2}{windows}> = Model {{
     preprocessor: PreprocessorConfig {{
         covariance_knee: {covariance},

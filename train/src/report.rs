@@ -164,14 +164,14 @@ impl Report {
         let _ = writeln!(text, "| network | {}, 8-bit weights, 16-bit activations |", self.sizes);
         let _ = writeln!(
             text,
-            "| chosen | {} passes ({}), {:.2} % right on sessions it had not seen |",
+            "| chosen | {} passes ({}); balanced accuracy before rounding {:.2} % on sessions it had not seen |",
             choice.passes,
             if choice.candidate.warm { "begun as the logistic regression" } else { "from random weights" },
             100.0 * choice.unseen
         );
         let _ = writeln!(
             text,
-            "| calibration | Platt: log-odds = {:.4} logit {:+.4}; slip from a confidence of {} per mille |\n",
+            "| calibration | Platt scaling: log-odds = {:.4} logit {:+.4}; single threshold: confidence {} per mille |\n",
             choice.calibration.0, choice.calibration.1, self.threshold_permille
         );
         if let Some(validation) = &self.validation {
@@ -193,10 +193,10 @@ impl Report {
         if let Some(Chosen { edges, pour }) = &self.edges {
             let _ = writeln!(
                 text,
-                "**Shipped**: slip begins at a confidence of {} and is over below {} per mille, the best balanced accuracy in \
-                 these pours at no more than {FALSE_PER_HOUR_MAX} false alarms an hour and {FALSE_2800_MAX} false \
-                 steps in 2800: {:.3}, {:.0} missed and {:.0} false in \
-                 2800, {:.0} % of {} slips caught within 50 ms, {:.0} false alarms an hour.\n",
+                "**Shipped**: two thresholds. Slip begins at a confidence of {} and ends below {} per mille: the best balanced accuracy in \
+                 these pours with at most {FALSE_PER_HOUR_MAX} false alarms an hour and {FALSE_2800_MAX} false steps in 2800. \
+                 Result: balanced {:.3}; {:.0} steps missed and {:.0} false in 2800; {:.0} % of {} slips caught within 50 ms; \
+                 {:.0} false alarms an hour.\n",
                 edges.on_permille,
                 edges.off_permille,
                 pour.balanced,
@@ -247,8 +247,8 @@ impl Report {
         let _ = writeln!(
             text,
             "\n## Limits\n\nIt knows the sensor, the materials and the ways of slipping that are in the data above, and no \
-             others. It says nothing in the first {} readings ({:.2} s), and its windows remember: what it says after a slip \
-             is late by part of them. Confidence is calibrated on the data's share of slip.",
+             others. It reports nothing in the first {} readings ({:.2} s). A report ends late, since its windows still hold the slip. \
+             Confidence is calibrated for the data's share of slip.",
             self.features.ready_after() + self.choice.candidate.look_back - 1,
             (self.features.ready_after() + self.choice.candidate.look_back - 1) as f64 / 80.0
         );

@@ -136,7 +136,7 @@ impl Camera {
         let mut object = self.object.step(frame, &self.grey, &skin, learn);
         let (mut flow, mut skin_flow, mut background_flow) = (None, None, None);
         if self.frames > 0 {
-            if let Some(middle) = self.object.object().moments().map(|moments| moments.middle) {
+            if let Some(middle) = self.object.middle() {
                 let mut seen = self.object.object().clone();
                 seen.subtract(&skin);
                 seen.thin(OBJECT_ROWS);
@@ -196,9 +196,7 @@ fn skin_of(markers: &[Marker]) -> Mask {
         let range = |middle: f32, end: usize| {
             ((middle - reach).max(0.0) as usize)..((middle + reach) as usize + 1).min(end)
         };
-        for y in range(marker.at.y, HEIGHT) {
-            range(marker.at.x, WIDTH).for_each(|x| skin.insert(x, y));
-        }
+        skin.insert_block(range(marker.at.x, WIDTH), range(marker.at.y, HEIGHT));
     }
     skin
 }

@@ -1,8 +1,11 @@
 //! A set of pixels, one bit each: growing and shrinking it are shifts of whole words.
 
+mod grow;
 mod pieces;
 
-use crate::frame::{HEIGHT, PIXELS, Point, WIDTH};
+use core::ops::Range;
+
+use crate::frame::{Frame, HEIGHT, PIXELS, Point, WIDTH};
 
 /// Pixels in a word of a row.
 #[cfg(not(feature = "quarter"))]
@@ -43,12 +46,7 @@ impl Mask {
 
     /// The pixels whose byte is 1 and not 0.
     pub fn pack(&mut self, bytes: &[u8; PIXELS]) {
-        for (word, bytes) in self.words_mut().zip(bytes.chunks_exact(BITS)) {
-            *word = 0;
-            for (place, eight) in bytes.chunks_exact(8).enumerate() {
-                *word |= Word::from(eight_bits(eight.try_into().unwrap_or_default())) << (8 * place);
-            }
-        }
+        self.words_mut().zip(bytes.as_chunks().0).for_each(|(word, bytes)| *word = packed(bytes));
     }
 
     /// 1 for a pixel that is in the set, 0 for another.
@@ -66,6 +64,20 @@ impl Mask {
     /// Puts a pixel in.
     pub fn insert(&mut self, x: usize, y: usize) {
         self.rows[y][x / BITS] |= 1 << (x % BITS);
+    }
+
+    /// Puts in the pixels of some columns of some rows.
+    pub fn insert_block(&mut self, columns: Range<usize>, rows: Range<usize>) {
+        let row: [Word; WORDS] = core::array::from_fn(|word| {
+            // Those of its pixels that are in no column from here on.
+            let below = |end: usize| match end.saturating_sub(BITS * word) {
+                all if all >= BITS => Word::MAX,
+                part => (1 << part) - 1,
+            };
+            below(columns.end) & !below(columns.start)
+        });
+        let rows = self.rows.get_mut(rows).into_iter().flatten();
+        rows.for_each(|into| into.iter_mut().zip(row).for_each(|(into, word)| *into |= word));
     }
 
     /// Whether a pixel is in it.
@@ -121,35 +133,6 @@ impl Mask {
         for (word, other) in self.words_mut().zip(other.rows.iter().flatten()) {
             *word |= other;
         }
-    }
-
-    /// Grows it by a pixel in all eight directions, `times` over. What has grown by r pixels and is laid beside itself at most 2 r + 1
-    /// away has no gap, so that few steps are needed.
-    pub fn dilate(&mut self, times: usize) {
-        let mut grown = 0;
-        while grown < times {
-            let step = (2 * grown + 1).min(times - grown).min(BITS - 1);
-            for row in &mut self.rows {
-                *row = wider(row, step);
-            }
-            // The rows so far above are those from before this step.
-            let mut above = [[0; WORDS]; BITS];
-            for y in 0..HEIGHT {
-                let (row, below) = (self.rows[y], self.rows.get(y + step).copied().unwrap_or_default());
-                let above = core::mem::replace(&mut above[y % step], row);
-                for word in 0..WORDS {
-                    self.rows[y][word] = above[word] | row[word] | below[word];
-                }
-            }
-            grown += step;
-        }
-    }
-
-    /// Shrinks it by a pixel in all eight directions, `times` over; outside of the picture counts as inside.
-    pub fn erode(&mut self, times: usize) {
-        self.invert();
-        self.dilate(times);
-        self.invert();
     }
 
     /// Keeps and adds the pixels of which at least five of the nine around them, their own included, are in it: single pixels
@@ -222,6 +205,28 @@ impl Mask {
         *self = outside;
     }
 
+    /// Keeps the pixels whose colour, red, green and blue, is `kept`.
+    #[inline]
+    pub fn keep(&mut self, frame: &Frame, kept: impl Fn(u8, u8, u8) -> bool) {
+        let colours = [frame.red, frame.green, frame.blue].map(|plane| plane.as_chunks::<BITS>().0);
+        for (number, word) in self.words_mut().enumerate().filter(|(_, word)| **word != 0) {
+            let [red, green, blue] = colours.map(|plane| &plane[number]);
+            let is_kept = |bit: usize| kept(red[bit], green[bit], blue[bit]);
+            if word.count_ones() > Word::BITS / 4 {
+                // All of them at once is faster than one after the other.
+                let bytes: [u8; BITS] = core::array::from_fn(|bit| u8::from(is_kept(bit)));
+                *word &= packed(&bytes);
+            } else {
+                let mut left = *word;
+                while left != 0 {
+                    let bit = left.trailing_zeros();
+                    *word ^= Word::from(!is_kept(bit as usize)) << bit;
+                    left &= left - 1;
+                }
+            }
+        }
+    }
+
     /// Calls `each` with every pixel's place in a plane.
     #[inline]
     pub fn for_each(&self, mut each: impl FnMut(usize)) {
@@ -231,6 +236,23 @@ impl Mask {
                 each(BITS * number + left.trailing_zeros() as usize);
                 left &= left - 1;
             }
+        }
+    }
+
+    /// Calls `each` with the place of every `every`th pixel.
+    #[inline]
+    pub fn for_every(&self, every: u32, mut each: impl FnMut(usize)) {
+        // Pixels until the next.
+        let mut until = every - 1;
+        for (number, &word) in self.rows.iter().flatten().enumerate().filter(|(_, word)| **word != 0) {
+            let (mut left, mut count) = (word, word.count_ones());
+            while until < count {
+                (0..until).for_each(|_| left &= left - 1);
+                each(BITS * number + left.trailing_zeros() as usize);
+                left &= left - 1;
+                (count, until) = (count - until - 1, every - 1);
+            }
+            until -= count;
         }
     }
 
@@ -271,22 +293,18 @@ impl Mask {
     }
 }
 
+/// Bytes that are 0 or 1 as the bits of a word.
+#[inline]
+fn packed(bytes: &[u8; BITS]) -> Word {
+    let eights = bytes.as_chunks::<8>().0.iter().enumerate();
+    eights.map(|(place, eight)| Word::from(eight_bits(*eight)) << (8 * place)).sum()
+}
+
 /// Eight bytes that are 0 or 1 as the bits of one, the first in the lowest bit.
 #[inline]
 pub fn eight_bits(bytes: [u8; 8]) -> u8 {
     // They slide into the top byte.
     (u64::from_le_bytes(bytes).wrapping_mul(0x0102_0408_1020_4080) >> 56) as u8
-}
-
-/// A row and what is `by` pixels to the left and right, fewer than a word has.
-fn wider(row: &[Word; WORDS], by: usize) -> [Word; WORDS] {
-    let mut wide = *row;
-    for word in 0..WORDS {
-        let from_left = if word > 0 { row[word - 1] >> (BITS - by) } else { 0 };
-        let from_right = if word + 1 < WORDS { row[word + 1] << (BITS - by) } else { 0 };
-        wide[word] |= row[word] << by | row[word] >> by | from_left | from_right;
-    }
-    wide
 }
 
 /// How many of each pixel and its neighbours to the left and right are set: the bits of one and of two.

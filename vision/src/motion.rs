@@ -54,14 +54,8 @@ impl Flow {
 #[inline(never)]
 pub fn flow(before: &Plane, now: &Plane, object: &Mask, middle: Point) -> Option<Flow> {
     let mut samples = Samples::EMPTY;
-    let every = object.count() as usize / SAMPLES_MAX + 1;
-    let mut number = 0;
-    object.for_each(|at| {
-        number += 1;
-        if number % every == 0 {
-            samples.take(before, now, at, middle);
-        }
-    });
+    let every = object.count() / SAMPLES_MAX as u32 + 1;
+    object.for_every(every, |at| samples.take(before, now, at, middle));
     if samples.count < PIXELS_MIN {
         return None;
     }
@@ -74,30 +68,26 @@ pub fn flow(before: &Plane, now: &Plane, object: &Mask, middle: Point) -> Option
     Some(Flow { x, y, turn })
 }
 
-/// Sums over nine pixels, the nearer ones counting twice.
-struct Sums {
-    middle: i32,
-    all: i32,
-    gx: i32,
-    gy: i32,
+/// Nine pixels around one, row by row.
+#[inline]
+fn around(plane: &Plane, at: usize) -> [i32; 9] {
+    let Some(near) = plane.get(at - WIDTH - 1..).and_then(|rest| rest.first_chunk::<{ 2 * WIDTH + 3 }>())
+    else {
+        return [0; 9];
+    };
+    core::array::from_fn(|place| i32::from(near[place / 3 * WIDTH + place % 3]))
 }
 
-impl Sums {
-    #[inline]
-    fn around(plane: &Plane, at: usize) -> Self {
-        let row = |first: usize| {
-            let row = &plane[first..first + 3];
-            (i32::from(row[0]), i32::from(row[1]), i32::from(row[2]))
-        };
-        let (top, own, bottom) = (row(at - WIDTH - 1), row(at - 1), row(at + WIDTH - 1));
-        let sum = |(left, middle, right): (i32, i32, i32)| left + 2 * middle + right;
-        Self {
-            middle: own.1,
-            all: sum(top) + 2 * sum(own) + sum(bottom),
-            gx: sum((top.2, own.2, bottom.2)) - sum((top.0, own.0, bottom.0)),
-            gy: sum(bottom) - sum(top),
-        }
-    }
+/// How they rise to the right and down: sums in which the nearer ones count twice.
+#[inline]
+fn slope([a, b, c, d, _, f, g, h, i]: [i32; 9]) -> (i32, i32) {
+    (c + 2 * f + i - a - 2 * d - g, g + 2 * h + i - a - 2 * b - c)
+}
+
+/// All of them, the nearer ones counting more.
+#[inline]
+fn sum([a, b, c, d, e, f, g, h, i]: [i32; 9]) -> i32 {
+    a + c + g + i + 2 * (b + d + f + h) + 4 * e
 }
 
 /// What each pixel says of the move: `row * unknowns = change`, a column each.
@@ -119,15 +109,16 @@ impl Samples {
         }
         // Of both pictures: the slope of one alone would be off by half the move. Neighbours count, too: noise in the slope makes a move
         // look small.
-        let (now, before) = (Sums::around(now, at), Sums::around(before, at));
-        let (gx, gy) = (now.gx + before.gx, now.gy + before.gy);
+        let (now, before) = (around(now, at), around(before, at));
+        let both = core::array::from_fn(|place| now[place] + before[place]);
+        let (gx, gy) = slope(both);
         if gx.abs() + gy.abs() < 8 * SLOPE_MIN {
             return;
         }
         let (gx, gy) = (gx as f32 / 16.0, gy as f32 / 16.0);
-        let change = (now.all - before.all) as f32 / 16.0;
+        let change = sum(core::array::from_fn(|place| now[place] - before[place])) as f32 / 16.0;
         let (dx, dy) = ((x as f32 - middle.x) / ARM_PX, (y as f32 - middle.y) / ARM_PX);
-        let row = [-gx, -gy, gx * dy - gy * dx, (now.middle + before.middle) as f32 / 512.0];
+        let row = [-gx, -gy, gx * dy - gy * dx, both[4] as f32 / 512.0];
         self.rows.iter_mut().zip(row).for_each(|(column, value)| column[self.count] = value);
         self.changes[self.count] = change;
         self.count += 1;
@@ -154,11 +145,12 @@ impl Samples {
                 }
             }
             for i in 0..UNKNOWNS {
-                for lane in 0..LANES {
-                    let own = weight[lane] * rows[i][lane];
-                    (0..=i).for_each(|j| a[i][j][lane] += own * rows[j][lane]);
-                    b[i][lane] += own * change[lane];
-                }
+                let own: [f32; LANES] = core::array::from_fn(|lane| weight[lane] * rows[i][lane]);
+                let add = |sums: &mut [f32; LANES], of: &[f32; LANES]| {
+                    (0..LANES).for_each(|lane| sums[lane] += own[lane] * of[lane]);
+                };
+                (0..=i).for_each(|j| add(&mut a[i][j], &rows[j]));
+                add(&mut b[i], &change);
             }
         }
         (a.map(|row| row.map(|lanes| lanes.iter().sum())), b.map(|lanes| lanes.iter().sum()))

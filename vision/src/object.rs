@@ -16,8 +16,8 @@ mod scene;
 
 use alloc::boxed::Box;
 
-use crate::frame::{Frame, PIXELS, Plane, WIDTH, plane};
-use crate::mask::{BITS, Mask, Moments, Word};
+use crate::frame::{Frame, PIXELS, Plane, Point, WIDTH, plane};
+use crate::mask::{Mask, Moments};
 use crate::rectify::Rectifier;
 
 use self::colour::{BINS, Bins};
@@ -117,6 +117,8 @@ pub struct Tracker {
     lens: Option<Rectifier>,
     frames: u32,
     seen: bool,
+    /// Where its middle is in the picture.
+    middle: Option<Point>,
     /// The most pixels of it that were seen since the hand has closed on it; 0: it has not.
     grasped: u32,
     /// Whether so much of that is missing that the rest is a part.
@@ -144,6 +146,7 @@ impl Tracker {
             lens: None,
             frames: 0,
             seen: false,
+            middle: None,
             grasped: 0,
             is_part: false,
             ghosts: 0,
@@ -158,6 +161,11 @@ impl Tracker {
     /// The object's pixels in the last frame.
     pub const fn object(&self) -> &Mask {
         &self.object
+    }
+
+    /// The middle of the object's pixels. None while there is no object.
+    pub const fn middle(&self) -> Option<Point> {
+        self.middle
     }
 
     /// The object's pixels and those of the hand that brings it.
@@ -234,7 +242,7 @@ impl Tracker {
         let halved = if self.grasped > 0 { HELD_HALVED } else { u32::from(self.seen) };
         let area_min = self.config.area_min / (1 << halved) as f32;
         let moments = self.object.moments().filter(|moments| part(moments.area) >= area_min);
-        self.seen = moments.is_some();
+        (self.seen, self.middle) = (moments.is_some(), moments.map(|moments| moments.middle));
         if !self.seen {
             self.object = Mask::EMPTY;
             self.near = Mask::EMPTY;
@@ -272,7 +280,7 @@ impl Tracker {
         self.scene.follow(frame, &self.held, 0);
         self.model.forget();
         (self.object, self.near, self.slip) = (Mask::EMPTY, Mask::EMPTY, Mask::EMPTY);
-        (self.ghosts, self.seen) = (0, false);
+        (self.ghosts, self.seen, self.middle) = (0, false, None);
     }
 
     /// Learns the colours of what moves and is not the scene.
@@ -311,18 +319,8 @@ impl Tracker {
 
     /// Keeps of a mask the pixels that have the object's colours.
     fn project(&self, frame: &Frame, mask: &mut Mask) {
-        for (number, word) in mask.words_mut().enumerate() {
-            let (mut left, mut kept) = (*word, 0);
-            while left != 0 {
-                let bit = left.trailing_zeros();
-                left &= left - 1;
-                let at = BITS * number + bit as usize;
-                let bin = self.bins.of(frame.red[at], frame.green[at], frame.blue[at]);
-                let has = self.model.value(bin) >= self.config.colour_min;
-                kept |= Word::from(has) << bit;
-            }
-            *word = kept;
-        }
+        let least = self.config.colour_min;
+        mask.keep(frame, |red, green, blue| self.model.value(self.bins.of(red, green, blue)) >= least);
     }
 
     /// Lets the scene follow what is not hidden by the object and a margin around it. What differs may be an object that is

@@ -37,6 +37,8 @@ pub struct Provision {
     pub streams_at_start: bool,
     /// The wearer it was calibrated to.
     pub calibrated: Option<EmgModel>,
+    /// What it has saved by itself since.
+    pub kept: Vec<(Kept, Vec<u8>)>,
 }
 
 impl Provision {
@@ -46,6 +48,7 @@ impl Provision {
             trusts_line: plant.trusts_line(),
             streams_at_start: plant.streams_at_start(),
             calibrated: plant.calibrated().as_ref().map(model_of).transpose()?,
+            kept: plant.kept(),
         })
     }
 
@@ -58,7 +61,9 @@ impl Provision {
         let settings = payload::of_settings(&config);
         let settings = (!settings.is_empty()).then(|| (Kept::Settings, settings.to_vec()));
         let emg = self.calibrated.as_ref().map(|model| (Kept::Emg, payload::of_emg(model).to_vec()));
-        settings.into_iter().chain(emg).collect()
+        let since = |kept: &Kept| self.kept.iter().any(|(own, _)| own == kept);
+        let before = settings.into_iter().chain(emg).filter(|(kept, _)| !since(kept));
+        before.chain(self.kept.iter().cloned()).collect()
     }
 
     /// The host's device, set up the same way.
@@ -73,7 +78,7 @@ impl Provision {
 
 /// The host's device of a board that was set up so.
 pub fn device(trusts_line: bool, calibrated: Option<&EmgModel>) -> Device {
-    Provision { trusts_line, calibrated: calibrated.copied(), streams_at_start: false }.device()
+    Provision { trusts_line, calibrated: calibrated.copied(), ..Provision::default() }.device()
 }
 
 /// The two sectors as a file would hold them, written by the host's own build of the log.

@@ -70,7 +70,7 @@ fn closed_loop(
     progress: &mut dyn FnMut(f64),
 ) -> Summary {
     let began = Instant::now();
-    let frames = frames_in(plant.duration_s());
+    let mut frames = frames_in(plant.duration_s());
     let provision = Provision::of(plant).expect("a plant's wearer is one");
     let mut device = provision.device();
     let mut store = Store::new(Sectors::provisioned(&provision));
@@ -81,7 +81,7 @@ fn closed_loop(
     };
     let mut up = Uplink::new(&mut summary, recorder);
     up.post(device.start(Identity::default()));
-    if provision.streams_at_start {
+    if device.fingertip().config().stream_at_start {
         for (kept, payload) in provision.records() {
             up.post(Up::Restored(Restored::of(kept, &payload).expect("it has room for every record")));
         }
@@ -129,6 +129,13 @@ fn closed_loop(
         }
         if let Some(message) = store.end_tick(sequence) {
             up.post(message);
+        }
+        if let Some((kept, payload)) = store.saved() {
+            plant.keep(kept, &payload);
+        }
+        if plant.resets() {
+            frames = sequence + 1;
+            break;
         }
         if frame.slot() == slot_of(Job::Save) {
             device.slow_frame_passed();

@@ -113,17 +113,16 @@ fn detectors(subject: &Subject, span_s: (f64, f64)) -> Panel {
             }
         }
         points.push((span_s.1, low));
-        Curve {
-            name: id.title().to_owned(),
-            colour: COLOURS[row % COLOURS.len()],
-            points: thin(points, span_s),
-        }
+        Curve { name: String::new(), colour: COLOURS[row % COLOURS.len()], points: thin(points, span_s) }
     };
+    let middle = |row: usize| (count - 1 - row) as f64 + 0.3;
+    let names = all.iter().enumerate().map(|(row, id)| (middle(row), id.title().to_owned())).collect();
     let curves: Vec<Curve> = all.into_iter().enumerate().map(curve).collect();
     let rows = count as f64;
     Panel {
-        label: "detector says".to_owned(),
+        label: "slip said".to_owned(),
         curves,
+        names,
         at_least: (-0.2, rows),
         height: 0.8,
         ..Panel::default()
@@ -229,10 +228,12 @@ mod tests {
         let s1 = &panel("vibration").unwrap().levels[0].points;
         assert_eq!((s1.first().map(|p| p.1), s1.last().map(|p| p.1)), (Some(100.0), Some(1_500.0)), "{s1:?}");
         assert!(s1.iter().any(|point| (point.0 - 0.1).abs() < 0.01));
-        let rows = &panel("detector").unwrap().curves;
-        assert_eq!(rows.len(), DetectorId::COUNT - 1);
+        let says = panel("slip said").unwrap();
+        let rows = &says.curves;
+        assert_eq!((rows.len(), says.names.len()), (DetectorId::COUNT - 1, DetectorId::COUNT - 1));
         let highest = |row: &Curve| row.points.iter().map(|point| point.1).fold(0.0, f64::max);
-        let mlp = rows.iter().find(|row| row.name == DetectorId::Mlp.title()).unwrap();
+        let mlp = says.names.iter().position(|(_, name)| name == DetectorId::Mlp.title()).unwrap();
+        let mlp = &rows[mlp];
         let said = outcome.report.detectors.of_id(DetectorId::Mlp).said;
         assert_eq!(highest(mlp).fract() > 0.5, said > 0, "said {said} times");
     }

@@ -7,44 +7,62 @@ use std::path::Path;
 use anyhow::{Context, Result, ensure};
 use object::{File, Object, ObjectSection};
 
-use super::calls::Calls;
+use super::calls::{Calls, Function};
 use super::symbols::TICK;
 
 /// What every panic ends in.
 const PANIC: &str = "rust_begin_unwind";
-/// The interrupts of a frame: DMA has filled it, or it did not come in time; and the executor of control.
-const INTERRUPTS: [&str; 3] = ["DMA2_STREAM0", "TIM2", "I2C3_ER"];
+/// Where a Cortex-M finds its exceptions: after the stack and the start, which are no interrupts.
+const VECTORS: &str = ".vector_table";
+/// An image of ours has so many handlers at least: of faults, of the frame, the line, the bus, the supply.
+const HANDLERS_MIN: usize = 10;
 /// What an interrupt calls through a task's waker, and a task when it registers one.
 const WAKER: &str = "embassy_executor3raw5waker";
 /// Names of functions that may call through a pointer: there it is a waker, or the executor that polls a task.
-const MAY_CALL_POINTERS: [&str; 5] =
-    ["DMA2_STREAM0", "TIM2", "I2C3_ER", "tenax_firmware", "embassy_executor"];
+const MAY_CALL_POINTERS: [&str; 7] =
+    ["DMA1_STREAM", "DMA2_STREAM0", "TIM2", "USART2", "I2C3_ER", "tenax_firmware", "embassy_executor"];
 
-/// What was found about control.
+/// What was found about control and the interrupts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Control {
-    /// Functions that a frame may reach.
+    /// Functions that a frame or an interrupt may reach.
     pub functions: usize,
+    /// Handlers of interrupts and faults.
+    pub handlers: usize,
 }
 
-/// Reads an image's ELF file. Fails if control may panic, or call something that nobody knows; says by which way.
+/// Reads an image's ELF file. Fails if control or an interrupt may panic, or call something that nobody knows; says by which way.
 pub fn check(elf: &Path) -> Result<Control> {
     let bytes = std::fs::read(elf).with_context(|| format!("reading the image {}", elf.display()))?;
     let file = File::parse(&*bytes).context("not an ELF file")?;
-    check_calls(&Calls::of(&file)?).with_context(|| format!("the image {}", elf.display()))
+    let vectors = file.section_by_name(VECTORS).context("has no vectors")?.data()?;
+    let calls = Calls::of(&file)?;
+    let handlers = handlers(&calls, vectors);
+    ensure!(
+        handlers.len() >= HANDLERS_MIN,
+        "has {} handlers of interrupts: some were not found",
+        handlers.len()
+    );
+    check_calls(&calls, handlers).with_context(|| format!("the image {}", elf.display()))
 }
 
-/// From the frame's interrupts, everything that leads to the tick, and what that leads to.
-fn check_calls(calls: &Calls) -> Result<Control> {
+/// The functions that the table of vectors names, but for the start.
+fn handlers(calls: &Calls, vectors: &[u8]) -> BTreeSet<usize> {
+    let word = |bytes: &[u8]| bytes.try_into().map_or(0, u32::from_le_bytes);
+    let at: BTreeSet<u64> =
+        vectors.chunks_exact(4).skip(2).map(|bytes| u64::from(word(bytes) & !1)).collect();
+    let is_named = |own: &Function| own.instructions.first().is_some_and(|first| at.contains(first));
+    calls.0.iter().enumerate().filter(|(_, own)| is_named(own)).map(|(place, _)| place).collect()
+}
+
+/// From every handler, and from everything that leads to the tick, what they lead to.
+fn check_calls(calls: &Calls, handlers: BTreeSet<usize>) -> Result<Control> {
     let ticks = calls.named(|name| name == TICK);
     ensure!(!ticks.is_empty(), "has no function {TICK}");
     let mut roots = calls.callers(&ticks);
     ensure!(!roots.is_empty(), "{TICK} is never called");
-    for interrupt in INTERRUPTS {
-        let own = calls.named(|name| name == interrupt);
-        ensure!(!own.is_empty(), "has no interrupt {interrupt}");
-        roots.extend(own);
-    }
+    let found = handlers.len();
+    roots.extend(handlers);
     roots.extend(calls.named(|name| name.contains(WAKER)));
     let panics = calls.named(|name| name.contains(PANIC));
     ensure!(!panics.is_empty(), "has no function {PANIC}: nothing can be said about panics");
@@ -57,7 +75,7 @@ fn check_calls(calls: &Calls) -> Result<Control> {
         let may = MAY_CALL_POINTERS.iter().any(|part| own.name.contains(part));
         ensure!(may || own.indirect == 0, "control calls through a pointer:\n    {}", way());
     }
-    Ok(Control { functions: reached.len() })
+    Ok(Control { functions: reached.len(), handlers: found })
 }
 
 /// The places from which an image may panic, by the crate that they are in: each has a `Location` among the constants.
@@ -168,16 +186,31 @@ mod tests {
     }
 
     #[test]
+    fn handlers_are_those_of_the_table_but_for_stack_and_start() {
+        let mut calls = image(&[]);
+        for (place, own) in calls.0.iter_mut().enumerate() {
+            own.instructions = vec![0x0800_0100 + 0x10 * place as u64];
+        }
+        let table = [0x2002_0000, 0x0800_0131, 0x0800_0101, 0, 0x0800_0121_u32].map(u32::to_le_bytes);
+        assert_eq!(handlers(&calls, table.as_flattened()), BTreeSet::from([0, 2]));
+    }
+
+    #[test]
     fn a_panic_or_an_unknown_call_that_a_tick_may_reach_is_found_with_its_way() {
-        assert_eq!(check_calls(&image(&[])).unwrap(), Control { functions: 7 });
+        let handlers = || BTreeSet::from([0, 1, 2]);
+        let found = |functions| Control { functions, handlers: 3 };
+        assert_eq!(check_calls(&image(&[]), handlers()).unwrap(), found(7));
         // The control: what the tick does not reach may do all of it.
         let elsewhere = [("rest", &[][..], 0), ("telemetry", &[6][..], 1)];
-        assert_eq!(check_calls(&image(&elsewhere)).unwrap(), Control { functions: 8 });
+        assert_eq!(check_calls(&image(&elsewhere), handlers()).unwrap(), found(8));
+        // The same, in an interrupt.
+        let error = check_calls(&image(&elsewhere), BTreeSet::from([0, 1, 2, 9])).unwrap_err().to_string();
+        assert!(error.starts_with("control may panic:\n    telemetry\n"), "{error}");
         for (function, says) in [
             (("root", &[6][..], 0), "control may panic"),
             (("root", &[][..], 1), "control calls through a pointer"),
         ] {
-            let error = check_calls(&image(&[function])).unwrap_err().to_string();
+            let error = check_calls(&image(&[function]), handlers()).unwrap_err().to_string();
             assert!(
                 error.starts_with(says) && error.contains("tenax_control_tick\n    -> logic\n    -> root"),
                 "{error}"

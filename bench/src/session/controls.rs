@@ -46,6 +46,11 @@ pub fn bound(file: &SceneFile, seed: u64, run: &Fate) -> Fate {
             ..holds
         };
     }
+    // Where the scene's own grip is enough, no plan is the least, and the search below would not end.
+    let unplanned = planned(0.0);
+    if as_good(&unplanned) {
+        return unplanned;
+    }
     let (mut least_n, mut most_n) = (0.0, run_n);
     while most_n - least_n > WITHIN * most_n {
         let half_n = 0.5 * (least_n + most_n);

@@ -99,9 +99,9 @@ fn dma_that_cannot_reach_its_ring_is_a_panic_in_every_scan_of_a_frame() {
 
 // Shows B2.
 #[test]
-fn a_board_that_restarts_again_and_again_stays_off_in_the_end() {
+fn a_board_that_restarts_again_and_again_stays_off_in_the_end_and_its_button_opens() {
     let drive = MotorDrive::Close(Duty::per_mille(400));
-    let mut plant = Swing::new(3.0);
+    let mut plant = Swing::new(4.2).holding(2.5, 1.2);
     // Each time it drives, it hangs: so it would close a little further after each restart.
     let mut mishaps = Vec::new();
     for n in 0..7 {
@@ -116,5 +116,10 @@ fn a_board_that_restarts_again_and_again_stays_off_in_the_end() {
     assert_eq!(run.starts, starts);
     let last = 0.3 + 0.35 * 5.0;
     assert!(drives(&run, 0.0, last).contains(&drive), "before, it does what it is told");
-    assert!(drives(&run, last + 0.15, 3.0).iter().all(|now| *now == MotorDrive::Coast));
+    assert!(drives(&run, last + 0.15, 3.7).iter().all(|now| *now == MotorDrive::Coast));
+    let opens = MotorDrive::Open(Duty::per_mille(300));
+    assert!(
+        drives(&run, 3.75, 4.2).iter().all(|now| *now == opens),
+        "somebody has held and let go of the button"
+    );
 }

@@ -49,7 +49,7 @@ struct Swing {
     commands: Vec<(f64, Down)>,
     /// What is sent is carried out, whoever sends it. The tests of arming say otherwise.
     trusts_line: bool,
-    pressed_at_s: Option<f64>,
+    pressed_s: Option<std::ops::Range<f64>>,
 }
 
 impl Swing {
@@ -60,7 +60,7 @@ impl Swing {
             duration_s,
             commands: Vec::new(),
             trusts_line: true,
-            pressed_at_s: None,
+            pressed_s: None,
         }
     }
 
@@ -76,8 +76,13 @@ impl Swing {
     }
 
     /// Somebody at the hand presses the button.
-    fn pressing(mut self, at_s: f64) -> Self {
-        self.pressed_at_s = Some(at_s);
+    fn pressing(self, at_s: f64) -> Self {
+        self.holding(at_s, 0.1)
+    }
+
+    /// For so long.
+    fn holding(mut self, at_s: f64, for_s: f64) -> Self {
+        self.pressed_s = Some(at_s..at_s + for_s);
         self
     }
 
@@ -105,7 +110,7 @@ impl Plant for Swing {
     }
 
     fn button(&self) -> bool {
-        self.pressed_at_s.is_some_and(|at_s| (at_s..at_s + 0.1).contains(&self.t_s()))
+        self.pressed_s.as_ref().is_some_and(|pressed_s| pressed_s.contains(&self.t_s()))
     }
 
     fn duration_s(&self) -> f64 {

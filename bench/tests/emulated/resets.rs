@@ -40,7 +40,6 @@ fn count() -> usize {
     each.map_or(40, |each: usize| each * KINDS.len())
 }
 
-// Shows B2.
 #[test]
 fn every_reset_is_told_right_whatever_was_before() {
     let mut random = ChaCha8Rng::seed_from_u64(24);
@@ -108,7 +107,6 @@ fn every_reset_is_told_right_whatever_was_before() {
 
 /// The clock stops and does not come back: the board works on its own oscillator and says so. With the crystal back, the next start is
 /// on it.
-// Shows B2.
 #[test]
 fn a_lost_clock_is_survived_and_taken_up_again_when_it_is_back() {
     let mishaps = vec![
@@ -126,7 +124,6 @@ fn a_lost_clock_is_survived_and_taken_up_again_when_it_is_back() {
 }
 
 /// A rail that is too low for the motor is no silence: the board says why, and starts when there is enough.
-// Shows B2.
 #[test]
 fn a_low_supply_is_told_and_waited_for() {
     let mishaps = vec![(0.4, Mishap::SupplyIs(2_900)), (2.4, Mishap::SupplyIs(3_100))];

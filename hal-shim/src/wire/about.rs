@@ -1,4 +1,4 @@
-//! Who the board is, and what it began with.
+//! Identity of the board, and the records that it restored at its start.
 
 use heapless::Vec;
 use postcard_schema::Schema;
@@ -9,28 +9,28 @@ use crate::words::Kept;
 
 /// Settings that a message has room for.
 pub const SETTINGS_MAX: usize = 64;
-/// Bytes of what was kept, at most.
+/// Bytes of a restored record, at most.
 pub const KEPT_MAX: usize = 320;
 
 /// Why the chip started.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum ResetCause {
-    /// It was switched on, or the supply came back.
+    /// Power-up: it was switched on, or the supply came back.
     #[default]
     PowerOn,
     /// Its reset pin: a button or a probe.
     Pin,
-    /// By itself, in software.
+    /// Reset by software.
     Software,
     /// The image panicked or the core faulted.
     Panic,
-    /// The watchdog.
+    /// Reset by the watchdog.
     Watchdog,
-    /// Something else.
+    /// Another cause.
     Other,
 }
 
-/// The chip and the image, as they were when it started.
+/// Chip, image and cause of the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Identity {
     /// The first bytes of the image's build identifier, which the linker makes from its contents. 0: the host's own build.
@@ -41,7 +41,7 @@ pub struct Identity {
     pub reset: ResetCause,
 }
 
-/// Who the board is.
+/// What identifies the board: build, chip, schema of the messages, settings.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct About {
     /// Chip and image.
@@ -54,17 +54,17 @@ pub struct About {
     pub settings: Vec<Setting, SETTINGS_MAX>,
 }
 
-/// Something that had outlived a power cut and was taken up at this start, as it lies in flash.
+/// A record that was restored at this start, as it lies in flash.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Restored {
-    /// What.
+    /// Its kind.
     pub kept: Kept,
     /// Its bytes.
     pub payload: Vec<u8, KEPT_MAX>,
 }
 
 impl Restored {
-    /// None of more bytes than [`KEPT_MAX`].
+    /// The message of a record; None if it has more bytes than [`KEPT_MAX`].
     #[must_use]
     pub fn of(kept: Kept, payload: &[u8]) -> Option<Self> {
         Some(Self { kept, payload: Vec::from_slice(payload).ok()? })

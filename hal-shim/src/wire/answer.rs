@@ -1,4 +1,4 @@
-//! What commands are answered with.
+//! Answers to commands.
 
 use heapless::Vec;
 use postcard_schema::Schema;
@@ -14,7 +14,7 @@ pub enum Refusal {
     OutOfRange {
         /// The lowest value that is accepted.
         min: i32,
-        /// The highest.
+        /// The highest value that is accepted.
         max: i32,
     },
     /// A finger that is loaded cannot be zeroed.
@@ -25,35 +25,35 @@ pub enum Refusal {
     WearerActive,
     /// There is no setting with this number: the board's image is another one.
     UnknownSetting,
-    /// It could move the hand or bears on its safety, and nobody at the hand has consented.
+    /// The command could move the hand or bears on its safety, and there is no consent.
     NotArmed,
     /// Only reading is answered before a session is open: see [`Down::Hello`](super::Down::Hello).
     NoSession,
-    /// The number of this frame or of this opening was used before.
+    /// The sequence number of this frame, or the nonce of this opening, was used before.
     Replayed,
-    /// The line has held the hand for too long: a muscle, a consent or silence renews it.
+    /// The line has driven the hand for too long: an active muscle, consent or silence renews the time.
     HeldTooLong,
 }
 
 /// A setting's number (`tenax_logic::setting::SettingId`) and its value, in its unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Setting {
-    /// Its number.
+    /// The setting's number.
     pub id: u8,
-    /// Its value.
+    /// Its value, in the unit of its name.
     pub value: i32,
 }
 
 /// Settings in one [`Answer::Settings`] at most.
 pub const SETTINGS_PER_ANSWER: usize = 16;
 
-/// What a command is answered with.
+/// The answer to a command.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 #[allow(clippy::large_enum_variant, reason = "there is no heap to put the large one on")]
 pub enum Answer {
-    /// It was carried out.
+    /// The command was carried out.
     Done,
-    /// It was not, and nothing has changed.
+    /// The command was not carried out, and nothing has changed.
     Refused(Refusal),
     /// To [`Down::Get`](super::Down::Get) and [`Down::Set`](super::Down::Set): the value that is in force now.
     Setting(Setting),
@@ -64,7 +64,7 @@ pub enum Answer {
     Samples(#[serde(with = "samples")] [u16; COUNT]),
     /// To [`Down::Network`](super::Down::Network).
     Network(NetworkState),
-    /// To [`Down::Hello`](super::Down::Hello): what [`Down::Open`](super::Down::Open) gives back.
+    /// To [`Down::Hello`](super::Down::Hello): the number that [`Down::Open`](super::Down::Open) must return.
     Nonce(u32),
     /// To [`Down::About`](super::Down::About).
     About(About),

@@ -1,4 +1,4 @@
-//! To the board: commands.
+//! Commands to the board.
 
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
@@ -11,27 +11,27 @@ use crate::words::Codes;
 /// The longest that one [`Down::Drive`] may hold, ms: a lost link stops the motor after that.
 pub const DRIVE_HOLD_MAX_MS: u16 = 250;
 
-/// To the board.
+/// A command to the board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Down {
     /// Answer with [`Answer::Done`](super::Answer::Done).
     Ping,
     /// Drive the motor for `hold_ms`, at most [`DRIVE_HOLD_MAX_MS`]; sent again and again while a key is held.
     Drive {
-        /// How.
+        /// The drive.
         drive: MotorDrive,
         /// For how long, ms.
         hold_ms: u16,
     },
     /// Change a setting.
     Set(Setting),
-    /// Begin a behaviour. Another one that goes on ends.
+    /// Begin a behaviour; one that is under way ends.
     Begin(Behaviour),
     /// Take the force sensor's readings as zero. Refused while the finger is loaded.
     Zero,
     /// Answer with [`Answer::Samples`](super::Answer::Samples).
     Samples,
-    /// A teacher's picture: what the object and the hand do (v1, v2). Some 30 times a second.
+    /// Codes of a teacher's picture (v1, v2; Tada 2006, equations 1 and 2). Some 30 times a second.
     Teach {
         /// Relative motion and direction.
         codes: Codes,
@@ -40,9 +40,9 @@ pub enum Down {
     },
     /// Answer with [`Answer::Network`](super::Answer::Network).
     Network,
-    /// Forget all that the network has learned.
+    /// Reset the network's weights to 0.
     Forget,
-    /// Save what the network has learned now, and not when nothing moves any more.
+    /// Save the network's weights now, without waiting for rest.
     Save,
     /// Answer with the [`Answer::Setting`](super::Answer::Setting) of this number.
     Get(u8),
@@ -60,7 +60,7 @@ pub enum Down {
     CalibrateEmg,
     /// Answer with [`Answer::About`](super::Answer::About).
     About,
-    /// Send more than usual, from now on for `hold_s` seconds; sent again while it is wanted. Each one replaces the one before.
+    /// Stream more messages for `hold_s` seconds; repeat it to go on. Each one replaces the one before.
     Stream {
         /// [`Up::Raw`](super::Up::Raw): every frame as it was sampled, and [`Up::Taken`](super::Up::Taken): every command.
         raw: bool,
@@ -71,10 +71,10 @@ pub enum Down {
     },
     /// End the behaviour that goes on.
     End,
-    /// What the camera behind the skin saw. 30 to 63 times a second.
+    /// A picture of the camera behind the skin. 30 to 63 times a second.
     View(CameraView),
-    /// Answer with an [`Answer::Last`](super::Answer::Last): what the board had said before its last run ended in a fault, from
-    /// this byte on. It is kept until somebody asks from its end on, who has read it all; then the board keeps what it says now.
+    /// Answer with an [`Answer::Last`](super::Answer::Last): messages before the last run ended in a fault, from this byte on.
+    /// They are kept until a client asks from their end on, which has then read all; then the board keeps its present messages.
     Last(u16),
 }
 

@@ -1,10 +1,11 @@
-//! Messages to bytes and back: the frames of the serial line, and a receiver that survives anything on it.
+//! Frames of the serial line: encoding of messages, and a receiver that skips every bad frame.
 
 use crc::{CRC_32_ISO_HDLC, Crc};
 use postcard::de_flavors::crc::from_bytes_u32;
-use postcard::ser_flavors::{Cobs, Flavor, Slice, crc::CrcModifier};
+use postcard::ser_flavors::{Flavor, crc::CrcModifier};
 use serde::{Serialize, de::DeserializeOwned};
 
+use super::stuffing::{Stuffed, unstuff};
 use super::{FRAME_MAX, VERSION};
 
 static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
@@ -35,13 +36,13 @@ pub enum BadFrame {
 ///
 /// None if the buffer is too small; [`FRAME_MAX`] bytes are always enough.
 pub fn encode<'a, T: Serialize>(sequence: u16, message: &T, buffer: &'a mut [u8]) -> Option<&'a mut [u8]> {
-    let cobs = Cobs::try_new(Slice::new(buffer)).ok()?;
-    let mut serializer = postcard::Serializer { output: CrcModifier::new(cobs, CRC.digest()) };
+    let mut serializer =
+        postcard::Serializer { output: CrcModifier::new(Stuffed::new(buffer)?, CRC.digest()) };
     (VERSION, sequence, message).serialize(&mut serializer).ok()?;
     serializer.output.finalize().ok()
 }
 
-/// Takes bytes as they come and gives messages. Survives anything; counts nothing itself, says what it skipped.
+/// Decodes bytes as they come into messages. It skips bad frames and reports each to the caller.
 #[derive(Debug)]
 pub struct Receiver {
     buffer: [u8; FRAME_MAX],
@@ -56,7 +57,7 @@ impl Default for Receiver {
 }
 
 impl Receiver {
-    /// One that has heard nothing yet.
+    /// A receiver without any bytes.
     #[must_use]
     pub const fn new() -> Self {
         Self { buffer: [0; FRAME_MAX], length: 0, overlong: false }
@@ -96,8 +97,7 @@ impl Receiver {
 }
 
 fn decode<T: DeserializeOwned>(bytes: &mut [u8]) -> Result<Received<T>, BadFrame> {
-    let length = cobs::decode_in_place(bytes).map_err(|_| BadFrame::Garbled)?;
-    let bytes = bytes.get(..length).ok_or(BadFrame::Garbled)?;
+    let bytes = unstuff(bytes).ok_or(BadFrame::Garbled)?;
     let parsed = from_bytes_u32::<(u8, u16, T)>(bytes, CRC.digest());
     match parsed {
         Ok((VERSION, sequence, message)) => Ok(Received { sequence, message }),

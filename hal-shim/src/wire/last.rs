@@ -1,4 +1,4 @@
-//! What the board had said before a fault: it survives the reset, and is fetched piece by piece.
+//! The board's messages before a fault: they survive the reset and are read piece by piece.
 
 use heapless::Vec;
 use postcard_schema::Schema;
@@ -9,19 +9,19 @@ use crate::words::Fault;
 /// Bytes in one piece at most.
 pub const PIECE_MAX: usize = 256;
 
-/// Bytes of why it ended, at most.
+/// Bytes of the reason, at most.
 pub const WHY_MAX: usize = 48;
 
-/// A piece of what had gone up the line before the last run ended in a fault.
+/// A piece of the messages before the last run ended in a fault.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Last {
     /// The fault. None: nothing is kept.
     pub after: Option<Fault>,
-    /// Why, in ASCII: where in the source it panicked, where the core faulted. Empty: nobody could say.
+    /// Place of the fault in ASCII: source line of a panic, address of a core fault. Empty: unknown.
     pub why: Vec<u8, WHY_MAX>,
-    /// Bytes that are kept, in all.
+    /// Total bytes kept.
     pub length: u16,
-    /// Where this piece begins in them.
+    /// Offset of this piece, bytes.
     pub from: u16,
     /// Frames as they went up the line, the oldest first. The first of all may be torn.
     pub bytes: Vec<u8, PIECE_MAX>,

@@ -1,4 +1,4 @@
-//! What was sampled, frame by frame, for whoever records it: enough to replay every decision bit for bit.
+//! The samples of every frame, for recordings: enough to replay every decision bit for bit.
 //!
 //! Five frames go up in a message, 25 bytes each:
 //!
@@ -37,7 +37,7 @@ impl Schema for Packed {
     const SCHEMA: &'static NamedType = &NamedType { name: "frame", ty: <[u8; BYTES]>::SCHEMA.ty };
 }
 
-/// Some frames, one after the other.
+/// Five consecutive frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Raw {
     /// Sequence number of the first.

@@ -1,4 +1,4 @@
-//! Samples on the line: all channels' in one message, and the checksum of those that ticks were given.
+//! Samples on the line: of all channels in one message, and a checksum of the ticks' samples.
 
 use core::fmt;
 

@@ -1,4 +1,4 @@
-//! What every sensor reads, 80 times a second, for whoever asks: see [`Down::Stream`](super::Down::Stream).
+//! Readings of every sensor, 80 times a second, on request: see [`Down::Stream`](super::Down::Stream).
 
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! What goes up 80 times a second: everything that a slow frame (12.5 ms) decided; and what the network knows.
+//! The message of each slow frame (12.5 ms, 80 a second) with all its decisions; and the network's state.
 
 use heapless::Vec;
 use postcard_schema::Schema;
@@ -18,23 +18,23 @@ pub const NETWORK_OUTPUTS: usize = 2;
 /// The force sensor's readings of a slow frame (Prosthesis, section 4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Forces {
-    /// The paper's Fn, mN: see `tenax_logic::force::sensor` for what it is not.
+    /// Fn of Prosthesis, section 4, mN: `2 sqrt(A^2 + B^2 + C^2 + D^2)`, which is the load only if the quadrants are equal.
     pub fn_mn: i32,
-    /// The load, mN: the sum of the quadrants. What is decided by a force is decided by this.
+    /// The load, mN: the sum of the quadrants. Ceiling, contact and pulses use it.
     pub load_mn: i32,
     /// Shear along x, mN.
     pub fx_mn: i32,
     /// Shear along y, mN.
     pub fy_mn: i32,
-    /// Shear, mN.
+    /// Shear force Ft, mN, not negative.
     pub ft_mn: i32,
-    /// Ft/Fn, per mille. None while the finger is not loaded enough for the ratio to mean anything.
+    /// Ft/Fn, per mille. None while the load is below `loaded-mn`, or too few quadrants carry it.
     pub ratio_permille: Option<u16>,
 }
 
 impl Forces {
-    /// The margin of the grip as the fingertip knows it, mN: the shear that the normal force bears by S2, less the shear that there is. None
-    /// while the finger is not loaded enough for a ratio.
+    /// The margin of the grip, mN: S2 x Fn - Ft, the shear that the finger could still carry. None
+    /// while there is no ratio.
     #[must_use]
     pub fn margin_mn(&self, s2_permille: u16) -> Option<i32> {
         self.ratio_permille?;
@@ -47,12 +47,12 @@ impl Forces {
 /// Detectors that a slow frame has room for.
 pub const DETECTORS_MAX: usize = 8;
 
-/// Everything a slow frame (12.5 ms) decided.
+/// Decisions and forces of a slow frame (12.5 ms).
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Slow {
     /// Sequence number of its last frame.
     pub frame: u32,
-    /// Its ticks.
+    /// Its 25 ticks, the oldest first.
     pub ticks: [TickRecord; FRAMES_PER_SLOW_FRAME as usize],
     /// The mode after its last tick.
     pub mode: GripMode,
@@ -62,23 +62,23 @@ pub struct Slow {
     pub s2_permille: u16,
     /// The flexor's envelope above rest, mV. None while the sensor gives no number.
     pub flexor_mv: Option<i16>,
-    /// The extensor's.
+    /// The extensor's envelope above rest, mV. None while the sensor gives no number.
     pub extensor_mv: Option<i16>,
     /// Whether a myosensor is active, its hold time included.
     pub wearer_active: bool,
-    /// What the network is learning, None while nothing.
+    /// Codes that the network is learning. None: no lesson.
     pub lesson: Option<Codes>,
-    /// What each detector concluded last, believed or not.
+    /// Each detector's last conclusion, believed or not.
     pub evidence: Vec<(DetectorId, Evidence), DETECTORS_MAX>,
-    /// Checksum of every valid sample that the slow frame's ticks were given: the two ends agree on the input too.
+    /// Checksum of every valid sample of the slow frame's ticks, to compare the input of board and replay.
     pub samples_sum: u32,
-    /// What the serial line may do.
+    /// The commands that the serial line may give.
     pub line: Line,
-    /// The behaviour that goes on.
+    /// The behaviour that is under way.
     pub behaviour: Option<Behaviour>,
 }
 
-/// What the network knows and feels (Tada 2006, equations 3 to 6).
+/// State of the network (Tada 2006, equations 3 to 6).
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct NetworkState {
     /// Sequence number of the last frame in it.

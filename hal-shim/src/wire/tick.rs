@@ -28,17 +28,17 @@ use crate::words::DriveSource;
 pub struct TickRecord {
     /// The largest vibration envelope of all films, in samples (14 bits): at most [`TickRecord::VIBRATION_MAX`].
     pub vibration: u16,
-    /// What touch alone makes the Hebbian network say, relative motion (o1) and direction (o2): 128 would be 1.
+    /// Outputs of the Hebbian network from touch alone, relative motion (o1) and direction (o2); 128 would be 1.
     pub outputs: [i8; NETWORK_OUTPUTS],
-    /// The detectors that say slip, or warn of it, whoever listens.
+    /// The detectors that report slip or warn of it, believed or not.
     pub said: DetectorSet,
-    /// Those of them that are believed.
+    /// Of these, the believed ones.
     pub believed: DetectorSet,
-    /// Those of them that the reflex closes the hand for.
+    /// Of these, the ones for which the reflex closes the hand.
     pub acted: DetectorSet,
-    /// What drives the motor.
+    /// Drive of the motor.
     pub drive: MotorDrive,
-    /// Who drives it.
+    /// Source of the drive.
     pub source: DriveSource,
 }
 

@@ -15,7 +15,7 @@ pub struct Counters {
     pub frames: u32,
     /// Frames lost.
     pub frames_lost: u32,
-    /// Times the converter or its DMA overran and was restarted.
+    /// Times the converter or its DMA overran and was restarted, since the start.
     pub overruns: u32,
     /// Control ticks run.
     pub ticks: u32,
@@ -34,7 +34,7 @@ pub struct Counters {
     pub control_permille: u16,
 }
 
-/// Something that happened once.
+/// An event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Event {
     /// Sequence number of the frame in which it happened.
@@ -43,19 +43,19 @@ pub struct Event {
     pub kind: EventKind,
 }
 
-/// What can happen once.
+/// Kinds of events.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum EventKind {
     /// The mode changed.
     Mode {
-        /// From.
+        /// The mode before.
         from: GripMode,
-        /// To.
+        /// The mode after.
         to: GripMode,
-        /// Why.
+        /// The cause.
         cause: Cause,
     },
-    /// Something went wrong, or came back.
+    /// A fault began, or a sensor or ability is back.
     Fault(Fault),
     /// A stroke ended with this estimate, from which S2 follows.
     Stroke {
@@ -66,14 +66,14 @@ pub enum EventKind {
     },
     /// More events happened in one tick than are kept; this many were lost.
     EventsLost(u16),
-    /// Somebody at the hand consented: the line's commands are carried out for a while.
+    /// Consent was given at the hand: the line's commands are carried out for a while.
     Armed(Consent),
     /// The consent is over.
     Disarmed,
     /// From here on the line's commands are carried out without consent (true), or with it only (false). Told at the start
     /// if it is so, and when the setting changes.
     LineTrusted(bool),
-    /// The calibration of the myosensors goes on, or is over.
+    /// Prompt or result of a calibration of the myosensors.
     Calibration(Calibration),
     /// From here on the reflex works without myosensors (true), or only with both (false). Told at the start if it is so, and
     /// when the setting changes.
@@ -82,7 +82,7 @@ pub enum EventKind {
     Behaviour(Behaviour, Option<Ending>),
     /// The motor is stopped, for this reason, or may be driven again (None).
     Motor(Option<MotorStop>),
-    /// The reflex begins a pulse. Why:
+    /// The reflex begins a pulse, for these reasons.
     Pulse {
         /// The margin of the last slow frame, mN ([`Forces::margin_mn`](super::Forces::margin_mn)). None where there was no ratio.
         margin_mn: Option<i32>,
@@ -106,7 +106,7 @@ pub enum Up {
     },
     /// A slow frame.
     Slow(Slow),
-    /// Something that happened once.
+    /// An event.
     Event(Event),
     /// The counters, ten times a second.
     Counters(Counters),

@@ -141,19 +141,7 @@ impl Types {
         self.0.iter().map(line).collect()
     }
 
-    /// Whether a field is of this type by name; the fields of others stand in a table above already.
-    fn is_referred_to(&self, name: &str) -> bool {
-        let all = self.0.iter().flat_map(|of| match of.ty {
-            Ty::Struct(values) => fields(values),
-            Ty::Enum(variants) => variants.iter().flat_map(|variant| fields_of(variant)).collect(),
-            _ => Vec::new(),
-        });
-        let is_tabled = matches!(name, "Up" | "Answer" | "Down");
-        let mut words = all.map(|(_, of)| of.words());
-        !is_tabled && words.any(|of| of.split(|c: char| !c.is_alphanumeric()).any(|word| word == name))
-    }
-
-    /// The messages each way as tables, then the types in them.
+    /// The messages each way as tables. The types in them stand in the JSON.
     pub fn markdown(&self) -> String {
         let mut page = format!("Version {VERSION}, schema `{SCHEMA:016x}`.\n\n");
         let list = |fields: Vec<(String, Reference)>| {
@@ -170,25 +158,7 @@ impl Types {
             }
             page += "\n";
         }
-        page += "### Types in them\n\n| type | fields, or variants from 0 on |\n|---|---|\n";
-        for of in self.0.iter().filter(|of| self.is_referred_to(of.name)) {
-            let what = match of.ty {
-                Ty::Struct(values) => list(fields(values)),
-                Ty::Enum(variants) => {
-                    let all: Vec<_> = variants
-                        .iter()
-                        .map(|variant| match list(fields_of(variant)) {
-                            fields if fields.is_empty() => variant.name.to_owned(),
-                            fields => format!("{} ({fields})", variant.name),
-                        })
-                        .collect();
-                    all.join(", ")
-                }
-                _ => String::new(),
-            };
-            page += &format!("| `{}` | {what} |\n", of.name);
-        }
-        page + "\n"
+        page + "The types in these tables stand in [`wire.json`](../python/tenax/wire.json): fields of a `struct`, variants of an `enum` from 0 on.\n\n"
     }
 }
 

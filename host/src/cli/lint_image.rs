@@ -20,8 +20,9 @@ pub fn main() -> anyhow::Result<ExitCode> {
     let elf = image::build(&root)?;
     let control = panics::check(&elf)?;
     out::say!(
-        "image: none of the {} functions from a frame's interrupt to the bridge can panic",
-        control.functions
+        "image: none of the {} functions that the tick and {} handlers of interrupts reach can panic",
+        control.functions,
+        control.handlers
     )?;
 
     let budgets = Budgets::of_checkout()?;

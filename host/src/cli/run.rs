@@ -108,13 +108,13 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let (mut server, down) = served(args)?.unzip();
     let person = Person::default();
     if let Some(server) = &mut server {
-        listen(&person, server.take_acts());
+        listen(&person, server.take_acts(), resets(args));
     }
     let live = down.as_ref().map(|down| live_of(down, &person));
     if let (true, Subject::Scene(file), Some(server), Some(down)) =
         (args.repeat, &subject, &mut server, &down)
     {
-        return again_and_again(file, args.seed, &board, server, &|| live_of(down, &person));
+        return again_and_again(file, args.seed, &board, server, &person, &|| live_of(down, &person));
     }
     let mut recording = args.record.as_deref().map(Recording::create).transpose()?;
     let line_use = Use { live, streams_at_start: recording.is_some() };
@@ -165,6 +165,7 @@ fn served(args: &Args) -> anyhow::Result<Option<(Server, Down)>> {
         truth: args.serve_truth,
         keys: [(BUTTON, CONSENTS)]
             .into_iter()
+            .chain(resets(args).then_some((RESET, RESTARTS)))
             .chain(KEYS.map(|(key, what, _)| (key, what)))
             .chain([("weight 5", "lay 5 N on the finger")])
             .map(|(key, what)| (key.to_owned(), what.to_owned()))
@@ -189,21 +190,32 @@ fn live_of(down: &Down, person: &Person) -> Live {
 /// The line that presses the button, and what that is for a person.
 const BUTTON: &str = "button";
 const CONSENTS: &str = "press the blue button (consent for a minute)";
+/// The same of the black one. What the board's flash keeps it has again afterwards.
+const RESET: &str = "reset";
+const RESTARTS: &str = "press the board's reset button";
+
+/// Whether the board can be reset: another run follows, and the host's board keeps its flash.
+const fn resets(args: &Args) -> bool {
+    args.repeat && args.host
+}
 
 /// Does what a person at the keyboard types, or what a program pipes, such as the prompts of `tenax selftest`; and what comes from
 /// the page where the truth is told.
-fn listen(person: &Person, acts: Option<Receiver<Vec<u8>>>) {
+fn listen(person: &Person, acts: Option<Receiver<Vec<u8>>>, resets: bool) {
     let is_typed = io::stdin().is_terminal();
     if is_typed {
         out::note!("Enter alone: {CONSENTS}");
         let keys = KEYS.map(|(key, what, _)| format!("{key} {what}"));
         out::note!("with Enter: {},\n{}", keys[..4].join(", "), keys[4..].join(", "));
         out::note!("`weight 5` lays 5 N on the finger, `tap pvdf_3` taps a film");
+        if resets {
+            out::note!("`{RESET}`: {RESTARTS}");
+        }
     }
     let own = person.clone();
     let does = move |line: String| match line.as_str() {
         "" if is_typed => own.press(),
-        line if !act(&own, line) && is_typed => out::note!("no key: {line}"),
+        line if !act(&own, line, resets) && is_typed => out::note!("no key: {line}"),
         // A program says other things, too.
         _ => {}
     };
@@ -212,16 +224,17 @@ fn listen(person: &Person, acts: Option<Receiver<Vec<u8>>>) {
     let own = person.clone();
     thread::spawn(move || {
         for line in acts.into_iter().flatten() {
-            _ = act(&own, String::from_utf8_lossy(&line).trim_end());
+            _ = act(&own, String::from_utf8_lossy(&line).trim_end(), resets);
         }
     });
 }
 
 /// Does at the bench what a line says. False: it says nothing that can be done.
-fn act(person: &Person, line: &str) -> bool {
+fn act(person: &Person, line: &str, resets: bool) -> bool {
     match line.parse() {
         Ok(act) => person.act(act),
         Err(()) if line == BUTTON => person.press(),
+        Err(()) if line == RESET && resets => person.reset(),
         Err(()) => return false,
     }
     true
@@ -233,13 +246,15 @@ fn again_and_again(
     seed: u64,
     board: &Board,
     server: &mut Server,
+    person: &Person,
     live: &dyn Fn() -> Live,
 ) -> anyhow::Result<ExitCode> {
     for seed in seed.. {
         let line = Use { live: Some(live()), streams_at_start: false };
         let outcome = session::scene_alone(file, seed, board, line, server)?;
         let fate = if outcome.truth.dropped { "DROPPED" } else { "kept" };
-        out::note!("{}, seed {seed}: {fate}; the board is switched on anew", file.name);
+        let how = if person.lets_go() { "is reset" } else { "is switched on anew" };
+        out::note!("{}, seed {seed}: {fate}; the board {how}", file.name);
     }
     Ok(ExitCode::SUCCESS)
 }

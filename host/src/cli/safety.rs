@@ -16,6 +16,9 @@ pub struct Args {
     /// Print docs/safety/soup.md instead: the foreign crates of the image
     #[arg(long, conflicts_with = "tested")]
     soup: bool,
+    /// Print docs/safety/tests.txt instead: the tests that show each requirement
+    #[arg(long, conflicts_with_all = ["tested", "soup"])]
+    named: bool,
     /// How to print the matrix
     #[arg(long, value_enum, default_value_t = Format::Text)]
     report: Format,
@@ -26,6 +29,7 @@ Examples:
   tenax safety                      the matrix: requirement, hazards, tests
   tenax test && tenax safety --tested
   tenax safety --soup > docs/safety/soup.md
+  tenax safety --named > docs/safety/tests.txt
 A test names what it shows in a comment above it: // Shows W1, R2.";
 
 /// Prints the matrix. 1: something is missing.
@@ -35,6 +39,10 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     }
     let matrix = Matrix::of(&workspace::root()?, args.tested)?;
+    if args.named {
+        out::say!("{}", matrix.named().trim_end())?;
+        return Ok(ExitCode::SUCCESS);
+    }
     args.report.print(&matrix, &matrix)?;
     Ok(ExitCode::from(u8::from(!matrix.problems.is_empty())))
 }

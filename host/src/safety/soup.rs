@@ -14,8 +14,9 @@ const HEAD: &str = "# Software of unknown provenance
 Written by `cargo tenax safety --soup` from `Cargo.lock` and `soup.toml`; do not edit. For a reviewer who asks which foreign code is in the image.
 
 - A crate is listed if Cargo builds it for the image, whether or not the linker keeps any of it. Macros and build scripts run on a PC alone.
-- The compiler and its `core` are Rust's; a certified build of both for this target exists and has not been tried.
-- `Cargo.lock` holds every version by its checksum. Advisories were not searched by machine: an anomaly is here if somebody here knew it.
+- The compiler and its `core` are Rust's; `.ci/ferrocene` builds the image with the certified ones where they are installed, which was nowhere yet.
+- `Cargo.lock` holds every version by its checksum; `deny.toml` says which licences and sources are allowed, `supply-chain/` what was vetted: so far
+  nothing, every crate is exempt. Advisories were not searched by machine: an anomaly is here if somebody here knew it.
 
 | crate | version | licence | purpose | if it fails | known anomalies |
 |---|---|---|---|---|---|
@@ -99,6 +100,31 @@ mod tests {
         let error = |text: &str| written(&crates, rows(text)).unwrap_err().to_string();
         assert!(error("").contains("a 1.0.0 is linked"), "{}", error(""));
         assert!(error(&format!("{row}[b]\npurpose = ''\nfails = ''")).contains("\"b\""));
+    }
+
+    #[test]
+    fn every_crate_of_the_image_has_a_licence_that_is_allowed_and_a_version_that_is_vetted_or_exempt() {
+        #[derive(Deserialize)]
+        struct Deny {
+            licenses: Licenses,
+        }
+        #[derive(Deserialize)]
+        struct Licenses {
+            allow: Vec<String>,
+        }
+        let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
+        let read = |name: &str| std::fs::read_to_string(root.join(name)).unwrap();
+        let allowed = toml::from_str::<Deny>(&read("deny.toml")).unwrap().licenses.allow;
+        let vetted = ["config", "audits"].map(|name| read(&format!("supply-chain/{name}.toml"))).concat();
+        for [name, version, licence, _] in linked(root).unwrap() {
+            let is_allowed = licence.split(" OR ").any(|one| allowed.iter().any(|own| own == one));
+            assert!(is_allowed, "{name} {version}: {licence}");
+            let entry = |kind: &str| format!("[[{kind}.{name}]]\nversion = \"{version}\"");
+            assert!(
+                ["exemptions", "audits"].iter().any(|kind| vetted.contains(&entry(kind))),
+                "{name} {version}"
+            );
+        }
     }
 
     #[test]

@@ -1,17 +1,24 @@
 //! The monitor on a real serial line (a pty pair), with garbage on it, and unplugged.
 
-use std::io::Write;
+use std::io::{Cursor, ErrorKind, Read, Write};
 use std::thread;
 use std::time::Duration;
 
 use serialport::{SerialPort, TTYPort};
 use tenax_hal_shim::wire::{Counters, FRAME_MAX, Up, encode};
-use tenax_serial::link::Counts;
-use tenax_serial::monitor::{End, Monitor};
+use tenax_serial::link::{Client, Counts, Line};
+use tenax_serial::monitor;
 
 fn frame(sequence: u16) -> Vec<u8> {
     let message = Up::Counters(Counters { frames: u32::from(sequence), ..Counters::default() });
     encode(sequence, &message, &mut [0; FRAME_MAX]).expect("it fits").to_vec()
+}
+
+/// Watches a line to its end: how it ended, what was counted and what was printed.
+fn watch(up: impl Read + Send + 'static) -> (ErrorKind, Counts, String) {
+    let (mut client, mut out) = (Client::from(Line { up: Box::new(up), down: None }), Vec::new());
+    let end = monitor::watch(&mut client, &mut out).unwrap();
+    (end.kind(), client.counts(), String::from_utf8(out).unwrap())
 }
 
 #[test]
@@ -32,13 +39,11 @@ fn a_board_that_is_unplugged_ends_the_watch_with_a_reason() {
             thread::sleep(Duration::from_millis(5));
         }
     });
-    let (mut monitor, mut out) = (Monitor::default(), Vec::new());
-    let end = monitor.watch(&mut port, &mut out).unwrap();
+    let (_, counts, text) = watch(port);
     sender.join().unwrap();
-    let text = String::from_utf8(out).unwrap();
-    assert!(matches!(end, End::Unplugged(_) | End::Over), "{end:?}");
-    assert_eq!(monitor.counts(), Counts { messages: 3, bad_frames: 1, missed: 1 }, "{text}");
+    assert_eq!(counts, Counts { messages: 3, bad_frames: 1, missed: 1 }, "{text}");
     assert!(text.contains("    2 counters: 2 frames"), "{text}");
+    assert!(text.contains("# 1 messages missed\n    4 counters"), "said where they are missing: {text}");
 }
 
 #[test]
@@ -54,9 +59,8 @@ fn random_bytes_are_survived_and_counted() {
     let mut bytes: Vec<u8> = noise.take(1 << 20).collect();
     bytes.push(0);
     bytes.extend(frame(9));
-    let (mut monitor, mut out) = (Monitor::default(), Vec::new());
-    monitor.watch(&mut bytes.as_slice(), &mut out).unwrap();
-    let counts = monitor.counts();
+    let (end, counts, _) = watch(Cursor::new(bytes));
+    assert_eq!(end, ErrorKind::UnexpectedEof);
     assert_eq!(counts.messages, 1, "a CRC-32 lets one in four billion through");
     assert!(counts.bad_frames > 3_000, "{counts}");
 }

@@ -56,6 +56,23 @@ fn a_person_sees_the_board_beside_the_truth_zooms_pauses_and_sets_a_setting() {
     );
     until(&mut page, "at('log').textContent.includes('> s1-mv = 120 mV') && last.s1_mv === 120");
 
+    // The numbers beside each trace, and what a file has in their place.
+    let knobs = "[...document.querySelectorAll('.knobs')].map(row => row.childElementCount > 2).join()";
+    until(&mut page, &format!("{knobs} === 'true,true,true,true'"));
+    page.value(
+        "(() => { const data = new DataTransfer(); data.items.add(new File(['s1-mv = 90\\nblind-ms = 200\\n'], 'a.toml')); \
+         at('against').files = data.files; at('against').dispatchEvent(new Event('change')); \
+         at('shown').value = 'file'; return true; })()",
+    );
+    until(
+        &mut page,
+        "document.querySelectorAll('#settings tr').length === 1 && at('settings').textContent.includes('default 100, file 90')",
+    );
+    page.value("at('as_file').click()");
+    until(&mut page, "last.s1_mv === 90 && at('as_file').hidden");
+    page.value("at('undo').click()");
+    until(&mut page, "last.s1_mv === 120");
+
     // What is drawn is of now: traces of the board, and of the truth in its own colour.
     until(
         &mut page,
@@ -73,6 +90,12 @@ fn a_person_sees_the_board_beside_the_truth_zooms_pauses_and_sets_a_setting() {
     page.value("at('vibration').dispatchEvent(new WheelEvent('wheel', { deltaY: -1, cancelable: true }))");
     assert_eq!(page.value("span"), 8);
     until(&mut page, "last.rates !== null");
+    let (cpu_s, began) = (web.cpu_s(), Instant::now());
+    thread::sleep(Duration::from_secs(5));
+    let part = (web.cpu_s() - cpu_s) / began.elapsed().as_secs_f64();
+    println!("the page's server takes {:.1} % of a core", 100.0 * part);
+    assert!(part <= 0.05, "{part}");
+    assert_eq!(page.value("[last.missed, last.bad_frames, last.dropped].join()"), "0,0,0");
     let rates = page.value("last.rates");
     assert!((1_500.0..2_500.0).contains(&rates[0].as_f64().unwrap()), "{rates}");
     page.picture("");

@@ -2,12 +2,14 @@
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
 use crate::serving::Serving;
+use crate::tool::tenax;
 
 const WITHIN: Duration = Duration::from_secs(60);
 
@@ -20,9 +22,13 @@ pub struct Web {
 impl Web {
     /// With these arguments beside the port.
     pub fn watching(place: &str, more: &[&str]) -> Self {
+        Self::started(&[&["--port", place], more].concat())
+    }
+
+    fn started(args: &[&str]) -> Self {
         let mut monitor = Command::new(env!("CARGO_BIN_EXE_tenax-host"))
-            .args(["monitor", "--web", "0", "--port", place])
-            .args(more)
+            .args(["monitor", "--web", "0"])
+            .args(args)
             .stderr(Stdio::piped())
             .spawn()
             .unwrap();
@@ -31,6 +37,18 @@ impl Web {
         let url =
             said.split(' ').find(|word| word.starts_with("http://")).unwrap_or_else(|| panic!("{said}"));
         Self { monitor, url: url.to_owned() }
+    }
+
+    /// Of a recording.
+    pub fn playing(file: &Path) -> Self {
+        Self::started(&["--file", file.to_str().unwrap()])
+    }
+
+    /// What its server has computed so far, s: on Linux, where ticks are of 10 ms.
+    pub fn cpu_s(&self) -> f64 {
+        let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.monitor.id())).unwrap_or_default();
+        let fields = stat.rsplit(')').next().unwrap_or_default().split_whitespace();
+        fields.skip(11).take(2).filter_map(|ticks| ticks.parse::<f64>().ok()).sum::<f64>() / 100.0
     }
 
     fn ask(&self, method: &str, path: &str) -> TcpStream {
@@ -232,6 +250,39 @@ fn a_line_alone_has_no_bench_as_on_a_real_board() {
     let (status, why) = web.post("/bench/g");
     assert!(status == 404 && why.starts_with("no bench"), "{status} {why}");
     served.kill();
+}
+
+#[test]
+fn a_recording_is_scrubbed_paused_and_its_settings_are_saved_in_the_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let (line, path) = (folder.path().join("glass.line.bin"), folder.path().join("glass.mcap"));
+    let (out, recorded) = (folder.path().to_str().unwrap(), path.to_str().unwrap());
+    assert!(tenax(&["run", "--host", "--scene", "glass", "--out", out, "--record", recorded]).0);
+    for file in [&line, &path] {
+        let web = Web::playing(file);
+        let at = |event: &Value| event["playing"]["at_s"].as_f64();
+        web.until("the beginning", |event| at(event) > Some(0.3));
+        for (control, from_s) in [("40", 40.0), ("-30", 10.0), ("x4", 10.0), ("55.5", 55.5)] {
+            let asked = Instant::now();
+            assert_eq!(web.post(&format!("/play/{control}")).0, 202);
+            let near = |event: &Value| at(event).is_some_and(|at_s| (from_s..from_s + 5.0).contains(&at_s));
+            web.until(control, near);
+            println!("{}: {control} in {:?}", file.display(), asked.elapsed());
+            assert!(asked.elapsed() < Duration::from_secs(1), "{control} took {:?}", asked.elapsed());
+        }
+        web.until("the end", |event| at(event) > Some(59.5) && event["t_s"].as_f64() > Some(59.5));
+        assert_eq!(web.post("/play/loop").0, 202);
+        web.post("/play/pause");
+        let event = web.until("a pause", |event| event["playing"]["paused"] == true);
+        assert_eq!((&event["playing"]["repeat"], &event["playing"]["speed"]), (&true.into(), &4.0.into()));
+        let mut saved = String::new();
+        web.ask("GET", "/settings.toml").read_to_string(&mut saved).unwrap();
+        assert!(
+            saved.contains("# Board: the host's own build") && saved.contains("\ns1-mv = 100\n"),
+            "{saved}"
+        );
+        assert_eq!(web.post("/set/s1-mv/120").0, 403);
+    }
 }
 
 #[test]

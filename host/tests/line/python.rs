@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use crate::serving::Serving;
+use crate::tool::tenax;
 
 fn package() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().join("python")
@@ -16,7 +17,7 @@ fn python() -> Option<Command> {
         println!("skipped: there is no python3");
         return None;
     }
-    let mut python = Command::new("python3");
+    let mut python = Command::new(std::env::var_os("TENAX_PYTHON").unwrap_or_else(|| "python3".into()));
     python.env("PYTHONPATH", package()).env("PYTHONDONTWRITEBYTECODE", "1");
     Some(python)
 }
@@ -53,6 +54,33 @@ with tenax.open(sys.argv[1]) as board:
     assert (board.missed, board.bad) == (0, 0), (board.missed, board.bad)
     print(sum(kinds.values()))
 ";
+
+/// The example beside a board and the line that one left; a recording, too, where Python's mcap is.
+#[test]
+fn the_example_runs_live_and_offline() {
+    let Some(mut python) = python() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (out, recorded) = (folder.path().to_str().unwrap(), path("glass.mcap"));
+    assert!(tenax(&["run", "--host", "--scene", "glass", "--out", out, "--record", &recorded]).0);
+    let mut has_mcap = self::python().unwrap();
+    let has_mcap = has_mcap.args(["-c", "import mcap"]).stderr(Stdio::null()).status().unwrap().success();
+    let files = [path("glass.line.bin"), recorded];
+    let files = if has_mcap { &files[..] } else { &files[..1] };
+    let served = Serving::trusting();
+    python.arg(package().join("example.py")).arg(&served.places[0]).args(files);
+    let ran = python.current_dir(&folder).output().unwrap();
+    let (said, error) = (String::from_utf8_lossy(&ran.stdout), String::from_utf8_lossy(&ran.stderr));
+    println!("{said}");
+    assert!(ran.status.success(), "{said}{error}");
+    assert!(said.contains("image 0000000000000000") && said.contains("0 missed, 0 bad"), "{said}");
+    for file in files {
+        let line = |words: &str| said.lines().any(|line| line.starts_with(file) && line.contains(words));
+        assert!(line("4800 slow frames, 120000 ticks") || line("4799 slow frames, 119975 ticks"), "{said}");
+        assert!(line("s on S1") && line("s on S2"), "{said}");
+    }
+    served.end();
+}
 
 #[test]
 fn it_reads_sets_and_streams_a_served_board() {

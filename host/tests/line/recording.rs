@@ -170,6 +170,37 @@ fn a_recording_overwrites_nothing_says_what_it_lacks_and_names_its_board() {
 }
 
 #[test]
+fn who_restarts_the_stream_gets_a_recording_that_decides_the_same_with_the_settings_that_were_kept() {
+    let mut served = Serving::looping(include_str!("../../../scenes/parts/bench.toml"));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("start.mcap");
+    // Who switched the board on may set it for a while.
+    let set = tenax(&["config", "--port", &served.places[0], "set", "s1-mv=90"]);
+    assert!(set.0, "{}", set.2);
+    let mut record = Command::new(env!("CARGO_BIN_EXE_tenax-host"))
+        .args(["record", "--from-start", "--seconds", "5", "--port", &served.places[0], "--out"])
+        .arg(&path)
+        .stdin(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut said = BufReader::new(record.stderr.take().unwrap()).lines().map(Result::unwrap);
+    assert!(said.any(|line| line.starts_with("Press the board's black reset button")));
+    served.tell("reset");
+    assert!(said.any(|line| line == "the board has started: recording"));
+    for key in ["g", "p"] {
+        thread::sleep(Duration::from_secs(1));
+        served.tell(key);
+    }
+    assert!(record.wait().unwrap().success());
+    assert_eq!(tenax(&["config", "--port", &served.places[0], "get", "s1-mv"]).1, "90\n", "flash is kept");
+    served.kill();
+    let outcome = Recorded::of(&line_of(&path).unwrap()).unwrap().replay();
+    assert_eq!(outcome.difference, None);
+    assert!(outcome.frames > 9_000 && outcome.events > 2, "{outcome:?}");
+}
+
+#[test]
 fn an_hour_is_less_than_60_mb_and_is_played_from_any_second() {
     // Somebody is busy at the bench all the time.
     let mut served = Serving::start(include_str!("../../../scenes/parts/bench.toml"), &[]);
@@ -196,10 +227,11 @@ fn an_hour_is_less_than_60_mb_and_is_played_from_any_second() {
     let ticks = std::fs::read_to_string(csv.join("tick.csv")).unwrap().lines().count();
     assert!(ticks > 24 * 1_900, "{ticks}");
 
-    // From its twentieth second, and again from there.
+    // From its twentieth second, and again from its beginning; then where a person says.
     let play = Command::new(env!("CARGO_BIN_EXE_tenax-host"))
-        .args(["play", "--serve-tcp", "0", "--from", "20", "--loop", "--speed", "8"])
+        .args(["play", "--serve-tcp", "0", "--from", "20", "--loop", "--speed", "20"])
         .arg(&path)
+        .stdin(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
@@ -209,16 +241,40 @@ fn an_hour_is_less_than_60_mb_and_is_played_from_any_second() {
     let target: Target = said.trim().strip_prefix("serving on ").unwrap().parse().unwrap();
     let mut client = Client::open(&target).unwrap();
     let (mut frames, began) = (Vec::new(), Instant::now());
-    while frames.windows(2).filter(|pair| pair[0] > pair[1]).count() < 2 {
+    let mut hear = |frames: &mut Vec<u32>| {
         assert!(began.elapsed() < Duration::from_secs(30), "it is not played again");
         if let Some(heard) = client.next_message().unwrap()
             && let Up::Slow(slow) = heard.received.message
         {
             frames.push(slow.frame);
         }
+    };
+    while frames.windows(2).all(|pair| pair[0] < pair[1]) {
+        hear(&mut frames);
     }
-    let (first, last) = (frames.iter().min().unwrap(), frames.iter().max().unwrap());
+    let (again, first) = (frames.pop().unwrap(), frames[0]);
+    let last = frames.last().unwrap();
     assert!((4_000..10_000).contains(&(last - first)), "4 of 24 s: {first} to {last}");
+    assert!(first - again > 39_000, "20 s before: {again}");
+    let mut keys = play.0.stdin.take().unwrap();
+    for second in [12, 22, 3, 17] {
+        writeln!(keys, "{second}").unwrap();
+        let asked = Instant::now();
+        // At twenty times its pace it has gone on by a second of itself at most when it is heard.
+        let wanted = again + second * 2_000;
+        loop {
+            hear(&mut frames);
+            let frame = *frames.last().unwrap();
+            if (wanted..wanted + 2_000).contains(&frame) {
+                break;
+            }
+            assert!(
+                asked.elapsed() < Duration::from_secs(1),
+                "second {second}: {frame} in place of {wanted}"
+            );
+        }
+        println!("second {second} in {:?}", asked.elapsed());
+    }
 }
 
 /// Ends a command that would go on.

@@ -108,6 +108,12 @@ fn settings_are_shown_with_their_ranges_and_what_is_typed() {
     let text = picture(&view, &shown, 80, 24);
     assert!(text.contains("s1-mv") && text.contains("30 to 150, default 100"), "{text}");
     assert!(text.contains("new value, mV: 12_"), "{text}");
+    // At 80 columns, the trace that it moves stays in view, and what the file has in its place.
+    let mut edit = Edit::default();
+    edit.step(true);
+    let against = [(SettingId::S2.number(), 305)].into();
+    let text = picture(&view, &Shown { edit: Some(edit), against, ..Shown::default() }, 80, 24);
+    assert!(text.contains("Ft/Fn") && text.contains("default 300, file 305"), "{text}");
     let last_row = SettingId::ALL.last().expect("there are some").row().name;
     let mut last = Edit::default();
     last.step(false);

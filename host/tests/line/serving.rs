@@ -27,6 +27,11 @@ impl Serving {
         Self::at(scene, &["--serve-truth", "0"], 2)
     }
 
+    /// Serves it again and again, as a board that can be reset.
+    pub fn looping(scene: &str) -> Self {
+        Self::at(scene, &["--loop"], 1)
+    }
+
     fn at(scene: &str, more: &[&str], places: usize) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("served.toml");

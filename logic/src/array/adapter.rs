@@ -1,4 +1,4 @@
-//! The multilayer perceptron on normal forces as a detector: its work is shared by several ticks of a cycle.
+//! The multilayer perceptron on normal forces as a detector: its work is split over several ticks of a slow frame.
 
 use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
 

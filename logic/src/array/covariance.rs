@@ -50,8 +50,8 @@ impl<const N: usize> SlidingCovariance<N> {
         }
     }
 
-    /// Takes elements out of the window, as if they had never changed: what they said last is not to be believed. All in
-    /// one pass: ten that go at once must not cost ten.
+    /// Removes elements from the window, as if they had never changed: their last readings are suspect. All in
+    /// one pass: ten that are lost at once must not cost ten.
     pub fn forget(&mut self, gone: &[bool; ELEMENTS]) {
         for column in &mut self.window {
             for (difference, &gone) in column.iter_mut().zip(gone) {

@@ -16,14 +16,14 @@ pub const SHARES: usize = ARRAY_SHARES as usize;
 const VERDICT_SHARE: usize = SHARES - 1;
 const _: () = assert!(VERDICT_SHARE == 4);
 
-/// What the normal-force array says (Bamshad 2023).
+/// Verdict of the normal-force array (Bamshad 2023).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ArrayVerdict {
     /// Whether the object slips.
     pub slip: bool,
-    /// How likely that is, per mille: the calibrated logit's logistic function.
+    /// Probability of slip, 0 to 1000 per mille: the calibrated logit's logistic function.
     pub confidence_permille: u16,
-    /// How long ago, at the end of the last slow frame, there was something to judge by, ms: 0 while the detector works.
+    /// Time since the detector last had valid features, at the end of the last slow frame, ms, at most 65 535; 0 while it works.
     pub age_ms: u16,
 }
 
@@ -32,7 +32,7 @@ impl ArrayVerdict {
     pub const NONE: Self = Self { slip: false, confidence_permille: 0, age_ms: u16::MAX };
 }
 
-/// How a logit is read.
+/// Calibration and thresholds of the logit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Judgement {
     /// How much a logit has to grow for the odds of slip to grow e-fold: its calibration.
@@ -41,13 +41,13 @@ pub struct Judgement {
     pub on_permille: u16,
     /// Confidence below which they are not, per mille.
     pub off_permille: u16,
-    /// Slow frames in a row that have to say so, for slip to begin.
+    /// Slow frames in a row with this confidence until slip begins.
     pub on_frames: u8,
-    /// Slow frames in a row that have to say so, for slip to be over.
+    /// Slow frames in a row below it until slip ends.
     pub off_frames: u8,
 }
 
-/// A trained detector on windows of `N` differences and `M` sums: everything about it that is not state.
+/// Constants of a trained detector on windows of `N` differences and `M` sums.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model<
     const H1: usize,
@@ -56,15 +56,15 @@ pub struct Model<
     const N: usize = COVARIANCE_WINDOW,
     const M: usize = SPECTRUM_WINDOW,
 > {
-    /// What its features were made with.
+    /// Settings of its features.
     pub preprocessor: PreprocessorConfig,
     /// The network.
     pub network: Mlp<FEATURES, H1, L, H2>,
-    /// How its logit is read.
+    /// Calibration and thresholds of its logit.
     pub judgement: Judgement,
 }
 
-/// The detector of one array.
+/// Slip detector of ten taxels (Bamshad 2023): features, the network of a [`Model`], and the verdict with its two thresholds.
 #[derive(Clone, Debug)]
 pub struct ArrayDetector<
     'm,
@@ -92,7 +92,7 @@ pub struct ArrayDetector<
 impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const M: usize>
     ArrayDetector<'m, H1, L, H2, N, M>
 {
-    /// One that has read nothing.
+    /// A detector without readings.
     #[must_use]
     pub fn new(model: &'m Model<H1, L, H2, N, M>) -> Self {
         Self {
@@ -110,8 +110,8 @@ impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const
 
     /// Takes one slow frame.
     ///
-    /// Without features (windows not full, too many elements dead) it stands down: no slip, confidence 0, and an age that
-    /// grows until there is something to judge by again.
+    /// Without features (windows not full, too many elements dead) it gives no slip, confidence 0, and an age that
+    /// grows until there are features again.
     pub fn push(&mut self, reading: &Reading) -> ArrayVerdict {
         (0..SHARES).for_each(|share| _ = self.work(share, reading));
         self.verdict

@@ -8,7 +8,7 @@
 /// Rows that are multiplied in one go: there are registers for as many.
 pub const ROWS: usize = 4;
 
-/// Words of two 16-bit numbers when they are looked at as such.
+/// Aligns an array of 16-bit numbers to 8 bytes, so that it can be read as words of two numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C, align(8))]
 pub struct Aligned<T>(pub T);

@@ -1,4 +1,4 @@
-//! A logarithm that a mild slip and a violent one both fit in.
+//! Logarithmic scale of the features, for weak and strong slip.
 //!
 //! The bits of a positive IEEE 754 number, read as an integer, are its base-2 logarithm: exact at powers of two, straight
 //! lines between (Mitchell 1962), and at most 0.086 too small. It is monotonic, which is all that a network needs, and
@@ -9,7 +9,7 @@ pub const FEATURE_Q: u32 = 9;
 /// Fraction bits of a single.
 const SINGLE_Q: u32 = 23;
 
-/// Where a logarithm turns from straight to logarithmic.
+/// The feature value (samples^2) below which the scale is about linear and above which it is logarithmic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Knee {
     value: f32,

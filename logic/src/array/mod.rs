@@ -1,10 +1,10 @@
-//! Slip felt by ten elements that know normal force only (Bamshad 2023).
+//! Slip from ten elements that measure normal force only (Bamshad 2023).
 //!
-//! Sliding moves load from element to element while the whole stays the same. So what each element's force does from one
-//! slow frame to the next is compared with what every other's does ([`covariance`], equations 1 to 4), and the force of
-//! all of them is looked at by frequency ([`spectrum`]): the paper's 76 numbers. How soon an element's force forgets
-//! ([`structure`]) tells how fast something slides. Together they are 112 [`Features`] ([`preprocess`]), on which a small
-//! network ([`network`]) says whether the object slips, and [`detector`] says it without flicker.
+//! Sliding moves load from element to element while the sum stays the same. So the changes of the elements' forces from one
+//! slow frame to the next are correlated ([`covariance`], equations 1 to 4), and the sum of
+//! all forces is transformed ([`spectrum`]): the paper's 76 numbers. Structure functions
+//! ([`structure`]) show the speed of sliding. Together they are 112 [`Features`] ([`preprocess`]), the inputs of a small
+//! network ([`network`]); [`detector`] turns its logit into a verdict with hysteresis.
 //!
 //! | step | exact on every machine because | range |
 //! |---|---|---|
@@ -14,8 +14,8 @@
 //! | features | [`logarithm`]: single precision, no operation of which is fused or reordered | `i16` |
 //! | network | integers, sums that cannot overflow by construction | `i32` |
 //!
-//! Both transforms slide: a slow frame costs what its one new reading changes, and since integers come and go without a
-//! remainder, they say after a year what they would say after a second.
+//! Both transforms slide: a slow frame costs only the change by its new reading. In integers this is exact, so
+//! nothing drifts over time.
 
 mod adapter;
 pub mod covariance;
@@ -59,10 +59,10 @@ pub const COVARIANCE_WINDOW: usize = 10;
 /// Samples in the spectrum (Bamshad 2023, section 4.3).
 pub const SPECTRUM_WINDOW: usize = 40;
 
-/// One reading of every element, 14-bit samples; None where an element has no believable one.
+/// One reading of every element, 14-bit samples; None for an element without a valid one.
 pub type Reading = [Option<u16>; ELEMENTS];
 
-/// The detector that ships.
+/// The type of the shipped detector.
 pub type ShippedDetector = ArrayDetector<'static, 32, 1, 16>;
 
 impl Default for ShippedDetector {

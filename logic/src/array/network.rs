@@ -15,13 +15,13 @@
 //! | weight | `i16`, of which a model uses 8 bits or what its sums leave | see [`Layer::new`] |
 //! | bias, sum, logit | `i32` | cannot overflow: [`Layer::new`] refuses a layer whose sums could |
 //!
-//! A shift rounds down: who wants it to round to nearest adds half a step to the bias.
+//! A shift rounds down; to round to nearest, add half a step to the bias.
 
 use core::ops::Range;
 
 use super::dual::{self, Aligned, ROWS};
 
-/// What a hidden unit saturates at.
+/// Saturation of a hidden unit's activation.
 pub const ACTIVATION_MAX: i16 = i16::MAX;
 /// The largest size of an input.
 const INPUT_SIZE: u32 = 1 << 15;
@@ -30,7 +30,7 @@ const INPUT_SIZE: u32 = 1 << 15;
 /// than 31.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooLarge {
-    /// Which output.
+    /// Index of the output.
     pub output: usize,
 }
 
@@ -44,7 +44,7 @@ pub struct Layer<const I: usize, const O: usize> {
 }
 
 impl<const I: usize, const O: usize> Layer<I, O> {
-    /// A layer that says nothing.
+    /// A layer with weights and biases of 0.
     pub const ZERO: Self = Self { weights: [[0; I]; O], bias: [0; O], shift: 0 };
 
     /// A layer: a row of weights for each output, biases in units of the sum, and by how many bits a sum is shifted down
@@ -91,14 +91,14 @@ impl<const I: usize, const O: usize> Layer<I, O> {
         sums
     }
 
-    /// What a hidden layer hands on: no negative sum, shifted down, saturated.
+    /// Activations of a hidden layer: sums without negative ones, shifted down, saturated.
     #[must_use]
     pub fn activations(&self, inputs: &[i16; I]) -> [i16; O] {
         self.activations_of(self.sums(inputs))
     }
 
-    /// The activations of some outputs, where they belong in `activations`: for who has not the time for all at once.
-    /// Outputs that are not there are left out. Not inlined: its products are written out one by one, once is enough.
+    /// Writes the activations of a range of outputs to their places in `activations`, to split the work.
+    /// Outputs that do not exist are left out. Not inlined: its products are unrolled, once is enough.
     #[inline(never)]
     pub fn activate(&self, inputs: &[i16; I], outputs: Range<usize>, activations: &mut [i16; O]) {
         let Aligned(inputs) = &Aligned(*inputs);
@@ -127,8 +127,8 @@ impl<const I: usize, const O: usize> Layer<I, O> {
     }
 }
 
-/// The network. `I` inputs, `H1` units in the first hidden layer, `L` slow frames of which are seen by the `H2` units of
-/// the second: 1 looks at the present only.
+/// The network: `I` inputs, `H1` units in the first hidden layer, `H2` in the second. The second layer sees the first layer's outputs of
+/// the last `L` slow frames; with 1 only the present ones.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mlp<const I: usize, const H1: usize, const L: usize, const H2: usize> {
     first: Layer<I, H1>,
@@ -169,7 +169,7 @@ impl<const I: usize, const H1: usize, const L: usize, const H2: usize> Mlp<I, H1
         Ok(Self { first, second, last })
     }
 
-    /// What is seen in one frame's features: to be queued.
+    /// Activations of the first layer for one slow frame's features, to be queued.
     #[must_use]
     pub fn see(&self, features: &[i16; I]) -> [i16; H1] {
         let mut seen = [0; H1];
@@ -182,7 +182,7 @@ impl<const I: usize, const H1: usize, const L: usize, const H2: usize> Mlp<I, H1
         self.first.activate(features, units, seen);
     }
 
-    /// The logit of what was seen in the last `L` frames.
+    /// The logit from the first layer's activations of the last `L` slow frames.
     #[must_use]
     pub fn judge(&self, seen: &[[i16; H1]; L]) -> i32 {
         let (mut sums, mut shift) = ([0; H2], 0);
@@ -199,7 +199,7 @@ impl<const I: usize, const H1: usize, const L: usize, const H2: usize> Mlp<I, H1
     }
 }
 
-/// What was seen in the last `L` slow frames.
+/// Queue of the first layer's activations of the last `L` slow frames.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LookBack<const H1: usize, const L: usize> {
     /// The newest first.
@@ -215,7 +215,7 @@ impl<const H1: usize, const L: usize> Default for LookBack<H1, L> {
 }
 
 impl<const H1: usize, const L: usize> LookBack<H1, L> {
-    /// Queues what was seen in a frame. None until `L` have been queued.
+    /// Queues the activations of a slow frame. None until `L` have been queued.
     pub fn push(&mut self, seen: [i16; H1]) -> Option<&[[i16; H1]; L]> {
         for n in (1..L).rev() {
             self.seen[n] = self.seen[n - 1];

@@ -1,4 +1,4 @@
-//! What the elements read in the last half second, and how much that changed.
+//! Readings of the elements in the last half second, and their changes.
 
 use tenax_hal_shim::channel::{ARRAY, CHANNELS, sample_from_mv};
 
@@ -17,16 +17,16 @@ pub struct Past {
     runs: [u8; ELEMENTS],
 }
 
-/// What one more reading brought.
+/// Result of one more reading.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Arrival {
     /// Elements without a reading.
     pub dead: usize,
-    /// Those that had one the frame before.
+    /// Elements without a reading that had one in the slow frame before.
     pub gone: [bool; ELEMENTS],
     /// How much the sum of the elements changed, samples; one without a reading keeps what it had.
     pub change: i32,
-    /// The part of it that belongs to elements that had no reading the frame before.
+    /// The part of it from elements that had no reading in the slow frame before, samples.
     pub missed: i32,
 }
 

@@ -1,4 +1,4 @@
-//! From readings to what the network sees (Bamshad 2023, section 4; figure 8).
+//! From readings to the network's features (Bamshad 2023, section 4; figure 8).
 
 use super::covariance::SlidingCovariance;
 use super::logarithm::Knee;
@@ -7,7 +7,7 @@ use super::spectrum::SlidingSpectrum;
 use super::structure::{self, Structure, WINDOWS};
 use super::{COVARIANCE_WINDOW, COVARIANCES, FEATURES, PAPER_FEATURES, Reading, SPECTRUM_WINDOW};
 
-/// What the network sees of one slow frame: 55 covariances, row by row of the upper triangle, then 21 spectral bins, then
+/// Inputs of the network for one slow frame: 55 covariances, row by row of the upper triangle, then 21 spectral bins, then
 /// 36 sums of structure functions, lag by lag, the newest window first, one of them as its quiet level.
 ///
 /// Each is a logarithm, Q9 ([`logarithm`](super::logarithm)): `sign(c) log2(1 + |c| / knee)` of a covariance,
@@ -15,7 +15,7 @@ use super::{COVARIANCE_WINDOW, COVARIANCES, FEATURES, PAPER_FEATURES, Reading, S
 /// A covariance is within +-2^14, a bin within 0..2^15, a sum within 0..2^14.
 pub type Features = [i16; FEATURES];
 
-/// How readings become features.
+/// Settings of the features.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PreprocessorConfig {
     /// A difference is to the reading so many slow frames before, 1 to [`LAG_MAX`] (equation 1: 1). What is beyond is cut.
@@ -78,7 +78,7 @@ impl Default for Preprocessor {
 }
 
 impl<const N: usize, const M: usize> Preprocessor<N, M> {
-    /// One that has read nothing.
+    /// A preprocessor without readings.
     #[must_use]
     pub fn new(config: PreprocessorConfig) -> Self {
         let lag = usize::from(config.lag).clamp(1, LAG_MAX);
@@ -149,7 +149,7 @@ impl<const N: usize, const M: usize> Preprocessor<N, M> {
         Some(&self.features)
     }
 
-    /// What [`push`](Self::push) gave last.
+    /// The last features that [`push`](Self::push) gave.
     #[must_use]
     pub fn features(&self) -> &Features {
         &self.features

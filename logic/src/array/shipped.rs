@@ -18,7 +18,7 @@ const fn layer<const I: usize, const O: usize>(
     }
 }
 
-/// The detector.
+/// Settings of the features, weights and thresholds of the shipped detector.
 pub static MODEL: Model<32, 1, 16> = Model {
     preprocessor: PreprocessorConfig {
         covariance_knee: 128,

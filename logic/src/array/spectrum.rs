@@ -46,7 +46,7 @@ const fn cosine(n: usize) -> i32 {
     if n > half / 2 { -QUARTER_WAVE[half - n] } else { QUARTER_WAVE[n] }
 }
 
-/// The transform of the last `M` sums: 40, or 20 or 10, which have the bins 0 to M / 2 of [`BINS`].
+/// Sliding DFT (Bamshad 2023, section 4.3) of the last `M` sums of all taxels, one a slow frame. `M` is 40, 20 or 10, with bins 0 to M / 2.
 #[derive(Clone, Debug)]
 pub struct SlidingSpectrum<const M: usize> {
     window: [i32; M],

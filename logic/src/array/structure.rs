@@ -1,4 +1,4 @@
-//! How soon each element's force forgets: structure functions of what the elements do apart from each other.
+//! Structure functions of the elements' forces, without the changes that all elements share.
 //!
 //! Where a surface slides over an element its contacts are renewed, and with them the element's share of the load; how
 //! far it has to slide for that does not depend on how fast it slides. So the mean square of a force's change over a time,
@@ -8,7 +8,7 @@
 //! slip for as long as it is long; here each lag has six windows, one behind the other, so that the end of a slip is seen too.
 //!
 //! Where contacts are new ones within a frame, a fast slip is as white as noise, and only the level tells them apart. So the
-//! oldest window of the shortest lag is shown as its **quiet level**: the least that it was, slowly forgotten. More noise
+//! feature of the shortest lag's oldest window is its **quiet level**: its minimum, slowly forgotten. More noise
 //! than a detector was trained with, from a bad supply or a motor's cable, is then no slip.
 //!
 //! What all elements do together, an impact or the motor, is taken off: `n sum(q^2) - (sum q)^2` of the `n` changes `q` is `n`
@@ -29,7 +29,7 @@ pub const WINDOWS: usize = 6;
 /// Where they begin and end, slow frames ago: the newest change, the one before, then octaves.
 const EDGES: [usize; WINDOWS + 1] = [0, 1, 2, 4, 8, 16, 32];
 const FRAMES: usize = EDGES[WINDOWS];
-/// Numbers that it gives.
+/// Number of structure functions.
 pub const STRUCTURES: usize = LAGS.len() * WINDOWS;
 /// The quiet level rises by a part 2^-8 in each slow frame: to twice itself in 2.2 s.
 const QUIET_SHIFT: u32 = 8;
@@ -114,8 +114,8 @@ impl Structure {
         }
     }
 
-    /// Forgets all but the quiet level: an element is gone, and what it said last, which is in every sum, is not to be
-    /// believed.
+    /// Forgets all but the quiet level: an element is lost, and its last readings, which are in every sum, are
+    /// suspect.
     pub fn forget(&mut self) {
         self.pushed = 0;
         self.energies = [[0; FRAMES]; LAGS.len()];

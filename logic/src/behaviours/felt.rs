@@ -1,4 +1,4 @@
-//! What a behaviour feels in one tick: the skin cell by cell, slip, and how hard the finger presses.
+//! Input of a behaviour in one tick: the skin's cells, slip, and the load.
 //!
 //! The skin's cells are the camera's markers while it sees, and the taxels of the normal-force array while it does not.
 
@@ -19,26 +19,26 @@ const CHANGE_MN: i32 = 60;
 /// noise of 10 mN a marker and their steps come to. A light object's pull is too small for any one of them.
 const PULL_MN: i32 = 250;
 
-/// What is felt in one tick.
+/// Input of a behaviour in one tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Felt<'a> {
-    /// The camera's last picture, None if it is too old to be believed.
+    /// The camera's last picture, None if it is too old.
     pub view: Option<&'a CameraView>,
     /// Whether it came in this tick.
     pub view_is_new: bool,
-    /// Whether this tick ends a cycle, so that every taxel has been read anew.
+    /// Whether this tick ends a slow frame, so that every taxel has been read anew.
     pub cycle_is_over: bool,
     /// The normal-force array's last readings.
     pub taxels: &'a Reading,
-    /// How hard the finger presses.
+    /// The load.
     pub grip: Grip,
-    /// Whether a detector that is believed says slip.
+    /// Whether a believed detector reports slip.
     pub slips: bool,
-    /// Whether the films hear half of what would be slip.
+    /// Whether the films' vibration is above half of S1's threshold.
     pub stirs: bool,
 }
 
-/// The cells of the skin, and what they felt at first.
+/// The cells of the skin, with their readings at the behaviour's begin.
 #[derive(Clone, Copy, Debug)]
 pub enum Skin {
     /// Markers: normal force and shear, mN.
@@ -53,7 +53,7 @@ pub enum Skin {
 }
 
 impl Skin {
-    /// As it feels now. None if there is no skin that gives numbers.
+    /// The present readings. None if no skin gives valid readings.
     #[must_use]
     pub fn now(felt: &Felt<'_>) -> Option<Self> {
         if let Some(view) = felt.view {
@@ -65,8 +65,8 @@ impl Skin {
         felt.taxels.iter().any(Option::is_some).then_some(Self::Taxels(*felt.taxels))
     }
 
-    /// The sum of the cells' scores (section II-A). Markers start from no force; taxels from what they felt at first, which
-    /// must have been nothing. None while the skin of the beginning gives no numbers.
+    /// The sum of the cells' scores (section II-A). Markers start from no force; taxels from their first readings, when
+    /// the finger must be empty. None while the skin of the begin gives no readings.
     #[must_use]
     pub fn score(&self, felt: &Felt<'_>) -> Option<u16> {
         match (self, felt.view) {
@@ -83,7 +83,7 @@ impl Skin {
         }
     }
 
-    /// Whether the markers together feel a pull that they did not feel at first.
+    /// Whether the markers' shear together differs from the first picture's by more than [`PULL_MN`].
     #[must_use]
     pub fn is_pulled(&self, felt: &Felt<'_>) -> bool {
         let (Self::Markers { normal_mn: normals, shear_mn: shears }, Some(view)) = (self, felt.view) else {
@@ -140,7 +140,7 @@ impl Felt<'_> {
     }
 }
 
-/// What all markers together feel: normal force and shear, mN.
+/// Normal force and shear on all markers together, mN.
 #[inline(never)]
 pub fn skin_mn(view: &CameraView) -> [i32; 2] {
     let of = |n: usize| normal_mn(view, n).map(|mn| [i32::from(mn), shear_mn(view, n).into()]);

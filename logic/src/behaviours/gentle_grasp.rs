@@ -6,8 +6,8 @@ use tenax_hal_shim::motor::Duty;
 use super::{BehaviourConfig, Course, Felt, Movement, Skin, Wish};
 use crate::grip::Grip;
 
-/// The fingers come until the skin feels half of what is enough, which its noise does not reach, and from there on by small movements, each of which is waited for:
-/// what is fragile gives way before a camera's next picture.
+/// The fingers close until the skin's score is half of what is enough, which its noise does not reach, and from there on by small
+/// movements with a wait after each: a fragile object gives way before a camera's next picture.
 #[derive(Clone, Debug)]
 pub struct GentleGrasp {
     skin: Option<Skin>,
@@ -18,7 +18,7 @@ pub struct GentleGrasp {
 }
 
 impl GentleGrasp {
-    /// None without any sense of touch.
+    /// Begins a gentle grasp. None without a skin and without a force sensor.
     pub fn begin(felt: &Felt<'_>) -> Option<Self> {
         let skin = Skin::now(felt);
         (skin.is_some() || felt.grip != Grip::Unknown).then_some(Self {

@@ -1,7 +1,7 @@
-//! Hand-over: let go as soon as somebody pulls at the object (FingerVision 2017, section II-C).
+//! Hand-over: let go as soon as the object is pulled (FingerVision 2017, section II-C).
 //!
-//! No broken sensor is to let go of anything: slip, a detector's or what the camera sees move, counts only where the skin feels
-//! another force too, and a skin that gives no numbers ends the hand-over with the fingers as they are.
+//! A broken sensor must not let go of anything: slip, of a detector or the camera, counts only if the skin feels
+//! another force, too, and a skin without valid readings ends the hand-over with the fingers as they are.
 
 use tenax_hal_shim::behaviour::Ending;
 use tenax_hal_shim::motor::Duty;
@@ -32,7 +32,7 @@ pub struct HandOver {
 }
 
 impl HandOver {
-    /// None without a skin and a sense of force.
+    /// Begins a hand-over. None without a skin or without a known force.
     pub fn begin(felt: &Felt<'_>) -> Option<Self> {
         if felt.grip == Grip::Unknown {
             return None;

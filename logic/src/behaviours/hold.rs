@@ -1,11 +1,11 @@
 //! Holding: close a little whenever the object slips (FingerVision 2017, section II-B).
 //!
-//! What the detectors report the reflex answers already. This adds what only a camera sees, an object so light that its slip
-//! makes no sound and its weight no force; and without a camera, slip at a force below which the reflex rests.
+//! The reflex answers the detectors already. This adds slip that only a camera sees, of an object too light for
+//! vibration and force sensors; and without a camera, slip at a load below which the reflex rests.
 //!
-//! A camera tells some pictures wrongly, several in a row. Nothing slides on skin that is hardly sheared, so a move is no slip while
-//! the markers' shear is less than a tenth of what presses on them: rubber on anything has several times that friction. What goes
-//! on to slip however far the fingers come is no slip either, but a camera that sees motion for ever.
+//! A camera is wrong in some pictures, several in a row. No object slides on skin that is hardly sheared, so motion is no slip while
+//! the markers' shear is less than a tenth of their normal force: rubber has several times that friction. Motion that
+//! continues however far the fingers close is no slip either, but a fault of the camera.
 
 use super::felt::skin_mn;
 use super::{BehaviourConfig, Course, Felt, Movement, Wish};

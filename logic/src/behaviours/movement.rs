@@ -1,4 +1,4 @@
-//! A small movement of the fingers, and the wait after it: all that a behaviour ever does (FingerVision 2017, section II).
+//! A small movement of the fingers and the wait after it, of which behaviours consist (FingerVision 2017, section II).
 
 use tenax_hal_shim::motor::Duty;
 

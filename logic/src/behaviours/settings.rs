@@ -1,15 +1,15 @@
-//! What can be chosen about behaviours.
+//! Settings of the behaviours.
 
 use crate::setting::settings;
 
-/// What a behaviour may be told.
+/// Settings of the behaviours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BehaviourConfig {
     /// Duty of its movements, per mille.
     pub duty_permille: u16,
     /// Length of a small movement, in frames.
     pub movement_frames: u32,
-    /// How long it waits after one for what it does to show, in frames (section II-D: 0.1 s).
+    /// Pause after a small movement, in frames (section II-D: 0.1 s).
     pub wait_frames: u32,
     /// The sum of the scores beyond which an object is held gently (section II-A).
     pub gentle_score: u16,
@@ -17,7 +17,7 @@ pub struct BehaviourConfig {
     pub changed_cells: u16,
     /// Moving points that are slip, in 1/10,000 of the picture.
     pub moving_e4: u16,
-    /// How far ahead of what is seen a turn is foreseen, in frames; 0: not at all, as in the paper.
+    /// Time by which the camera's angle is extrapolated, in frames; 0: not at all, as in the paper.
     pub turn_lead_frames: u32,
 }
 
@@ -27,14 +27,14 @@ settings! {
     50 BehaviourDuty "behaviour-duty-permille" "per mille" [50, 300] = 100 => Number(duty_permille);
     /// Behaviours: length of a small movement
     51 BehaviourMovement "behaviour-movement-ms" "ms" [2, 50] = 10 => Ms(movement_frames);
-    /// Behaviours: how long one waits after a small movement (FingerVision 2017, section II-D)
+    /// Behaviours: pause after a small movement (FingerVision 2017, section II-D)
     52 BehaviourWait "behaviour-wait-ms" "ms" [20, 500] = 100 => Ms(wait_frames);
-    /// Gentle grasp: the sum of the skin's scores beyond which the object is held (FingerVision 2017, section II-A)
+    /// Gentle grasp: sum of the skin cells' scores above which the object is held (FingerVision 2017, section II-A)
     53 GentleScore "gentle-score-points" "points" [1, 100] = 7 => Number(gentle_score);
     /// Hand-over: cells of the skin that must feel another force (FingerVision 2017, section II-C)
     54 ChangedCells "hand-over-cells" "cells" [2, 20] = 5 => Number(changed_cells);
-    /// Moving points in the camera's picture that are slip, in e4: ten-thousandths of it
+    /// Moving points in the camera's picture above which it shows slip, ten-thousandths of the picture
     55 MovingPoints "moving-points-e4" "e4" [2, 1_000] = 30 => Number(moving_e4);
-    /// Turn: how far ahead of the camera a turn is foreseen; 0: not at all, as in FingerVision 2017
+    /// Turn: time by which the camera's angle is extrapolated; 0: not at all, as in FingerVision 2017
     56 TurnLead "turn-lead-ms" "ms" [0, 300] = 90 => Ms(turn_lead_frames);
 }

@@ -2,7 +2,7 @@
 //! section II-D).
 //!
 //! The paper's objects turn too far: gravity is faster than a camera and a gripper. With `turn_lead_frames` the angle is
-//! foreseen: what the object will have turned by the time at which a closing finger stops it; and a turn ends where another
+//! extrapolated to the time at which a closing finger stops the object; and a turn ends where another
 //! slip would lead further away than it is.
 
 use tenax_hal_shim::behaviour::Ending;

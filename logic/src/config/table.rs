@@ -16,7 +16,7 @@ const COUNT: usize = {
     }
     count
 };
-// Whoever adds the next one finds out here, and not when the board starts.
+// A missing place is found here, at compile time, and not when the board starts.
 const _: () = assert!(COUNT <= SETTINGS_MAX);
 
 /// Every row, in the order of the numbers.
@@ -62,7 +62,7 @@ impl SettingId {
         all
     };
 
-    /// The setting with this number, if there is one.
+    /// The setting with this number. None: there is no such setting.
     #[must_use]
     pub fn from_number(number: u8) -> Option<Self> {
         Self::ALL.into_iter().find(|id| id.number() == number)

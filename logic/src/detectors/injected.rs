@@ -1,15 +1,15 @@
-//! Evidence from outside: somebody who knows whether the object slips.
+//! Reports from outside: of a scene that knows whether the object slips, or of the palm.
 
 use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
 
 use super::{Description, Detector, Said, Sensed};
 
-/// What was injected for the frame to come.
+/// The report that was injected for the next frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Injected(Option<Said>);
 
 impl Injected {
-    /// Says this from the next frame on.
+    /// Sets the report from the next frame on.
     pub const fn inject(&mut self, said: Said) {
         self.0 = Some(said);
     }
@@ -17,7 +17,7 @@ impl Injected {
 
 impl Detector for Injected {
     const ID: DetectorId = DetectorId::Injected;
-    // Whoever injects knows.
+    // Injected reports are never implausible.
     const IMPLAUSIBLE_AFTER: u16 = u16::MAX;
     type Config = ();
 

@@ -251,6 +251,14 @@ mod tests {
     }
 
     #[test]
+    fn a_calibration_without_a_reading_learns_nothing_and_its_verdict_stands() {
+        let mut calibration = Calibration::begin(0);
+        let over = Progress::Done(Err(Refusal::SensorLost));
+        assert_eq!(calibration.take(3 * PROMPT_FRAMES, [Some(60_000); 2]), over);
+        assert_eq!(calibration.take(PROMPT_FRAMES - 1, [Some(60_000); 2]), over, "whatever comes later");
+    }
+
+    #[test]
     fn what_cannot_be_used_is_refused() {
         let with = |phase: usize, mv: [f64; 2]| {
             let mut all = GOOD;
@@ -263,6 +271,7 @@ mod tests {
             (with(2, GOOD[1]), Refusal::SameDirection),
             (with(2, [-1.0, 900.0]), Refusal::SensorLost),
             (with(2, [150.0, 2_940.0]), Refusal::Saturated),
+            (with(1, [2_940.0, 165.0]), Refusal::Saturated),
         ] {
             assert_eq!(run(|phase, n| states(phase, n, mv)), Err(refusal));
         }
@@ -270,8 +279,10 @@ mod tests {
             if phase == 0 { GOOD[0].map(|mv| mv * lively(n, 0, 0.5)) } else { states(phase, n, GOOD) }
         };
         assert_eq!(run(restless), Err(Refusal::RestNotQuiet));
-        let still = |phase, n| if phase == 2 { [60.0, 600.0] } else { states(phase, n, GOOD) };
-        assert_eq!(run(still), Err(Refusal::NotAMuscle));
+        for (at, mv) in [(1, GOOD[1]), (2, [60.0, 600.0])] {
+            let still = |phase, n| if phase == at { mv } else { states(phase, n, GOOD) };
+            assert_eq!(run(still), Err(Refusal::NotAMuscle), "{at}");
+        }
         let wild = |phase, n| {
             if phase == 0 {
                 states(0, n, GOOD)

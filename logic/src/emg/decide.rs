@@ -37,24 +37,24 @@ const DEFAULT_READINGS: i32 = 72;
 /// And how far it rises at least.
 const DEFAULT_HEARS: i32 = 256;
 
-/// What the wearer wants of the hand.
+/// The wearer's wish.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Wish {
-    /// Nothing, or nothing clear.
+    /// Rest, or no clear wish.
     #[default]
     Rest,
-    /// To close it.
+    /// Close the hand.
     Close,
-    /// To open it.
+    /// Open the hand.
     Open,
 }
 
-/// One electrode now.
+/// Present state of one electrode.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Electrode {
-    /// Envelope above the live zero, uV; none without a number.
+    /// Envelope above the live zero, uV; None: no valid reading.
     pub uv: Option<i32>,
-    /// Whether it is taken for a fault: it then vetoes nothing, and begins only what is strong.
+    /// Whether it is doubted: it then vetoes nothing, and begins only a strong wish.
     pub doubted: bool,
     /// Whether it has stood still for a while, and for so long that what it stands at is taken for hum.
     pub still: bool,
@@ -123,7 +123,7 @@ impl Sites {
     }
 }
 
-/// Decides from reading to reading.
+/// State machine from pairs of EMG envelopes to the wearer's wish: rest, close or open.
 #[derive(Clone, Debug)]
 pub struct Decide {
     fitted: &'static Fitted,
@@ -145,7 +145,7 @@ pub struct Decide {
 }
 
 impl Decide {
-    /// For a wearer, or for nobody in particular.
+    /// For this calibrated wearer; None: not calibrated.
     #[must_use]
     pub fn new(model: Option<&EmgModel>) -> Self {
         Self::with(&FITTED, model)
@@ -170,7 +170,7 @@ impl Decide {
         }
     }
 
-    /// From which level on an electrode is active, and below which not any more.
+    /// Levels (Q10 octaves) above which electrode 0 (flexor) or 1 (extensor) becomes active, and below which it is no more.
     #[must_use]
     pub fn active_levels(&self, electrode: usize) -> [i32; 2] {
         match &self.sites {
@@ -179,7 +179,7 @@ impl Decide {
         }
     }
 
-    /// What is wished.
+    /// The present wish.
     #[must_use]
     pub const fn wish(&self) -> Wish {
         self.wish
@@ -204,7 +204,7 @@ impl Decide {
         }
     }
 
-    /// How strongly the last wish is meant, per mille: for the speed.
+    /// Strength of the last wish, 0 to 1000 per mille: for the speed.
     #[must_use]
     pub fn strength_permille(&self) -> u16 {
         let f = self.fitted;
@@ -217,7 +217,7 @@ impl Decide {
         (above.min(STRONG - f.ends[site]).max(0) * 1_000 / (STRONG - f.ends[site]).max(1)) as u16
     }
 
-    /// Takes both electrodes, flexor first: what the wearer wants.
+    /// Takes a reading of both electrodes, flexor first. Gives the wearer's wish.
     pub fn take(&mut self, electrodes: &[Electrode; 2]) -> Wish {
         match self.sites {
             Some(sites) => self.calibrated(&sites, sites.electrode.map(|n| electrodes[n & 1])),

@@ -1,9 +1,9 @@
-//! Whether what the two electrodes do still fits the calibration. It only reports: nobody is given the hand, or loses it.
+//! Whether contractions still fit the calibration. It only reports, and never changes who moves the hand.
 //!
 //! Each contraction gives two numbers. Its *turn*: the distance of its mean levels from the nearest calibrated contraction, less the
 //! distance from the nearest one with the electrodes exchanged. With an electrode that sits where it sat, the turn is far below zero;
 //! with exchanged plugs it is as far above; where both contractions drive the electrodes alike it is about zero. And whether it
-//! was *answered*: whether the hand took it for a wish. The wearer is asked for a calibration by the sums over twelve contractions.
+//! was *answered*: whether the hand took it for a wish. The sums over twelve contractions decide whether to ask for a calibration.
 
 use tenax_hal_shim::words::Fit;
 
@@ -29,7 +29,7 @@ const EXCHANGED: [i32; 2] = [1, 3];
 const MOST: i32 = 2_048;
 const LEAST: i32 = 512;
 
-/// Watches from slow frame to slow frame.
+/// Sums over the contractions since the last judgement.
 #[derive(Clone, Debug, Default)]
 pub struct Watch {
     /// Of the contraction under way: sums of levels, slow frames, and those with a wish.
@@ -95,7 +95,7 @@ impl Watch {
         true
     }
 
-    /// What it says.
+    /// The last judgement.
     #[must_use]
     pub const fn fit(&self) -> Fit {
         self.fit

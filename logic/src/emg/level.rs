@@ -4,9 +4,9 @@ use super::log2;
 
 /// Added to every envelope, uV: what is far below it is no muscle, and its logarithm would swing.
 pub const FLOOR_UV: i32 = 30_000;
-/// The level of an envelope of zero.
+/// The level of an envelope of zero, Q10 octaves.
 pub const FLOOR_LEVEL: i32 = level_of(0);
-/// The highest level there is: 3.3 V.
+/// The level of 3.3 V, the highest possible, Q10 octaves.
 pub const TOP_LEVEL: i32 = level_of(3_300_000);
 
 /// `log2(uv + FLOOR_UV)`, Q10, at most 0.01 from the true one. Anything below zero is taken as it.

@@ -40,24 +40,24 @@ pub const fn uv_of_sample(sample: u16) -> i32 {
 /// Pairs of readings in a slow frame.
 const PAIRS: u8 = 3;
 
-/// What the muscles say.
+/// The wearer's wish and activity, from both muscles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Verdict {
-    /// What the wearer wants of the hand.
+    /// The wearer's wish.
     pub wish: Wish,
-    /// How strongly, per mille: for the speed. 0 at rest.
+    /// Strength of the wish, 0 to 1000 per mille: for the speed. 0 at rest.
     pub strength_permille: u16,
-    /// Whether the contraction is proven to be a muscle's: what is not moves the hand little.
+    /// Whether the contraction is proven to be a muscle's: an unproven one moves the hand slowly and little.
     pub proven: bool,
     /// Whether a muscle is active, whatever it wants: the reflex is silent.
     pub active: bool,
-    /// Whether both sensors can be believed: if not, "not active" is not known.
+    /// Whether both myosensors are healthy: if not, "not active" is not known.
     pub known: bool,
-    /// Whether one of them can, and the other, if not, can be no muscle at work. [`Muscles`](crate::muscles::Muscles) says so.
+    /// Whether one is healthy, and the other, if doubted, cannot be an active muscle. Set by [`Muscles`](crate::muscles::Muscles).
     pub half_known: bool,
 }
 
-/// Both electrodes and what they mean.
+/// Levels and health of both electrodes, and the wish that follows.
 #[derive(Clone, Debug)]
 pub struct Emg {
     decide: Decide,

@@ -1,4 +1,4 @@
-//! What the firmware knows of a wearer: where rest and the two chosen contractions lie in the plane of the two
+//! The calibration of a wearer: levels of rest and of the two chosen contractions in the plane of the two
 //! logarithmic envelopes.
 //!
 //! Neither electrode is a muscle of its own: a fist drives both, and an electrode hears its neighbours. So the wearer
@@ -115,7 +115,7 @@ impl EmgModel {
         if open >= close { 0 } else { 1 }
     }
 
-    /// The other one.
+    /// The electrode of the opening contraction: 0 the flexor's, 1 the extensor's.
     #[must_use]
     pub const fn opening_site(&self) -> usize {
         1 - self.closing_site()
@@ -152,7 +152,7 @@ impl EmgModel {
         self.separation_permille
     }
 
-    /// To be kept.
+    /// The words to save.
     #[must_use]
     pub const fn to_words(&self) -> [i32; MODEL_WORDS] {
         let Self { rest, close, open, spread, separation_permille } = self;
@@ -170,7 +170,7 @@ impl EmgModel {
         ]
     }
 
-    /// What was kept; refused if a calibration could not have given it.
+    /// A model from saved words. Fails if no calibration could have given them.
     pub const fn from_words(words: [i32; MODEL_WORDS]) -> Result<Self, Refusal> {
         let [version, rf, re, cf, ce, of, oe, sf, se, separation] = words;
         if version != VERSION {

@@ -16,10 +16,10 @@ pub struct GateConfig {
 
 settings! {
     GateConfig:
-    /// EMG envelope above rest that both muscles have to reach to consent. When a muscle is active, its calibration says
+    /// Both muscles above this level (over rest) give consent. Whether one muscle is active is decided by its calibration
     3 EmgOn "emg-on-mv" "mV" [80, 400] = 160 => Number(on_mv);
     /// How long a muscle counts as active after its last activity
     20 EmgHold "emg-hold-ms" "ms" [100, 1_000] = 200 => Ms(hold_frames);
-    /// Motor duty that the weakest contraction asks for that moves the hand
+    /// Motor duty for the weakest contraction: the least that still moves the hand
     22 EmgSlowest "emg-slowest-permille" "per mille" [280, 350, trusted 200, 1_000] = 300 => Number(slowest_permille);
 }

@@ -36,7 +36,7 @@ const PROOF_APART: u16 = 12;
 /// Slow frames without a proof after which a contraction has to prove itself again: 1 s.
 const PROOF_LASTS: u16 = 80;
 
-/// What an envelope is.
+/// Quality of an envelope: a muscle's, or a kind of fault.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quality {
     /// A muscle's.
@@ -46,11 +46,11 @@ pub enum Quality {
     LeadOff,
     /// It stands still and mains is in it.
     Hum,
-    /// It climbs and climbs.
+    /// It rises without falling back.
     Creep,
     /// It stands still.
     Flat,
-    /// It has been active for longer than anybody keeps up.
+    /// It has been active for longer than a muscle can be.
     Endless,
     /// It stays at the top of its range.
     Saturated,
@@ -169,10 +169,9 @@ impl Trust {
     fn judge(&mut self, active: i32, uv: i32) {
         let (middle, far) = (self.before(LAG), self.before(2 * LAG));
         let curve_uv = (uv - 2 * middle + far).abs();
-        if let Some(oldest) = self.past_uv.get_mut(usize::from(self.place)) {
-            *oldest = uv;
-        }
-        self.place = (self.place + 1) % (2 * LAG) as u8;
+        let place = usize::from(self.place) % (2 * LAG);
+        self.past_uv[place] = uv;
+        self.place = (place as u8 + 1) % (2 * LAG) as u8;
 
         let is_active = level_of(uv) >= active;
         self.active_for = if is_active { self.active_for.saturating_add(1) } else { 0 };
@@ -271,7 +270,7 @@ impl Trust {
         turned
     }
 
-    /// What it is.
+    /// Its quality.
     #[must_use]
     pub fn quality(&self) -> Quality {
         self.lost.unwrap_or_default()
@@ -326,13 +325,13 @@ impl Trust {
         self.climbing >= PROOF_LASTS && self.since_proof >= PROOF_LASTS
     }
 
-    /// A full window for [`mains_of`](super::mains::mains_of), until [`hear`](Self::hear) begins the next one.
+    /// The last 64 readings, one a slow frame, 128 uV a unit, if the window is full, for [`mains_of`](super::mains::mains_of).
     #[must_use]
     pub fn window(&self) -> Option<&[i16; WINDOW]> {
         (usize::from(self.filled) == WINDOW).then_some(&self.window)
     }
 
-    /// Takes what the window said.
+    /// Takes the result of the window and begins the next one.
     pub const fn hear(&mut self, mains: Mains) {
         self.mains = mains.is_heard();
         self.filled = 0;

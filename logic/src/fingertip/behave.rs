@@ -1,4 +1,4 @@
-//! The behaviour that goes on in the fingertip: how it begins, what it may ask for in a tick, how it ends.
+//! The behaviour of the fingertip: how it begins, the drive that it may ask for in a tick, how it ends.
 
 use tenax_hal_shim::behaviour::{Behaviour, CameraView, Ending};
 use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
@@ -16,7 +16,7 @@ use tenax_hal_shim::channel::frames;
 /// computer's load, or frozen.
 const VIEW_FRAMES_MAX: u32 = frames(200);
 
-/// What the camera behind the skin saw last.
+/// The last picture of the camera behind the skin.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Eye {
     view: Option<CameraView>,
@@ -42,7 +42,7 @@ impl Eye {
 }
 
 impl Fingertip {
-    /// The behaviour that goes on.
+    /// The behaviour that is under way. None: there is none.
     #[must_use]
     pub fn behaviour(&self) -> Option<Behaviour> {
         self.behaviour.as_ref().map(Running::what)
@@ -75,7 +75,7 @@ impl Fingertip {
         }
     }
 
-    /// What the behaviour asks for in this tick, and may have.
+    /// The behaviour's drive in this tick, within its limits.
     pub(super) fn behave(&mut self, verdicts: Verdicts) -> MotorDrive {
         if self.behaviour.is_none() && self.eye.view.is_none() {
             return MotorDrive::Coast;

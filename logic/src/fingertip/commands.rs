@@ -1,4 +1,4 @@
-//! What a command does to the fingertip.
+//! Commands of the serial line.
 
 use core::ops::RangeInclusive;
 
@@ -16,7 +16,7 @@ impl Fingertip {
     /// Carries out a command.
     ///
     /// # Errors
-    /// Says why it was not carried out; then nothing has changed.
+    /// The reason why it was not carried out; nothing has changed then.
     pub fn command(&mut self, command: &Down) -> Result<(), Refusal> {
         if !command.reads() {
             self.consents_to(command)?;
@@ -98,7 +98,7 @@ impl Fingertip {
 
     /// Whether the line may carry this out.
     fn consents_to(&self, command: &Down) -> Result<(), Refusal> {
-        // Who trusts the line for ever, or says that nobody wears the hand, has to be at the hand: that nothing is held at
+        // Trusting the line for good, or declaring that there is no wearer, needs consent by muscles or button: that of
         // power-up is not enough.
         let for_ever = matches!(*command, Down::Set(Setting { id, .. })
             if [SettingId::LineTrusted.number(), SettingId::NoWearer.number()].contains(&id));

@@ -1,4 +1,4 @@
-//! What the serial line may do in a tick: consent, and the limits of its drive.
+//! Consent to commands of the serial line, and the limits of its drive.
 
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::EventKind;
@@ -10,28 +10,28 @@ use crate::button::Press;
 use crate::grip::Grip;
 
 impl Fingertip {
-    /// Whether the button at the hand is down, until this says otherwise.
+    /// Sets whether the button at the hand is down, until the next call.
     pub const fn button(&mut self, is_down: bool) {
         self.button_is_down = is_down;
     }
 
-    /// Whether the motor's bridge says that it has switched itself off, until this says otherwise.
+    /// Sets whether the motor bridge reports that it has switched itself off, until the next call.
     pub const fn bridge(&mut self, is_off: bool) {
         self.senses.motor.bridge(is_off);
     }
 
-    /// This start was a reset, not somebody who switched the hand on. To be said before the first tick.
+    /// This start was a reset, not a power-up: no consent follows from it. Call it before the first tick.
     pub const fn was_reset(&mut self) {
         self.arming.was_reset();
     }
 
-    /// What the serial line may do.
+    /// The commands that the serial line may give.
     #[must_use]
     pub fn line(&self) -> Line {
         self.arming.line(self.config.line_trusted)
     }
 
-    /// Looks for consent, and renews what somebody at the hand renews.
+    /// Looks for consent, and renews the budgets that an act at the hand renews.
     pub(super) fn consent(&mut self) {
         let gate = &self.senses.gate;
         let consent = self.arming.tick(Signs {
@@ -44,7 +44,7 @@ impl Fingertip {
         }
         self.press();
         let gate = &self.senses.gate;
-        // Who trusts the line has consented for good.
+        // A trusted line has consent for good.
         if gate.is_active() || consent.is_some() || self.config.line_trusted {
             self.link.renew();
         }
@@ -73,7 +73,7 @@ impl Fingertip {
         self.senses.muscles().light(self.journal.frame())
     }
 
-    /// What somebody at the hand asks for with its button.
+    /// Carries out the request of the button.
     #[inline(never)]
     fn press(&mut self) {
         let empty = matches!(self.senses.grip, Grip::Unloaded);
@@ -94,7 +94,7 @@ impl Fingertip {
         }
     }
 
-    /// What the line asks for and may have: it closes no harder than the reflex might.
+    /// The line's drive within its limits: it closes no harder than the reflex may.
     pub(super) fn link_drive(&self) -> Option<MotorDrive> {
         let drive = self.link.drive()?;
         let grip = self.senses.grip;

@@ -1,4 +1,4 @@
-//! The drive that the serial line asks for, and how long it may keep the reflex silent.
+//! The drive of the serial line, and the time for which it may silence the reflex.
 
 use tenax_hal_shim::motor::MotorDrive;
 
@@ -9,7 +9,7 @@ const HOLD_FRAMES_MAX: u32 = frames(10_000);
 /// A pause between two drives shorter than this is part of the hold, in frames: the reflex would still be settling.
 const PAUSE_FRAMES: u32 = frames(500);
 
-/// A drive command that holds for some frames more.
+/// The last drive command of the serial line, and the number of frames for which it still holds.
 #[derive(Clone, Copy, Debug)]
 pub struct Link {
     drive: MotorDrive,
@@ -27,15 +27,15 @@ impl Default for Link {
 }
 
 impl Link {
-    /// The line asks for this, for so many frames. To coast is to ask for nothing.
+    /// Takes a drive command that holds for so many frames. `Coast` ends the one before.
     pub fn ask(&mut self, drive: MotorDrive, frames: u32) {
         self.drive = drive;
         self.frames_left = frames;
     }
 
-    /// Goes on by one frame.
+    /// Counts one frame off; without any left the drive is `Coast`.
     pub fn tick(&mut self) {
-        // Nobody asks for anything, and what was held is forgotten: nearly always.
+        // The usual tick: no command holds, and the time held before has run down.
         if self.frames_left == 0
             && self.held == 0
             && self.drive == MotorDrive::Coast
@@ -57,19 +57,19 @@ impl Link {
         }
     }
 
-    /// Somebody at the hand is there: the line may hold again.
+    /// Renews the time: a muscle is active, or consent was given.
     pub const fn renew(&mut self) {
         self.held = 0;
         self.exhausted = false;
     }
 
-    /// Whether it held too long.
+    /// Whether its time is used up.
     #[must_use]
     pub const fn is_exhausted(&self) -> bool {
         self.exhausted
     }
 
-    /// What it asks for, None while nothing.
+    /// The drive that holds. None: the line asks for nothing.
     #[must_use]
     pub fn drive(&self) -> Option<MotorDrive> {
         (self.drive != MotorDrive::Coast).then_some(self.drive)

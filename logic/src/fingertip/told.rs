@@ -1,4 +1,4 @@
-//! What the fingertip tells of itself.
+//! Readings of the fingertip's state.
 
 use tenax_hal_shim::channel::PVDF_COUNT;
 use tenax_hal_shim::detector::DetectorSet;
@@ -14,7 +14,7 @@ use crate::hebbian::Learned;
 use crate::vibration::Q;
 
 impl Fingertip {
-    /// Every number that can be chosen, as it is in force.
+    /// The configuration in force.
     #[must_use]
     pub const fn config(&self) -> &Config {
         &self.config
@@ -31,13 +31,13 @@ impl Fingertip {
         self.slow.is_some()
     }
 
-    /// Whether something happened that was not taken yet.
+    /// Whether an event waits.
     #[must_use]
     pub fn has_event(&self) -> bool {
         self.journal.has_event()
     }
 
-    /// The oldest thing that happened and has not been taken yet.
+    /// Takes the oldest event that waits.
     pub fn next_event(&mut self) -> Option<Event> {
         self.journal.next_event()
     }
@@ -48,25 +48,25 @@ impl Fingertip {
         self.journal.frame()
     }
 
-    /// The vibration envelope of each film, in samples.
+    /// The vibration envelope of each film, samples (14 bits).
     #[must_use]
     pub fn films(&self) -> [u16; PVDF_COUNT] {
         self.senses.envelopes().map(|envelope| u16::try_from(envelope >> Q).unwrap_or(u16::MAX))
     }
 
-    /// The detectors that say slip, whoever listens.
+    /// The detectors that report slip, believed or not.
     #[must_use]
     pub const fn slip(&self) -> DetectorSet {
         self.detectors.slip()
     }
 
-    /// The detectors that warn of it. The line tells both in one.
+    /// The detectors that warn of slip, believed or not.
     #[must_use]
     pub const fn incipient(&self) -> DetectorSet {
         self.detectors.incipient()
     }
 
-    /// How to drive the vibration motor until this is asked again. Ask it once a slow frame.
+    /// Duty of the vibration motor until the next call. Call it once a slow frame.
     #[inline(never)]
     pub fn feedback(&mut self) -> Duty {
         let load_mn = if let Grip::Holds(mn) = self.senses.grip { Some(mn) } else { None };
@@ -74,7 +74,7 @@ impl Fingertip {
         self.feedback.step(self.config.feedback, &Felt { mode: self.mode, load_mn, unloaded, lost })
     }
 
-    /// What the reflex is doing.
+    /// Mode of the reflex.
     #[must_use]
     pub const fn mode(&self) -> GripMode {
         self.mode
@@ -86,21 +86,21 @@ impl Fingertip {
         self.senses.gate.is_active()
     }
 
-    /// Whether somebody has taken over for sure: only then budgets of closing begin anew. A lost myosensor, active for want of one that says
-    /// otherwise, is nobody.
+    /// Whether the wearer renews the blind budget: a muscle with a healthy myosensor is active, or the button opens the hand.
+    /// A lost myosensor counts as active, but renews nothing.
     #[must_use]
     pub fn wearer_renews(&self) -> bool {
         let gate = &self.senses.gate;
         gate.is_active() && (gate.is_known() || gate.is_releasing() || self.senses.muscles().is_heard())
     }
 
-    /// What the Hebbian network has learned, with the maxima that its weights belong to.
+    /// The Hebbian network's weights, with the maxima of its inputs.
     #[must_use]
     pub fn learned(&self) -> Learned {
         self.detectors.hebbian.learned()
     }
 
-    /// What the network knows and feels.
+    /// State of the network for telemetry.
     #[must_use]
     pub fn network(&self) -> NetworkState {
         self.detectors.hebbian.state(self.journal.frame())

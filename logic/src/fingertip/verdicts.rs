@@ -1,10 +1,10 @@
-//! What the fingertip makes of its detectors' verdicts: said, believed, acted on.
+//! From the detectors' reports to those that are believed and acted on.
 
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 
 use crate::detectors::Detectors;
 
-/// The detectors that the reflex may act on: all, unless somebody says otherwise.
+/// The detectors that the reflex may act on: by default all.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Acting(pub DetectorSet);
 
@@ -21,7 +21,7 @@ impl Acting {
     }
 }
 
-/// What the detectors say in one tick: all of it, and what of it is believed and may be acted on.
+/// The detectors' reports in one tick: all, and those that are believed and may be acted on.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Verdicts {
     /// All that is said.
@@ -33,7 +33,7 @@ pub(super) struct Verdicts {
 }
 
 impl Verdicts {
-    /// `cannot`: by the force sensor no friction is so low that the object could slip. One sense alone is not believed against it.
+    /// `cannot`: Ft/Fn is below the lowest friction of any object. A single sense is then not believed.
     pub fn of(detectors: &Detectors, Acting(acting): Acting, cannot: bool) -> Self {
         let (slip, incipient) = (detectors.slip(), detectors.incipient());
         let heard = |said: DetectorSet| said.without(detectors.ignored());
@@ -44,7 +44,7 @@ impl Verdicts {
     }
 }
 
-/// Whether films, array, head and whoever is outside agree, at least two of them.
+/// Whether at least two of these report slip: films, array, head, injected reports.
 fn by_two_senses(slip: DetectorSet) -> bool {
     let films = slip.contains(DetectorId::S1) || slip.contains(DetectorId::Hebbian);
     let others = [DetectorId::Mlp, DetectorId::Photoelastic, DetectorId::Injected];

@@ -1,15 +1,15 @@
-//! Shear that rises towards the ratio at which the camera saw slip.
+//! The look-ahead: warns while Ft/Fn rises towards the ratio at which the camera saw slip.
 //!
 //! Ft/Fn rises for as long as an object is lifted or filled, whether it will be held or not, and falls to sliding friction when it
-//! slips. The camera says when: the mean ratio of its lessons of slip is the friction of this finger on what it holds. From then on
-//! a ratio that will have come close to it within the time that the setting looks ahead, as fast as it rises now, warns of slip.
+//! slips. The mean ratio in the camera's lessons of slip is the friction of this finger on its object. From then on
+//! it warns if the ratio, extrapolated by `hebbian-ahead-ms`, comes close to that mean.
 //!
-//! How far to look ahead is a choice (`docs/hebbian.md`): the films hear the first places let go; shear only foretells it, and
-//! does so in every lift that would have held by a little. 0 is not at all.
+//! The time is a choice (`docs/hebbian.md`): a longer one warns earlier, and also
+//! in lifts that would just have held. 0: no warnings.
 //!
-//! What was learned on something slippery would warn for ever of something rough. So in one grasp it asks for no more than a warning may
-//! ([`Asked`]), and then is silent until something is known: the films have heard slip, the camera has seen it, a muscle was active, or
-//! the finger touched nothing.
+//! A ratio that was learned on a slippery object would warn without end of a rough one. So its warnings in one grasp add limited force
+//! ([`Asked`]). Then it is silent until films or camera report slip, a muscle is active, or
+//! the finger touches nothing.
 
 use tenax_hal_shim::wire::Forces;
 
@@ -31,7 +31,7 @@ const FOLLOWS: u32 = 5;
 /// Fraction bits of the learned ratio.
 const FRACTION: u32 = 8;
 
-/// What was learned, and what is felt.
+/// The learned ratio, and the last readings of Ft/Fn.
 #[derive(Clone, Debug, Default)]
 pub struct Ahead {
     /// Ft/Fn of slip, per mille with [`FRACTION`] bits; 0 before a lesson.
@@ -40,12 +40,12 @@ pub struct Ahead {
     before: [Option<u16>; SPAN],
     agreeing: u8,
     says: bool,
-    /// What it has asked for in this grasp.
+    /// Limits the force that its warnings add in this grasp.
     asked: Asked,
 }
 
 impl Ahead {
-    /// Takes a new reading, None while there is no ratio, and how far to look ahead: 0 is not at all.
+    /// Takes a new reading (None: the force is unknown) and the time to extrapolate, ms; 0: no warnings.
     #[inline(never)]
     pub fn feel(&mut self, ahead_ms: u16, forces: Option<&Forces>) {
         let [newer, oldest] = self.before;
@@ -71,12 +71,12 @@ impl Ahead {
         }
     }
 
-    /// Something is known of slip, or another grasp begins: it may ask for force anew.
+    /// Renews the limit: slip was reported or seen, or another grasp begins.
     pub const fn renew(&mut self) {
         self.asked.renew();
     }
 
-    /// The camera says that it slips: the newest ratio is that of slip.
+    /// Learns the newest ratio as that of slip: the camera reports slip.
     pub fn learn(&mut self) {
         if let [Some(ratio), _] = self.before {
             let ratio = i32::from(ratio) << FRACTION;
@@ -91,7 +91,7 @@ impl Ahead {
         self.says
     }
 
-    /// No reading of now. It is the same grasp.
+    /// The reading of this slow frame was lost; the grasp is the same.
     pub fn lose(&mut self) {
         *self = Self { slips_at: self.slips_at, asked: self.asked, ..Self::default() };
     }
@@ -101,7 +101,7 @@ impl Ahead {
         self.slips_at.unsigned_abs()
     }
 
-    /// Takes up what was learned; what no ratio can be is none.
+    /// Restores a learned ratio, per mille with [`FRACTION`] bits; an impossible one counts as none.
     pub fn restore(&mut self, learned: u32) {
         self.slips_at = if learned >> FRACTION <= u16::MAX as u32 { learned as i32 } else { 0 };
     }

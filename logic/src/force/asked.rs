@@ -1,16 +1,16 @@
-//! How much force a warning may ask for before something is known.
+//! Limits the force that warnings add without confirmation.
 //!
-//! A warning may be wrong for ever: films that hum, a friction that was learned on something else. So it asks for half as much force
-//! again as when it began, and no more. And where it says that the object slides, force shows sooner whether it does: what slides carries
-//! Ft = mu Fn, which grows as the hand closes; what is held carries its weight, whatever the grip.
+//! A warning may be wrong without end: films that hum, a friction that was learned on another object. So it may raise the load by half of
+//! what it was, and no more. If a warning means that the object slides, shear shows sooner whether it does: a sliding object carries
+//! Ft = mu Fn, which grows as the hand closes; a held one carries its weight, whatever the grip.
 
 use tenax_hal_shim::wire::Forces;
 
-/// What it may ask for, as a part of the load at which it began.
+/// Growth of the load that a warning may cause, as a part of the load at which it began: 1/2.
 const GROWTH_PART: i32 = 2;
-/// The growth of the load that shows what is held, as a part of it: several times what hysteresis makes of it.
+/// Growth of the load from which shear shows a held object, as a part of it: 1/8, several times the hysteresis.
 const SHOWS_PART: i32 = 8;
-/// Ft of what is held grows by less than this part of what it would if it slid.
+/// Ft of a held object grows by less than this part of what it would if it slid: 1/4.
 const HELD_PART: i64 = 4;
 
 /// Load and shear when a warning began.
@@ -32,23 +32,23 @@ const fn at(forces: &Forces) -> At {
 }
 
 impl Asked {
-    /// It begins to ask, if it did not yet.
+    /// A warning is on: notes load and shear, if none are noted.
     pub fn begin(&mut self, forces: &Forces) {
         self.0.get_or_insert(at(forces));
     }
 
-    /// Something is known, or another grasp begins: it may ask anew.
+    /// Renews the limit: slip was confirmed, or another grasp begins.
     pub const fn renew(&mut self) {
         self.0 = None;
     }
 
-    /// Whether it has had all that it may ask for, and so much on top, mN.
+    /// Whether the load has grown by all that the warning may add, and `on_top_mn` more.
     #[must_use]
     pub fn in_vain(&self, forces: &Forces, on_top_mn: i32) -> bool {
         self.0.is_some_and(|began| forces.load_mn > began.load_mn + began.load_mn / GROWTH_PART + on_top_mn)
     }
 
-    /// Whether the hand has closed since, by so much on top, mN, and the shear has not grown with it, as it does where something slides.
+    /// Whether the load has grown by more than 1/8 and `on_top_mn`, and the shear has not grown with it as that of a sliding object does.
     #[must_use]
     pub fn is_held(&self, forces: &Forces, on_top_mn: i32) -> bool {
         let (Some(began), now) = (self.0, at(forces)) else { return false };

@@ -1,11 +1,11 @@
-//! What the quadrants' readings have drifted since they were zeroed, found while something is held.
+//! Drift of the quadrants (cells A to D, clockwise) since they were zeroed, estimated while something is held.
 //!
-//! Two facts tell drift from force. The element on the quadrants is rigid: whatever presses on it, A + C = B + D. And nothing but the
-//! motor changes a grip slowly: an object that is lost is lost at once, and a skin that yields yields by a part.
+//! Two facts tell drift from force. The element on the quadrants is rigid: for every load and shear, A + C = B + D. And only the
+//! motor changes a grip slowly: a lost object is lost at once, and skin yields by a limited part of the load.
 //!
-//! - **One cell** that moves against the other three breaks the first. It is taken from them then, and its drift with it.
-//! - **All cells** that sink together look like a load that goes. What goes slowly, with the motor at rest, and beyond what a skin yields
-//!   is drift. Where two cells have sunk to nothing, the sensor gives no force.
+//! - **One cell** that drifts breaks the first rule. Its reading is then computed from the other three.
+//! - **All cells** that sink together look like a falling load. A slow fall with the motor at rest, beyond what skin yields,
+//!   is drift. If two cells have sunk to nothing, the sensor gives no force.
 
 use tenax_hal_shim::channel::FSR_COUNT;
 
@@ -40,19 +40,19 @@ const STILL_FOR: u32 = 40;
 /// The part of a load that a skin may yield by itself.
 const YIELDS_PART: i32 = 5;
 
-/// What the cells tell of each other.
+/// The cells' forces after correction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cells {
-    /// Their forces, mN, drift taken off.
+    /// Forces of A to D without drift, mN.
     Known([i32; FSR_COUNT]),
-    /// Too few of them carry anything that could be told from drift.
+    /// Too few cells carry a force that can be told from drift.
     Sunk,
 }
 
 /// The drift of all four cells.
 #[derive(Clone, Debug, Default)]
 pub struct Drift {
-    /// The cell that is blamed.
+    /// The quadrant (0 to 3: A to D) that is judged to drift against the others. None if none is.
     blamed: Option<u8>,
     /// How far the cells contradict each other beyond their gains: SIGNS times the drift of the blamed one, mN.
     off_mn: i32,
@@ -69,7 +69,7 @@ pub struct Drift {
 }
 
 impl Drift {
-    /// The cell that is blamed.
+    /// The quadrant (0 to 3: A to D) that is judged to drift against the others. None if none is.
     pub fn blamed(&self) -> Option<usize> {
         // The compiler is to see that it is one of them.
         self.blamed.map(|cell| usize::from(cell) % FSR_COUNT)
@@ -92,8 +92,8 @@ impl Drift {
         Cells::Known(cells)
     }
 
-    /// Finds out what the cells of this reading have drifted. `still`: readings since the motor was driven. Call it once after
-    /// each reading; a tick has no time for it.
+    /// Estimates the cells' drift from this reading, mN. `still`: readings since the motor was driven. Call it once after
+    /// each reading, outside of the tick.
     pub fn think(&mut self, read_mn: [i32; FSR_COUNT], loaded_mn: i32, still: u32) {
         let load_mn: i32 = self.corrected(read_mn).iter().sum();
         if load_mn < loaded_mn {
@@ -105,7 +105,7 @@ impl Drift {
         }
     }
 
-    /// What the cells carry, if they have drifted as far as is known.
+    /// The cells' forces without the known drift.
     fn corrected(&self, mut cells: [i32; FSR_COUNT]) -> [i32; FSR_COUNT] {
         if let Some(blamed) = self.blamed() {
             cells[blamed] -= SIGNS[blamed] * self.off_mn;

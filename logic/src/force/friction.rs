@@ -1,13 +1,13 @@
-//! Friction of the grasp, in one place: what is known of it bounds S2 (Prosthesis, sections 4 and 5), what shear foretells
-//! ([`Ahead`](super::Ahead)), and what can slip at all.
+//! Friction of the grasp: it bounds S2 (Prosthesis, sections 4 and 5) and the look-ahead
+//! ([`Ahead`](super::Ahead)), and sizes the pulses.
 //!
 //! "In the 'before sliding' situation a significant increment of the Ft/Fn ratio has been observed"; it rises to mu_s and
 //! falls as sliding starts. A stroke over a surface shows that peak, as often as the finger sticks and slides; S2 is set
 //! below the smallest one seen.
 //!
-//! A grasp shows it, too: Ft is never above mu Fn, whether the object holds or slides, so that friction is no lower than the highest ratio
-//! that has stood for a moment. S2 is set below that as below a stroke's, if it is higher, until the finger lets go or a muscle is active.
-//! And nothing slips at a ratio below [`LEAST_PERMILLE`], whoever says so.
+//! A grasp shows it, too: Ft is never above mu Fn, whether the object holds or slides. So friction is at least the highest ratio
+//! that has lasted for 50 ms. S2 is set below that as below a stroke's, if it is higher, until the finger lets go or a muscle is active.
+//! No object slips at a ratio below [`LEAST_PERMILLE`].
 
 use tenax_hal_shim::wire::Forces;
 
@@ -26,7 +26,7 @@ pub const LEAST_PERMILLE: u16 = 70;
 
 /// The smallest ratio that is taken for friction where one is measured or learned, per mille: noise at the touch is none.
 pub const FOUND_PERMILLE: u16 = 100;
-/// Readings for which a ratio has to be there, 50 ms.
+/// Readings for which a ratio has to last, 50 ms.
 const SHOWN_FOR: usize = 4;
 
 /// A stroke in progress.
@@ -49,16 +49,16 @@ impl Stroke {
     }
 }
 
-/// What a stroke measured.
+/// Result of a stroke.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Measured {
-    /// The smallest peak of Ft/Fn, per mille.
+    /// Static friction: the smallest of the stroke's peaks of Ft/Fn, per mille.
     pub mu_s_permille: u16,
     /// S2 from it, per mille.
     pub s2_permille: u16,
 }
 
-/// What this grasp has shown of friction: no ratio is ever above it, whether the object holds or slides.
+/// Lower bound of friction in this grasp: the highest ratio that has lasted.
 #[derive(Clone, Copy, Debug, Default)]
 struct Shown {
     before: [u16; SHOWN_FOR - 1],
@@ -82,23 +82,23 @@ const SLIPS_PERMILLE: i32 = SLIPPED_PERMILLE * 6 / 5;
 /// Readings over which a growing load is extrapolated: it is expected to grow as much again within the next 100 ms.
 const CARRIED_FOR: usize = 8;
 
-/// The detector.
+/// S2 as a detector, the stroke, and the friction of the grasp.
 #[derive(Clone, Debug, Default)]
 pub struct FrictionDetector {
     s2: bool,
     ratio_permille: Option<u16>,
     stroke: Option<Stroke>,
     shown: Shown,
-    /// The ratio at which the object slid when slip was said last, None before.
+    /// The ratio at which the object slid when slip was reported last, per mille; None before.
     slid: Option<u16>,
-    /// Ft of late while nothing moved the hand, mN, the newest first. What slides carries less than its load.
+    /// Ft of the last 100 ms in which the hand stood still, mN, the newest first. A sliding object carries less than its load.
     carried: Option<[i32; CARRIED_FOR]>,
     /// Readings since the hand moved.
     still: u8,
 }
 
 impl FrictionDetector {
-    /// Takes a shear, mN, None while there is no ratio. `moves`: the hand itself does. Call it before the ratio is taken.
+    /// Takes Ft, mN, None while there is no ratio. `moves`: the reflex moves the hand. Call it before [`process`](Self::process).
     #[inline(never)]
     pub fn carry(&mut self, ft_mn: Option<i32>, moves: bool) {
         let Some(ft_mn) = ft_mn else {
@@ -112,7 +112,7 @@ impl FrictionDetector {
         }
     }
 
-    /// The force that the grip lacks by this reading.
+    /// The missing force by this reading, mN: aim x Ft / friction - Fn, for slip and for a warning.
     #[must_use]
     #[inline(never)]
     pub fn lacks(&mut self, config: &FrictionConfig, forces: &Forces, slides: Slides) -> Lacks {
@@ -148,7 +148,7 @@ impl FrictionDetector {
         Lacks { slip_mn, warning_mn, by_s2: self.s2 }
     }
 
-    /// Takes a ratio, None while there is none. Gives whether it warns.
+    /// Takes Ft/Fn, per mille, None while there is none. Gives whether S2 warns.
     pub fn process(&mut self, config: &FrictionConfig, ratio_permille: Option<u16>) -> bool {
         self.ratio_permille = ratio_permille;
         let Some(ratio) = ratio_permille else {
@@ -165,41 +165,41 @@ impl FrictionDetector {
         self.s2
     }
 
-    /// S2 in this grasp: what was set or measured, or what the grasp has shown.
+    /// S2 in this grasp, per mille: as set or measured, or higher if the grasp has shown more friction.
     #[must_use]
     pub fn s2_permille(&self, config: &FrictionConfig) -> u16 {
         let shown = u32::from(self.shown.highest) * u32::from(config.s2_of_mu_s_permille) / 1_000;
         config.s2_permille.max(shown as u16)
     }
 
-    /// A muscle is active: what it does to the contact nobody knows.
+    /// Forgets the friction of this grasp: a muscle is active and changes the contact.
     pub fn renew(&mut self) {
         (self.shown, self.slid) = (Shown::default(), None);
     }
 
-    /// Slip is answered: the friction of this slip is not known yet.
+    /// A pulse against slip begins: the sliding friction is not known yet.
     pub const fn slips(&mut self) {
         self.slid = None;
     }
 
-    /// The ratio at which the object slid in this grasp, per mille: friction is no lower, until slip is said again.
+    /// The ratio at which the object slid in this grasp, per mille, until slip is reported again. None: it has not slid.
     #[must_use]
     pub const fn slid_permille(&self) -> Option<u16> {
         self.slid
     }
 
-    /// The last ratio, None while there is none.
+    /// The last Ft/Fn, per mille, None while there is none.
     #[must_use]
     pub const fn ratio_permille(&self) -> Option<u16> {
         self.ratio_permille
     }
 
-    /// Begins a stroke.
+    /// Begins to measure mu_s in a stroke; one that is under way starts anew.
     pub fn begin_stroke(&mut self) {
         self.stroke = Some(Stroke::default());
     }
 
-    /// Ends it; gives what it measured, None if the finger never slid. The caller sets S2.
+    /// Ends the stroke. Gives what it measured, None if the finger never slid. The caller sets S2.
     pub fn end_stroke(&mut self, config: &FrictionConfig) -> Option<Measured> {
         let mu_s_permille = self.stroke.take()?.mu_s?;
         let s2 = u32::from(mu_s_permille) * u32::from(config.s2_of_mu_s_permille) / 1_000;

@@ -1,5 +1,5 @@
-//! Normal and shear force from the four-quadrant force sensor, its drift, and what their ratio foretells: S2, the look-ahead, and how much a
-//! warning may ask for.
+//! Normal and shear force from the four-quadrant force sensor, its drift, and warnings from their ratio: S2, the look-ahead, and the force
+//! that a warning may add.
 
 mod ahead;
 mod asked;

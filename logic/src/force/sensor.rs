@@ -6,9 +6,9 @@
 //! shear along an axis: 4 % at a ratio of 0.3, 12 % at 0.5. So the ratio read here is `r / sqrt(1 + r^2)` for a true
 //! ratio r. Both grow together; a stroke that measures S2 measures it on the same scale.
 //!
-//! What is decided by a force and not by a ratio (is the finger loaded, is the ceiling reached) is decided by the load, the
-//! sum of the quadrants. And a ratio means something only if most quadrants agree that there is a load: one that is
-//! pressed by itself, by its own offset or a speck under the element, would read as a large shear.
+//! Decisions on a force (is the finger loaded, is the ceiling reached) use the load, the
+//! sum of the quadrants. A ratio is valid only if most quadrants carry a load: a single one,
+//! pressed by its own offset or a speck under the element, would read as a large shear.
 
 use tenax_hal_shim::channel::FSR_COUNT;
 use tenax_hal_shim::wire::Forces;
@@ -16,31 +16,31 @@ use tenax_hal_shim::wire::Forces;
 use super::drift::{Cells, Drift};
 use super::fsr::{force_mn, uv_above_rest};
 
-/// How far a quadrant's zero may be moved, uV: more is a load, not an offset.
+/// Largest zero of a quadrant, uV above rest: more is a load, not an offset.
 pub const ZERO_LIMIT_UV: i32 = 60_000;
 
 /// A quadrant that carries this much carries a part of the load, mN: more than its noise, and a fortieth of the least load.
 pub(super) const CARRIES_MN: i32 = 15;
 /// Quadrants that have to. A shear along a diagonal may unload one.
 const AGREEING: usize = 3;
-/// While the hand is open a zero goes after its readings over so many of them: 0.8 s.
+/// While the hand is open a zero follows its readings over so many of them: 0.8 s.
 const FOLLOWED_IN: i32 = 64;
 
-/// The force sensor: its calibrated zeros, and what its cells have drifted in a grasp.
+/// The force sensor: calibrated zeros of its quadrants, and their drift.
 #[derive(Clone, Debug, Default)]
 pub struct ForceSensor {
     /// Calibrated, and kept through a power cut.
     zero_uv: [i32; FSR_COUNT],
-    /// What they have drifted since, as far as an open hand shows it.
+    /// Their drift since, as far as an open hand shows it, uV.
     drift_uv: [i32; FSR_COUNT],
     last_uv: [i32; FSR_COUNT],
-    /// What they have drifted in a grasp.
+    /// Their drift in this grasp.
     drift: Drift,
 }
 
 impl ForceSensor {
-    /// Forces from one sample of each quadrant A, B, C, D. `loaded_mn` is the Fn from which the ratio means something. None once the
-    /// quadrants have sunk so far that they tell nothing.
+    /// Forces from one 14-bit sample of each quadrant A, B, C, D. `loaded_mn`: load from which Ft/Fn is valid. `opened`: the motor has
+    /// opened the hand since it last closed it. None once the quadrants have drifted too far.
     pub fn process(&mut self, samples: [u16; FSR_COUNT], loaded_mn: i32, opened: bool) -> Option<Forces> {
         self.last_uv = samples.map(uv_above_rest);
         match self.drift.step(self.quadrants(), loaded_mn, opened) {
@@ -49,13 +49,13 @@ impl ForceSensor {
         }
     }
 
-    /// The quadrant whose reading contradicts the other three.
+    /// The quadrant (0 to 3) whose reading contradicts the other three. None if none does.
     #[must_use]
     pub fn blamed(&self) -> Option<usize> {
         self.drift.blamed()
     }
 
-    /// Finds out what has drifted, once after each reading. `still`: readings since the motor was driven.
+    /// Estimates the drift, once after each reading. `still`: readings since the motor was driven.
     pub fn think(&mut self, loaded_mn: i32, still: u32) {
         self.drift.think(self.quadrants(), loaded_mn, still);
     }
@@ -78,8 +78,8 @@ impl ForceSensor {
         unloaded
     }
 
-    /// The hand is surely open: what the quadrants read is no load, so their zeros go after it, as far as a working sensor's
-    /// may be off. What is further off is something that presses.
+    /// The hand is surely open: the zeros follow the quadrants' readings within [`ZERO_LIMIT_UV`].
+    /// A larger reading is a load.
     pub fn follow(&mut self) {
         for ((drift, zero), &uv) in self.drift_uv.iter_mut().zip(&self.zero_uv).zip(&self.last_uv) {
             if uv.abs() <= ZERO_LIMIT_UV {
@@ -96,13 +96,13 @@ impl ForceSensor {
         &self.zero_uv
     }
 
-    /// Takes up zeros that were taken before, none further than [`ZERO_LIMIT_UV`].
+    /// Restores zeros of quadrants A to D, uV above rest. The caller has checked that none is beyond [`ZERO_LIMIT_UV`].
     pub const fn restore_zero(&mut self, zero_uv: [i32; FSR_COUNT]) {
         self.zero_uv = zero_uv;
     }
 }
 
-/// The paper's formulas on quadrant forces in mN, below 24 000 each: sums stay below 2^17, squares below 2^34.
+/// Forces (Prosthesis, section 4) of quadrants A to D, each 0 to 24 000 mN. Ft/Fn is None for a load below `loaded_mn`.
 #[must_use]
 pub fn forces([a, b, c, d]: [i32; FSR_COUNT], loaded_mn: i32) -> Forces {
     let fn_mn = 2 * root([a, b, c, d]);

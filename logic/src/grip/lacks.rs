@@ -1,23 +1,23 @@
-//! The words between the friction of a grasp and the pulses that answer it: the grip asks, friction tells.
+//! Types that the friction of a grasp and the reflex's pulses share.
 
-/// What Ft/Fn tells of the friction of what slides.
+/// Whether the present Ft/Fn is the friction of the sliding object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slides {
-    /// Nothing yet: slip was not said, or not long enough ago.
+    /// Not known: slip was not reported, or not long enough ago.
     Unknown,
-    /// It is that friction.
+    /// It is.
     Now,
-    /// It was that friction within the last readings. What has come to rest meanwhile carries less.
+    /// It was within the last readings; an object that has come to rest since shows less.
     Again,
 }
 
 /// The force that a grip lacks, mN. None where that is not known.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lacks {
-    /// If the object slips now.
+    /// To stop an object that slips, mN.
     pub slip_mn: Option<i32>,
-    /// If it is about to.
+    /// To answer a warning, mN.
     pub warning_mn: Option<i32>,
-    /// Whether S2 warns of that.
+    /// Whether S2 warns.
     pub by_s2: bool,
 }

@@ -1,12 +1,12 @@
-//! Taking back the force that the reflex added, where somebody has chosen that it may.
+//! Releases the force that the reflex added, if `relax-choice` allows it.
 //!
-//! Only while nobody moves the hand and no detector has said anything for [`QUIET_READINGS`]; only by the friction at which this object slid
-//! in this grasp; never below the load that the hand was closed to, and never by more travel than the reflex closed. A step is small and
-//! waits for its effect. Whatever a detector says ends it: the reflex answers as always, and the load of that moment is kept from then on.
+//! Only while no source moves the hand and no detector has reported anything for [`QUIET_READINGS`]; only down to the load that the friction
+//! at which this object slid needs; never below the load that the hand was closed to, and never by more travel than the reflex closed. A step
+//! is small and waits for its effect. A report ends it: the reflex answers as always, and the load before the step is kept from then on.
 
 use super::stiffness::Stiffness;
 
-/// Readings of 12.5 ms without a word, 5 s.
+/// Readings of 12.5 ms without a report, 5 s.
 const QUIET_READINGS: u16 = 400;
 /// Readings between two steps, 0.25 s: a step's travel, the motor's dead time, and the force that follows.
 const STEP_READINGS: u16 = 20;
@@ -18,7 +18,7 @@ const KEPT_PERMILLE: i32 = 1_050;
 /// Duty at which the hand opens, per mille.
 const DUTY_PERMILLE: u16 = 100;
 
-/// What a reading tells.
+/// One reading of the force sensor, with the friction that is known.
 #[derive(Clone, Copy, Debug)]
 pub struct Reading {
     /// The load, mN.
@@ -29,41 +29,41 @@ pub struct Reading {
     pub slid_permille: Option<u16>,
 }
 
-/// What may be taken back, and what of a step is still to be opened.
+/// How much of the reflex's closing may be released, and what is left of the present step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Relax {
-    /// The load that the hand was closed to, or that it had before a step that was answered by a word, mN. None: nobody knows yet.
+    /// The load that the hand was closed to, or that it had before a step that a detector answered, mN. None: not known yet.
     floor_mn: Option<i32>,
     /// The load before the last step, mN.
     before_mn: i32,
     /// The greatest shear of the last seconds and of those before, mN.
     most_mn: [i32; 2],
     quiet: u16,
-    /// What the reflex has closed and nobody has opened, per mille of duty times frames.
+    /// Travel that the reflex has closed and not released, per mille of duty times frames.
     closed: u32,
-    /// What this step has still to open.
+    /// Travel left of this step, per mille of duty times frames.
     left: u32,
 }
 
 impl Relax {
-    /// Somebody else moves the hand, or it holds nothing: what follows is another grasp.
+    /// Ends the grasp: the muscles, the line or a behaviour moves the hand, or it holds nothing.
     pub fn forget(&mut self) {
         *self = Self::default();
     }
 
-    /// The reflex closes in this frame at this duty.
+    /// Notes that the reflex closes in this frame at this duty (0 to 1000 per mille): so much may be released later.
     pub const fn closes(&mut self, duty_permille: u16) {
         self.closed = self.closed.saturating_add(duty_permille as u32);
         self.left = 0;
     }
 
-    /// A detector says something, or the reflex is busy with it. A step that was heard has gone too far.
+    /// A detector reports slip or a warning. If that came after a step, the step went too far: the load before it becomes the floor.
     pub fn hear(&mut self) {
         self.floor_mn = self.floor_mn.map(|floor_mn| floor_mn.max(self.before_mn));
         (self.quiet, self.left) = (0, 0);
     }
 
-    /// Takes a reading while nobody moves the hand. Call it once a slow frame.
+    /// Takes a reading while no source moves the hand, and may begin a step. Call it once a slow frame.
     #[inline(never)]
     pub fn feel(&mut self, reading: &Reading, stiffness: &Stiffness) {
         let Reading { load_mn, ft_mn, slid_permille } = *reading;
@@ -88,12 +88,12 @@ impl Relax {
         }
     }
 
-    /// Whether a step goes on.
+    /// Whether a step is under way.
     pub const fn is_on(&self) -> bool {
         self.left > 0
     }
 
-    /// The duty at which the hand opens in this frame, per mille; 0 if it does not.
+    /// The duty at which the hand opens in this frame, per mille; 0 if it does not. Call it once a frame.
     pub fn opens(&mut self) -> u16 {
         let duty = (self.left.min(DUTY_PERMILLE.into())) as u16;
         self.left -= u32::from(duty);

@@ -1,4 +1,4 @@
-//! What can be chosen about the reflex.
+//! Settings of the reflex.
 
 use crate::setting::settings;
 
@@ -9,25 +9,25 @@ pub struct GripConfig {
     pub slip_duty_permille: u16,
     /// Its length, in frames.
     pub slip_frames: u32,
-    /// Its length at most while a detector still says slip, in frames.
+    /// Its length at most while a detector still reports slip, in frames.
     pub slip_frames_max: u32,
     /// Duty of the pulse that answers incipient slip, per mille.
     pub incipient_duty_permille: u16,
     /// Its length, in frames.
     pub incipient_frames: u32,
-    /// How long the object is given to settle after a pulse, in frames: longer than the motor's dead time, so that the
+    /// Time after a pulse in which no slip is answered, in frames: longer than the motor's dead time, so that the
     /// noise of the hand's own closing is not answered by more closing.
     pub settle_frames: u32,
-    /// Fn above which the reflex closes no further, mN.
+    /// Load above which the reflex closes no further, mN.
     pub ceiling_mn: i32,
-    /// How long the reflex may close altogether while no force is known, in frames, until the wearer takes over once.
+    /// Blind budget: closing time of the reflex in all while the force is unknown or an electrode is lost, in frames.
     pub blind_frames: u32,
-    /// Whether it takes back what it added: 0 never, 1 where there is no wearer, 2 always.
+    /// Whether the reflex releases force that it added: 0 never, 1 without a wearer, 2 always.
     pub relax: u16,
 }
 
 impl GripConfig {
-    /// Whether what the reflex added may be taken back.
+    /// Whether the reflex may release force that it added.
     #[must_use]
     pub const fn may_relax(&self, no_wearer: bool) -> bool {
         self.relax >= if no_wearer { 1 } else { 2 }
@@ -48,11 +48,11 @@ settings! {
     26 IncipientDuty "incipient-duty-permille" "per mille" [350, 1_000, trusted 100, 1_000] = 400 => Number(incipient_duty_permille);
     /// Length of the pulse that answers incipient slip
     27 IncipientPulse "incipient-pulse-ms" "ms" [5, 50] = 15 => Ms(incipient_frames);
-    /// How long the object is given to settle after a pulse, longer than the motor's dead time
+    /// Time after a pulse in which no slip is answered, longer than the motor's dead time
     28 Settle "settle-ms" "ms" [75, 90, trusted 40, 150] = 80 => Ms(settle_frames);
-    /// How long the reflex may close altogether while no force is known, until a muscle takes over once
+    /// Blind budget: closing time of the reflex in all while the force is unknown or an electrode is lost; an active muscle renews it
     29 Blind "blind-ms" "ms" [0, 400] = 200 => Ms(blind_frames);
-    /// After 5 s without slip the reflex takes back what it added, down to what stops a sliding object: 0 never, 1 where there is no
+    /// After 5 s without slip the reflex releases the force that it added, down to what stops a sliding object: 0 never, 1 without a
     /// wearer, 2 always
     75 Relax "relax-choice" "choice" [0, 2] = 1 => Number(relax);
 }

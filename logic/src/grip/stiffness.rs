@@ -1,7 +1,7 @@
-//! What closing does to the force, as closing itself shows.
+//! The stiffness of the grasp: force that closing adds, learned while the motor closes.
 //!
 //! Fingers that close at a steady speed raise the force at a steady rate, whatever the motor's dead time is: the stiffness of object, pad
-//! and linkage is that rate over the duty. The steepest rise of a closing is it; a rise that the dead time blurs is flatter.
+//! and linkage is that rate over the duty. The steepest rise of a closing is used, since the dead time flattens the others.
 
 use crate::latest;
 
@@ -34,7 +34,7 @@ pub struct Stiffness {
 }
 
 impl Stiffness {
-    /// The motor closes in this frame, at this duty.
+    /// Notes that the motor closes in this frame at this duty, 0 to 1000 per mille.
     pub const fn close(&mut self, duty_permille: u16) {
         self.travel += duty_permille as u32;
     }
@@ -66,8 +66,8 @@ impl Stiffness {
         }
     }
 
-    /// The travel that is still to be asked of the motor for so much force, mN; what it has travelled and the force does not show yet is
-    /// taken off. None before a closing has shown the stiffness.
+    /// The motor's travel (per mille of duty times frames) that adds so much force, mN, less the travel that the force does not show yet.
+    /// None before a closing has shown the stiffness.
     #[must_use]
     pub fn travel_for(&self, lacks_mn: i32) -> Option<u32> {
         let coming: u32 = self.before[..NOT_FELT].iter().sum::<u32>() + self.travel;

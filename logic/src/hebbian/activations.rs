@@ -1,9 +1,9 @@
 //! Activations of the tactile nodes: "the outputs of vibration and pressure receptors are normalized by their maximum
 //! values" (Tada 2006, section II.C).
 //!
-//! A receptor's raw reading may have any unit; dividing by the largest one seen takes the unit and the gain out. The sign
-//! of a vibration means nothing and is dropped, the sign of a pressure is the direction of shear and is kept. A constant
-//! offset would be an activation of 1 for ever, so the reading of an unloaded finger can be taken as zero.
+//! A receptor's raw reading may have any unit; dividing by the largest one seen removes unit and gain. The sign
+//! of a vibration is dropped, the sign of a pressure is the direction of shear and is kept. A constant
+//! offset would always be an activation of 1, so the reading of an unloaded finger can be taken as zero.
 
 use dsp_fixedpoint::Q32;
 
@@ -18,12 +18,12 @@ const RATIO_SHIFT: u32 = 30 - 26;
 const RATIO_HALF: u32 = 1 << (RATIO_SHIFT - 1);
 const ONE: i32 = 1 << 26;
 
-/// What a receptor's sign means.
+/// Kind of a receptor: whether its sign counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sense {
-    /// Vibration: nothing. The activation is 0 to 1.
+    /// Vibration: the sign is dropped. The activation is 0 to 1.
     Vibration,
-    /// Pressure: which way it is pressed or sheared. The activation is -1 to 1.
+    /// Pressure: the sign is the direction of load or shear. The activation is -1 to 1.
     Pressure,
 }
 
@@ -39,7 +39,7 @@ impl<const N: usize> Default for Activations<N> {
 }
 
 impl<const N: usize> Activations<N> {
-    /// These; what is beyond +-1 is taken as +-1.
+    /// These activations, each clamped to +-1.
     #[must_use]
     pub fn new(activations: [Activation; N]) -> Self {
         Self(activations.map(|activation| activation.into_bits().clamp(-ONE, ONE)))
@@ -55,7 +55,7 @@ impl<const N: usize> Activations<N> {
 /// How `N` receptors become activations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NormaliserConfig<const N: usize> {
-    /// What each receptor is.
+    /// Kind of each receptor.
     pub senses: [Sense; N],
     /// The smallest maximum of each, in its raw unit: what is quieter all its life is a dead receptor's noise and stays
     /// small. 0 is taken as 1.
@@ -109,7 +109,7 @@ pub struct Normaliser<const N: usize> {
 }
 
 impl<const N: usize> Normaliser<N> {
-    /// One that has seen nothing: every maximum at its floor.
+    /// A normaliser without readings: every maximum is at its floor.
     #[must_use]
     pub fn new(config: &NormaliserConfig<N>) -> Self {
         Self { scales: config.floors.map(|floor| Scale::new(0, floor.min(config.ceiling))) }
@@ -123,7 +123,7 @@ impl<const N: usize> Normaliser<N> {
         }
     }
 
-    /// Takes these readings as zero. For the caller to allow: only while the finger is known to be unloaded, never during
+    /// Takes these readings as zero. The caller makes sure that the finger is known to be unloaded, never during
     /// a grasp.
     pub fn zero(&mut self, raw: &[i32; N]) {
         for (scale, &raw) in self.scales.iter_mut().zip(raw) {
@@ -131,8 +131,8 @@ impl<const N: usize> Normaliser<N> {
         }
     }
 
-    /// Lets the maxima rise. For the caller to allow: as learning is, so that an impact or a noisy motor makes no receptor
-    /// deaf. One division for each maximum that rises.
+    /// Lets the maxima rise. Call it only when learning is allowed, so that an impact or a noisy motor makes no receptor
+    /// insensitive. One division for each maximum that rises.
     pub fn observe(&mut self, config: &NormaliserConfig<N>, raw: &[i32; N]) {
         let shift = config.average_shift.min(AVERAGE_SHIFT_MAX);
         for (scale, &raw) in self.scales.iter_mut().zip(raw) {
@@ -179,7 +179,7 @@ impl<const N: usize> Normaliser<N> {
         self.scales.map(|scale| scale.largest)
     }
 
-    /// One with these maxima and no zeros taken; each maximum is brought between its floor and the ceiling.
+    /// A normaliser with these maxima, each clamped between its floor and the ceiling, and no zeros.
     #[must_use]
     pub fn from_maxima(config: &NormaliserConfig<N>, maxima: &[u32; N]) -> Self {
         let mut normaliser = Self::new(config);

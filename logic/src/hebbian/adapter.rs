@@ -1,4 +1,4 @@
-//! The Hebbian network as a detector: what the films hear is slip, what shear foretells is a warning.
+//! The Hebbian network as a detector: its films' part reports slip, the look-ahead of shear warns.
 
 use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
 

@@ -1,4 +1,4 @@
-//! As many lessons of each code as of its opposite.
+//! Balances the lessons: each code is taught as often as its opposite.
 
 use tenax_hal_shim::wire::NETWORK_OUTPUTS;
 use tenax_hal_shim::words::{Code, Codes};
@@ -8,9 +8,9 @@ const AHEAD_MAX: i16 = 2_000;
 
 /// Lessons of each code less those of its opposite.
 ///
-/// Hebb's rule correlates: of what is felt all the time it learns whichever code it was taught longer, and every gauge
-/// that feels the grasp becomes an offset (`docs/hebbian.md`). Nobody can be asked to lower as long as they lift, and the
-/// reflex ends slips early, so a code that is too far ahead has to wait for its opposite.
+/// Hebb's rule correlates: a constant input learns whichever code was taught longer, so every gauge
+/// that feels the grasp becomes an offset (`docs/hebbian.md`). A person does not lower as long as they lift, and the
+/// reflex ends slips early, so a code that is too far ahead is not taught until its opposite was.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Balance([i16; NETWORK_OUTPUTS]);
 

@@ -1,22 +1,22 @@
-//! HebbianDetector that learns: the films' envelopes and the gauges' loads go into the Hebbian network (Tada 2006), a camera
-//! teaches it over the serial line, and what it says alone is one more way to feel slip, and to be warned of it.
+//! The Hebbian detector: films' envelopes and gauges' loads are the inputs of the network (Tada 2006), a camera
+//! teaches it over the serial line, and its outputs from touch alone report slip and warn of it.
 //!
-//! Every tick has an output; lessons are given at 1 kHz, in every other tick, and the maxima rise in the ticks between,
-//! so that no tick does both. Learning and using go on at once: what the network says never holds the teacher's own
-//! codes (they are taken as 0), so it can be believed while it is being taught.
+//! Every tick has an output; lessons are taught at 1 kHz, in every other tick, and the maxima rise in the ticks between,
+//! so that no tick does both. The network is used while it learns: its outputs never contain the teacher's
+//! codes (they are taken as 0).
 //!
-//! Outputs mean slip while the films' part of o1 is far enough below 0, for some ticks, on a finger that holds something,
-//! and not while an impact rings or the motor runs fast, or just did. The films' part, because the gauges' is a matter of
-//! how hard is held, which speaks against slip and hides its beginning; and because a gauge that dies takes its part out
-//! of o1 for ever. An untaught network says 0, which is nothing.
+//! Slip is reported while the films' part of o1 is far enough below 0, for some ticks, on a finger that holds something,
+//! and not while an impact rings or the motor runs fast, or just did. The gauges' part is not used: it grows with
+//! the grip, which counts against slip and hides its beginning; and a gauge that dies would change
+//! o1 for good. An untaught network gives 0: no slip.
 //!
-//! Slip begins in one place of the contact, and is heard by whoever lies there. An impact, a swing and the motor are heard
-//! everywhere; so what is heard everywhere is slip only if it lasts.
+//! Slip begins in one place of the contact and reaches the films there. An impact, a swing and the motor reach
+//! all films, so vibration of all films is slip only if it lasts.
 //!
-//! Shear foretells it: Ft/Fn that rises towards where the camera saw slip ([`Ahead`]) is a warning, and no slip. Where the films' own noise is above the
-//! threshold, it is the threshold ([`noise`](super::noise)).
+//! Ft/Fn that rises towards the ratio at which the camera saw slip ([`Ahead`]) is a warning. If the films' own noise is above the
+//! threshold, that noise is the threshold ([`noise`](super::noise)).
 //!
-//! The direction is asked of the gauges alone: "vibration information only helps to detect micro slips, but not to detect
+//! The direction comes from the gauges alone: "vibration information only helps to detect micro slips, but not to detect
 //! the direction" (Tada 2006, section I), and a slip down that was louder than the slip up would be an offset of o2.
 
 use core::ops::Range;
@@ -36,12 +36,12 @@ use crate::force::Ahead;
 use crate::hebbian::settings::HebbianConfig;
 use crate::strain::Gauges;
 
-/// All that was learned.
+/// Weights and maxima, to be saved.
 pub type Learned = snapshot::Contents<RECEPTORS, NETWORK_OUTPUTS>;
 /// Bytes of a saved network.
 pub const SNAPSHOT_LENGTH: usize = snapshot::length(RECEPTORS, NETWORK_OUTPUTS);
 
-/// How readings become activations. Both kinds are samples (14 bits) with 4 fraction bits.
+/// Normalisation of the readings to activations. Films and gauges are samples (14 bits) with 4 fraction bits.
 pub static NORMALISER: NormaliserConfig<RECEPTORS> = NormaliserConfig {
     senses: {
         let mut senses = [Sense::Pressure; RECEPTORS];
@@ -66,20 +66,20 @@ pub static NORMALISER: NormaliserConfig<RECEPTORS> = NormaliserConfig {
     average_shift: 8,
 };
 
-/// What the rest of the fingertip gives in a tick.
+/// Input of the detector in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Felt<'a> {
     /// Each film's envelope, Q16 samples.
     pub envelopes: &'a [i32; PVDF_COUNT],
     /// The gauges: loads in 1/16 of a sample.
     pub gauges: &'a Gauges,
-    /// The gauge that was read in this tick.
+    /// The gauge that was read in this tick, 0 to 11; another number: none.
     pub gauge: usize,
     /// Whether an impact rings, or the motor runs fast.
     pub loud: bool,
     /// Whether the finger is known to touch nothing.
     pub unloaded: bool,
-    /// Whether the finger holds something, and whether anything else than the object is felt.
+    /// Whether the finger holds something, and whether the receptors are disturbed.
     pub situation: Situation,
 }
 
@@ -96,7 +96,7 @@ pub const SHEAR_IS_JUDGED: u8 = slot_of(Job::Forces) + 1;
 /// The slot in which a cycle of the films' part ends: nobody needs it for more.
 const CYCLE_ENDS: usize = 20;
 
-/// The network and all that it needs.
+/// The network with its teacher, inputs, look-ahead and verdict.
 #[derive(Clone, Debug)]
 pub struct HebbianDetector {
     normaliser: Normaliser<RECEPTORS>,
@@ -154,7 +154,7 @@ impl Default for HebbianDetector {
 }
 
 impl HebbianDetector {
-    /// Takes what is felt in one tick, learns if there is a lesson, and says what it means.
+    /// Takes the input of one tick, learns if there is a lesson, and judges slip.
     pub fn tick(&mut self, config: &HebbianConfig, felt: &Felt<'_>) {
         let learns = self.lesson.is_ok();
         if self.pvdf_part.is_outdated() && !learns {
@@ -219,7 +219,7 @@ impl HebbianDetector {
         }
     }
 
-    /// A frame was lost: nothing is felt.
+    /// A frame was lost: there is no input.
     pub fn lose(&mut self) {
         self.outputs = [Output::default(); NETWORK_OUTPUTS];
         self.said_frames = 0;
@@ -229,12 +229,12 @@ impl HebbianDetector {
         self.pass();
     }
 
-    /// Takes what the teacher says.
+    /// Takes the teacher's codes and the age of their picture, ms.
     pub fn teach(&mut self, config: &HebbianConfig, codes: Codes, age_ms: u16) {
         self.teacher.receive(&config.teacher, codes, age_ms);
     }
 
-    /// Forgets all that was learned.
+    /// Resets weights and maxima.
     pub fn forget(&mut self) {
         self.normaliser.reset(&NORMALISER);
         self.network = FingertipNetwork::default();
@@ -247,19 +247,19 @@ impl HebbianDetector {
         self.updates = 0;
     }
 
-    /// Whether touch alone says slip: the films hear it.
+    /// Whether the films' part of o1 reports slip.
     #[must_use]
     pub const fn slips(&self) -> bool {
         self.films_say
     }
 
-    /// Whether it warns of slip: shear foretells it.
+    /// Whether the look-ahead of shear warns of slip.
     #[must_use]
     pub const fn warns(&self) -> bool {
         self.warns
     }
 
-    /// What touch alone says, relative motion and direction: 128 would be 1.
+    /// Outputs from touch alone, relative motion (o1) and direction (o2); 128 would be 1.
     #[must_use]
     pub fn outputs(&self) -> [i8; NETWORK_OUTPUTS] {
         self.outputs.map(|output| (output.into_bits() >> 19).clamp(-128, 127) as i8)
@@ -277,18 +277,18 @@ impl HebbianDetector {
         self.pvdf_part.is_quiet_known()
     }
 
-    /// What it is learning, or why nothing.
+    /// The codes of the present lesson, or why there is none.
     pub const fn lesson(&self) -> Result<Codes, NoLesson> {
         self.lesson
     }
 
-    /// Updates of the weights since the start, or since all was forgotten.
+    /// Updates of the weights since the start or the last [`forget`](Self::forget).
     #[must_use]
     pub const fn updates(&self) -> u32 {
         self.updates
     }
 
-    /// Weights, activations and what goes on, for whoever asks.
+    /// Snapshot for telemetry at this frame: weights, activations, age of the teacher's picture, lesson.
     #[must_use]
     pub fn state(&self, frame: u32) -> NetworkState {
         let mut activations = self.activations;
@@ -303,16 +303,16 @@ impl HebbianDetector {
         }
     }
 
-    /// What was learned, to keep.
+    /// Weights and maxima, to be saved.
     #[must_use]
     pub fn learned(&self) -> Learned {
         Learned::of(&self.normaliser, &self.network, self.shear.learned())
     }
 
-    /// Takes up what was kept.
+    /// Restores saved weights and maxima.
     ///
     /// # Errors
-    /// Says why the bytes are refused; then nothing has changed.
+    /// Why the bytes are refused; nothing has changed then.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), snapshot::Damaged> {
         let slips_at;
         (self.normaliser, self.network, slips_at) = snapshot::restore(&NORMALISER, bytes)?;

@@ -1,4 +1,4 @@
-//! What readings of vibration add to an output, in one multiplication each.
+//! Parts that readings of vibration add to an output, in one multiplication each.
 //!
 //! A part is `w t`, and an activation t is the reading over its maximum. While nothing is learned, neither weight nor maximum
 //! changes, so their quotient is kept. The reading is shifted up to the maximum's size and the factor keeps all its bits: a part is
@@ -52,7 +52,7 @@ impl<const N: usize> Gains<N> {
 }
 
 impl Gain {
-    /// What a reading adds, which may not be negative.
+    /// Part of an output (Q26) that this reading adds; the reading must not be negative.
     #[inline]
     #[must_use]
     pub fn part(self, reading: i32) -> i32 {

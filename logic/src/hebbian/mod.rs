@@ -1,8 +1,8 @@
-//! The network that teaches itself slip (Tada 2006, equations 1 to 6).
+//! The Hebbian network, which learns slip from a camera (Tada 2006, equations 1 to 6).
 //!
 //! Tactile nodes t_j (vibration and pressure receptors, [`activations`]) are connected to outputs o_i by weights w_ij
-//! ([`network`]). While a camera says what the object (v1) and the hand (v2) do ([`teacher`]), the weights learn to say
-//! it without the camera, and earlier. What was learned survives a power cut ([`snapshot`]).
+//! ([`network`]). While a camera gives codes for the motion of object (v1) and hand (v2) ([`teacher`]), the weights learn
+//! these codes from touch. Weights survive a power cut ([`snapshot`]).
 //!
 //! ```text
 //! o_i   = f(sum_j t_j w_ij + v_i)                            (3), f clips at +-1 (4)

@@ -58,7 +58,7 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Default for Network<INPUTS, OUTP
 }
 
 impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
-    /// Equations 3 and 4. Codes of [`Code::Zero`] give what touch alone says.
+    /// Outputs, -1 to 1 (Tada 2006, equations 3 and 4). With codes of [`Code::Zero`] they come from touch alone.
     pub fn output(&self, activations: &Activations<INPUTS>, codes: &[Code; OUTPUTS]) -> [Output; OUTPUTS] {
         let mut outputs = [Output::default(); OUTPUTS];
         for ((output, weights), &code) in outputs.iter_mut().zip(&self.weights).zip(codes) {
@@ -74,8 +74,8 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
         outputs
     }
 
-    /// What each of some receptors adds to an output, before it is clipped, units of [`Output`], rounded down; nothing for
-    /// an output or for receptors that are not there.
+    /// Part that each receptor of a range adds to an output before it is clipped, units of [`Output`], rounded down; empty for
+    /// an output or receptors that do not exist.
     #[inline]
     pub fn parts(
         &self,
@@ -92,14 +92,14 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
             .map(|(&weight, &t)| part(weight, t))
     }
 
-    /// What one receptor adds to each output; 0 of one that is not there.
+    /// Part that one receptor adds to each output, units of [`Output`]; 0 for a receptor that does not exist.
     #[inline]
     pub fn parts_of(&self, receptor: usize, activations: &Activations<INPUTS>) -> [i32; OUTPUTS] {
         let Some(&t) = activations.as_bits().get(receptor) else { return [0; OUTPUTS] };
         core::array::from_fn(|output| part(self.weights[output][receptor], t))
     }
 
-    /// All that some receptors add to an output: the sum of their [`parts`](Self::parts).
+    /// Sum of the [`parts`](Self::parts) of a range of receptors, units of [`Output`].
     #[inline]
     pub fn sum_of_parts(
         &self,
@@ -110,10 +110,10 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
         self.parts(output, receptors, activations).map(i64::from).sum()
     }
 
-    /// Equations 5 and 6, once. Two divisions for two outputs.
+    /// One update of the weights (Tada 2006, equations 5 and 6). Two divisions for two outputs.
     ///
-    /// An output whose code is [`Code::Zero`] only forgets; whether there is anything to learn from at all is for
-    /// [`Teacher::lesson`](super::Teacher::lesson) to say.
+    /// An output whose code is [`Code::Zero`] only forgets. [`Teacher::lesson`](super::Teacher::lesson) decides whether there is
+    /// a lesson at all.
     pub fn learn(&mut self, rule: &Rule, activations: &Activations<INPUTS>, codes: &[Code; OUTPUTS]) {
         self.learn_some(rule, activations, &codes.map(Some));
     }
@@ -159,7 +159,7 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
         self.weights.map(|row| row.map(|weight| Weight::from_bits(in_use(weight))))
     }
 
-    /// A network with these weights; what is beyond +-8 is taken as the limit.
+    /// A network with these weights, each clamped to +-8.
     #[must_use]
     pub fn from_weights(weights: &[[Weight; INPUTS]; OUTPUTS]) -> Self {
         let mut network = Self::default();

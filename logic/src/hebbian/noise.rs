@@ -1,19 +1,19 @@
-//! What the films' part of o1 is of nothing: their noise, weighed as they are. It is learned while the finger is unloaded and
-//! nothing is loud, cycle by cycle; a film whose own noise is above the threshold would otherwise say slip for ever.
+//! Noise floor of the films' part of o1, with the present weights. It is measured each slow frame while the finger is unloaded and
+//! nothing is loud. Without it, a film whose noise is above the threshold would report slip without end.
 
 use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
 
 /// The mean follows over `2^FOLLOWS` cycles, 0.1 s.
 const FOLLOWS: u32 = 3;
-/// A tick of nothing stays below so many times its mean, which is that of what is above the films' medians.
+/// A quiet tick stays below so many times the quiet mean, which is that of what is above the films' medians.
 const FLOOR: i64 = 6;
 
 /// The mean of a cycle.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Noise {
-    /// Of this cycle so far; units of an output, the farther below 0 the larger.
+    /// Sum of this slow frame so far, units of an output; positive if the films' part is below 0.
     sum: i64,
-    /// Of a cycle of nothing, once there was one.
+    /// Averaged sum of quiet slow frames, once there was one.
     nothing: Option<i64>,
     floor: i64,
 }
@@ -36,7 +36,7 @@ impl Noise {
         }
     }
 
-    /// What no tick of nothing reaches; 0 while that is not known.
+    /// The level that no quiet tick reaches; 0 while it is not known.
     pub(super) const fn floor(&self) -> i64 {
         self.floor
     }

@@ -1,8 +1,8 @@
-//! What the films hear of the object, and what that adds to o1.
+//! The films' vibration above their quiet level, and what it adds to o1.
 //!
-//! What a film hears all the time, noise and what is left of hum, is none of the object's: its quiet level is taken off its
-//! envelope. It follows the envelope's median while the finger is known to be unloaded, and stands still in a grasp. A finger that
-//! was switched on in a grasp, by a reset for one, cannot tell noise from slip: its films are not heard until it lets go.
+//! Noise and the rest of hum are always there and do not come from the object, so each film's quiet level is subtracted from its
+//! envelope. It follows the envelope's median while the finger is known to be unloaded, and is held in a grasp. A finger that starts
+//! in a grasp, for example after a reset, cannot tell noise from slip: its films are not used until it lets go.
 
 use tenax_hal_shim::channel::PVDF_COUNT;
 
@@ -24,7 +24,7 @@ pub(super) struct PvdfPart {
     quiet: [i32; PVDF_COUNT],
     /// Whether the finger has been unloaded since the start.
     quiet_known: bool,
-    /// What each film hears beyond its quiet level, 1/16 of a sample.
+    /// Envelope of each film above its quiet level, 1/16 of a sample.
     heard: [i32; PVDF_COUNT],
     /// What that adds to o1 while nothing is learned.
     gains: Gains<PVDF_COUNT>,
@@ -33,7 +33,7 @@ pub(super) struct PvdfPart {
 }
 
 impl PvdfPart {
-    /// Hears one tick; nothing while the quiet levels are not known. Gives the sum of what it adds to o1, by the gains.
+    /// Takes one tick. Gives the films' part of o1; 0 while the quiet levels are not known.
     #[inline]
     pub(super) fn process(&mut self, felt: &Felt<'_>) -> i64 {
         self.quiet_known |= felt.unloaded;
@@ -51,12 +51,12 @@ impl PvdfPart {
         self.parts().map(i64::from).sum()
     }
 
-    /// What each film hears beyond its quiet level, 1/16 of a sample.
+    /// Envelope of each film above its quiet level, 1/16 of a sample.
     pub(super) const fn heard(&self) -> &[i32; PVDF_COUNT] {
         &self.heard
     }
 
-    /// What each film adds to o1, by the gains.
+    /// Part that each film adds to o1.
     #[inline]
     pub(super) fn parts(&self) -> impl Iterator<Item = i32> {
         self.gains.each().iter().zip(&self.heard).map(|(gain, &heard)| gain.part(heard))

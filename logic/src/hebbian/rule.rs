@@ -1,4 +1,4 @@
-//! What can be chosen about learning, and the fixed-point numbers that follow from it.
+//! Learning rates, as settings and in the fixed-point formats of the update.
 
 use core::ops::RangeInclusive;
 
@@ -9,8 +9,8 @@ pub struct Config {
     pub alpha_ppb: u32,
     /// beta: forgetting rate, parts per billion. With 0, weights only ever stop at their limit.
     pub beta_ppb: u32,
-    /// delta: the weight that every connection has for the variable rate, parts per million of a weight of 1. The smaller
-    /// it is against the weights, the more one connection takes all. Never 0: a weight of 0 would then stay 0.
+    /// delta: constant share of each connection in the variable rate, parts per million of a weight of 1. The smaller
+    /// it is against the weights, the more one connection dominates. Never 0: a weight of 0 would then stay 0.
     pub delta_ppm: u32,
 }
 
@@ -54,7 +54,7 @@ pub struct Rule {
 }
 
 impl Rule {
-    /// In the update's formats; or which setting is out of range.
+    /// The rates in the update's formats. Fails with the setting that is out of range.
     pub fn new(config: &Config) -> Result<Self, NotAllowed> {
         if !Config::ALPHA_PPB.contains(&config.alpha_ppb) {
             return Err(NotAllowed::Alpha);

@@ -1,27 +1,27 @@
-//! What can be chosen about the Hebbian detector.
+//! Settings of the Hebbian detector.
 
 use super::{LearningConfig, Rule, TeacherConfig};
 use crate::setting::settings;
 
-/// What the network's output means, and how it learns.
+/// Thresholds of the Hebbian detector, and how it learns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct HebbianConfig {
-    /// How far below 0 the films' part of o1 means slip, per mille.
+    /// Slip is reported while the films' part of o1 is below minus this, per mille.
     pub slip_permille: u16,
-    /// For how long, in frames, if only some films hear it: slip begins somewhere.
+    /// Time below the threshold before slip is reported if only some films show it, in frames.
     pub slip_frames: u32,
-    /// For how long if all of them hear it, in frames: longer than an impact.
+    /// The same if all films show it, in frames: longer than an impact.
     pub everywhere_frames: u32,
-    /// How long after an impact or a run of the motor it means nothing, in frames: what the envelopes still have of it, and
+    /// Time after an impact or a run of the motor in which it is not evaluated, in frames: the envelopes' decay and
     /// the motor's dead time.
     pub loud_frames: u32,
-    /// How far ahead rising shear is looked at, ms; 0: it never warns.
+    /// Time by which Ft/Fn is extrapolated, ms; 0: no warnings.
     pub ahead_ms: u16,
     /// From this duty on the motor runs fast, per mille. Closing more slowly is a way to take something, and to learn.
     pub loud_duty_permille: u16,
-    /// When a teacher is believed.
+    /// When a teacher's codes are used.
     pub teacher: TeacherConfig,
-    /// How fast it is learned from.
+    /// Learning rates.
     pub learning: LearningConfig,
     /// The same in the formats of the update.
     pub rule: Rule,
@@ -36,24 +36,24 @@ impl HebbianConfig {
 
 settings! {
     HebbianConfig:
-    /// Hebbian: how far below 0 the PVDF part of o1 means slip
+    /// Hebbian: slip is reported while the PVDF part of o1 is below minus this value
     5 HebbianSlip "hebbian-slip-permille" "per mille" [10, 1_000] = 100 => Number(slip_permille);
-    /// Hebbian: how long o1 must mean slip if only some PVDF channels show it
+    /// Hebbian: time below the threshold before slip is reported, if only some PVDF channels show it
     11 HebbianTime "hebbian-ms" "ms" [1, 100] = 15 => Ms(slip_frames);
-    /// Hebbian: how long if all PVDF channels show it, longer than an impact
+    /// Hebbian: the same if all PVDF channels show it, longer than an impact
     12 HebbianEverywhere "hebbian-everywhere-ms" "ms" [1, 500] = 40 => Ms(everywhere_frames);
-    /// Hebbian: how long after an impact or a fast run of the motor it is not evaluated
+    /// Hebbian: time after an impact or a fast run of the motor in which it is not evaluated
     13 HebbianAfterNoise "hebbian-after-noise-ms" "ms" [0, 1_000] = 100 => Ms(loud_frames);
-    /// Motor duty from which its noise disturbs the Hebbian detector
+    /// Motor duty above which the motor's noise disturbs the Hebbian detector
     14 NoisyDuty "noisy-duty-permille" "per mille" [10, 1_000] = 100 => Number(loud_duty_permille);
-    /// Age of a teacher's picture beyond which it teaches nothing
+    /// Teacher's pictures older than this are ignored
     15 TeacherFresh "teacher-fresh-ms" "ms" [40, 1_000] = 120 => Number(teacher.fresh_ms);
     /// Hebbian: learning rate alpha of one update (Tada 2006, equation 5)
     16 HebbianAlpha "hebbian-alpha-ppb" "ppb" [0, 16_000_000] = 50_000 => Number(learning.alpha_ppb);
     /// Hebbian: forgetting rate beta of one update (Tada 2006, equation 5)
     17 HebbianBeta "hebbian-beta-ppb" "ppb" [0, 16_000_000] = 10_000 => Number(learning.beta_ppb);
-    /// Hebbian: weight delta that every connection has for the variable rate (Tada 2006, equation 6)
+    /// Hebbian: delta, the constant share of each connection in the variable learning rate (Tada 2006, equation 6)
     18 HebbianDelta "hebbian-delta-ppm" "ppm" [1_000, 8_000_000] = 300_000 => Number(learning.delta_ppm);
-    /// Hebbian: how far ahead rising shear is looked at: it warns if Ft/Fn will by then be where the camera saw slip; 0: it never does
+    /// Hebbian: time by which Ft/Fn is extrapolated; it warns if the result reaches the ratio at which the camera saw slip; 0: no warnings
     72 HebbianAhead "hebbian-ahead-ms" "ms" [0, 250] = 75 => Number(ahead_ms);
 }

@@ -1,4 +1,4 @@
-//! What was learned, as bytes that survive a power cut: the weights, and the maxima without which they mean nothing.
+//! Bytes of the network that survive a power cut: the weights, and the maxima of the inputs that belong to them.
 //!
 //! ```text
 //! 0  version         1  inputs        2  outputs        3  0
@@ -45,7 +45,7 @@ pub const fn length(inputs: usize, outputs: usize) -> usize {
     HEADER + WORD * (inputs + inputs * outputs + 2)
 }
 
-/// What a snapshot holds: small enough to be copied in a tick, so that the bytes can be made when there is more time.
+/// Contents of a snapshot: small enough to be copied in a tick, so that the bytes can be made when there is more time.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Contents<const I: usize, const O: usize> {
     maxima: [u32; I],
@@ -54,7 +54,7 @@ pub struct Contents<const I: usize, const O: usize> {
 }
 
 impl<const I: usize, const O: usize> Contents<I, O> {
-    /// What there is to keep of a network, of the normaliser that its weights belong to, and a word more.
+    /// Contents from a network, the normaliser that its weights belong to, and one more word.
     #[must_use]
     pub fn of(normaliser: &Normaliser<I>, network: &Network<I, O>, more: u32) -> Self {
         Self { maxima: normaliser.maxima(), weights: network.weights(), more }
@@ -89,7 +89,7 @@ pub fn save<'a, const I: usize, const O: usize>(
     Contents::of(normaliser, network, more).write(buffer)
 }
 
-/// What a snapshot holds, the word more at its end, or why it is refused. The zeros of the receptors are not in it: they are taken anew.
+/// Normaliser, network and the additional word of a snapshot, or why it is refused. The receptors' zeros are not in it.
 pub fn restore<const I: usize, const O: usize>(
     config: &NormaliserConfig<I>,
     snapshot: &[u8],

@@ -1,8 +1,8 @@
-//! The camera as a teacher (Tada 2006, equations 1 and 2), and when it is believed.
+//! The camera as a teacher (Tada 2006, equations 1 and 2), and when its codes are used.
 //!
-//! The paper learns in one phase and works in another. Here both go on at once, so somebody has to say when there is
-//! something to learn: only while the finger holds something, nothing disturbs it, and a teacher that is fresh and agrees
-//! with itself says that something moves. At any other time the weights stay as they are: they are not forgotten either,
+//! The paper learns in one phase and works in another. Here both happen at once. There is a lesson only
+//! while the finger holds something, nothing disturbs it, and fresh codes that do not contradict each other
+//! say that something moves. At any other time the weights stay as they are and are not forgotten either,
 //! so a year without a camera costs nothing.
 //!
 //! The codes chatter, because slow motion is less than a pixel in some frames (section III.B). So each is the median of
@@ -16,10 +16,10 @@ use crate::latest;
 /// Messages that a code is the median of.
 const MEMORY: usize = 3;
 
-/// When a teacher is believed.
+/// When a teacher's codes are used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TeacherConfig {
-    /// Age of the picture beyond which its codes teach nothing, ms: what the receptors feel now is something else.
+    /// Age of the picture beyond which its codes are not used, ms: the receptors have changed since.
     pub fresh_ms: u16,
 }
 
@@ -30,16 +30,16 @@ impl Default for TeacherConfig {
     }
 }
 
-/// What the rest of the fingertip knows about now.
+/// Conditions of a lesson.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Situation {
-    /// The finger is loaded: what it feels comes from an object.
+    /// The finger is loaded: the receptors feel an object.
     pub grasp: bool,
-    /// The motor runs, the hand is struck or swung, or a receptor has just been lost: what it feels is not slip.
+    /// The motor runs, the hand is struck or swung, or a receptor has just been lost: the receptors feel no slip.
     pub disturbed: bool,
 }
 
-/// What a teacher has said of late.
+/// The teacher's last codes and their age.
 #[derive(Clone, Debug, Default)]
 pub struct Teacher {
     /// The newest first.
@@ -64,7 +64,7 @@ impl Teacher {
         self.age_ms = age_ms;
     }
 
-    /// A millisecond passes.
+    /// Ages the newest picture by 1 ms. Call it in every second frame.
     pub fn tick_ms(&mut self) {
         self.age_ms = self.age_ms.saturating_add(1);
     }
@@ -75,7 +75,7 @@ impl Teacher {
         (self.heard > 0).then_some(self.age_ms)
     }
 
-    /// What to learn now, or why nothing.
+    /// The codes to learn now, or why there is no lesson.
     pub fn lesson(&self, config: &TeacherConfig, situation: Situation) -> Result<Codes, NoLesson> {
         if self.heard == 0 {
             return Err(NoLesson::Absent);

@@ -1,4 +1,4 @@
-//! What can be chosen about the motor's current.
+//! Settings of the motor's current.
 
 use crate::setting::settings;
 
@@ -13,8 +13,8 @@ pub struct MotorConfig {
 
 settings! {
     MotorConfig:
-    /// Motor current that may flow for ever; more stops closing until it has cooled
+    /// Motor current that may flow without limit of time; more stops closing until the motor has cooled
     76 MotorLimit "motor-limit-ma" "mA" [300, 1_200] = 500 => Number(limit_ma);
-    /// Current of the blocked motor at full duty; half of it with still fingers is a stall
+    /// Current of the blocked motor at full duty; half of it while the fingers stand still is a stall
     77 MotorStall "motor-stall-ma" "mA" [300, 1_200] = 1_000 => Number(stall_ma);
 }

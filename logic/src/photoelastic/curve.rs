@@ -15,7 +15,7 @@ const KNOT_PHASE: i32 = HALF_TURN / KNOTS as i32;
 /// One, as a part of the span.
 pub const ONE: i32 = 1 << 20;
 
-/// The calibration of one head. Levels are means in 1/16 of a sample.
+/// The calibration of one head. Levels of light (dc) are means in 1/16 of a sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Curve {
     /// Level without load.

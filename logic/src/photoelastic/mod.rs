@@ -1,4 +1,4 @@
-//! A photoelastic head in the place of PVDF film 12 (Dubey 2006): one optical channel that says slip (ac) and normal
+//! A photoelastic head in the place of PVDF film 12 (Dubey 2006): one optical channel for slip (ac) and normal
 //! force (dc).
 //!
 //! | step | module | how often |
@@ -52,7 +52,7 @@ pub struct Head {
 }
 
 impl Head {
-    /// Takes a sample. What changed with the sensor, if something did.
+    /// Takes a 14-bit sample. Gives a change of the sensor's health.
     #[inline]
     pub fn process(&mut self, config: &HeadConfig, sample: u16) -> Option<Change> {
         if self.health.is_plain(&LIMITS, sample) {
@@ -90,13 +90,13 @@ impl Head {
         self.presence = Presence::default();
     }
 
-    /// A cycle is over: what its samples say about force.
+    /// Ends a slow frame: computes the force from the mean of its samples.
     pub fn cycle(&mut self, config: &HeadConfig, hints: Hints) {
         let level_q4 = self.split.take_mean_q4().filter(|_| self.is_usable);
         self.tracker.step(&config.curve, level_q4, hints);
     }
 
-    /// Whether it gives numbers.
+    /// Whether the head gives valid readings.
     #[must_use]
     pub const fn is_usable(&self) -> bool {
         self.is_usable
@@ -138,8 +138,8 @@ impl Head {
         self.tracker.force()
     }
 
-    /// The ac part's size as a part of the span, Q20, the time of a swing and the force: what a rate is told by. None while
-    /// nothing swings or no force is known.
+    /// Input of the rate: the ac part's size as a part of the span (Q20), the period (1/16 of a frame) and the force (mN). None while
+    /// nothing oscillates or the force is unknown.
     #[must_use]
     pub fn swing(&self, config: &HeadConfig) -> Option<(i32, u16, i32)> {
         let period_q4 = self.split.period_q4();
@@ -149,15 +149,15 @@ impl Head {
         (period_q4 > 0).then_some((part.min(i64::from(ONE)) as i32, period_q4, force_mn))
     }
 
-    /// How fast it slips, um/s; 0 if that cannot be told.
+    /// Rate of slip, um/s; 0 if it is unknown.
     #[must_use]
     pub fn rate_um_s(&self, config: &HeadConfig, fit: &RateFit) -> i32 {
         self.swing(config).map_or(0, |(part, period_q4, force_mn)| fit.rate_um_s(part, period_q4, force_mn))
     }
 
-    /// What stands in for a force sensor that gives no number. Each number errs to its safe side, whatever the shear: Fn, which is what
-    /// friction can carry, is the least force that explains the light, and the load is the most, so that neither a ceiling nor an
-    /// empty hand is missed. It knows no shear and no ratio. None without a reading.
+    /// Forces in place of a force sensor without a number. Each errs to its safe side, for any shear: Fn, which friction
+    /// uses, is the least force that fits the light, and the load is the most, so that neither a ceiling nor an
+    /// empty hand is missed. Shear is 0 and the ratio None. None without a reading.
     #[must_use]
     pub fn stand_in(&self) -> Option<Forces> {
         let Force { least_mn, most_mn } = self.force()?;

@@ -1,4 +1,4 @@
-//! How fast it slips, from amplitude and frequency of the ac part.
+//! Rate of slip, from amplitude and frequency of the ac part.
 //!
 //! Both rise with the rate, and neither follows a law that holds for all materials: the amplitude grows with the drop of
 //! friction, too. So the rate is a fit of logarithms, calibrated with one material (`tenax calibrate photoelastic`):
@@ -43,7 +43,7 @@ fn exp2(x: i32) -> i32 {
 }
 
 impl RateFit {
-    /// What the fit takes: logarithms, Q10, of amplitude, frequency and force.
+    /// Inputs of the fit: log2, Q10, of amplitude (samples, Q20), frequency (mHz, of a period in 1/16 frames) and force (mN).
     #[must_use]
     pub fn features(amplitude_q20: i32, period_q4: u16, force_mn: i32) -> [i32; 3] {
         // 2000 frames a second in 1/16: 32 000 000 mHz over the period. A quarter of it has room.

@@ -10,7 +10,7 @@ const LASTS: u32 = frames(45);
 /// Swings in a row that it takes.
 const SWINGS: u16 = 3;
 
-/// The verdict.
+/// Counts large and oscillating frames until they are slip.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Presence {
     large: u32,
@@ -20,7 +20,7 @@ pub struct Presence {
 }
 
 impl Presence {
-    /// Takes a frame. `on` is the size that means slip, samples (14 bits); half of it keeps it said.
+    /// Takes a frame. `on`: threshold of the ac envelope, samples (14 bits); half of it keeps slip on.
     #[inline]
     pub fn process(&mut self, on: u16, split: &Split) {
         let on = (i32::from(on) << Q) >> u32::from(self.slip);

@@ -1,4 +1,4 @@
-//! Splits the head's one signal: what is left of it without its slow part is slip (ac), its mean is normal force (dc).
+//! Splits the head's signal: its fast part (ac) shows slip, its mean (dc) normal force.
 //!
 //! The paper filters the signal for its ac part and subtracts that for its dc part (section 3). Here ac is what two
 //! high-passes leave: one alone would pass the slope of a force that changes evenly, which is larger than a slow slip. dc is

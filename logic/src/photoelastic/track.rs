@@ -1,4 +1,4 @@
-//! What force the light can mean, when nobody measures the shear.
+//! The range of forces that fits the light for any shear.
 //!
 //! Shear turns the stress and makes it larger: with a shear of q times the force and `s^2 = 1 + 4 q^2` the light is
 //! `sin^2(s phase) / s^2` of the peak's (Dubey 2006, equations 6 to 9). So the light folds where `s phase` is a quarter turn, at `1 / s^2` of
@@ -45,35 +45,35 @@ pub enum Track {
     Either,
 }
 
-/// A force: what the light can mean.
+/// The range of forces that fits the light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Force {
-    /// The least that explains the light, whatever the shear, mN.
+    /// The least force that fits the light with any shear, mN.
     pub least_mn: i32,
-    /// The most, mN.
+    /// The largest force that fits the light with any shear, mN.
     pub most_mn: i32,
 }
 
 impl Force {
-    /// In the middle of what it can be, mN.
+    /// Middle of the range from least to most, mN.
     #[must_use]
     pub const fn mn(&self) -> i32 {
         (self.least_mn + self.most_mn) / 2
     }
 
-    /// How far the true one may be from the middle, mN.
+    /// Half the width of that range, mN: the true force is within [`mn`](Self::mn) +- this.
     #[must_use]
     pub const fn uncertainty_mn(&self) -> i32 {
         self.most_mn - self.mn()
     }
 }
 
-/// What else is known in a cycle.
+/// Readings of other sensors in a slow frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Hints {
     /// The hand is surely open.
     pub unloaded: bool,
-    /// What another sensor measures, mN.
+    /// Load by the force sensor, mN. None: it gives no number.
     pub force_mn: Option<i32>,
 }
 

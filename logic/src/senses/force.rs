@@ -61,7 +61,7 @@ impl Senses {
         }
     }
 
-    /// Finds out what the quadrants have drifted, and tells which contradicts the others now and did not.
+    /// Estimates the quadrants' drift, and reports a quadrant that newly contradicts the others.
     pub(super) fn blame(&mut self, config: &Config, journal: &mut Journal) {
         if self.fsr_readings.contains(&None) {
             return;
@@ -77,7 +77,7 @@ impl Senses {
         }
     }
 
-    /// The hand is surely open: what it still reads after its zeros had time to follow is no load.
+    /// Reports an open hand that still reads a load after its zeros had time to follow.
     fn doubt_load(&mut self, config: &Config, journal: &mut Journal) {
         self.weigh(config);
         if self.unloaded {

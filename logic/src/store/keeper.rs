@@ -1,4 +1,4 @@
-//! Decides when something is saved: without a command, and seldom enough for the flash.
+//! Decides when records are saved: without a command, and seldom enough for the flash.
 
 use tenax_hal_shim::words::Kept;
 
@@ -10,7 +10,7 @@ const CHANGED_FRAMES: u32 = frames(3_000);
 /// What the network learned is saved by itself no more often than this, in frames.
 const LEARNED_FRAMES: u32 = frames(60_000);
 
-/// What there is to save.
+/// State of everything that can be saved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Now {
     /// How often a setting was changed.
@@ -21,13 +21,13 @@ pub struct Now {
     pub zero: ZeroBytes,
     /// How often the network's weights have been updated.
     pub updates: u32,
-    /// Whether nothing moves and nothing is learned: the network is not saved by itself in the middle of a lesson.
+    /// Whether the hand rests and no lesson is on: only then the network is saved without a command.
     pub at_rest: bool,
-    /// Whether somebody asked for the network to be saved, at rest or not.
+    /// Whether a command asks to save the network now.
     pub asked: bool,
 }
 
-/// What was saved last, and when.
+/// State that was saved last, and the time since.
 #[derive(Clone, Debug)]
 pub struct Keeper {
     settings_changed: u32,
@@ -40,7 +40,7 @@ pub struct Keeper {
 }
 
 impl Keeper {
-    /// What is as in `now` need not be saved.
+    /// A keeper that takes the state `now` as saved.
     #[must_use]
     pub const fn new(now: &Now) -> Self {
         Self {
@@ -52,14 +52,14 @@ impl Keeper {
         }
     }
 
-    /// So many frames have passed.
+    /// Advances the time by so many frames.
     pub fn pass(&mut self, frames: u32) {
         for since in &mut self.since {
             *since = since.saturating_add(frames);
         }
     }
 
-    /// What is to be saved, if anything; it counts as saved from now on.
+    /// The kind of record to save now; it counts as saved from now on. None: nothing to save.
     pub fn next(&mut self, now: &Now) -> Option<Kept> {
         let since = |kept: Kept| self.since[kept as usize];
         let learned = now.updates != self.updates;

@@ -33,7 +33,7 @@ pub fn of_emg(model: &EmgModel) -> EmgBytes {
     bytes
 }
 
-/// A record's wearer. None if it is no calibration that could have been taken.
+/// The calibration in a record. None if it is not a valid one.
 #[must_use]
 pub fn emg(bytes: &[u8]) -> Option<EmgModel> {
     let mut model = [0; MODEL_WORDS];
@@ -100,7 +100,7 @@ pub fn of_zero(zero_uv: &[i32; FSR_COUNT]) -> ZeroBytes {
     bytes
 }
 
-/// A record's zero. None if it is no offset of a working sensor.
+/// The zeros in a record, uV above rest. None if one is no offset of a working sensor.
 #[must_use]
 pub fn zero(bytes: &[u8]) -> Option<[i32; FSR_COUNT]> {
     let mut zero_uv = [0; FSR_COUNT];

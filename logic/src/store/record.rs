@@ -28,11 +28,11 @@ const COMMIT: u32 = 0x3C5A_96E1;
 /// Bytes of the longest payload that there is today: the network's.
 pub const PAYLOAD_BYTES: usize = SNAPSHOT_LENGTH;
 
-/// Something that is to be saved.
+/// A record to save.
 #[derive(Clone, Debug)]
 #[allow(clippy::large_enum_variant, reason = "there is no heap to put the large one on")]
 pub enum Record {
-    /// What the network learned.
+    /// The network's weights.
     Network(Learned),
     /// The force sensor's zero.
     Zero(ZeroBytes),
@@ -43,7 +43,7 @@ pub enum Record {
 }
 
 impl Record {
-    /// What it is.
+    /// Its kind.
     #[must_use]
     pub const fn kept(&self) -> Kept {
         match self {
@@ -66,7 +66,7 @@ impl Record {
     }
 }
 
-/// What a record of `kept` is called in flash. Numbers are never given twice.
+/// Number of this kind of record in flash. Numbers are never reused.
 pub(super) const fn number(kept: Kept) -> u8 {
     kept as u8 + 1
 }
@@ -97,7 +97,7 @@ impl Tag {
         u32::from_le_bytes([self.kind, self.words, !self.kind, !self.words])
     }
 
-    /// None if `word` is no tag.
+    /// The tag in this word. None if it is no tag.
     pub fn from_word(word: u32) -> Option<Self> {
         let [kind, words, ..] = word.to_le_bytes();
         let tag = Self { kind, words };

@@ -56,7 +56,7 @@ pub struct Survey {
     pub damaged: [bool; Kept::ALL.len()],
     /// The highest sequence number of its whole records, 0 if it has none.
     pub last_sequence: u32,
-    /// From here on everything is blank.
+    /// Offset of the first word of the blank rest, words.
     pub end: usize,
 }
 

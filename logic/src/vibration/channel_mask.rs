@@ -15,7 +15,7 @@ const QUIET_FRAMES: u32 = frames(10_000);
 /// A frame alone counts as much as so many in which it is not.
 const WEIGHT: u32 = 8;
 
-/// Which channels are masked, and which one is on the way to it.
+/// The masked channels, and the count of the one that is loud alone.
 #[derive(Clone, Debug, Default)]
 pub struct ChannelMask {
     masked: u16,
@@ -37,13 +37,13 @@ impl ChannelMask {
         self.masked >> channel & 1 != 0
     }
 
-    /// A frame in which nothing is loud.
+    /// Counts a frame in which no channel is loud.
     #[inline]
     pub const fn count_quiet(&mut self) {
         self.alone = self.alone.saturating_sub(1);
     }
 
-    /// A frame in which something is: louder than `on`, Q16 samples.
+    /// Counts a frame in which a channel's envelope is above `on`, Q16 samples.
     #[inline(never)]
     pub fn count_loud(&mut self, envelopes: &[i32; PVDF_COUNT], on: i32) {
         let mut above = envelopes.iter().enumerate().filter(|(_, own)| **own > on / 4);
@@ -61,7 +61,7 @@ impl ChannelMask {
         }
     }
 
-    /// A masked channel's own envelope in a frame. It is unmasked when it has been far below `on` for long enough.
+    /// Takes a masked channel's envelope, Q16 samples. It is unmasked when it has been far below `on` for long enough.
     pub fn check_masked(&mut self, channel: usize, envelope: i32, on: i32) {
         let Some(quiet) = self.quiet.get_mut(channel) else {
             return;

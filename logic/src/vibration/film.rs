@@ -1,4 +1,4 @@
-//! What one film says: the envelope of its slip band, and the size of what is above it.
+//! Conditioning of one film: the envelope of its slip band, and the size of the vibration above the band.
 //!
 //! Its sample, less the mains' [`hum`](super::hum), goes through a high-pass (offset, drift and slow contact go), a low-pass, a
 //! rectifier (the sign of a film means nothing: Tada 2006, section 2) and a second low-pass. What the low-pass took away is
@@ -49,17 +49,17 @@ pub struct Film {
     primed: bool,
 }
 
-/// What one film says, Q16 samples.
+/// Vibration of one film, Q16 samples (14 bits).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Levels {
-    /// Envelope in the slip band.
+    /// Envelope in the slip band, `BAND_LOW_HZ` to `BAND_HIGH_HZ`.
     pub envelope: i32,
-    /// Size of the vibration above it.
+    /// Mean size of the vibration above the slip band.
     pub above: i32,
 }
 
 impl Film {
-    /// Its envelope, or what it would be if the film were believed, Q16 samples.
+    /// Its envelope, Q16 samples, computed for a masked film, too.
     pub const fn level(&self) -> i32 {
         self.envelope
     }

@@ -49,7 +49,7 @@ pub struct Turn {
 }
 
 impl Weights {
-    /// What the film hears of the hum in this tick, Q16 samples.
+    /// The film's hum in this tick, Q16 samples.
     #[inline]
     #[must_use]
     pub const fn heard(self, now: Turn) -> i32 {
@@ -57,7 +57,7 @@ impl Weights {
     }
 }
 
-/// The mains as all films hear it.
+/// The oscillator that follows the mains, shared by all films.
 #[derive(Clone, Debug)]
 pub struct Mains {
     now: Turn,
@@ -90,7 +90,7 @@ const fn high(a: i32, b: i32) -> i32 {
 }
 
 impl Mains {
-    /// Goes on by a tick.
+    /// Advances by one tick.
     #[inline]
     pub fn turn(&mut self) -> Turn {
         let cosine = self.now.cosine.wrapping_sub(high(self.step, self.now.sine));
@@ -115,7 +115,7 @@ impl Mains {
         0
     }
 
-    /// A film's band hears so much that its weights do not explain, Q16 samples.
+    /// Adapts a film's weights by the error in its band, Q16 samples: the signal that the weights do not explain.
     #[inline]
     pub fn adapt(&mut self, mains_60_hz: bool, film: &mut Weights, error: i32) {
         let [slowest, fastest] = WITHIN[usize::from(mains_60_hz)];

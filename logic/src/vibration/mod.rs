@@ -30,34 +30,34 @@ const IMPACT_RINGS: u32 = 12;
 /// A peak of the envelope is forgotten over `2^PEAK_SHIFT` frames, 0.13 s.
 const PEAK_SHIFT: u32 = 8;
 
-/// How far a film's sample can be believed.
+/// Validity of a film's sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Trust {
-    /// It is a number.
+    /// It is valid.
     #[default]
     Full,
     /// The film may be freezing: its jump to where it froze is not to be taken for slip.
     Doubtful,
-    /// It is no number.
+    /// It is not valid.
     None,
 }
 
-/// What the films say in one tick.
+/// Vibration of all films in one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Vibration {
     /// Envelope of the loudest film, samples (14 bits).
     pub level: u16,
-    /// Whether it is slip: above S1 and no impact.
+    /// Whether S1 reports slip: the level is above the threshold, and it is no impact.
     pub s1: bool,
     /// Whether it rings above the slip band as an impact does, and has not lasted longer than one.
     pub impact: bool,
-    /// Whether something slides steadily, far below S1 (see [`sliding`]).
+    /// Whether the object slides steadily, far below S1 (see [`sliding`]).
     pub slides: bool,
     /// The films that are masked because each was loud alone, a bit each.
     pub masked: u16,
 }
 
-/// The detector.
+/// Filters of the films, S1, impacts and steady sliding.
 #[derive(Clone, Debug, Default)]
 pub struct VibrationDetector {
     films: [Film; PVDF_COUNT],
@@ -81,7 +81,7 @@ pub struct VibrationDetector {
 }
 
 impl VibrationDetector {
-    /// Takes every film's sample of one tick, and how far each can be believed: None if all of them can.
+    /// Takes every film's 14-bit sample of one tick, and the validity of each: None if all are valid.
     #[inline(always)]
     pub fn process(
         &mut self,
@@ -111,7 +111,7 @@ impl VibrationDetector {
         }
     }
 
-    /// What a masked film hears is as doubtful as what a freezing one does.
+    /// Samples of a masked film are doubtful.
     #[inline(never)]
     fn with_masks(
         &mut self,
@@ -171,7 +171,7 @@ impl VibrationDetector {
         loudest
     }
 
-    /// What all films said in this tick.
+    /// Judges the loudest film's levels of this tick.
     fn judge(&mut self, config: &VibrationConfig, loudest: Levels) -> Vibration {
         let Levels { envelope, above } = loudest;
         let asked = self.mains.asks().filter(|_| self.loud_frames == 0);
@@ -212,7 +212,7 @@ impl VibrationDetector {
         }
     }
 
-    /// Listens for steady sliding: call it once in a slow frame.
+    /// Detects steady sliding. Call it once a slow frame.
     pub fn slow(&mut self, hand: &Hand) {
         self.slides = self.sliding.step(&self.envelopes, self.above, hand);
     }

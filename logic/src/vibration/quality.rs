@@ -29,8 +29,8 @@ pub struct PvdfQuality {
 }
 
 impl PvdfQuality {
-    /// Takes every film's sample of one tick. None if all of them can be believed, which they can nearly always; else how
-    /// far each can. `changed` hears which film was lost or is back.
+    /// Takes every film's 14-bit sample of one tick. None if all are valid, the usual case; else the validity of
+    /// each. Calls `changed` for a film that was lost or is back.
     #[inline]
     pub fn check(
         &mut self,

@@ -41,14 +41,14 @@ const END_FRAMES: u8 = 8;
 /// Slow frames of silence after which what closing did not stop is believed again: 1 s.
 const QUIET_FRAMES: u8 = 80;
 
-/// What the hand does meanwhile.
+/// State of the hand in a slow frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Hand {
-    /// The forces; None while the finger holds nothing, or nobody knows.
+    /// The forces; None while the finger holds nothing or the force is unknown.
     pub forces: Option<Forces>,
-    /// A muscle moves it.
+    /// A muscle is active.
     pub wearer: bool,
-    /// It is loud itself: it answers slip, or settles.
+    /// The reflex answers slip or lets the object settle, so the hand itself is loud.
     pub striking: bool,
 }
 
@@ -86,7 +86,7 @@ impl Floors {
     }
 }
 
-/// Hears sliding.
+/// Detects steady sliding.
 #[derive(Clone, Debug, Default)]
 pub struct Sliding {
     films: [Level; PVDF_COUNT],
@@ -102,8 +102,8 @@ pub struct Sliding {
 }
 
 impl Sliding {
-    /// Takes a slow frame: each film's envelope in the slip band, and the loudest film's above it, Q16 samples. Whether
-    /// something slides.
+    /// Takes a slow frame: each film's envelope in the slip band, and the loudest film's above it, Q16 samples. Gives
+    /// whether the object slides.
     pub fn step(&mut self, envelopes: &[i32; PVDF_COUNT], above: i32, hand: &Hand) -> bool {
         let Some(forces) = hand.forces.filter(|_| !hand.wearer) else {
             (self.learned_for, self.lasted, self.said, self.in_vain) = (0, 0, false, false);

@@ -10,6 +10,8 @@ use crate::draw::{FONTS, INK, drawn};
 
 const WIDTH: u32 = 1_200;
 const PANEL_HEIGHT: u32 = 340;
+/// Height of the names that are one panel's alone.
+const OWN_HEIGHT: i32 = 20;
 const TITLE_HEIGHT: u32 = 72;
 const FOOT_HEIGHT: u32 = 74;
 const MARGIN: i32 = 26;
@@ -30,19 +32,26 @@ pub fn svg(sheet: &Sheet) -> anyhow::Result<String> {
         let (_, below) = root.split_vertically(TITLE_HEIGHT);
         let (panels, foot) = below.split_vertically(rows * PANEL_HEIGHT);
         let areas = panels.split_evenly((rows as usize, sheet.columns as usize));
-        for (panel, area) in sheet.panels.iter().zip(&areas) {
-            draw_panel(area, panel, sheet.errors)?;
+        let (common, own) = names(sheet);
+        for ((panel, area), own) in sheet.panels.iter().zip(&areas).zip(&own) {
+            draw_panel(area, panel, own, sheet.errors)?;
         }
-        legend(&foot, sheet)?;
+        let mut x = MARGIN;
+        if let Some(errors) = sheet.errors {
+            x = scale(&foot, errors, (x, 14))?;
+        }
+        legend(&foot, &common, (x, 14), (WIDTH as i32, 14, 26))?;
         drawn(root.present())?;
     }
     Ok(svg)
 }
 
-fn draw_panel(area: &Area, panel: &Panel, errors: Option<(f64, f64)>) -> anyhow::Result<()> {
+fn draw_panel(area: &Area, panel: &Panel, own: &[&Series], errors: Option<(f64, f64)>) -> anyhow::Result<()> {
+    let wide = area.dim_in_pixel().0 as i32;
+    let rows = legend(area, own, (70, 40), (wide, 12, OWN_HEIGHT))?;
     let mut chart = drawn(
         ChartBuilder::on(area)
-            .margin_top(34)
+            .margin_top(34 + OWN_HEIGHT * rows)
             .margin_right(22)
             .margin_bottom(6)
             .margin_left(8)
@@ -129,23 +138,38 @@ fn colour(error: f64, (least, most): (f64, f64)) -> RGBColor {
     ViridisRGB.get_color(part.clamp(0.0, 1.0))
 }
 
-/// Names of all that is drawn, in a row, and the colours of errors.
-fn legend(area: &Area, sheet: &Sheet) -> anyhow::Result<()> {
-    let mut named: Vec<&Series> = Vec::new();
-    for series in sheet.panels.iter().flat_map(|panel| &panel.series) {
-        // Dots on a line of the same name are one thing.
-        if named.iter().all(|before| before.name != series.name) {
-            named.push(series);
+/// What more than one panel shows, for the foot, and what each alone shows, for the panel. A sheet of one panel, or whose panels
+/// have no look in common, needs no names twice.
+fn names(sheet: &Sheet) -> (Vec<&Series>, Vec<Vec<&Series>>) {
+    let shown = |panel: &Panel, series: &Series| panel.series.iter().any(|other| other.name == series.name);
+    let (mut common, mut own): (Vec<&Series>, Vec<Vec<&Series>>) = (Vec::new(), Vec::new());
+    for panel in &sheet.panels {
+        let mut alone: Vec<&Series> = Vec::new();
+        for series in &panel.series {
+            let panels = sheet.panels.iter().filter(|panel| shown(panel, series)).count();
+            let list = if panels > 1 || sheet.panels.len() == 1 { &mut common } else { &mut alone };
+            // Dots on a line of the same name are one thing.
+            if list.iter().all(|before| before.name != series.name) {
+                list.push(series);
+            }
         }
+        own.push(alone);
     }
-    let (mut x, mut y) = (MARGIN, 14);
-    if let Some(errors) = sheet.errors {
-        x = scale(area, errors, (x, y))?;
-    }
+    (common, own)
+}
+
+/// Names of what is drawn, in rows from `(x, y)` on, each no wider than a width, in letters and rows of a height; how many rows.
+fn legend(
+    area: &Area,
+    named: &[&Series],
+    (left, top): (i32, i32),
+    (wide, letters, row): (i32, i32, i32),
+) -> anyhow::Result<i32> {
+    let (mut x, mut y) = (left, top);
     for series in named {
-        let width = 66 + 15 * series.name.chars().count() as i32 / 2;
-        if x + width > WIDTH as i32 {
-            (x, y) = (MARGIN, y + 26);
+        let width = 44 + letters * series.name.chars().count() as i32 * 11 / 20 + letters;
+        if x + width > wide && x > left {
+            (x, y) = (left, y + row);
         }
         let (line, left) = (series.colour.stroke_width(2), x);
         let drew = match series.mark {
@@ -158,10 +182,10 @@ fn legend(area: &Area, sheet: &Sheet) -> anyhow::Result<()> {
             Mark::Crosses => area.draw(&Cross::new((left + 13, y), 4, line)),
         };
         drawn(drew)?;
-        words(area, &series.name, (x + 34, y - 6), 14, HPos::Left)?;
+        words(area, &series.name, (x + 34, y - letters / 2 + 1), letters, HPos::Left)?;
         x += width;
     }
-    Ok(())
+    Ok(if named.is_empty() { 0 } else { (y - top) / row + 1 })
 }
 
 /// The colours of errors, and failure; how far they reach.

@@ -14,7 +14,6 @@ use crate::link::captured::line_of;
 use crate::link::{Client, Target};
 use crate::settings;
 use crate::suggest::{Suggestion, Suggestions};
-use crate::words::AboutWords;
 
 /// How long a board may take to answer.
 const ANSWER_WITHIN: Duration = Duration::from_secs(2);
@@ -102,11 +101,8 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             out::say!("{}", setting.value)?;
         }
         Command::Export { file } => {
-            let text = settings::toml(&all(&mut client)?);
             let text = match client.ask(&Down::About, ANSWER_WITHIN)? {
-                Answer::About(about) => {
-                    format!("# Of {}, schema {:016x}.\n{text}", AboutWords(&about), about.schema)
-                }
+                Answer::About(about) => settings::backup(&about, &all(&mut client)?),
                 other => bail!("the board answers {other:?}"),
             };
             match file {
@@ -144,11 +140,7 @@ fn wanted(command: &Command) -> anyhow::Result<Vec<Setting>> {
         Command::Get { name } => settings::named(name).map(|_| Vec::new()),
         Command::Set { settings } => Ok(settings.clone()),
         Command::Diff { file: None } => Ok(SettingId::ALL.into_iter().map(default).collect()),
-        Command::Import { file } | Command::Diff { file: Some(file) } => {
-            let text =
-                std::fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
-            settings::of_toml(&text).with_context(|| file.display().to_string())
-        }
+        Command::Import { file } | Command::Diff { file: Some(file) } => of_file(file),
         Command::Reset { all: true, .. } => {
             Ok(SettingId::ALL.into_iter().filter(|id| *id != SettingId::LineTrusted).map(default).collect())
         }
@@ -157,6 +149,15 @@ fn wanted(command: &Command) -> anyhow::Result<Vec<Setting>> {
         }
         Command::Reset { names, .. } => names.iter().map(|name| settings::named(name).map(default)).collect(),
     }
+}
+
+/// The settings that a file names. Says so if it is of a tool that has others. Fails if it cannot be read, or names what there is not.
+pub fn of_file(path: &Path) -> anyhow::Result<Vec<Setting>> {
+    let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
+    if let Some(why) = settings::of_other_schema(&text) {
+        out::note!("{} {why}", path.display());
+    }
+    settings::of_toml(&text).with_context(|| path.display().to_string())
 }
 
 /// What a recording says of thresholds; set over this line, if they are to be.
@@ -192,7 +193,8 @@ fn all(client: &mut Client) -> anyhow::Result<Vec<Setting>> {
     }
 }
 
-fn set(client: &mut Client, setting: Setting) -> anyhow::Result<()> {
+/// Sets a setting, and says so. Fails if the board does not have it then.
+pub fn set(client: &mut Client, setting: Setting) -> anyhow::Result<()> {
     let name = SettingId::from_number(setting.id).map_or("?", |id| id.row().name);
     match client.ask(&Down::Set(setting), ANSWER_WITHIN)? {
         Answer::Setting(own) if own == setting => {}

@@ -83,3 +83,23 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     }
     Ok(ExitCode::SUCCESS)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cargo_run_in_the_firmwares_folder_builds_what_is_flashed() {
+        let table = |path: &str| -> toml::Table {
+            let path = workspace::root().unwrap().join(path);
+            std::fs::read_to_string(path).unwrap().parse().unwrap()
+        };
+        let (own, all) = (table("firmware/.cargo/config.toml"), table("Cargo.toml"));
+        let (mut run, mut flashed) = (own["profile"]["dev"].clone(), all["profile"]["firmware"].clone());
+        assert_eq!(own["build"]["target"].as_str(), Some(image::TARGET));
+        // Said by the profile that the other inherits from.
+        assert_eq!(run.as_table_mut().unwrap().remove("debug-assertions"), Some(false.into()));
+        assert_eq!(flashed.as_table_mut().unwrap().remove("inherits"), Some("release".into()));
+        assert_eq!(run, flashed);
+    }
+}

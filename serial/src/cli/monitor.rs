@@ -9,7 +9,7 @@ use anyhow::{Context, bail};
 use tenax_hal_shim::wire::{Answer, Down, SETTINGS_PER_ANSWER, Setting};
 use tenax_logic::setting::SettingId;
 
-use super::{out, port};
+use super::{config, out, port};
 use crate::link::{Client, Target};
 use crate::monitor::app;
 use crate::monitor::source::Places;
@@ -27,7 +27,7 @@ pub struct Args {
     /// only board that is plugged in]
     #[arg(long, value_name = "PORT")]
     port: Option<Target>,
-    /// A captured line, such as out/glass.line.bin of `tenax run`
+    /// A recording (MCAP), or a captured line such as out/glass.line.bin of `tenax run`
     #[arg(long, value_name = "FILE", conflicts_with = "port")]
     file: Option<PathBuf>,
     /// One line a message instead of the screen, as always where the output is no terminal
@@ -40,6 +40,9 @@ pub struct Args {
     /// --control, --web has the keys of the scene's bench
     #[arg(long, value_name = "tcp:HOST:PORT", conflicts_with = "plain")]
     truth: Option<Target>,
+    /// Compare the settings on the screen with those that this file names
+    #[arg(long, value_name = "FILE.toml", conflicts_with_all = ["plain", "web"])]
+    against: Option<PathBuf>,
     /// Let the screen's keys change something: settings, zero, calibration, the teacher
     #[arg(long, conflicts_with = "plain")]
     control: bool,
@@ -109,9 +112,10 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let told =
         !args.send.is_empty() || !args.set.is_empty() || !args.get.is_empty() || args.settings || args.teach;
-    let plain = args.plain || told || !io::stdout().is_terminal() || matches!(target, Target::File(_));
+    let plain = args.plain || told || !io::stdout().is_terminal();
     if !plain {
-        app::show(&places, args.control)?;
+        let against = args.against.as_deref().map(config::of_file).transpose()?.unwrap_or_default();
+        app::show(&places, args.control, settings::by_number(&against))?;
         return Ok(ExitCode::SUCCESS);
     }
     let mut client = Client::open(&target)?;
@@ -119,7 +123,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if told && !args.plain && !args.teach {
         return Ok(ExitCode::from(u8::from(refused)));
     }
-    let end = match print(&mut client, &mut io::stdout().lock()) {
+    let end = match monitor::watch(&mut client, &mut io::stdout().lock()) {
         // Whoever read our output has read enough.
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(ExitCode::SUCCESS),
         other => other.context("cannot print")?,
@@ -129,18 +133,6 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         (io::ErrorKind::UnexpectedEof, Target::File(_)) => Ok(ExitCode::SUCCESS),
         (io::ErrorKind::UnexpectedEof, _) => bail!(target.after_end(None)),
         _ => bail!(target.after_end(Some(&end))),
-    }
-}
-
-/// Prints what comes until the line ends, and says how it ended.
-fn print(client: &mut Client, out: &mut dyn io::Write) -> io::Result<io::Error> {
-    loop {
-        match client.next_frame() {
-            Ok(Some(frame)) => monitor::print(&frame, out)?,
-            // Nothing more has come so far.
-            Ok(None) => out.flush()?,
-            Err(end) => return out.flush().map(|()| end),
-        }
     }
 }
 

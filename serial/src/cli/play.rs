@@ -1,29 +1,43 @@
 //! `tenax play`: a recording's line once more, at the pace at which it was recorded; or as CSV.
 
+use std::io;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::mpsc::channel;
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use anyhow::bail;
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::wire::Up;
 
 use super::out;
+use crate::link::Encoder;
 use crate::link::captured::line_of;
-use crate::link::{Counts, Encoder, Inbox};
+use crate::play::{Playing, Reel, SPEEDS, Told, play};
 use crate::record::csv;
-use crate::record::topics::seconds;
+#[cfg(feature = "parquet")]
+use crate::record::parquet;
 use crate::serve::{Options, Server};
+
+const EXAMPLES: &str = "\
+Parquet in the place of CSV: `cargo install --path serial --features parquet`, then `tenax play FILE --parquet DIR`.
+While it is served, type with Enter: 12.5 goes to that second, +5 and -5 go on and back, x2 plays twice as fast, and pause
+and loop do so and undo it. `tenax monitor --file FILE`, also with --web, plays one on screen or page, with keys and a slider.";
 
 /// Play a recording.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// A recording (MCAP) or a captured line
     file: PathBuf,
     /// Write its values as CSV into this folder, a file a topic, and play nothing
     #[arg(long, value_name = "DIR")]
     csv: Option<PathBuf>,
+    /// The same as Parquet
+    #[cfg(feature = "parquet")]
+    #[arg(long, value_name = "DIR", conflicts_with = "csv")]
+    parquet: Option<PathBuf>,
     /// Serve its line on a pseudo-terminal, for `tenax monitor --port` and any other program
     #[arg(long)]
     serve: bool,
@@ -41,18 +55,27 @@ pub struct Args {
     repeat: bool,
 }
 
+/// The files of an export, if one is asked for.
+fn exported(args: &Args) -> anyhow::Result<Option<Vec<PathBuf>>> {
+    #[cfg(feature = "parquet")]
+    if let Some(folder) = &args.parquet {
+        return parquet::export(&line_of(&args.file)?, folder).map(Some);
+    }
+    args.csv.as_ref().map(|folder| csv::export(&line_of(&args.file)?, folder)).transpose()
+}
+
 /// Plays a recording.
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    let line = line_of(&args.file)?;
-    if let Some(folder) = &args.csv {
-        for path in csv::export(&line, folder)? {
+    if let Some(written) = exported(args)? {
+        for path in written {
             out::note!("  {:<14}{}", "written", path.display());
         }
         return Ok(ExitCode::SUCCESS);
     }
+    let mut reel = Reel::open(&args.file)?;
     if !args.serve && args.serve_tcp.is_none() {
         bail!(
-            "say where to: --csv DIR, --serve or --serve-tcp PORT; `tenax monitor --file` prints it at once"
+            "say where to: --csv DIR, --serve or --serve-tcp PORT; `tenax monitor --file` shows it, and --plain prints it at once"
         );
     }
     let (mut server, _nobody) =
@@ -60,42 +83,31 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     for place in server.places() {
         out::note!("serving on {place}");
     }
-    out::note!("it begins when somebody listens; Ctrl-C ends it");
+    out::note!("{:.1} s; it begins when somebody listens; Ctrl-C ends it", reel.length_s());
     while server.tally().clients == 0 {
         thread::sleep(Duration::from_millis(50));
     }
-    let mut encoder = Encoder::default();
-    let counts = loop {
-        let counts = play(&line, args, &mut |message| server.line(encoder.frame(message).1));
-        if !args.repeat {
-            break counts;
-        }
-        // Who watches has to know that time begins anew.
-        server.line(encoder.frame(&Up::Hello { frame_hz: FRAME_HZ as u16, after: None }).1);
-    };
-    out::note!("{counts}; {}", server.close());
-    Ok(ExitCode::SUCCESS)
-}
-
-/// Says each message when it is due; before the beginning only what stays so: who the board is, and its settings.
-fn play(line: &[u8], args: &Args, say: &mut dyn FnMut(&Up)) -> Counts {
-    let mut inbox = Inbox::default();
-    let (mut first, mut played) = (None, None);
-    for heard in line.iter().filter_map(|&byte| inbox.push(byte)).flatten() {
-        let message = &heard.received.message;
-        if let Up::Slow(slow) = message {
-            let at_s = seconds(slow.frame);
-            let from_s = *first.get_or_insert(at_s) + args.from;
-            if at_s >= from_s {
-                let (began, begin_s) = *played.get_or_insert((Instant::now(), at_s));
-                let due = Duration::from_secs_f64((at_s - begin_s).max(0.0) / args.speed.max(0.01));
-                thread::sleep(due.saturating_sub(began.elapsed()));
+    let (typed, controls) = channel();
+    // It ends with its input, or with the process.
+    thread::spawn(move || io::stdin().lines().map_while(Result::ok).try_for_each(|line| typed.send(line)));
+    let speed = args.speed.clamp(SPEEDS.0, SPEEDS.1);
+    let playing = Playing { at_s: args.from, speed, repeat: args.repeat, ..Playing::new(&reel) };
+    let (mut encoder, mut messages) = (Encoder::default(), 0_u64);
+    play(&mut reel, playing, &controls, &mut |told| {
+        match told {
+            Told::Message(heard) => {
+                messages += 1;
+                server.line(encoder.frame(&heard.received.message).1);
             }
+            // Who watches has to know that time begins anew.
+            Told::Again => {
+                server.line(encoder.frame(&Up::Hello { frame_hz: FRAME_HZ as u16, after: None }).1);
+            }
+            Told::At(_) => {}
+            Told::Over => return false,
         }
-        let stays = matches!(message, Up::Hello { .. } | Up::About(_) | Up::Answer { .. });
-        if played.is_some() || stays || args.from <= 0.0 {
-            say(message);
-        }
-    }
-    inbox.counts()
+        true
+    })?;
+    out::note!("{messages} messages; {}", server.close());
+    Ok(ExitCode::SUCCESS)
 }

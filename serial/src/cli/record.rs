@@ -8,7 +8,8 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
-use tenax_hal_shim::wire::{Down, Up};
+use tenax_hal_shim::wire::{Answer, Down, Setting, Up};
+use tenax_logic::setting::SettingId;
 
 use super::{out, port};
 use crate::link::{Client, LastSeconds, Target};
@@ -17,6 +18,10 @@ use crate::words::in_words;
 
 /// The board streams for as long after each time that it is asked.
 const HOLD_S: u16 = 5;
+/// How long a board may take to answer.
+const ANSWER_WITHIN: Duration = Duration::from_secs(2);
+/// How soon a setting is in flash: settings are saved every 3 s at most.
+const SAVED_WITHIN: Duration = Duration::from_secs(4);
 
 /// Record a board's line.
 #[derive(Debug, clap::Args)]
@@ -34,10 +39,14 @@ pub struct Args {
     /// Leave out the frames, which take three fifths of the line; then it cannot be replayed
     #[arg(long)]
     no_frames: bool,
-    /// For hours: without frames, and only the topics /line, /state, /event, /counters and /setting. `tenax play --csv` makes
+    /// For hours: without frames, and only the topics /line, /state (20 a second), /event, /counters and /setting. `tenax play --csv` makes
     /// all of the line
     #[arg(long, conflicts_with = "no_frames")]
     compact: bool,
+    /// Begin with the board's next start, so that the recording can be replayed: sets stream-at-start-flag, then wait for the
+    /// board's reset button
+    #[arg(long, conflicts_with_all = ["no_frames", "compact", "last"])]
+    from_start: bool,
     /// Instead, what the board still has of the seconds before its last run ended in a fault. It then keeps it no longer
     #[arg(long, conflicts_with_all = ["seconds", "no_frames", "compact"])]
     last: bool,
@@ -51,8 +60,7 @@ Examples:
   tenax record --last --out fault.mcap         the board has restarted: what it did in the seconds before
   tenax plot fault.mcap                        draws any of them
 
-A recording can be replayed (`tenax run --replay`) if it begins before the board's start: set stream-at-start-flag to 1,
-start `tenax record`, then press the board's reset button.";
+  tenax record --from-start --out fault.mcap   from the board's reset on: `tenax run --replay` decides it once more";
 
 /// Records until it is to end.
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
@@ -62,21 +70,29 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if args.last {
         return last(&mut client, &path);
     }
+    let from_start = args.from_start || offer(&client, args)?;
     let mut recording = if args.compact { Recording::compact(&path) } else { Recording::create(&path) }?;
+    if from_start {
+        stream_at_start(&mut client)?;
+    }
     let stopped = Arc::new(AtomicBool::new(false));
     signal_hook::flag::register(signal_hook::consts::SIGINT, Arc::clone(&stopped))
         .context("cannot listen for Ctrl-C")?;
-    if client.can_send() {
+    if client.can_send() && !from_start {
         client.send(&Down::About)?;
     }
-    let began = Instant::now();
+    let mut began = Instant::now();
+    let mut waits = from_start;
     let mut asked: Option<Instant> = None;
     let (mut joined, mut progress) = (Joined::default(), Progress::new(began));
-    let is_over = || {
+    let is_over = |began: Instant| {
         stopped.load(Relaxed) || args.seconds.is_some_and(|seconds| began.elapsed().as_secs_f64() >= seconds)
     };
-    while !is_over() {
-        if client.can_send() && asked.is_none_or(|at| at.elapsed().as_secs() >= u64::from(HOLD_S) / 2) {
+    while waits && !stopped.load(Relaxed) || !is_over(began) {
+        if !waits
+            && client.can_send()
+            && asked.is_none_or(|at| at.elapsed().as_secs() >= u64::from(HOLD_S) / 2)
+        {
             client.send(&Down::Stream {
                 raw: !args.no_frames && !args.compact,
                 senses: true,
@@ -85,7 +101,13 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             asked = Some(Instant::now());
         }
         match client.next_message() {
+            Ok(Some(heard)) if waits && !matches!(heard.received.message, Up::Hello { .. }) => {}
             Ok(Some(heard)) => {
+                if std::mem::take(&mut waits) {
+                    out::note!("the board has started: recording");
+                    (began, asked, progress) =
+                        (Instant::now(), Some(Instant::now()), Progress::new(Instant::now()));
+                }
                 joined.take(&heard.received.message);
                 recording.take(&heard.received);
             }
@@ -99,6 +121,35 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let lasted = Duration::from_secs(began.elapsed().as_secs());
     out::note!("{} in {lasted:?}, written to {}", client.counts(), path.display());
     Ok(ExitCode::SUCCESS)
+}
+
+/// Whether a person wants to begin with the board's next start: asked where somebody can answer.
+fn offer(client: &Client, args: &Args) -> anyhow::Result<bool> {
+    if args.no_frames || args.compact || !client.can_send() || !io::stdin().is_terminal() {
+        return Ok(false);
+    }
+    out::note!(
+        "From now on, it can be watched, plotted and exported; from the board's start on, replayed, too. Restart the board \
+         for that? [y/N]"
+    );
+    let mut answer = String::new();
+    io::stdin().read_line(&mut answer)?;
+    Ok(answer.trim().eq_ignore_ascii_case("y"))
+}
+
+/// Has the board stream from its start on, and asks for that. Fails if it does not let itself be set.
+fn stream_at_start(client: &mut Client) -> anyhow::Result<()> {
+    let setting = Setting { id: SettingId::StreamAtStart.number(), value: 1 };
+    if client.ask(&Down::Get(setting.id), ANSWER_WITHIN)? != Answer::Setting(setting) {
+        super::config::set(client, setting)?;
+        // Or the board would not know it after its start.
+        let began = Instant::now();
+        while began.elapsed() < SAVED_WITHIN {
+            client.next_message().context("the line ended")?;
+        }
+    }
+    out::note!("Press the board's black reset button (at a served bench, type `reset` with Enter).");
+    Ok(())
 }
 
 /// Where in the board's run the recording begins: before its start, or too late for a replay, which is said once.
@@ -116,8 +167,8 @@ impl Joined {
         };
         if !self.is_known && frame.is_some_and(|frame| frame > 0) {
             out::note!(
-                "it begins {:.1} s after the board's start: it can be watched, plotted and exported, but not replayed. To \
-                 replay one: tenax config set stream-at-start-flag=1, tenax record, then press the board's reset button",
+                "it begins {:.1} s after the board's start: it can be watched, plotted and exported, but not replayed. For one \
+                 that can be: tenax record --from-start",
                 topics::seconds(frame.unwrap_or(0))
             );
         }

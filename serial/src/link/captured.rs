@@ -15,10 +15,16 @@ pub const TOPIC: &str = "/line";
 pub fn line_of(path: &Path) -> anyhow::Result<Vec<u8>> {
     let bytes = std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
     let line = if is_recording(path) { recorded(path, &bytes)? } else { bytes };
+    check(&line, path)?;
+    Ok(line)
+}
+
+/// Fails if a line from this file holds no message of a board.
+pub fn check(line: &[u8], path: &Path) -> anyhow::Result<()> {
     let (mut inbox, mut other) = (Inbox::default(), None);
     for frame in line.iter().filter_map(|&byte| inbox.push(byte)) {
         match frame {
-            Ok(_) => return Ok(line),
+            Ok(_) => return Ok(()),
             Err(BadFrame::Version(version)) => other = Some(version),
             Err(_) => {}
         }

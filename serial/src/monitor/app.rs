@@ -1,5 +1,6 @@
 //! The screen's loop: keys, what the line tells, and twenty pictures a second.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::mpsc::{Sender, channel};
 use std::time::{Duration, Instant};
@@ -9,25 +10,28 @@ use ratatui::DefaultTerminal;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEventKind, KeyModifiers};
 use tenax_hal_shim::wire::{Down, Setting};
 use tenax_hal_shim::words::Code;
+use tenax_logic::setting::SettingId;
 
 use super::screen::{self, Edit, Shown};
 use super::source::{self, News, Places};
 use super::view::View;
+use crate::play::Playing;
 use crate::record::{self, Recording};
 
 const PICTURE_EVERY: Duration = Duration::from_millis(50);
 /// Age of a picture that a key stands for, ms.
 const PICTURE_AGE_MS: u16 = 33;
 
-/// Shows a board until somebody quits. `control` lets keys change something.
+/// Shows a board or a recording until somebody quits. `control` lets keys change something; settings are compared with `against`.
 /// Fails if the terminal cannot be drawn on, or a recording cannot be written.
-pub fn show(places: &Places, control: bool) -> anyhow::Result<()> {
+pub fn show(places: &Places, control: bool, against: BTreeMap<u8, i32>) -> anyhow::Result<()> {
     let (commands, waiting) = channel();
     let (sender, news) = channel();
-    // The bench has its keys in the terminal that serves it.
-    let _bench = source::start(places, waiting, sender);
-    let shown = Shown { place: places.line.to_string(), control, ..Shown::default() };
-    let mut app = App { view: View::default(), shown, commands, recording: None, marks: 0, over: false };
+    // The bench has its keys in the terminal that serves it; a recording has them here.
+    let play = source::start(places, waiting, sender);
+    let shown = Shown { place: places.line.to_string(), control, against, ..Shown::default() };
+    let (view, undo) = (View::default(), Vec::new());
+    let mut app = App { view, shown, commands, play, undo, recording: None, marks: 0, over: false };
     let mut terminal = ratatui::try_init().context("this is no terminal: use --plain")?;
     let ended = app.run(&mut terminal, &mut || news.try_recv().ok());
     ratatui::restore();
@@ -35,10 +39,35 @@ pub fn show(places: &Places, control: bool) -> anyhow::Result<()> {
     ended
 }
 
+fn set(id: SettingId, value: i32) -> Down {
+    Down::Set(Setting { id: id.number(), value })
+}
+
+/// What a key does to a recording.
+fn control(key: KeyCode, playing: &Playing) -> Option<String> {
+    let control = match key {
+        KeyCode::Left => "-5".to_owned(),
+        KeyCode::Right => "+5".to_owned(),
+        KeyCode::PageUp => "-60".to_owned(),
+        KeyCode::PageDown => "+60".to_owned(),
+        KeyCode::Home => "0".to_owned(),
+        KeyCode::Char(' ') => "pause".to_owned(),
+        KeyCode::Char('l') => "loop".to_owned(),
+        KeyCode::Char('[') => format!("x{}", playing.speed / 2.0),
+        KeyCode::Char(']') => format!("x{}", playing.speed * 2.0),
+        _ => return None,
+    };
+    Some(control)
+}
+
 struct App {
     view: View,
     shown: Shown,
     commands: Sender<Down>,
+    /// How a recording is played.
+    play: Sender<String>,
+    /// What settings were before they were changed here.
+    undo: Vec<(SettingId, i32)>,
     recording: Option<(PathBuf, Recording)>,
     marks: u32,
     over: bool,
@@ -85,6 +114,13 @@ impl App {
             self.shown.edit = self.edit(edit, key);
             return Ok(());
         }
+        if let Some(playing) = self.view.playing
+            && let Some(control) = control(key, &playing)
+        {
+            // It has ended with its file.
+            let _ended = self.play.send(control);
+            return Ok(());
+        }
         match key {
             KeyCode::Char('q') => self.over = true,
             KeyCode::Char(' ') => self.shown.paused = !self.shown.paused,
@@ -111,11 +147,19 @@ impl App {
             KeyCode::Esc | KeyCode::Char('s' | 'q') => return None,
             KeyCode::Up => edit.step(false),
             KeyCode::Down => edit.step(true),
-            KeyCode::Char('d') => self.set(&edit, edit.id().row().default),
+            KeyCode::Char('d') => self.set(edit.id(), edit.id().row().default),
+            KeyCode::Char('f') => match self.shown.against.get(&edit.id().number()).copied() {
+                Some(value) => self.set(edit.id(), value),
+                None => self.view.say("not in the file that --against names"),
+            },
+            KeyCode::Char('u') => match self.undo.pop() {
+                Some((id, value)) => self.send(set(id, value)),
+                None => self.view.say("nothing was changed here"),
+            },
             KeyCode::Char(digit @ '0'..='9') => edit.typed.get_or_insert_default().push(digit),
             KeyCode::Backspace => _ = edit.typed.as_mut().and_then(String::pop),
             KeyCode::Enter => match edit.typed.take().and_then(|typed| typed.parse().ok()) {
-                Some(value) => self.set(&edit, value),
+                Some(value) => self.set(edit.id(), value),
                 None => edit.typed = Some(String::new()),
             },
             _ => {}
@@ -123,8 +167,11 @@ impl App {
         Some(edit)
     }
 
-    fn set(&mut self, edit: &Edit, value: i32) {
-        self.send(Down::Set(Setting { id: edit.id().number(), value }));
+    fn set(&mut self, id: SettingId, value: i32) {
+        if let (Some(before), true) = (self.view.setting(id), self.shown.control) {
+            self.undo.push((id, before));
+        }
+        self.send(set(id, value));
     }
 
     fn teach(&mut self, codes: [Code; 2]) {

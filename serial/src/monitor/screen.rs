@@ -4,6 +4,8 @@ mod charts;
 mod panels;
 mod settings;
 
+use std::collections::BTreeMap;
+
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Modifier, Style};
@@ -13,6 +15,8 @@ use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::words::Line;
 
 use super::view::View;
+use crate::play::Playing;
+use crate::settings::Trace;
 use crate::truth::Truth;
 
 pub use self::settings::Edit;
@@ -23,9 +27,10 @@ const TALL: u16 = 40;
 const WIDE: u16 = 150;
 
 /// What every key does, for the log.
-pub const KEYS: [&str; 4] = [
+pub const KEYS: [&str; 5] = [
     "q quit, space pause, m mark the log, r record or end it",
-    "s settings: up and down choose, Enter changes, d default",
+    "s settings: up and down choose, Enter changes, d default, f as in --against, u undo",
+    "of a recording: left, right, page up and down, home; space pause, [ ] speed, l loop",
     "with --control: z zero the force sensor, c calibrate the muscles",
     "with --control: t teach that it slips, y that it holds",
 ];
@@ -40,6 +45,8 @@ pub struct Shown {
     /// What comes is kept back.
     pub paused: bool,
     pub recording: Option<String>,
+    /// What settings are compared with, by their numbers.
+    pub against: BTreeMap<u8, i32>,
     /// The settings are open.
     pub edit: Option<Edit>,
 }
@@ -54,11 +61,15 @@ pub fn draw(frame: &mut Frame<'_>, view: &View, shown: &Shown) {
     if let Some(now) = view.truth.back() {
         frame.render_widget(Paragraph::new(true_words(now)).style(Style::new().fg(Color::Green)), truth);
     }
-    frame.render_widget(Paragraph::new(help(shown)).style(Style::new().fg(Color::DarkGray)), keys);
+    frame.render_widget(
+        Paragraph::new(help(shown, view.playing.is_some())).style(Style::new().fg(Color::DarkGray)),
+        keys,
+    );
     let tall = frame.area().height >= TALL;
     let [left, right] =
         Layout::horizontal([Constraint::Percentage(51), Constraint::Percentage(49)]).areas(body);
-    draw_left(frame, left, view, tall);
+    let first = shown.edit.as_ref().and_then(|edit| Trace::of(edit.id())).unwrap_or(Trace::Vibration);
+    draw_left(frame, left, view, tall, first);
     let [detectors, muscles, line, log] = Layout::vertical([
         Constraint::Length(1 + DetectorId::COUNT as u16),
         Constraint::Length(4),
@@ -71,9 +82,9 @@ pub fn draw(frame: &mut Frame<'_>, view: &View, shown: &Shown) {
     panels::line(frame, line, view);
     panels::log(frame, log, view);
     if let Some(edit) = &shown.edit {
-        // Beside the traces that they move: at least the vibration stays in view.
+        // Beside the traces that they move: at least that of the chosen one stays in view.
         let over = if body.width >= WIDE { right } else { below_first(left, body) };
-        settings::draw(frame, over, view, edit, shown.control);
+        settings::draw(frame, over, view, edit, shown);
     }
 }
 
@@ -83,15 +94,21 @@ fn below_first(left: Rect, body: Rect) -> Rect {
     Rect { y: body.y + first, height: body.height - first, ..body }
 }
 
-fn draw_left(frame: &mut Frame<'_>, area: Rect, view: &View, tall: bool) {
+fn draw_left(frame: &mut Frame<'_>, area: Rect, view: &View, tall: bool, first: Trace) {
     let readings =
         if tall { Constraint::Length(panels::senses_height(area.width)) } else { Constraint::Length(0) };
     let third = Constraint::Ratio(1, 3);
     let [charts, senses] = Layout::vertical([Constraint::Min(0), readings]).areas(area);
-    let [vibration, ratio, load] = Layout::vertical([third; 3]).areas(charts);
-    charts::vibration(frame, vibration, view);
-    charts::ratio(frame, ratio, view);
-    charts::load(frame, load, view);
+    let areas: [Rect; 3] = Layout::vertical([third; 3]).areas(charts);
+    let mut traces = [Trace::Vibration, Trace::Ratio, Trace::Load];
+    traces.sort_by_key(|trace| *trace != first);
+    for (area, trace) in areas.into_iter().zip(traces) {
+        match trace {
+            Trace::Ratio => charts::ratio(frame, area, view),
+            Trace::Load => charts::load(frame, area, view),
+            Trace::Vibration | Trace::Muscles => charts::vibration(frame, area, view),
+        }
+    }
     if tall {
         panels::senses(frame, senses, view);
     }
@@ -119,6 +136,14 @@ fn title<'a>(view: &View, shown: &'a Shown) -> Text<'a> {
             });
         }
     }
+    if let Some(Playing { at_s, of_s, speed, repeat, paused }) = view.playing {
+        let how =
+            [(paused, " PAUSED"), (repeat, " loop")].map(|(is, word)| if is { word } else { "" }).concat();
+        spans.push(Span::styled(
+            format!(" at {at_s:.1} of {of_s:.1} s x{speed}{how} "),
+            strong.fg(Color::Yellow),
+        ));
+    }
     if let Some(file) = &shown.recording {
         spans.push(Span::styled(format!(" REC {file} "), strong.fg(Color::Red)));
     }
@@ -138,9 +163,12 @@ fn true_words(truth: &Truth) -> String {
     )
 }
 
-fn help(shown: &Shown) -> &'static str {
+fn help(shown: &Shown, playing: bool) -> &'static str {
     match (&shown.edit, shown.control) {
-        (Some(_), true) => " up/down choose   Enter change   d default   Esc close",
+        (None, _) if playing => " ? keys  q quit  left/right 5 s  space pause  [ ] speed  l loop  s settings",
+        (Some(_), true) => {
+            " up/down choose   Enter change   d default   f as in the file   u undo   Esc close"
+        }
         (Some(_), false) => " up/down   Esc close   (to change: start with --control)",
         (None, true) => {
             " ? keys  q quit  space pause  m mark  r record  s settings  z zero  t slips  y holds"

@@ -1,6 +1,7 @@
 //! The board's line on a thread of its own: it is opened again whenever it ends, commands go down it, and all that comes
 //! up is handed on.
 
+use std::path::Path;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -8,6 +9,7 @@ use std::time::{Duration, Instant};
 use tenax_hal_shim::wire::{Answer, BadFrame, Down};
 
 use crate::link::{Client, Counts, Heard, Target};
+use crate::play::{self, Playing, Reel, Told as Played};
 use crate::truth::{self, Bench, Told, Truth};
 
 /// How long a board may take to answer.
@@ -30,6 +32,10 @@ pub enum News {
     Truth(Truth),
     /// What can be done at the scene's bench; None: there is none any more.
     Bench(Option<Bench>),
+    /// Where the recording is that is watched.
+    Playing(Playing),
+    /// It goes on elsewhere.
+    Rewound,
     /// What was asked, and the answer.
     Answered(Down, Result<Answer, String>),
 }
@@ -44,9 +50,18 @@ pub struct Places {
 }
 
 /// Watches all of it on threads of their own, which end when nobody listens any more. Lines that are sent to what it returns are
-/// done at the bench of a scene that tells the truth; anywhere else they go nowhere.
+/// done at the bench of a scene that tells the truth, or say how a recording is played; anywhere else they go nowhere.
 pub fn start(places: &Places, commands: Receiver<Down>, news: Sender<News>) -> Sender<String> {
     let (bench, acts) = channel();
+    if let Target::File(path) = places.line.clone() {
+        thread::spawn(move || {
+            if let Err(error) = watch_recording(&path, &acts, &news) {
+                // Nobody listens any more.
+                let _left = news.send(News::Gone(format!("{error:#}")));
+            }
+        });
+        return bench;
+    }
     if let Some(target) = places.truth.clone() {
         let news = news.clone();
         let mut tell = move |told| {
@@ -61,6 +76,27 @@ pub fn start(places: &Places, commands: Receiver<Down>, news: Sender<News>) -> S
     let target = places.line.clone();
     thread::spawn(move || watch(&target, &commands, &news));
     bench
+}
+
+/// Plays a recording until nobody listens any more.
+fn watch_recording(path: &Path, controls: &Receiver<String>, news: &Sender<News>) -> anyhow::Result<()> {
+    let mut reel = Reel::open(path)?;
+    let mut counts = Counts::default();
+    let playing = Playing::new(&reel);
+    let _left = news.send(News::Playing(playing));
+    play::play(&mut reel, playing, controls, &mut |told| {
+        let told = match told {
+            Played::Message(heard) => {
+                counts.messages += 1;
+                counts.missed += u64::from(heard.missed);
+                News::Frame(Ok(*heard), counts, Instant::now())
+            }
+            Played::Again => News::Rewound,
+            Played::At(playing) => News::Playing(playing),
+            Played::Over => return true,
+        };
+        news.send(told).is_ok()
+    })
 }
 
 /// Watches a line until nobody listens any more.
@@ -78,7 +114,7 @@ pub fn watch(target: &Target, commands: &Receiver<Down>, news: &Sender<News>) {
             }
             Err(error) => format!("{error:#}"),
         };
-        if matches!(target, Target::File(_)) || news.send(News::Gone(ended)).is_err() {
+        if news.send(News::Gone(ended)).is_err() {
             return;
         }
         thread::sleep(AGAIN_AFTER);

@@ -14,6 +14,7 @@ use tenax_logic::setting::SettingId;
 
 use super::source::News;
 use crate::link::{Counts, Heard};
+use crate::play::Playing;
 use crate::truth::{Bench, Truth};
 use crate::words::{AnswerWords, Words, why};
 
@@ -36,6 +37,8 @@ pub struct Point {
     /// S2 in force.
     pub s2: f64,
     pub load_n: Option<f64>,
+    pub flexor_mv: Option<i16>,
+    pub extensor_mv: Option<i16>,
 }
 
 /// When a detector was last something.
@@ -78,6 +81,8 @@ pub struct View {
     pub truth: VecDeque<Truth>,
     /// What can be done at the scene's bench, if there is one.
     pub bench: Option<Bench>,
+    /// Where the recording is, if it is one that is watched.
+    pub playing: Option<Playing>,
     /// Messages of another version were heard.
     pub other_version: Option<String>,
     said: u64,
@@ -118,6 +123,8 @@ impl View {
                 self.truth.push_back(truth);
             }
             News::Bench(bench) => self.bench = bench,
+            News::Playing(playing) => self.playing = Some(playing),
+            News::Rewound => self.begin_anew(),
             News::Answered(command, answer) => self.answered(&command, answer),
         }
     }
@@ -177,9 +184,7 @@ impl View {
             }
             Up::Answer { answer, .. } => self.learn(answer),
             Up::Hello { .. } => {
-                self.faults.clear();
-                self.history.clear();
-                self.fates = Default::default();
+                self.begin_anew();
                 self.say(Words(&received.message).to_string());
             }
             Up::Event(event) => {
@@ -195,6 +200,12 @@ impl View {
             Up::Raw(_) | Up::Taken { .. } => {}
             message => self.say(Words(message).to_string()),
         }
+    }
+
+    fn begin_anew(&mut self) {
+        self.faults.clear();
+        self.history.clear();
+        self.fates = Default::default();
     }
 
     fn slow(&mut self, slow: Slow, now: Instant) {
@@ -223,6 +234,8 @@ impl View {
                 .map(|permille| f64::from(permille) / 1e3),
             s2: f64::from(slow.s2_permille) / 1e3,
             load_n: slow.forces.map(|forces| f64::from(forces.load_mn) / 1e3),
+            flexor_mv: slow.flexor_mv,
+            extensor_mv: slow.extensor_mv,
         });
         self.arrivals.push_back((now, slow.frame));
         while self.arrivals.front().is_some_and(|(at, _)| now.duration_since(*at) > RATE_OVER) {

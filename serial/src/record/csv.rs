@@ -24,11 +24,10 @@ pub fn export(line: &[u8], folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
             let file = match files.entry(topic.name()) {
                 std::collections::btree_map::Entry::Occupied(file) => file.into_mut(),
                 std::collections::btree_map::Entry::Vacant(place) => {
-                    let name = topic.name().trim_matches('/').replace('/', "-");
-                    let path = folder.join(name).with_extension("csv");
+                    let path = file_of(topic, folder, "csv");
                     let mut file = csv::Writer::from_path(&path)
                         .with_context(|| format!("cannot write {}", path.display()))?;
-                    file.write_record(header(topic))?;
+                    file.write_record(columns(topic).map(|(name, _)| name))?;
                     paths.push(path);
                     place.insert(file)
                 }
@@ -43,12 +42,18 @@ pub fn export(line: &[u8], folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
-fn header(topic: Topic) -> Vec<String> {
+/// The file of a topic.
+pub fn file_of(topic: Topic, folder: &Path, extension: &str) -> PathBuf {
+    folder.join(topic.name().trim_matches('/').replace('/', "-")).with_extension(extension)
+}
+
+/// The columns of a topic: the time, and its fields, a list as a column each.
+pub fn columns(topic: Topic) -> impl Iterator<Item = (String, Kind)> {
     let columns = topic.fields().into_iter().flat_map(|(name, kind)| match kind {
-        Kind::Numbers => (1..=LIST).map(|n| format!("{name}_{n}")).collect(),
-        _ => vec![name],
+        Kind::Numbers => (1..=LIST).map(|n| (format!("{name}_{n}"), kind)).collect(),
+        _ => vec![(name, kind)],
     });
-    ["time_s".to_owned()].into_iter().chain(columns).collect()
+    [("time_s".to_owned(), Kind::Number)].into_iter().chain(columns)
 }
 
 fn cells(value: &Value) -> Vec<String> {

@@ -8,7 +8,8 @@ use tenax_logic::setting::SettingId;
 use super::Seen;
 use super::wizard::Wizard;
 use crate::guide::selftest::Verdict;
-use crate::monitor::view::View;
+use crate::monitor::view::{Point, View};
+use crate::settings::Trace;
 use crate::wiring::input;
 
 /// Lines of the log in one event at most.
@@ -47,7 +48,10 @@ pub fn event(Seen { view, wizard }: &Seen, place: &str, after: &After) -> Value 
         .history
         .iter()
         .filter(|point| point.t_s > after.points_s)
-        .map(|point| json!([point.t_s, point.vibration_mv, point.ratio, point.s2, point.load_n]))
+        .map(|point| {
+            let Point { t_s, vibration_mv, ratio, s2, load_n, flexor_mv, extensor_mv } = point;
+            json!([t_s, vibration_mv, ratio, s2, load_n, flexor_mv, extensor_mv])
+        })
         .collect();
     let new = usize::try_from(view.said() - after.lines.min(view.said())).unwrap_or(LINES_MAX).min(LINES_MAX);
     let log: Vec<&str> =
@@ -96,6 +100,8 @@ pub fn event(Seen { view, wizard }: &Seen, place: &str, after: &After) -> Value 
         "extensor_mv": slow.and_then(|slow| slow.extensor_mv),
         "wearer_active": slow.is_some_and(|slow| slow.wearer_active),
         "s1_mv": view.setting(SettingId::S1),
+        "emg_on_mv": view.setting(SettingId::EmgOn),
+        "playing": view.playing,
         "rates": view.rates(),
         "missed": view.counts.missed,
         "bad_frames": view.counts.bad_frames,
@@ -152,7 +158,7 @@ pub fn settings(view: &View, control: bool) -> Value {
             let (min, max) = view.range_in_force(id).into_inner();
             json!({
                 "name": row.name, "unit": row.unit, "min": min, "max": max, "default": row.default,
-                "meaning": row.meaning, "value": view.setting(id),
+                "meaning": row.meaning, "value": view.setting(id), "trace": Trace::of(id),
             })
         })
         .collect();

@@ -3,8 +3,10 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 fn rectangle(left: usize, top: usize, right: usize, bottom: usize) -> Mask {
-    let mut mask = Mask::EMPTY;
+    let (mut mask, mut block) = (Mask::EMPTY, Mask::EMPTY);
     (top..bottom).for_each(|y| (left..right).for_each(|x| mask.insert(x, y)));
+    block.insert_block(left..right, top..bottom);
+    assert_eq!(mask, block);
     mask
 }
 
@@ -142,4 +144,32 @@ fn an_outline_is_its_pixels_and_overlap_is_the_share_of_what_is_in_either() {
     assert_eq!(square.overlap(&rectangle(15, 10, 25, 20)), 50.0 / 150.0);
     assert_eq!((square.overlap(&square), square.overlap(&Mask::EMPTY)), (1.0, 0.0));
     assert_eq!(Mask::EMPTY.overlap(&Mask::EMPTY), 0.0);
+}
+
+#[test]
+fn growing_and_shrinking_are_what_is_around_each_pixel() {
+    let mut state = 1u32;
+    for (times, share) in [(0, 4), (1, 60), (2, 2), (3, 200), (7, 900), (16, 2_000), (31, 8_000)] {
+        let mut mask = Mask::EMPTY;
+        for at in 0..PIXELS {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            if (state >> 8).is_multiple_of(share) {
+                mask.insert(at % WIDTH, at / WIDTH);
+            }
+        }
+        let (mut grown, mut shrunk) = (mask.clone(), mask.clone());
+        grown.dilate(times);
+        shrunk.invert();
+        shrunk.erode(times);
+        for (x, y) in (0..WIDTH).flat_map(|x| (0..HEIGHT).map(move |y| (x, y))) {
+            let rows = y.saturating_sub(times)..(y + times + 1).min(HEIGHT);
+            let columns = x.saturating_sub(times)..(x + times + 1).min(WIDTH);
+            let is_near = rows.into_iter().any(|y| columns.clone().any(|x| mask.contains(x, y)));
+            assert_eq!(
+                (grown.contains(x, y), shrunk.contains(x, y)),
+                (is_near, !is_near),
+                "{times}: {x} {y}"
+            );
+        }
+    }
 }

@@ -30,14 +30,17 @@ const SHARE_CLEAR: f32 = 0.75;
 const ASIDE: [f32; 2] = [-0.5, 0.5];
 /// Outermost pixels that are looked at.
 const PLACES_MAX: usize = 2048;
+/// Points that are looked at at once.
+const LANES: usize = 8;
 /// Times that the slices are cut anew, across the axis that was found.
 const ROUNDS: usize = 3;
 /// Steps of the reweighted least squares.
 const STEPS: usize = 6;
 
-/// A rim's points: how far along the axis, how far across.
+/// A rim's points: how far along the axis, how far across. Past the last they are nowhere.
 struct Rim {
-    points: [(f32, f32); SLICES],
+    along: [f32; SLICES],
+    across: [f32; SLICES],
     count: usize,
 }
 
@@ -155,10 +158,11 @@ impl Rim {
         let first = outermost.iter().position(is_there)?;
         let last = outermost.iter().rposition(is_there)?;
         let end = (last - first) / END;
-        let mut rim = Self { points: [(0.0, 0.0); SLICES], count: 0 };
+        let mut rim = Self { along: [0.0; SLICES], across: [f32::INFINITY; SLICES], count: 0 };
         let inner = outermost.iter().enumerate().take(last.saturating_sub(end)).skip(first + end);
         for (slice, &across) in inner.filter(|(_, across)| is_there(across)) {
-            rim.points[rim.count] = ((slice as f32 - SLICES as f32 / 2.0) * SLICE_PX, across);
+            rim.along[rim.count] = (slice as f32 - SLICES as f32 / 2.0) * SLICE_PX;
+            rim.across[rim.count] = across;
             rim.count += 1;
         }
         (rim.count >= SLICES_MIN).then_some(rim)
@@ -166,13 +170,13 @@ impl Rim {
 
     /// The line that most of the points lie on, None if they lie on none.
     fn line(&self) -> Option<Line> {
-        let points = &self.points[..self.count];
+        let points = || self.along.iter().zip(&self.across).take(self.count);
         let (mut slope, mut offset) = self.coarse();
         let (mut weight, mut near) = (0.0, 0);
         for _ in 0..STEPS {
             let (mut w, mut wx, mut wy, mut wxx, mut wxy) = (0.0, 0.0, 0.0, 0.0, 0.0);
             near = 0;
-            for &(x, y) in points {
+            for (&x, &y) in points() {
                 let off = (y - offset - slope * x) / NEAR_PX;
                 if off.abs() < 1.0 {
                     // Tukey's weight: full on the line, none far from it.
@@ -190,25 +194,38 @@ impl Rim {
             offset = (wy - slope * wx) / w;
             weight = det / w;
         }
-        let share = near as f32 / points.len() as f32;
+        let share = near as f32 / self.count as f32;
         (share >= SHARE_MIN).then_some(Line { slope, weight, share })
     }
 
     /// Slope and offset of the line through two points that are far apart near which most of the others lie.
     fn coarse(&self) -> (f32, f32) {
-        let points = &self.points[..self.count];
         let mut best = (0, 0.0, 0.0);
         for reach in [self.count / 3, self.count / 2, 2 * self.count / 3] {
-            for (&(ax, ay), &(bx, by)) in points.iter().zip(&points[reach..]).step_by(2) {
-                let slope = (by - ay) / (bx - ax);
-                let offset = ay - slope * ax;
-                let near = points.iter().filter(|(x, y)| (y - offset - slope * x).abs() < NEAR_PX).count();
+            for a in (0..self.count - reach).step_by(2) {
+                let b = a + reach;
+                let slope = (self.across[b] - self.across[a]) / (self.along[b] - self.along[a]);
+                let offset = self.across[a] - slope * self.along[a];
+                let near = self.near(slope, offset);
                 if near > best.0 {
                     best = (near, slope, offset);
                 }
             }
         }
         (best.1, best.2)
+    }
+
+    /// How many points lie near a line: in lanes, for the compiler's vectors.
+    fn near(&self, slope: f32, offset: f32) -> u32 {
+        let mut near = [0; LANES];
+        let lanes = self.along.as_chunks::<LANES>().0.iter().zip(self.across.as_chunks::<LANES>().0);
+        for (along, across) in lanes.take(self.count.div_ceil(LANES)) {
+            for lane in 0..LANES {
+                let off = across[lane] - offset - slope * along[lane];
+                near[lane] += u32::from(off.abs() < NEAR_PX);
+            }
+        }
+        near.iter().sum()
     }
 }
 

@@ -3,7 +3,7 @@
 //! Skin is redder than the scene's mean colour, and not as red as paint. An object of wood or cardboard is too, so a hand
 //! is left out only where most of what is seen is something else.
 
-use crate::frame::{Frame, WIDTH};
+use crate::frame::Frame;
 use crate::mask::Mask;
 
 /// How much redder than green skin is, white balance corrected, 1/64.
@@ -20,15 +20,13 @@ pub fn leave_out(object: &mut Mask, frame: &Frame, white: [u8; 3], least: u32) {
     let white = white.map(|level| u32::from(level.max(1)));
     // Each as bright as green, were it grey; 1/256.
     let [red_gain, blue_gain] = [white[0], white[2]].map(|own| (white[1] << 8) / own);
-    let mut skin = Mask::EMPTY;
-    object.for_each(|at| {
-        let red = (u32::from(frame.red[at]) * red_gain) >> 8;
-        let blue = (u32::from(frame.blue[at]) * blue_gain) >> 8;
-        let green = u32::from(frame.green[at]);
-        let redder = 64 * red > REDDER.0 * green && 64 * red < REDDER.1 * green;
-        if redder && 64 * red > WARMER * blue {
-            skin.insert(at % WIDTH, at / WIDTH);
-        }
+    let mut skin = object.clone();
+    skin.keep(frame, |red, green, blue| {
+        let red = (u32::from(red) * red_gain) >> 8;
+        let blue = (u32::from(blue) * blue_gain) >> 8;
+        let green = u32::from(green);
+        // No short cuts: they would be jumps.
+        (64 * red > REDDER.0 * green) & (64 * red < REDDER.1 * green) & (64 * red > WARMER * blue)
     });
     // Specks are noise; gaps between them are skin in another light.
     skin.erode(1);

@@ -16,13 +16,14 @@ pub struct Store {
     flash: Sectors,
     log: Log,
     saving: Option<(Record, u32)>,
+    saved: Option<(Kept, Vec<u8>)>,
 }
 
 impl Store {
     /// One whose flash holds this at the start.
     pub fn new(mut flash: Sectors) -> Self {
         let (log, _) = open(&mut flash, Erase::Allowed);
-        Self { flash, log, saving: None }
+        Self { flash, log, saving: None, saved: None }
     }
 
     /// Whether it would take a record.
@@ -47,11 +48,21 @@ impl Store {
         let (record, _) = self.saving.take()?;
         let kept = record.kept();
         let fault = |fault| Up::Event(Event { frame, kind: EventKind::Fault(fault) });
-        Some(match self.write(kept, record.payload(&mut [0; PAYLOAD_BYTES])) {
-            Ok(()) => Up::Saved { frame, kept },
+        let mut buffer = [0; PAYLOAD_BYTES];
+        let payload = record.payload(&mut buffer);
+        Some(match self.write(kept, payload) {
+            Ok(()) => {
+                self.saved = Some((kept, payload.to_vec()));
+                Up::Saved { frame, kept }
+            }
             Err(Refused::Full) => fault(Fault::StoreFull(kept)),
             Err(Refused::Failed | Refused::Length) => fault(Fault::StoreFailed(kept)),
         })
+    }
+
+    /// What was saved since this was last asked.
+    pub fn saved(&mut self) -> Option<(Kept, Vec<u8>)> {
+        self.saved.take()
     }
 
     fn write(&mut self, kept: Kept, payload: &[u8]) -> Result<(), Refused> {

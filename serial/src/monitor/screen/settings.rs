@@ -7,6 +7,7 @@ use ratatui::text::{Line as Text, Span};
 use ratatui::widgets::{Block, Clear, Paragraph};
 use tenax_logic::setting::SettingId;
 
+use super::Shown;
 use crate::monitor::view::View;
 
 /// What is chosen and typed.
@@ -31,7 +32,7 @@ impl Edit {
     }
 }
 
-pub fn draw(frame: &mut Frame<'_>, area: Rect, view: &View, edit: &Edit, control: bool) {
+pub fn draw(frame: &mut Frame<'_>, area: Rect, view: &View, edit: &Edit, shown: &Shown) {
     frame.render_widget(Clear, area);
     let [list, meaning] = Layout::vertical([Constraint::Min(3), Constraint::Length(4)]).areas(area);
     let room = usize::from(list.height.saturating_sub(2));
@@ -53,14 +54,16 @@ pub fn draw(frame: &mut Frame<'_>, area: Rect, view: &View, edit: &Edit, control
                 style = style.add_modifier(Modifier::REVERSED);
             }
             let (min, max) = view.range_in_force(*id).into_inner();
+            let there = shown.against.get(&id.number()).filter(|there| view.setting(*id) != Some(**there));
+            let there = there.map_or_else(String::new, |there| format!(", file {there}"));
             let text = format!(
-                "{:<28}{value:>9} {:<10} {min} to {max}, default {}",
+                "{:<23}{value:>8} {:<10} {min} to {max}, default {}{there}",
                 row.name, row.unit, row.default
             );
             Text::from(Span::styled(text, style))
         })
         .collect();
-    let title = if control { "settings" } else { "settings, read only" };
+    let title = if shown.control { "settings" } else { "settings, read only" };
     frame.render_widget(Paragraph::new(lines).block(Block::bordered().title(title)), list);
     let row = edit.id().row();
     let typed =

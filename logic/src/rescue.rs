@@ -1,0 +1,81 @@
+//! What a hand still does that has restarted too often ([`restart`](crate::restart)): a press of its button opens it.
+//!
+//! No muscle and no line: they need the converter, its DMA, the calibration, telemetry, and any of these may be what failed. The button
+//! needs a pin, a clock and the bridge.
+
+use tenax_hal_shim::channel::{FRAME_HZ, frames};
+use tenax_hal_shim::motor::{Duty, MotorDrive};
+
+use crate::arming::STEP_FRAMES;
+use crate::button::{Button, Press};
+
+/// From one step to the next, us.
+pub const STEP_US: u32 = STEP_FRAMES * 1_000_000 / FRAME_HZ;
+/// A press opens for 4 s at most: at this duty all of the range.
+const OPENS_STEPS: u32 = frames(4_000) / STEP_FRAMES;
+/// As slowly as the defaults move the hand.
+const SLOWLY: Duty = Duty::per_mille(300);
+
+/// The button, and what it has asked for.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Rescue {
+    button: Button,
+    opens: u32,
+}
+
+impl Rescue {
+    /// Goes on by one step: how the motor is driven until the next. Held for 1 to 3 s and let go, the button opens; pressed again, it stops.
+    pub fn step(&mut self, is_down: bool) -> MotorDrive {
+        self.opens = self.opens.saturating_sub(1);
+        match self.button.tick(is_down, false, self.opens > 0) {
+            Some(Press::Release) => self.opens = OPENS_STEPS,
+            Some(Press::Stop | Press::Calibrate) => self.opens = 0,
+            None => {}
+        }
+        if self.opens > 0 { MotorDrive::Open(SLOWLY) } else { MotorDrive::Coast }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::Config;
+
+    /// Steps in which it opens, while the button is held and up for so many ms in turn, up first.
+    fn opens(presses_ms: &[u32]) -> [u32; 2] {
+        let mut rescue = Rescue::default();
+        let (mut opened, mut other) = (0, 0);
+        for (n, ms) in presses_ms.iter().enumerate() {
+            for _ in 0..frames(*ms) / STEP_FRAMES {
+                match rescue.step(n % 2 == 1) {
+                    MotorDrive::Coast => {}
+                    MotorDrive::Open(SLOWLY) => opened += 1,
+                    _ => other += 1,
+                }
+            }
+        }
+        [opened, other]
+    }
+
+    // Shows B2.
+    #[test]
+    fn a_press_of_1_to_3_s_opens_slowly_for_4_s_and_another_stops_it() {
+        assert_eq!(opens(&[100, 1_100, 10_000]), [OPENS_STEPS, 0]);
+        let [stopped, other] = opens(&[100, 1_100, 500, 100, 10_000]);
+        assert!(
+            (frames(400) / STEP_FRAMES..frames(600) / STEP_FRAMES).contains(&stopped) && other == 0,
+            "{stopped}"
+        );
+        assert_eq!(SLOWLY.as_per_mille(), Config::default().gate.slowest_permille);
+    }
+
+    // Shows B2.
+    #[test]
+    fn a_button_that_is_tapped_stuck_or_down_at_the_start_opens_nothing() {
+        for presses_ms in
+            [&[100, 500, 5_000][..], &[100, 60_000], &[100, 3_100, 5_000], &[0, 1_100, 5_000], &[60_000]]
+        {
+            assert_eq!(opens(presses_ms), [0, 0], "{presses_ms:?}");
+        }
+    }
+}
