@@ -41,6 +41,7 @@ fn count() -> usize {
 }
 
 #[test]
+#[ignore = "minutes"]
 fn every_reset_is_told_right_whatever_was_before() {
     let mut random = ChaCha8Rng::seed_from_u64(24);
     let (mut at_s, mut mishaps, mut expected, mut in_a_row) = (0.4, Vec::new(), Vec::new(), 0);
@@ -108,6 +109,7 @@ fn every_reset_is_told_right_whatever_was_before() {
 /// The clock stops and does not come back: the board works on its own oscillator and says so. With the crystal back, the next start is
 /// on it.
 #[test]
+#[ignore = "minutes: the image looks for its crystal a million times, each a stop of the emulator"]
 fn a_lost_clock_is_survived_and_taken_up_again_when_it_is_back() {
     let mishaps = vec![
         (0.4, Mishap::CrystalStops(false)),
