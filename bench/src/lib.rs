@@ -16,6 +16,7 @@ pub mod budgets;
 pub mod disturbances;
 pub mod figure;
 pub mod hand;
+pub mod hil;
 pub mod image;
 pub mod input;
 pub mod jobs;

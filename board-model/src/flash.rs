@@ -4,6 +4,7 @@
 //! an erase do to the words is drawn here, and that the core stands still meanwhile, since it executes from the same bank
 //! (RM0383, section 3.5). The chip's memories are the F411's, not the F427's.
 
+use std::collections::VecDeque;
 use std::num::{NonZeroU32, NonZeroU64};
 
 use rigless::device::{ErasedDevice, ResetCause};
@@ -100,7 +101,8 @@ pub struct FlashArray {
     pub words: u64,
     /// Sectors erased.
     pub erases: u64,
-    power: Option<PowerCut>,
+    /// Power cuts that are to come, one after the other: the words before each.
+    power: VecDeque<u32>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -109,21 +111,16 @@ enum Doing {
     Erases { sector: u64 },
 }
 
-/// The power goes while a word is programmed.
-#[derive(Clone, Copy, Debug)]
-struct PowerCut {
-    words_before: u32,
-}
-
 impl FlashArray {
     /// One that takes so long for a word, ns.
     pub fn new(word_ns: u64) -> Self {
         Self { word_ns, ..Self::default() }
     }
 
-    /// Has the power go while the word after the next `words` is programmed: half of its bits are.
+    /// Has the power go while the word after the next `words` is programmed: half of its bits are. The words of a second cut are
+    /// counted from the first on.
     pub fn cut_power_after(&mut self, words: u32) {
-        self.power = Some(PowerCut { words_before: words });
+        self.power.push_back(words);
     }
 
     /// The core made an access.
@@ -154,18 +151,12 @@ impl FlashArray {
         }
         let old = host.read(access.address, Width::W32).unwrap_or(0);
         let mut programmed = old & access.value;
-        let cut = match &mut self.power {
-            Some(PowerCut { words_before: 0 }) => {
-                programmed |= old & 0xFFFF_0000;
-                self.power = None;
-                true
-            }
-            Some(PowerCut { words_before }) => {
-                *words_before -= 1;
-                false
-            }
-            None => false,
-        };
+        let cut = self.power.pop_front_if(|words| *words == 0).is_some();
+        if cut {
+            programmed |= old & 0xFFFF_0000;
+        } else if let Some(words) = self.power.front_mut() {
+            *words -= 1;
+        }
         let landed = host.program(access.address, Width::W32, programmed);
         debug_assert!(landed.is_ok(), "{:#x} is in the flash", access.address);
         self.words += 1;

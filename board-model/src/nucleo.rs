@@ -19,7 +19,7 @@ use super::line::Line;
 use super::part::Part;
 
 /// The ST-LINK's clock on OSC_IN, Hz.
-const HSE_HZ: u64 = 8_000_000;
+pub const HSE_HZ: u64 = 8_000_000;
 /// The supply, mV.
 const SUPPLY_MV: u32 = 3_300;
 /// The core's clock, Hz.

@@ -10,6 +10,7 @@ mod evaluate;
 mod folder;
 mod format;
 mod hand;
+mod hil;
 mod learn;
 mod line_file;
 mod lint_image;
@@ -65,6 +66,8 @@ enum Command {
     Learn(learn::Args),
     /// Run a hand of several fingertips
     Hand(hand::Args),
+    /// Measure a real board in the loop
+    Hil(hil::Args),
     /// List the scenes
     Scenes,
     /// Run scenes with many seeds, in shards
@@ -107,6 +110,7 @@ pub fn main() -> ExitCode {
         Command::Run(args) => run::main(&args),
         Command::Learn(args) => learn::main(&args),
         Command::Hand(args) => hand::main(&args),
+        Command::Hil(args) => hil::main(&args),
         Command::Scenes => scenes::main(),
         Command::Sweep(args) => sweep::main(&args),
         Command::Test(args) => test::main(&args),

@@ -1,5 +1,6 @@
 //! The command line of the serial tools, a file a subcommand; the whole tool takes each from here.
 
+pub mod bringup;
 pub mod calibrate;
 pub mod config;
 pub mod flash;
@@ -38,6 +39,8 @@ enum Command {
 pub enum Shared {
     /// Flash a NUCLEO-F411RE through probe-rs
     Flash(flash::Args),
+    /// Measure a step of bring-up on a board
+    BringUp(bringup::Args),
     /// Touch every sensor in turn; say which wire is wrong
     Selftest(selftest::Args),
     /// Watch a board: a screen, or one line a message
@@ -67,6 +70,7 @@ impl Shared {
     pub fn run(&self) -> anyhow::Result<ExitCode> {
         match self {
             Self::Flash(args) => flash::main(args),
+            Self::BringUp(args) => bringup::main(args),
             Self::Selftest(args) => selftest::main(args),
             Self::Monitor(args) => monitor::main(args),
             Self::Record(args) => record::main(args),

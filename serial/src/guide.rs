@@ -2,6 +2,7 @@
 //!
 //! Nobody has to press a key: the board's own readings say when a weight is on, a stroke is over, a muscle is relaxed.
 
+pub mod bringup;
 pub mod emg;
 pub mod force;
 pub mod friction;

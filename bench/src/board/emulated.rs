@@ -2,6 +2,7 @@
 
 mod commands;
 pub(crate) mod cost;
+pub mod coupling;
 pub mod kernels;
 mod mishaps;
 pub(crate) mod wires;
@@ -26,6 +27,7 @@ use tenax_hal_shim::channel::{SCAN_HZ, SCANS_PER_FRAME};
 use tenax_scene::plant::Plant;
 
 use self::cost::CostMeter;
+use self::coupling::Coupling;
 use self::kernels::cycles::Followed;
 use self::mishaps::Mishaps;
 use self::world::{Stretch, World};
@@ -49,6 +51,8 @@ pub struct Options {
     /// How long the flash takes to program a word, us; the core stands still for as long. 16 typically, 100 at most
     /// (DS10314, flash memory programming).
     pub word_us: u64,
+    /// What the bridge's edges leave in the films' codes. None: nothing.
+    pub coupling: Option<Coupling>,
     /// Which models the chip is made of.
     pub models: Models,
     /// Who is told when each tick of the logic begins.
@@ -64,6 +68,7 @@ impl Default for Options {
             mishaps: Vec::new(),
             flash: None,
             word_us: 16,
+            coupling: None,
             models: Models::Quick,
             ticks: None,
             followed_from: None,
@@ -98,6 +103,12 @@ pub enum Mishap {
     },
     /// The supply falls below the brown-out level for an instant: the chip is reset, RAM keeps what it held.
     BrownsOut,
+    /// From now on the supply is so high, mV: the voltage detector says if it is too low. A brown-out's reset is not drawn by it.
+    SupplyIs(u32),
+    /// The crystal stops, which the clock security system says if it is on. It is there again (true) or not at the next start.
+    CrystalStops(bool),
+    /// Somebody presses the board's reset button.
+    ResetByPin,
     /// The motor's bridge pulls its nFAULT low (true), or lets it go.
     BridgeIsOff(bool),
 }
@@ -169,6 +180,7 @@ fn closed_loop(
     let flash = FlashArray::new(1_000 * options.word_us);
     let watched = [tick, after_tick, symbols.command];
     let mut world = World::new(plant, frames, mishaps, cost, flash, &symbols, sender);
+    world.coupling = options.coupling;
     world.followed = options.followed_from.map(|from| Followed::new(image, &symbols, from)).transpose()?;
     let mut images =
         vec![Image::read(image, None).context("reading the image")?, cost::paint(&symbols.stack)?];

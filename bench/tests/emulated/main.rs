@@ -3,7 +3,9 @@
 
 mod agreement;
 mod behaviours;
+mod bringup;
 mod converter;
+mod coupling;
 mod faults;
 mod feedback;
 mod hand;
@@ -13,6 +15,9 @@ mod link;
 mod motor;
 #[path = "../../../host-tests/src/onsets.rs"]
 mod onsets;
+mod resets;
+#[path = "../common/served.rs"]
+mod served;
 mod store;
 mod streams;
 

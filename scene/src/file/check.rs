@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use tenax_hal_shim::behaviour::Behaviour;
-use tenax_hal_shim::channel::{FSR, FSR_COUNT, MYO_EXTENSOR, MYO_FLEXOR};
+use tenax_hal_shim::channel::{CHANNELS, FSR, FSR_COUNT, Input, MYO_EXTENSOR, MYO_FLEXOR};
 use toml::Spanned;
 
 use super::SceneFile;
@@ -164,6 +164,10 @@ fn fault(fault: &SensorFault) -> Checked {
         fault.channel.span(),
         || format!("channel = \"{}\" cannot be pressed; allowed: fsr_a to fsr_d", channel.name()),
     )?;
+    let is_switched = !matches!(CHANNELS[channel.index()].input, Input::Direct { .. });
+    demand(![FaultKind::Cut, FaultKind::Open].contains(&kind) || is_switched, fault.channel.span(), || {
+        format!("channel = \"{}\" is behind no switch", channel.name())
+    })?;
     let press = fault.press_n.as_ref().map(Spanned::span);
     only(kind == FaultKind::Pressed, press, fault, "pressed", "press_n")?;
     let drift = fault.drift_per_s.as_ref().map(Spanned::span);

@@ -1,9 +1,23 @@
 //! Sensors that break, when and how the scene says.
 
-use tenax_hal_shim::channel::{COUNT, FSR, FSR_COUNT, REFERENCE_MV};
+use tenax_hal_shim::channel::{CHANNELS, COUNT, FSR, FSR_COUNT, Input, REFERENCE_MV, SWITCH_INPUTS};
 
 use crate::file::sections::{FaultKind, SensorFault};
 use crate::schedule::Span;
+
+/// How fast a cut wire's input loses its charge, s: 100 kohm and 4.7 kohm, 1 uF.
+const CUT_S: f64 = 0.105;
+
+/// The channel whose input a switch shows before this one's.
+fn shown_before(channel: usize) -> Option<usize> {
+    let before = |select: u8| (select + SWITCH_INPUTS - 1) % SWITCH_INPUTS;
+    let input = match CHANNELS[channel].input {
+        Input::Direct { .. } => return None,
+        Input::SwitchA { select } => Input::SwitchA { select: before(select) },
+        Input::SwitchB { select } => Input::SwitchB { select: before(select) },
+    };
+    CHANNELS.iter().position(|channel| channel.input == input)
+}
 
 /// All faults of a scene.
 #[derive(Clone, Debug)]
@@ -64,9 +78,14 @@ impl Faults {
                 }
                 _ => {}
             }
+            // An input that nothing is connected to, as two of switch B, is at ground.
+            let before_v = shown_before(fault.channel).map_or(0.0, |before| pins_v[before]);
+            let since_s = t_s - fault.span.begin_s;
             let pin_v = &mut pins_v[fault.channel];
             *pin_v = match fault.kind {
                 FaultKind::Dead => 0.0,
+                FaultKind::Cut => *fault.stuck_v.get_or_insert(*pin_v) * (-since_s / CUT_S).exp(),
+                FaultKind::Open => before_v,
                 FaultKind::Saturated => f64::from(REFERENCE_MV) / 1e3,
                 FaultKind::Stuck => *fault.stuck_v.get_or_insert(*pin_v),
                 FaultKind::Pressed | FaultKind::Swapped | FaultKind::Bridged => *pin_v,

@@ -1,6 +1,7 @@
 //! What can go wrong with a board, done to the emulated one.
 
-use rigless::emulator::{Host, Stop};
+use rigless::device::Level;
+use rigless::emulator::{Host, InterruptLine, Stop};
 use rigless::mcu::Operate;
 use rigless::session::Session;
 use rigless::soc::Width;
@@ -10,7 +11,7 @@ use tenax_hal_shim::channel::SCAN_HZ;
 use super::Mishap;
 use super::wires::Wires;
 use tenax_board_model::flash::FlashArray;
-use tenax_board_model::nucleo::Nucleo;
+use tenax_board_model::nucleo::{HSE_HZ, Nucleo};
 use tenax_board_model::part::Part;
 
 /// DMA2's flags of its streams 0 to 3, and where a written one clears them.
@@ -22,17 +23,32 @@ const TCIF0: u64 = 1 << 5;
 const DMA2_S0CR: u64 = 0x4002_6410;
 /// DMA2 stream 0's address in memory.
 const DMA2_S0M0AR: u64 = 0x4002_641C;
+/// The voltage detector's interrupt (RM0383, table 37).
+const PVD: InterruptLine = InterruptLine::new(1).expect("every core has it");
+/// The voltage detector's output (RM0383, section 5.4.2).
+const PWR_CSR: u64 = 0x4000_7004;
+const PVDO: u64 = 1 << 2;
+/// RCC's control, and its bit for the clock security system (RM0383, section 6.3.1).
+const RCC_CR: u64 = 0x4002_3800;
+const CSSON: u64 = 1 << 19;
+/// Where the image has the addresses of the handlers of its non-maskable interrupt and of the voltage detector's.
+const NMI_VECTOR: u64 = 0x0800_0008;
+const PVD_VECTOR: u64 = 0x0800_0044;
 /// No chip of the family has anything there.
 const NOWHERE: u64 = 0x6000_0000;
 
 /// What is still to happen, each with the scan at which it does.
-pub struct Mishaps(Vec<(usize, Mishap)>);
+pub struct Mishaps {
+    due: Vec<(usize, Mishap)>,
+    /// The voltage detector's own handler, while its vector leads to another.
+    lent: Option<u64>,
+}
 
 impl Mishaps {
     /// Those of `mishaps`, each at its time, s.
     pub fn new(mishaps: &[(f64, Mishap)]) -> Self {
         let scan = |at_s: f64| (at_s * f64::from(SCAN_HZ)) as usize;
-        Self(mishaps.iter().map(|(at_s, mishap)| (scan(*at_s), mishap.clone())).collect())
+        Self { due: mishaps.iter().map(|(at_s, mishap)| (scan(*at_s), mishap.clone())).collect(), lent: None }
     }
 
     /// Does what is due at `scan`.
@@ -44,17 +60,44 @@ impl Mishaps {
         flash: &mut FlashArray,
         host: &mut dyn Host,
     ) {
-        let due: Vec<_> = self.0.extract_if(.., |(at, _)| *at <= scan).collect();
+        if let Some(own) = self.lent.take() {
+            let placed = host.program(PVD_VECTOR, Width::W32, own);
+            debug_assert!(placed.is_ok(), "{PVD_VECTOR:#x} is in the flash");
+        }
+        let due: Vec<_> = self.due.extract_if(.., |(at, _)| *at <= scan).collect();
         let now = stop.at;
         for (_, mishap) in due {
-            if mishap == Mishap::BrownsOut {
+            if matches!(mishap, Mishap::BrownsOut | Mishap::ResetByPin) {
                 session.reset_by_pin(now, stop.instruction_count, host);
-                session.board_mut().mcu.browned_out(now);
+                if mishap == Mishap::BrownsOut {
+                    session.board_mut().mcu.browned_out(now);
+                }
                 continue;
             }
             let mcu = &mut session.board_mut().mcu;
             match mishap {
-                Mishap::BrownsOut => {}
+                Mishap::BrownsOut | Mishap::ResetByPin => {}
+                Mishap::SupplyIs(mv) => {
+                    mcu.chip.set_supply(mv);
+                    // `rigless` leads the detector's output nowhere.
+                    if mcu.peek(now, PWR_CSR, Width::W32).unwrap_or(0) & PVDO != 0 {
+                        host.set_interrupt(PVD, Level::High);
+                        host.set_interrupt(PVD, Level::Low);
+                    }
+                }
+                Mishap::CrystalStops(comes_back) => {
+                    mcu.chip.rcc.attach_crystals(if comes_back { HSE_HZ } else { 0 }, 0);
+                    if mcu.peek(now, RCC_CR, Width::W32).unwrap_or(0) & CSSON != 0 {
+                        // `rigless` lets nobody raise the core's own exception: another's vector leads to its handler for an instant.
+                        let [handler, own] =
+                            [NMI_VECTOR, PVD_VECTOR].map(|at| host.read(at, Width::W32).unwrap_or(0));
+                        let placed = host.program(PVD_VECTOR, Width::W32, handler);
+                        debug_assert!(placed.is_ok(), "{PVD_VECTOR:#x} is in the flash");
+                        self.lent = Some(own);
+                        host.set_interrupt(PVD, Level::High);
+                        host.set_interrupt(PVD, Level::Low);
+                    }
+                }
                 Mishap::DmaStalls => {
                     stop_stream(mcu, now);
                 }

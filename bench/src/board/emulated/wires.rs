@@ -13,6 +13,7 @@ const GPIOA_MODER: u64 = 0x4002_0000;
 const GPIOC_PUPDR: u64 = 0x4002_080C;
 const GPIOB_ODR: u64 = 0x4002_0414;
 const TIM1_CCER: u64 = 0x4001_0020;
+const TIM1_CNT: u64 = 0x4001_0024;
 const TIM1_ARR: u64 = 0x4001_002C;
 const TIM1_CCR1: u64 = 0x4001_0034;
 const TIM1_CCR2: u64 = 0x4001_0038;
@@ -69,6 +70,11 @@ impl<'a> Wires<'a> {
             (None, Some(duty)) => Ok(MotorDrive::Open(duty)),
             (Some(_), Some(_)) => Err(BothSides),
         }
+    }
+
+    /// Where the image has set the counter of the bridge's timer, which the quick model holds.
+    pub fn bridge_count(&mut self) -> u32 {
+        self.peek(TIM1_CNT)
     }
 
     /// How one side is driven: its pin belongs to the timer, the timer's outputs are on, and its pulse is not empty.

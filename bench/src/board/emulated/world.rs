@@ -17,6 +17,7 @@ use tenax_scene::plant::Plant;
 use super::Broken;
 use super::commands::Commands;
 use super::cost::{CostMeter, stack_used};
+use super::coupling::Coupling;
 use super::kernels::cycles::Followed;
 use super::mishaps::Mishaps;
 use super::wires::Wires;
@@ -59,6 +60,8 @@ pub struct World {
     pub cost: CostMeter,
     /// Who follows some ticks instruction by instruction, if anybody does.
     pub followed: Option<Followed>,
+    /// What the bridge's edges leave in the films' codes.
+    pub coupling: Option<Coupling>,
     /// What was sent, and when it was taken.
     pub commands: Commands,
     /// The flash's words.
@@ -103,6 +106,7 @@ impl World {
             broken: None,
             cost,
             followed: None,
+            coupling: None,
             commands: Commands::default(),
             flash,
             scans: frames as usize * SCANS_PER_FRAME,
@@ -146,6 +150,10 @@ impl World {
             }
             let pins = plant.scan(drive).codes();
             self.codes = scan_of_pins(&pins, wires.select());
+            if let Some(coupling) = self.coupling {
+                let begins_us = coupling.begins_us(wires.bridge_count(), self.pulses);
+                coupling.add(&mut self.codes, drive, begins_us);
+            }
             self.stretch.scans.push((self.codes, drive, plant.slipping()));
             self.scanned += 1;
         } else {

@@ -87,6 +87,10 @@ pub struct Jam {
 pub enum FaultKind {
     /// 0 V: a cut wire, a lost supply.
     Dead,
+    /// Its wire is cut before a switch's input that has 100 kohm to ground and 1 uF, as docs/hardware.md asks for: the voltage falls.
+    Cut,
+    /// The same without the resistor: the switch's output keeps the charge of the input that was shown before.
+    Open,
     /// The supply: a short.
     Saturated,
     /// The voltage of that instant, for ever, without noise: a converter input or a switch that latched up.

@@ -1,0 +1,137 @@
+//! Resets of every cause in any order: each start tells its own, the black box keeps what was said before the first fault, and
+//! restarts count only where the hand brought them about.
+//!
+//! `TENAX_RESETS=1000` has about so many of each cause, a run of some minutes.
+
+use std::env;
+
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+use tenax_bench::board::emulated::{Mishap, Options};
+use tenax_hal_shim::wire::{Answer, Down, EventKind, Last, ResetCause, Up};
+use tenax_hal_shim::words::Fault;
+use tenax_logic::restart::RESTARTS_MAX;
+use tenax_serial::link::Inbox;
+
+use crate::{Rest, Swing, run};
+
+/// A reset with what follows it, s; how long it takes until the board is up again, s; and what its start says.
+type Kind = (fn() -> Vec<(f64, Mishap)>, f64, ResetCause, Option<Fault>);
+
+const KINDS: [Kind; 6] = [
+    (|| vec![(0.0, Mishap::ResetByPin)], 0.25, ResetCause::Pin, None),
+    (|| vec![(0.0, Mishap::BrownsOut)], 0.25, ResetCause::Other, Some(Fault::SupplySagged)),
+    (
+        || vec![(0.0, Mishap::SupplyIs(2_900)), (0.002, Mishap::SupplyIs(3_300))],
+        0.25,
+        ResetCause::Software,
+        Some(Fault::SupplySagged),
+    ),
+    // The watchdog takes 0.1 s.
+    (|| vec![(0.0, Mishap::CoreHangs)], 0.4, ResetCause::Watchdog, Some(Fault::WatchdogReset)),
+    (|| vec![(0.0, Mishap::DmaFails)], 0.25, ResetCause::Panic, Some(Fault::PanicReset)),
+    (|| vec![(0.0, Mishap::CrystalStops(true))], 0.25, ResetCause::Software, Some(Fault::CrystalLost)),
+];
+const PIN: usize = 0;
+const CRYSTAL: usize = 5;
+
+fn count() -> usize {
+    let each = env::var("TENAX_RESETS").ok().map(|each| each.parse().expect("TENAX_RESETS is a number"));
+    each.map_or(40, |each: usize| each * KINDS.len())
+}
+
+#[test]
+#[ignore = "minutes"]
+fn every_reset_is_told_right_whatever_was_before() {
+    let mut random = ChaCha8Rng::seed_from_u64(24);
+    let (mut at_s, mut mishaps, mut expected, mut in_a_row) = (0.4, Vec::new(), Vec::new(), 0);
+    let (mut plant, mut boxes, mut kept) = (Swing::new(0.0), Vec::new(), None::<Fault>);
+    for _ in 0..count() {
+        // One more in a row, and it would stay off.
+        let kind = if in_a_row == RESTARTS_MAX { PIN } else { random.random_range(0..KINDS.len()) };
+        let (mishap, takes_s, cause, fault) = KINDS[kind];
+        mishaps.extend(mishap().into_iter().map(|(after_s, mishap)| (at_s + after_s, mishap)));
+        expected.push((cause, fault));
+        in_a_row = match kind {
+            PIN => 0,
+            CRYSTAL => in_a_row,
+            _ => in_a_row + 1,
+        };
+        kept = kept.or(fault);
+        // Any phase of a frame and of a slow frame.
+        at_s += takes_s + random.random_range(0.0..0.013);
+        plant = plant.sending(at_s, Down::Last(0));
+        boxes.push(kept);
+        // Now and then somebody has read it all.
+        if random.random_range(0..4) == 0 {
+            plant = plant.sending(at_s + 0.02, Down::Last(u16::MAX));
+            kept = None;
+        }
+        at_s += 0.05;
+    }
+    plant.duration_s = at_s + 0.1;
+    let run = run(Rest::new(plant), &Options { mishaps, ..Options::default() });
+
+    let mut inbox = Inbox::default();
+    let heard =
+        run.line.iter().filter_map(|&byte| inbox.push(byte)).flatten().map(|heard| heard.received.message);
+    let (mut starts, mut after, mut lasts) = (Vec::new(), None, Vec::<Last>::new());
+    for message in heard {
+        match message {
+            Up::Hello { after: why, .. } => after = why,
+            Up::About(about) => starts.push((about.identity.reset, after)),
+            Up::Answer { answer: Answer::Last(last), .. } if last.from == 0 => lasts.push(last),
+            _ => {}
+        }
+    }
+    // The first start was no reset.
+    assert_eq!(starts.len(), 1 + expected.len());
+    for (n, (told, expected)) in starts[1..].iter().zip(&expected).enumerate() {
+        assert_eq!(told, expected, "reset {n} after {:?}", &starts[n.saturating_sub(3)..=n]);
+    }
+    let told: Vec<_> = lasts.iter().map(|last| last.after).collect();
+    assert_eq!(told, boxes);
+    // What it keeps stays as it is through the resets that follow.
+    for pair in lasts.windows(2).filter(|pair| pair[0].after.is_some() && pair[0].after == pair[1].after) {
+        if pair[0].length == pair[1].length {
+            assert_eq!(pair[0].bytes, pair[1].bytes);
+        }
+    }
+    for (n, (_, _, cause, fault)) in KINDS.iter().enumerate() {
+        let of = expected.iter().filter(|own| **own == (*cause, *fault)).count();
+        println!("kind {n}: {of} resets told as {cause:?}, {fault:?}");
+    }
+    let faults =
+        run.events.iter().filter(|event| matches!(event.kind, EventKind::Fault(Fault::FramesLost { .. })));
+    assert_eq!(faults.count(), 0, "no start has lost a frame");
+}
+
+/// The clock stops and does not come back: the board works on its own oscillator and says so. With the crystal back, the next start is
+/// on it.
+#[test]
+#[ignore = "minutes: the image looks for its crystal a million times, each a stop of the emulator"]
+fn a_lost_clock_is_survived_and_taken_up_again_when_it_is_back() {
+    let mishaps = vec![
+        (0.4, Mishap::CrystalStops(false)),
+        (1.0, Mishap::ResetByPin),
+        (1.6, Mishap::CrystalStops(true)),
+        (1.7, Mishap::ResetByPin),
+    ];
+    let run = run(Rest::new(Swing::new(2.2)), &Options { mishaps, ..Options::default() });
+    assert_eq!(run.starts, [None, Some(Fault::CrystalLost), None, None]);
+    // Each start without a crystal reports it, and the last has it.
+    let told = run.events.iter().filter(|event| event.kind == EventKind::Fault(Fault::CrystalLost));
+    assert_eq!(told.count(), 2);
+    assert_eq!((run.counters.overruns, run.counters.frames_lost), (0, 0));
+}
+
+/// A rail that is too low for the motor is no silence: the board says why, and starts when there is enough.
+#[test]
+fn a_low_supply_is_told_and_waited_for() {
+    let mishaps = vec![(0.4, Mishap::SupplyIs(2_900)), (2.4, Mishap::SupplyIs(3_100))];
+    let run = run(Rest::new(Swing::new(3.0)), &Options { mishaps, ..Options::default() });
+    // It is reset, waits for a second, says why, and is reset again when the supply is there.
+    assert_eq!(run.starts, [None, Some(Fault::SupplySagged), None]);
+    let frames = run.counters.frames;
+    assert!((600..1_300).contains(&frames), "{frames} frames of the last start");
+}
