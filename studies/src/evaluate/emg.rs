@@ -5,6 +5,7 @@
 pub mod asked;
 pub mod curves;
 pub mod faults;
+pub mod interval;
 pub(super) mod recordings;
 pub(super) mod score;
 pub(super) mod trial;
@@ -19,8 +20,8 @@ use serde::Serialize;
 use tenax_logic::emg::constants::Fitted;
 use tenax_logic::emg::fitted::FITTED;
 
+use self::interval::{Interval, Sessions};
 use self::recordings::{Days, Recording, numbers};
-use self::score::Count;
 pub use self::score::Score;
 use self::trial::{Kind, Trial, Trials};
 use self::two_channel::Session;
@@ -55,6 +56,8 @@ pub struct Report {
     pub first_day_kept: Option<Score>,
     /// Part of the calibrations that were refused.
     pub refused_part: f64,
+    /// Between which two each of these medians lies.
+    pub intervals: Intervals,
     /// Each by itself.
     pub persons: Vec<Person>,
     /// Faults drawn over everybody, where that was asked for.
@@ -63,20 +66,36 @@ pub struct Report {
     pub two_channel: Vec<two_channel::Report>,
 }
 
+/// 95 % intervals, people and their sessions drawn again.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Intervals {
+    /// See [`Person`].
+    pub same_session: Option<Interval>,
+    /// See [`Person`].
+    pub other_posture: Option<Interval>,
+    /// See [`Person`].
+    pub first_day_kept: Option<Interval>,
+}
+
 impl Report {
     /// The medians of these people.
-    #[must_use]
-    pub fn of(persons: Vec<Person>) -> Self {
+    pub(super) fn of(played: Vec<(Person, Sessions)>) -> Self {
+        let (persons, sessions): (Vec<_>, Vec<_>) = played.into_iter().unzip();
         let of = |kind: fn(&Person) -> Option<Score>| {
-            Score::median(&persons.iter().filter_map(kind).collect::<Vec<_>>())
+            Score::quantile(&persons.iter().filter_map(kind).collect::<Vec<_>>(), 0.5)
         };
         let refused: usize = persons.iter().map(|person| person.refused.len()).sum();
-        let sessions: usize = persons.iter().map(|person| person.sessions).sum();
+        let calibrated: usize = persons.iter().map(|person| person.sessions).sum();
         Report {
             same_session: of(|person| person.same_session),
             other_posture: of(|person| person.other_posture),
             first_day_kept: of(|person| person.first_day_kept),
-            refused_part: refused as f64 / sessions.max(1) as f64,
+            refused_part: refused as f64 / calibrated.max(1) as f64,
+            intervals: Intervals {
+                same_session: Interval::of(&sessions, Kind::SameSession),
+                other_posture: Interval::of(&sessions, Kind::OtherPosture),
+                first_day_kept: Interval::of(&sessions, Kind::FirstDayKept),
+            },
             persons,
             faults: None,
             two_channel: Vec::new(),
@@ -155,36 +174,35 @@ pub fn evaluate(folder: &Path, only: Option<u32>, faults: u32, seed: u64) -> any
     let trials: Vec<Trial> = all.people.values().flat_map(|days| Trials::of(days).all).collect();
     let faults =
         (faults > 0).then(|| faults::draw(&FITTED, &trials.iter().collect::<Vec<_>>(), faults, seed));
-    let score =
-        |(&number, days)| Person { asked: asked::asked(&FITTED, days), ..person(&FITTED, number, days) };
+    let score = |(&number, days)| {
+        let (person, sessions) = person(&FITTED, number, days);
+        (Person { asked: asked::asked(&FITTED, days), ..person }, sessions)
+    };
     let persons = all.people.par_iter().map(score).collect();
     let two_channel = all.sessions.par_iter().map(|session| session.score(&FITTED)).collect();
     Ok(Report { two_channel, faults, ..Report::of(persons) })
 }
 
-pub(super) fn person(fitted: &'static Fitted, number: u32, days: &Days) -> Person {
+pub(super) fn person(fitted: &'static Fitted, number: u32, days: &Days) -> (Person, Sessions) {
     let Trials { all, refused } = Trials::of(days);
-    let score = |kind: Kind| {
-        let mut count = Count::default();
-        for trial in all.iter().filter(|trial| trial.kind == kind) {
-            trial.count(&trial.play(fitted), &mut count);
-        }
-        count.score()
-    };
-    Person {
+    let sessions =
+        Sessions(all.iter().map(|trial| (trial.kind, trial.counted(&trial.play(fitted)))).collect());
+    let person = Person {
         person: number,
-        same_session: score(Kind::SameSession),
-        other_posture: score(Kind::OtherPosture),
-        first_day_kept: score(Kind::FirstDayKept),
+        same_session: sessions.score(Kind::SameSession),
+        other_posture: sessions.score(Kind::OtherPosture),
+        first_day_kept: sessions.score(Kind::FirstDayKept),
         refused,
         sessions: days.len(),
         asked: None,
-    }
+    };
+    (person, sessions)
 }
 
 #[cfg(test)]
 mod tests {
     use super::recordings::tests::{made_up, swapped};
+    use super::score::Count;
     use super::*;
 
     #[test]

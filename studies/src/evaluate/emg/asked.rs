@@ -17,7 +17,7 @@ use tenax_logic::emg::fit::{CONTRACTIONS, Watch};
 use tenax_logic::emg::model::EmgModel;
 
 use super::recordings::{CLOSE, Days, OPEN, PAIRS_HZ, Recording};
-use super::score::{Count, quantile};
+use super::score::quantile;
 use super::trial::{Kind, Trial};
 
 /// By how much more of the windows a new calibration is right where it is asked for.
@@ -120,9 +120,10 @@ impl Session<'_> {
     fn right(&self, model: EmgModel) -> f64 {
         let Self { recording, sites, fitted, .. } = *self;
         let trial = Trial { kind: Kind::SameSession, recording, sites, model };
-        let mut count = Count::default();
-        trial.count(&trial.play(fitted), &mut count);
-        count.score().map_or(0.0, |score| f64::midpoint(score.close_right, score.open_right))
+        trial
+            .counted(&trial.play(fitted))
+            .score()
+            .map_or(0.0, |score| f64::midpoint(score.close_right, score.open_right))
     }
 }
 

@@ -103,9 +103,13 @@ pub fn curves(folder: &Path) -> anyhow::Result<Vec<Point>> {
     for (kind, calibration) in kinds {
         let own = || trials.iter().zip(&heard).filter(move |(trial, _)| trial.kind == kind);
         let mut add = |control, asks, play: &dyn Fn(&Trial, &[_]) -> Vec<Said>| {
-            let mut count = Count::default();
-            own().for_each(|(trial, heard)| trial.count(&play(trial, heard), &mut count));
-            points.extend(count.score().map(|score| Point { control, calibration, asks, score }));
+            let counts: Vec<Count> = own().map(|(trial, heard)| trial.counted(&play(trial, heard))).collect();
+            points.extend(Count::sum(&counts).score().map(|score| Point {
+                control,
+                calibration,
+                asks,
+                score,
+            }));
         };
         for part in PLAIN {
             // The sites of the wearer, flexor or extensor, as the calibration found them.

@@ -71,6 +71,25 @@ impl Count {
         }
     }
 
+    /// Several together.
+    pub fn sum<'a>(all: impl IntoIterator<Item = &'a Self>) -> Self {
+        let mut sum = Self::default();
+        for own in all {
+            sum.rest_h += own.rest_h;
+            sum.false_motions += own.false_motions;
+            for (windows, own) in sum.windows.as_flattened_mut().iter_mut().zip(own.windows.as_flattened()) {
+                *windows += own;
+            }
+            sum.repetitions += own.repetitions;
+            sum.missed += own.missed;
+            sum.latencies_s.extend(&own.latencies_s);
+            sum.full_s.extend(&own.full_s);
+            sum.rows += own.rows;
+            sum.doubted += own.doubted;
+        }
+        sum
+    }
+
     pub fn score(&self) -> Option<Score> {
         let part = |n: u32, of: u32| f64::from(n) / f64::from(of.max(1));
         let [close, open] = self.windows;
@@ -118,21 +137,21 @@ pub struct Score {
 }
 
 impl Score {
-    /// The median of each number over people.
-    pub(super) fn median(scores: &[Self]) -> Option<Self> {
-        let median = |value: fn(&Self) -> f64| between_ranks(scores.iter().map(value), 0.5);
+    /// The quantile of each number by itself.
+    pub(super) fn quantile(scores: &[Self], part: f64) -> Option<Self> {
+        let of = |value: fn(&Self) -> f64| between_ranks(scores.iter().map(value), part);
         Some(Self {
-            close_right: median(|score| score.close_right)?,
-            close_wrong_way: median(|score| score.close_wrong_way)?,
-            open_right: median(|score| score.open_right)?,
-            open_wrong_way: median(|score| score.open_wrong_way)?,
-            missed: median(|score| score.missed)?,
-            false_per_hour: median(|score| score.false_per_hour)?,
-            latency_s_p50: median(|score| score.latency_s_p50)?,
-            latency_s_p95: median(|score| score.latency_s_p95)?,
-            full_s_p50: median(|score| score.full_s_p50)?,
-            full_s_p95: median(|score| score.full_s_p95)?,
-            doubted_part: median(|score| score.doubted_part)?,
+            close_right: of(|score| score.close_right)?,
+            close_wrong_way: of(|score| score.close_wrong_way)?,
+            open_right: of(|score| score.open_right)?,
+            open_wrong_way: of(|score| score.open_wrong_way)?,
+            missed: of(|score| score.missed)?,
+            false_per_hour: of(|score| score.false_per_hour)?,
+            latency_s_p50: of(|score| score.latency_s_p50)?,
+            latency_s_p95: of(|score| score.latency_s_p95)?,
+            full_s_p50: of(|score| score.full_s_p50)?,
+            full_s_p95: of(|score| score.full_s_p95)?,
+            doubted_part: of(|score| score.doubted_part)?,
         })
     }
 }

@@ -62,10 +62,11 @@ impl Trial<'_> {
             .by_row(heard.iter().map(|electrodes| Said { wish: decide.take(electrodes), ..Said::default() }))
     }
 
-    /// Adds what was said.
-    pub fn count(&self, said: &[Said], count: &mut Count) {
-        // Less the repetitions that were calibrated from.
+    /// What was said, counted less the repetitions that were calibrated from.
+    pub fn counted(&self, said: &[Said]) -> Count {
+        let mut count = Count::default();
         count.add(self.recording, said, if self.kind == Kind::SameSession { 2 } else { 0 });
+        count
     }
 }
 

@@ -1,0 +1,87 @@
+//! How sure a median over a few people is: people are drawn again, and of each as many sessions, 1,000 times.
+
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+use serde::Serialize;
+
+use super::score::{Count, Score};
+use super::trial::Kind;
+
+/// How often all is drawn.
+const DRAWS: usize = 1_000;
+/// Between which parts of the draws an interval lies.
+const PARTS: [f64; 2] = [0.025, 0.975];
+
+/// What was counted of a person, session by session.
+#[derive(Clone, Debug)]
+pub(in crate::evaluate) struct Sessions(pub Vec<(Kind, Count)>);
+
+impl Sessions {
+    fn of(&self, kind: Kind) -> Vec<&Count> {
+        self.0.iter().filter(|own| own.0 == kind).map(|own| &own.1).collect()
+    }
+
+    /// All of a kind together.
+    pub fn score(&self, kind: Kind) -> Option<Score> {
+        Count::sum(self.of(kind)).score()
+    }
+}
+
+/// Between which two a median lies, each number by itself, with 95 %.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Interval {
+    pub low: Score,
+    pub high: Score,
+}
+
+impl Interval {
+    /// Of the median over these people; none of nobody.
+    pub(in crate::evaluate) fn of(people: &[Sessions], kind: Kind) -> Option<Self> {
+        let people: Vec<Vec<&Count>> =
+            people.iter().map(|own| own.of(kind)).filter(|own| !own.is_empty()).collect();
+        if people.is_empty() {
+            return None;
+        }
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let mut again = || {
+            let person = |rng: &mut ChaCha8Rng| {
+                let own = &people[rng.random_range(0..people.len())];
+                Count::sum((0..own.len()).map(|_| own[rng.random_range(0..own.len())])).score()
+            };
+            Score::quantile(&(0..people.len()).filter_map(|_| person(&mut rng)).collect::<Vec<_>>(), 0.5)
+        };
+        let medians: Vec<Score> = (0..DRAWS).filter_map(|_| again()).collect();
+        let [low, high] = PARTS.map(|part| Score::quantile(&medians, part));
+        Some(Self { low: low?, high: high? })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::recordings::tests::{made_up, swapped};
+    use super::super::trial::Trials;
+    use super::*;
+    use crate::evaluate::emg::recordings::Days;
+    use std::collections::BTreeMap;
+    use tenax_logic::emg::fitted::FITTED;
+
+    #[test]
+    fn people_who_are_alike_leave_no_doubt_and_one_who_is_not_does() {
+        let days = Days::from([(1, BTreeMap::from([(1, made_up())]))]);
+        let trials = Trials::of(&days);
+        let said = trials.all[0].play(&FITTED);
+        let count = |recording| {
+            let mut count = Count::default();
+            count.add(recording, &said, 2);
+            Sessions(vec![(Kind::SameSession, count)])
+        };
+        let (good, bad) = (count(&made_up()), count(&swapped(made_up())));
+        let right = |people: &[Sessions]| {
+            Interval::of(people, Kind::SameSession).map(|own| [own.low.open_right, own.high.open_right])
+        };
+        let [low, high] = right(&[good.clone(), good.clone(), good.clone()]).expect("they have sessions");
+        assert!(low == high && low > 0.95, "{low} to {high}");
+        assert_eq!(right(&[good.clone(), bad, good]), Some([0.0, high]));
+        assert!(Interval::of(&[], Kind::SameSession).is_none());
+    }
+}
