@@ -294,7 +294,7 @@ fn a_wish_stands_for_its_dwell_and_a_strong_one_for_two_readings() {
     assert_eq!(takes(Wish::Rest, Wish::Open, 0), Some(18));
     let strong = |wish: Wish, strong: i32| {
         let mut decide = Decide { wish, strong, ..Decide::with(&F, None) };
-        decide.settle(Wish::Rest, [1, 2, 3]);
+        decide.settle(wish, [1, 2, 3]);
         (decide.wish, decide.mean)
     };
     assert_eq!(strong(Wish::Close, 1), (Wish::Close, [0; 3]));
