@@ -84,7 +84,7 @@ fn noise_and_offset_are_told_of_the_input_that_has_them() {
     let worse = fails("noise", asked(), |t_s, _, pins| {
         held(pins);
         // A frame's four scans alike, or they would cancel.
-        let sign = if (t_s * 2_000.0) as u32 % 2 == 0 { 1.0 } else { -1.0 };
+        let sign = if ((t_s * 2_000.0) as u32).is_multiple_of(2) { 1.0 } else { -1.0 };
         pins[3] += 0.002 * sign;
         pins[STRAIN + 2] -= 0.03;
     });

@@ -23,8 +23,10 @@ fn run(channel: usize, kind: &str) -> Run {
     Board::Host.run(World::new(&scene, 1), &mut |_| {}).unwrap().0
 }
 
-/// How long after the cut the channel is reported, s, and why.
-fn noticed(channel: usize, kind: &str) -> Option<(f64, Reason)> {
+/// How long after the cut a channel is reported, s, and why.
+type Noticed = Option<(f64, Reason)>;
+
+fn noticed(channel: usize, kind: &str) -> Noticed {
     run(channel, kind).events.iter().find_map(|event| match event.kind {
         EventKind::Fault(Fault::SensorLost { channel: lost, reason }) if usize::from(lost) == channel => {
             Some((f64::from(event.frame) / f64::from(FRAME_HZ) - f64::from(CUT_S), reason))
@@ -36,7 +38,7 @@ fn noticed(channel: usize, kind: &str) -> Option<(f64, Reason)> {
 // Shows R5.
 #[test]
 fn each_of_the_thirty_is_noticed_with_its_resistor_and_hardly_one_without() {
-    let all: Vec<(usize, [Option<(f64, Reason)>; 2])> = (STRAIN..COUNT)
+    let all: Vec<(usize, [Noticed; 2])> = (STRAIN..COUNT)
         .into_par_iter()
         .map(|channel| (channel, ["cut", "open"].map(|kind| noticed(channel, kind))))
         .collect();

@@ -9,6 +9,10 @@ pub struct Fitted {
     pub begins: [i32; 2],
     /// And below which each ends.
     pub ends: [i32; 2],
+    /// A wish ends at least this far below where it begins.
+    pub hysteresis: i32,
+    /// And no lower than this share.
+    pub least_end: i32,
     /// It also ends this far below its own crest, as a share: a muscle that relaxes slowly has let go.
     pub fall: i32,
     /// But never for a fall of less than this level: a contraction fluctuates.
@@ -17,12 +21,16 @@ pub struct Fitted {
     pub crest_readings: i32,
     /// A wish begins again this share above the lowest one since: tone that stays is no new wish.
     pub rise: i32,
+    /// A wish begins at least this level above rest.
+    pub least_rise: i32,
+    /// And so many standard deviations of rest.
+    pub least_spreads: i32,
     /// Place of the electrodes' ratio between calibrated closing (0) and opening (1000): closing begins below, opening above.
     pub place_begins: i32,
     /// Closing goes on below, opening above.
     pub place_stays: [i32; 2],
-    /// For which closing and opening stand before they are a wish.
-    pub dwell: [i32; 2],
+    /// For which rest, closing and opening stand before they are a wish.
+    pub dwell: [i32; 3],
     /// Readings above all that was calibrated that open at once.
     pub at_once_readings: i32,
     /// Over which rest is followed.
@@ -36,43 +44,60 @@ pub struct Fitted {
     pub firmer: i32,
     /// Both muscles contract when the other site has a share above what calibration found beside the contraction, and this.
     pub both: i32,
+    /// Share of either site that is activity.
+    pub busy: i32,
 }
 
 impl Fitted {
     /// How many there are.
-    pub const COUNT: usize = 21;
+    pub const COUNT: usize = 27;
 
-    /// Each of them: for who fits them.
+    /// Each of them, in the order of the fields: for who fits them.
     pub fn all_mut(&mut self) -> [&mut i32; Self::COUNT] {
+        let Self { mean_readings, begins, ends, hysteresis, least_end, fall, least_fall, .. } = self;
+        let Self { crest_readings, rise, least_rise, least_spreads, place_begins, place_stays, .. } = self;
         let Self {
-            mean_readings, begins: [a, b], ends: [c, d], fall, least_fall, crest_readings, rise, ..
+            dwell,
+            at_once_readings,
+            rest_readings,
+            after_readings,
+            after_dwell,
+            firmer,
+            both,
+            busy,
+            ..
         } = self;
-        let Self {
-            place_begins, place_stays: [e, f], dwell: [g, h], at_once_readings, rest_readings, ..
-        } = self;
-        let Self { after_readings: [i, j], after_dwell, firmer, both, .. } = self;
+        let ([close_begins, open_begins], [close_ends, open_ends]) = (begins, ends);
+        let ([close_stays, open_stays], [rest_dwell, close_dwell, open_dwell]) = (place_stays, dwell);
+        let [after, long_after] = after_readings;
         [
             mean_readings,
-            a,
-            b,
-            c,
-            d,
+            close_begins,
+            open_begins,
+            close_ends,
+            open_ends,
+            hysteresis,
+            least_end,
             fall,
             least_fall,
             crest_readings,
             rise,
+            least_rise,
+            least_spreads,
             place_begins,
-            e,
-            f,
-            g,
-            h,
+            close_stays,
+            open_stays,
+            rest_dwell,
+            close_dwell,
+            open_dwell,
             at_once_readings,
             rest_readings,
-            i,
-            j,
+            after,
+            long_after,
             after_dwell,
             firmer,
             both,
+            busy,
         ]
     }
 }

@@ -71,6 +71,8 @@ struct Sites {
     rest_uv: [i32; 2],
     /// Rise of each site in its own contraction.
     span: [i32; 2],
+    begins: [i32; 2],
+    ends: [i32; 2],
     /// How far a wish may fall from its crest.
     fall: [i32; 2],
     /// Share of the other site with each wish from which both contract: that asks for nothing.
@@ -89,6 +91,11 @@ impl Sites {
         let (rest, close, open) = (by_site(model.rest()), by_site(model.close()), by_site(model.open()));
         let spread = by_site(model.spread());
         let span = [(close[0] - rest[0]).max(512), (open[1] - rest[1]).max(512)];
+        let begins = [0, 1].map(|n| {
+            let least = f.least_rise.max(f.least_spreads * spread[n]) * 1_000 / span[n];
+            f.begins[n].max(least).min(850)
+        });
+        let ends = [0, 1].map(|n| f.ends[n].min(begins[n] - f.hysteresis * 1_000 / span[n]).max(f.least_end));
         let fall = [0, 1].map(|n| f.fall.max(f.least_fall * 1_000 / span[n]));
         let hears = [close[1] - rest[1], open[0] - rest[0]];
         let both =
@@ -101,6 +108,8 @@ impl Sites {
             rest,
             rest_uv: rest.map(uv_of),
             span,
+            begins,
+            ends,
             fall,
             both,
             hears: [0, 1].map(|n: usize| {
@@ -266,9 +275,9 @@ impl Decide {
         if own.is_none() {
             self.crest = 0;
         }
-        let ends = |n: usize| f.ends[n].max(self.crest / 256 - sites.fall[n]);
-        let begins = |n: usize| f.begins[n].max(self.trough[n] + f.rise);
-        let busy = !blind[0] && place < f.place_begins && closes.max(opens) >= f.begins[0];
+        let ends = |n: usize| sites.ends[n].max(self.crest / 256 - sites.fall[n]);
+        let begins = |n: usize| sites.begins[n].max(self.trough[n] + f.rise);
+        let busy = !blind[0] && place < f.place_begins && (closes >= f.busy || opens >= f.busy);
         self.since[0] = if busy { 0 } else { self.since[0].saturating_add(1) };
         self.since[1] = if self.wish == Wish::Open { 0 } else { self.since[1].saturating_add(1) };
         let calm =
@@ -298,14 +307,14 @@ impl Decide {
         }
     }
 
-    /// A wish has to stand for a while before it begins, soon after the opposite one for longer.
+    /// A wish has to stand for a while, soon after the opposite one for longer.
     fn settle(&mut self, wish: Wish, now: [i32; 3]) {
         let f = self.fitted;
         let dwell = match wish {
-            Wish::Rest => 1,
+            Wish::Rest => f.dwell[0],
             Wish::Close if self.since[1] < f.after_readings[0] => f.after_dwell,
-            Wish::Close => f.dwell[0],
-            Wish::Open => f.dwell[1],
+            Wish::Close => f.dwell[1],
+            Wish::Open => f.dwell[2],
         };
         self.stands = if wish == self.next { self.stands.saturating_add(1) } else { 1 };
         self.next = wish;

@@ -5,20 +5,25 @@ use super::*;
 static F: Fitted = Fitted {
     mean_readings: 30,
     begins: [450, 690],
-    ends: [400, 500],
+    ends: [450, 500],
+    hysteresis: 250,
+    least_end: 200,
     fall: 300,
     least_fall: 1_200,
     crest_readings: 960,
     rise: 400,
+    least_rise: 600,
+    least_spreads: 3,
     place_begins: 480,
     place_stays: [520, 400],
-    dwell: [9, 18],
+    dwell: [6, 9, 18],
     at_once_readings: 2,
     rest_readings: 1_024,
     after_readings: [120, 240],
     after_dwell: 36,
     firmer: 270,
     both: 300,
+    busy: 450,
 };
 /// Rest, closing, opening and the spread of rest, whose rises are the least that a calibration takes.
 const WEAK: [[i32; 2]; 4] = [[15_600, 15_700], [16_850, 16_100], [15_750, 16_940], [100, 150]];
@@ -40,13 +45,13 @@ fn a_wearers_levels_are_those_of_the_calibration() {
     let weak = sites();
     assert_eq!((weak.electrode, weak.rest, weak.span), ([0, 1], [15_600, 15_700], [1_250, 1_240]));
     assert_eq!(weak.rest_uv.map(level_of), weak.rest);
-    assert_eq!(weak.fall, [960, 967]);
+    assert_eq!((weak.begins, weak.ends, weak.fall), ([480, 690], [280, 489], [960, 967]));
     assert_eq!((weak.both, weak.hears), ([622, 420], [Some(150), None]));
     assert_eq!((weak.close_ratio, weak.turn), (-750, 1_940));
     assert_eq!(weak.active, [[16_037, 15_912], [16_134, 16_010]]);
     // A rest that wanders, and an opening that the other electrode just hears.
     let noisy = Sites::of(&F, &model([[15_600, 15_700], [17_600, 16_200], [15_900, 17_800], [450, 510]]));
-    assert_eq!(noisy.fall, [600, 571]);
+    assert_eq!((noisy.begins, noisy.ends, noisy.fall), ([675, 728], [450, 500], [600, 571]));
     assert_eq!((noisy.both, noisy.hears), ([538, 450], [Some(250), Some(150)]));
     // A rest above what is activity for everybody, and an electrode that falls with the other's contraction.
     let loud = Sites::of(&F, &model([[17_800, 15_700], [20_000, 17_700], [17_700, 19_800], [100, 100]]));
@@ -68,7 +73,7 @@ fn electrodes_that_are_swapped_are_the_same_wearer() {
         }
     }
     let mut nobody = Decide::with(&F, None);
-    for (wish, mover, strength) in [(Wish::Rest, 1, 0), (Wish::Close, 0, 583), (Wish::Open, 1, 500)] {
+    for (wish, mover, strength) in [(Wish::Rest, 1, 0), (Wish::Close, 0, 545), (Wish::Open, 1, 500)] {
         nobody.take(&[Electrode::default(); 2]);
         nobody.wish = wish;
         assert_eq!((nobody.mover(), nobody.hears()), (mover, Some([FLOOR_LEVEL, DEFAULT_HEARS])));
@@ -148,14 +153,14 @@ fn opening_begins_from_its_share_and_place_while_the_other_site_is_calm() {
 
 #[test]
 fn closing_begins_from_its_share_and_place_while_nothing_opens() {
-    let closes = State { mean: [450, 0, 480], ..CALM };
+    let closes = State { mean: [480, 0, 480], ..CALM };
     let blind = State { blind: [false, true], ..closes };
     for (state, begins) in [
         (closes, true),
-        (State { mean: [449, 0, 480], ..closes }, false),
-        (State { mean: [450, 0, 481], ..closes }, false),
-        (State { mean: [450, 621, 480], ..closes }, true),
-        (State { mean: [450, 622, 480], ..closes }, false),
+        (State { mean: [479, 0, 480], ..closes }, false),
+        (State { mean: [480, 0, 481], ..closes }, false),
+        (State { mean: [480, 621, 480], ..closes }, true),
+        (State { mean: [480, 622, 480], ..closes }, false),
         (State { over: true, ..closes }, false),
         (State { blind: [true, false], ..closes }, false),
         // Nothing is known of the opening site.
@@ -178,15 +183,15 @@ fn closing_begins_from_its_share_and_place_while_nothing_opens() {
 
 #[test]
 fn a_wish_goes_on_until_it_falls_below_its_end_or_from_its_crest() {
-    let closes = State { wish: Wish::Close, mean: [400, 0, 520], ..CALM };
+    let closes = State { wish: Wish::Close, mean: [280, 0, 520], ..CALM };
     let busy = State { since: [0, 1_000], ..closes };
     let crest = State { crest: 1_000 * 256, ..closes };
     for (state, stays) in [
         (closes, true),
-        (State { mean: [399, 0, 520], ..closes }, false),
-        (State { mean: [400, 0, 521], ..closes }, false),
-        (State { mean: [400, 771, 520], ..busy }, true),
-        (State { mean: [400, 772, 520], ..busy }, false),
+        (State { mean: [279, 0, 520], ..closes }, false),
+        (State { mean: [280, 0, 521], ..closes }, false),
+        (State { mean: [280, 771, 520], ..busy }, true),
+        (State { mean: [280, 772, 520], ..busy }, false),
         (State { over: true, ..closes }, false),
         (State { blind: [true, false], ..closes }, false),
         (State { mean: [699, 0, 520], ..crest }, true),
@@ -194,14 +199,14 @@ fn a_wish_goes_on_until_it_falls_below_its_end_or_from_its_crest() {
     ] {
         assert_eq!(wants(state), if stays { Wish::Close } else { Wish::Rest }, "{:?}", state.mean);
     }
-    let opens = State { wish: Wish::Open, mean: [0, 500, 400], ..CALM };
+    let opens = State { wish: Wish::Open, mean: [0, 489, 400], ..CALM };
     let crest = State { crest: 1_000 * 256, ..opens };
     for (state, stays) in [
         (opens, true),
-        (State { mean: [0, 499, 400], ..opens }, false),
-        (State { mean: [0, 500, 399], ..opens }, false),
-        (State { mean: [0, 500, 399], blind: [true, false], ..opens }, true),
-        (State { mean: [0, 499, 399], blind: [true, false], ..opens }, false),
+        (State { mean: [0, 488, 400], ..opens }, false),
+        (State { mean: [0, 489, 399], ..opens }, false),
+        (State { mean: [0, 489, 399], blind: [true, false], ..opens }, true),
+        (State { mean: [0, 488, 399], blind: [true, false], ..opens }, false),
         (State { mean: [0; 3], over: true, ..opens }, true),
         (State { mean: [0, 699, 400], ..crest }, true),
         (State { mean: [0, 698, 400], ..crest }, false),
@@ -288,13 +293,13 @@ fn a_wish_stands_for_its_dwell_and_a_strong_one_for_two_readings() {
             decide.wish == to
         })
     };
-    assert_eq!(takes(Wish::Close, Wish::Rest, 1_000), Some(1));
+    assert_eq!(takes(Wish::Close, Wish::Rest, 1_000), Some(6));
     assert_eq!(takes(Wish::Rest, Wish::Close, 120), Some(9));
     assert_eq!(takes(Wish::Rest, Wish::Close, 119), Some(36));
     assert_eq!(takes(Wish::Rest, Wish::Open, 0), Some(18));
     let strong = |wish: Wish, strong: i32| {
         let mut decide = Decide { wish, strong, ..Decide::with(&F, None) };
-        decide.settle(wish, [1, 2, 3]);
+        decide.settle(Wish::Rest, [1, 2, 3]);
         (decide.wish, decide.mean)
     };
     assert_eq!(strong(Wish::Close, 1), (Wish::Close, [0; 3]));
@@ -323,8 +328,8 @@ fn rest_is_followed_after_half_a_second_of_it_and_hum_at_once() {
     assert_eq!(follows(calm(), above, Wish::Close, false, lasts), [0; 2]);
     for (decide, is_calm) in [
         (Decide { wish: Wish::Open, ..calm() }, false),
-        (Decide { mean: [16 * 400, 0, 0], ..calm() }, false),
-        (Decide { mean: [16 * 400 - 1, 16 * 500 - 1, 0], ..calm() }, true),
+        (Decide { mean: [16 * 450, 0, 0], ..calm() }, false),
+        (Decide { mean: [16 * 450 - 1, 16 * 500 - 1, 0], ..calm() }, true),
         (Decide { mean: [0, 16 * 500, 0], ..calm() }, false),
     ] {
         assert_eq!(follows(decide, above, Wish::Rest, false, lasts) != [0; 2], is_calm);
