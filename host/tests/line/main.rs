@@ -17,10 +17,9 @@ mod monitor;
 mod page;
 #[cfg(unix)]
 mod page_bench;
+mod picture;
 #[cfg(unix)]
 mod python;
-#[cfg(unix)]
-mod reconnect;
 mod recording;
 mod screen;
 #[cfg(unix)]

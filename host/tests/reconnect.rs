@@ -1,5 +1,11 @@
 //! What a monitor's screen makes of a board that goes away and comes back, of garbage and of another version: on real
 //! pseudo-terminals and sockets, drawn as a person sees it.
+//!
+//! A program of its own: whatever another test starts would inherit these pseudo-terminals and pass for their holder.
+#![cfg(unix)]
+
+#[path = "line/picture.rs"]
+mod picture;
 
 use std::io::Write;
 use std::net::{TcpListener, TcpStream};
@@ -15,7 +21,7 @@ use tenax_serial::monitor::screen::Shown;
 use tenax_serial::monitor::source::{News, Places, start};
 use tenax_serial::monitor::view::View;
 
-use crate::tool::picture;
+use self::picture::picture;
 
 const WITHIN: Duration = Duration::from_secs(20);
 
