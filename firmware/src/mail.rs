@@ -112,7 +112,13 @@ pub fn counters_due() {
     UP_WAITING.wake();
 }
 
-/// Brings the oldest message posted to this place; waits for one. None: the counters are due, or the place was given away already.
+/// Whether they are, since this was last asked.
+pub fn are_counters_due() -> bool {
+    COUNTERS_DUE.swap(false, Relaxed)
+}
+
+/// Brings the oldest message posted to this place; waits for one. None: there is none and the counters are due, or the place was given
+/// away already.
 ///
 /// Not an `async fn`: one that has an end can be asked again after it, which is a way to panic.
 pub fn next_message(place: &mut MaybeUninit<Received<Up>>) -> impl Future<Output = Option<&Received<Up>>> {
@@ -120,16 +126,13 @@ pub fn next_message(place: &mut MaybeUninit<Received<Up>>) -> impl Future<Output
     poll_fn(move |context| {
         // Before it is asked: what comes in between wakes.
         UP_WAITING.register(context.waker());
-        if COUNTERS_DUE.swap(false, Relaxed) {
-            return Poll::Ready(None);
-        }
         let Some(free) = place.take() else { return Poll::Ready(None) };
         if UP.take_to(free) {
             // SAFETY: it was put there just now.
             return Poll::Ready(Some(unsafe { free.assume_init_ref() }));
         }
         place = Some(free);
-        Poll::Pending
+        if COUNTERS_DUE.load(Relaxed) { Poll::Ready(None) } else { Poll::Pending }
     })
 }
 

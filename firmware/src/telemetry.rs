@@ -20,10 +20,12 @@ pub async fn telemetry(mut line: line::Up) -> ! {
     let mut buffer = [0; FRAME_MAX];
     let next = NEXT.take();
     loop {
-        let Some(posted) = mail::next_message(next).await else {
+        let posted = mail::next_message(next).await;
+        // Behind a message that was taken: a line that is behind has a place free for them now, and at no other time.
+        if mail::are_counters_due() {
             mail::post_beside_control(Up::Counters(counts::counters(share.permille())));
-            continue;
-        };
+        }
+        let Some(posted) = posted else { continue };
         match encode(posted.sequence, &posted.message, &mut buffer) {
             Some(frame) => {
                 black_box::write(&posted.message, frame);
