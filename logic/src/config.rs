@@ -153,7 +153,7 @@ impl Config {
         is_friction
     }
 
-    /// Brings every setting into the range of a line that is not trusted.
+    /// Limits every setting to the range in force, the narrower one unless the line is trusted.
     fn bound(&mut self) {
         for id in SettingId::ALL {
             let (min, max) = id.row().range_in_force(self.line_trusted).into_inner();

@@ -119,17 +119,17 @@ pub enum Up {
         /// The answer.
         answer: Answer,
     },
-    /// This outlives a power cut from now on.
+    /// A record was saved and outlives a power cut.
     Saved {
-        /// Sequence number of the last frame before.
+        /// Sequence number of the last frame before it was saved.
         frame: u32,
-        /// What.
+        /// The kind of record.
         kept: Kept,
     },
-    /// Who the board is; once at the start, after the hello.
+    /// The board's identity and settings; sent once at the start, after `Hello`.
     About(About),
-    /// At the start, if the setting `stream-at-start-flag` is 1: what was taken up from flash. With it and every
-    /// [`Raw`] and [`Taken`](Self::Taken) from then on, the decisions can be repeated.
+    /// A record that was read from flash; sent at the start if `stream-at-start-flag` is 1. With it and every later
+    /// [`Raw`] and [`Taken`](Self::Taken), a replay repeats the decisions.
     Restored(Restored),
     /// Frames as they were sampled: see [`Down::Stream`](super::Down::Stream).
     Raw(Raw),
@@ -137,7 +137,7 @@ pub enum Up {
     Senses(Senses),
     /// A command, before its answer, while frames are streamed.
     Taken {
-        /// Sequence number of the frame before whose tick it was taken.
+        /// Sequence number of the first frame whose tick knows the command.
         before: u32,
         /// Sequence number of the command's frame.
         of: u16,

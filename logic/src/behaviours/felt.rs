@@ -7,7 +7,7 @@ use tenax_hal_shim::behaviour::{CameraView, MARKERS, NORMAL_STEP_MN, SHEAR_STEP_
 use crate::array::{ELEMENTS, Reading};
 use crate::grip::Grip;
 
-/// A taxel's reading is so many samples for 1 N (200 mV; the array's data sheet in `docs/wiring.md`), so a sample is 1 mN.
+/// Samples for 1 N on a taxel (200 mV/N, `docs/hardware.md`), so that a sample is about 1 mN.
 const TAXEL_SAMPLES_PER_N: i32 = 993;
 
 /// Scores of a cell's normal force, mN: noise, sufficient, medium, large (FingerVision 2017, section II-A).
@@ -24,7 +24,7 @@ const PULL_MN: i32 = 250;
 pub struct Felt<'a> {
     /// The camera's last picture, None if it is too old.
     pub view: Option<&'a CameraView>,
-    /// Whether it came in this tick.
+    /// Whether the picture came in this tick.
     pub view_is_new: bool,
     /// Whether this tick ends a slow frame, so that every taxel has been read anew.
     pub cycle_is_over: bool,

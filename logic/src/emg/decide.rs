@@ -11,11 +11,11 @@ use super::fitted::FITTED;
 use super::level::{FLOOR_LEVEL, level_of, uv_of};
 use super::model::EmgModel;
 
-/// An envelope above this is out of the sensor's range, uV: it begins nothing, and what it began goes on.
+/// An envelope above this is out of the sensor's range, uV: it starts no motion, but a motion that it started goes on.
 pub const OVER_UV: i32 = 2_950_000;
-/// Share of opening that opens whatever is thought of either sensor, per mille.
+/// Share of opening that opens even if a sensor is doubted, per mille.
 const STRONG: i32 = 1_000;
-/// Share of closing that closes though nothing is known of the opening site.
+/// Share of closing that closes even without a reading of the opening site, per mille.
 const ALONE: i32 = 900;
 /// Readings without a wish after which rest is followed.
 const CALM_READINGS: u16 = 120;
@@ -23,7 +23,7 @@ const CALM_READINGS: u16 = 120;
 const HUM_READINGS: i32 = 64;
 /// The most that is subtracted as hum or tone, uV.
 const MOST_DRIFT_UV: i32 = 1_500_000;
-/// A muscle is active from this share on, and not any more below that; never above 159 mV, which is activity for everybody.
+/// Share from which a muscle is active, and below which it no longer is, per mille; [`ACTIVE_UV`] limits both levels.
 const ACTIVE: [i32; 2] = [350, 250];
 const ACTIVE_UV: [i32; 2] = [159_000, 112_000];
 /// Contractions that the other electrode hears by less than this, Q10 octaves, are proven by their own electrode alone. It has
@@ -54,11 +54,11 @@ pub enum Wish {
 pub struct Electrode {
     /// Envelope above the live zero, uV; None: no valid reading.
     pub uv: Option<i32>,
-    /// Whether it is doubted: it then vetoes nothing, and begins only a strong wish.
+    /// Whether the electrode is doubted: it then blocks nothing, and starts only a strong wish.
     pub doubted: bool,
-    /// Whether it has stood still for a while, and for so long that what it stands at is taken for hum.
+    /// Whether the envelope has been constant for a while.
     pub still: bool,
-    /// See above.
+    /// Whether it has been constant for so long that its level is taken for hum.
     pub hums: bool,
 }
 

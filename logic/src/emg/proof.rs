@@ -272,8 +272,8 @@ impl Proof {
         apart
     }
 
-    /// Whether an electrode has risen over several blocks and slows down, as a muscle does: what creeps goes on as fast, and what
-    /// has come to the top of its range may have.
+    /// Whether electrode `n` has risen over several blocks and slows down, as a muscle does. Creep does not slow down. At the top
+    /// of the range any signal does, so that does not count.
     fn is_gradual(&self, n: usize) -> bool {
         let blocks = self.blocks[n & 1].map(i32::from);
         let [.., last_but_one, last, now] = blocks;

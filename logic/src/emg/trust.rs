@@ -8,7 +8,7 @@ use super::decide::OVER_UV;
 use super::level::level_of;
 use super::mains::{Mains, UNIT_UV, WINDOW};
 
-/// From here an envelope above the live zero is at the top of its range, uV: 3.15 V at the pin.
+/// Top of an envelope's range, uV above the live zero: 3.15 V at the pin.
 pub const TOP_UV: i32 = 2_850_000;
 /// Readings without a number that are bridged: 50 ms.
 const BRIDGED_READINGS: u8 = 12;
@@ -16,7 +16,7 @@ const BRIDGED_READINGS: u8 = 12;
 const STILL_UV: i32 = 1_500;
 /// Slow frames of standing still that no sound recording has: 1 s, of 0.77 s in 45 minutes of contractions.
 const FLAT_FRAMES: u16 = 80;
-/// The part of its level by which hum swells and ebbs.
+/// Hum varies by less than this part of its level, 1/16.
 const HUM_PART: i32 = 16;
 /// Of climbing without falling back by 3 %: 2.5 s, passed for 2 s in those 45 minutes.
 const CREEP_FRAMES: u16 = 200;
@@ -36,28 +36,28 @@ const PROOF_APART: u16 = 12;
 /// Slow frames without a proof after which a contraction has to prove itself again: 1 s.
 const PROOF_LASTS: u16 = 80;
 
-/// Quality of an envelope: a muscle's, or a kind of fault.
+/// Quality of a myosensor's envelope: a muscle's signal, or a kind of fault.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quality {
-    /// A muscle's.
+    /// A muscle's signal.
     #[default]
     Good,
     /// No contact: out of range, or as restless as a loose electrode.
     LeadOff,
-    /// It stands still and mains is in it.
+    /// Constant, with mains in its spectrum.
     Hum,
-    /// It rises without falling back.
+    /// Rises without falling back.
     Creep,
-    /// It stands still.
+    /// Constant within 1 %.
     Flat,
-    /// It has been active for longer than a muscle can be.
+    /// Active for longer than a muscle can be.
     Endless,
-    /// It stays at the top of its range.
+    /// At the top of the range.
     Saturated,
 }
 
 impl Quality {
-    /// What reports call it.
+    /// Name in reports.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
