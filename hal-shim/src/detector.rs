@@ -63,12 +63,12 @@ impl DetectorId {
 pub struct DetectorSet(u8);
 
 impl DetectorSet {
-    /// None of them.
+    /// The empty set.
     pub const NONE: Self = Self(0);
-    /// All of them.
+    /// The set of all detectors.
     pub const ALL: Self = Self(((1u16 << DetectorId::COUNT) - 1) as u8);
 
-    /// One of them.
+    /// The set of one detector.
     #[must_use]
     pub const fn only(id: DetectorId) -> Self {
         Self(1 << id as u8)
@@ -150,12 +150,12 @@ pub enum Direction {
 /// Whether a detector has the input that it needs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum DetectorHealth {
-    /// Not yet: its windows fill, or it has not seen the finger unloaded.
+    /// The detector does not work yet: its windows fill, or it has not seen the finger unloaded.
     #[default]
     Starting,
-    /// It works.
+    /// The detector works.
     Working,
-    /// Its sensors give no numbers.
+    /// The detector's sensors give no valid readings.
     Blind,
 }
 

@@ -67,7 +67,7 @@ pub enum Reason {
     NoContact,
     /// A myosensor's envelope stands still and mains is in it.
     Hum,
-    /// It drifts: a myosensor's envelope, or a quadrant of the force sensor against the other three.
+    /// Drift of a myosensor's envelope, or of a force sensor's quadrant against the other three.
     Creep,
     /// A myosensor's envelope stands still, which no muscle's does.
     Flat,
@@ -357,10 +357,10 @@ impl core::fmt::Display for CalibrationRefusal {
 /// Whether contractions still fit the calibration of the myosensors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Fit {
-    /// They do, or it is not known.
+    /// The contractions fit, or it is not known.
     #[default]
     Fits,
-    /// They do not: the electrodes have moved, or the wearer contracts otherwise. A new calibration is needed.
+    /// They do not fit: the electrodes have moved, or the wearer contracts differently. A new calibration is needed.
     Moved,
     /// They fit with the electrodes exchanged.
     Exchanged,
@@ -381,15 +381,15 @@ impl Fit {
 /// How the calibration of the myosensors goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Calibration {
-    /// The wearer shall do this for the next 5 s.
+    /// Prompt for the next 5 s.
     Asks(Prompt),
-    /// It is in force.
+    /// The new calibration is in force.
     Done {
         /// The smallest distance of two of the three states, in thousandths of their common standard deviation.
         separation_permille: i32,
     },
-    /// It is not, and what was in force before still is.
+    /// The calibration was refused; the one before stays in force.
     Refused(CalibrationRefusal),
-    /// What is in force fits what the electrodes do, or not any more: told when it changes.
+    /// Whether the calibration in force still fits has changed.
     Fit(Fit),
 }

@@ -142,7 +142,7 @@ impl Config {
         Ok(())
     }
 
-    /// What a stroke has measured becomes S2, whatever a person may choose. False if no surface is like that.
+    /// Sets S2 from a stroke, in a wider range than a person may set. False if no surface has such friction.
     pub(crate) fn measured(&mut self, s2_permille: i32) -> bool {
         let trusted = SettingId::S2.row().range_in_force(true);
         let most = if self.line_trusted { *trusted.end() } else { 900 };

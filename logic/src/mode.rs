@@ -65,7 +65,7 @@ static NEXT: [[Option<GripMode>; CAUSES]; MODES] = {
     next
 };
 
-/// Where a cause leads, None where it changes nothing.
+/// The next mode after a cause; None if the mode stays.
 #[must_use]
 pub const fn next(from: GripMode, cause: Cause) -> Option<GripMode> {
     NEXT[from as usize][index(cause)]

@@ -253,7 +253,7 @@ impl Senses {
         self.feels() && (config.no_wearer || self.gate.is_half_certain(&config.gate))
     }
 
-    /// The same with both muscles known: for sources that do more than close the hand a little.
+    /// Like [`ready`](Self::ready), but both muscles must be known: for behaviours, which do more than close a little.
     #[must_use]
     pub fn all_ready(&self, config: &Config) -> bool {
         self.feels() && (config.no_wearer || self.gate.is_certain(&config.gate))

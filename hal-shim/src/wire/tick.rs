@@ -66,7 +66,7 @@ impl TickRecord {
         [self.said.bits(), self.believed.bits(), self.acted.bits()]
     }
 
-    /// None of numbers that no tick has.
+    /// The record of these fields; None for values that no tick has.
     fn of(vibration: u16, outputs: [i8; NETWORK_OUTPUTS], driven: u16, sets: [u8; 3]) -> Option<Self> {
         let permille = driven & ((1 << DRIVE_SHIFT) - 1);
         let duty = Duty::per_mille(permille);

@@ -8,7 +8,7 @@ use crate::behaviour::{Behaviour, Ending};
 use crate::detector::DetectorSet;
 use crate::words::{Calibration, Cause, Consent, Fault, GripMode, Kept, MotorStop};
 
-/// What the board counted since it was switched on.
+/// Counters of the board since it was switched on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Counters {
     /// Frames taken.
@@ -25,7 +25,7 @@ pub struct Counters {
     pub telemetry_dropped: u32,
     /// Frames received that were no valid message.
     pub bad_frames: u32,
-    /// Frames received faster than commands are taken: not looked at, not answered.
+    /// Received frames that exceeded 500 commands a second: neither executed nor answered.
     pub commands_skipped: u32,
     /// The longest time that a frame took control, from its last code to the end of everything it caused, us.
     pub control_us_max: u32,
@@ -39,7 +39,7 @@ pub struct Counters {
 pub struct Event {
     /// Sequence number of the frame in which it happened.
     pub frame: u32,
-    /// What.
+    /// The event.
     pub kind: EventKind,
 }
 

@@ -176,7 +176,7 @@ impl<const I: usize, const H1: usize, const L: usize, const H2: usize> Mlp<I, H1
         seen
     }
 
-    /// The same, of some units only.
+    /// Like [`see`](Self::see), for a range of units.
     pub fn see_some(&self, features: &[i16; I], units: Range<usize>, seen: &mut [i16; H1]) {
         self.first.activate(features, units, seen);
     }
@@ -207,7 +207,7 @@ pub struct LookBack<const H1: usize, const L: usize> {
 }
 
 impl<const H1: usize, const L: usize> Default for LookBack<H1, L> {
-    /// Nothing.
+    /// An empty queue.
     fn default() -> Self {
         Self { seen: [[0; H1]; L], missing: L }
     }

@@ -18,13 +18,13 @@ pub type Features = [i16; FEATURES];
 /// Settings of the features.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PreprocessorConfig {
-    /// A difference is to the reading so many slow frames before, 1 to [`LAG_MAX`] (equation 1: 1). What is beyond is cut.
+    /// Lag of a difference, slow frames, 1 to [`LAG_MAX`] (equation 1: 1); other values are clamped.
     pub lag: u8,
-    /// Covariance below which a feature is straight instead of logarithmic, samples^2: about that of noise alone.
+    /// Covariance below which a feature is linear instead of logarithmic, samples^2: about that of noise alone.
     pub covariance_knee: u32,
-    /// The same for a bin's power, samples^2.
+    /// Knee of a bin's power, samples^2.
     pub spectrum_knee: u32,
-    /// The same for a structure function, samples^2 for each frame of its window, times the number of elements.
+    /// Knee of a structure function, samples^2 for each frame of its window, times the number of elements.
     pub structure_knee: u32,
     /// With more elements than this without a reading, there are no features.
     pub dead_max: u8,

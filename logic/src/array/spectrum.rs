@@ -57,7 +57,7 @@ pub struct SlidingSpectrum<const M: usize> {
 }
 
 impl<const M: usize> Default for SlidingSpectrum<M> {
-    /// That of an array at rest.
+    /// The spectrum of an array at rest: all bins are 0.
     fn default() -> Self {
         const { assert!(M >= 2 && M.is_multiple_of(2) && SPECTRUM_WINDOW.is_multiple_of(M)) }
         Self { window: [0; M], place: 0, bins: [[0; 2]; BINS] }

@@ -153,7 +153,7 @@ pub fn knees(of_frame: u32) -> [Knee; WINDOWS] {
     core::array::from_fn(|window| Knee::at(of_frame * (EDGES[window + 1] - EDGES[window]) as u32))
 }
 
-/// What elements did apart from each other: `n` times the squares of their changes about the mean.
+/// Difference between the elements: `n` times the sum of squares of their changes about the mean.
 #[inline]
 fn apart(changes: &Changes) -> u32 {
     let (mut sum, mut squares) = (0, 0);

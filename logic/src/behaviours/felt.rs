@@ -41,14 +41,14 @@ pub struct Felt<'a> {
 /// The cells of the skin, with their readings at the behaviour's begin.
 #[derive(Clone, Copy, Debug)]
 pub enum Skin {
-    /// Markers: normal force and shear, mN.
+    /// The camera's markers.
     Markers {
-        /// At first.
+        /// Normal force at the behaviour's begin, mN.
         normal_mn: [Option<i16>; MARKERS],
-        /// At first.
+        /// Shear at the behaviour's begin, mN.
         shear_mn: [i16; MARKERS],
     },
-    /// Taxels: their samples.
+    /// The taxels' samples at the behaviour's begin.
     Taxels([Option<u16>; ELEMENTS]),
 }
 

@@ -34,7 +34,7 @@ const HEARS_SPREADS: i32 = 1;
 const DEFAULT_BEGINS_UV: [i32; 2] = [600_000, 1_500_000];
 const DEFAULT_OVER: [i32; 2] = [1_322, 2_900];
 const DEFAULT_READINGS: i32 = 72;
-/// And how far it rises at least.
+/// Without calibration: least rise of the other electrode, Q10 octaves.
 const DEFAULT_HEARS: i32 = 256;
 
 /// The wearer's wish.
@@ -73,11 +73,11 @@ struct Sites {
     span: [i32; 2],
     begins: [i32; 2],
     ends: [i32; 2],
-    /// How far a wish may fall from its crest.
+    /// Fall from the highest share that ends a wish.
     fall: [i32; 2],
     /// Share of the other site with each wish from which both contract: that asks for nothing.
     both: [i32; 2],
-    /// How far the other electrode rises with each wish at least; none if it hears too little.
+    /// Least rise of the other electrode with each wish; None if its signal is too small.
     hears: [Option<i32>; 2],
     close_ratio: i32,
     turn: i32,
@@ -129,7 +129,7 @@ pub struct Decide {
     fitted: &'static Fitted,
     sites: Option<Sites>,
     wish: Wish,
-    /// What is wished now, and for how many readings it has been.
+    /// The wish of the last readings, and for how many of them.
     next: Wish,
     stands: i32,
     strong: i32,
@@ -140,12 +140,12 @@ pub struct Decide {
     mean: [i32; 3],
     crest: i32,
     trough: [i32; 2],
-    /// What is added to rest, uV, Q8.
+    /// Offset that is added to rest, uV, Q8.
     drift: [i32; 2],
 }
 
 impl Decide {
-    /// For this calibrated wearer; None: not calibrated.
+    /// A decision for this calibrated wearer; None: not calibrated.
     #[must_use]
     pub fn new(model: Option<&EmgModel>) -> Self {
         Self::with(&FITTED, model)
@@ -193,8 +193,8 @@ impl Decide {
         self.sites.map_or(site, |sites| sites.electrode[site]) & 1
     }
 
-    /// Where the other electrode rests, and how far it rises at least with the contraction that is wished; none for a wearer
-    /// with whom it hardly does.
+    /// Rest level of the other electrode, and its least rise with the present wish, Q10 octaves. None for a wearer whose other
+    /// electrode hardly rises.
     #[must_use]
     pub fn hears(&self) -> Option<[i32; 2]> {
         let site = usize::from(self.wish != Wish::Close);
@@ -255,7 +255,7 @@ impl Decide {
         self.follow(sites, electrodes, wish);
     }
 
-    /// What the averages say.
+    /// The wish by the averaged shares and place.
     fn wanted(&mut self, sites: &Sites, blind: [bool; 2], over: [bool; 2]) -> Wish {
         let f = self.fitted;
         let [closes, opens, place] = self.mean.map(|mean| mean / 16);

@@ -18,11 +18,11 @@ const STILL_UV: i32 = 1_500;
 const FLAT_FRAMES: u16 = 80;
 /// Hum varies by less than this part of its level, 1/16.
 const HUM_PART: i32 = 16;
-/// Of climbing without falling back by 3 %: 2.5 s, passed for 2 s in those 45 minutes.
+/// Slow frames of rise without a fall of 3 % that no sound recording has: 2.5 s. The longest in those 45 minutes is 2 s.
 const CREEP_FRAMES: u16 = 200;
-/// At the top: 1.5 s. Recordings have 0.35 s.
+/// Slow frames at the top of the range that no sound recording has: 1.5 s. Recordings have 0.35 s.
 const TOP_FRAMES: u16 = 120;
-/// Of activity without a pause: 60 s; one person holds a tone for more than 30 s.
+/// Slow frames of activity without a pause that no muscle has: 60 s. One person has tone for more than 30 s.
 const ENDLESS_FRAMES: u16 = 4_800;
 /// Good slow frames after which an electrode is believed again: 1 s.
 const BACK_FRAMES: u16 = 80;
@@ -85,7 +85,7 @@ pub struct Trust {
     good: u16,
     last_uv: Option<i32>,
     missing: u8,
-    /// Of the slow frame under way.
+    /// Sum of the present slow frame's readings, uV.
     sum_uv: i32,
     count: u8,
     /// Means of the last slow frames, in a ring.

@@ -23,8 +23,8 @@ const LEARN: u8 = 40;
 const LEARN_SHIFT: u32 = 3;
 /// Fraction bits of a contradiction as a part of the load.
 const GAIN_Q: u32 = 12;
-/// What a cell has moved is counted against what it was over `2^ANCHOR_SHIFT` readings, 3 s, with this many fraction bits; and the
-/// votes for each cell are forgotten over twice that.
+/// A cell's change is measured from its average over `2^ANCHOR_SHIFT` readings, 3 s, kept with as many fraction bits. Votes
+/// decay over `2^VOTES_SHIFT` readings.
 const ANCHOR_SHIFT: u32 = 8;
 const VOTES_SHIFT: u32 = 9;
 /// Another cell is blamed instead if it has at least this many times the votes.
@@ -115,7 +115,7 @@ impl Drift {
         cells.map(|mn| (mn + self.sunk_mn / FSR_COUNT as i32).max(0))
     }
 
-    /// Where no cell carries anything but the blamed one, nothing is held: what is read is drift.
+    /// If only the blamed cell carries a force, nothing is held: its reading is drift.
     fn let_go(&mut self, read_mn: [i32; FSR_COUNT], opened: bool) {
         let carries = |n: usize| read_mn[n] >= CARRIES_MN;
         if let Some(blamed) = self.blamed()

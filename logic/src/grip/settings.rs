@@ -7,13 +7,13 @@ use crate::setting::settings;
 pub struct GripConfig {
     /// Duty of the pulse that answers slip, per mille.
     pub slip_duty_permille: u16,
-    /// Its length, in frames.
+    /// Length of the pulse that answers slip, frames.
     pub slip_frames: u32,
-    /// Its length at most while a detector still reports slip, in frames.
+    /// Longest pulse while a detector still reports slip, frames.
     pub slip_frames_max: u32,
     /// Duty of the pulse that answers incipient slip, per mille.
     pub incipient_duty_permille: u16,
-    /// Its length, in frames.
+    /// Length of the pulse that answers incipient slip, frames.
     pub incipient_frames: u32,
     /// Time after a pulse in which no slip is answered, in frames: longer than the motor's dead time, so that the
     /// noise of the hand's own closing is not answered by more closing.

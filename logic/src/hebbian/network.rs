@@ -45,7 +45,7 @@ const INPUTS_MAX: usize = 31;
 pub struct Network<const INPUTS: usize, const OUTPUTS: usize> {
     /// Q59.
     weights: [[i64; INPUTS]; OUTPUTS],
-    /// For each output, the sum of the weights' magnitudes, Q23: what the next update divides by.
+    /// For each output, the sum of the weights' magnitudes, Q23: part of the next update's divisor.
     magnitudes: [u32; OUTPUTS],
 }
 
@@ -118,7 +118,7 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
         self.learn_some(rule, activations, &codes.map(Some));
     }
 
-    /// The same; an output that is not in the lesson, None, stays as it is.
+    /// Like [`learn`](Self::learn); an output with None keeps its weights.
     pub fn learn_some(
         &mut self,
         rule: &Rule,
@@ -179,7 +179,7 @@ const fn in_use(weight: i64) -> i32 {
     (weight >> 32) as i32
 }
 
-/// What a weight and an activation add to an output, rounded down. With a weight of 8 and an activation of 1 it is 2^29.
+/// Product of a weight and an activation, units of [`Output`], rounded down; 2^29 for a weight of 8 and an activation of 1.
 ///
 /// `(w t) >> 27` is the upper word of `(2 w) (16 t)`, one instruction; neither factor leaves 32 bits.
 const fn part(weight: i64, t: i32) -> i32 {

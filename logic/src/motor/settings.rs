@@ -2,10 +2,10 @@
 
 use crate::setting::settings;
 
-/// What the motor bears.
+/// Limits of the motor's current.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MotorConfig {
-    /// The current that it may carry for ever, mA.
+    /// Largest continuous current, mA.
     pub limit_ma: u16,
     /// The current of the blocked motor at full duty, mA.
     pub stall_ma: u16,

@@ -20,7 +20,7 @@ use crate::store::payload::{EmgBytes, SettingsBytes, ZeroBytes};
 /// Words of a record beside its payload.
 pub const OVERHEAD_WORDS: usize = 4;
 
-/// What a session programs before its first record: every bit, so that none is left half programmed, and no tag.
+/// Word that a session programs before its first record: all bits 0, so that none is half programmed; it is no tag.
 pub(super) const MARK: u32 = 0;
 
 const COMMIT: u32 = 0x3C5A_96E1;
@@ -43,7 +43,7 @@ pub enum Record {
 }
 
 impl Record {
-    /// Its kind.
+    /// Kind of the record.
     #[must_use]
     pub const fn kept(&self) -> Kept {
         match self {
@@ -54,7 +54,7 @@ impl Record {
         }
     }
 
-    /// Its payload.
+    /// Payload of the record, in `buffer` if it has to be made.
     pub fn payload<'a>(&'a self, buffer: &'a mut [u8; PAYLOAD_BYTES]) -> &'a [u8] {
         match self {
             // The buffer has just the length that it takes.

@@ -18,7 +18,7 @@ pub const OPENING_WORDS: usize = 3;
 /// Changes with the layout of sectors and records.
 const MAGIC: u32 = 0x7E4A_0001;
 
-/// Where a whole record is.
+/// Place of a complete record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
     pub sector: Sector,
@@ -33,7 +33,7 @@ impl Entry {
         Tag { kind: record::number(self.kept), words: self.words }
     }
 
-    /// Its payload. None if it is longer than `buffer`.
+    /// Reads the payload into `buffer`. None if it is longer.
     pub fn read<'a>(&self, area: &impl FlashArea, buffer: &'a mut [u8]) -> Option<&'a [u8]> {
         let payload = buffer.get_mut(..4 * usize::from(self.words))?;
         let (slots, _) = payload.as_chunks_mut::<4>();
