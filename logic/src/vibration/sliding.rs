@@ -60,8 +60,8 @@ struct Level {
 }
 
 impl Level {
-    /// Takes the present level, Q16 samples, limited to `most` floors; gives the smoothed level beside its floor. The floor rises by
-    /// `2^-up` of the difference.
+    /// Takes the present level, Q16 samples, limited to `most` floors; gives the smoothed level beside its floor. The floor rises
+    /// by `2^-up` of the difference.
     #[inline]
     fn step(&mut self, now: i32, up: u32, most: i32) -> Floors {
         let now = now >> (16 - Q);
