@@ -49,13 +49,11 @@ pub struct Config {
 
 settings! {
     Config:
-    /// 1: the serial line moves the hand without consent (a gripper on a robot). Setting it needs consent by muscles or button, not by
-    /// power-up
+    /// 1: the serial line needs no consent (gripper on a robot). Setting it needs consent by muscles or button
     40 LineTrusted "line-trusted-flag" "flag" [0, 1] = 0 => Flag(line_trusted);
     /// 1: frames are streamed from the start on, so that a recording can be replayed bit for bit
     41 StreamAtStart "stream-at-start-flag" "flag" [0, 1] = 0 => Flag(stream_at_start);
-    /// 1: no wearer, the reflex works without myosensors (a gripper on a robot). Setting it needs consent by muscles or button, not by
-    /// power-up
+    /// 1: no wearer, the reflex works without myosensors (gripper on a robot). Setting it needs consent by muscles or button
     42 NoWearer "no-wearer-flag" "flag" [0, 1] = 0 => Flag(no_wearer);
     /// Detectors that the reflex does not act on, the sum of: 1 Hebbian, 2 MLP, 4 photoelastic, 8 S2, 16 S1
     74 DetectorsOff "detectors-off-mask" "mask" [0, 7, trusted 0, 31] = 0 => Mask(detectors_off);
