@@ -106,7 +106,7 @@ pub enum Role {
     Taxel,
     /// A myoelectric envelope.
     Muscle,
-    /// The hand's own: opening and motor current.
+    /// A sensor of the hand: opening or motor current.
     Hand,
 }
 

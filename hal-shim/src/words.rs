@@ -168,7 +168,7 @@ pub enum MotorStop {
 }
 
 impl MotorStop {
-    /// For a person.
+    /// The reason in words.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -290,7 +290,7 @@ pub enum Prompt {
 }
 
 impl Prompt {
-    /// What the wearer is told.
+    /// The message to the wearer.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -329,7 +329,7 @@ pub enum CalibrationRefusal {
 }
 
 impl CalibrationRefusal {
-    /// What the wearer is told.
+    /// The message to the wearer.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -367,7 +367,7 @@ pub enum Fit {
 }
 
 impl Fit {
-    /// For a person.
+    /// The fit in words.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

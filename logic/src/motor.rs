@@ -30,13 +30,13 @@ use crate::arming::STEP_FRAMES;
 use crate::health::{Change, Limits, SensorHealth};
 use crate::journal::{Journal, report};
 
-/// Looks at the drive in a slow frame.
+/// Number of looks at the drive in a slow frame.
 const STEPS: u32 = FRAMES_PER_SLOW_FRAME as u32 / STEP_FRAMES;
 /// Slow frames of stall after which the motor stops: 0.3 s, so that 0.5 s are kept with the filter at the pin and the motor's dead time.
 const STALL_CYCLES: u8 = 24;
-/// A mean duty below this moves nothing, per mille.
+/// Mean duty below which the motor does not move, per mille.
 const LEAST_PERMILLE: u32 = 50;
-/// A drive stronger by this is tried on a stalled motor, per mille.
+/// A stalled motor is driven again if the duty is larger by this, per mille.
 const STRONGER_PERMILLE: u16 = 125;
 /// Fingers that move change the opening's reading by more than this: 8 mV, a third of a millimetre.
 const MOVED: u16 = sample_from_mv(8);

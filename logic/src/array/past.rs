@@ -75,7 +75,7 @@ impl Past {
         arrival
     }
 
-    /// The change since `lag` slow frames before, 1 to [`LAG_MAX`] (equation 1: 1). What is beyond is cut.
+    /// The change of each element over `lag` slow frames, clamped to 1..=[`LAG_MAX`] (equation 1: 1).
     #[must_use]
     #[inline]
     pub fn changes(&self, lag: usize) -> Changes {

@@ -51,7 +51,7 @@ const _: () = assert!(
 #[derive(Clone, Debug)]
 pub struct Structure {
     energies: [[u32; FRAMES]; LAGS.len()],
-    /// Where the newest energy of each lag is.
+    /// Index of the newest energy of each lag.
     newest: usize,
     sums: [[u32; WINDOWS]; LAGS.len()],
     /// Number of slow frames since the start or the last `forget`, saturating.

@@ -12,7 +12,7 @@ const TAXEL_SAMPLES_PER_N: i32 = 993;
 
 /// Scores of a cell's normal force, mN: noise, sufficient, medium, large (FingerVision 2017, section II-A).
 const SCORES: [(i32, u16); 3] = [(300, 5), (100, 3), (30, 1)];
-/// A cell feels another force than before if it has changed by this, mN, or by a quarter of what it was.
+/// A cell feels a changed force if its reading differs by this, mN, or by a quarter of its first reading.
 const CHANGE_MN: i32 = 60;
 
 /// The skin as a whole is pulled at if all markers together are sheared by so much more than at first, mN: three times what

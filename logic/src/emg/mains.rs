@@ -37,7 +37,7 @@ const LEAST_SHARE_PERMILLE: u16 = 600;
 pub struct Mains {
     /// Amplitude of all lines together, uV.
     pub line_uv: u32,
-    /// The part of the alternating power above 5 Hz that lies in them, per mille.
+    /// Part of the alternating power above 5 Hz that lies in these lines, per mille.
     pub share_permille: u16,
 }
 

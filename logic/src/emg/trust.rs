@@ -282,19 +282,20 @@ impl Trust {
         self.lost.is_none()
     }
 
-    /// Whether it has stood still for 0.2 s.
+    /// Whether the envelope has been constant for 0.2 s.
     #[must_use]
     pub const fn is_still(&self) -> bool {
         self.flat >= FLAT_FRAMES / 5
     }
 
-    /// Whether it is doubted because it stands still: what it stands at is hum.
+    /// Whether the electrode is doubted because its envelope is constant: its level then counts as hum.
     #[must_use]
     pub fn hums(&self) -> bool {
         matches!(self.lost, Some(Quality::Flat | Quality::Hum)) && self.flat >= FLAT_FRAMES
     }
 
-    /// Whether this reading is where it stood still when it was doubted for that: a muscle that begins there moves it by more.
+    /// Whether this reading, uV, is still at the constant level for which the electrode is doubted. An active muscle would
+    /// change it.
     #[must_use]
     pub fn hums_at(&self, uv: i32) -> bool {
         matches!(self.lost, Some(Quality::Flat | Quality::Hum))

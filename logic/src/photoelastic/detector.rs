@@ -43,7 +43,7 @@ impl Detector for PhotoelasticDetector {
 }
 
 impl PhotoelasticDetector {
-    /// Most hands have no head.
+    /// Reports slip by the head's signal. Cold, since most hands have no head.
     #[cold]
     #[inline(never)]
     fn judge(&mut self, config: &HeadConfig, sensed: &Sensed<'_>) -> Said {

@@ -103,7 +103,7 @@ impl VibrationDetector {
         self.judge(config, loudest)
     }
 
-    /// Another sensor is in a film's place from now on: its jump is no vibration.
+    /// Resets a film's filters: another sensor takes its place, and the jump is no vibration.
     pub fn forget(&mut self, film: usize) {
         if let Some(film) = self.films.get_mut(film) {
             *film = Film::default();
@@ -111,7 +111,7 @@ impl VibrationDetector {
         }
     }
 
-    /// Samples of a masked film are doubtful.
+    /// The validity of all samples, with those of masked films doubtful.
     #[inline(never)]
     fn with_masks(
         &mut self,
