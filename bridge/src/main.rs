@@ -18,11 +18,12 @@ use zenoh::Wait;
 
 const EXAMPLES: &str = "\
 ROS 2 Jazzy or newer with rmw_zenoh (RMW_IMPLEMENTATION=rmw_zenoh_cpp), whose nodes meet at a router: start it with \
-`ros2 run rmw_zenoh_cpp rmw_zenohd`, or let the bridge be it (--router-here).
+`ros2 run rmw_zenoh_cpp rmw_zenohd`, or let the bridge be the router (--router-here).
 
-Publishes, 80 times a second: /NAME/joint_states (grip force as effort), /NAME/slip, /NAME/margin, /NAME/tactile; each second \
-/diagnostics. Hears /NAME/gripper_command (control_msgs/msg/GripperCommand): position 0 closes to max_effort (0: until the \
-object is felt), above 0 opens. The board carries it out only with consent at the hand, and below its force ceiling.
+Publishes, 80 times a second: /NAME/joint_states (effort: grip force, N), /NAME/slip, /NAME/margin, /NAME/tactile; each \
+second /diagnostics. Subscribes to /NAME/gripper_command (control_msgs/msg/GripperCommand): position 0 closes to \
+max_effort, N (0: until the object is felt), above 0 opens. The board obeys only with consent at the hand, and below its \
+force ceiling.
 
 Examples:
   cargo tenax bridge                                            the board that is plugged in, as /hand
@@ -35,19 +36,20 @@ Examples:
 #[derive(Debug, Parser)]
 #[command(name = "tenax bridge", version, after_help = EXAMPLES)]
 struct Args {
-    /// A hand's line, as `monitor` takes it; may be given more than once [default: the only board that is plugged in]
+    /// A hand's serial line: /dev/ttyACM0, /dev/pts/5 or tcp:127.0.0.1:7777; may be given more than once [default: the only
+    /// board that is plugged in]
     #[arg(long, value_name = "PORT")]
     port: Vec<Target>,
-    /// What the hand is called, for each port in turn [default: hand, or hand_1, hand_2 and so on]
+    /// Name of each port's hand in ROS 2, in order [default: hand, or hand_1, hand_2 and so on]
     #[arg(long)]
     name: Vec<String>,
-    /// Where ROS 2's zenoh router is
+    /// Address of ROS 2's zenoh router
     #[arg(long, value_name = "tcp/HOST:PORT", default_value = "tcp/127.0.0.1:7447")]
     router: String,
-    /// Be the router, at --router
+    /// Be the router at --router: no rmw_zenohd needed
     #[arg(long)]
     router_here: bool,
-    /// ROS 2's domain [default: ROS_DOMAIN_ID, or 0]
+    /// ROS 2's domain, 0 to 232 [default: ROS_DOMAIN_ID, or 0]
     #[arg(long, value_parser = clap::value_parser!(u32).range(0..=232))]
     domain: Option<u32>,
 }

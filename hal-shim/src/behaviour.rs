@@ -40,15 +40,15 @@ impl Behaviour {
 /// How a behaviour ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Ending {
-    /// It did what it was asked for.
+    /// The request was carried out.
     Done,
     /// By command.
     Stopped,
     /// A muscle became active, or a drive command came.
     TakenOver,
-    /// A sensor that it needs gives no number, or the camera is silent.
+    /// A needed sensor gives no valid reading, or no pictures come.
     SensorLost,
-    /// It has taken longer than it may.
+    /// The longest duration has passed.
     TooLong,
     /// The force ceiling is reached.
     Ceiling,

@@ -48,9 +48,9 @@ pub const fn mv_from_sample(sample: u16) -> u32 {
 /// How a signal reaches the converter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Input {
-    /// On a pin of its own: read in every scan, at this rank of it.
+    /// On a dedicated pin, converted in every scan.
     Direct {
-        /// Place in the scan, 0 to 11.
+        /// Position in the scan, 0 to 11.
         rank: u8,
     },
     /// Behind switch A: read while the select lines show `select`.
@@ -106,7 +106,7 @@ pub enum Role {
     Taxel,
     /// A myoelectric envelope.
     Muscle,
-    /// The hand's own: opening and motor current.
+    /// A sensor of the hand: opening or motor current.
     Hand,
 }
 

@@ -63,49 +63,49 @@ impl DetectorId {
 pub struct DetectorSet(u8);
 
 impl DetectorSet {
-    /// None of them.
+    /// The empty set.
     pub const NONE: Self = Self(0);
-    /// All of them.
+    /// The set of all detectors.
     pub const ALL: Self = Self(((1u16 << DetectorId::COUNT) - 1) as u8);
 
-    /// One of them.
+    /// The set of one detector.
     #[must_use]
     pub const fn only(id: DetectorId) -> Self {
         Self(1 << id as u8)
     }
 
-    /// The same, with or without one of them.
+    /// This set with `id` added (`is_in`) or removed.
     #[must_use]
     pub const fn with(self, id: DetectorId, is_in: bool) -> Self {
         let bit = 1 << id as u8;
         Self(if is_in { self.0 | bit } else { self.0 & !bit })
     }
 
-    /// Those that are in both.
+    /// Intersection: the detectors that are in both sets.
     #[must_use]
     pub const fn and(self, other: Self) -> Self {
         Self(self.0 & other.0)
     }
 
-    /// Those that are in either.
+    /// Union: the detectors that are in at least one of the sets.
     #[must_use]
     pub const fn or(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// Those that are not in `other`.
+    /// Difference: the detectors of this set that are not in `other`.
     #[must_use]
     pub const fn without(self, other: Self) -> Self {
         Self(self.0 & !other.0)
     }
 
-    /// Whether there is none.
+    /// Whether the set has no detector.
     #[must_use]
     pub const fn is_empty(self) -> bool {
         self.0 == 0
     }
 
-    /// Whether one is in it.
+    /// Whether the set has this detector.
     #[must_use]
     pub const fn contains(self, id: DetectorId) -> bool {
         self.0 & 1 << id as u8 != 0
@@ -122,7 +122,7 @@ impl DetectorSet {
         }
     }
 
-    /// Its bits.
+    /// One bit for each detector, in the order of [`DetectorId`].
     #[must_use]
     pub const fn bits(self) -> u8 {
         self.0
@@ -150,12 +150,12 @@ pub enum Direction {
 /// Whether a detector has the input that it needs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum DetectorHealth {
-    /// Not yet: its windows fill, or it has not seen the finger unloaded.
+    /// The detector does not work yet: its windows fill, or it has not seen the finger unloaded.
     #[default]
     Starting,
-    /// It works.
+    /// The detector works.
     Working,
-    /// Its sensors give no numbers.
+    /// The detector's sensors give no valid readings.
     Blind,
 }
 

@@ -13,7 +13,7 @@ pub enum Sector {
 }
 
 impl Sector {
-    /// Both.
+    /// Both sectors.
     pub const BOTH: [Self; 2] = [Self::A, Self::B];
 
     /// The other sector.

@@ -67,7 +67,7 @@ pub enum Reason {
     NoContact,
     /// A myosensor's envelope stands still and mains is in it.
     Hum,
-    /// It drifts: a myosensor's envelope, or a quadrant of the force sensor against the other three.
+    /// Drift of a myosensor's envelope, or of a force sensor's quadrant against the other three.
     Creep,
     /// A myosensor's envelope stands still, which no muscle's does.
     Flat,
@@ -78,11 +78,11 @@ pub enum Reason {
 /// An ability that the fingertip may lose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Capability {
-    /// Feel vibration: S1.
+    /// Feel vibration, for S1.
     Vibration,
-    /// Measure force: S2, and the force ceiling.
+    /// Measure force, for S2 and the force ceiling.
     Force,
-    /// Know that the wearer's muscles are at rest: the whole reflex.
+    /// Know whether the wearer's muscles are at rest; without it the reflex is on standby.
     WearerIntent,
 }
 
@@ -102,7 +102,7 @@ pub enum DriveSource {
     Behaviour,
 }
 
-/// What went wrong.
+/// A fault that the board reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Fault {
     /// A sensor gives no number any more.
@@ -123,7 +123,7 @@ pub enum Fault {
     CapabilityBack(Capability),
     /// Frames were lost: the converter or its DMA fell behind and was restarted.
     FramesLost {
-        /// How many.
+        /// Number of lost frames.
         count: u32,
     },
     /// The last run ended with the watchdog's reset.
@@ -147,7 +147,7 @@ pub enum Fault {
     /// The crystal stopped, or does not start: the board runs on the chip's own oscillator, a per cent too fast or too slow. The
     /// serial line may not be understood.
     CrystalLost,
-    /// The board has restarted too often in a row: it drives nothing until it is switched off and on.
+    /// The board has restarted too often in a row: until it is switched off and on, only its button drives the motor.
     TooManyRestarts,
     /// The hand is surely open, and the force sensor still reads a load that is no offset. So the hand is never known to be empty:
     /// zeros and noise floors are not learned, and there is no power-up consent.
@@ -168,7 +168,7 @@ pub enum MotorStop {
 }
 
 impl MotorStop {
-    /// For a person.
+    /// The reason in words.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -203,7 +203,7 @@ impl Code {
         }
     }
 
-    /// From any number's sign.
+    /// The code of a number's sign.
     #[must_use]
     pub fn from_sign(number: i32) -> Self {
         match number.cmp(&0) {
@@ -222,11 +222,11 @@ pub type Codes = [Code; 2];
 pub enum NoLesson {
     /// No teacher, or too few codes yet.
     Absent,
-    /// Its last picture is too old.
+    /// The teacher's last picture is too old.
     Late,
-    /// Its codes were opposite within a short time, or disagree: v1 says that nothing moves, v2 that the hand does.
+    /// The codes were opposite within a short time, or v1 says that nothing moves and v2 that the hand moves.
     Contradicting,
-    /// It says that neither hand nor object moves.
+    /// Both codes are 0: neither hand nor object moves.
     NothingMoves,
     /// Nothing is held.
     NoGrasp,
@@ -290,7 +290,7 @@ pub enum Prompt {
 }
 
 impl Prompt {
-    /// What the wearer is told.
+    /// The message to the wearer.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -329,7 +329,7 @@ pub enum CalibrationRefusal {
 }
 
 impl CalibrationRefusal {
-    /// What the wearer is told.
+    /// The message to the wearer.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -357,17 +357,17 @@ impl core::fmt::Display for CalibrationRefusal {
 /// Whether contractions still fit the calibration of the myosensors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Fit {
-    /// They do, or it is not known.
+    /// The contractions fit, or it is not known.
     #[default]
     Fits,
-    /// They do not: the electrodes have moved, or the wearer contracts otherwise. A new calibration is needed.
+    /// They do not fit: the electrodes have moved, or the wearer contracts differently. A new calibration is needed.
     Moved,
     /// They fit with the electrodes exchanged.
     Exchanged,
 }
 
 impl Fit {
-    /// For a person.
+    /// The fit in words.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -381,15 +381,15 @@ impl Fit {
 /// How the calibration of the myosensors goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Calibration {
-    /// The wearer shall do this for the next 5 s.
+    /// Prompt for the next 5 s.
     Asks(Prompt),
-    /// It is in force.
+    /// The new calibration is in force.
     Done {
         /// The smallest distance of two of the three states, in thousandths of their common standard deviation.
         separation_permille: i32,
     },
-    /// It is not, and what was in force before still is.
+    /// The calibration was refused; the one before stays in force.
     Refused(CalibrationRefusal),
-    /// What is in force fits what the electrodes do, or not any more: told when it changes.
+    /// Whether the calibration in force still fits has changed.
     Fit(Fit),
 }

@@ -40,7 +40,7 @@ Examples:
   tenax run --report json > report.json     for programs
   tenax run --serve                         the same at real time, with its serial line on a pseudo-terminal
   tenax run --host --serve-tcp 7777         on TCP port 7777 of this machine only
-  tenax learn                               a fingertip teaches itself slip from a camera
+  tenax learn                               a camera teaches the Hebbian network
   tenax scenes                              what there is to run
   tenax check                               every promise, measured
   tenax monitor                             watch the board that is plugged in
@@ -62,7 +62,7 @@ struct Cli {
 enum Command {
     /// Run a scene or a recording on a board; report and draw it
     Run(run::Args),
-    /// Let a fingertip teach itself slip from a camera, and measure what that is worth
+    /// Teach the Hebbian network slip with a camera, and score it
     Learn(learn::Args),
     /// Run a hand of several fingertips
     Hand(hand::Args),
@@ -76,11 +76,11 @@ enum Command {
     Test(test::Args),
     /// Measure every promise of the project, one line each; fails if one is not kept
     Check(check::Args),
-    /// Hold requirements, hazards and tests against each other
+    /// Check requirements, hazards and tests against each other
     Safety(safety::Args),
     /// Make a labelled data set of the normal-force array
     Dataset(dataset::Args),
-    /// Score the force array's network on what it never saw, or the whole hand in the paper's tasks
+    /// Score the array's network on held-out data, or the whole hand in the paper's tasks
     Evaluate(evaluate::Args),
     /// Train the force array's slip detector from labelled recordings
     Train(train::Args),
@@ -98,7 +98,10 @@ enum Command {
     Plot(plot::Args),
     /// Flash, RAM, worst stack and instructions a tick of the image, beside their budgets
     Size(size::Args),
-    /// Run Clippy on the image with the toolchain that builds it
+    /// Run Clippy on the image; check that its tick and interrupts cannot panic
+    ///
+    /// Also compiles the image for the STM32F446RE and compares the other places that may panic with budgets.toml. Exit status
+    /// 1: too many. Example: cargo tenax lint-image
     LintImage,
     /// Print every command with its options as a Markdown table
     Commands,

@@ -4,9 +4,9 @@ use tenax_hal_shim::wire::Down;
 
 /// Frames in which one command's worth is earned: 500 in a second. A camera sends 30, a held key 10.
 const FRAMES_EACH: u32 = 4;
-/// What is saved up at most: a tool that says all it has to say at once.
+/// Most commands in one burst.
 pub const BURST: u32 = 32;
-/// What a command costs whose answer fills a quarter of a slow frame's time on the line.
+/// Cost, in commands, of one whose answer fills a quarter of a slow frame's time on the line.
 const LONG_ANSWER: u32 = 6;
 
 /// A token bucket for commands.

@@ -18,15 +18,15 @@ use tenax_hal_shim::channel::frames;
 
 /// Frames from one step to the next, a fifth of a slow frame: every consent takes longer.
 pub const STEP_FRAMES: u32 = 5;
-/// How long a co-contraction or a press of the button counts, in steps.
+/// Duration of the consent by co-contraction or button, steps.
 const CONSENT_STEPS: u32 = frames(60_000) / STEP_FRAMES;
-/// How long both muscles are active for consent, in steps.
+/// Duration of a co-contraction that gives consent, steps.
 const CO_CONTRACTION_STEPS: u32 = frames(2_000) / STEP_FRAMES;
-/// How long the button is down, and was up before, to count as pressed: longer than its contacts bounce, in frames.
+/// Time for which the button must be up, then down, to count as pressed, frames: longer than its contacts bounce.
 pub const DEBOUNCE_FRAMES: u32 = frames(20);
-/// The same in steps.
+/// [`DEBOUNCE_FRAMES`] in steps.
 pub const DEBOUNCE_STEPS: u32 = DEBOUNCE_FRAMES / STEP_FRAMES;
-/// How long a hand that was switched on empty consents, in steps.
+/// Longest consent of a hand that was switched on empty, steps.
 const POWER_UP_STEPS: u32 = frames(10_000) / STEP_FRAMES;
 
 /// The signs of consent in a step.
@@ -49,7 +49,7 @@ struct Act {
 }
 
 impl Act {
-    /// Goes on by one step; true in the one in which the act is complete.
+    /// Advances by one step; true in the step that completes the act.
     fn tick(&mut self, on: bool, long: u32) -> bool {
         if !on {
             self.on = 0;

@@ -5,8 +5,8 @@
 //! ([`may_relax`]). Its input ([`Felt`]) comes from a camera behind the skin or from the
 //! finger's own sensors.
 //!
-//! Two behaviours expect slip and answer it themselves ([`Running::answers_slip`]): a stroke, and a hand that gives
-//! something away. Each of them ends by itself.
+//! A stroke, a hand-over and a part of a turn expect slip and answer it themselves ([`Running::answers_slip`]). Each of them
+//! ends by itself.
 
 mod felt;
 mod gentle_grasp;
@@ -46,13 +46,13 @@ pub enum Wish {
 /// Result of one tick of a behaviour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Course {
-    /// It goes on, and asks for this.
+    /// The behaviour goes on with this request.
     On(Wish),
-    /// It has ended.
+    /// The behaviour has ended, for this reason.
     Ends(Ending),
 }
 
-/// How long each may last, in frames.
+/// Longest duration of each behaviour, frames.
 const STROKE_FRAMES_MAX: u32 = frames(60_000);
 const GRASP_FRAMES_MAX: u32 = frames(20_000);
 const HAND_OVER_FRAMES_MAX: u32 = frames(20_000);
@@ -96,7 +96,7 @@ impl Running {
         self.what
     }
 
-    /// Whether it expects slip and answers it itself, so that the reflex is not to.
+    /// Whether the behaviour expects slip and answers it itself, so that the reflex must not.
     #[must_use]
     pub const fn answers_slip(&self) -> bool {
         match &self.doing {

@@ -32,7 +32,7 @@ pub struct Button {
     /// Steps for which it is down, and up.
     down: u32,
     up: u32,
-    /// It was seen up before it went down, and has asked for nothing since.
+    /// The button was up before it went down, and this press has made no request yet.
     fresh: bool,
     held: bool,
 }

@@ -49,13 +49,11 @@ pub struct Config {
 
 settings! {
     Config:
-    /// 1: the serial line moves the hand without consent (a gripper on a robot). Setting it needs consent by muscles or button, not by
-    /// power-up
+    /// 1: the serial line needs no consent (gripper on a robot). Setting it needs consent by muscles or button
     40 LineTrusted "line-trusted-flag" "flag" [0, 1] = 0 => Flag(line_trusted);
     /// 1: frames are streamed from the start on, so that a recording can be replayed bit for bit
     41 StreamAtStart "stream-at-start-flag" "flag" [0, 1] = 0 => Flag(stream_at_start);
-    /// 1: no wearer, the reflex works without myosensors (a gripper on a robot). Setting it needs consent by muscles or button, not by
-    /// power-up
+    /// 1: no wearer, the reflex works without myosensors (gripper on a robot). Setting it needs consent by muscles or button
     42 NoWearer "no-wearer-flag" "flag" [0, 1] = 0 => Flag(no_wearer);
     /// Detectors that the reflex does not act on, the sum of: 1 Hebbian, 2 MLP, 4 photoelastic, 8 S2, 16 S1
     74 DetectorsOff "detectors-off-mask" "mask" [0, 7, trusted 0, 31] = 0 => Mask(detectors_off);
@@ -142,7 +140,7 @@ impl Config {
         Ok(())
     }
 
-    /// What a stroke has measured becomes S2, whatever a person may choose. False if no surface is like that.
+    /// Sets S2 from a stroke, in a wider range than a person may set. False if no surface has such friction.
     pub(crate) fn measured(&mut self, s2_permille: i32) -> bool {
         let trusted = SettingId::S2.row().range_in_force(true);
         let most = if self.line_trusted { *trusted.end() } else { 900 };
@@ -153,7 +151,7 @@ impl Config {
         is_friction
     }
 
-    /// Brings every setting into the range of a line that is not trusted.
+    /// Limits every setting to the range in force, the narrower one unless the line is trusted.
     fn bound(&mut self) {
         for id in SettingId::ALL {
             let (min, max) = id.row().range_in_force(self.line_trusted).into_inner();

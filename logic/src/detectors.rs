@@ -27,7 +27,7 @@ pub use injected::Injected;
 pub struct Sensed<'a> {
     /// Sequence number of the frame.
     pub frame: u32,
-    /// Its slot in the slow frame, 0 to 24.
+    /// Slot of the frame in the slow frame, 0 to 24.
     pub slot: u8,
     /// Whether the frame is valid. If not, it has no samples and only time has passed.
     pub valid: bool,
@@ -116,11 +116,11 @@ pub struct Description {
 /// }
 /// ```
 pub trait Detector {
-    /// Its row in the list of detectors.
+    /// The detector's identifier.
     const ID: DetectorId;
-    /// Slow frames in a row for which it may report slip of an empty hand before it is ignored.
+    /// Largest number of consecutive slow frames in which it may report slip of an empty hand without being ignored.
     const IMPLAUSIBLE_AFTER: u16 = 0;
-    /// Its settings.
+    /// Settings of the detector.
     type Config;
 
     /// Takes one frame. None: no new conclusion, and the last report stands.
@@ -186,7 +186,7 @@ struct Record {
     ignored: DetectorSet,
     decided_at: [u32; DetectorId::COUNT],
     guards: [Plausibility; DetectorId::COUNT],
-    /// Of the array's verdict.
+    /// Guard of the array's report while the hand moves or an impact rings.
     disturbance: Disturbance,
 }
 

@@ -19,7 +19,7 @@ use tenax_hal_shim::words::GripMode;
 
 /// A bit for each slow frame of 12.5 ms, the lowest first: 62.5 ms.
 const BURST: u16 = 0b1_1111;
-/// Two of them, as far apart as they are long.
+/// Two bursts with a pause of the same length.
 const TWO_BURSTS: u16 = BURST | BURST << 10;
 /// Slow frames between two slips that are told, and between two warnings.
 const SLIPS_APART: u8 = SLOW_HZ as u8 / 2;
@@ -46,13 +46,13 @@ pub struct Felt {
 /// State of the patterns.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Feedback {
-    /// What is still to come of a pattern, its part of the full duty, and whether it tells slip.
+    /// The rest of the present pattern, its part of the full duty, and whether it reports slip.
     pattern: u16,
     part: u8,
     tells_slip: bool,
-    /// The step of force that was last told, or was there while nothing could be.
+    /// The force step that was signalled last, or that the force had while no signal was possible.
     step: u8,
-    /// A warning was not told yet.
+    /// A warning waits to be signalled.
     warns: bool,
     /// Slow frames until slip and warning may be told again.
     slip_in: u8,

@@ -57,7 +57,7 @@ pub struct Fingertip {
     calibrated: u32,
     senses: Senses,
     detectors: Detectors,
-    /// Those that the reflex may act on.
+    /// Detectors that the reflex may act on.
     acting: Acting,
     mode: GripMode,
     reflex: Reflex,
@@ -79,7 +79,7 @@ pub struct Fingertip {
     drive: MotorDrive,
     /// Load limit of an injected warning, mN: see [`wish`](Self::wish).
     wish_mn: Option<i32>,
-    /// Since the last look at the drive the reflex has released force that it had added.
+    /// Whether the reflex has released force since the drive was last read.
     took_back: bool,
 }
 

@@ -111,13 +111,13 @@ impl Gate {
         self.verdict.known
     }
 
-    /// Whether both have been healthy for the hold time: activity before may have ended unseen.
+    /// Whether both myosensors have been healthy for the hold time, so that no earlier activity can have been missed.
     #[must_use]
     pub const fn is_certain(&self, config: &GateConfig) -> bool {
         self.known_frames >= config.hold_frames
     }
 
-    /// The same if one of them is lost and cannot be an active muscle.
+    /// Like [`is_certain`](Self::is_certain), for one healthy myosensor beside a lost one that cannot be an active muscle.
     #[must_use]
     pub const fn is_half_certain(&self, config: &GateConfig) -> bool {
         self.half_known_frames >= config.hold_frames

@@ -19,7 +19,8 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// For a channel with this many readings a second: lost after 25 ms of bad ones, back after 1 s of good, stuck after 2 s of equal ones.
+    /// Limits of a channel with `per_second` readings: lost after 25 ms of bad readings, back after 1 s of good ones, stuck
+    /// after 2 s of equal ones.
     #[must_use]
     pub const fn of(channel: &Channel, per_second: u32) -> Self {
         let lost_after = per_second / 40;

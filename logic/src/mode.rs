@@ -8,11 +8,11 @@ use Cause::{
 };
 use GripMode::{Incipient, Settle, Slip, Standby, Watch, Wearer};
 
-/// Stands for every detector in the table: whichever says it, the step is the same.
+/// Stands for every detector in the table.
 const ANY: DetectorId = DetectorId::S1;
 
-/// Every legal step: from, why, to. A cause that has no row for the mode changes nothing; which detector says slip or warns
-/// of it makes no difference.
+/// Every legal step: from, why, to. A cause without a row for the mode changes nothing. The steps are the same for
+/// every detector.
 ///
 /// Rules for entering: [`Slip`] and [`Incipient`], the only two that close the hand, are entered from [`Watch`] alone (and
 /// [`Slip`] from [`Incipient`]), and [`Watch`] is left for [`Wearer`] or [`Standby`] before a detector is asked.
@@ -53,7 +53,7 @@ const fn index(cause: Cause) -> usize {
     }
 }
 
-/// The table by mode and cause: it is asked three times in every tick, which is no time to search.
+/// The table by mode and cause, for three look-ups in every tick without a search.
 static NEXT: [[Option<GripMode>; CAUSES]; MODES] = {
     let mut next = [[None; CAUSES]; MODES];
     let mut row = 0;
@@ -65,7 +65,7 @@ static NEXT: [[Option<GripMode>; CAUSES]; MODES] = {
     next
 };
 
-/// Where a cause leads, None where it changes nothing.
+/// The next mode after a cause; None if the mode stays.
 #[must_use]
 pub const fn next(from: GripMode, cause: Cause) -> Option<GripMode> {
     NEXT[from as usize][index(cause)]

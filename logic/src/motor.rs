@@ -30,13 +30,13 @@ use crate::arming::STEP_FRAMES;
 use crate::health::{Change, Limits, SensorHealth};
 use crate::journal::{Journal, report};
 
-/// Looks at the drive in a slow frame.
+/// Number of looks at the drive in a slow frame.
 const STEPS: u32 = FRAMES_PER_SLOW_FRAME as u32 / STEP_FRAMES;
 /// Slow frames of stall after which the motor stops: 0.3 s, so that 0.5 s are kept with the filter at the pin and the motor's dead time.
 const STALL_CYCLES: u8 = 24;
-/// A mean duty below this moves nothing, per mille.
+/// Mean duty below which the motor does not move, per mille.
 const LEAST_PERMILLE: u32 = 50;
-/// A drive stronger by this is tried on a stalled motor, per mille.
+/// A stalled motor is driven again if the duty is larger by this, per mille.
 const STRONGER_PERMILLE: u16 = 125;
 /// Fingers that move change the opening's reading by more than this: 8 mV, a third of a millimetre.
 const MOVED: u16 = sample_from_mv(8);
@@ -44,7 +44,7 @@ const MOVED: u16 = sample_from_mv(8);
 const HEAT_SHIFT: u32 = 9;
 /// Slow frames without a drive after which no current flows: 0.2 s, with the motor's dead time.
 const IDLE_CYCLES: u8 = 16;
-/// So many more of them with current are the sensor's fault, or the bridge's.
+/// Further such slow frames in which a current means a fault of sensor or bridge.
 const ODD_CYCLES: u8 = 16;
 /// Milliamperes of a sample, 14 fraction bits.
 const MA_Q14: u32 =
@@ -59,7 +59,7 @@ const REST: u16 = sample_from_mv(CHANNELS[MOTOR_CURRENT].rest_mv);
 #[derive(Clone, Debug, Default)]
 struct Sensor {
     health: SensorHealth,
-    /// Of this cycle, None where its frame was lost.
+    /// Sample of this slow frame; None if its frame was lost.
     sample: Option<u16>,
 }
 
@@ -79,7 +79,7 @@ pub struct Motor {
     opening: Sensor,
     /// The opening's reading when the fingers were last seen to move.
     stood: u16,
-    /// What it was driven with in this cycle: the sum of [`STEPS`] looks; the most since it began to stall.
+    /// Sum of the duty over the [`STEPS`] looks of this slow frame; the largest since the stall began.
     duty_sum: u16,
     duty_most: u16,
     /// A drive was asked for in this slow frame.
@@ -202,7 +202,7 @@ impl Motor {
         self.close_ways();
     }
 
-    /// What may be driven.
+    /// Updates which drives are allowed.
     const fn close_ways(&mut self) {
         let stalled = if self.stalled { self.duty_most.saturating_add(STRONGER_PERMILLE) } else { 0 };
         self.least = match self.opens {
@@ -261,8 +261,8 @@ impl Motor {
         Some(moved)
     }
 
-    /// Heats the winding for a cycle. Nobody knows its current: then it is that of a blocked motor, or half of it while the fingers move.
-    /// What is not driven cools, whatever the sensor's offset: nothing else could be done about it.
+    /// Heats the winding for a slow frame. If the current is unknown, that of a blocked motor is taken, or half of it while the
+    /// fingers move. A motor that is not driven cools, whatever current the sensor shows.
     fn warm(&mut self, limit_ma: u32, stall_ma: u32, ma: Option<u32>, moved: Option<bool>, duty: u32) {
         let blocked_ma = stall_ma * duty / 1_000;
         let warms = match (ma, moved) {

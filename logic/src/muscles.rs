@@ -38,11 +38,11 @@ pub struct Muscles {
     emg: Emg,
     health: [SensorHealth; 2],
     missed: [u8; 2],
-    /// Which can be no muscle at work, by the last sample: it is below the range, below activity, or stands still.
+    /// Whether each signal cannot be an active muscle, by its last sample: below range, below activity, or constant.
     idle: [bool; 2],
     /// Whether each has given two active readings in a row that differ: a glitch or a frozen sensor is not a wish.
     confirmed: [bool; 2],
-    /// Why each is lost, as it was told.
+    /// Reported reason why each is lost.
     lost: [Option<Reason>; 2],
     /// The last readings that were in range, uV above the live zero.
     uv: [Option<i32>; 2],
@@ -53,13 +53,13 @@ pub struct Muscles {
     ended: Option<(u32, bool)>,
 }
 
-/// How long the light shows whether a calibration was taken, and how long it is on and off meanwhile if it was not; the same while the
-/// wearer is asked to open; and to rest, in frames.
+/// Times of the light, frames: the result of a calibration; on and off of a refusal; on and off of the prompt to open; period
+/// and flash of the prompt to rest.
 const RESULT_FRAMES: u32 = frames(2_000);
 const REFUSED_FRAMES: u32 = frames(50);
 const OPEN_FRAMES: u32 = frames(100);
 const REST_FRAMES: [u32; 2] = [frames(1_000), frames(100)];
-/// How often the light flashes where the calibration does not fit, twice, or three times for exchanged electrodes.
+/// Period of the flashes while the calibration does not fit: two, or three for exchanged electrodes.
 const ASK_FRAMES: u32 = frames(4_000);
 
 impl Muscles {

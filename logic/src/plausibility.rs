@@ -22,7 +22,7 @@ const EMPTY_AFTER: u16 = (2 * if SPECTRUM_WINDOW > LAG_MAX { SPECTRUM_WINDOW } e
 /// Slow frames of silence in an empty hand after which the detector is believed again: ten seconds.
 const SILENT_FOR: u16 = 10 * SLOW_HZ as u16;
 
-/// Whether one detector is believed. It is until it was implausible.
+/// Whether one detector is believed: until it reports slip of an empty hand.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Plausibility {
     empty: u16,
@@ -44,7 +44,7 @@ impl Plausibility {
         self.ignored = self.says > tolerated || (self.ignored && self.silent < SILENT_FOR);
     }
 
-    /// Whether it is to be ignored.
+    /// Whether the detector is ignored.
     #[must_use]
     pub const fn is_ignored(&self) -> bool {
         self.ignored
@@ -57,14 +57,14 @@ const MOVED_FOR: u8 = LAGS[LAGS.len() - 1] as u8;
 /// Whether something else than slip explains the array's verdict.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Disturbance {
-    /// Slow frames since it was disturbed, as many as matter.
+    /// Slow frames since the array was disturbed, up to [`MOVED_FOR`].
     still: u8,
     says: bool,
     began_still: bool,
 }
 
 impl Disturbance {
-    /// It is disturbed, between slow frames.
+    /// The array is disturbed, between slow frames.
     pub const fn begin(&mut self) {
         self.still = 0;
     }
@@ -76,7 +76,7 @@ impl Disturbance {
         self.began_still = says && (self.began_still || self.still >= MOVED_FOR);
     }
 
-    /// Whether what is said now may be the disturbance.
+    /// Whether the disturbance may explain the present report.
     #[must_use]
     pub const fn explains_it(&self) -> bool {
         self.says && !self.began_still

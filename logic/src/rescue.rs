@@ -9,11 +9,11 @@ use tenax_hal_shim::motor::{Duty, MotorDrive};
 use crate::arming::STEP_FRAMES;
 use crate::button::{Button, Press};
 
-/// From one step to the next, us.
+/// Time between two steps, us.
 pub const STEP_US: u32 = STEP_FRAMES * 1_000_000 / FRAME_HZ;
 /// A press opens for 4 s at most: at this duty all of the range.
 const OPENS_STEPS: u32 = frames(4_000) / STEP_FRAMES;
-/// As slowly as the defaults move the hand.
+/// Duty of the slow opening: the default's slowest.
 const SLOWLY: Duty = Duty::per_mille(300);
 
 /// The button, and what it has asked for.
@@ -24,7 +24,8 @@ pub struct Rescue {
 }
 
 impl Rescue {
-    /// Goes on by one step: how the motor is driven until the next. Held for 1 to 3 s and let go, the button opens; pressed again, it stops.
+    /// Advances by one step; gives the motor's drive until the next. Held for 1 to 3 s and let go, the button opens; pressed
+    /// again, it stops.
     pub fn step(&mut self, is_down: bool) -> MotorDrive {
         self.opens = self.opens.saturating_sub(1);
         match self.button.tick(is_down, false, self.opens > 0) {

@@ -7,8 +7,8 @@
 use tenax_hal_shim::wire::ResetCause;
 use tenax_hal_shim::words::Fault;
 
-/// Restarts in a row after which the hand stays off: a hand that hangs, or pulls its supply down, as it begins to close would
-/// close a little further each time.
+/// Restarts in a row after which control still starts; the next one leaves the motor off. A hand that hangs, or pulls its supply
+/// down, whenever it begins to close would close a little further each time.
 pub const RESTARTS_MAX: u32 = 5;
 
 /// The chip's reset flags.
@@ -46,7 +46,7 @@ pub struct Start {
     pub after: Option<Fault>,
     /// Restarts in a row, to be kept until the next start.
     pub restarts: u32,
-    /// More than [`RESTARTS_MAX`] restarts in a row: nothing is driven.
+    /// Whether there were more than [`RESTARTS_MAX`] restarts in a row: only the button drives the motor.
     pub stay_off: bool,
 }
 

@@ -32,19 +32,19 @@ use crate::vibration::sliding::Hand;
 use crate::vibration::{Trust, Vibration, VibrationDetector};
 use tenax_hal_shim::channel::frames;
 
-/// How long the filters and the switches are given after the start, in frames.
+/// Time for filters and switches to settle after the start, frames.
 const WARM_UP_FRAMES: u32 = frames(200);
 /// Frames lost in a row after which the last readings of the switched sensors are no longer believed: one slow frame.
 const STALE_FRAMES: u32 = tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME as u32;
-/// Readings in a row that a quadrant may miss, its frames lost, before its last one is no reading of now. A tick that is
-/// always late loses the same places of every slow frame, and never enough in a row to be [`STALE_FRAMES`].
+/// Consecutive readings that a quadrant may miss by lost frames before its last one is stale. A tick that is always late loses
+/// the same slots of every slow frame, and never reaches [`STALE_FRAMES`].
 const QUADRANT_MISSES: u8 = 2;
 /// The hand is surely open after it has been opened for this long since it was last closed, in frames: at its slowest it has
 /// moved 2 cm.
 const OPEN_FRAMES: u32 = frames(600);
 /// Slow frames in which a hand that is surely open reads a load before that is reported: 4 s, several times what a zero takes to follow.
 const DOUBTED_AFTER: u16 = 4 * SLOW_HZ as u16;
-/// A quadrant this far above its zero when the hand is switched on is pressed, uV.
+/// A quadrant that is this far above its zero at power-up counts as pressed, uV.
 const PRESSED_UV: i32 = 100_000;
 
 static FSR_LIMITS: Limits = Limits::of(&CHANNELS[FSR], SLOW_HZ);
@@ -67,7 +67,7 @@ pub struct Senses {
     detector: VibrationDetector,
     gauges: Gauges,
     taxels: Taxels,
-    /// In the place of the last film, if it is fitted.
+    /// The photoelastic head in the place of the last film, if fitted.
     head: Head,
     head_is_fitted: bool,
     frames_seen: u32,
@@ -75,7 +75,7 @@ pub struct Senses {
     open_frames: u32,
     /// Frames since the motor was driven.
     still_frames: u32,
-    /// The reflex answers slip, or lets the object settle after it.
+    /// Whether the reflex is in a pulse against slip or settles after it.
     striking: bool,
     /// Slow frames in which the hand was surely open and read a load.
     open_and_loaded: u16,
@@ -253,7 +253,7 @@ impl Senses {
         self.feels() && (config.no_wearer || self.gate.is_half_certain(&config.gate))
     }
 
-    /// The same with both muscles known: for sources that do more than close the hand a little.
+    /// Like [`ready`](Self::ready), but both muscles must be known: for behaviours, which do more than close a little.
     #[must_use]
     pub fn all_ready(&self, config: &Config) -> bool {
         self.feels() && (config.no_wearer || self.gate.is_certain(&config.gate))

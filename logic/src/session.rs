@@ -10,15 +10,15 @@
 
 use tenax_hal_shim::wire::Refusal;
 
-/// How far ahead of the last frame's number the next one may lie: frames that the line lost.
+/// Largest step from the last frame's number to the next: the line may lose frames.
 pub const WINDOW: u16 = 1_024;
-/// Numbers that a session may use before it is over: what was recorded in it never lies in its window again.
+/// Numbers that a session may use before it ends, so that no recorded frame lies in its window again.
 const NUMBERS_MAX: u16 = u16::MAX - 2 * WINDOW;
 
 /// The offered number, and the last sequence number of the peer.
 #[derive(Clone, Debug, Default)]
 pub struct Session {
-    /// What the converter's noise has been stirred into.
+    /// State of the generator of nonces, with the converter's noise.
     pool: u32,
     offered: Option<u32>,
     is_open: bool,

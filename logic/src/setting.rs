@@ -65,17 +65,17 @@ impl SettingId {
 
 /// A part of the configuration that has settings.
 pub(crate) trait Settings {
-    /// The value of a setting, in its unit; None of one that is another part's.
+    /// The value of a setting, in its unit; None if it belongs to another part.
     fn value(&self, id: SettingId) -> Option<i32>;
-    /// Changes it; does nothing if it is another part's.
+    /// Changes a setting; does nothing if it belongs to another part.
     fn put(&mut self, id: SettingId, value: i32);
 }
 
 /// How a setting's value becomes a field, and back.
 pub(crate) trait Unit<Field> {
-    /// From a value that is accepted: 0 to 2^24.
+    /// The field from an accepted value, 0 to 2^24.
     fn field(value: i32) -> Field;
-    /// Comes back as it was set.
+    /// The setting's value from a field, as it was set.
     fn value(field: Field) -> i32;
 }
 
@@ -85,7 +85,7 @@ pub(crate) struct Mv;
 pub(crate) struct MvQ4;
 /// Milliseconds, kept as frames.
 pub(crate) struct Ms;
-/// A number in the unit of the field.
+/// A plain number: setting and field have the same unit.
 pub(crate) struct Number;
 /// 0 or 1.
 pub(crate) struct Flag;

@@ -31,7 +31,7 @@ struct Gauge {
 pub struct Gauges([Gauge; STRAIN_COUNT]);
 
 impl Default for Gauges {
-    /// Every zero where the front end rests.
+    /// Every zero at the front end's rest voltage.
     fn default() -> Self {
         Self(core::array::from_fn(|_| Gauge { health: SensorHealth::default(), zero: REST, load: 0 }))
     }

@@ -19,9 +19,9 @@ This page lists the numbers that a user can change.
 
 <!-- Printed from logic/src/*/settings.rs by cargo tenax settings; do not edit. -->
 
-Press the blue button shortly ([consent](safety.md#the-cable)), then run `cargo tenax config set NAME=VALUE`. The value outlives a power cut. A scene uses
-`kind = \"set-NAME\"` with `value`. A trusted line has wider ranges. Within the others, no two settings together open the hand or switch slip detection off. The number
-is the setting's name on wire and in flash.
+Press the blue button briefly ([consent](safety.md#the-cable)), then run `cargo tenax config set NAME=VALUE`. The value outlives a power cut. A scene uses
+`kind = \"set-NAME\"` with `value`. A trusted line has wider ranges. Within the untrusted ranges, no two settings together open the hand or switch slip detection off.
+The number names the setting on the wire and in flash.
 
 | number | name with unit | range | default | meaning |
 |---|---|---|---|---|

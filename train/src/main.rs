@@ -27,28 +27,28 @@ use tenax_train::table::Table;
 #[derive(Debug, Parser)]
 #[command(name = "tenax-train", version)]
 struct Args {
-    /// Labelled recordings to learn from
+    /// Labelled recordings to train on
     #[arg(long, value_name = "FILE.csv")]
     dataset: PathBuf,
     /// How to read them: a recipe file, or the name of one in recipes/ [default: by the file's name]
     #[arg(long, value_name = "FILE.toml|NAME")]
     recipe: Option<String>,
-    /// More recordings, of the same recipe, to score on: nothing is learned or chosen from them
+    /// Further recordings (same recipe), used for scoring only; may be given more than once
     #[arg(long, value_name = "FILE.csv")]
     test: Vec<PathBuf>,
     /// Where the network, its model card and the report are written
     #[arg(long, value_name = "DIR", default_value = "out/train")]
     out: PathBuf,
-    /// Seed of first weights and of the order in which steps are learned
+    /// Seed of the initial weights and of the training order
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// How to print the report
     #[arg(long, value_enum, default_value_t = Format::Text)]
     report: Format,
-    /// Score on the data's own test part, too: do it once, for what is to be shipped
+    /// Also score on the test part of the data: once, for a network to be shipped
     #[arg(long)]
     open_test: bool,
-    /// Learn from the paper's 76 features alone: the control
+    /// Train on the paper's 76 features only, as a control
     #[arg(long)]
     paper_only: bool,
 }

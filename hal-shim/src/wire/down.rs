@@ -52,7 +52,7 @@ pub enum Down {
     Hello,
     /// Open a session with the last [`Answer::Nonce`](super::Answer::Nonce). From here on the numbers of frames only rise.
     Open {
-        /// That number.
+        /// The nonce.
         nonce: u32,
     },
     /// Calibrate the myosensors to the wearer: three prompts of 5 s come up as [`EventKind::Calibration`](super::EventKind::Calibration), then the result.
@@ -74,7 +74,7 @@ pub enum Down {
     /// A picture of the camera behind the skin. 30 to 63 times a second.
     View(CameraView),
     /// Answer with an [`Answer::Last`](super::Answer::Last): messages before the last run ended in a fault, from this byte on.
-    /// They are kept until a client asks from their end on, which has then read all; then the board keeps its present messages.
+    /// The board keeps them until a client asks from their end on, and so has read all.
     Last(u16),
 }
 

@@ -19,7 +19,7 @@ pub const FRAMES_PER_RAW: usize = 5;
 /// Bytes of a frame.
 const BYTES: usize = 25;
 const BITS: u32 = 14;
-/// A sample's bits. Not its largest value, four times 4095, which lacks the lowest two.
+/// Mask of a sample's 14 bits. The largest sample is 16 380, four times 4095.
 const MASK: u16 = (1 << BITS) - 1;
 const VALID: u32 = 1 << 28;
 

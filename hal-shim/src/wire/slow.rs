@@ -87,7 +87,7 @@ pub struct NetworkState {
     pub weights: [[i32; RECEPTORS]; NETWORK_OUTPUTS],
     /// Activations, 2^14 is 1: films 0 to 1, strain gauges -1 to 1.
     pub activations: [i16; RECEPTORS],
-    /// Updates of the weights since the network knew nothing.
+    /// Number of weight updates since the weights were 0.
     pub updates: u32,
     /// Age of the teacher's newest picture, ms; None before the first.
     pub teacher_age_ms: Option<u16>,

@@ -28,7 +28,7 @@ use crate::words::DriveSource;
 pub struct TickRecord {
     /// The largest vibration envelope of all films, in samples (14 bits): at most [`TickRecord::VIBRATION_MAX`].
     pub vibration: u16,
-    /// Outputs of the Hebbian network from touch alone, relative motion (o1) and direction (o2); 128 would be 1.
+    /// Outputs of the Hebbian network without teacher: relative motion (o1) and direction (o2), in 1/128, -128 to 127.
     pub outputs: [i8; NETWORK_OUTPUTS],
     /// The detectors that report slip or warn of it, believed or not.
     pub said: DetectorSet,
@@ -50,7 +50,7 @@ const DRIVE_SHIFT: u32 = 10;
 const SOURCE_SHIFT: u32 = 12;
 
 impl TickRecord {
-    /// The largest vibration that its field holds; more would go up as this.
+    /// The largest `vibration` that fits its field; larger values are sent as this one.
     pub const VIBRATION_MAX: u16 = DRIVE_FOLLOWS - 1;
 
     fn driven(self) -> u16 {
@@ -66,7 +66,7 @@ impl TickRecord {
         [self.said.bits(), self.believed.bits(), self.acted.bits()]
     }
 
-    /// None of numbers that no tick has.
+    /// The record of these fields; None for values that no tick has.
     fn of(vibration: u16, outputs: [i8; NETWORK_OUTPUTS], driven: u16, sets: [u8; 3]) -> Option<Self> {
         let permille = driven & ((1 << DRIVE_SHIFT) - 1);
         let duty = Duty::per_mille(permille);

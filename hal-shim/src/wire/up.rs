@@ -8,7 +8,7 @@ use crate::behaviour::{Behaviour, Ending};
 use crate::detector::DetectorSet;
 use crate::words::{Calibration, Cause, Consent, Fault, GripMode, Kept, MotorStop};
 
-/// What the board counted since it was switched on.
+/// Counters of the board since it was switched on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Counters {
     /// Frames taken.
@@ -25,7 +25,7 @@ pub struct Counters {
     pub telemetry_dropped: u32,
     /// Frames received that were no valid message.
     pub bad_frames: u32,
-    /// Frames received faster than commands are taken: not looked at, not answered.
+    /// Received frames that exceeded 500 commands a second: neither executed nor answered.
     pub commands_skipped: u32,
     /// The longest time that a frame took control, from its last code to the end of everything it caused, us.
     pub control_us_max: u32,
@@ -39,7 +39,7 @@ pub struct Counters {
 pub struct Event {
     /// Sequence number of the frame in which it happened.
     pub frame: u32,
-    /// What.
+    /// The event.
     pub kind: EventKind,
 }
 
@@ -119,17 +119,17 @@ pub enum Up {
         /// The answer.
         answer: Answer,
     },
-    /// This outlives a power cut from now on.
+    /// A record was saved and outlives a power cut.
     Saved {
-        /// Sequence number of the last frame before.
+        /// Sequence number of the last frame before it was saved.
         frame: u32,
-        /// What.
+        /// The kind of record.
         kept: Kept,
     },
-    /// Who the board is; once at the start, after the hello.
+    /// The board's identity and settings; sent once at the start, after `Hello`.
     About(About),
-    /// At the start, if the setting `stream-at-start-flag` is 1: what was taken up from flash. With it and every
-    /// [`Raw`] and [`Taken`](Self::Taken) from then on, the decisions can be repeated.
+    /// A record that was read from flash; sent at the start if `stream-at-start-flag` is 1. With it and every later
+    /// [`Raw`] and [`Taken`](Self::Taken), a replay repeats the decisions.
     Restored(Restored),
     /// Frames as they were sampled: see [`Down::Stream`](super::Down::Stream).
     Raw(Raw),
@@ -137,7 +137,7 @@ pub enum Up {
     Senses(Senses),
     /// A command, before its answer, while frames are streamed.
     Taken {
-        /// Sequence number of the frame before whose tick it was taken.
+        /// Sequence number of the first frame whose tick knows the command.
         before: u32,
         /// Sequence number of the command's frame.
         of: u16,

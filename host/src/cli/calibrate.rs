@@ -8,13 +8,13 @@ use tenax_serial::cli::calibrate::{Hand, hand};
 
 const EXAMPLES: &str = "\
 Examples:
-  tenax calibrate force --weights-n 1,2,5,10            each weight in its turn on the finger; prints how far each is off
-  tenax calibrate friction --strokes 3                  strokes over the surface that is to be held; S2 follows
+  tenax calibrate force --weights-n 1,2,5,10            one weight after the other on the finger; prints each reading's error
+  tenax calibrate friction --strokes 3                  strokes over the surface to be held; sets S2
   tenax calibrate emg                                   rest, close, open: the wearer's muscles
-  tenax calibrate photoelastic                          a scene's head on a scene's balance: the mean one
-  tenax calibrate photoelastic --seed 3                 a head that came out otherwise
-  tenax calibrate photoelastic --weights bench.csv      a real one: columns force_n and level_mv, from no load upwards
-Without a hand: `tenax run --host --serve` with a scene, and --port with the place that it names.";
+  tenax calibrate photoelastic                          a simulated head of mean optics under simulated weights
+  tenax calibrate photoelastic --seed 3                 another simulated head
+  tenax calibrate photoelastic --weights bench.csv      a real head: columns force_n (N) and level_mv (mV)
+Without a board: `tenax run --host --serve --loop --scene bench`, then --port with the port that it prints.";
 
 /// Calibrate a sensor, step by step.
 #[derive(Debug, clap::Args)]

@@ -21,16 +21,16 @@ const RECORDINGS: &str = "../shared/data";
 /// Draw charts.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// What of
+    /// Subject of the charts
     #[arg(value_enum)]
     subject: Subject,
-    /// Where they are written: SVG, PNG and CSV
+    /// Folder for SVG, PNG and CSV
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
-    /// Of photoelastic and table: how its figures are printed
+    /// photoelastic and table only: how to print the figures
     #[arg(long, value_enum, default_value_t = Format::Text)]
     report: Format,
-    /// Of table: rows of your own, what a detector said in recordings of yours (docs/table.md)
+    /// table only: rows of your own, with your detector's reports (docs/table.md)
     #[arg(long, value_name = "CSV")]
     decisions: Option<PathBuf>,
 }

@@ -21,13 +21,13 @@ pub struct Args {
     /// Where the recordings are [default: shared/data beside the checkout]
     #[arg(long, value_name = "DIR")]
     data: Option<PathBuf>,
-    /// On the host's build of the logic: no image, no emulator, and so not every promise
+    /// Run the host's build of the logic: no image, no emulator, fewer promises
     #[arg(long)]
     host: bool,
-    /// The budgets of `tenax size --check` too, from the same run of the default scene
+    /// Also check the budgets of `tenax size --check`, from the same run
     #[arg(long, conflicts_with = "host")]
     size: bool,
-    /// The pages' figures of other commands too, which are run: minutes each
+    /// Also run the other commands whose figures the pages quote: minutes each
     #[arg(long, requires = "size")]
     pages: bool,
 }

@@ -26,13 +26,13 @@ pub struct Args {
     /// Seed of everything that is drawn: the same seed gives the same bytes
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Sessions to learn from, of each seen material; a quarter as many again to validate, half as many to test
+    /// Training sessions of each material; a quarter as many for validation, half as many for test
     #[arg(long, value_name = "N", default_value_t = Sizes::DEFAULT_TRAIN)]
     sessions: usize,
-    /// Who says that it slipped
+    /// Source of the labels
     #[arg(long, value_enum, default_value_t = Label::Truth)]
     label: Label,
-    /// The data's file; its manifest goes beside it, as .toml
+    /// File for the data; its manifest (.toml) is written beside it
     #[arg(long, value_name = "FILE.csv", default_value = "out/array_dataset.csv")]
     out: PathBuf,
 }

@@ -31,9 +31,9 @@ Examples:
   tenax evaluate --dataset my.csv --network out/train
                                                    the network that `tenax train` has made of one's own
   tenax evaluate --online --host                   the paper's two tasks, ten times with each of four materials
-  tenax evaluate emg --recordings FOLDER           what the wearer wants, on envelopes of people";
+  tenax evaluate emg --recordings FOLDER           intent recognition on EMG envelopes of people";
 
-/// Score the force array's network on what it never saw.
+/// Score the array's network on held-out data.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
 pub struct Args {
@@ -48,22 +48,22 @@ pub struct Args {
     /// The network in this folder of `tenax train` instead of the one that ships
     #[arg(long, value_name = "DIR", conflicts_with = "online")]
     network: Option<PathBuf>,
-    /// Fit scale and threshold to each session's first N seconds in which nothing slips; they are not scored
+    /// Fit scale and threshold to each session's first N seconds without slip, which are not scored
     #[arg(long, value_name = "N", requires = "dataset")]
     adapt: Option<f64>,
     /// Seed of the built-in data set, or of the online tasks
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Sessions to learn from, of each material, of the built-in data set: those to test are in proportion
+    /// Size of the built-in data set: training sessions of each material; validation and test are in proportion
     #[arg(long, value_name = "N", default_value_t = Sizes::DEFAULT_TRAIN, conflicts_with = "dataset")]
     sessions: usize,
-    /// Of the built-in data set: which part. The test part is for figures that nothing is chosen by
+    /// Part of the built-in data set. Choose by validation; keep test for final scores
     #[arg(long, value_name = "train|validation|test", default_value = "test", conflicts_with = "dataset")]
     part: Part,
     /// The paper's two tasks with the whole hand, instead of recordings
     #[arg(long, conflicts_with_all = ["dataset", "sessions"])]
     online: bool,
-    /// Online: times that each task is tried with each material
+    /// Online: repetitions of each task with each material
     #[arg(long, value_name = "N", default_value_t = online::TIMES, requires = "online")]
     times: usize,
     /// Online: run the host's own build of the logic, no image, no emulator
@@ -77,7 +77,7 @@ pub struct Args {
 /// What is scored instead of the force array's network.
 #[derive(Debug, clap::Subcommand)]
 enum What {
-    /// Score what the wearer wants on recorded envelopes of two muscles, calibrated as the hand does
+    /// Score intent recognition on recorded EMG envelopes of two muscles
     Emg(EmgArgs),
 }
 
@@ -88,7 +88,7 @@ struct EmgArgs {
     /// Only this person
     #[arg(long, value_name = "N")]
     person: Option<u32>,
-    /// Draw so many faults of the electrodes over people at rest, too
+    /// Also score this many random electrode faults over people at rest
     #[arg(long, value_name = "N", default_value_t = 0)]
     faults: u32,
 }

@@ -13,27 +13,27 @@ use super::progress::Progress;
 /// Run a hand of several fingertips, with a palm and without, on the host.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
-  tenax hand                            four scenes, five seeds each, and 40 parts that break
+  tenax hand                            four scenes, five seeds each, and 40 runs with a failing part
   tenax hand --scene ice --seeds 40     one scene
-  tenax hand --seeds 1 --cuts 1000      a finger, the palm or the bus breaks at 1000 instants
+  tenax hand --seeds 1 --cuts 1000      1000 runs in which a finger, the palm or the bus fails
   tenax hand --report json > hand.json  for programs
   tenax hand --emulated                 two images on one bus with the host's palm
-  tenax hand --emulated --scene ice --until 6   five")]
+  tenax hand --emulated --scene ice --until 6   five images, 6 s")]
 pub struct Args {
     /// Scenes of scenes/hand/, or files like them [default: all of them]
     #[arg(long, value_name = "NAME|FILE.toml")]
     scene: Vec<String>,
-    /// Runs of each scene, with seeds from 101 on: constants were chosen on others
+    /// Runs of each scene, with seeds from 101 on (the constants were chosen on others)
     #[arg(long, default_value_t = 5)]
     seeds: u64,
-    /// Runs in which a finger, the palm or the bus breaks at a random instant
+    /// Number of runs in which a finger, the palm or the bus fails at a random instant
     #[arg(long, default_value_t = 40)]
     cuts: u64,
-    /// Run each scene once with every fingertip an image on an emulated board, held against the host's build byte for byte [default
+    /// Run each scene once with an emulated board for each fingertip, and compare with the host's build byte for byte [default
     /// scene: pinch]
     #[arg(long, conflicts_with_all = ["seeds", "cuts"])]
     emulated: bool,
-    /// Until then, s
+    /// Stop at this time of the scene, s
     #[arg(long, value_name = "SECONDS", requires = "emulated")]
     until: Option<f64>,
     /// How to print the report

@@ -18,19 +18,19 @@ const PROBE: &str = "probe-rs reset --chip STM32F411RETx";
 /// Measure a real board in the loop: its clock, ticks, line, inputs and decisions.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Where the line is [default: the only board that is plugged in]
+    /// Serial line: /dev/ttyACM0, COM3, /dev/pts/5 or tcp:127.0.0.1:7777 [default: the only board that is plugged in]
     #[arg(long, value_name = "PORT")]
     port: Option<Target>,
-    /// Reset the board through its probe, 21 times; without, its button is pressed once
+    /// Reset the board 21 times through its probe [default: you press its reset button once]
     #[arg(long)]
     probe: bool,
-    /// The loop-back harness of docs/bring-up.md is fitted
+    /// The wires of docs/bring-up.md, from PA8 and PA9 to PC2 and PC3, are fitted
     #[arg(long)]
     harness: bool,
-    /// How long each part is measured
+    /// Duration of each part, s
     #[arg(long, value_name = "S", default_value_t = 20)]
     seconds: u32,
-    /// The figures
+    /// File for the figures
     #[arg(long, value_name = "FILE.toml", default_value = "hil.toml")]
     out: PathBuf,
 }

@@ -27,32 +27,32 @@ Examples:
   tenax learn --host --trials 5 --minutes 1 --fingertips 2
   tenax learn --report json > learn.json";
 
-/// Let a fingertip teach itself slip from a camera, and measure what that is worth
+/// Teach the Hebbian network slip with a camera, and score it
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Run the trials on the host's own build of the logic: no image, no emulator
     #[arg(long)]
     host: bool,
-    /// Held-out trials after the seven that are learned from
+    /// Number of held-out trials after the seven lessons
     #[arg(long, value_name = "N", default_value_t = Options::default().trials)]
     trials: u64,
-    /// Minutes of holding, in which every alarm is false
+    /// Minutes of holding without slip, to count false alarms
     #[arg(long, value_name = "N", default_value_t = Options::default().minutes)]
     minutes: u64,
-    /// Lifts, and pours, in which the reflex is told of the slip by the network, the camera and the bound
+    /// Number of lifts and of pours in which network, camera and bound each trigger the reflex
     #[arg(long, value_name = "N", default_value_t = Options::default().lifts)]
     lifts: u64,
-    /// Fingertips made by chance that learn the same way
+    /// Number of random fingertips that learn the same way
     #[arg(long, value_name = "N", default_value_t = Options::default().fingertips)]
     fingertips: u64,
-    /// Let the films hear no mains hum: the most that a canceller of it could bring
+    /// Simulate films without mains hum: the upper bound for hum removal
     #[arg(long)]
     without_hum: bool,
     /// A setting of the fingertips (docs/settings.md), on the host only; may be given more than once
     #[arg(long, value_name = "NAME=VALUE", requires = "host")]
     set: Vec<String>,
-    /// Seed of everything
+    /// Seed of all random numbers
     #[arg(long, default_value_t = Options::default().seed)]
     seed: u64,
     /// How to print the report; studies/src/learn/report.rs lists the keys of json

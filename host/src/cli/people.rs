@@ -10,7 +10,7 @@ pub struct People {
     /// Folder of personP_dayD_postureQ.csv: t_s, ecu, edc, fcr, fcu (32767 is 2.8 V), label (1 rest, 3 close, 4 open)
     #[arg(long, value_name = "FOLDER")]
     pub recordings: PathBuf,
-    /// Seed of what is drawn: the faults, or the search
+    /// Seed of the random faults, or of the search
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
     /// How to print the report

@@ -32,23 +32,23 @@ use tenax_serial::serve::{self, Down, Server};
 #[derive(Debug, clap::Args)]
 #[command(group(ArgGroup::new("served").args(["serve", "serve_tcp"]).multiple(true)))]
 pub struct Args {
-    /// Run the host's own build of the logic: no image, no emulator
+    /// Run the PC's own build of the logic: no image, no emulator
     #[arg(long)]
     host: bool,
     /// A scene file, or the name of one that `tenax scenes` lists
     #[arg(long, value_name = "FILE.toml|NAME", default_value = session::DEFAULT_SCENE, conflicts_with = "replay")]
     scene: String,
-    /// Play a recording instead of a scene: CSV at the pins, or what a board's line said (MCAP) to the host's logic
+    /// Play a recording instead of a scene: voltages at the pins (CSV), or a recorded line (MCAP) into the PC's logic
     #[arg(long, value_name = "RECORDING.csv|FILE.mcap")]
     replay: Option<PathBuf>,
-    /// How the recording's columns reach the pins: a recipe file, or the name of one in recipes/ [default: by its name]
+    /// Recipe that maps the recording's columns to pins: a file, or a name in recipes/ [default: by the recording's name]
     #[arg(long, value_name = "FILE.toml|NAME", requires = "replay")]
     recipe: Option<String>,
-    /// First calibrate the board to the wearer of these recordings: rest, closing, opening [default: not calibrated]
+    /// First calibrate the myosensors with these three recordings [default: not calibrated]
     #[arg(long, value_name = "REST.csv,CLOSE.csv,OPEN.csv", value_delimiter = ',', requires = "replay")]
     calibrate_emg: Option<Vec<PathBuf>>,
-    /// Run the scene's controls on the host, too: no reflex, a constant grip of the same mean force, each detector alone,
-    /// all but each
+    /// Also run the scene's controls on the PC: no reflex, a constant grip of the same mean force, each detector alone, all but
+    /// one
     #[arg(long, conflicts_with = "replay")]
     controls: bool,
     /// Seed of every noise
@@ -57,7 +57,7 @@ pub struct Args {
     /// How to print the report
     #[arg(long, value_enum, default_value_t = Format::Text)]
     report: Format,
-    /// Where the figure, the report and the serial line's bytes are written
+    /// Folder for the figure, the report (JSON) and the serial line's bytes
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
     /// Run at real time and serve the line on a pseudo-terminal, for `tenax monitor --port` and any other program
@@ -66,17 +66,17 @@ pub struct Args {
     /// Make a symlink to the pseudo-terminal
     #[arg(long, value_name = "PATH", requires = "serve")]
     serve_at: Option<PathBuf>,
-    /// Run at real time and serve the line on this TCP port of 127.0.0.1; 0: any that is free
+    /// Run at real time and serve the line on this TCP port of 127.0.0.1; 0: any free port
     #[arg(long, value_name = "PORT")]
     serve_tcp: Option<u16>,
-    /// Beside the line, tell what really happens in the scene on this TCP port of 127.0.0.1, for `tenax monitor --truth`: a
-    /// line of JSON 50 times a second; 0: any that is free. Keys that its page sends there are done at the bench
+    /// Also serve the scene's true state on this TCP port of 127.0.0.1, for `tenax monitor --truth`: a line of JSON 50 times a
+    /// second; 0: any free port. Keys of the monitor's page act on the scene
     #[arg(long, value_name = "PORT", conflicts_with = "replay")]
     serve_truth: Option<u16>,
-    /// Run the scene again and again, each time with the next seed, as a bench that stays on; Ctrl-C ends it
+    /// Repeat the scene, each time with the next seed, until Ctrl-C
     #[arg(long = "loop", conflicts_with_all = ["replay", "record", "controls"], requires = "served")]
     repeat: bool,
-    /// Record the line, every frame included, so that `run --replay FILE.mcap` can decide everything once more
+    /// Record the line with every frame, for `run --replay FILE.mcap`
     #[arg(long, value_name = "FILE.mcap")]
     record: Option<PathBuf>,
 }

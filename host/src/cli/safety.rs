@@ -6,11 +6,11 @@ use super::format::Format;
 use super::{out, workspace};
 use crate::safety::{Matrix, soup};
 
-/// Hold requirements, hazards and tests against each other.
+/// Check requirements, hazards and tests against each other.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// Every test that shows a requirement has to have passed when `tenax test` last ran
+    /// Fail also if a test that shows a requirement did not pass in the last `tenax test`
     #[arg(long)]
     tested: bool,
     /// Print docs/safety/soup.md instead: the foreign crates of the image

@@ -14,7 +14,7 @@ Examples:
   tenax sweep --seeds 1..5                 every scene with five seeds on all cores, then the summary
   tenax sweep --seeds 1..5 --scenes glass,my.toml
   tenax sweep --seeds 1..5 --shard 3/16 --out DIR
-                                           the third of sixteen shards; started again, it goes on
+                                           the third of sixteen shards; a second start continues it
   tenax sweep --seeds 1..5 --shard $SLURM_ARRAY_TASK_ID/16 --out DIR
                                            as a job of an array; in Kubernetes
                                            $((JOB_COMPLETION_INDEX + 1))/16
@@ -33,10 +33,10 @@ pub struct Args {
     /// Seeds of every noise: one, several, or the first and the last
     #[arg(long, value_name = "N|FIRST..LAST,...", value_delimiter = ',', default_value = "1..5")]
     seeds: Vec<Seeds>,
-    /// Run only this shard of so many, without a merge [default: all, and a merge]
+    /// Run only this shard, such as 3/16, without a merge [default: all shards, then a merge]
     #[arg(long, value_name = "N/OF")]
     shard: Option<Shard>,
-    /// Where a file a run is written; runs that are there are not run again
+    /// Folder with one file a run; existing runs are not repeated
     #[arg(long, value_name = "DIR", default_value = "out/sweep")]
     out: PathBuf,
     /// How to print the summary

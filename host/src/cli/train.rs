@@ -19,7 +19,7 @@ Examples:
   tenax train                                     from the data set of `tenax dataset`, which is made if it is not there
   tenax train --dataset mine.csv --recipe r.toml  from recordings of your own; docs/training.md says how to write a recipe
   tenax train --dataset basic.csv --recipe biotac --test solids.csv
-  tenax train emg --recordings FOLDER             the constants of the wearer's model, each person held apart once";
+  tenax train emg --recordings FOLDER             the constants of intent recognition, leaving out each person once";
 
 /// Where `tenax dataset` writes if nothing else is said.
 const DATASET: &str = "out/array_dataset.csv";
@@ -30,31 +30,31 @@ const DATASET: &str = "out/array_dataset.csv";
 pub struct Args {
     #[command(subcommand)]
     what: Option<What>,
-    /// Labelled recordings to learn from [default: what `tenax dataset` writes, out/array_dataset.csv]
+    /// Labelled recordings to train on [default: out/array_dataset.csv of `tenax dataset`]
     #[arg(long, value_name = "FILE.csv")]
     dataset: Option<PathBuf>,
     /// How to read them: a recipe file, or the name of one in recipes/ [default: by the file's name]
     #[arg(long, value_name = "FILE.toml|NAME")]
     recipe: Option<String>,
-    /// More recordings, of the same recipe, to score on: nothing is learned or chosen from them
+    /// Further recordings (same recipe), used for scoring only; may be given more than once
     #[arg(long, value_name = "FILE.csv")]
     test: Vec<PathBuf>,
     /// Where the network (Rust), its model card and the report are written
     #[arg(long, value_name = "DIR", default_value = "out/train")]
     out: PathBuf,
-    /// Seed of first weights and of the order in which steps are learned
+    /// Seed of the initial weights and of the training order
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// How to print the report: text or json
     #[arg(long, default_value = "text", value_parser = ["text", "json"])]
     report: String,
-    /// Score on the data's own test part, too: do it once, for what is to be shipped
+    /// Also score on the test part of the data: once, for a network to be shipped
     #[arg(long)]
     open_test: bool,
-    /// Learn from the paper's 76 features alone: the control
+    /// Train on the paper's 76 features only, as a control
     #[arg(long)]
     paper_only: bool,
-    /// Put what was written where the firmware and the documentation have it
+    /// Copy network and card to logic/src/array/shipped.rs and docs/
     #[arg(long)]
     ship: bool,
 }
@@ -62,7 +62,7 @@ pub struct Args {
 /// What is fitted instead of the force array's network.
 #[derive(Debug, clap::Subcommand)]
 enum What {
-    /// Fit what the wearer wants to recorded envelopes of people
+    /// Fit intent recognition to recorded EMG envelopes of people
     Emg(EmgArgs),
 }
 
@@ -70,10 +70,10 @@ enum What {
 struct EmgArgs {
     #[command(flatten)]
     people: People,
-    /// Rounds of the search: a tenth of a second each for every person
+    /// Rounds of the search; each takes 0.1 s a person
     #[arg(long, value_name = "N", default_value_t = 600)]
     rounds: u32,
-    /// Put the constants where the firmware has them
+    /// Write the constants into the firmware's source
     #[arg(long)]
     ship: bool,
 }

@@ -29,7 +29,7 @@ const HOLDS_MN: i32 = 200;
 
 const EXAMPLES: &str = "\
 Examples:
-  tenax vision                                         drawn scenes, scored against what they truly show
+  tenax vision                                         drawn sessions, scored against their truth
   tenax vision --report json                           for programs
   tenax vision --video skin.m4v --out seen --overlay-every 50
                                                        markers.csv, object.csv and overlays of a video
@@ -58,42 +58,41 @@ pub struct Args {
     /// A camera of Video4Linux, such as /dev/video0
     #[arg(long, value_name = "DEVICE", group = "source")]
     device: Option<PathBuf>,
-    /// The camera of a drawn scene, of `--seed`
+    /// A simulated camera; the scene is drawn from --seed
     #[arg(long, group = "source")]
     drawn: bool,
-    /// What is wrong with the drawn camera from 4 s to 6 s
+    /// Fault of the simulated camera from 4 s to 6 s
     #[arg(long, value_enum, value_name = "FAULT", requires = "drawn")]
     fault: Option<Fault>,
-    /// Pictures a second, where the source does not say it [default: 30]
+    /// Pictures a second if the source does not tell it, Hz [default: 30]
     #[arg(long, value_name = "HZ", requires = "source")]
     rate_hz: Option<f64>,
-    /// Where markers.csv, object.csv and overlays go
+    /// Folder for markers.csv, object.csv and overlays
     #[arg(long, value_name = "FOLDER", requires = "source")]
     out: Option<PathBuf>,
-    /// Draw every so many pictures, with what was made of them
+    /// Write an overlay of every Nth picture; 0: none
     #[arg(long, value_name = "N", default_value_t = 0, requires = "out")]
     overlay_every: usize,
-    /// Send a board what the camera sees, for its behaviours: a port, or tcp:HOST:PORT
+    /// Send the camera's results to this board for its behaviours: /dev/ttyACM0 or tcp:127.0.0.1:7777
     #[arg(long, value_name = "PORT", requires = "source")]
     port: Option<Target>,
-    /// Begin this behaviour once the camera sees the skin: gentle-grasp, hold, hand-over, or turn:DEGREES. A line has one sender:
-    /// what the camera's program does not begin, nobody else can while it sends
+    /// Begin this behaviour once the camera sees the skin: gentle-grasp, hold, hand-over, or turn:DEGREES such as turn:20. Only
+    /// one program can send on a line
     #[arg(long, value_name = "WHAT", requires = "port", value_parser = behaviour)]
     begin: Option<Behaviour>,
-    /// Send the teacher's words, too; without --port print them for `tenax monitor --teach`, one line a picture, and nothing
-    /// else
+    /// Also send the teacher's codes; without --port only print them, one line a picture, for `tenax monitor --teach`
     #[arg(long, requires = "source")]
     teach: bool,
-    /// Normal force that a marker's move stands for, for the board, mN a px
+    /// Normal force on the board for each px of a marker's motion, mN/px
     #[arg(long, value_name = "MN", default_value_t = 100.0, requires = "port")]
     normal_mn_per_px: f32,
-    /// Shear that a marker's move along the finger stands for, for the board, mN a px
+    /// Shear on the board for each px of a marker's motion along the finger, mN/px
     #[arg(long, value_name = "MN", default_value_t = 40.0, requires = "port")]
     shear_mn_per_px: f32,
     /// Seed of the drawn scenes
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// How many sessions are drawn
+    /// Number of drawn sessions
     #[arg(long, value_name = "N", default_value_t = 3)]
     sessions: u64,
     /// How to report
@@ -103,20 +102,20 @@ pub struct Args {
 
 #[derive(Debug, clap::Subcommand)]
 enum Command {
-    /// Calibrate force from the markers' moves under known loads
+    /// Calibrate force from marker motion under known loads
     Calibrate(CalibrateArgs),
 }
 
-/// Calibrate force from the markers' moves under known loads.
+/// Calibrate force from marker motion under known loads.
 #[derive(Debug, clap::Args)]
 struct CalibrateArgs {
     /// The table: image,mass_g,fx_n,fy_n,fz_n; pictures beside it or in its folder `loads`
     #[arg(long, value_name = "FILE.csv")]
     loads: PathBuf,
-    /// Leave this mass out, and try the calibration on it; may be given more than once, g
+    /// Mass in g that is left out and used to test the calibration; may be given more than once
     #[arg(long, value_name = "G")]
     leave_out: Vec<f64>,
-    /// Another table of loads on the same skin, on which the calibration is tried
+    /// Second table of loads on the same skin, to test the calibration
     #[arg(long, value_name = "FILE.csv")]
     try_loads: Option<PathBuf>,
     /// How to report

@@ -17,7 +17,7 @@ pub struct SlidingCovariance<const N: usize> {
 }
 
 impl<const N: usize> Default for SlidingCovariance<N> {
-    /// The covariance of an array where nothing ever happened.
+    /// All differences are 0.
     fn default() -> Self {
         const { assert!(N >= 1 && N <= 40, "a window of 1 to 40 differences") }
         Self { window: [[0; ELEMENTS]; N], oldest: 0, entries: [0; COVARIANCES] }
@@ -32,8 +32,7 @@ impl<const N: usize> SlidingCovariance<N> {
     /// make one impact deafen the detector for as long as it is remembered.
     pub const D_MAX: i32 = 1 << (i32::MAX as u32 / N as u32).isqrt().ilog2();
 
-    /// Takes the newest differences, and forgets the oldest. What is beyond +-[`D_MAX`](Self::D_MAX), above less one, is
-    /// cut.
+    /// Adds the newest differences, samples, and drops the oldest. Each is clamped to -[`D_MAX`](Self::D_MAX)..=`D_MAX - 1`.
     #[inline]
     pub fn push(&mut self, differences: &[i32; ELEMENTS]) {
         let new = differences.map(|d| d.clamp(-Self::D_MAX, Self::D_MAX - 1) as i16);
@@ -50,8 +49,8 @@ impl<const N: usize> SlidingCovariance<N> {
         }
     }
 
-    /// Removes elements from the window, as if they had never changed: their last readings are suspect. All in
-    /// one pass: ten that are lost at once must not cost ten.
+    /// Sets the differences of the elements `gone` to 0 in the whole window: their last readings are suspect. One pass, so
+    /// that ten lost elements cost no more than one.
     pub fn forget(&mut self, gone: &[bool; ELEMENTS]) {
         for column in &mut self.window {
             for (difference, &gone) in column.iter_mut().zip(gone) {

@@ -9,9 +9,9 @@ use super::network::{LookBack, Mlp};
 use super::preprocess::{Features, Preprocessor, PreprocessorConfig};
 use super::{COVARIANCE_WINDOW, FEATURES, Reading, SPECTRUM_WINDOW};
 
-/// Shares of a slow frame's work, one a tick: covariance with its features, and spectrum; the spectrum's features, and structure
-/// functions of short lags; the others, and a quarter of the first layer; half of it; the rest of the network and the verdict.
-/// About as much each: a tick that did all would last into the next frame.
+/// Number of shares of a slow frame's work, one a tick, about equally long: all of it would not fit into one tick. Share 0:
+/// covariance, its features, spectrum. 1: features of the spectrum, structure functions of short lags. 2: those of long lags, a
+/// quarter of the first layer. 3: half of the first layer. 4: the rest of the network, and the verdict.
 pub const SHARES: usize = ARRAY_SHARES as usize;
 const VERDICT_SHARE: usize = SHARES - 1;
 const _: () = assert!(VERDICT_SHARE == 4);
@@ -28,22 +28,22 @@ pub struct ArrayVerdict {
 }
 
 impl ArrayVerdict {
-    /// Nothing has been judged yet.
+    /// The verdict before the first features.
     pub const NONE: Self = Self { slip: false, confidence_permille: 0, age_ms: u16::MAX };
 }
 
 /// Calibration and thresholds of the logit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Judgement {
-    /// How much a logit has to grow for the odds of slip to grow e-fold: its calibration.
+    /// Increase of the logit that multiplies the odds of slip by e: the calibration.
     pub logit_per_nat: i32,
-    /// Confidence from which slow frames are slip, per mille.
+    /// Slow frames with at least this confidence count as slip, per mille.
     pub on_permille: u16,
-    /// Confidence below which they are not, per mille.
+    /// Slow frames with less confidence count as no slip, per mille.
     pub off_permille: u16,
-    /// Slow frames in a row with this confidence until slip begins.
+    /// Number of consecutive slip frames after which slip is reported.
     pub on_frames: u8,
-    /// Slow frames in a row below it until slip ends.
+    /// Number of consecutive frames without slip after which the report ends.
     pub off_frames: u8,
 }
 
@@ -81,9 +81,9 @@ pub struct ArrayDetector<
     contradicted: u8,
     /// Slow frames since the last one that was judged.
     unjudged: u16,
-    /// Whether there are features that were not judged yet.
+    /// Whether the last features still wait for the network.
     felt: bool,
-    /// What the first layer makes of them, some of it in each of the last three shares.
+    /// Activations of the first layer, computed in the last three shares.
     seen: [i16; H1],
     logit: Option<i32>,
     verdict: ArrayVerdict,
@@ -118,7 +118,7 @@ impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const
     }
 
     /// Does one share of [`push`](Self::push), 0 to [`SHARES`] less one in this order, and gives the verdict with the last.
-    /// `reading` counts in the first; other shares are none.
+    /// Only share 0 uses `reading`; a larger share does nothing.
     pub fn work(&mut self, share: usize, reading: &Reading) -> Option<ArrayVerdict> {
         match share {
             0 => self.preprocessor.add_reading(reading),
@@ -161,13 +161,13 @@ impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const
         Some(self.model.network.judge(self.look_back.push(self.seen)?))
     }
 
-    /// The network's logit of the last slow frame. None if there was nothing to judge by.
+    /// The network's logit of the last slow frame. None without features.
     #[must_use]
     pub fn logit(&self) -> Option<i32> {
         self.logit
     }
 
-    /// The last features. They mean nothing where there is no logit.
+    /// The last features. Invalid while [`logit`](Self::logit) is None.
     #[must_use]
     pub fn features(&self) -> &Features {
         self.preprocessor.features()

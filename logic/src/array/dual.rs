@@ -52,7 +52,7 @@ impl Pair {
         Self(first as u16 as u32 | (second as u16 as u32) << 16)
     }
 
-    /// Both.
+    /// The two numbers, the lower half first.
     #[must_use]
     pub const fn get(self) -> [i16; 2] {
         [self.0 as i16, (self.0 >> 16) as i16]
@@ -102,7 +102,7 @@ mod arm {
     /// Steps of four inputs that are written out, at most: 52 bytes of code each.
     const UNROLLED_MAX: usize = 19;
 
-    /// Whether [`dot_rows`] can take it.
+    /// Whether [`dot_rows`] can take these rows and inputs: size and alignment.
     #[inline]
     pub fn suits<const I: usize>(rows: &[[i16; I]; ROWS], inputs: &[i16; I]) -> bool {
         let fits = const { I > 0 && I.is_multiple_of(4) && 2 * I <= OFFSET_MAX };
@@ -119,7 +119,7 @@ mod arm {
         most
     }
 
-    /// What [`suits`].
+    /// Sums of products, of rows and inputs that [`suits`] accepts.
     #[inline]
     pub fn dot_rows<const I: usize>(
         rows: &[[i16; I]; ROWS],

@@ -32,7 +32,7 @@ impl Knee {
         (((magnitude + self.value).to_bits() as i32 - self.bits) >> (SINGLE_Q - FEATURE_Q)) as i16
     }
 
-    /// The same with the value's sign.
+    /// [`of`](Self::of) the magnitude, with the value's sign.
     #[must_use]
     #[inline]
     pub fn signed(self, value: i32) -> i16 {

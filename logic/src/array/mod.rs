@@ -66,7 +66,7 @@ pub type Reading = [Option<u16>; ELEMENTS];
 pub type ShippedDetector = ArrayDetector<'static, 32, 1, 16>;
 
 impl Default for ShippedDetector {
-    /// One that has read nothing.
+    /// A detector without readings.
     fn default() -> Self {
         Self::new(&shipped::MODEL)
     }

@@ -21,20 +21,19 @@ use core::ops::Range;
 
 use super::dual::{self, Aligned, ROWS};
 
-/// Saturation of a hidden unit's activation.
+/// Largest activation of a hidden unit, where it saturates.
 pub const ACTIVATION_MAX: i16 = i16::MAX;
-/// The largest size of an input.
+/// Bound of an input's magnitude, 2^15.
 const INPUT_SIZE: u32 = 1 << 15;
 
-/// A layer that was refused: with the largest inputs, the sum of this output could leave `i32`; or it shifts by more
-/// than 31.
+/// A refused layer: with the largest inputs the sum of this output could overflow `i32`, or the shift is above 31.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooLarge {
     /// Index of the output.
     pub output: usize,
 }
 
-/// `O` sums of `I` products.
+/// A fully connected layer: `I` inputs, `O` outputs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[repr(C, align(8))]
 pub struct Layer<const I: usize, const O: usize> {
@@ -47,11 +46,11 @@ impl<const I: usize, const O: usize> Layer<I, O> {
     /// A layer with weights and biases of 0.
     pub const ZERO: Self = Self { weights: [[0; I]; O], bias: [0; O], shift: 0 };
 
-    /// A layer: a row of weights for each output, biases in units of the sum, and by how many bits a sum is shifted down
-    /// to become an activation.
+    /// A layer of `weights` (a row for each output), `bias` (units of the sum) and `shift` (bits by which a sum is shifted
+    /// right to give an activation, 0 to 31).
     ///
     /// # Errors
-    /// If `|bias| + 2^15 (sum of |weights|)` of a row is 2^31 or more, or the shift is. 100 weights of 8 bits always fit.
+    /// If `|bias| + 2^15 (sum of |weights|)` of a row is 2^31 or more, or `shift` is above 31. 100 weights of 8 bits always fit.
     pub const fn new(weights: [[i16; I]; O], bias: [i32; O], shift: u32) -> Result<Self, TooLarge> {
         let mut output = 0;
         while output < O {
@@ -69,14 +68,14 @@ impl<const I: usize, const O: usize> Layer<I, O> {
         Ok(Self { weights, bias, shift })
     }
 
-    /// The sums. Quickest if `I` and `O` are multiples of four.
+    /// Weighted sums of the inputs plus bias. Fastest if `I` and `O` are multiples of four.
     #[must_use]
     #[inline]
     pub fn sums(&self, inputs: &[i16; I]) -> [i32; O] {
         self.add_sums(inputs, self.bias)
     }
 
-    /// `sums` and the products' sums, without the bias.
+    /// Adds the weighted sums of the inputs to `sums`, without the bias.
     #[inline]
     fn add_sums(&self, inputs: &[i16; I], mut sums: [i32; O]) -> [i32; O] {
         let Aligned(inputs) = &Aligned(*inputs);
@@ -91,14 +90,14 @@ impl<const I: usize, const O: usize> Layer<I, O> {
         sums
     }
 
-    /// Activations of a hidden layer: sums without negative ones, shifted down, saturated.
+    /// Activations of a hidden layer: sums shifted right, then limited to 0..=[`ACTIVATION_MAX`].
     #[must_use]
     pub fn activations(&self, inputs: &[i16; I]) -> [i16; O] {
         self.activations_of(self.sums(inputs))
     }
 
     /// Writes the activations of a range of outputs to their places in `activations`, to split the work.
-    /// Outputs that do not exist are left out. Not inlined: its products are unrolled, once is enough.
+    /// Does nothing if the range exceeds the outputs. Not inlined, since its unrolled products are long.
     #[inline(never)]
     pub fn activate(&self, inputs: &[i16; I], outputs: Range<usize>, activations: &mut [i16; O]) {
         let Aligned(inputs) = &Aligned(*inputs);
@@ -127,22 +126,22 @@ impl<const I: usize, const O: usize> Layer<I, O> {
     }
 }
 
-/// The network: `I` inputs, `H1` units in the first hidden layer, `H2` in the second. The second layer sees the first layer's outputs of
-/// the last `L` slow frames; with 1 only the present ones.
+/// The network: `I` inputs, `H1` units in the first hidden layer, `H2` in the second. The second layer gets the first layer's
+/// outputs of the last `L` slow frames (1: the newest only).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mlp<const I: usize, const H1: usize, const L: usize, const H2: usize> {
     first: Layer<I, H1>,
-    /// Of this frame, then of the one before, and so on. Their sums add up; the shift is the first one's.
+    /// Layers for this slow frame, the one before, and so on. Their sums add up; the first one's shift is used.
     second: [Layer<H1, H2>; L],
     last: Layer<H2, 1>,
 }
 
 impl<const I: usize, const H1: usize, const L: usize, const H2: usize> Mlp<I, H1, L, H2> {
-    /// A network of layers. `second` has one for each frame that is seen, the present one first; the biases of all of
-    /// them count, the shift of the first.
+    /// A network of these layers. `second` has one layer for each of the last `L` slow frames, the newest first; their biases
+    /// add up, and the first one's shift is used.
     ///
     /// # Errors
-    /// If the layers of `second` could overflow together though none does alone.
+    /// If the sum over the layers of `second` could overflow `i32`.
     pub const fn new(
         first: Layer<I, H1>,
         second: [Layer<H1, H2>; L],
@@ -177,7 +176,7 @@ impl<const I: usize, const H1: usize, const L: usize, const H2: usize> Mlp<I, H1
         seen
     }
 
-    /// The same, of some units only.
+    /// Like [`see`](Self::see), for a range of units.
     pub fn see_some(&self, features: &[i16; I], units: Range<usize>, seen: &mut [i16; H1]) {
         self.first.activate(features, units, seen);
     }
@@ -208,7 +207,7 @@ pub struct LookBack<const H1: usize, const L: usize> {
 }
 
 impl<const H1: usize, const L: usize> Default for LookBack<H1, L> {
-    /// Nothing.
+    /// An empty queue.
     fn default() -> Self {
         Self { seen: [[0; H1]; L], missing: L }
     }

@@ -13,7 +13,7 @@ const FRAMES: usize = LAG_MAX + 1;
 pub struct Past {
     frames: [[u16; ELEMENTS]; FRAMES],
     newest: usize,
-    /// For how many frames up to now each element has had a reading, `FRAMES` at most.
+    /// Number of consecutive frames with a reading of each element, `FRAMES` at most.
     runs: [u8; ELEMENTS],
 }
 
@@ -24,23 +24,23 @@ pub struct Arrival {
     pub dead: usize,
     /// Elements without a reading that had one in the slow frame before.
     pub gone: [bool; ELEMENTS],
-    /// How much the sum of the elements changed, samples; one without a reading keeps what it had.
+    /// Change of the elements' sum, samples. An element without a reading keeps its last value.
     pub change: i32,
-    /// The part of it from elements that had no reading in the slow frame before, samples.
+    /// The part of `change` from elements that had no reading in the slow frame before, samples.
     pub missed: i32,
 }
 
-/// How much each element changed.
+/// Change of each element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Changes {
-    /// Samples; 0 where it is not known, since the element had no reading all the while.
+    /// Change, samples; 0 for an element that lacked a reading in between.
     pub of: [i32; ELEMENTS],
-    /// Of how many elements it is known.
+    /// Number of elements whose change is known.
     pub known: i32,
 }
 
 impl Default for Past {
-    /// Nothing was read, and nothing presses.
+    /// No readings yet; every element at its rest voltage.
     fn default() -> Self {
         let rest = sample_from_mv(CHANNELS[ARRAY].rest_mv);
         Self { frames: [[rest; ELEMENTS]; FRAMES], newest: 0, runs: [0; ELEMENTS] }
@@ -75,7 +75,7 @@ impl Past {
         arrival
     }
 
-    /// The change since `lag` slow frames before, 1 to [`LAG_MAX`] (equation 1: 1). What is beyond is cut.
+    /// The change of each element over `lag` slow frames, clamped to 1..=[`LAG_MAX`] (equation 1: 1).
     #[must_use]
     #[inline]
     pub fn changes(&self, lag: usize) -> Changes {

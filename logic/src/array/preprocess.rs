@@ -18,13 +18,13 @@ pub type Features = [i16; FEATURES];
 /// Settings of the features.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PreprocessorConfig {
-    /// A difference is to the reading so many slow frames before, 1 to [`LAG_MAX`] (equation 1: 1). What is beyond is cut.
+    /// Lag of a difference, slow frames, 1 to [`LAG_MAX`] (equation 1: 1); other values are clamped.
     pub lag: u8,
-    /// Covariance below which a feature is straight instead of logarithmic, samples^2: about that of noise alone.
+    /// Covariance below which a feature is linear instead of logarithmic, samples^2: about that of noise alone.
     pub covariance_knee: u32,
-    /// The same for a bin's power, samples^2.
+    /// Knee of a bin's power, samples^2.
     pub spectrum_knee: u32,
-    /// The same for a structure function, samples^2 for each frame of its window, times the number of elements.
+    /// Knee of a structure function, samples^2 for each frame of its window, times the number of elements.
     pub structure_knee: u32,
     /// With more elements than this without a reading, there are no features.
     pub dead_max: u8,
@@ -45,18 +45,17 @@ impl Default for PreprocessorConfig {
 
 /// Covariance over `N` differences, spectrum over `M` sums and structure functions of the readings pushed so far.
 ///
-/// An element without a reading changes nothing: its differences are 0, its covariances are 0 from that very frame on
-/// (also those of the frames before, whose readings may have been its dying ones), the sum keeps what it had of it, and
-/// the structure functions, which cannot tell it from the others, begin anew but for the quiet level. When it comes back, or reads for the first
-/// time, that is no change either: the spectrum's window is given the force that it missed as a constant, and differences
-/// begin when there is a reading of its own to differ from.
+/// If an element loses its reading, its differences and covariances become 0, also those of earlier frames, whose readings are
+/// suspect. The sum keeps its last value, and the structure functions begin anew except for the quiet level. When its readings
+/// return, or begin, that counts as no change: the missed force is added to the spectrum's whole window as a constant, and
+/// differences begin with its second reading.
 #[derive(Clone, Debug)]
 pub struct Preprocessor<const N: usize = COVARIANCE_WINDOW, const M: usize = SPECTRUM_WINDOW> {
     config: PreprocessorConfig,
     covariance_knee: Knee,
     spectrum_knee: Knee,
     structure_knees: [Knee; WINDOWS],
-    /// Slow frames from the reading that a difference is to.
+    /// Lag of a difference, slow frames.
     lag: usize,
     past: Past,
     /// Whether the windows are full and enough elements have a reading.

@@ -43,7 +43,7 @@ pub const fn mlp<const I: usize, const H1: usize, const L: usize, const H2: usiz
 }
 
 /// A layer of weights within +-128 and biases within +-2^20, and a shift that keeps most activations from saturating.
-/// `seed` goes on to the next layer.
+/// `seed` is advanced for the next layer.
 ///
 /// # Panics
 /// In the compiler, if a layer of this size could overflow.

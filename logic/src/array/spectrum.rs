@@ -57,7 +57,7 @@ pub struct SlidingSpectrum<const M: usize> {
 }
 
 impl<const M: usize> Default for SlidingSpectrum<M> {
-    /// That of an array at rest.
+    /// The spectrum of an array at rest: all bins are 0.
     fn default() -> Self {
         const { assert!(M >= 2 && M.is_multiple_of(2) && SPECTRUM_WINDOW.is_multiple_of(M)) }
         Self { window: [0; M], place: 0, bins: [[0; 2]; BINS] }
@@ -65,7 +65,7 @@ impl<const M: usize> Default for SlidingSpectrum<M> {
 }
 
 impl<const M: usize> SlidingSpectrum<M> {
-    /// Takes the newest sum, within +-2^20, and forgets the oldest.
+    /// Adds the newest sum, samples within +-2^20, and drops the oldest.
     #[inline]
     pub fn push(&mut self, sum: i32) {
         let Some(oldest) = self.window.get_mut(self.place) else { return };
@@ -82,7 +82,7 @@ impl<const M: usize> SlidingSpectrum<M> {
         }
     }
 
-    /// Adds a constant to every sum of the window: only bin 0 knows of it, since each bin's twiddle factors add up to 0.
+    /// Adds a constant to every sum of the window, samples. Only bin 0 changes: the other bins' twiddle factors add up to 0.
     pub fn shift(&mut self, by: i32) {
         for sum in &mut self.window {
             *sum += by;

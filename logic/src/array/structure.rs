@@ -20,18 +20,18 @@ use super::ELEMENTS;
 use super::logarithm::Knee;
 use super::past::{Changes, Past};
 
-/// Slow frames that a change is over. The two longest see slow sliding, whose contacts take 0.2 to 0.4 s to be new ones.
+/// Lags of the changes, slow frames. The two longest are for slow sliding, whose contacts renew themselves in 0.2 to 0.4 s.
 pub const LAGS: [usize; 6] = [1, 2, 4, 8, 16, 32];
-/// How many of them are short.
+/// Number of short lags.
 const SHORT: usize = 4;
 /// Windows of each lag.
 pub const WINDOWS: usize = 6;
-/// Where they begin and end, slow frames ago: the newest change, the one before, then octaves.
+/// Edges of the windows, slow frames ago: the newest change, the one before, then octaves.
 const EDGES: [usize; WINDOWS + 1] = [0, 1, 2, 4, 8, 16, 32];
 const FRAMES: usize = EDGES[WINDOWS];
 /// Number of structure functions.
 pub const STRUCTURES: usize = LAGS.len() * WINDOWS;
-/// The quiet level rises by a part 2^-8 in each slow frame: to twice itself in 2.2 s.
+/// The quiet level rises by 2^-8 of itself in each slow frame, and so doubles in 2.2 s.
 const QUIET_SHIFT: u32 = 8;
 /// Readings until all windows of the four shorter lags are full. Half a second of silence is enough to ask of a hand that has
 /// just been switched on: the longer lags' windows hold what there is, and 0 before.
@@ -39,7 +39,7 @@ pub const READY_AFTER: usize = FRAMES + LAGS[SHORT - 1];
 /// Readings until all windows are full.
 pub const FULL_AFTER: usize = FRAMES + LAGS[LAGS.len() - 1];
 
-/// A change counts as this at most, samples: 1 N of one element within 0.1 s. Sixteen sums of ten squares of it, times
+/// A change is limited to this, samples: 1 N of one element within 0.1 s. Sixteen sums of ten squares of it, times
 /// ten, fit in a `u32`.
 pub const CHANGE_MAX: i32 = 1 << 10;
 const _: () = assert!(
@@ -51,16 +51,16 @@ const _: () = assert!(
 #[derive(Clone, Debug)]
 pub struct Structure {
     energies: [[u32; FRAMES]; LAGS.len()],
-    /// Where the newest energy of each lag is.
+    /// Index of the newest energy of each lag.
     newest: usize,
     sums: [[u32; WINDOWS]; LAGS.len()],
-    /// Slow frames since there was nothing, as many as matter.
+    /// Number of slow frames since the start or the last `forget`, saturating.
     pushed: usize,
     quiet: u32,
 }
 
 impl Default for Structure {
-    /// That of an array where nothing ever happened.
+    /// All changes are 0.
     fn default() -> Self {
         Self {
             energies: [[0; FRAMES]; LAGS.len()],
@@ -79,7 +79,7 @@ impl Structure {
         self.push_long(past);
     }
 
-    /// Takes those over the four shorter lags: the first half of [`push`](Self::push).
+    /// Takes the changes over the four short lags: the first half of [`push`](Self::push).
     pub fn push_short(&mut self, past: &Past) {
         self.newest = (self.newest + FRAMES - 1) % FRAMES;
         self.push_lags(past, 0..SHORT);
@@ -92,7 +92,7 @@ impl Structure {
         }
     }
 
-    /// Takes those over the longer ones: the second half.
+    /// Takes the changes over the long lags: the second half.
     pub fn push_long(&mut self, past: &Past) {
         self.push_lags(past, SHORT..LAGS.len());
     }
@@ -114,8 +114,7 @@ impl Structure {
         }
     }
 
-    /// Forgets all but the quiet level: an element is lost, and its last readings, which are in every sum, are
-    /// suspect.
+    /// Clears all but the quiet level: an element was lost, and every sum contains its last, suspect readings.
     pub fn forget(&mut self) {
         self.pushed = 0;
         self.energies = [[0; FRAMES]; LAGS.len()];
@@ -154,7 +153,7 @@ pub fn knees(of_frame: u32) -> [Knee; WINDOWS] {
     core::array::from_fn(|window| Knee::at(of_frame * (EDGES[window + 1] - EDGES[window]) as u32))
 }
 
-/// What elements did apart from each other: `n` times the squares of their changes about the mean.
+/// Difference between the elements: `n` times the sum of squares of their changes about the mean.
 #[inline]
 fn apart(changes: &Changes) -> u32 {
     let (mut sum, mut squares) = (0, 0);

@@ -7,12 +7,12 @@ use tenax_hal_shim::behaviour::{CameraView, MARKERS, NORMAL_STEP_MN, SHEAR_STEP_
 use crate::array::{ELEMENTS, Reading};
 use crate::grip::Grip;
 
-/// A taxel's reading is so many samples for 1 N (200 mV; the array's data sheet in `docs/wiring.md`), so a sample is 1 mN.
+/// Samples for 1 N on a taxel (200 mV/N, `docs/hardware.md`), so that a sample is about 1 mN.
 const TAXEL_SAMPLES_PER_N: i32 = 993;
 
 /// Scores of a cell's normal force, mN: noise, sufficient, medium, large (FingerVision 2017, section II-A).
 const SCORES: [(i32, u16); 3] = [(300, 5), (100, 3), (30, 1)];
-/// A cell feels another force than before if it has changed by this, mN, or by a quarter of what it was.
+/// A cell feels a changed force if its reading differs by this, mN, or by a quarter of its first reading.
 const CHANGE_MN: i32 = 60;
 
 /// The skin as a whole is pulled at if all markers together are sheared by so much more than at first, mN: three times what
@@ -24,7 +24,7 @@ const PULL_MN: i32 = 250;
 pub struct Felt<'a> {
     /// The camera's last picture, None if it is too old.
     pub view: Option<&'a CameraView>,
-    /// Whether it came in this tick.
+    /// Whether the picture came in this tick.
     pub view_is_new: bool,
     /// Whether this tick ends a slow frame, so that every taxel has been read anew.
     pub cycle_is_over: bool,
@@ -41,14 +41,14 @@ pub struct Felt<'a> {
 /// The cells of the skin, with their readings at the behaviour's begin.
 #[derive(Clone, Copy, Debug)]
 pub enum Skin {
-    /// Markers: normal force and shear, mN.
+    /// The camera's markers.
     Markers {
-        /// At first.
+        /// Normal force at the behaviour's begin, mN.
         normal_mn: [Option<i16>; MARKERS],
-        /// At first.
+        /// Shear at the behaviour's begin, mN.
         shear_mn: [i16; MARKERS],
     },
-    /// Taxels: their samples.
+    /// The taxels' samples at the behaviour's begin.
     Taxels([Option<u16>; ELEMENTS]),
 }
 

@@ -15,7 +15,7 @@ const OPEN_FRAMES: u32 = frames(400);
 /// A force that is another one must be so for this long, in frames: three pictures, or four readings of the taxels. An impact is
 /// shorter.
 const STAYS_FRAMES: u32 = frames(50);
-/// What happens within this time after the beginning is not the other hand's doing, in frames.
+/// Time after the begin in which changes do not count as a pull, frames.
 const BEGINS_FRAMES: u32 = frames(200);
 
 /// Waits for a pull, then opens.

@@ -13,9 +13,10 @@ use crate::grip::Grip;
 use tenax_hal_shim::channel::frames;
 use tenax_hal_shim::motor::Duty;
 
-/// How far the fingers come for one slip, in frames of closing.
+/// Longest closing for one slip, frames.
 const ANSWER_FRAMES_MAX: u32 = frames(500);
-/// After so many frames of closing the fingers come as fast again, up to so many times as fast, while it surely slides.
+/// Frames of closing after which the fingers close faster by their first speed, up to [`FASTEST`] times, while the object
+/// surely slides.
 const FASTER_FRAMES: u32 = frames(60);
 const FASTEST: u32 = 3;
 /// A slip is over when nothing has slipped for this long, in frames.
@@ -32,9 +33,9 @@ const SUMS_RATE: u32 = 2;
 #[derive(Clone, Debug, Default)]
 pub struct Hold {
     movement: Movement,
-    /// What all markers together feel, normal force and shear, mN in 1/16.
+    /// Sums over all markers of normal force and shear, 1/16 mN.
     sums_q4: [i32; 2],
-    /// Whether they are sheared enough to slide, and so much that it surely does.
+    /// Whether the shear is enough for sliding, and whether the object surely slides.
     may_slide: bool,
     slides: bool,
     /// Frames of closing since nothing slipped last, times how much faster than usual.

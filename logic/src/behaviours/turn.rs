@@ -14,10 +14,10 @@ use crate::grip::Grip;
 use crate::latest;
 use tenax_hal_shim::channel::frames;
 
-/// What still slips after being tightened for this long falls, in frames: that is the reflex's.
+/// Time of tightening, frames, after which an object that still slips is falling: the reflex then answers.
 const FALLS_FRAMES: u32 = frames(300);
-/// The part of the first load that is left when it is loosened no further: whoever holds with three times what is needed holds
-/// firmly, and what slips at less should have slipped before.
+/// Loosening stops at this part of the first load, 1/3: three times the needed force is a firm grasp, so the object should
+/// have slipped before.
 const LEAST_PART: i32 = 3;
 /// Pictures over which it is seen to turn.
 const TURNS_PICTURES: usize = 4;
@@ -26,19 +26,19 @@ const TURNS_PICTURES: usize = 4;
 const TURNS_DDEG: [i32; 2] = [10, 3];
 /// Pictures in a row that see it move without a turn: it slides. Fewer may be wrong.
 const SLIDES_PICTURES: u32 = 6;
-/// For how long the camera may not see the angle, in frames.
+/// Longest time without an angle from the camera, frames.
 const UNSEEN_FRAMES: u32 = frames(200);
 /// Small movements that the grasp is kept away from where it slipped last; up to there it is loosened without waiting.
 const MARGIN_MOVEMENTS: i32 = 6;
 
-/// What the hand is about.
+/// Phase of a turn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
     /// Small movements that open, each waited for.
     Loosens,
     /// Small movements that close, until nothing slips.
     Tightens,
-    /// As firm as it was.
+    /// Closes until the grasp is as firm as at first.
     Secures,
 }
 
@@ -63,9 +63,9 @@ pub struct Turn {
     rate_ddeg_s: i32,
     /// Frames since the picture before.
     since_view: u32,
-    /// Where it was when it was last loosened.
+    /// Angle at the last loosening, tenths of a degree.
     loosened_at_ddeg: i32,
-    /// What the last slip brought.
+    /// Change of the angle by the last slip, tenths of a degree.
     stride_ddeg: i32,
     /// How much looser the grasp is than at first, per mille of full duty times frames.
     loosened: i32,

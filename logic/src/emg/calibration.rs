@@ -10,9 +10,9 @@ use super::level::level_of;
 use super::model::{EmgModel, Point, Refusal, octaves};
 use super::trust::TOP_UV;
 
-/// How long each prompt stands, in frames.
+/// Duration of each prompt, frames.
 pub const PROMPT_FRAMES: u32 = 5 * FRAME_HZ;
-/// What of it is left to the wearer to react, in frames.
+/// The part of a prompt that does not count, for the wearer's reaction, frames.
 const REACTION_FRAMES: u32 = 7 * FRAME_HZ / 10;
 /// Readings without a number that a phase may have, per mille.
 const MISSING_PERMILLE: u32 = 50;
@@ -22,29 +22,29 @@ const TOP_PERMILLE: u32 = 100;
 const HELD_PERMILLE: u32 = 600;
 /// How far a reading of a contraction stands out from rest at least, on one electrode.
 const STANDS_OUT: i32 = octaves(500);
-/// The standard deviation below which an envelope is no muscle's: 1 %. The quietest held contraction on record has 6 %.
+/// Standard deviation below which an envelope cannot be a muscle's, 1 %. The steadiest recorded contraction has 6 %.
 const STILL: i32 = octaves(15);
 
-/// How it stands.
+/// Progress of a calibration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
-    /// Waiting for the wearer, who shall do this for so many more frames.
+    /// The wearer must follow this prompt for so many more frames.
     Asks(Prompt, u32),
-    /// Over, and what came of it.
+    /// The calibration is over, with this result.
     Done(Result<EmgModel, Refusal>),
 }
 
-/// Sums over one phase.
+/// Sums over the readings of one prompt.
 #[derive(Clone, Copy, Debug, Default)]
 struct Phase {
-    /// Readings in all, those without a number, at the top, and those that were summed.
+    /// Number of readings: all, without a number, at the top of the range, summed.
     readings: u32,
     missing: u32,
     top: u32,
     summed: u32,
     sum: Point,
     squares: [i64; 2],
-    /// Of opening electrode less closing one, whatever they are: extensor less flexor.
+    /// Sum of squares of extensor minus flexor.
     squares_of_difference: i64,
 }
 

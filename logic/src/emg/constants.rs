@@ -3,40 +3,40 @@
 /// Shares and places are per mille of what was calibrated, levels Q10 octaves, times readings of a pair, 240 a second.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fitted {
-    /// Over which shares and ratio are averaged.
+    /// Readings over which shares and ratio are averaged.
     pub mean_readings: i32,
     /// Share of the calibrated rise from which closing and opening begin.
     pub begins: [i32; 2],
-    /// And below which each ends.
+    /// Share below which closing and opening end.
     pub ends: [i32; 2],
     /// A wish ends at least this far below where it begins.
     pub hysteresis: i32,
-    /// And no lower than this share.
+    /// Lowest share at which a wish ends.
     pub least_end: i32,
-    /// It also ends this far below its own crest, as a share: a muscle that relaxes slowly has let go.
+    /// A wish also ends this share below its highest one: a muscle that relaxes slowly has let go.
     pub fall: i32,
-    /// But never for a fall of less than this level: a contraction fluctuates.
+    /// Smallest fall of the level that ends a wish: a contraction fluctuates.
     pub least_fall: i32,
-    /// Over which the crest is forgotten.
+    /// Readings over which the highest share is forgotten.
     pub crest_readings: i32,
     /// A wish begins again this share above the lowest one since: tone that stays is no new wish.
     pub rise: i32,
     /// A wish begins at least this level above rest.
     pub least_rise: i32,
-    /// And so many standard deviations of rest.
+    /// A wish begins at least so many standard deviations of rest above rest.
     pub least_spreads: i32,
     /// Place of the electrodes' ratio between calibrated closing (0) and opening (1000): closing begins below, opening above.
     pub place_begins: i32,
     /// Closing goes on below, opening above.
     pub place_stays: [i32; 2],
-    /// For which rest, closing and opening stand before they are a wish.
+    /// Readings for which rest, closing and opening must last before they are a wish.
     pub dwell: [i32; 3],
     /// Readings above all that was calibrated that open at once.
     pub at_once_readings: i32,
-    /// Over which rest is followed.
+    /// Readings over which rest is followed.
     pub rest_readings: i32,
-    /// Who lets go of a contraction makes the opposite one for a while, somewhat weaker. So for so long after activity of another
-    /// direction opening does not begin, for so long only a strong one does.
+    /// After a contraction the opposite muscle often contracts weakly for a while. So after other activity no opening begins for
+    /// the first number of readings, and only a strong one for the second.
     pub after_readings: [i32; 2],
     /// For which closing stands as soon after opening.
     pub after_dwell: i32,

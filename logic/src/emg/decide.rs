@@ -11,11 +11,11 @@ use super::fitted::FITTED;
 use super::level::{FLOOR_LEVEL, level_of, uv_of};
 use super::model::EmgModel;
 
-/// An envelope above this is out of the sensor's range, uV: it begins nothing, and what it began goes on.
+/// An envelope above this is out of the sensor's range, uV: it starts no motion, but a motion that it started goes on.
 pub const OVER_UV: i32 = 2_950_000;
-/// Share of opening that opens whatever is thought of either sensor, per mille.
+/// Share of opening that opens even if a sensor is doubted, per mille.
 const STRONG: i32 = 1_000;
-/// Share of closing that closes though nothing is known of the opening site.
+/// Share of closing that closes even without a reading of the opening site, per mille.
 const ALONE: i32 = 900;
 /// Readings without a wish after which rest is followed.
 const CALM_READINGS: u16 = 120;
@@ -23,7 +23,7 @@ const CALM_READINGS: u16 = 120;
 const HUM_READINGS: i32 = 64;
 /// The most that is subtracted as hum or tone, uV.
 const MOST_DRIFT_UV: i32 = 1_500_000;
-/// A muscle is active from this share on, and not any more below that; never above 159 mV, which is activity for everybody.
+/// Share from which a muscle is active, and below which it no longer is, per mille; [`ACTIVE_UV`] limits both levels.
 const ACTIVE: [i32; 2] = [350, 250];
 const ACTIVE_UV: [i32; 2] = [159_000, 112_000];
 /// Contractions that the other electrode hears by less than this, Q10 octaves, are proven by their own electrode alone. It has
@@ -34,7 +34,7 @@ const HEARS_SPREADS: i32 = 1;
 const DEFAULT_BEGINS_UV: [i32; 2] = [600_000, 1_500_000];
 const DEFAULT_OVER: [i32; 2] = [1_322, 2_900];
 const DEFAULT_READINGS: i32 = 72;
-/// And how far it rises at least.
+/// Without calibration: least rise of the other electrode, Q10 octaves.
 const DEFAULT_HEARS: i32 = 256;
 
 /// The wearer's wish.
@@ -54,11 +54,11 @@ pub enum Wish {
 pub struct Electrode {
     /// Envelope above the live zero, uV; None: no valid reading.
     pub uv: Option<i32>,
-    /// Whether it is doubted: it then vetoes nothing, and begins only a strong wish.
+    /// Whether the electrode is doubted: it then blocks nothing, and starts only a strong wish.
     pub doubted: bool,
-    /// Whether it has stood still for a while, and for so long that what it stands at is taken for hum.
+    /// Whether the envelope has been constant for a while.
     pub still: bool,
-    /// See above.
+    /// Whether it has been constant for so long that its level is taken for hum.
     pub hums: bool,
 }
 
@@ -73,11 +73,11 @@ struct Sites {
     span: [i32; 2],
     begins: [i32; 2],
     ends: [i32; 2],
-    /// How far a wish may fall from its crest.
+    /// Fall from the highest share that ends a wish.
     fall: [i32; 2],
     /// Share of the other site with each wish from which both contract: that asks for nothing.
     both: [i32; 2],
-    /// How far the other electrode rises with each wish at least; none if it hears too little.
+    /// Least rise of the other electrode with each wish; None if its signal is too small.
     hears: [Option<i32>; 2],
     close_ratio: i32,
     turn: i32,
@@ -129,7 +129,7 @@ pub struct Decide {
     fitted: &'static Fitted,
     sites: Option<Sites>,
     wish: Wish,
-    /// What is wished now, and for how many readings it has been.
+    /// The wish of the last readings, and for how many of them.
     next: Wish,
     stands: i32,
     strong: i32,
@@ -140,12 +140,12 @@ pub struct Decide {
     mean: [i32; 3],
     crest: i32,
     trough: [i32; 2],
-    /// What is added to rest, uV, Q8.
+    /// Offset that is added to rest, uV, Q8.
     drift: [i32; 2],
 }
 
 impl Decide {
-    /// For this calibrated wearer; None: not calibrated.
+    /// A decision for this calibrated wearer; None: not calibrated.
     #[must_use]
     pub fn new(model: Option<&EmgModel>) -> Self {
         Self::with(&FITTED, model)
@@ -193,8 +193,8 @@ impl Decide {
         self.sites.map_or(site, |sites| sites.electrode[site]) & 1
     }
 
-    /// Where the other electrode rests, and how far it rises at least with the contraction that is wished; none for a wearer
-    /// with whom it hardly does.
+    /// Rest level of the other electrode, and its least rise with the present wish, Q10 octaves. None for a wearer whose other
+    /// electrode hardly rises.
     #[must_use]
     pub fn hears(&self) -> Option<[i32; 2]> {
         let site = usize::from(self.wish != Wish::Close);
@@ -255,7 +255,7 @@ impl Decide {
         self.follow(sites, electrodes, wish);
     }
 
-    /// What the averages say.
+    /// The wish by the averaged shares and place.
     fn wanted(&mut self, sites: &Sites, blind: [bool; 2], over: [bool; 2]) -> Wish {
         let f = self.fitted;
         let [closes, opens, place] = self.mean.map(|mean| mean / 16);

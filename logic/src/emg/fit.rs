@@ -15,7 +15,7 @@ use super::model::{EmgModel, Point};
 const OVER_FRAMES: u8 = 8;
 const LEAST_FRAMES: u32 = 40;
 const MOST_FRAMES: u16 = 4_800;
-/// A contraction is answered if at least one in so many of its slow frames is a wish, to the numerator: 0.4.
+/// A contraction is answered if at least this part of its slow frames is a wish: 2/5.
 const ANSWERED: [u32; 2] = [2, 5];
 /// Contractions that are judged together.
 pub const CONTRACTIONS: u8 = 12;
@@ -29,10 +29,10 @@ const EXCHANGED: [i32; 2] = [1, 3];
 const MOST: i32 = 2_048;
 const LEAST: i32 = 512;
 
-/// Sums over the contractions since the last judgement.
+/// Sums over the contractions since the last decision.
 #[derive(Clone, Debug, Default)]
 pub struct Watch {
-    /// Of the contraction under way: sums of levels, slow frames, and those with a wish.
+    /// The present contraction: sums of levels, number of slow frames, and of those with a wish.
     sums: Point,
     frames: u16,
     wished: u16,
@@ -46,8 +46,8 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Takes the levels of each slow frame, and what was made of them. True if it has
-    /// judged twelve contractions with this.
+    /// Takes the levels (Q10 octaves) and the verdict of each slow frame. True if this frame completes twelve contractions and
+    /// a decision.
     #[inline(never)]
     pub fn take(&mut self, model: &EmgModel, levels: Point, verdict: Verdict) -> bool {
         if !verdict.known || self.frames >= MOST_FRAMES {

@@ -2,7 +2,8 @@
 
 use super::log2;
 
-/// Added to every envelope, uV: what is far below it is no muscle, and its logarithm would swing.
+/// Offset that is added to every envelope before the logarithm, uV. Much smaller envelopes are no muscle's, and their logarithm
+/// would fluctuate.
 pub const FLOOR_UV: i32 = 30_000;
 /// The level of an envelope of zero, Q10 octaves.
 pub const FLOOR_LEVEL: i32 = level_of(0);

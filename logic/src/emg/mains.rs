@@ -25,19 +25,19 @@ const LINES: [bool; WINDOW / 2] = {
     lines[31] = true;
     lines
 };
-/// From this bin on (5 Hz), what is not a line counts as the muscle's: below are contractions themselves.
+/// First bin (5 Hz) of the muscle's noise; lower bins hold the contractions themselves.
 const FIRST_BIN: usize = 4;
 /// The least amplitude of a line that is mains, uV: four times what the noise of a pin makes of it.
 const LEAST_LINE_UV: u32 = 400;
 /// The least part of all alternating power above 5 Hz that lies in the lines, per mille. White noise has 230.
 const LEAST_SHARE_PERMILLE: u16 = 600;
 
-/// What a window says.
+/// Result of a window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Mains {
     /// Amplitude of all lines together, uV.
     pub line_uv: u32,
-    /// The part of the alternating power above 5 Hz that lies in them, per mille.
+    /// Part of the alternating power above 5 Hz that lies in these lines, per mille.
     pub share_permille: u16,
 }
 

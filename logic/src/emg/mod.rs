@@ -67,27 +67,27 @@ pub struct Emg {
     trust: [Trust; 2],
     raised: [bool; 2],
     known: [bool; 2],
-    /// Which swing and are not heard by the other: reported, and no proof.
+    /// Whether each electrode swings while the other one does not: reported, and no proof.
     lone: [bool; 2],
     electrodes: [Electrode; 2],
     verdict: Verdict,
 }
 
 impl Default for Emg {
-    /// Nobody is calibrated.
+    /// Without calibration.
     fn default() -> Self {
         Self::new(None)
     }
 }
 
 impl Emg {
-    /// For a wearer; without one only what cannot be mistaken moves the hand.
+    /// Recognition for a calibrated wearer; None: only very clear contractions move the hand.
     #[must_use]
     pub fn new(model: Option<&EmgModel>) -> Self {
         Self::of(Decide::new(model))
     }
 
-    /// With a model that decides otherwise, to fit it.
+    /// Recognition with another decision, to fit its constants.
     #[must_use]
     pub fn of(decide: Decide) -> Self {
         Self {
@@ -103,7 +103,7 @@ impl Emg {
         }
     }
 
-    /// From now on for this wearer. The hand rests first; what is known of the sensors stays.
+    /// Changes the calibration. The wish begins at rest; the sensors' state stays.
     pub fn calibrate(&mut self, model: Option<&EmgModel>) {
         self.decide = Decide::new(model);
         self.verdict = Verdict::default();
@@ -212,7 +212,7 @@ impl Emg {
         self.raised[channel.min(1)]
     }
 
-    /// What a channel's envelope is: 0 the flexor's, others the extensor's.
+    /// Quality of an envelope: channel 0 is the flexor, others the extensor.
     #[must_use]
     pub fn quality(&self, channel: usize) -> Quality {
         match self.trust[channel.min(1)].quality() {

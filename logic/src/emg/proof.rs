@@ -20,13 +20,14 @@ const LEAST_HEARD: i32 = 123;
 const HEARD_FRAMES: u16 = 120;
 /// Slow frames in a row that make a rise: one is a glitch.
 const HEARD_FOR: u8 = 2;
-/// A rise by degrees: no block has more of it, per mille, and so many have at least the other part.
+/// A gradual rise: no block has more than [`MOST_IN_BLOCK`] of it, per mille, and at least [`BLOCKS_OF_RISE`] blocks have
+/// [`PART_OF_BLOCK`] or more.
 const MOST_IN_BLOCK: i32 = 650;
 const PART_OF_BLOCK: i32 = 100;
 const BLOCKS_OF_RISE: usize = 3;
-/// And it is at least this, Q10 octaves.
+/// Least height of a gradual rise, Q10 octaves.
 const LEAST_RISE: i32 = 512;
-/// And has slowed down to this part of its fastest, per mille.
+/// A gradual rise has slowed down to this part of its fastest step, per mille.
 const SLOWER: i32 = 600;
 /// Rises whose parts of the whole differ by this part of their sum, 8 %, are not in proportion.
 const APART_PART: i32 = 12;
@@ -52,14 +53,14 @@ struct Swings {
     /// The highest since, once it has risen.
     high: Option<i32>,
     was_active: bool,
-    /// What the other electrode had at the lowest, and at most since.
+    /// The other electrode's level at `low`, and its highest level since.
     other: [i32; 2],
     lone: u8,
     since: u16,
 }
 
 impl Default for Swings {
-    /// Nothing is low before the first level.
+    /// The first level becomes `low`.
     fn default() -> Self {
         Self { low: i32::MAX, high: None, was_active: false, other: [0; 2], lone: 0, since: 0 }
     }
@@ -103,12 +104,12 @@ pub struct Proof {
     frames: u8,
     wish: Wish,
     age: u16,
-    /// What each electrode stood at before the wish.
+    /// Each electrode's level before the wish.
     before: [i32; 2],
     /// Slow frames in a row in which the other one is above that.
     hears: u8,
     heard: bool,
-    /// They have not risen in proportion.
+    /// The two rises are not in proportion.
     apart: bool,
     proven: bool,
     over: u16,
@@ -248,7 +249,8 @@ impl Proof {
         self.blocks[n & 1].iter().take(BEFORE).copied().max().map_or(0, i32::from)
     }
 
-    /// How far it is above that now, or above what it was when the wish began, and above its rest.
+    /// Rise of electrode `n` above the lower of [`before`](Self::before) and its level when the wish began, or above rest if that
+    /// is higher, Q10 octaves.
     fn rise(&self, n: usize, level: Option<i32>, rest: i32) -> i32 {
         level.map_or(0, |level| level - self.before(n).min(self.before[n & 1]).max(rest))
     }
@@ -272,8 +274,8 @@ impl Proof {
         apart
     }
 
-    /// Whether an electrode has risen over several blocks and slows down, as a muscle does: what creeps goes on as fast, and what
-    /// has come to the top of its range may have.
+    /// Whether electrode `n` has risen over several blocks and slows down, as a muscle does. Creep does not slow down. At the top
+    /// of the range any signal does, so that does not count.
     fn is_gradual(&self, n: usize) -> bool {
         let blocks = self.blocks[n & 1].map(i32::from);
         let [.., last_but_one, last, now] = blocks;
@@ -297,7 +299,7 @@ fn least(blocks: [i16; BLOCKS]) -> i32 {
     blocks.into_iter().fold(i32::from(i16::MAX), |least, level| least.min(level.into()))
 }
 
-/// By how much the envelope climbs from a level to another, as a part of the highest there is, Q18; 0 if it falls.
+/// Rise of the envelope between two levels as a part of the range, Q18; 0 if it falls.
 #[inline(never)]
 const fn climbs(from: i32, to: i32) -> i32 {
     // 2 to the power of a level below the highest, to 0.2 %.

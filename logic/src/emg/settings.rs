@@ -16,7 +16,7 @@ pub struct GateConfig {
 
 settings! {
     GateConfig:
-    /// Both muscles above this level (over rest) give consent. Whether one muscle is active is decided by its calibration
+    /// Level over rest at which both muscles together give consent. Whether one muscle is active follows from its calibration
     3 EmgOn "emg-on-mv" "mV" [80, 400] = 160 => Number(on_mv);
     /// How long a muscle counts as active after its last activity
     20 EmgHold "emg-hold-ms" "ms" [100, 1_000] = 200 => Ms(hold_frames);

@@ -8,7 +8,7 @@ use super::decide::OVER_UV;
 use super::level::level_of;
 use super::mains::{Mains, UNIT_UV, WINDOW};
 
-/// From here an envelope above the live zero is at the top of its range, uV: 3.15 V at the pin.
+/// Top of an envelope's range, uV above the live zero: 3.15 V at the pin.
 pub const TOP_UV: i32 = 2_850_000;
 /// Readings without a number that are bridged: 50 ms.
 const BRIDGED_READINGS: u8 = 12;
@@ -16,13 +16,13 @@ const BRIDGED_READINGS: u8 = 12;
 const STILL_UV: i32 = 1_500;
 /// Slow frames of standing still that no sound recording has: 1 s, of 0.77 s in 45 minutes of contractions.
 const FLAT_FRAMES: u16 = 80;
-/// The part of its level by which hum swells and ebbs.
+/// Hum varies by less than this part of its level, 1/16.
 const HUM_PART: i32 = 16;
-/// Of climbing without falling back by 3 %: 2.5 s, passed for 2 s in those 45 minutes.
+/// Slow frames of rise without a fall of 3 % that no sound recording has: 2.5 s. The longest in those 45 minutes is 2 s.
 const CREEP_FRAMES: u16 = 200;
-/// At the top: 1.5 s. Recordings have 0.35 s.
+/// Slow frames at the top of the range that no sound recording has: 1.5 s. Recordings have 0.35 s.
 const TOP_FRAMES: u16 = 120;
-/// Of activity without a pause: 60 s; one person holds a tone for more than 30 s.
+/// Slow frames of activity without a pause that no muscle has: 60 s. One person has tone for more than 30 s.
 const ENDLESS_FRAMES: u16 = 4_800;
 /// Good slow frames after which an electrode is believed again: 1 s.
 const BACK_FRAMES: u16 = 80;
@@ -36,28 +36,28 @@ const PROOF_APART: u16 = 12;
 /// Slow frames without a proof after which a contraction has to prove itself again: 1 s.
 const PROOF_LASTS: u16 = 80;
 
-/// Quality of an envelope: a muscle's, or a kind of fault.
+/// Quality of a myosensor's envelope: a muscle's signal, or a kind of fault.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quality {
-    /// A muscle's.
+    /// A muscle's signal.
     #[default]
     Good,
     /// No contact: out of range, or as restless as a loose electrode.
     LeadOff,
-    /// It stands still and mains is in it.
+    /// Constant, with mains in its spectrum.
     Hum,
-    /// It rises without falling back.
+    /// Rises without falling back.
     Creep,
-    /// It stands still.
+    /// Constant within 1 %.
     Flat,
-    /// It has been active for longer than a muscle can be.
+    /// Active for longer than a muscle can be.
     Endless,
-    /// It stays at the top of its range.
+    /// At the top of the range.
     Saturated,
 }
 
 impl Quality {
-    /// What reports call it.
+    /// Name in reports.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -85,7 +85,7 @@ pub struct Trust {
     good: u16,
     last_uv: Option<i32>,
     missing: u8,
-    /// Of the slow frame under way.
+    /// Sum of the present slow frame's readings, uV.
     sum_uv: i32,
     count: u8,
     /// Means of the last slow frames, in a ring.
@@ -282,19 +282,20 @@ impl Trust {
         self.lost.is_none()
     }
 
-    /// Whether it has stood still for 0.2 s.
+    /// Whether the envelope has been constant for 0.2 s.
     #[must_use]
     pub const fn is_still(&self) -> bool {
         self.flat >= FLAT_FRAMES / 5
     }
 
-    /// Whether it is doubted because it stands still: what it stands at is hum.
+    /// Whether the electrode is doubted because its envelope is constant: its level then counts as hum.
     #[must_use]
     pub fn hums(&self) -> bool {
         matches!(self.lost, Some(Quality::Flat | Quality::Hum)) && self.flat >= FLAT_FRAMES
     }
 
-    /// Whether this reading is where it stood still when it was doubted for that: a muscle that begins there moves it by more.
+    /// Whether this reading, uV, is still at the constant level for which the electrode is doubted. An active muscle would
+    /// change it.
     #[must_use]
     pub fn hums_at(&self, uv: i32) -> bool {
         matches!(self.lost, Some(Quality::Flat | Quality::Hum))

@@ -12,8 +12,7 @@ use super::verdicts::Verdicts;
 use crate::behaviours::{Course, Felt, Running, Wish, may_relax};
 use tenax_hal_shim::channel::frames;
 
-/// A picture is too old to be believed after this, in frames, its own age included: the camera is lost, covered by its
-/// computer's load, or frozen.
+/// Age from which a picture is ignored, frames, including its age on arrival: the camera is lost, frozen or delayed.
 const VIEW_FRAMES_MAX: u32 = frames(200);
 
 /// The last picture of the camera behind the skin.
@@ -25,7 +24,7 @@ pub(super) struct Eye {
 }
 
 impl Eye {
-    /// Takes a picture's contents.
+    /// Takes a new picture.
     pub fn see(&mut self, view: CameraView) {
         let age_frames = frames(view.age_ms.into());
         *self = Self { view: (age_frames < VIEW_FRAMES_MAX).then_some(view), age_frames, is_new: true };

@@ -4,7 +4,7 @@ use tenax_hal_shim::motor::MotorDrive;
 
 use tenax_hal_shim::channel::frames;
 
-/// How long the line may drive the hand, in frames, until a muscle, a consent or as much silence renews it.
+/// Longest drive by the line in all, in frames, until a muscle, a consent or as much silence renews it.
 const HOLD_FRAMES_MAX: u32 = frames(10_000);
 /// A pause between two drives shorter than this is part of the hold, in frames: the reflex would still be settling.
 const PAUSE_FRAMES: u32 = frames(500);
@@ -27,7 +27,7 @@ impl Default for Link {
 }
 
 impl Link {
-    /// Takes a drive command that holds for so many frames. `Coast` ends the one before.
+    /// Takes a drive command that holds for `frames` frames. `Coast` ends the one before.
     pub fn ask(&mut self, drive: MotorDrive, frames: u32) {
         self.drive = drive;
         self.frames_left = frames;

@@ -15,7 +15,7 @@ impl Default for Acting {
 }
 
 impl Acting {
-    /// All of them but these.
+    /// This set without the detectors `off`.
     pub const fn but(self, off: DetectorSet) -> Self {
         Self(self.0.without(off))
     }
@@ -24,11 +24,11 @@ impl Acting {
 /// The detectors' reports in one tick: all, and those that are believed and may be acted on.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Verdicts {
-    /// All that is said.
+    /// Detectors that report slip or a warning.
     pub said: DetectorSet,
-    /// The slip that is believed and may be acted on.
+    /// Detectors whose report of slip is believed and may be acted on.
     pub slip: DetectorSet,
-    /// The warnings that are.
+    /// Detectors whose warning is believed and may be acted on.
     pub incipient: DetectorSet,
 }
 

@@ -11,7 +11,7 @@ use tenax_hal_shim::channel::FSR_COUNT;
 
 use super::sensor::CARRIES_MN;
 
-/// Which way each cell counts in A - B + C - D.
+/// Sign of each cell in A - B + C - D.
 const SIGNS: [i32; FSR_COUNT] = [1, -1, 1, -1];
 /// Cells may contradict each other by this, mN, and by this part of the load: hysteresis and gains (Interlink's guide) leave so much.
 const TOLERATED_MN: i32 = 60;
@@ -23,13 +23,13 @@ const LEARN: u8 = 40;
 const LEARN_SHIFT: u32 = 3;
 /// Fraction bits of a contradiction as a part of the load.
 const GAIN_Q: u32 = 12;
-/// What a cell has moved is counted against what it was over `2^ANCHOR_SHIFT` readings, 3 s, with this many fraction bits; and the
-/// votes for each cell are forgotten over twice that.
+/// A cell's change is measured from its average over `2^ANCHOR_SHIFT` readings, 3 s, kept with as many fraction bits. Votes
+/// decay over `2^VOTES_SHIFT` readings.
 const ANCHOR_SHIFT: u32 = 8;
 const VOTES_SHIFT: u32 = 9;
-/// A cell is blamed in place of another one when it has so many times as many votes.
+/// Another cell is blamed instead if it has at least this many times the votes.
 const CLEARLY: i32 = 2;
-/// Votes that are no noise: a few mN for as long as votes are kept. A vote is in 2^VOTE_SHIFT mN^2.
+/// Votes that exceed noise: a few mN for as long as votes are kept. A vote is 2^VOTE_SHIFT mN^2.
 const HEARD: i32 = 200;
 const VOTE_SHIFT: u32 = 8;
 /// A drift is followed by this in a reading, mN: 0.24 N/s of one cell, 0.5 N/s of all.
@@ -45,7 +45,7 @@ const YIELDS_PART: i32 = 5;
 pub enum Cells {
     /// Forces of A to D without drift, mN.
     Known([i32; FSR_COUNT]),
-    /// Too few cells carry a force that can be told from drift.
+    /// Too few cells carry a force: it cannot be separated from drift.
     Sunk,
 }
 
@@ -54,16 +54,17 @@ pub enum Cells {
 pub struct Drift {
     /// The quadrant (0 to 3: A to D) that is judged to drift against the others. None if none is.
     blamed: Option<u8>,
-    /// How far the cells contradict each other beyond their gains: SIGNS times the drift of the blamed one, mN.
+    /// The contradiction between the cells beyond their gains, mN: the sign of the blamed cell times its drift.
     off_mn: i32,
     contradicts: u8,
-    /// Readings since the grasp began, and what A - B + C - D is of the load for want of equal gains.
+    /// Readings since the grasp began, and A - B + C - D as a part of the load, caused by unequal gains.
     learned: u8,
     gain: i32,
-    /// Each cell's reading of late, with [`ANCHOR_SHIFT`] fraction bits, and how much of the contradiction it explains.
+    /// Each cell's reading averaged over 3 s, mN with [`ANCHOR_SHIFT`] fraction bits, and the part of the contradiction that it
+    /// explains (votes).
     anchors: [i32; FSR_COUNT],
     votes: [i32; FSR_COUNT],
-    /// What all of them have sunk by together, mN, and the load that they stood still at.
+    /// Sum of the drift of all cells, mN, and the load at which they were constant.
     sunk_mn: i32,
     stood_at_mn: Option<i32>,
 }
@@ -114,7 +115,7 @@ impl Drift {
         cells.map(|mn| (mn + self.sunk_mn / FSR_COUNT as i32).max(0))
     }
 
-    /// Where no cell carries anything but the blamed one, nothing is held: what is read is drift.
+    /// If only the blamed cell carries a force, nothing is held: its reading is drift.
     fn let_go(&mut self, read_mn: [i32; FSR_COUNT], opened: bool) {
         let carries = |n: usize| read_mn[n] >= CARRIES_MN;
         if let Some(blamed) = self.blamed()

@@ -60,7 +60,7 @@ impl ForceSensor {
         self.drift.think(self.quadrants(), loaded_mn, still);
     }
 
-    /// What the quadrants read last, mN.
+    /// The quadrants' last forces, mN.
     fn quadrants(&self) -> [i32; FSR_COUNT] {
         core::array::from_fn(|n| force_mn(self.last_uv[n] - self.zero_uv[n] - self.drift_uv[n]))
     }

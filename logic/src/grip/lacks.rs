@@ -5,19 +5,19 @@
 pub enum Slides {
     /// Not known: slip was not reported, or not long enough ago.
     Unknown,
-    /// It is.
+    /// Ft/Fn is the sliding friction.
     Now,
-    /// It was within the last readings; an object that has come to rest since shows less.
+    /// Ft/Fn was the sliding friction within the last readings; an object that has stopped since shows less.
     Again,
 }
 
-/// The force that a grip lacks, mN. None where that is not known.
+/// The missing normal force, mN. None if not known.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lacks {
     /// To stop an object that slips, mN.
     pub slip_mn: Option<i32>,
     /// To answer a warning, mN.
     pub warning_mn: Option<i32>,
-    /// Whether S2 warns.
+    /// Whether S2 gives the warning.
     pub by_s2: bool,
 }

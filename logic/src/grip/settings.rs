@@ -7,13 +7,13 @@ use crate::setting::settings;
 pub struct GripConfig {
     /// Duty of the pulse that answers slip, per mille.
     pub slip_duty_permille: u16,
-    /// Its length, in frames.
+    /// Length of the pulse that answers slip, frames.
     pub slip_frames: u32,
-    /// Its length at most while a detector still reports slip, in frames.
+    /// Longest pulse while a detector still reports slip, frames.
     pub slip_frames_max: u32,
     /// Duty of the pulse that answers incipient slip, per mille.
     pub incipient_duty_permille: u16,
-    /// Its length, in frames.
+    /// Length of the pulse that answers incipient slip, frames.
     pub incipient_frames: u32,
     /// Time after a pulse in which no slip is answered, in frames: longer than the motor's dead time, so that the
     /// noise of the hand's own closing is not answered by more closing.
@@ -42,7 +42,7 @@ settings! {
     23 SlipDuty "slip-duty-permille" "per mille" [800, 1_000, trusted 400, 1_000] = 1_000 => Number(slip_duty_permille);
     /// Length of the pulse that answers slip
     24 SlipPulse "slip-pulse-ms" "ms" [10, 60] = 30 => Ms(slip_frames);
-    /// Its length at most while a detector still reports slip
+    /// Longest pulse that answers slip, while a detector still reports it
     25 SlipPulseMax "slip-pulse-max-ms" "ms" [36, 200, trusted 10, 200] = 50 => Ms(slip_frames_max);
     /// Motor duty of the pulse that answers incipient slip
     26 IncipientDuty "incipient-duty-permille" "per mille" [350, 1_000, trusted 100, 1_000] = 400 => Number(incipient_duty_permille);

@@ -17,15 +17,15 @@ const NOISE_MN: i32 = 60;
 const TRAVEL_MIN: u32 = 3_000;
 /// Fraction bits of a stiffness.
 const FRACTION: u32 = 4;
-/// The greatest that is believed, mN a frame at full duty: 4 N.
+/// Upper limit of the stiffness, mN a frame at full duty: 4 N.
 const MOST: u32 = 4_000 << FRACTION;
 
 /// Stiffness by the motor's travel, in per mille of duty times frames.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Stiffness {
-    /// mN that a frame at full duty adds, with [`FRACTION`] bits; 0 before a closing has shown it.
+    /// Force that a frame at full duty adds, mN with [`FRACTION`] bits; 0 before the first closing.
     mn_a_frame: u32,
-    /// The steepest of this closing.
+    /// The largest stiffness of this closing, in the same unit.
     steepest: u32,
     /// Travel of this reading's time, and of those before, the newest first.
     travel: u32,

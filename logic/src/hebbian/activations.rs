@@ -32,7 +32,7 @@ pub enum Sense {
 pub struct Activations<const N: usize>([i32; N]);
 
 impl<const N: usize> Default for Activations<N> {
-    /// Nothing is felt.
+    /// All activations are 0.
     fn default() -> Self {
         Self([0; N])
     }
@@ -52,22 +52,21 @@ impl<const N: usize> Activations<N> {
     }
 }
 
-/// How `N` receptors become activations.
+/// Settings that scale the raw values of `N` receptors to activations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NormaliserConfig<const N: usize> {
     /// Kind of each receptor.
     pub senses: [Sense; N],
-    /// The smallest maximum of each, in its raw unit: what is quieter all its life is a dead receptor's noise and stays
-    /// small. 0 is taken as 1.
+    /// The smallest maximum of each receptor, in its raw unit, so that the noise of a dead receptor stays small. 0 counts as 1.
     pub floors: [u32; N],
-    /// The largest maximum of any, in raw units: what its front end can give. Above, the activation clips.
+    /// The largest maximum of any receptor, in raw units: the range of its front end. Larger values clip.
     pub ceiling: u32,
-    /// The maximum is that of an average over about `2^average_shift` readings, at most 16: a spike makes no receptor
-    /// deaf, and a receptor that crackles is heard as loud as one that hums. 0 takes single readings.
+    /// The maximum is taken of an average over about `2^average_shift` readings, so that a spike makes no receptor
+    /// insensitive. 0 takes single readings; more than 16 counts as 16.
     pub average_shift: u32,
 }
 
-/// More than any average needs; the sum of 2^16 readings of 32 bits is below 2^48.
+/// Limit of `average_shift`: the sum of 2^16 readings of 32 bits is below 2^48.
 const AVERAGE_SHIFT_MAX: u32 = 16;
 
 /// One receptor's zero and maximum, and the maximum's reciprocal.
@@ -115,7 +114,7 @@ impl<const N: usize> Normaliser<N> {
         Self { scales: config.floors.map(|floor| Scale::new(0, floor.min(config.ceiling))) }
     }
 
-    /// Forgets the maxima, keeps the zeros. Weights learned with other maxima mean something else afterwards.
+    /// Resets the maxima to their floors and keeps the zeros. Weights that were learned with other maxima are then invalid.
     pub fn reset(&mut self, config: &NormaliserConfig<N>) {
         let fresh = Self::new(config);
         for (scale, fresh) in self.scales.iter_mut().zip(fresh.scales) {
@@ -123,8 +122,7 @@ impl<const N: usize> Normaliser<N> {
         }
     }
 
-    /// Takes these readings as zero. The caller makes sure that the finger is known to be unloaded, never during
-    /// a grasp.
+    /// Takes these readings as zero. Call it only while the finger is known to be unloaded, never in a grasp.
     pub fn zero(&mut self, raw: &[i32; N]) {
         for (scale, &raw) in self.scales.iter_mut().zip(raw) {
             scale.zero = raw;

@@ -15,7 +15,7 @@ pub struct Reciprocal {
 }
 
 impl Reciprocal {
-    /// One hardware division gives 16 bits, one Newton step the rest. 0 is taken as 1.
+    /// Reciprocal of a number; 0 counts as 1. One hardware division gives 16 bits, one Newton step the rest.
     pub const fn of(number: u32) -> Self {
         let number = if number == 0 { 1 } else { number };
         let shift = number.leading_zeros();

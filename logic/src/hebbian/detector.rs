@@ -102,7 +102,7 @@ pub struct HebbianDetector {
     normaliser: Normaliser<RECEPTORS>,
     network: FingertipNetwork,
     teacher: Teacher,
-    /// Of the gauges always, of the films while there are lessons.
+    /// Activations; the films' are updated only during lessons.
     activations: Activations<RECEPTORS>,
     pvdf_part: PvdfPart,
     noise: Noise,
@@ -112,13 +112,13 @@ pub struct HebbianDetector {
     by_gauges: [i64; NETWORK_OUTPUTS],
     /// The films' part of o1.
     by_films: i64,
-    /// Whether a weight has changed since.
+    /// Whether a weight has changed since the gains were computed.
     weights_changed: bool,
     since_loud_frames: u32,
     said_frames: u32,
-    /// Whether the films say slip.
+    /// Whether the films' part reports slip.
     films_say: bool,
-    /// Whether shear warns of it, on a finger that holds something.
+    /// Whether shear gives a warning, on a finger that holds something.
     warns: bool,
     lesson: Result<Codes, NoLesson>,
     odd: bool,
@@ -127,7 +127,7 @@ pub struct HebbianDetector {
 }
 
 impl Default for HebbianDetector {
-    /// One that knows nothing.
+    /// A detector without readings and with weights of 0.
     fn default() -> Self {
         Self {
             normaliser: Normaliser::new(&NORMALISER),

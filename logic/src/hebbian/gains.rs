@@ -7,30 +7,30 @@
 use super::arithmetic::Reciprocal;
 use super::network::Weight;
 
-/// One receptor's.
+/// Gain of one receptor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Gain {
-    /// A reading above it counts as this: the activation is 1.
+    /// The maximum: larger readings are limited to it (activation 1).
     largest: u32,
-    /// How far a reading is shifted up, so that the maximum has 31 bits.
+    /// Left shift of a reading, so that the maximum has 31 bits.
     shift: u32,
     /// Weight over the maximum's mantissa, Q26, within +-16.
     factor: i32,
 }
 
-/// Of `N` receptors of vibration.
+/// Gains of `N` vibration receptors.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Gains<const N: usize>([Gain; N]);
 
 impl<const N: usize> Default for Gains<N> {
-    /// Those of no weight.
+    /// Gains of weights of 0.
     fn default() -> Self {
         Self([Gain { largest: 1, shift: 0, factor: 0 }; N])
     }
 }
 
 impl<const N: usize> Gains<N> {
-    /// Of these weights and maxima.
+    /// Gains of these weights and maxima (raw units).
     #[must_use]
     pub fn of(weights: &[Weight], maxima: &[u32]) -> Self {
         let mut gains = Self::default();

@@ -35,9 +35,9 @@ pub type Output = Q32<26>;
 const ONE: i64 = 1 << 26;
 /// Largest weight (and its negative, less one unit, the smallest) in units of [`Weight`]: a little less than 8.
 const LIMIT: i32 = (1 << 30) - 1;
-/// Fraction bits from a weight to the magnitude that r is made of.
+/// Shift from a weight (Q27) to a magnitude (Q23), for r.
 const MAGNITUDE_SHIFT: u32 = 27 - 23;
-/// More inputs could overflow the sums.
+/// Largest number of inputs; more could overflow the sums.
 const INPUTS_MAX: usize = 31;
 
 /// Weights from `INPUTS` receptors to `OUTPUTS` outputs.
@@ -45,12 +45,12 @@ const INPUTS_MAX: usize = 31;
 pub struct Network<const INPUTS: usize, const OUTPUTS: usize> {
     /// Q59.
     weights: [[i64; INPUTS]; OUTPUTS],
-    /// For each output, the sum of the weights' magnitudes, Q23: what the next update divides by.
+    /// For each output, the sum of the weights' magnitudes, Q23: part of the next update's divisor.
     magnitudes: [u32; OUTPUTS],
 }
 
 impl<const INPUTS: usize, const OUTPUTS: usize> Default for Network<INPUTS, OUTPUTS> {
-    /// The network before learning: all weights 0, so its outputs are what the teacher says.
+    /// The network before learning: all weights are 0, so the outputs equal the teacher's codes.
     fn default() -> Self {
         const { assert!(INPUTS >= 1 && INPUTS <= INPUTS_MAX, "a network has 1 to 31 inputs") }
         Self { weights: [[0; INPUTS]; OUTPUTS], magnitudes: [0; OUTPUTS] }
@@ -58,7 +58,7 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Default for Network<INPUTS, OUTP
 }
 
 impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
-    /// Outputs, -1 to 1 (Tada 2006, equations 3 and 4). With codes of [`Code::Zero`] they come from touch alone.
+    /// Outputs, -1 to 1 (Tada 2006, equations 3 and 4). With both codes [`Code::Zero`] they depend on the receptors alone.
     pub fn output(&self, activations: &Activations<INPUTS>, codes: &[Code; OUTPUTS]) -> [Output; OUTPUTS] {
         let mut outputs = [Output::default(); OUTPUTS];
         for ((output, weights), &code) in outputs.iter_mut().zip(&self.weights).zip(codes) {
@@ -92,7 +92,7 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
             .map(|(&weight, &t)| part(weight, t))
     }
 
-    /// Part that one receptor adds to each output, units of [`Output`]; 0 for a receptor that does not exist.
+    /// Contribution of one receptor to each output, units of [`Output`]; 0 for a receptor that does not exist.
     #[inline]
     pub fn parts_of(&self, receptor: usize, activations: &Activations<INPUTS>) -> [i32; OUTPUTS] {
         let Some(&t) = activations.as_bits().get(receptor) else { return [0; OUTPUTS] };
@@ -118,7 +118,7 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
         self.learn_some(rule, activations, &codes.map(Some));
     }
 
-    /// The same; an output that is not in the lesson, None, stays as it is.
+    /// Like [`learn`](Self::learn); an output with None keeps its weights.
     pub fn learn_some(
         &mut self,
         rule: &Rule,
@@ -179,7 +179,7 @@ const fn in_use(weight: i64) -> i32 {
     (weight >> 32) as i32
 }
 
-/// What a weight and an activation add to an output, rounded down. With a weight of 8 and an activation of 1 it is 2^29.
+/// Product of a weight and an activation, units of [`Output`], rounded down; 2^29 for a weight of 8 and an activation of 1.
 ///
 /// `(w t) >> 27` is the upper word of `(2 w) (16 t)`, one instruction; neither factor leaves 32 bits.
 const fn part(weight: i64, t: i32) -> i32 {
@@ -192,7 +192,7 @@ const fn magnitude(weight: i64) -> u32 {
     ((weight ^ (weight >> 31)) as u32) >> MAGNITUDE_SHIFT
 }
 
-/// Saturates a kept weight in its upper word, which is one SSAT; the lower word is far below a unit in use.
+/// Limits a stored weight (Q59) to +-[`LIMIT`] by its upper word, one SSAT instruction; the lower word may keep any value.
 fn limited(weight: i64) -> i64 {
     let upper = in_use(weight).clamp(-LIMIT - 1, LIMIT);
     (i64::from(upper) << 32) | (weight & 0xFFFF_FFFF)

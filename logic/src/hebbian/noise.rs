@@ -8,12 +8,12 @@ const FOLLOWS: u32 = 3;
 /// A quiet tick stays below so many times the quiet mean, which is that of what is above the films' medians.
 const FLOOR: i64 = 6;
 
-/// The mean of a cycle.
+/// The mean noise of a slow frame.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Noise {
     /// Sum of this slow frame so far, units of an output; positive if the films' part is below 0.
     sum: i64,
-    /// Averaged sum of quiet slow frames, once there was one.
+    /// Averaged sum of quiet slow frames, units of an output; None before the first.
     nothing: Option<i64>,
     floor: i64,
 }
@@ -36,7 +36,7 @@ impl Noise {
         }
     }
 
-    /// The level that no quiet tick reaches; 0 while it is not known.
+    /// The noise floor of a tick, units of an output: quiet ticks stay below. 0 while it is not known.
     pub(super) const fn floor(&self) -> i64 {
         self.floor
     }

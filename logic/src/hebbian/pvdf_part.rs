@@ -20,15 +20,15 @@ const QUIET_STEP: i32 = 1;
 /// Quiet levels, readings, and gains.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PvdfPart {
-    /// What each film hears of nothing, 1/16 of a sample.
+    /// Quiet level of each film, 1/16 of a sample.
     quiet: [i32; PVDF_COUNT],
     /// Whether the finger has been unloaded since the start.
     quiet_known: bool,
     /// Envelope of each film above its quiet level, 1/16 of a sample.
     heard: [i32; PVDF_COUNT],
-    /// What that adds to o1 while nothing is learned.
+    /// Gains from `heard` to o1, with the present weights.
     gains: Gains<PVDF_COUNT>,
-    /// Whether a weight or a maximum has changed since.
+    /// Whether a weight or a maximum has changed since the gains were computed.
     stale: bool,
 }
 
@@ -72,7 +72,7 @@ impl PvdfPart {
         self.stale = true;
     }
 
-    /// Whether one has, since the gains were made.
+    /// Whether a weight or a maximum has changed since the gains were computed.
     pub(super) const fn is_outdated(&self) -> bool {
         self.stale
     }

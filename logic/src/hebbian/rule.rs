@@ -68,10 +68,10 @@ impl Rule {
         Ok(Self::of(config))
     }
 
-    /// Of the default rates.
+    /// The rule of the default rates.
     pub const DEFAULT: Self = Self::of(&Config::DEFAULT);
 
-    /// Of rates within their ranges.
+    /// The rule of rates that are within their ranges.
     pub(crate) const fn of(config: &Config) -> Self {
         // 60e6 < 2^26, so nothing below leaves 64 bits, and the ranges above keep each result in its type.
         let beta = (((config.beta_ppb as u64) << 32) + 500_000_000) / 1_000_000_000;
@@ -85,7 +85,7 @@ impl Rule {
 }
 
 impl Default for Rule {
-    /// Of the default rates.
+    /// The rule of the default rates.
     fn default() -> Self {
         Self::DEFAULT
     }

@@ -10,20 +10,20 @@ pub struct HebbianConfig {
     pub slip_permille: u16,
     /// Time below the threshold before slip is reported if only some films show it, in frames.
     pub slip_frames: u32,
-    /// The same if all films show it, in frames: longer than an impact.
+    /// Time below the threshold before slip is reported if all films show it, in frames: longer than an impact.
     pub everywhere_frames: u32,
     /// Time after an impact or a run of the motor in which it is not evaluated, in frames: the envelopes' decay and
     /// the motor's dead time.
     pub loud_frames: u32,
     /// Time by which Ft/Fn is extrapolated, ms; 0: no warnings.
     pub ahead_ms: u16,
-    /// From this duty on the motor runs fast, per mille. Closing more slowly is a way to take something, and to learn.
+    /// Duty from which the motor counts as fast, per mille. Slower closing does not stop lessons.
     pub loud_duty_permille: u16,
     /// When a teacher's codes are used.
     pub teacher: TeacherConfig,
     /// Learning rates.
     pub learning: LearningConfig,
-    /// The same in the formats of the update.
+    /// Learning rates in the formats of the update.
     pub rule: Rule,
 }
 

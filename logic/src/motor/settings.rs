@@ -2,10 +2,10 @@
 
 use crate::setting::settings;
 
-/// What the motor bears.
+/// Limits of the motor's current.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MotorConfig {
-    /// The current that it may carry for ever, mA.
+    /// Largest continuous current, mA.
     pub limit_ma: u16,
     /// The current of the blocked motor at full duty, mA.
     pub stall_ma: u16,
@@ -13,7 +13,7 @@ pub struct MotorConfig {
 
 settings! {
     MotorConfig:
-    /// Motor current that may flow without limit of time; more stops closing until the motor has cooled
+    /// Largest continuous motor current; a hot motor stops closing until it has cooled
     76 MotorLimit "motor-limit-ma" "mA" [300, 1_200] = 500 => Number(limit_ma);
     /// Current of the blocked motor at full duty; half of it while the fingers stand still is a stall
     77 MotorStall "motor-stall-ma" "mA" [300, 1_200] = 1_000 => Number(stall_ma);

@@ -9,10 +9,10 @@ use tenax_hal_shim::channel::frames;
 /// After an impact or a fast run of the motor, in frames: the load still changes, and the filters ring.
 const AFTER_NOISE: u32 = frames(160);
 
-/// For how long slip that was said may go on to be said while the motor answers it, in frames: the strip still flickers because of it.
+/// Time for which a report may continue while the motor answers it, frames: the strip still flickers.
 const ANSWERED: u32 = frames(50);
 
-/// What it said last.
+/// Slip detector of a photoelastic head.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PhotoelasticDetector {
     quiet: u32,
@@ -43,7 +43,7 @@ impl Detector for PhotoelasticDetector {
 }
 
 impl PhotoelasticDetector {
-    /// Most hands have no head.
+    /// Reports slip by the head's signal. Cold, since most hands have no head.
     #[cold]
     #[inline(never)]
     fn judge(&mut self, config: &HeadConfig, sensed: &Sensed<'_>) -> Said {

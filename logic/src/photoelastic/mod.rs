@@ -37,8 +37,8 @@ const LIMITS: Limits = {
     Limits { low: SAMPLE_MAX / 33, high: SAMPLE_MAX - SAMPLE_MAX / 40, ..limits }
 };
 
-/// Aluminium, fitted to slips of six heads (seeds 1 to 6): 19 % median error on them, 24 % on other heads. One that was fitted
-/// to the head itself is twice as good.
+/// Fit of the slip rate on aluminium, from six heads (seeds 1 to 6): 19 % median error on them, 24 % on other heads. A fit to
+/// the head itself has half the error.
 pub const ALUMINIUM: RateFit = RateFit { constant: -16_736, amplitude: 896, frequency: 846, force: 21 };
 
 /// The head.
@@ -78,7 +78,7 @@ impl Head {
         change
     }
 
-    /// Its sample is no number: when it comes back, its jump back is no vibration.
+    /// The sample is not valid. Resets the filters, so that the jump when samples return is no vibration.
     fn lose(&mut self) {
         self.split = Split::default();
         self.presence = Presence::default();

@@ -20,7 +20,7 @@ pub struct RateFit {
     pub force: i32,
 }
 
-/// Above this nothing was calibrated, um/s.
+/// Largest calibrated slip rate, um/s.
 const RATE_MAX_UM_S: i32 = 20_000;
 /// Numbers are raised by this before their logarithm is taken, which begins at 8000.
 const RAISED: u32 = 13;

@@ -5,9 +5,9 @@
 use super::split::{Q, Split};
 use tenax_hal_shim::channel::frames;
 
-/// For how long the ac part has to be large, in frames: longer than an impact's ring.
+/// Time for which the ac part must be large, frames: longer than an impact rings.
 const LASTS: u32 = frames(45);
-/// Swings in a row that it takes.
+/// Number of consecutive oscillations that slip needs.
 const SWINGS: u16 = 3;
 
 /// Counts large and oscillating frames until they are slip.

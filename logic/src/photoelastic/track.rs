@@ -34,10 +34,10 @@ impl Branch {
     }
 }
 
-/// What is known about the force.
+/// Knowledge of the force's branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Track {
-    /// Nothing: no reading.
+    /// No reading.
     Unknown,
     /// The branch is known.
     Certain(Branch),
@@ -82,7 +82,7 @@ pub const SHEAR_MAX_PERMILLE: i32 = 500;
 /// `s^2` and `s` at that shear; the second in 1/1024.
 const STRETCH_SQUARED: i32 = 1 + 4 * SHEAR_MAX_PERMILLE * SHEAR_MAX_PERMILLE / 1_000_000;
 const STRETCH_Q10: i32 = 1_448;
-/// Below this part of the span no shear has brought the light to a fold: 1 / s^2, less drift and noise.
+/// Part of the span below which the light cannot have reached the fold with any shear: 1 / s^2, less drift and noise.
 pub const FOLD: i32 = ONE / STRETCH_SQUARED - ONE / 25;
 /// How far the peak's level may be off, as a part of the span: the source drifts by 2 % and on.
 const BRIGHT_OFF: i32 = ONE / 40;
@@ -90,9 +90,9 @@ const BRIGHT_OFF: i32 = ONE / 40;
 const NOISE: i32 = ONE / 250;
 /// Table, frozen birefringence and delay at 6 N/s, mN.
 const OFF_MN: i32 = 60;
-/// Below this the light is that of no load, or of a force at the curve's end.
+/// Part of the span below which there is no load, or a force at the curve's end.
 const DARK: i32 = ONE / 50;
-/// Cycles in a row without a reading that are waited for.
+/// Consecutive slow frames without a reading before the force is unknown.
 const MISSED_MAX: u8 = 4;
 /// Forces that another sensor can tell apart, mN.
 const APART_MN: i32 = 600;
@@ -100,7 +100,7 @@ const APART_MN: i32 = 600;
 /// Follows one head.
 #[derive(Clone, Debug, Default)]
 pub struct Tracker {
-    /// As calibrated, with today's levels.
+    /// The calibrated curve with today's levels.
     today: Option<Curve>,
     /// The light as a part of the span, None while there is no reading.
     part: Option<i32>,

@@ -7,7 +7,7 @@ use tenax_hal_shim::channel::frames;
 
 /// Settings and zero are saved when they have changed, and then not again for this long, in frames.
 const CHANGED_FRAMES: u32 = frames(3_000);
-/// What the network learned is saved by itself no more often than this, in frames.
+/// Shortest time between two automatic saves of the network's weights, frames.
 const LEARNED_FRAMES: u32 = frames(60_000);
 
 /// State of everything that can be saved.

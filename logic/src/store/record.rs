@@ -20,7 +20,7 @@ use crate::store::payload::{EmgBytes, SettingsBytes, ZeroBytes};
 /// Words of a record beside its payload.
 pub const OVERHEAD_WORDS: usize = 4;
 
-/// What a session programs before its first record: every bit, so that none is left half programmed, and no tag.
+/// Word that a session programs before its first record: all bits 0, so that none is half programmed; it is no tag.
 pub(super) const MARK: u32 = 0;
 
 const COMMIT: u32 = 0x3C5A_96E1;
@@ -43,7 +43,7 @@ pub enum Record {
 }
 
 impl Record {
-    /// Its kind.
+    /// Kind of the record.
     #[must_use]
     pub const fn kept(&self) -> Kept {
         match self {
@@ -54,7 +54,7 @@ impl Record {
         }
     }
 
-    /// Its payload.
+    /// Payload of the record, in `buffer` if it has to be made.
     pub fn payload<'a>(&'a self, buffer: &'a mut [u8; PAYLOAD_BYTES]) -> &'a [u8] {
         match self {
             // The buffer has just the length that it takes.
@@ -104,8 +104,8 @@ impl Tag {
         (tag.to_word() == word).then_some(tag)
     }
 
-    /// The tags that `word` may be: none, itself, or, if one bit of it differs from its complement, each of the two that have
-    /// one of them right. A bit that was hardly programmed may read either way, now so and now so.
+    /// The tags that `word` may stand for: itself; both candidates if one bit contradicts the complement; none if more do. A bit
+    /// that is half programmed may read as 0 or 1.
     pub fn read_from(word: u32) -> impl Iterator<Item = Self> {
         let [kind, words, not_kind, not_words] = word.to_le_bytes();
         let (read, complement) = (Self { kind, words }, Self { kind: !not_kind, words: !not_words });
@@ -115,7 +115,7 @@ impl Tag {
         first.into_iter().chain(second)
     }
 
-    /// The sequence number of the record at `at`. None if it is not whole.
+    /// The sequence number of the record at `at`. None if the record is incomplete.
     pub fn check(self, area: &impl FlashArea, sector: Sector, at: usize) -> Option<u32> {
         let payload_end = at + 2 + usize::from(self.words);
         if payload_end + 2 > area.sector_words() {

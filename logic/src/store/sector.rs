@@ -15,10 +15,10 @@ use crate::checksum::CRC;
 /// Words before the first record.
 pub const OPENING_WORDS: usize = 3;
 
-/// Changes with the layout of sectors and records.
+/// Mark of the layout of sectors and records; another layout needs another value.
 const MAGIC: u32 = 0x7E4A_0001;
 
-/// Where a whole record is.
+/// Place of a complete record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
     pub sector: Sector,
@@ -33,7 +33,7 @@ impl Entry {
         Tag { kind: record::number(self.kept), words: self.words }
     }
 
-    /// Its payload. None if it is longer than `buffer`.
+    /// Reads the payload into `buffer`. None if it is longer.
     pub fn read<'a>(&self, area: &impl FlashArea, buffer: &'a mut [u8]) -> Option<&'a [u8]> {
         let payload = buffer.get_mut(..4 * usize::from(self.words))?;
         let (slots, _) = payload.as_chunks_mut::<4>();
@@ -110,19 +110,19 @@ impl Survey {
         self.last_sequence = self.last_sequence.max(entry.sequence);
     }
 
-    /// The sector of the higher rank is the one to append to. Equal sequence numbers are a copy and its original; a copy
-    /// that was finished has opening words of a later generation.
+    /// Rank of the sector; records are appended to the one of higher rank. Sectors with equal sequence numbers are a copy and its
+    /// original; a finished copy has opening words of a later generation.
     pub fn rank(&self) -> (u32, u32) {
         (self.last_sequence, self.generation.unwrap_or(0))
     }
 }
 
-/// Whether no word of it has been programmed.
+/// Whether no word of the sector has been programmed.
 pub fn is_blank(area: &impl FlashArea, sector: Sector) -> bool {
     (0..area.sector_words()).all(|word| area.read(sector, word) == BLANK)
 }
 
-/// Takes a sector into use.
+/// Writes the opening words of a sector, so that records can be appended.
 pub fn write_opening(area: &mut impl FlashArea, sector: Sector, generation: u32) -> Result<(), FlashFailed> {
     for (n, word) in opening(generation).into_iter().enumerate() {
         super::program(area, sector, n, word)?;

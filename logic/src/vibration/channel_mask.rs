@@ -8,14 +8,14 @@ use tenax_hal_shim::channel::PVDF_COUNT;
 
 use tenax_hal_shim::channel::frames;
 
-/// For how long a channel may be loud alone, in frames.
+/// Time for which a channel may be loud alone before it is masked, frames.
 const ALONE_FRAMES: u32 = frames(150);
-/// How long it has to be quiet to be believed again, in frames.
+/// Time of silence after which a masked channel is believed again, frames.
 const QUIET_FRAMES: u32 = frames(10_000);
-/// A frame alone counts as much as so many in which it is not.
+/// Weight of a frame in which the channel is loud alone against one in which it is not.
 const WEIGHT: u32 = 8;
 
-/// The masked channels, and the count of the one that is loud alone.
+/// Masked channels, and the count of loud frames of the channel that is loud alone.
 #[derive(Clone, Debug, Default)]
 pub struct ChannelMask {
     masked: u16,
@@ -25,7 +25,7 @@ pub struct ChannelMask {
 }
 
 impl ChannelMask {
-    /// The masked channels, a bit each.
+    /// The masked channels, one bit each, film 1 lowest.
     #[must_use]
     pub const fn masked(&self) -> u16 {
         self.masked

@@ -54,17 +54,17 @@ pub struct Film {
 pub struct Levels {
     /// Envelope in the slip band, `BAND_LOW_HZ` to `BAND_HIGH_HZ`.
     pub envelope: i32,
-    /// Mean size of the vibration above the slip band.
+    /// Size of the vibration above the slip band in this tick.
     pub above: i32,
 }
 
 impl Film {
-    /// Its envelope, Q16 samples, computed for a masked film, too.
+    /// The film's envelope, Q16 samples, also of a masked film.
     pub const fn level(&self) -> i32 {
         self.envelope
     }
 
-    /// Takes its first sample as the offset, so that being switched on is no vibration; later ones change nothing.
+    /// Takes the first sample as the offset, so that power-up is no vibration; later calls change nothing.
     pub fn prime(&mut self, sample: u16) {
         if !self.primed {
             self.offset = centred(sample);
@@ -81,7 +81,7 @@ impl Film {
         Levels { envelope: ENVELOPE.process(&mut self.envelope, low.abs()), above: (ac - low).abs() }
     }
 
-    /// Learns the mains' hum a little further.
+    /// One step of learning the mains' hum.
     #[inline]
     pub fn adapt(&mut self, mains: &mut Mains, mains_60_hz: bool) {
         mains.adapt(mains_60_hz, &mut self.hum, self.band);
@@ -89,7 +89,7 @@ impl Film {
 }
 
 impl Levels {
-    /// The louder of the two, each of its parts by itself.
+    /// Raises each part to that of `other` if it is larger.
     #[inline]
     pub fn raise(&mut self, other: Self) {
         self.envelope = self.envelope.max(other.envelope);

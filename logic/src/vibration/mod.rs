@@ -25,7 +25,7 @@ use self::hum::{Mains, Turn};
 use self::sliding::{Hand, Sliding};
 use crate::vibration::settings::VibrationConfig;
 
-/// A loud vibration that has rung for this long is an impact's, in frames: what slides rings for a tick now and then.
+/// Frames for which a loud vibration must ring to be an impact; a sliding object rings for single ticks.
 const IMPACT_RINGS: u32 = 12;
 /// A peak of the envelope is forgotten over `2^PEAK_SHIFT` frames, 0.13 s.
 const PEAK_SHIFT: u32 = 8;
@@ -33,12 +33,12 @@ const PEAK_SHIFT: u32 = 8;
 /// Validity of a film's sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Trust {
-    /// It is valid.
+    /// The sample is valid.
     #[default]
     Full,
-    /// The film may be freezing: its jump to where it froze is not to be taken for slip.
+    /// The film may be freezing: its last jump must not count as slip.
     Doubtful,
-    /// It is not valid.
+    /// The sample is not valid.
     None,
 }
 
@@ -47,9 +47,9 @@ pub enum Trust {
 pub struct Vibration {
     /// Envelope of the loudest film, samples (14 bits).
     pub level: u16,
-    /// Whether S1 reports slip: the level is above the threshold, and it is no impact.
+    /// Whether S1 reports slip: the level is above the threshold, and the vibration is no impact.
     pub s1: bool,
-    /// Whether it rings above the slip band as an impact does, and has not lasted longer than one.
+    /// Whether the vibration rings above the slip band, and not for longer than an impact.
     pub impact: bool,
     /// Whether the object slides steadily, far below S1 (see [`sliding`]).
     pub slides: bool,
@@ -69,10 +69,10 @@ pub struct VibrationDetector {
     above: i32,
     loud_frames: u32,
     ringing_frames: u32,
-    /// The largest envelope since it became loud, slowly forgotten, and how many loud frames it took.
+    /// The largest envelope since the vibration became loud, slowly decaying, and the number of loud frames until it.
     peak: i32,
     peak_at: u32,
-    /// For how many frames it has rung since it became loud.
+    /// Frames of ringing since the vibration became loud.
     rang_frames: u32,
     s1: bool,
     mask: ChannelMask,
@@ -103,7 +103,7 @@ impl VibrationDetector {
         self.judge(config, loudest)
     }
 
-    /// Another sensor is in a film's place from now on: its jump is no vibration.
+    /// Resets a film's filters: another sensor takes its place, and the jump is no vibration.
     pub fn forget(&mut self, film: usize) {
         if let Some(film) = self.films.get_mut(film) {
             *film = Film::default();
@@ -111,7 +111,7 @@ impl VibrationDetector {
         }
     }
 
-    /// Samples of a masked film are doubtful.
+    /// The validity of all samples, with those of masked films doubtful.
     #[inline(never)]
     fn with_masks(
         &mut self,

@@ -14,7 +14,7 @@ const DOUBTED_AFTER: u32 = 2;
 
 const LIMITS: Limits = Limits::of(&CHANNELS[PVDF], FRAME_HZ);
 
-/// A sample has this bit free: two of them in a word are compared in one subtraction.
+/// The unused top bit of a sample, so that one subtraction compares two samples in a word.
 const SPARE: u16 = 1 << 15;
 const _: () = assert!(SAMPLE_MAX < SPARE && LIMITS.high < SPARE);
 

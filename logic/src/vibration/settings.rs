@@ -28,6 +28,6 @@ settings! {
     7 ImpactRatio "impact-ratio-permille" "per mille" [300, 1_000, trusted 300, 3_000] = 500 => Number(impact_permille);
     /// Longest impact; vibration that lasts longer is slip
     8 ImpactLength "impact-ms" "ms" [20, 80, trusted 5, 100] = 45 => Ms(impact_frames);
-    /// Mains frequency whose hum is removed from the PVDF films: 1 60 Hz, 0 50 Hz
+    /// Mains hum that is removed from the PVDF films: 0 for 50 Hz, 1 for 60 Hz
     73 Mains60Hz "mains-60-hz-flag" "flag" [0, 1] = 0 => Flag(mains_60_hz);
 }

@@ -15,7 +15,7 @@ use crate::force::Asked;
 
 /// Slow frames over which floors are learned when a grasp begins: 0.3 s.
 const LEARN_FRAMES: u16 = 24;
-/// Of them, the first, in which they go to what is heard now.
+/// The first of these slow frames, in which a floor jumps to the present level.
 const LEAP_FRAMES: u16 = 4;
 /// Shifts of the low-passes, in slow frames: a floor's way down, up while it is learned, up later (13 s), and what is compared
 /// with it.
@@ -29,16 +29,16 @@ const Q: u32 = 8;
 const LEAST_FLOOR: i32 = 5 << Q;
 /// Films that have to agree.
 const FILMS: u32 = 3;
-/// How far above its floor a film is loud by itself, and together with the noise above the band, in floors.
+/// Level from which a film is loud, in floors: alone, and together with noise above the band.
 const LOUD: i32 = 6;
 const LOUD_TOGETHER: i32 = 2;
 const LOUD_ABOVE: i32 = 3;
-/// What it may ask for on top of what any warning may, mN: the rig's load swings by that as it slides.
+/// Force that sliding may add beyond any warning's limit, mN: the rig's load swings by as much while it slides.
 const ON_TOP_MN: i32 = 1_000;
-/// Slow frames in which it must be so, 0.2 s: the longest impact is over before. And of silence after which it is over.
+/// Slow frames of loudness until sliding is reported, 0.2 s (longer than any impact), and of silence until the report ends.
 const BEGIN_FRAMES: u8 = 16;
 const END_FRAMES: u8 = 8;
-/// Slow frames of silence after which what closing did not stop is believed again: 1 s.
+/// Slow frames of silence after which a report that closing did not stop is believed again: 1 s.
 const QUIET_FRAMES: u8 = 80;
 
 /// State of the hand in a slow frame.
@@ -60,7 +60,8 @@ struct Level {
 }
 
 impl Level {
-    /// Takes what is heard now, Q16; how loud it is, in floors, up to `most`. The floor moves by `2^-up` of what it lacks.
+    /// Takes the present level, Q16 samples, limited to `most` floors; gives the smoothed level beside its floor. The floor rises
+    /// by `2^-up` of the difference.
     #[inline]
     fn step(&mut self, now: i32, up: u32, most: i32) -> Floors {
         let now = now >> (16 - Q);
@@ -94,7 +95,7 @@ pub struct Sliding {
     learned_for: u16,
     lasted: u8,
     said: bool,
-    /// What it has asked for since it was said.
+    /// Force that was added since the report began.
     asked: Asked,
     /// Closing did not help, and how long it has been quiet since.
     in_vain: bool,

@@ -14,9 +14,9 @@ use crate::link::{Client, Target};
 
 const EXAMPLES: &str = "\
 Examples:
-  tenax bring-up clock                                  the board's clock beside this computer's, for a minute
+  tenax bring-up clock                                  compares the board's clock with this computer's for a minute
   tenax bring-up line --seconds 600                     ten minutes instead of an hour
-  tenax bring-up noise pvdf                             only channels whose names begin so
+  tenax bring-up noise pvdf                             pvdf_1 to pvdf_12
   tenax bring-up cuts --cut-power 'uhubctl -a cycle -d 1 -l 1-1 -p 2'
 docs/bring-up.md says what passes.";
 
@@ -24,25 +24,25 @@ docs/bring-up.md says what passes.";
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// Which step
+    /// The step; docs/bring-up.md says what to do and what passes
     #[arg(value_name = "STEP", value_parser = clap::builder::PossibleValuesParser::new(STEPS.map(|step| step.name)))]
     step: String,
-    /// Only channels whose names begin so [default: all]
+    /// Prefixes of channel names, such as `pvdf` [default: all channels]
     #[arg(value_name = "CHANNEL")]
     channels: Vec<String>,
-    /// Where the line is [default: the only board that is plugged in]
+    /// Serial line: /dev/ttyACM0, COM3, /dev/pts/5 or tcp:127.0.0.1:7777 [default: the only board that is plugged in]
     #[arg(long, value_name = "PORT")]
     port: Option<Target>,
-    /// How long it is measured [default: as long as the step should last]
+    /// Duration of the measurement, s [default: the step's own]
     #[arg(long, value_name = "S")]
     seconds: Option<f64>,
-    /// How often something is done [default: as often as it should be]
+    /// Number of repetitions, such as power cuts [default: the step's own]
     #[arg(long, value_name = "N")]
     times: Option<u32>,
-    /// A shell's command that cuts the power and restores it; `cuts` runs it
+    /// Shell command that cuts the power and restores it, for the step `cuts`
     #[arg(long, value_name = "COMMAND")]
     cut_power: Option<String>,
-    /// Write the figures there, too
+    /// Also write the figures to this file
     #[arg(long, value_name = "FILE.toml")]
     out: Option<PathBuf>,
 }

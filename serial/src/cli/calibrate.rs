@@ -8,10 +8,10 @@ use crate::link::{Client, Target};
 
 const EXAMPLES: &str = "\
 Examples:
-  tenax calibrate force --weights-n 1,2,5,10            each weight in its turn on the finger; prints how far each is off
-  tenax calibrate friction --strokes 3                  strokes over the surface that is to be held; S2 follows
+  tenax calibrate force --weights-n 1,2,5,10            one weight after the other on the finger; prints each reading's error
+  tenax calibrate friction --strokes 3                  strokes over the surface to be held; sets S2
   tenax calibrate emg                                   rest, close, open: the wearer's muscles
-Without a hand: `tenax run --host --serve` with a scene, and --port with the place that it names.";
+Without a board: `tenax run --host --serve --loop --scene bench`, then --port with the port that it prints.";
 
 /// Calibrate a sensor, step by step.
 #[derive(Debug, clap::Args)]
@@ -24,25 +24,25 @@ pub struct Args {
 /// What is calibrated at the hand.
 #[derive(Debug, clap::Subcommand)]
 pub enum Hand {
-    /// The force sensor under known weights: zeroes it, and shows how far each reading is off
+    /// Zero the force sensor and check it with known weights
     Force {
         /// Which line.
         #[command(flatten)]
         line: Line,
-        /// The weights in the order in which they are put on, N
+        /// The weights in the order in which you put them on, N (0.1 to 60)
         #[arg(long, value_name = "N,N,...", value_delimiter = ',', default_values_t = [1.0, 2.0, 5.0, 10.0], value_parser = weight)]
         weights_n: Vec<f64>,
     },
-    /// The friction of a surface by strokes over it: measures mu_s, from which S2 follows
+    /// Measure a surface's static friction by strokes over it, and set S2 from it
     Friction {
         /// Which line.
         #[command(flatten)]
         line: Line,
-        /// How many strokes
+        /// Number of strokes, 1 to 20
         #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=20))]
         strokes: u32,
     },
-    /// The wearer's muscles: three prompts of 5 s
+    /// Calibrate the myosensors to the wearer: three prompts of 5 s
     Emg {
         /// Which line.
         #[command(flatten)]
@@ -53,7 +53,7 @@ pub enum Hand {
 /// Which line.
 #[derive(Debug, clap::Args)]
 pub struct Line {
-    /// Where the line is [default: the only board that is plugged in]
+    /// Serial line: /dev/ttyACM0, COM3, /dev/pts/5 or tcp:127.0.0.1:7777 [default: the only board that is plugged in]
     #[arg(long, value_name = "PORT")]
     port: Option<Target>,
 }

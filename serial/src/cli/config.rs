@@ -21,7 +21,7 @@ const ANSWER_WITHIN: Duration = Duration::from_secs(2);
 /// Show and change a board's settings.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Where the line is [default: the only board that is plugged in]
+    /// Serial line: /dev/ttyACM0, COM3, /dev/pts/5 or tcp:127.0.0.1:7777 [default: the only board that is plugged in]
     #[arg(long, value_name = "PORT", global = true)]
     port: Option<Target>,
     #[command(subcommand)]
@@ -40,45 +40,45 @@ enum Command {
     List,
     /// One setting's value
     Get {
-        /// Its name, such as s1-mv
+        /// The setting, such as s1-mv
         name: String,
     },
     /// Change settings; each is read back
     Set {
-        /// Such as s1-mv=120
+        /// The settings and their values, such as s1-mv=120; the name's end is the unit
         #[arg(required = true, value_name = "NAME=VALUE", value_parser = |text: &str| settings::parse(text))]
         settings: Vec<Setting>,
     },
     /// Write every setting to a TOML file
     Export {
-        /// [default: standard output]
+        /// The file, such as hand.toml [default: standard output]
         file: Option<PathBuf>,
     },
-    /// Set everything that a TOML file names
+    /// Set all settings that a TOML file names
     Import {
-        /// As `export` writes it
+        /// A file that `tenax config export` wrote
         file: PathBuf,
     },
-    /// Thresholds from a recording of this board, each with its reason; with --write they are set
+    /// Propose thresholds from a recording, each with its reason; --write sets them
     #[command(after_help = SUGGEST_EXAMPLES)]
     Suggest {
-        /// A recording (MCAP) or a captured line: some seconds of quiet, of holding, of slip, of contractions
+        /// A recording (MCAP) or a captured line of this board, with some seconds each of rest, holding, slip and contractions
         file: PathBuf,
-        /// Set them, too
+        /// Set the proposed values on the board of --port
         #[arg(long)]
         write: bool,
     },
     /// Settings that differ from their defaults, or from a file
     Diff {
-        /// As `export` writes it [default: the defaults]
+        /// A file that `tenax config export` wrote [default: the defaults]
         file: Option<PathBuf>,
     },
     /// Set settings back to their defaults
     Reset {
-        /// Their names
+        /// Names of the settings, such as s1-mv s2-permille
         #[arg(conflicts_with = "all")]
         names: Vec<String>,
-        /// Every setting but line-trusted-flag
+        /// Reset every setting except line-trusted-flag
         #[arg(long)]
         all: bool,
     },

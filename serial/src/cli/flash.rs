@@ -22,16 +22,16 @@ pub struct Args {
     /// Flash this file (ELF) instead of building the image
     #[arg(long, value_name = "FILE")]
     image: Option<PathBuf>,
-    /// The chip, as probe-rs calls it. The image is linked for the default; another needs an image of its own
+    /// The chip's name in probe-rs. The image is linked for the default; another chip needs another image
     #[arg(long, default_value = "STM32F411RETx")]
     chip: String,
-    /// Read the flash back and compare it
+    /// Read the flash back and compare it with the image
     #[arg(long)]
     verify: bool,
-    /// Then print what the image says over the probe (defmt over RTT), until Ctrl-C
+    /// Then print the image's log from the probe (defmt over RTT) until Ctrl-C
     #[arg(long)]
     log: bool,
-    /// Which probe, if several are plugged in: VID:PID or VID:PID:SERIAL, as `probe-rs list` shows
+    /// The probe: VID:PID or VID:PID:SERIAL, such as 0483:374b, from `probe-rs list` [default: the only probe]
     #[arg(long)]
     probe: Option<String>,
 }

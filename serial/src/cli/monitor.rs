@@ -23,43 +23,44 @@ const ANSWER_WITHIN: Duration = Duration::from_secs(2);
 /// Watch a board's serial line.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Where the line is: /dev/ttyACM0, COM3, /dev/pts/5, tcp:127.0.0.1:7777, or a file with a captured one [default: the
-    /// only board that is plugged in]
+    /// Serial line: /dev/ttyACM0, COM3, /dev/pts/5, tcp:127.0.0.1:7777, or a file with a captured line [default: the only
+    /// board that is plugged in]
     #[arg(long, value_name = "PORT")]
     port: Option<Target>,
-    /// A recording (MCAP), or a captured line such as out/glass.line.bin of `tenax run`
+    /// Play a recording (MCAP), or a captured line such as out/glass.line.bin of `tenax run`, instead of a board's line
     #[arg(long, value_name = "FILE", conflicts_with = "port")]
     file: Option<PathBuf>,
-    /// One line a message instead of the screen, as always where the output is no terminal
+    /// Print one line a message instead of the screen; the default if the output is no terminal
     #[arg(long)]
     plain: bool,
-    /// Instead of the screen, a page in the browser, on this port of 127.0.0.1; 0: any that is free. It has the self-test, too
+    /// Serve a page for the browser instead of the screen, on this TCP port of 127.0.0.1 (0: any free port). The page has the
+    /// self-test, too
     #[arg(long, value_name = "HTTP_PORT", num_args = 0..=1, default_missing_value = "7780", conflicts_with = "plain")]
     web: Option<u16>,
-    /// Beside what the board says, show what really happens in its scene: where `tenax run --serve-truth` tells it. With
-    /// --control, --web has the keys of the scene's bench
+    /// Also show the true forces and slip of a scene, from the address that `tenax run --serve-truth` prints. With --control,
+    /// the page of --web has the keys of the scene `bench`
     #[arg(long, value_name = "tcp:HOST:PORT", conflicts_with = "plain")]
     truth: Option<Target>,
     /// Compare the settings on the screen with those that this file names
     #[arg(long, value_name = "FILE.toml", conflicts_with_all = ["plain", "web"])]
     against: Option<PathBuf>,
-    /// Let the screen's keys change something: settings, zero, calibration, the teacher
+    /// Let keys change settings, zero, calibration and the teacher [default: keys only watch]
     #[arg(long, conflicts_with = "plain")]
     control: bool,
-    /// Ask the board for something, or tell it something, and print its answer; may be given more than once. With --plain,
-    /// go on watching
+    /// Send this command and print the board's answer; may be given more than once. With --plain, watching goes on
     #[arg(long, value_name = "COMMAND")]
     send: Vec<Send>,
-    /// Change a setting, such as s1-mv=120; may be given more than once
+    /// Change a setting, such as s1-mv=120 (`tenax config list`: names, units, ranges); may be given more than once
     #[arg(long, value_name = "NAME=VALUE", value_parser = |text: &str| settings::parse(text))]
     set: Vec<Setting>,
-    /// Ask for a setting; may be given more than once
+    /// Print a setting's value; may be given more than once
     #[arg(long, value_name = "NAME", value_parser = |name: &str| settings::named(name))]
     get: Vec<SettingId>,
-    /// Ask for every setting
+    /// Print every setting
     #[arg(long)]
     settings: bool,
-    /// Pass a camera's words on to the board, from standard input: a line `v1 v2 [age_ms]` for each picture
+    /// Send a camera's codes to the board, from standard input: a line `v1 v2 [age_ms]` for each picture, such as `-1 0 20`;
+    /// codes are -1, 0 or 1
     #[arg(long)]
     teach: bool,
 }
@@ -67,17 +68,17 @@ pub struct Args {
 /// What can be sent by name.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 enum Send {
-    /// Ask for a sign of life
+    /// Ask whether the board answers
     Ping,
     /// Ask for the last sample of every channel
     Samples,
     /// Ask for the network's weights and activations
     Network,
-    /// Take the readings of the unloaded finger as zero
+    /// Take the force sensor's readings as zero; refused while the finger is loaded
     Zero,
-    /// Save what the network has learned now
+    /// Save the network's weights now
     Save,
-    /// Forget all that the network has learned
+    /// Forget the network's weights
     Forget,
     /// Calibrate the myosensors to the wearer: three prompts of 5 s
     CalibrateEmg,

@@ -21,9 +21,12 @@ use crate::record::parquet;
 use crate::serve::{Options, Server};
 
 const EXAMPLES: &str = "\
-Parquet in the place of CSV: `cargo install --path serial --features parquet`, then `tenax play FILE --parquet DIR`.
-While it is served, type with Enter: 12.5 goes to that second, +5 and -5 go on and back, x2 plays twice as fast, and pause
-and loop do so and undo it. `tenax monitor --file FILE`, also with --web, plays one on screen or page, with keys and a slider.";
+Examples:
+  tenax play hand.mcap --csv tables            CSV files in the folder tables
+  tenax play hand.mcap --serve --speed 2       serves the line at twice its speed
+For Parquet: `cargo install --path serial --features parquet`, then `tenax play FILE --parquet DIR`.
+While the line is served, type with Enter: 12.5 goes to that second, +5 and -5 move by seconds, x2 doubles the speed, pause and
+loop switch on and off. `tenax monitor --file FILE`, also with --web, plays a recording on screen or page.";
 
 /// Play a recording.
 #[derive(Debug, clap::Args)]
@@ -31,26 +34,26 @@ and loop do so and undo it. `tenax monitor --file FILE`, also with --web, plays 
 pub struct Args {
     /// A recording (MCAP) or a captured line
     file: PathBuf,
-    /// Write its values as CSV into this folder, a file a topic, and play nothing
+    /// Write the values as CSV files into this folder, one for each topic, instead of playing
     #[arg(long, value_name = "DIR")]
     csv: Option<PathBuf>,
-    /// The same as Parquet
+    /// Write them as Parquet files instead
     #[cfg(feature = "parquet")]
     #[arg(long, value_name = "DIR", conflicts_with = "csv")]
     parquet: Option<PathBuf>,
-    /// Serve its line on a pseudo-terminal, for `tenax monitor --port` and any other program
+    /// Serve the line on a pseudo-terminal, for `tenax monitor --port` and any other program
     #[arg(long)]
     serve: bool,
-    /// Serve it on this TCP port of 127.0.0.1; 0: any that is free
+    /// Serve the line on this TCP port of 127.0.0.1; 0: any free port
     #[arg(long, value_name = "PORT")]
     serve_tcp: Option<u16>,
-    /// Times as fast as it was recorded
+    /// Speed as a multiple of real time, such as 2
     #[arg(long, value_name = "TIMES", default_value_t = 1.0)]
     speed: f64,
-    /// Begin so many seconds after the recording's beginning
+    /// Begin at this second of the recording
     #[arg(long, value_name = "S", default_value_t = 0.0)]
     from: f64,
-    /// When it is over, play it again; Ctrl-C ends it
+    /// Play again and again until Ctrl-C
     #[arg(long = "loop")]
     repeat: bool,
 }

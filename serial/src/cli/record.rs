@@ -27,27 +27,27 @@ const SAVED_WITHIN: Duration = Duration::from_secs(4);
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// Where the line is [default: the only board that is plugged in]
+    /// Serial line: /dev/ttyACM0, COM3, /dev/pts/5 or tcp:127.0.0.1:7777 [default: the only board that is plugged in]
     #[arg(long, value_name = "PORT")]
     port: Option<Target>,
-    /// The recording; nothing is overwritten [default: tenax- and the time, in this folder]
+    /// The recording, a new file [default: tenax- and the time, in this folder]
     #[arg(long, value_name = "FILE.mcap")]
     out: Option<PathBuf>,
-    /// End after so many seconds [default: Ctrl-C, or the end of the line]
+    /// Length, s [default: until Ctrl-C or the end of the line]
     #[arg(long, value_name = "S")]
     seconds: Option<f64>,
-    /// Leave out the frames, which take three fifths of the line; then it cannot be replayed
+    /// Leave out the frames, three fifths of the bytes; `tenax run --replay` then cannot replay it
     #[arg(long)]
     no_frames: bool,
-    /// For hours: without frames, and only the topics /line, /state (20 a second), /event, /counters and /setting. `tenax play --csv` makes
-    /// all of the line
+    /// For hours: no frames, and only the topics /line, /state (20 a second), /event, /counters and /setting. `tenax play
+    /// --csv` restores the other topics
     #[arg(long, conflicts_with = "no_frames")]
     compact: bool,
-    /// Begin with the board's next start, so that the recording can be replayed: sets stream-at-start-flag, then wait for the
-    /// board's reset button
+    /// Begin at the board's next start, so that `tenax run --replay` can replay the recording: sets stream-at-start-flag, then
+    /// waits until somebody presses the board's reset button
     #[arg(long, conflicts_with_all = ["no_frames", "compact", "last"])]
     from_start: bool,
-    /// Instead, what the board still has of the seconds before its last run ended in a fault. It then keeps it no longer
+    /// Fetch the last 2 to 3 s before a fault from the board instead; the board then deletes them
     #[arg(long, conflicts_with_all = ["seconds", "no_frames", "compact"])]
     last: bool,
 }
@@ -55,12 +55,12 @@ pub struct Args {
 const EXAMPLES: &str = "\
 Examples:
   tenax record --out walk.mcap                 until Ctrl-C, with every frame
-  tenax record --seconds 60 --no-frames        a minute of what was decided, a fifth of the line
+  tenax record --seconds 60 --no-frames        a minute of decisions, without frames
   tenax record --compact                       less than 60 MB an hour
-  tenax record --last --out fault.mcap         the board has restarted: what it did in the seconds before
+  tenax record --last --out fault.mcap         after a fault: the seconds before the restart
   tenax plot fault.mcap                        draws any of them
 
-  tenax record --from-start --out fault.mcap   from the board's reset on: `tenax run --replay` decides it once more";
+  tenax record --from-start --out fault.mcap   from the board's reset on, for `tenax run --replay`";
 
 /// Records until it is to end.
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {

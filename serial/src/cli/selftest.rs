@@ -10,7 +10,7 @@ const EXAMPLES: &str = "\
 `tenax monitor --web` has the same test in its page.
 Examples:
   tenax selftest                                        the board that is plugged in, every channel
-  tenax selftest fsr array_3                            only channels whose names begin so
+  tenax selftest fsr array_3                            fsr_a to fsr_d, and array_3
 A scene does what the prompts say if they are piped to it:
   mkfifo say; tenax run --host --serve --serve-at board --scene bench < say &
   tenax selftest --port board | tee say";
@@ -19,12 +19,13 @@ A scene does what the prompts say if they are piped to it:
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// Only channels whose names begin so [default: all; without muscles on a gripper]
+    /// Prefixes of channel names, such as `fsr` or `array_3`: tests these channels only [default: all channels; with
+    /// no-wearer-flag all except the myosensors]
     #[arg(value_name = "CHANNEL")]
     channels: Vec<String>,
     #[command(flatten)]
     line: Line,
-    /// How long each touch is waited for, s
+    /// Time to wait for each touch, s
     #[arg(long, value_name = "S", default_value_t = 8, value_parser = clap::value_parser!(u32).range(2..=120))]
     within: u32,
 }

@@ -14,16 +14,17 @@ use tenax_plot::png;
 use tenax_studies::chart;
 use tenax_studies::photoelastic::balance::{self, Calibration};
 
-/// The photoelastic head's curve from known weights.
+/// Fit a photoelastic head's curve to known weights; without --weights to a simulated head.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A head drawn with this seed instead of the mean one
+    /// Simulate a head with optics drawn from this seed [default: mean optics]
     #[arg(long, conflicts_with = "weights")]
     seed: Option<u64>,
-    /// What was read under known weights on a bench: columns `force_n` and `level_mv`
+    /// Readings of a real head: columns `force_n` (N) and `level_mv` (mV at the pin), at least 20 rows of rising force, the
+    /// first without load [default: simulated]
     #[arg(long, value_name = "CSV")]
     weights: Option<PathBuf>,
-    /// Where curve, residuals and settings are written
+    /// Folder for the figure, the residuals (CSV) and the settings
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
 }
