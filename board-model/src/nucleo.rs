@@ -35,6 +35,7 @@ pub struct Nucleo {
     pub mcu: Part,
     memory: MemoryMap,
     instructions_per_second: NonZeroU64,
+    mpu: MpuRegions,
 }
 
 impl Nucleo {
@@ -46,7 +47,9 @@ impl Nucleo {
         mcu.chip.set_supply(SUPPLY_MV);
         // The model's word is `input * 4095 / reference`: with this reference, an input is a code and nothing is rounded.
         mcu.chip.adc[0].set_reference(u32::from(CODE_MAX));
-        Ok(Self { mcu, memory, instructions_per_second })
+        // Beside an MPU that is on, `rigless` checks each access to memory one by one; the guard below the stack is all that it is for.
+        let mpu = if models == Models::Quick { MpuRegions::None } else { MpuRegions::Eight };
+        Ok(Self { mcu, memory, instructions_per_second, mpu })
     }
 
     /// The same with 512 KiB more of RAM at 0x2400_0000.
@@ -82,7 +85,7 @@ impl Board for Nucleo {
             instructions_per_second: self.instructions_per_second,
             boot: "flash",
         }
-        .spec_with_parts(&windows(Mcu::bus(&self.mcu)), Fpu::FpV4Sp, MpuRegions::Eight);
+        .spec_with_parts(&windows(Mcu::bus(&self.mcu)), Fpu::FpV4Sp, self.mpu);
         // The emulator takes its memories from here, and everything else from `mcu`.
         vec![Target::new("stm32f411re", &mut self.memory, core)]
     }
