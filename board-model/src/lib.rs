@@ -22,8 +22,8 @@ mod unwatched;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Models {
     /// One event a frame for the converter, one a message for the serial line, none for the scan's timer and the bridge's
-    /// edges.
+    /// edges; no MPU, whose guard no run of these tests touches.
     Quick,
-    /// `rigless`'s own: an event for each conversion and each edge.
+    /// `rigless`'s own: an event for each conversion and each edge; the MPU with its eight regions.
     Rigless,
 }
