@@ -8,6 +8,7 @@
 #![forbid(unsafe_code)]
 #![allow(missing_docs, reason = "a part of the tool: where a name says it all, nothing repeats it")]
 
+mod bridge_timer;
 mod dma2;
 pub mod flash;
 pub mod line;

@@ -9,6 +9,7 @@ use rigless::soc::{Bus, Error, Width};
 use rigless::time::VirtualNanos;
 
 use super::Models;
+use super::bridge_timer::BridgeTimer;
 use super::dma2::Shared;
 use super::line::{BusEnd, Line};
 use super::scan_path;
@@ -25,9 +26,6 @@ const USART1: usize = 0;
 /// TIM3, in the order of the chip's general timers.
 const TIM3: usize = 1;
 
-/// The timers of the motor bridge and of the vibration motor. Their registers are read and nobody needs 20 000 edges a second.
-const PWM: [&str; 2] = ["TIM1", "TIM4"];
-
 /// An STM32F427, whose peripherals contain the F411's.
 #[derive(Debug)]
 pub struct Part {
@@ -41,6 +39,7 @@ pub struct Part {
 struct Own {
     shared: Shared,
     timer: UnwatchedTimer,
+    bridge: BridgeTimer,
     serial: SerialPath<Line>,
     scan_controller: usize,
     port: usize,
@@ -57,8 +56,9 @@ enum Answers {
     Shared,
     BusPort,
     ScanTimer,
+    BridgeTimer,
     Serial(serial_path::Asked),
-    /// The registers hold what is written to them, and nothing happens.
+    /// The vibration motor's timer: the registers hold what is written to them, and nothing happens.
     RegistersAlone,
 }
 
@@ -72,12 +72,12 @@ impl Own {
         answers[bus.slot("TIM3")?] = Answers::ScanTimer;
         answers[port] = Answers::Serial(serial_path::Asked::Port);
         answers[bus.slot("DMA1")?] = Answers::Serial(serial_path::Asked::Controller);
-        for timer in PWM {
-            answers[bus.slot(timer)?] = Answers::RegistersAlone;
-        }
+        answers[bus.slot("TIM1")?] = Answers::BridgeTimer;
+        answers[bus.slot("TIM4")?] = Answers::RegistersAlone;
         Ok(Self {
             shared: Shared::new()?,
             timer: UnwatchedTimer::new(TIM3)?,
+            bridge: BridgeTimer::default(),
             serial: SerialPath::new(&STLINK, Some(line))?,
             scan_controller,
             port,
@@ -155,6 +155,14 @@ impl Part {
         }
     }
 
+    /// How long ago the last of them was, ns.
+    pub fn since_pulse_ns(&mut self, now: VirtualNanos) -> u64 {
+        match &mut self.own {
+            Some(own) => own.timer.since_pulse_ns(now),
+            None => self.chip.peek(now, TIM3_CNT, Width::W32).unwrap_or(0) * 10,
+        }
+    }
+
     /// The reset that was the pin's was a brown-out's: its flag stands beside (RM0383, section 6.3.20). `rigless` draws no supply.
     pub fn browned_out(&mut self, now: VirtualNanos) {
         if let Ok(slot) = self.chip.bus().slot("RCC") {
@@ -195,6 +203,7 @@ impl Mcu for Part {
         if let Some(own) = &mut self.own {
             own.shared.scan.restarted();
             own.timer.restarted();
+            own.bridge = BridgeTimer::default();
             own.serial.restarted(at);
             own.shared.bus.restarted(at);
         }
@@ -227,6 +236,7 @@ impl Mcu for Part {
             Answers::BusPort => (chip.bus_mut(), Some(own.shared.bus.of(serial_path::Asked::Port))),
             Answers::Serial(asked) => (chip.bus_mut(), Some(own.serial.of(asked))),
             Answers::ScanTimer => (chip.bus_mut(), Some(&mut own.timer)),
+            Answers::BridgeTimer => (chip.bus_mut(), Some(&mut own.bridge)),
             Answers::RegistersAlone => (chip.bus_mut(), None),
         }
     }

@@ -77,6 +77,11 @@ impl UnwatchedTimer {
         sent
     }
 
+    /// How long ago the last of them was, ns; 0 while their pace is not known.
+    pub fn since_pulse_ns(&self, now: VirtualNanos) -> u64 {
+        self.known.map_or(0, |known| (now.0 + known.period_ns).saturating_sub(known.next.0) % known.period_ns)
+    }
+
     /// When the next pulse comes and how long after it each other, ns. None if that is not a whole number, or if it does
     /// anything but count up from update to update.
     fn pace(&mut self, now: VirtualNanos) -> Option<(VirtualNanos, u64)> {

@@ -1,5 +1,7 @@
 //! The motor bridge: TIM1 channel 1 closes (PA8), channel 2 opens (PA9), 20 kHz.
 
+mod edges;
+
 use embassy_stm32::Peri;
 use embassy_stm32::pac;
 use embassy_stm32::pac::gpio::vals::{Moder, Ospeedr};
@@ -23,7 +25,8 @@ const TIM1_PINS: u8 = 1;
 
 /// Both sides of the bridge. A side that is not driven is low.
 pub struct Bridge {
-    _taken: (),
+    /// The duty for which its edges have their place.
+    placed: Duty,
 }
 
 impl Bridge {
@@ -58,26 +61,18 @@ impl Bridge {
             pac::GPIOA.afr(1).modify(|w| w.set_afr(pin - 8, TIM1_PINS));
             pac::GPIOA.moder().modify(|w| w.set_moder(pin, Moder::ALTERNATE));
         }
-        Self { _taken: () }
+        Self { placed: Duty::default() }
     }
 
-    fn drive_side<const DRIVEN: usize, const RELEASED: usize>(&self, duty: Duty) {
+    fn drive_side<const DRIVEN: usize, const RELEASED: usize>(&mut self, duty: Duty) {
         compare::<RELEASED>(0);
         compare::<DRIVEN>(duty.as_per_mille() * TICKS_PER_MILLE);
+        if duty != self.placed {
+            self.placed = duty;
+            edges::place(duty);
+        }
     }
 }
-
-/// Gives the bridge's edges their place between the scans'. Call it where the scans' timer is started.
-///
-/// A scan lasts 2.5 periods, so a rising edge comes 13.6 us after the first code of one scan and 38.6 after that of the next: as the
-/// sixth film begins to be sampled, which has 2.2 us to settle, and after the last code. By chance, from one start to the next, it would
-/// fall into the end of some film's sampling.
-pub fn align() {
-    pac::TIM1.cnt().write(|w| w.set_cnt(PHASE));
-}
-
-/// Ticks of the timer's period that are over when the scans' timer starts, whose first trigger comes 125 us later.
-const PHASE: u16 = PERIOD - 1_360;
 
 /// Drives a side for so many ticks of each period.
 fn compare<const SIDE: usize>(ticks: u16) {
@@ -85,7 +80,7 @@ fn compare<const SIDE: usize>(ticks: u16) {
 }
 
 impl MotorBridge for Bridge {
-    /// Takes effect when the running PWM period ends, within 50 us.
+    /// Takes effect when the running PWM period ends, within 50 us; 53 where its edges are moved.
     ///
     /// The side to be released is always written first: the timer takes both over together at the end of a period, so
     /// whichever side of that instant the two writes fall, never are both driven.

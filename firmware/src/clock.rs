@@ -1,5 +1,6 @@
 //! The clock tree: 100 MHz from the ST-LINK's 8 MHz. Through the PAC: embassy's configuration has ways to panic.
 
+use cortex_m::asm::delay;
 use embassy_stm32::pac::flash::vals::Latency;
 use embassy_stm32::pac::pwr::vals::Vos;
 use embassy_stm32::pac::rcc::vals::{Hpre, Pllm, Plln, Pllp, Pllsrc, Ppre, Sw};
@@ -19,16 +20,27 @@ pub fn accelerate_flash() {
     });
 }
 
-/// Crystal start: the ST-LINK's clock is there within milliseconds of its own start. Loops of some cycles at 16 MHz: about 0.3 s.
-const CRYSTAL_LOOPS: u32 = 1_000_000;
+/// One look at the crystal, 0.1 ms at 16 MHz.
+const LOOK_CYCLES: u32 = 1_600;
+/// A crystal takes 2 ms (DS10314, HSE oscillator characteristics), the ST-LINK's clock goes on through a reset: 20 ms. Where the supply
+/// has been off, the ST-LINK starts as well: 0.3 s.
+const LOOKS: u32 = 200;
+const LOOKS_SUPPLIED: u32 = 3_000;
 
 /// Whether the crystal's clock comes. Asked before anything waits for it without an end.
-pub fn has_crystal() -> bool {
+pub fn has_crystal(was_off: bool) -> bool {
     RCC.cr().modify(|w| {
         w.set_hsebyp(true);
         w.set_hseon(true);
     });
-    (0..CRYSTAL_LOOPS).any(|_| RCC.cr().read().hserdy())
+    let looks = if was_off { LOOKS_SUPPLIED } else { LOOKS };
+    (0..looks).any(|_| {
+        let is_there = RCC.cr().read().hserdy();
+        if !is_there {
+            delay(LOOK_CYCLES);
+        }
+        is_there
+    })
 }
 
 /// Lets the chip say when the crystal stops: to the handler of the non-maskable interrupt.

@@ -90,11 +90,12 @@ async fn main(spawner: Spawner) {
     stack::guard();
     let Start { after, cause, stay_off, .. } = last_words::start();
     let switched_on = cause == ResetCause::PowerOn;
-    if cause == ResetCause::Other && after.is_some() {
+    let browned_out = cause == ResetCause::Other && after.is_some();
+    if browned_out {
         black_box::why(b"brown-out");
     }
     black_box::start(after, switched_on);
-    let crystal = clock::has_crystal();
+    let crystal = clock::has_crystal(switched_on || browned_out);
     clock::start(crystal);
     // SAFETY: nobody else takes them, and embassy's own start, which would, is not used: it has ways to panic.
     let p = unsafe { Peripherals::steal() };

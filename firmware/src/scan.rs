@@ -19,7 +19,6 @@ use embassy_stm32::peripherals::{ADC1, DMA2_CH0, TIM3};
 use tenax_hal_shim::channel::{FRAME_HZ, SCAN, SCAN_HZ, SCAN_LEN};
 use tenax_hal_shim::frame::Frame;
 
-use crate::bridge::align;
 use crate::bus;
 use crate::chip::ADC_COMMON;
 use crate::clock::CORE_HZ;
@@ -89,7 +88,6 @@ impl Scan {
     /// `on_frame` has until the next frame begins, 87 us, to step the switches for it. All that waits stands in this one
     /// function: an `async fn` that has an end can be asked again after it, which is a way to panic.
     pub async fn run(mut self, mut on_frame: impl FnMut(&Frame)) -> ! {
-        align();
         pac::TIM3.cr1().write(|w| w.set_cen(true));
         // The first trigger comes one period after the start.
         self.due.begins = self.deadline.now().after(SCAN_US);

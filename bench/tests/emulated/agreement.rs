@@ -135,7 +135,9 @@ fn a_tick_costs_less_than_a_fifth_of_the_core() {
     let run = plain();
     let cost = run.tick_cost.expect("ticks were counted");
     // 0.5 ms at 100 MHz are 50 000 cycles; three cycles an instruction at worst.
-    assert!(cost.count > 19_500 && cost.instructions_mean > 100.0, "{cost:?}");
+    assert!(cost.instructions_mean > 100.0, "{cost:?}");
+    // Of each frame, the first one's included; the board's own count is told ten times a second and is older.
+    assert!((20_000..=20_016).contains(&cost.count), "{cost:?}");
     assert!(3.0 * cost.instructions_mean < 10_000.0, "{cost:?}");
     assert!(
         3 * cost.instructions_max < 50_000,

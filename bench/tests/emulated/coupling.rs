@@ -1,4 +1,4 @@
-//! The bridge's edges in the films' samples: with the phase that the image sets no rising edge is in them, by chance one can be.
+//! The bridge's edges in the films' samples: with the places that the image gives them none is in any, at whatever duty.
 
 use tenax_bench::board::emulated::Options;
 use tenax_bench::board::emulated::coupling::Coupling;
@@ -6,66 +6,49 @@ use tenax_hal_shim::channel::{PVDF_COUNT, SCAN_LEN, SCANS_PER_FRAME};
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::Down;
 
-use crate::{Rest, Swing, drives, run};
+use crate::{Rest, Swing, run};
 
 /// 100 mV that are gone after 0.3 us.
-const EDGE: Coupling = Coupling { codes: 124.0, gone_us: 0.3, begins_us: None };
+const EDGE: Coupling = Coupling { codes: 124.0, gone_us: 0.3, late_us: 0.0 };
+/// An edge is in a sample of one scan that is farther from rest, codes.
+const MET: u16 = 10;
+const DUTIES: std::ops::Range<u16> = 20..980;
+/// From one duty to the next: four frames, one of which is driven by both.
+const EACH_S: f64 = 0.002;
 
-/// The farthest that a film's sample is from rest while the image drives, codes of four scans.
-fn worst(begins_us: Option<f64>) -> u32 {
-    let drive = MotorDrive::Close(Duty::per_mille(400));
-    let plant = Rest::new(Swing::new(0.7).sending(0.4, Down::Drive { drive, hold_ms: 200 }));
-    let coupling = Some(Coupling { begins_us, ..EDGE });
-    let run = run(plant, &Options { coupling, ..Options::default() });
-    assert!(drives(&run, 0.45, 0.55).contains(&drive));
-    let (frames, _) = run.scans.as_chunks::<SCANS_PER_FRAME>();
-    let sample = |frame: &[[u16; SCAN_LEN]; SCANS_PER_FRAME], film: usize| -> u32 {
-        frame.iter().map(|scan| u32::from(scan[film])).sum()
-    };
-    let rest = &frames[10];
-    frames
-        .iter()
-        .flat_map(|frame| (0..PVDF_COUNT).map(|film| sample(frame, film).abs_diff(sample(rest, film))))
-        .max()
-        .unwrap_or(0)
-}
-
-#[test]
-fn a_rising_edge_is_in_a_films_sample_by_chance_and_never_with_the_images_phase() {
-    let [image, chance] = [None, Some(2.2)].map(worst);
-    println!("worst film: {image} codes with the image's phase, {chance} where an edge meets a sampling");
-    // Two of a frame's four scans have it.
-    assert!(chance > 200, "the control: {chance}");
-    assert!(image <= 4, "{image}");
-}
-
-/// Over every duty, what the two kinds of edges leave in the worst film, codes of one scan.
-fn worst_of_duties(begins_us: f64) -> (f64, usize) {
-    let (mut most, mut met) = (0.0_f64, 0);
-    for permille in 20..980 {
-        let mut worst = 0.0_f64;
-        // A scan takes two and a half periods: every other one begins in the middle of one.
-        for begins_us in [begins_us, begins_us + 25.0] {
-            let mut scan = [2_048; SCAN_LEN];
-            EDGE.add(&mut scan, MotorDrive::Close(Duty::per_mille(permille)), begins_us.rem_euclid(50.0));
-            worst = scan.iter().map(|code| (f64::from(*code) - 2_048.0).abs()).fold(worst, f64::max);
-        }
-        most = most.max(worst);
-        met += usize::from(worst > 10.0);
-    }
-    (most, met)
-}
-
-/// Falling edges move with the duty: no phase keeps them out of every sampling.
-#[test]
-fn falling_edges_meet_a_sampling_at_some_duties_at_any_phase() {
-    let image = worst_of_duties(13.6);
-    let others: Vec<(f64, usize)> = (0..250).map(|n| worst_of_duties(f64::from(n) / 10.0)).collect();
-    let least = others.iter().map(|own| own.1).min().unwrap_or(0);
-    let most = others.iter().map(|own| own.1).max().unwrap_or(0);
-    println!(
-        "of 960 duties, more than 10 codes at {} with the image's phase; {least} to {most} at others",
-        image.1
+/// Drives each `step`th duty in turn: how many of them were seen, in how many an edge was in a sample, and the worst, codes.
+fn swept(late_us: f64, step: usize) -> (usize, usize, u16) {
+    let close = |permille| MotorDrive::Close(Duty::per_mille(permille));
+    let lasts_s = 0.4 + EACH_S * (DUTIES.len() / step) as f64;
+    let plant = DUTIES.step_by(step).zip(0..).fold(Swing::new(lasts_s), |plant, (permille, n)| {
+        let command = Down::Drive { drive: close(permille), hold_ms: 200 };
+        plant.sending(0.3 + EACH_S * f64::from(n), command)
+    });
+    let run = run(
+        Rest::new(plant),
+        &Options { coupling: Some(Coupling { late_us, ..EDGE }), ..Options::default() },
     );
-    assert!(least > 0 && image.1 < most, "{image:?}, {least} to {most}");
+    let rest = run.scans[10 * SCANS_PER_FRAME];
+    let worst_of = |scan: &[u16; SCAN_LEN]| {
+        scan.iter().zip(rest).take(PVDF_COUNT).map(|(code, rest)| code.abs_diff(rest)).max().unwrap_or(0)
+    };
+    let (mut seen, mut met, mut most) = (0, 0, 0);
+    for drive in DUTIES.step_by(step).map(close) {
+        let driven = run.drives.iter().zip(&run.scans).filter(|(own, _)| **own == drive);
+        // A period may be over before a new duty is taken.
+        let worst = driven.skip(1).map(|(_, scan)| worst_of(scan)).max();
+        seen += usize::from(worst.is_some());
+        met += usize::from(worst.is_some_and(|worst| worst > MET));
+        most = most.max(worst.unwrap_or(0));
+    }
+    (seen, met, most)
+}
+
+#[test]
+fn no_edge_of_the_bridge_is_in_a_films_sample_at_any_duty() {
+    for (late_us, step, least, most) in [(0.0, 1, 0, 0), (1.3, 10, 50, 96)] {
+        let (seen, met, worst) = swept(late_us, step);
+        println!("{late_us} us late: an edge in a sample at {met} of {seen} duties, {worst} codes at worst");
+        assert!(seen * step > 900 && (least..=most).contains(&met), "{met} of {seen}");
+    }
 }

@@ -1,7 +1,7 @@
 //! What can go wrong with a board, done to the emulated one.
 
 use rigless::device::Level;
-use rigless::emulator::{Host, InterruptLine, Stop};
+use rigless::emulator::{Access, AccessKind, Host, InterruptLine, Stop};
 use rigless::mcu::Operate;
 use rigless::session::Session;
 use rigless::soc::Width;
@@ -11,7 +11,7 @@ use tenax_hal_shim::channel::SCAN_HZ;
 use super::Mishap;
 use super::wires::Wires;
 use tenax_board_model::flash::FlashArray;
-use tenax_board_model::nucleo::{HSE_HZ, Nucleo};
+use tenax_board_model::nucleo::Nucleo;
 use tenax_board_model::part::Part;
 
 /// DMA2's flags of its streams 0 to 3, and where a written one clears them.
@@ -28,9 +28,10 @@ const PVD: InterruptLine = InterruptLine::new(1).expect("every core has it");
 /// The voltage detector's output (RM0383, section 5.4.2).
 const PWR_CSR: u64 = 0x4000_7004;
 const PVDO: u64 = 1 << 2;
-/// RCC's control, and its bit for the clock security system (RM0383, section 6.3.1).
+/// RCC's control, and its bits for the clock security system and the crystal (RM0383, section 6.3.1).
 const RCC_CR: u64 = 0x4002_3800;
 const CSSON: u64 = 1 << 19;
+const HSEON: u64 = 1 << 16;
 /// Where the image has the addresses of the handlers of its non-maskable interrupt and of the voltage detector's.
 const NMI_VECTOR: u64 = 0x0800_0008;
 const PVD_VECTOR: u64 = 0x0800_0044;
@@ -42,13 +43,26 @@ pub struct Mishaps {
     due: Vec<(usize, Mishap)>,
     /// The voltage detector's own handler, while its vector leads to another.
     lent: Option<u64>,
+    has_no_crystal: bool,
 }
 
 impl Mishaps {
     /// Those of `mishaps`, each at its time, s.
     pub fn new(mishaps: &[(f64, Mishap)]) -> Self {
         let scan = |at_s: f64| (at_s * f64::from(SCAN_HZ)) as usize;
-        Self { due: mishaps.iter().map(|(at_s, mishap)| (scan(*at_s), mishap.clone())).collect(), lent: None }
+        let due = mishaps.iter().map(|(at_s, mishap)| (scan(*at_s), mishap.clone())).collect();
+        Self { due, lent: None, has_no_crystal: false }
+    }
+
+    /// The core made an access. `rigless` finds a crystal's empty pin ready after its start-up time, at 0 Hz: it never gets so far.
+    pub fn accessed(&mut self, access: &Access, session: &mut Session<Nucleo>) {
+        if self.has_no_crystal && access.kind == AccessKind::Write && access.address == RCC_CR {
+            let (mcu, now) = (&mut session.board_mut().mcu, access.virtual_time);
+            let control = mcu.peek(now, RCC_CR, Width::W32).unwrap_or(0);
+            if control & HSEON != 0 {
+                set(mcu, now, RCC_CR, control & !HSEON);
+            }
+        }
     }
 
     /// Does what is due at `scan`.
@@ -86,7 +100,7 @@ impl Mishaps {
                     }
                 }
                 Mishap::CrystalStops(comes_back) => {
-                    mcu.chip.rcc.attach_crystals(if comes_back { HSE_HZ } else { 0 }, 0);
+                    self.has_no_crystal = !comes_back;
                     if mcu.peek(now, RCC_CR, Width::W32).unwrap_or(0) & CSSON != 0 {
                         // `rigless` lets nobody raise the core's own exception: another's vector leads to its handler for an instant.
                         let [handler, own] =

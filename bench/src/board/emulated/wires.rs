@@ -72,9 +72,10 @@ impl<'a> Wires<'a> {
         }
     }
 
-    /// Where the image has set the counter of the bridge's timer, which the quick model holds.
-    pub fn bridge_count(&mut self) -> u32 {
-        self.peek(TIM1_CNT)
+    /// When a period of the bridge's timer begins after the pulse that started the last scan, us.
+    pub fn bridge_begins_us(&mut self) -> f64 {
+        let since_us = self.mcu.since_pulse_ns(self.now) as f64 / 1e3;
+        since_us - f64::from(self.peek(TIM1_CNT)) / 100.0
     }
 
     /// How one side is driven: its pin belongs to the timer, the timer's outputs are on, and its pulse is not empty.

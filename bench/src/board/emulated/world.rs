@@ -151,8 +151,7 @@ impl World {
             let pins = plant.scan(drive).codes();
             self.codes = scan_of_pins(&pins, wires.select());
             if let Some(coupling) = self.coupling {
-                let begins_us = coupling.begins_us(wires.bridge_count(), self.pulses);
-                coupling.add(&mut self.codes, drive, begins_us);
+                coupling.add(&mut self.codes, drive, wires.bridge_begins_us());
             }
             self.stretch.scans.push((self.codes, drive, plant.slipping()));
             self.scanned += 1;
@@ -224,7 +223,10 @@ impl Driver<Nucleo> for World {
                     followed.hit(hit.address, self.cost.ticks(), session);
                 }
             }
-            Settled::Access { access, .. } => self.flash.accessed(&access, session, host),
+            Settled::Access { access, .. } => {
+                self.flash.accessed(&access, session, host);
+                self.mishaps.accessed(&access, session);
+            }
             Settled::Stop(stop) => self.flash.stopped(stop, session, host),
             _ => {}
         }

@@ -1,5 +1,5 @@
 //! The loop-back harness: two resistors and two capacitors lead the bridge's pins back to two film inputs, so that a board without
-//! sensors measures its own outputs.
+//! sensors measures its own outputs. The line may close only a hand whose force is known: a divider holds the quadrants at rest.
 
 use std::time::Duration;
 
@@ -13,8 +13,7 @@ use super::wire::{Stream, Wire};
 use crate::guide::Say;
 
 /// What has to be wired.
-pub const HARNESS: &str =
-    "PA8 through 10 kohm to PC2, PA9 through 10 kohm to PC3, each with 1 uF to ground; no bridge.";
+pub const HARNESS: &str = "PA8 through 10 kohm to PC2, PA9 through 10 kohm to PC3, each with 1 uF to ground; PC4 to 15 kohm from 3.3 V and 1 kohm to ground; no bridge.";
 
 type Way = fn(Duty) -> MotorDrive;
 /// Each output with the film input that it leads to.
@@ -37,13 +36,8 @@ pub fn harness(wire: &mut Wire<'_>, say: Say<'_>) -> anyhow::Result<Vec<Figure>>
         let mut worst_mv: f64 = 0.0;
         for permille in DUTIES {
             let drive = way(Duty::per_mille(permille));
-            wire.drive(drive, SETTLES, RAW, say, &mut |_, _| Ok(false))?;
-            let mut levels = Levels::default();
-            wire.drive(drive, MEASURED, RAW, say, &mut |_, message| {
-                levels.take(message);
-                Ok(false)
-            })?;
-            let (mean_mv, _) = levels.of(input);
+            Levels::driven(wire, drive, SETTLES, say)?;
+            let (mean_mv, _) = Levels::driven(wire, drive, MEASURED, say)?.of(input);
             let off_mv = (mean_mv - f64::from(REFERENCE_MV) * f64::from(permille) / 1e3).abs();
             // NaN, where nothing came, is the worst.
             worst_mv = if off_mv <= worst_mv { worst_mv } else { off_mv };

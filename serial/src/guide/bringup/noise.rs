@@ -41,7 +41,32 @@ impl Default for Levels {
 }
 
 impl Levels {
-    pub(super) fn take(&mut self, message: &Up) {
+    /// What is read in so long.
+    pub(super) fn heard(wire: &mut Wire<'_>, lasts: Duration) -> anyhow::Result<Self> {
+        let mut levels = Self::default();
+        wire.hear(lasts, RAW, &mut |_, message| {
+            levels.take(message);
+            Ok(false)
+        })?;
+        Ok(levels)
+    }
+
+    /// What is read while the motor is driven for so long.
+    pub(super) fn driven(
+        wire: &mut Wire<'_>,
+        drive: MotorDrive,
+        lasts: Duration,
+        say: Say<'_>,
+    ) -> anyhow::Result<Self> {
+        let mut levels = Self::default();
+        wire.drive(drive, lasts, RAW, say, &mut |_, message| {
+            levels.take(message);
+            Ok(false)
+        })?;
+        Ok(levels)
+    }
+
+    fn take(&mut self, message: &Up) {
         match message {
             Up::Raw(raw) => {
                 for frame in raw.frames().iter().filter(|frame| frame.valid) {
@@ -87,11 +112,7 @@ impl Levels {
 
 /// What every input reads as it is: its mean and its noise.
 pub fn readings(wire: &mut Wire<'_>, lasts: Duration) -> anyhow::Result<Vec<Figure>> {
-    let mut levels = Levels::default();
-    wire.hear(lasts, RAW, &mut |_, message| {
-        levels.take(message);
-        Ok(false)
-    })?;
+    let levels = Levels::heard(wire, lasts)?;
     let of = |channel: usize| {
         let (name, (mean, deviation)) = (CHANNELS[channel].name, levels.of(channel));
         [Figure::told(name, mean, "mV"), Figure::told(format!("{name}, noise"), deviation, "mV")]
@@ -101,11 +122,7 @@ pub fn readings(wire: &mut Wire<'_>, lasts: Duration) -> anyhow::Result<Vec<Figu
 
 /// What inputs that are held at 1.65 V read.
 pub(super) fn noise(wire: &mut Wire<'_>, asked: &Asked, say: Say<'_>) -> anyhow::Result<Vec<Figure>> {
-    let mut levels = Levels::default();
-    wire.hear(asked.lasts.unwrap_or(Duration::from_secs(10)), RAW, &mut |_, message| {
-        levels.take(message);
-        Ok(false)
-    })?;
+    let levels = Levels::heard(wire, asked.lasts.unwrap_or(Duration::from_secs(10)))?;
     for &channel in &asked.channels {
         let (mean, deviation) = levels.of(channel);
         say(&format!("   {:<14}{mean:>9.1} mV, noise {deviation:.3} mV rms", CHANNELS[channel].name))?;
@@ -129,20 +146,12 @@ pub(super) fn interference(wire: &mut Wire<'_>, asked: &Asked, say: Say<'_>) -> 
         Answer::Setting(own) => f64::from(own.value),
         other => anyhow::bail!("the board does not say its S1: {other:?}"),
     };
-    let mut rest = Levels::default();
-    wire.hear(2 * lasts, RAW, &mut |_, message| {
-        rest.take(message);
-        Ok(false)
-    })?;
+    let rest = Levels::heard(wire, 2 * lasts)?;
     let mut figures = vec![Figure::told("films' envelope at rest", rest.envelope_mv, "mV")];
     type Way = fn(Duty) -> MotorDrive;
     for (name, way) in [("closing", MotorDrive::Close as Way), ("opening", MotorDrive::Open)] {
         for permille in DUTIES {
-            let mut driven = Levels::default();
-            wire.drive(way(Duty::per_mille(permille)), lasts, RAW, say, &mut |_, message| {
-                driven.take(message);
-                Ok(false)
-            })?;
+            let driven = Levels::driven(wire, way(Duty::per_mille(permille)), lasts, say)?;
             let duty = format!("{name} at {} %", permille / 10);
             let part = 100.0 * driven.envelope_mv / s1_mv;
             let step = |n: usize| (driven.of(n).0 - rest.of(n).0).abs();
