@@ -101,6 +101,10 @@ fn open_port(name: &str) -> anyhow::Result<Line> {
     // Whoever is killed would leave a pseudo-terminal locked for everybody after him. A real port is for one alone: two
     // would each get half of the bytes.
     let pseudo = is_pseudo(name);
+    if holder::of(Path::new(name)).is_some() {
+        // A served run opens it for an instant, to drop what its last client has not read.
+        std::thread::sleep(READ_TIMEOUT);
+    }
     if let Some(holder) = holder::of(Path::new(name)) {
         bail!(
             "another program reads {name}: {holder}. Two would each get half of the bytes: end it first, or serve on \

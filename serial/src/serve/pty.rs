@@ -13,7 +13,8 @@ use std::thread;
 use std::time::Duration;
 
 use anyhow::{Context, bail};
-use serialport::{ClearBuffer, SerialPort, TTYPort};
+use serialport::{SerialPort, TTYPort};
+use tenax_hal_shim::wire::BAUD;
 
 use super::client::Ends;
 use super::framer::Framer;
@@ -85,11 +86,13 @@ impl Pty {
         Some(gone)
     }
 
-    /// Drops what the last client has not read, so that the next does not take it for new. Without opening the far end: a client that
-    /// comes meanwhile would be told that another program reads it.
+    /// Reads what the last client has not read, so that the next does not take it for new.
     fn forget(&self) {
-        // Where the system cannot, the next client hears a few old messages.
-        let _ = self.near.clear(ClearBuffer::Output);
+        let far = serialport::new(&self.path, BAUD).exclusive(false).timeout(Duration::ZERO);
+        if let Ok(mut far) = far.open_native() {
+            let mut buffer = [0; 4096];
+            while far.read(&mut buffer).is_ok_and(|count| count > 0) {}
+        }
     }
 }
 
