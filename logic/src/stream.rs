@@ -1,7 +1,7 @@
 //! Messages on request ([`Down::Stream`](tenax_hal_shim::wire::Down::Stream)): the samples of every frame, and every sensor's
 //! reading. No decision depends on it.
 
-use tenax_hal_shim::channel::{FRAME_HZ, FRAMES_PER_SLOW_FRAME};
+use tenax_hal_shim::channel::{FRAME_HZ, FRAMES_PER_SLOW_FRAME, SWITCH_INPUTS};
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::wire::{FRAMES_PER_RAW, Raw};
 
@@ -65,7 +65,9 @@ impl Stream {
                 self.is_whole = !core::mem::take(&mut self.is_torn);
             }
         }
-        self.senses_are_due = self.senses && frame.slot() == SENSES_SLOT;
+        // Before all slots have come once, some readings are none.
+        let all_came = frame.sequence >= SWITCH_INPUTS.into();
+        self.senses_are_due = self.senses && frame.slot() == SENSES_SLOT && all_came;
         if self.left != EVER && self.left > 0 {
             self.left -= 1;
             let goes_on = self.left > 0;
@@ -126,6 +128,19 @@ mod tests {
         stream.ask(false, true, 1);
         assert_eq!(firsts(&mut stream, 26..53), []);
         assert!(stream.wants_senses(), "slot 2");
+    }
+
+    #[test]
+    fn no_reading_is_sent_before_every_channel_was_read_once() {
+        let mut stream = Stream::default();
+        stream.ask(false, true, 1);
+        let due: Vec<u32> = (0..60)
+            .filter(|&sequence| {
+                stream.record(&Frame::lost(sequence));
+                stream.wants_senses()
+            })
+            .collect();
+        assert_eq!(due, [27, 52]);
     }
 
     #[test]

@@ -118,7 +118,7 @@ fn a_bridge_that_drives_after_a_reset_is_told() {
         serve(board(&[(reset_at_s, Mishap::ResetByPin)]), plant, |measure| {
             let figures = measure("outputs", asked());
             let expected: &[&str] = if is_stuck { &["1 of 1: current after a start"] } else { &[] };
-            assert_eq!(failing(&figures), expected);
+            assert_eq!(failing(&figures), expected, "{figures:?}");
         });
     }
 }
