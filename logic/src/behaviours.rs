@@ -124,6 +124,12 @@ impl Running {
     }
 }
 
+/// Whether the behaviour may silence the reflex: see [`Running::answers_slip`].
+#[must_use]
+pub const fn may_answer_slip(what: Behaviour) -> bool {
+    matches!(what, Behaviour::Stroke | Behaviour::HandOver | Behaviour::Turn { .. })
+}
+
 /// Whether a behaviour may relax the grasp in this tick: the line may still command, the load is
 /// known, and the reflex is not closing.
 #[must_use]

@@ -241,7 +241,7 @@ impl Fingertip {
     }
 
     fn act(&mut self, frame: &Frame) -> MotorDrive {
-        self.link.tick();
+        self.link.tick(self.behaviour.as_ref().is_some_and(Running::answers_slip));
         if u32::from(frame.slot()) % STEP_FRAMES == CONSENT_SLOT {
             self.consent();
             if self.senses.muscles().is_calibrating() && !matches!(self.senses.grip, Grip::Unloaded) {

@@ -31,7 +31,7 @@ pub enum Refusal {
     NoSession,
     /// The sequence number of this frame, or the nonce of this opening, was used before.
     Replayed,
-    /// The line has driven the hand for too long: an active muscle, consent or silence renews the time.
+    /// The line has driven the hand, or silenced the reflex, for too long: an active muscle, consent or waiting as long renews the time.
     HeldTooLong,
 }
 

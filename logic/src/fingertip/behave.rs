@@ -9,7 +9,7 @@ use tenax_hal_shim::words::{GripMode, Line};
 
 use super::Fingertip;
 use super::verdicts::Verdicts;
-use crate::behaviours::{Course, Felt, Running, Wish, may_relax};
+use crate::behaviours::{Course, Felt, Running, Wish, may_answer_slip, may_relax};
 use tenax_hal_shim::channel::frames;
 
 /// Age from which a picture is ignored, frames, including its age on arrival: the camera is lost, frozen or delayed.
@@ -50,6 +50,9 @@ impl Fingertip {
     pub(super) fn begin(&mut self, what: Behaviour) -> Result<(), Refusal> {
         if self.senses.gate.is_active() {
             return Err(Refusal::WearerActive);
+        }
+        if self.link.is_exhausted() && may_answer_slip(what) {
+            return Err(Refusal::HeldTooLong);
         }
         let may_begin = self.senses.all_ready(&self.config)
             && matches!(self.mode, GripMode::Watch | GripMode::Settle)
@@ -97,6 +100,15 @@ impl Fingertip {
             return MotorDrive::Coast;
         }
         let Some(mut running) = self.behaviour.take() else { return MotorDrive::Coast };
+        let is_over = match running.what() {
+            Behaviour::Stroke => self.link.ends_stroke(),
+            _ => running.answers_slip() && self.link.is_exhausted(),
+        };
+        if is_over {
+            self.behaviour = Some(running);
+            self.end(Ending::TooLong);
+            return MotorDrive::Coast;
+        }
         let felt = self.felt(Some(verdicts));
         let (grip, course) = (felt.grip, running.step(&self.config.behaviour, &felt));
         self.behaviour = Some(running);

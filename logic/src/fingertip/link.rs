@@ -1,12 +1,14 @@
-//! The drive of the serial line, and the time for which it may silence the reflex.
+//! The drive of the serial line, and the time for which the line may silence the reflex, by drives and behaviours together.
 
 use tenax_hal_shim::motor::MotorDrive;
 
 use tenax_hal_shim::channel::frames;
 
-/// Longest drive by the line in all, in frames, until a muscle, a consent or as much silence renews it.
+/// Longest silence of the reflex in all, in frames, until a muscle, a consent or as much listening renews it.
 const HOLD_FRAMES_MAX: u32 = frames(10_000);
-/// A pause between two drives shorter than this is part of the hold, in frames: the reflex would still be settling.
+/// Longest silence for a stroke that began within it, in frames.
+const STROKE_FRAMES_MAX: u32 = frames(60_000);
+/// A pause shorter than this is part of the silence, in frames: the reflex would still be settling.
 const PAUSE_FRAMES: u32 = frames(500);
 
 /// The last drive command of the serial line, and the number of frames for which it still holds.
@@ -14,15 +16,15 @@ const PAUSE_FRAMES: u32 = frames(500);
 pub struct Link {
     drive: MotorDrive,
     frames_left: u32,
-    /// Frames held, less those of silence since.
+    /// Frames for which the reflex was silent, less those for which it has listened since.
     held: u32,
-    quiet: u32,
+    listened: u32,
     exhausted: bool,
 }
 
 impl Default for Link {
     fn default() -> Self {
-        Self { drive: MotorDrive::Coast, frames_left: 0, held: 0, quiet: PAUSE_FRAMES, exhausted: false }
+        Self { drive: MotorDrive::Coast, frames_left: 0, held: 0, listened: PAUSE_FRAMES, exhausted: false }
     }
 }
 
@@ -33,13 +35,14 @@ impl Link {
         self.frames_left = frames;
     }
 
-    /// Counts one frame off; without any left the drive is `Coast`.
-    pub fn tick(&mut self) {
-        // The usual tick: no command holds, and the time held before has run down.
-        if self.frames_left == 0
+    /// Counts one frame off; without any left the drive is `Coast`. `silences`: a behaviour silences the reflex.
+    pub fn tick(&mut self, silences: bool) {
+        // The usual tick: no command holds, and the silence before has run down.
+        if !silences
+            && self.frames_left == 0
             && self.held == 0
             && self.drive == MotorDrive::Coast
-            && self.quiet >= PAUSE_FRAMES
+            && self.listened >= PAUSE_FRAMES
         {
             return;
         }
@@ -47,12 +50,13 @@ impl Link {
             self.drive = MotorDrive::Coast;
         }
         self.frames_left = self.frames_left.saturating_sub(1);
-        self.quiet = if self.drive == MotorDrive::Coast { self.quiet.saturating_add(1) } else { 0 };
-        if self.quiet < PAUSE_FRAMES {
-            self.held = (self.held + 1).min(HOLD_FRAMES_MAX);
+        let listens = self.drive == MotorDrive::Coast && !silences;
+        self.listened = if listens { self.listened.saturating_add(1) } else { 0 };
+        if self.listened < PAUSE_FRAMES {
+            self.held = (self.held + 1).min(STROKE_FRAMES_MAX);
             self.exhausted |= self.held >= HOLD_FRAMES_MAX;
         } else {
-            self.held = self.held.saturating_sub(1);
+            self.held = self.held.min(HOLD_FRAMES_MAX).saturating_sub(1);
             self.exhausted &= self.held > 0;
         }
     }
@@ -67,6 +71,12 @@ impl Link {
     #[must_use]
     pub const fn is_exhausted(&self) -> bool {
         self.exhausted
+    }
+
+    /// Whether the time of a stroke is used up, too.
+    #[must_use]
+    pub const fn ends_stroke(&self) -> bool {
+        self.held >= STROKE_FRAMES_MAX
     }
 
     /// The drive that holds. None: the line asks for nothing.
@@ -90,7 +100,7 @@ mod tests {
             if n % period == 0 && !link.is_exhausted() {
                 link.ask(CLOSE, on);
             }
-            link.tick();
+            link.tick(false);
             driven += u32::from(link.drive().is_some());
         }
         driven
@@ -102,7 +112,7 @@ mod tests {
         assert_eq!(driven(&mut link, 100, 1_000, 1_000), 100);
         link.ask(CLOSE, 100);
         link.ask(MotorDrive::Coast, 500);
-        link.tick();
+        link.tick(false);
         assert_eq!(link.drive(), None);
     }
 
@@ -119,11 +129,19 @@ mod tests {
     }
 
     #[test]
-    fn as_much_silence_renews_it() {
+    fn as_much_listening_renews_it() {
         let mut link = Link::default();
         driven(&mut link, 500, 500, HOLD_FRAMES_MAX);
-        (0..HOLD_FRAMES_MAX + PAUSE_FRAMES).for_each(|_| link.tick());
+        (0..HOLD_FRAMES_MAX + PAUSE_FRAMES).for_each(|_| link.tick(false));
         assert!(!link.is_exhausted());
         assert_eq!(driven(&mut link, 500, 500, 500), 500);
+    }
+
+    #[test]
+    fn a_behaviour_that_silences_the_reflex_takes_of_the_same_time() {
+        let mut link = Link::default();
+        driven(&mut link, 500, 500, HOLD_FRAMES_MAX / 2);
+        (0..HOLD_FRAMES_MAX / 2).for_each(|_| link.tick(true));
+        assert!(link.is_exhausted());
     }
 }
