@@ -1,9 +1,7 @@
 //! The behaviours in their scenes, each of the paper's results beside its control, with a camera that errs as the vision crate does and
-//! with one of whose pictures 5 % are wrong, three in a row. Eight seeds each; `TENAX_SEEDS=100 cargo test ... --test behaviours` runs more.
+//! with one of whose pictures 5 % are wrong, three in a row. Eight seeds each; `TENAX_SEEDS=100 cargo test ... --test all behaviours` runs more.
 
-mod common;
-
-use common::{asked, parsed, ran, text};
+use crate::common::{asked, parsed, ran, text};
 use tenax_bench::report::text::Text;
 use tenax_bench::session::Board;
 use tenax_scene::{Truth, World};

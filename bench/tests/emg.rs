@@ -1,7 +1,5 @@
 //! The whole way of real recordings of two muscles: a calibration from other recordings, the front end, the board's logic, the motor.
 
-mod common;
-
 use tenax_bench::replay::calibrate::calibrate;
 use tenax_bench::replay::meaning::Motion;
 use tenax_bench::session::{self, Board, ReplayOptions};
@@ -9,7 +7,7 @@ use tenax_bench::session::{self, Board, ReplayOptions};
 #[test]
 #[cfg_attr(not(recordings), ignore = "no recordings in ../shared/data")]
 fn a_replayed_fist_never_opens_the_hand_and_rest_never_moves_it() {
-    let folder = common::shared("");
+    let folder = crate::common::shared("");
     for prefix in ["", "b_"] {
         let path = |name: &str| folder.join(format!("emg_two_channel_{prefix}{name}.csv"));
         let phases = ["rest0", "handflexion0", "handextension0"].map(path);

@@ -1,9 +1,7 @@
 //! Scenes in which a reflex of many guards failed, beside their bound: what has to be kept, and with how much.
-//! `cargo test -p tenax-bench --test failures -- --nocapture` prints the table of docs/scenes.md.
+//! `cargo test -p tenax-bench --test all failures -- --nocapture` prints the table of docs/scenes.md.
 
-mod common;
-
-use common::{asked, parsed, text};
+use crate::common::{asked, parsed, text};
 use tenax_bench::disturbances;
 use tenax_bench::report::Report;
 use tenax_bench::report::bound::SAME_MM;
@@ -26,7 +24,7 @@ const SCENES: [(&str, bool, f64); 10] = [
 ];
 
 fn ran(name: &str) -> Report {
-    common::ran(&parsed(&text(name)), 1).report
+    crate::common::ran(&parsed(&text(name)), 1).report
 }
 
 #[test]
@@ -117,7 +115,7 @@ fn what_drifts_and_hums_reaches_the_pins() {
 fn minutes_of_disturbances_slip_nowhere_and_drop_nothing() {
     // TENAX_MINUTES=60 is the hour.
     let minutes = asked("TENAX_MINUTES").unwrap_or(1);
-    let report = common::ran(&parsed(&disturbances::text(1, minutes)), 1).report;
+    let report = crate::common::ran(&parsed(&disturbances::text(1, minutes)), 1).report;
     println!(
         "{minutes} min: {} pulses, {:.2} N added, {:.2} N of them without need; {:?}",
         report.reflex.pulses,

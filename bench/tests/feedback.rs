@@ -1,8 +1,6 @@
 //! The vibration motor that tells the wearer, and films that hear it.
 
-mod common;
-
-use common::{loaded, parsed};
+use crate::common::{loaded, parsed};
 use tenax_bench::board::{Run, simulated};
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{Event, EventKind, Slow};

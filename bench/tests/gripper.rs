@@ -1,9 +1,7 @@
 //! A gripper without myosensors: its reflex keeps what it lifts if the board knows that nobody wears it. The control is
 //! the same board that was not told so.
 
-mod common;
-
-use common::{parsed, ran, text};
+use crate::common::{parsed, ran, text};
 use serde_json::Value;
 
 fn report(scene: &str, seed: u64) -> Value {

@@ -1,7 +1,5 @@
 //! Settings anywhere in their ranges, several at once: none of them drops what the defaults keep, crushes it or deafens the hand.
-//! `TENAX_MIXES=500 cargo test --release -p tenax-bench --test mixes -- --nocapture`; `TENAX_SEED` draws others.
-
-mod common;
+//! `TENAX_MIXES=500 cargo test --release -p tenax-bench --test all mixes -- --nocapture`; `TENAX_SEED` draws others.
 
 use std::fmt::Write as _;
 
@@ -33,7 +31,7 @@ type Mix = Vec<(SettingId, i32)>;
 /// A scene without what its script sets, but for what it is built into.
 fn text(name: &str) -> String {
     let sets = |table: &&str| table.contains("kind = \"set-") && !table.contains("-flag\"");
-    common::text(name).split("[[").filter(|table| !sets(table)).collect::<Vec<_>>().join("[[")
+    crate::common::text(name).split("[[").filter(|table| !sets(table)).collect::<Vec<_>>().join("[[")
 }
 
 /// A scene whose board is set up so before anything happens.
@@ -43,7 +41,7 @@ fn scene(text: &str, mix: &[(SettingId, i32)]) -> SceneFile {
         let name = id.row().name;
         write!(text, "\n[[command]]\nat_s = 0.11\nkind = \"set-{name}\"\nvalue = {value}\n").unwrap();
     }
-    common::parsed(&text)
+    crate::common::parsed(&text)
 }
 
 /// What became of a mix in a scene.
@@ -137,7 +135,8 @@ fn mix(rng: &mut ChaCha8Rng) -> Mix {
 // Shows W6, R2.
 #[test]
 fn no_mix_of_legal_settings_drops_crushes_or_deafens() {
-    let (asked, seed) = (common::asked("TENAX_MIXES").unwrap_or(0), common::asked("TENAX_SEED").unwrap_or(1));
+    let (asked, seed) =
+        (crate::common::asked("TENAX_MIXES").unwrap_or(0), crate::common::asked("TENAX_SEED").unwrap_or(1));
     let count = if asked == 0 { 10 } else { asked as usize };
     println!("{count} mixes, seeds {seed} and {}", seed + 1);
     let seeds = if asked == 0 { seed..=seed } else { seed..=seed + 1 };

@@ -1,8 +1,6 @@
 //! A motor that is blocked in a scene: it stops within half a second, says so, keeps what is held and opens when it is asked again.
 
-mod common;
-
-use common::{parsed, text};
+use crate::common::{parsed, text};
 use tenax_bench::board::{Run, simulated};
 use tenax_hal_shim::channel::{SCAN_HZ, SCANS_PER_FRAME};
 use tenax_hal_shim::motor::MotorDrive;

@@ -1,9 +1,6 @@
 //! What a run reports of a detector's onset is the frame in which its evidence says that it decided.
 
-#[path = "../../host-tests/src/onsets.rs"]
-mod onsets;
-
-use onsets::held_against_evidence;
+use crate::common::onsets::held_against_evidence;
 use tenax_bench::board::{Recorder, Run};
 use tenax_bench::live::Use;
 use tenax_bench::session::{self, Board};

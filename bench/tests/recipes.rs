@@ -1,12 +1,10 @@
 //! A recipe with a mistake gets one message with file and line; the repository's own have none.
 
-mod common;
-
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use common::{recipe, with_head};
+use crate::common::{recipe, with_head};
 use tenax_bench::labelled::ArrayRecipe;
 use tenax_bench::recipe::Kind;
 use tenax_bench::replay::Recipe;

@@ -1,15 +1,13 @@
 //! What the reflex added and takes back: by the friction that slip has shown, never below what the hand was closed to.
 
-mod common;
-
-use common::loaded;
+use crate::common::loaded;
 use tenax_bench::report::Report;
 
 /// The wet patch's friction.
 const MU_S: f64 = 0.25;
 
 fn ran(name: &str, seed: u64) -> Report {
-    common::ran(&loaded(name), seed).report
+    crate::common::ran(&loaded(name), seed).report
 }
 
 // Shows R10.

@@ -1,9 +1,7 @@
 //! A recording at the pins: on the right channel, at the right time, through the right front end; and the shared
 //! recordings through their recipes and the host's logic.
 
-mod common;
-
-use common::{played, recipe, recording};
+use crate::common::{played, recipe, recording};
 use tenax_bench::replay::ReplayPlant;
 use tenax_hal_shim::channel::{self, COUNT, SCAN_HZ};
 use tenax_hal_shim::detector::DetectorId;

@@ -1,8 +1,6 @@
 //! The report's keys: other people's programs read them.
 
-mod common;
-
-use common::{parsed, ran, text};
+use crate::common::{parsed, ran, text};
 use serde_json::Value;
 use tenax_bench::report::bound::{Bound, SAME_MM};
 use tenax_bench::report::fate::Fate;

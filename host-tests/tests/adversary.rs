@@ -1,7 +1,7 @@
 //! Everything that goes wrong at once, for as long as one likes: wearers, faults of every kind, commands, lost frames,
 //! settings at their ends, nonsense in flash.
 //!
-//! `TENAX_STEPS=10000000 cargo test --release -p tenax-host-tests --test adversary -- --nocapture`
+//! `TENAX_STEPS=10000000 cargo test --release -p tenax-host-tests --test fingertip adversary -- --nocapture`
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};

@@ -1,8 +1,6 @@
 //! Every scene that comes with the program shows what it says it shows. Each absence has its control.
 
-mod common;
-
-use common::{Reflex, run, scene};
+use crate::common::{Reflex, run, scene};
 use tenax_hal_shim::channel::{MYO_EXTENSOR, MYO_FLEXOR, by_name};
 use tenax_scene::truth::Slip;
 use tenax_scene::{SceneFile, Truth, builtin};

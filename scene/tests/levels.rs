@@ -1,8 +1,6 @@
 //! Where the scenes stand to S1's default of 100 mV: onset clearly above it, everything else but knocks clearly below.
 
-mod common;
-
-use common::{Reflex, run, scene};
+use crate::common::{Reflex, run, scene};
 
 const S1_MV: f64 = 100.0;
 

@@ -1,8 +1,6 @@
 //! Objects that turn, are crushed and break, and grippers that move by steps.
 
-mod common;
-
-use common::{Reflex, run, scene};
+use crate::common::{Reflex, run, scene};
 use tenax_scene::{SceneFile, Truth, builtin};
 
 fn truth(scene: &SceneFile) -> Truth {
@@ -32,7 +30,7 @@ fn a_load_off_centre_turns_before_it_slides_and_without_pitch_it_holds_longer() 
     assert!(slid_s.is_none_or(|slid_s| slid_s > turned_s + 2.0), "{turned_s} s, then {slid_s:?} s");
 }
 
-/// A scene whose hand obeys what somebody types: [`common::run`] knows muscles only.
+/// A scene whose hand obeys what somebody types: [`crate::common::run`] knows muscles only.
 fn run_script(name: &str, changes: &[(&str, &str)]) -> Truth {
     use tenax_hal_shim::motor::MotorDrive;
     use tenax_hal_shim::wire::Down;

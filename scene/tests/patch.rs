@@ -1,8 +1,6 @@
 //! L1 in the grasp: micro slip precedes macro slip, the films hear it, and the level below has neither.
 
-mod common;
-
-use common::{Reflex, run};
+use crate::common::{Reflex, run};
 use proptest::prelude::*;
 use tenax_scene::physics::friction::Friction;
 use tenax_scene::physics::level::{Level, Push};

@@ -5,13 +5,11 @@
 //! cosmiclab-unige/Piezoelectric-Tactile-Contact-and-Slip-Detection-Dataset, by way of the README beside them). None of
 //! the samples is here. A model within a factor of two of a figure passes.
 
-mod common;
-
 use std::f64::consts::TAU;
 use std::ops::Range;
 use std::path::Path;
 
-use common::{Reflex, run, scene};
+use crate::common::{Reflex, run, scene};
 use tenax_hal_shim::channel::{FRAME_HZ, PVDF_COUNT, SCANS_PER_FRAME};
 use tenax_hal_shim::front_end::PVDF_REST_MV;
 use tenax_scene::{SceneFile, builtin};

@@ -4,11 +4,9 @@
 //! data-driven-playback-of-natural-tactile-texture, 10 kHz, 0.5 N, plate driven off to 40 mm/s) by the
 //! definitions below. None of its samples is here; where the recording is at hand, it is measured once more.
 
-mod common;
-
 use std::path::Path;
 
-use common::{Reflex, run, scene};
+use crate::common::{Reflex, run, scene};
 
 /// The recording's own mark of first motion: the plate's encoder passes this, mm/s.
 const MOVES_MM_S: f64 = 2.0;

@@ -1,5 +1,7 @@
 //! What the host tool's tests share.
-#![allow(dead_code, reason = "each test file uses its own part of this one")]
+
+#[path = "../../../host-tests/src/onsets.rs"]
+pub mod onsets;
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;

@@ -5,7 +5,7 @@ use tenax_logic::array::{
     ArrayDetector, ArrayVerdict, Judgement, Model, PreprocessorConfig, Reading, specimen,
 };
 
-use crate::readings;
+use super::readings;
 
 /// A model whose verdict needs as many frames as these.
 fn model(on_frames: u8, off_frames: u8) -> Model<32, 1, 16> {

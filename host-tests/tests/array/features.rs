@@ -11,8 +11,8 @@ use tenax_logic::array::{
     SPECTRUM_WINDOW,
 };
 
-use crate::oracle::{compressed, covariances, magnitudes, structures};
-use crate::{alive, readings};
+use super::oracle::{compressed, covariances, magnitudes, structures};
+use super::{alive, readings};
 
 fn some(samples: &[u16; ELEMENTS]) -> Reading {
     samples.map(Some)

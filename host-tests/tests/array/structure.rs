@@ -8,8 +8,8 @@ use tenax_logic::array::past::Past;
 use tenax_logic::array::structure::{CHANGE_MAX, FULL_AFTER, LAGS, READY_AFTER, Structure, WINDOWS};
 use tenax_logic::array::{ELEMENTS, Reading};
 
-use crate::oracle::structures;
-use crate::{alive, readings};
+use super::oracle::structures;
+use super::{alive, readings};
 
 fn fed<'a>(readings: impl IntoIterator<Item = &'a Reading>) -> [[u32; WINDOWS]; LAGS.len()] {
     *structure_of(readings).sums()

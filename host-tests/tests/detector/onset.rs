@@ -7,7 +7,7 @@ use tenax_host_tests::onsets::{Onsets, held_against_evidence};
 use tenax_host_tests::teaching::SLIP_MV;
 use tenax_logic::detectors::Said;
 
-use crate::sensing::{Sensing, taught_detectors};
+use super::sensing::{Sensing, taught_detectors};
 
 /// What is done to a bench, one part after the other.
 const PARTS: [fn(&mut Bench); 8] = [

@@ -4,7 +4,7 @@ use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
 use tenax_host_tests::Bench;
 use tenax_logic::detectors::{Description, Detector, Said, Sensed};
 
-use crate::sensing::Sensing;
+use super::sensing::Sensing;
 
 /// What can be chosen about it: a normal force that falls by so much in one cycle means that the object leaves the hand.
 struct FallConfig {

@@ -5,9 +5,9 @@ use tenax_logic::hebbian::{
     RECEPTORS, Rule, Sense, Situation, Teacher, TeacherConfig,
 };
 
-use crate::map::{Fate, Said, UNSEEN, ask, correlations, fate, largest_part, learned, teach};
-use crate::oracle::{Rates, Reference, exact, fixed_point, weights_of};
-use crate::task::{Finger, Moment, OFFSET, VIBRATION};
+use super::map::{Fate, Said, UNSEEN, ask, correlations, fate, largest_part, learned, teach};
+use super::oracle::{Rates, Reference, exact, fixed_point, weights_of};
+use super::task::{Finger, Moment, OFFSET, VIBRATION};
 
 /// The same trial, felt through other receptors.
 fn felt_through(trial: &[Moment], change: impl Fn(&mut [Activation; RECEPTORS])) -> Vec<Moment> {

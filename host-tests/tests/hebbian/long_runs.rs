@@ -4,8 +4,8 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use tenax_logic::hebbian::{Activation, Activations, Code, Codes, Config, FingertipNetwork, RECEPTORS, Rule};
 
-use crate::oracle::{FULL_SCALE, Rates, Reference, exact, weights_of};
-use crate::task::Finger;
+use super::oracle::{FULL_SCALE, Rates, Reference, exact, weights_of};
+use super::task::Finger;
 
 const UPDATES: usize = 1_000_000;
 

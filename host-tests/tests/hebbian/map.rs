@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use tenax_logic::hebbian::{Code, Config, FingertipNetwork, RECEPTORS, Rule, Weight};
 
-use crate::oracle::{Rates, exact, fixed_point, weights_of};
-use crate::task::{Finger, Moment};
+use super::oracle::{Rates, exact, fixed_point, weights_of};
+use super::task::{Finger, Moment};
 
 const ALPHAS_PPB: [u32; 9] =
     [1_000, 10_000, 20_000, 50_000, 100_000, 200_000, 500_000, 2_000_000, 50_000_000];

@@ -7,7 +7,7 @@ use tenax_logic::hebbian::{
     Rule, Sense,
 };
 
-use crate::oracle::weights_of;
+use super::oracle::weights_of;
 
 fn code() -> impl Strategy<Value = Code> {
     (-1..=1).prop_map(Code::from_sign)

@@ -4,8 +4,8 @@ use tenax_hal_shim::flash::FlashFailed;
 use tenax_hal_shim::words::Kept;
 use tenax_logic::store::{Erase, open};
 
-use crate::flash::{HARMS, Harm, TestFlash};
-use crate::{numbers, save};
+use super::flash::{HARMS, Harm, TestFlash};
+use super::{numbers, save};
 
 const SECTOR_WORDS: usize = 80;
 const SAVES: u32 = 60;
@@ -160,7 +160,7 @@ fn a_record_without_its_last_word_does_not_count() {
     let mut flash = TestFlash::blank(SECTOR_WORDS);
     let (mut log, _) = open(&mut flash, Erase::Allowed);
     let words = save(&mut flash, &mut log, Kept::Zero, 1).expect("power");
-    let payload = crate::payload(Kept::Zero, 2);
+    let payload = super::payload(Kept::Zero, 2);
     let mut saving = log.begin(Kept::Zero, &payload).expect("room");
     for _ in 0..words - 1 {
         assert_eq!(saving.step(&mut flash), Ok(false));

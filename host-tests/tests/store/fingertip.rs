@@ -11,7 +11,7 @@ use tenax_logic::store::keeper::Keeper;
 use tenax_logic::store::record::{PAYLOAD_BYTES, Record};
 use tenax_logic::store::{Erase, open};
 
-use crate::flash::TestFlash;
+use super::flash::TestFlash;
 
 /// Everything that `fingertip` wants saved goes into `flash`.
 fn save_all(fingertip: &mut Fingertip, keeper: &mut Keeper, flash: &mut TestFlash) -> Vec<Kept> {

@@ -4,8 +4,8 @@ use proptest::prelude::*;
 use tenax_hal_shim::words::Kept;
 use tenax_logic::store::{Erase, open};
 
-use crate::flash::{HARMS, TestFlash};
-use crate::{numbers, save};
+use super::flash::{HARMS, TestFlash};
+use super::{numbers, save};
 
 const SECTOR_WORDS: usize = 96;
 

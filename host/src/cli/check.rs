@@ -46,8 +46,8 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         Group::new("wearer in all scenes", wearer::scenes),
         Group::new("random hands", || {
             Ok(vec![wearer::random(
-                test::logic()
-                    .args(["--quiet", "--test", "wearer", "--test", "random_steps"])
+                test::all()
+                    .args(["--quiet", "--test", "fingertip", "--", "wearer::", "random_steps::"])
                     .current_dir(&root),
             )])
         }),

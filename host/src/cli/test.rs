@@ -2,7 +2,7 @@
 
 mod sum;
 
-use std::process::{Command, ExitCode, Stdio};
+use std::process::{Command, ExitCode};
 
 use anyhow::Context;
 use sum::Sum;
@@ -21,47 +21,35 @@ pub struct Args {
     extra: Vec<String>,
 }
 
-/// What is tested in a debug build.
-const DEBUG: [&str; 7] = ["logic", "hal-shim", "palm", "scene", "vision", "launch", "host-tests"];
+/// All that is tested with the tool itself, in one command, so that everything is compiled once: in release, with the checks of a debug
+/// build (the workspace's Cargo.toml), for in the logic's arithmetic an overflow is an error.
+const PACKAGES: [&str; 14] = [
+    "logic",
+    "hal-shim",
+    "palm",
+    "scene",
+    "vision",
+    "launch",
+    "host-tests",
+    "serial",
+    "plot",
+    "board-model",
+    "bench",
+    "studies",
+    "ros2",
+    "train",
+];
 
-/// What the tool is made of.
-const TOOL: [&str; 6] = ["serial", "plot", "board-model", "bench", "studies", "ros2"];
-
-/// Tests of all that is not the tool, with the checks of a debug build: in the logic's arithmetic an overflow is an error.
-pub fn logic() -> Command {
-    let mut command = Command::new("cargo");
-    command.arg("test");
-    for package in DEBUG {
-        command.args(["--package", &format!("tenax-{package}")]);
-    }
-    command
-}
-
-/// Tests of the tool, as it is built to be run, so that everything that it is made of is compiled once.
-fn tool() -> Command {
+pub fn all() -> Command {
     let mut command = Command::new("cargo");
     command.arg("test").args(tool::BUILD);
-    for package in TOOL {
+    for package in PACKAGES {
         command.args(["--package", &format!("tenax-{package}")]);
     }
     // Tests of the line wait for real time to go by: twice as many at once take half as long.
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     command.env("RUST_TEST_THREADS", (2 * cores).to_string());
     command
-}
-
-/// Tests of the training. It learns, which without optimisation takes minutes. Apart from the tool's, as `tenax train` builds
-/// it: together they would share features, and the emulator would be compiled again.
-const TRAINING: [&str; 5] = ["test", "--release", "--ignore-rust-version", "--package", "tenax-train"];
-
-/// Compiles the tests of the training with what the tool's tests leave of the cores: many of those wait for a board that runs at
-/// real time. Not before these are compiled, for Cargo lets one of them compile at a time.
-fn compile_training() {
-    let mut command = Command::new("nice");
-    command.args(["-n", "19", "cargo"]).args(TRAINING).args(["--no-run", "--quiet"]);
-    let quiet = command.stdout(Stdio::null()).stderr(Stdio::null());
-    // Whatever hinders it will be said when they are run. It goes on by itself.
-    let _hindered = workspace::root().and_then(|root| Ok(quiet.current_dir(root).spawn()?));
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
@@ -71,13 +59,8 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         &[Binary::Image, Binary::Kernels, Binary::Frames, Binary::Pictures],
     )])?;
     let mut sum = Sum::default();
-    // The next is run even if one fails: a person wants to know of all that is broken.
-    let mut run = |command: &mut Command, compiled: fn()| {
-        sum.run(command.arg("--no-fail-fast").args(&args.extra), compiled)
-    };
-    run(&mut logic(), || {})?;
-    run(&mut tool(), compile_training)?;
-    run(Command::new("cargo").args(TRAINING), || {})?;
+    // All are run even if one fails: a person wants to know of all that is broken.
+    sum.run(all().arg("--no-fail-fast").args(&args.extra))?;
     if args.extra.is_empty() {
         // For `tenax safety --tested`.
         let path = workspace::root()?.join(RESULTS);
@@ -99,9 +82,9 @@ mod tests {
         // The image is tested on the emulated board, by the tool's tests.
         // The quarter is vision's sources, held against the emulated core.
         // The bridge's zenoh compiles for three minutes; `.ci/run` names the command that tests it.
-        let elsewhere = ["host", "train", "firmware", "vision/quarter", "bridge"];
+        let elsewhere = ["host", "firmware", "vision/quarter", "bridge"];
         for member in members.iter().filter_map(|member| member.as_str()) {
-            assert!([&DEBUG[..], &TOOL, &elsewhere].concat().contains(&member), "{member}");
+            assert!([&PACKAGES[..], &elsewhere].concat().contains(&member), "{member}");
         }
     }
 }

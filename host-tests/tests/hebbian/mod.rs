@@ -1,6 +1,6 @@
 //! The Hebbian network (Tada 2006) against `f64`, against its own theory, and where it fails.
 //!
-//! `cargo test -p tenax-host-tests --test hebbian -- --nocapture` prints every figure of `docs/hebbian.md`.
+//! `cargo test -p tenax-host-tests --test fingertip hebbian -- --nocapture` prints every figure of `docs/hebbian.md`.
 
 mod failures;
 mod long_runs;
