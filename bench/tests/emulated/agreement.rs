@@ -53,22 +53,6 @@ fn the_simulated_board_keeps_the_images_time() {
     assert_eq!(host.events, image.events);
 }
 
-/// At two cycles an instruction, the slow end of the bracket, no code is lost; only ticks that end a slow frame may run
-/// into the next frame.
-// Shows B8.
-#[test]
-fn three_quarters_as_fast_a_core_is_fast_enough() {
-    let options = Options {
-        instructions_per_second: NonZeroU64::new(75_000_000).expect("not zero"),
-        ..Options::default()
-    };
-    let run = run(Swing::new(2.0), &options);
-    assert_eq!((run.counters.overruns, run.counters.frames_lost), (0, 0));
-    // In a slow frame, the tick that judges the array and those around its end are late at this speed, and nothing is lost.
-    assert!(run.counters.ticks_late <= run.counters.ticks / 25 * 4, "{:?}", run.counters);
-    assert!(Agreement::of(&run).holds());
-}
-
 /// From two cycles an instruction to one: the same codes, the same decisions, and what is late harms nothing.
 // Shows B7, B8.
 #[test]

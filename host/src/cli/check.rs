@@ -27,7 +27,7 @@ pub struct Args {
     /// Also check the budgets of `tenax size --check`, from the same run
     #[arg(long, conflicts_with = "host")]
     size: bool,
-    /// Also run the other commands whose figures the pages quote: minutes each
+    /// Also run the other commands whose figures the pages quote, minutes each, and `learn` with three hours of holding
     #[arg(long, requires = "size")]
     pages: bool,
 }
@@ -53,7 +53,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         }),
     ];
     groups.extend(recordings::groups(&data, &board)?);
-    groups.push(Group::new("learn", learn::bars));
+    groups.push(Group::new("learn", || learn::bars(args.pages)));
     groups.push(Group::new("array", array::bars));
     groups.push(Group::new("mistakes", || Ok(mistakes::bars())));
 
