@@ -2,6 +2,8 @@
 #![cfg(feature = "emulator")]
 
 mod pictures;
+#[cfg(unix)]
+mod qemu;
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
