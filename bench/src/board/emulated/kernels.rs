@@ -8,6 +8,8 @@ mod bench;
 pub mod cycles;
 mod meter;
 pub mod pictures;
+#[cfg(unix)]
+pub mod qemu;
 
 use std::collections::BTreeMap;
 use std::num::NonZeroU64;
@@ -83,6 +85,8 @@ pub struct Outcome {
     pub costs: Vec<Cost>,
     /// Least, likely and most cycles of those that were followed.
     pub cycles: BTreeMap<String, [f64; 3]>,
+    /// What RAM holds at the end, words.
+    pub ram: Vec<u32>,
 }
 
 /// Puts recordings through the detector of the kernels' `image`

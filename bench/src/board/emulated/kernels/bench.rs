@@ -1,8 +1,9 @@
 //! Feeds the kernels' image and reads its answers.
 
+use std::ops::Range;
 use std::sync::mpsc::Sender;
 
-use rigless::emulator::{Driver, Error, Host, Settled, Stop, Watch};
+use rigless::emulator::{Driver, Error, Host, Memory, Settled, Stop, Watch};
 use rigless::session::Session;
 use rigless::soc::Width;
 use rigless::time::VirtualNanos;
@@ -27,6 +28,8 @@ const CONFIDENCE: u32 = SLIP - 1;
 const LOOK_NS: u64 = 1_000_000;
 /// Looks without a new reading after which the core is given up: a reading takes less than two.
 const PATIENCE: u32 = 20;
+/// The chip's, where the image keeps all that changes.
+const RAM: Range<u64> = 0x2000_0000..0x2002_0000;
 /// Readings between two reports of progress.
 const REPORTED: usize = 1_000;
 
@@ -100,8 +103,17 @@ impl Bench {
         Outcome { costs: self.meters.into_costs(), cycles, ..self.outcome }
     }
 
+    /// The core has arrived at a watched instruction after having executed so many. Whether all was answered.
+    pub fn arrive(&mut self, address: u64, executed: u64, memory: &mut dyn Memory) -> Result<bool, Error> {
+        self.meters.hit(address, executed);
+        if address == self.symbols.next {
+            self.exchange(memory)?;
+        }
+        Ok(self.done)
+    }
+
     /// The core stands at the mailbox: takes the answer to the last reading out, puts the next one in.
-    fn exchange(&mut self, host: &mut dyn Host) -> Result<(), Error> {
+    fn exchange(&mut self, host: &mut dyn Memory) -> Result<(), Error> {
         self.looks = 0;
         let last = self.fed.checked_sub(1).and_then(|last| self.readings.get(last));
         if let Some(&(recording, ..)) = last {
@@ -126,10 +138,13 @@ impl Bench {
     }
 
     /// Puts the next frame in; the core answers nothing to it.
-    fn exchange_frame(&mut self, host: &mut dyn Host) -> Result<(), Error> {
+    fn exchange_frame(&mut self, host: &mut dyn Memory) -> Result<(), Error> {
         let next = self.frames.get(self.fed - self.readings.len());
         let (Some(frame), Some([samples_at, comes])) = (next, self.symbols.frame) else {
             self.done = true;
+            for at in RAM.step_by(4) {
+                self.outcome.ram.push(host.read(at, Width::W32)? as u32);
+            }
             return Ok(());
         };
         let samples = frame.pvdf.into_iter().chain([frame.switch_a, frame.switch_b]);
@@ -141,7 +156,7 @@ impl Bench {
         Ok(())
     }
 
-    fn answer(&self, host: &mut dyn Host) -> Result<Answer, Error> {
+    fn answer(&self, host: &mut dyn Memory) -> Result<Answer, Error> {
         let verdict = host.read(self.symbols.verdict, Width::W32)? as u32;
         let verdict = ArrayVerdict {
             slip: verdict & SLIP != 0,
@@ -166,16 +181,13 @@ impl Driver<Nucleo> for Bench {
         if self.done {
             return;
         }
-        self.meters.hit(hit);
         if let Some((from, tracer)) = self.follow.as_mut().filter(|(from, _)| self.fed >= *from) {
             tracer.hit(hit.address);
             if hit.address == self.symbols.next && self.fed == *from {
                 tracer.watched().for_each(|address| session.watch(Watch::Instruction(address)));
             }
         }
-        if hit.address == self.symbols.next {
-            self.exchange(host).expect("the mailbox is in the image's memory");
-        }
+        self.arrive(hit.address, hit.instruction_count, host).expect("the mailbox is in the image's memory");
     }
 
     fn on_stop(

@@ -2,8 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use rigless::emulator::Hit;
-
 use crate::image::kernels::Kernel;
 
 /// What a kernel cost, in instructions from its entry to where it returned.
@@ -53,20 +51,20 @@ impl Meters {
         ends.collect::<BTreeSet<_>>().into_iter()
     }
 
-    /// The core is about to run a watched instruction.
-    pub fn hit(&mut self, hit: Hit) {
+    /// The core is about to run a watched instruction, after so many.
+    pub fn hit(&mut self, address: u64, executed: u64) {
         for meter in &mut self.0 {
-            if meter.kernel.after.contains(&hit.address)
+            if meter.kernel.after.contains(&address)
                 && let Some(entered) = meter.entered.take()
             {
-                let instructions = hit.instruction_count - entered;
+                let instructions = executed - entered;
                 meter.cost.calls += 1;
                 meter.cost.least = meter.cost.least.min(instructions);
                 meter.cost.most = meter.cost.most.max(instructions);
                 meter.cost.sum += instructions;
             }
-            if hit.address == meter.kernel.entry {
-                meter.entered = Some(hit.instruction_count);
+            if address == meter.kernel.entry {
+                meter.entered = Some(executed);
             }
         }
     }

@@ -117,7 +117,7 @@ impl Driver<Nucleo> for Feed {
         if self.ram.is_some() {
             return;
         }
-        self.meters.hit(hit);
+        self.meters.hit(hit.address, hit.instruction_count);
         if hit.address == self.symbols.next {
             self.exchange(host).expect("it is in the image's memory");
         }
