@@ -75,6 +75,23 @@ fn hum_that_closing_does_not_change_is_not_answered_for_long() {
     assert!(peak_n < 16.0, "{peak_n} N");
 }
 
+#[test]
+fn a_friction_that_the_grasp_has_shown_is_not_warned_of() {
+    let report = ran("filled-twice");
+    assert_eq!((report.object.kept, report.slip.macro_slips), (Some(true), Some(0)));
+    let without_n = report.added.added_without_need_n.unwrap();
+    // 5.1 N in 11 pulses while S2 was 0.8 of what the grasp had shown.
+    assert!(without_n < 1.0, "{without_n} N without need in {} pulses", report.reflex.pulses);
+}
+
+#[test]
+fn a_light_object_that_slides_below_s1_is_felt_by_its_shear() {
+    let report = ran("light-wet");
+    // Without the shear no detector reports anything, and it is lost.
+    assert_eq!(report.object.kept, Some(true), "{:?}", report.slip);
+    assert!(report.reflex.pulses > 0);
+}
+
 // Shows R3, W1.
 #[test]
 fn one_sound_electrode_is_enough_to_save_a_glass() {

@@ -9,6 +9,7 @@
 
 pub mod channel_mask;
 pub mod detector;
+pub mod falling;
 mod film;
 pub mod hum;
 pub mod quality;
