@@ -6,7 +6,6 @@ pub mod emg;
 pub mod front;
 pub mod loads;
 pub mod photoelastic;
-pub mod sensors;
 pub mod table;
 pub mod vision;
 
