@@ -27,7 +27,6 @@ pub fn judge<D: FnMut(&Reading) -> bool>(
     recordings.par_iter().map(|recording| verdicts(fresh(), &recording.steps)).collect()
 }
 
-/// What one detector says.
 pub fn verdicts(mut detector: impl FnMut(&Reading) -> bool, steps: &[Step]) -> Verdicts {
     readings(steps).iter().map(&mut detector).collect()
 }

@@ -26,14 +26,12 @@ const SAVED_WITHIN: Duration = Duration::from_secs(5);
 /// Resets through a probe.
 const RESETS: u32 = 20;
 
-/// What is fitted.
 #[derive(Clone, Debug)]
 pub struct Fitted {
     /// How long each part is measured.
     pub lasts: Duration,
     /// A shell's command that resets the board. None: somebody presses its black button.
     pub reset: Option<String>,
-    /// The loop-back harness.
     pub harness: bool,
 }
 
@@ -48,7 +46,6 @@ pub struct Report {
     pub part: Vec<Part>,
 }
 
-/// A part's figures.
 #[derive(Debug, Serialize)]
 pub struct Part {
     pub name: &'static str,
@@ -95,7 +92,6 @@ pub fn measure(wire: &mut Wire<'_>, fitted: &Fitted, say: Say<'_>) -> anyhow::Re
     Ok(report)
 }
 
-/// Resets the board.
 fn reset(command: &str) -> anyhow::Result<()> {
     let status = Command::new("sh").args(["-c", command]).status()?;
     ensure!(status.success(), "`{command}` has failed");

@@ -66,7 +66,6 @@ pub fn main() -> ExitCode {
 }
 
 impl Shared {
-    /// Runs it.
     pub fn run(&self) -> anyhow::Result<ExitCode> {
         match self {
             Self::Flash(args) => flash::main(args),

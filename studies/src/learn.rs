@@ -48,7 +48,6 @@ const TRIALS_OF_OTHERS: u64 = 10;
 pub struct Options {
     /// Seed of everything.
     pub seed: u64,
-    /// Held-out trials.
     pub trials: u64,
     /// Minutes of holding.
     pub minutes: u64,
@@ -87,10 +86,8 @@ impl Default for Options {
     }
 }
 
-/// What came of it.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// What was tried.
     pub options: Options,
     /// Who ran the trials.
     pub board: &'static str,
@@ -100,13 +97,10 @@ pub struct Outcome {
     /// A trial of the finger before it learned: the largest output, 128 would be 1.
     pub untaught: u8,
     pub lessons: Vec<Trial>,
-    /// The held-out trials.
     pub trials: Vec<Trial>,
-    /// Their score.
     pub score: Score,
     /// The score of the same trials with equal weights in place of learned ones, on the host.
     pub equal: Score,
-    /// The time of holding.
     pub holding: Holding,
     /// Lifts with the reflex.
     pub lifts: Vec<Three>,

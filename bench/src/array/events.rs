@@ -7,7 +7,6 @@ use super::Verdicts;
 use crate::labelled::Recording;
 use crate::scorer::{Card, Stretch, Verdict};
 
-/// A step, s.
 const STEP_S: f64 = 1.0 / SLOW_HZ as f64;
 
 /// From the end of the frame that reads a step's last element to the end of the frame whose tick decides about it, s.

@@ -144,7 +144,6 @@ impl fmt::Display for Agreement {
     }
 }
 
-/// The first difference.
 fn difference(run: &Run, host: &Said) -> Option<String> {
     if let Some((image, host)) = run.slows.iter().zip(&host.slows).find(|(image, host)| image != host) {
         return Some(slow_difference(image, host));

@@ -62,7 +62,6 @@ pub struct Cuts {
     pub untold: usize,
 }
 
-/// All of it.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     pub scenes: Vec<Scene>,

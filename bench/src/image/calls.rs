@@ -9,12 +9,10 @@ use std::ops::Range;
 use anyhow::{Context, Result};
 use object::{File, Object, ObjectSection, ObjectSymbol, SymbolKind};
 
-/// A function of the image.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Function {
     /// Its name, as the linker knows it.
     pub name: String,
-    /// How long it is.
     pub bytes: u64,
     /// Where its instructions are.
     pub instructions: Vec<u64>,

@@ -26,7 +26,6 @@ pub enum Class {
     LoadsTarget,
 }
 
-/// An instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Instruction {
     pub class: Class,
@@ -206,7 +205,6 @@ impl Flash {
 pub struct Cycles {
     /// Every fetch is served at once and every branch taken refills in one cycle.
     pub least: u64,
-    /// As assumed.
     pub likely: u64,
     /// Every branch taken refills in three, nothing is fetched ahead.
     pub most: u64,
@@ -234,7 +232,6 @@ pub struct Core {
 }
 
 impl Core {
-    /// One whose caches are empty.
     pub fn cold(flash: Flash) -> Self {
         let lines = [Vec::new(), Vec::new()];
         Self { lines, line: u64::MAX, since: 0, before: None, cycles: Cycles::default(), flash }

@@ -16,7 +16,6 @@ This page lists what `cargo tenax` can do. `--help` behind a command gives its o
 |---|---|
 ";
 
-/// Prints the page.
 pub fn main(cli: &Command) -> anyhow::Result<ExitCode> {
     out::print(format_args!("{}", markdown(cli)))?;
     Ok(ExitCode::SUCCESS)

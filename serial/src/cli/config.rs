@@ -84,7 +84,6 @@ enum Command {
     },
 }
 
-/// Shows and changes settings.
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     // What is wrong with a file or a name is said before the board is asked.
     let wanted = wanted(&args.command)?;

@@ -4,7 +4,6 @@ use std::process::ExitCode;
 
 use super::out;
 
-/// Prints the table of settings.
 pub fn main() -> anyhow::Result<ExitCode> {
     out::print(format_args!("{}", crate::settings::markdown()))?;
     Ok(ExitCode::SUCCESS)

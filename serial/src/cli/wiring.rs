@@ -4,7 +4,6 @@ use std::process::ExitCode;
 
 use super::out;
 
-/// Prints the channel map.
 pub fn main() -> anyhow::Result<ExitCode> {
     out::print(format_args!("{}", crate::wiring::markdown()))?;
     Ok(ExitCode::SUCCESS)

@@ -18,7 +18,6 @@ const EACH: Duration = Duration::from_micros(2_500);
 /// Commands that one with a long answer counts as.
 const LONG: u32 = 6;
 
-/// A client of a board.
 pub struct Client {
     up: Box<dyn Read + Send>,
     outbox: Option<Outbox<Box<dyn Write + Send>>>,
@@ -49,7 +48,6 @@ impl Client {
         target.open().map(Self::from)
     }
 
-    /// What has been counted.
     pub fn counts(&self) -> Counts {
         self.inbox.counts()
     }

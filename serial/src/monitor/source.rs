@@ -22,7 +22,6 @@ const STREAM_EVERY: Duration = Duration::from_secs(2);
 /// What there is to tell.
 #[derive(Debug)]
 pub enum News {
-    /// The line is open.
     Open,
     /// It is not, and why.
     Gone(String),
@@ -40,10 +39,8 @@ pub enum News {
     Answered(Down, Result<Answer, String>),
 }
 
-/// What is watched.
 #[derive(Clone, Debug)]
 pub struct Places {
-    /// The board's line.
     pub line: Target,
     /// Where what really happens is told, if that is known.
     pub truth: Option<Target>,

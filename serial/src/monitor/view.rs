@@ -58,18 +58,14 @@ pub struct Fate {
 pub struct View {
     /// Why there is no line, if there is none.
     pub gone: Option<String>,
-    /// The last slow frame.
     pub slow: Option<Slow>,
-    /// The last readings.
     pub senses: Option<Senses>,
-    /// The last counters.
     pub counters: Option<Counters>,
     pub about: Option<About>,
     /// Settings whose value was said.
     pub settings: BTreeMap<u8, i32>,
     /// Readings, the oldest first.
     pub history: VecDeque<Point>,
-    /// What each detector did.
     pub fates: [Fate; DetectorId::COUNT],
     /// What is wrong now, in words.
     pub faults: BTreeSet<String>,

@@ -42,7 +42,6 @@ pub fn export(line: &[u8], folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
-/// The file of a topic.
 pub fn file_of(topic: Topic, folder: &Path, extension: &str) -> PathBuf {
     folder.join(topic.name().trim_matches('/').replace('/', "-")).with_extension(extension)
 }

@@ -103,7 +103,6 @@ impl Table {
         if full { self.group() } else { Ok(()) }
     }
 
-    /// Writes the rows so far.
     fn group(&mut self) -> anyhow::Result<()> {
         let mut group = self.file.next_row_group()?;
         for column in &mut self.columns {

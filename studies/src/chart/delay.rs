@@ -36,7 +36,6 @@ const HELD_N: f64 = 1.35 * MASS_KG * GRAVITY_M_S2 / 2.0 / MU_S[0];
 const SPEED_MM_S: f64 = 120.0;
 const FORCE_N: f64 = 140.0;
 
-/// One run.
 struct Point {
     pulse_ms: u32,
     delay_ms: f64,

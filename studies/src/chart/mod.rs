@@ -16,14 +16,11 @@ use tenax_plot::sheet::{Sheet, draw};
 pub struct Chart {
     /// Its file name, without extension.
     pub name: &'static str,
-    /// The drawing.
     pub svg: String,
-    /// The numbers.
     pub csv: String,
 }
 
 impl Chart {
-    /// Draws it.
     fn new(name: &'static str, sheet: &Sheet, csv: String) -> anyhow::Result<Self> {
         Ok(Self { name, svg: draw::svg(sheet)?, csv })
     }

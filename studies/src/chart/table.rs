@@ -117,7 +117,6 @@ impl Line {
     }
 }
 
-/// The table.
 #[derive(Clone, Debug, Serialize)]
 pub struct Table {
     pub rows: Vec<Line>,

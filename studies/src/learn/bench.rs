@@ -99,7 +99,6 @@ impl Bench {
         world
     }
 
-    /// Goes through a trial.
     pub fn trial(&mut self, setup: Setup) -> Trial {
         self.trial_for(f64::INFINITY, setup)
     }
@@ -163,7 +162,6 @@ impl Bench {
         &self.said
     }
 
-    /// Weights and activations.
     pub fn network(&self) -> NetworkState {
         self.fingertip.network()
     }

@@ -30,7 +30,6 @@ pub struct Stream {
     pub senses: bool,
 }
 
-/// The line.
 pub struct Wire<'a> {
     open: &'a dyn Fn() -> anyhow::Result<Client>,
     pub client: Client,

@@ -49,7 +49,6 @@ impl Session {
         })
     }
 
-    /// The test itself.
     pub const fn test(&self) -> &Selftest {
         &self.test
     }

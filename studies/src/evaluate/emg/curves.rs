@@ -24,7 +24,6 @@ const HAND: [f64; 9] = [0.5, 0.65, 0.8, 0.9, 1.0, 1.1, 1.25, 1.4, 1.6];
 /// Rows for which plain control waits.
 const PLAIN_DWELL: usize = 3;
 
-/// A point of a curve.
 #[derive(Clone, Debug, Serialize)]
 pub struct Point {
     /// Who decides.

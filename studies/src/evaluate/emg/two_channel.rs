@@ -26,7 +26,6 @@ const WINDOW_S: f64 = 0.25;
 /// within a contraction, of which the front end has heard nothing before.
 const FRONT_END_S: f64 = 0.056;
 
-/// A recording of one movement.
 #[derive(Clone, Debug)]
 pub struct Movement {
     /// Its name without the session's.
@@ -38,12 +37,10 @@ pub struct Movement {
     muscles: Muscles,
 }
 
-/// The recordings of a session.
 #[derive(Clone, Debug)]
 pub struct Session {
     /// Its letter; the first has none.
     pub name: String,
-    /// What was recorded.
     pub movements: Vec<Movement>,
     calibrations: Vec<Calibrated>,
 }
@@ -89,7 +86,6 @@ impl Movement {
         self.is_held() && self.wants != Wish::Rest
     }
 
-    /// Whether it is rest.
     #[must_use]
     pub fn is_rest(&self) -> bool {
         self.wants == Wish::Rest && self.never.len() == 2
@@ -221,7 +217,6 @@ pub(super) fn sessions(files: &[PathBuf]) -> anyhow::Result<Vec<Session>> {
     Ok(sessions.into_iter().map(|(name, movements)| Session::new(name, movements)).collect())
 }
 
-/// How a session was understood.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// Its letter; the first has none.
