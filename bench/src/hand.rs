@@ -135,7 +135,6 @@ struct Slip {
 ///
 /// # Panics
 /// If the scene is none of several fingertips.
-#[must_use]
 pub fn run(scene: &SceneFile, options: &Options, mut intruder: Option<Intruder<'_>>) -> Outcome {
     let mut world = Fingers::new(scene, options.seed).expect("a scene of several fingertips");
     let count = world.fingers().len();

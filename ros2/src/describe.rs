@@ -16,7 +16,6 @@ pub struct Definition {
 }
 
 /// The hash of a type, given it and all that it is made of. None where a type is missing or a line is no field.
-#[must_use]
 pub fn hash(name: &str, known: &[Definition]) -> Option<String> {
     let mut described = BTreeMap::new();
     describe(name, known, &mut described)?;

@@ -31,13 +31,11 @@ pub trait Message: Serialize + DeserializeOwned {
     const NAME: &'static str;
 
     /// Its type's hash. Empty for a type of no definition, which the tests look for.
-    #[must_use]
     fn type_hash() -> String {
         hash(Self::NAME, &DEFINITIONS).unwrap_or_default()
     }
 
     /// Its type as DDS calls it, which is how keys name it: `sensor_msgs::msg::dds_::JointState_`.
-    #[must_use]
     fn dds_name() -> String {
         let (path, name) = Self::NAME.rsplit_once('/').unwrap_or(("", Self::NAME));
         format!("{}::dds_::{name}_", path.replace('/', "::"))
@@ -55,7 +53,6 @@ pub struct Time {
 
 impl Time {
     /// Nanoseconds since 1970.
-    #[must_use]
     pub fn of_ns(ns: u64) -> Self {
         Self {
             sec: i32::try_from(ns / 1_000_000_000).unwrap_or(i32::MAX),

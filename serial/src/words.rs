@@ -13,7 +13,6 @@ use tenax_hal_shim::words::{Calibration, Fault, Kept, Line};
 use tenax_logic::setting::SettingId;
 
 /// The names of detectors, one blank between them.
-#[must_use]
 pub fn names(set: DetectorSet) -> String {
     let names: Vec<&str> =
         DetectorId::ALL.iter().filter(|id| set.contains(**id)).map(|id| id.name()).collect();

@@ -108,7 +108,6 @@ pub struct Outcome {
 
 impl Outcome {
     /// Whether the images did as the host's build does, and as they promise.
-    #[must_use]
     pub fn holds(&self) -> bool {
         self.fingers.iter().all(|finger| {
             finger.agreement.holds()

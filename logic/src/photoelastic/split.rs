@@ -112,25 +112,21 @@ impl Split {
     }
 
     /// The ac part, Q14 samples.
-    #[must_use]
     pub const fn ac(&self) -> i32 {
         self.ac
     }
 
     /// Mean size of the ac part, Q14 samples.
-    #[must_use]
     pub const fn envelope(&self) -> i32 {
         self.envelope
     }
 
     /// Swings in a row, none further apart than an eighth of a second.
-    #[must_use]
     pub const fn swings(&self) -> u16 {
         self.swings
     }
 
     /// Time of one swing, 1/16 of a frame; 0 if it is not known.
-    #[must_use]
     pub const fn period_q4(&self) -> u16 {
         if self.swings < 2 { 0 } else { self.period_q4 }
     }

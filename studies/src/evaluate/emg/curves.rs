@@ -127,13 +127,11 @@ pub fn curves(folder: &Path) -> anyhow::Result<Vec<Point>> {
 
 impl Point {
     /// Mean of the windows right of closing and opening.
-    #[must_use]
     pub fn right(&self) -> f64 {
         f64::midpoint(self.score.close_right, self.score.open_right)
     }
 
     /// Whether the hand ships so.
-    #[must_use]
     pub fn ships(&self) -> bool {
         self.control == "hand" && self.asks == 1.0
     }

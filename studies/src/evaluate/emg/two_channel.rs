@@ -86,13 +86,11 @@ impl Movement {
         self.is_held() && self.wants != Wish::Rest
     }
 
-    #[must_use]
     pub fn is_rest(&self) -> bool {
         self.wants == Wish::Rest && self.never.len() == 2
     }
 
     /// As electrodes would hear it that hear so much more or less, flexor first.
-    #[must_use]
     pub fn heard_with(&self, gains: [f64; 2]) -> Self {
         let mut heard = self.clone();
         for (_, pair) in &mut heard.muscles.pairs {
@@ -104,7 +102,6 @@ impl Movement {
     }
 
     /// What a hand says of it.
-    #[must_use]
     pub fn play(&self, mut emg: Emg) -> Played<'_> {
         let mut doubts = Vec::new();
         let mut was = [Quality::Good; 2];
@@ -162,7 +159,6 @@ pub struct Played<'a> {
 
 impl Played<'_> {
     /// The longest stretch of what must not be, ms.
-    #[must_use]
     pub fn wrong_ms(&self) -> u32 {
         self.movement.never.iter().map(|&wish| self.longest_ms(wish)).max().unwrap_or(0)
     }
@@ -181,7 +177,6 @@ impl Played<'_> {
     }
 
     /// Of a held movement that moves the hand: windows in most of which the hand does, and windows in all.
-    #[must_use]
     pub fn windows(&self) -> Option<[u32; 2]> {
         let wants = self.movement.wants;
         let is_right = |from_s: &f64| {
@@ -266,7 +261,6 @@ impl Session {
     }
 
     /// Every calibration that there can be.
-    #[must_use]
     pub fn calibrations(&self) -> &[Calibrated] {
         &self.calibrations
     }
@@ -277,7 +271,6 @@ impl Session {
     }
 
     /// Scores every calibration on what it was not taken from.
-    #[must_use]
     pub fn score(&self, fitted: &'static Fitted) -> Report {
         let mut report = Report {
             session: self.name.clone(),
