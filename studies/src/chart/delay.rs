@@ -157,17 +157,8 @@ pub fn map(progress: Progress) -> anyhow::Result<Chart> {
         let numbers = numbers.map(|value| format!("{value:.4}"));
         numbers.into_iter().chain([cell.kept.to_string(), cell.pulses.to_string()]).collect()
     });
-    let header = [
-        "pulse_ms",
-        "delay_ms",
-        "stiffness_n_per_mm",
-        "slid_mm",
-        "peak_over_needed",
-        "theory_slid_mm",
-        "kept",
-        "pulses",
-    ];
-    let csv = csv(&header, rows)?;
+    let header = "pulse_ms,delay_ms,stiffness_n_per_mm,slid_mm,peak_over_needed,theory_slid_mm,kept,pulses";
+    let csv = csv(header, rows)?;
     let panels = PULSES_MS.map(|pulse_ms| panel(pulse_ms, &cells)).into();
     let sheet = Sheet {
         title: "Decision delay by stiffness by gain".to_owned(),

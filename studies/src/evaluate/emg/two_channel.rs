@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use serde::Serialize;
-use tenax_bench::replay::library;
+use tenax_bench::recipe::Kind;
+use tenax_bench::replay::Recipe;
 use tenax_bench::replay::meaning::Motion;
 use tenax_bench::replay::muscles::{Muscles, calibrate};
 use tenax_logic::emg::constants::Fitted;
@@ -65,7 +66,7 @@ const fn wish(motion: Motion) -> Wish {
 
 impl Movement {
     fn read(path: &Path, name: &str) -> anyhow::Result<Self> {
-        let recipe = library::for_recording(path)?.context("no recipe is for it")?.recipe;
+        let recipe = Recipe::for_file(path)?.context("no recipe is for it")?.recipe;
         let file = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
         let meaning = recipe.meaning_of(file);
         Ok(Self {
