@@ -12,13 +12,12 @@ use tenax_hal_shim::wire::{Answer, Down, FRAME_MAX, Identity, ResetCause, Settin
 use tenax_logic::setting::SettingId;
 use tenax_serial::guide::Say;
 use tenax_serial::guide::bringup::{Asked, Figure, HARNESS, STEPS, Stream, Wire, harness, readings};
+use tenax_serial::link::ANSWER_WITHIN;
 
 use crate::again::Recorded;
 
 /// Steps of bring-up that nothing has to be done for.
 const ALONE: [&str; 3] = ["clock", "timing", "line"];
-/// How long an answer is waited for.
-const ANSWER_WITHIN: Duration = Duration::from_secs(2);
 /// How long a person may take to press the reset button.
 const PATIENCE: Duration = Duration::from_secs(60);
 /// How long a setting may take to be saved: it is saved once in 3 s.
