@@ -21,7 +21,6 @@ pub mod trial;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
-use tenax_hal_shim::wire::Setting;
 
 use bench::Bench;
 use control::Control;
@@ -57,17 +56,6 @@ pub struct Options {
     pub fingertips: u64,
     /// Whether their controls are tried, too.
     pub controls: bool,
-    /// Whether the films hear no mains hum: the most that a canceller of it could bring.
-    pub without_hum: bool,
-    /// Settings of the fingertips that are not the defaults, on the host only.
-    pub settings: Vec<Setting>,
-}
-
-impl Options {
-    /// A finger as these options have it.
-    fn finger(&self, finger: Finger) -> Finger {
-        if self.without_hum { finger.with(("pvdf.mains_mv", 0.0)) } else { finger }
-    }
 }
 
 impl Default for Options {
@@ -80,8 +68,6 @@ impl Default for Options {
             lifts: 20,
             fingertips: 20,
             controls: true,
-            without_hum: false,
-            settings: Vec::new(),
         }
     }
 }
@@ -116,7 +102,7 @@ pub type Progress<'a> = &'a (dyn Fn(&str, f64) + Sync);
 
 /// Does all of it. Fails if a scene cannot be made or the board cannot be run.
 pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Result<Outcome> {
-    let finger = options.finger(Finger::plain(options.seed));
+    let finger = Finger::plain(options.seed);
     let mut untaught = Bench::default();
     let silent = untaught.trial(Setup::new(&finger, held_out(options.seed, 0), false)?);
     let loudest = silent.outputs.iter().flatten().map(|output| output.unsigned_abs()).max();
@@ -168,7 +154,7 @@ pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Resu
 type Learned = (Bench, Vec<Trial>, Vec<figures::Felt>);
 
 fn lessons_on_host(finger: &Finger, options: &Options, progress: Progress) -> anyhow::Result<Learned> {
-    let mut bench = Bench::with_settings(&options.settings)?;
+    let mut bench = Bench::default();
     let (mut lessons, mut felt) = (Vec::new(), Vec::new());
     for n in 0..LESSONS {
         let setup = Setup::new(finger, lesson(options.seed, n), true)?;
@@ -237,8 +223,8 @@ pub struct Other {
 /// The same lessons, and some held-out trials.
 fn other(options: &Options, n: u64) -> anyhow::Result<Other> {
     let own = seed(options.seed, 6, n);
-    let finger = options.finger(Finger::random(own));
-    let mut bench = Bench::with_settings(&options.settings)?;
+    let finger = Finger::random(own);
+    let mut bench = Bench::default();
     for n in 0..LESSONS {
         bench.trial(Setup::new(&finger, lesson(own, n), true)?);
     }

@@ -11,16 +11,7 @@ use tenax_studies::learn::trial::{Setup, Word};
 use tenax_studies::learn::{self, Options, Outcome};
 
 /// So few trials that a test may run them; the bars themselves are measured by `tenax check`.
-const FEW: Options = Options {
-    seed: 11,
-    trials: 4,
-    minutes: 2,
-    lifts: 3,
-    fingertips: 1,
-    controls: true,
-    without_hum: false,
-    settings: Vec::new(),
-};
+const FEW: Options = Options { seed: 11, trials: 4, minutes: 2, lifts: 3, fingertips: 1, controls: true };
 
 fn outcome() -> Outcome {
     learn::run(&FEW, &Board::Host, &|_, _| ()).unwrap()
