@@ -9,7 +9,6 @@ use sha2::{Digest, Sha256};
 /// A type whose .msg text is known: `sensor_msgs/msg/JointState`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Definition {
-    /// Its full name.
     pub name: &'static str,
     /// Its .msg text.
     pub text: &'static str,

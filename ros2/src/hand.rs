@@ -100,13 +100,10 @@ pub struct Health {
     pub gone: Option<String>,
     /// What became of the last command.
     pub command: String,
-    /// Who it is.
     pub about: Option<About>,
-    /// What it counts.
     pub counters: Option<Counters>,
     /// Messages missing on the line, and frames that were none.
     pub missed: u64,
-    /// See there.
     pub bad_frames: u64,
 }
 

@@ -76,7 +76,6 @@ pub struct Attachment {
 }
 
 impl Attachment {
-    /// Its bytes.
     pub fn bytes(&self) -> Vec<u8> {
         let (number, time) = (self.sequence.to_le_bytes(), self.time_ns.to_le_bytes());
         [&number[..], &time, &[GID as u8], &self.gid].concat()

@@ -34,7 +34,6 @@ const SIDEWAYS: f64 = 0.02;
 /// Rounds in which those that press are found.
 const ROUNDS: usize = 8;
 
-/// A finger, and what it feels.
 #[derive(Debug)]
 pub struct Finger {
     /// From the object towards it.
@@ -317,17 +316,14 @@ impl Finger {
         skin.converter.step(pins_v);
     }
 
-    /// The voltages at its pins.
     pub const fn pins(&self) -> &Pins {
         &self.pins
     }
 
-    /// What it feels.
     pub const fn touch(&self) -> &Touch {
         &self.touch
     }
 
-    /// The friction under it.
     pub const fn friction(&self) -> Friction {
         self.friction
     }

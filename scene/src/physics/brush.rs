@@ -7,7 +7,6 @@ use super::friction::Friction;
 /// Elements of the shipped patch. The worst error of the shear is `0.375 / N^2` of `mu P`: 0.07 %.
 pub const ELEMENTS: NonZeroU16 = NonZeroU16::new(24).unwrap();
 
-/// What a patch is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pad {
     /// Radius a of the contact, m. It is kept under every load: a fingertip that is flattened already. Assumed.
@@ -45,7 +44,6 @@ pub struct Element {
 }
 
 impl Element {
-    /// Whether it sticks.
     pub const fn sticks(&self) -> bool {
         self.sticks
     }
@@ -157,7 +155,6 @@ impl BrushPatch {
         self.elements.iter().all(|element| !element.sticks)
     }
 
-    /// Energy in its bristles, J.
     pub fn energy_j(&self) -> f64 {
         let squares =
             self.elements.iter().map(|element| element.area_part * element.bristle_m * element.bristle_m);

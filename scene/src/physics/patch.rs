@@ -31,7 +31,6 @@ impl Patch {
         self.stuck_part
     }
 
-    /// Energy in its bristles, J.
     pub fn energy_j(&self) -> f64 {
         self.brush.energy_j()
     }

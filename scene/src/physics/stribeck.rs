@@ -133,7 +133,6 @@ impl StribeckSlider {
         self.position_m
     }
 
-    /// Speed of the mass, m/s.
     pub const fn speed_m_s(&self) -> f64 {
         self.speed_m_s
     }

@@ -77,12 +77,10 @@ impl Head {
         }
     }
 
-    /// How it was made.
     pub const fn making(&self) -> &Making {
         &self.making
     }
 
-    /// Its day.
     pub const fn day(&self) -> &Day {
         &self.day
     }
