@@ -80,16 +80,6 @@ pub struct Channel {
     pub high_mv: u32,
 }
 
-impl Channel {
-    /// Rate of its readings, Hz, without the myosensors' two more in a slow frame.
-    pub const fn rate_hz(&self) -> u32 {
-        match self.input {
-            Input::Direct { .. } => FRAME_HZ,
-            Input::SwitchA { .. } | Input::SwitchB { .. } => SLOW_HZ,
-        }
-    }
-}
-
 /// The kind of a channel's sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {

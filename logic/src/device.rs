@@ -68,11 +68,6 @@ impl Device {
         }
     }
 
-    /// A device whose line needs no consent: for a gripper or a bench.
-    pub fn trusting() -> Self {
-        Self::new(Fingertip::trusting())
-    }
-
     /// The fingertip.
     pub const fn fingertip(&self) -> &Fingertip {
         &self.fingertip

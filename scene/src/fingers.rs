@@ -277,11 +277,6 @@ impl Fingers {
         self.slid_m * 1e3
     }
 
-    /// What pulls it along the fingers, N.
-    pub const fn pulls_n(&self) -> f64 {
-        self.pulls_n
-    }
-
     /// What pulls it aside, N.
     pub const fn aside_n(&self) -> [f64; 2] {
         self.aside_n

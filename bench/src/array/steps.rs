@@ -26,12 +26,6 @@ pub struct Steps {
 }
 
 impl Steps {
-    pub fn of(steps: &[Step], verdicts: &[bool]) -> Self {
-        let mut counted = Self::default();
-        counted.take(steps, verdicts);
-        counted
-    }
-
     pub fn take(&mut self, steps: &[Step], verdicts: &[bool]) {
         for (step, &said) in steps.iter().zip(verdicts) {
             self.steps += 1;

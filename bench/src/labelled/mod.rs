@@ -10,7 +10,6 @@ mod read;
 pub mod recipe;
 pub mod resample;
 
-use std::collections::BTreeSet;
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
@@ -99,10 +98,4 @@ impl Recording {
             exact: false,
         }
     }
-}
-
-/// The sessions of recordings, in order.
-pub fn sessions(recordings: &[Recording]) -> Vec<String> {
-    let set: BTreeSet<&str> = recordings.iter().map(|recording| recording.session.as_str()).collect();
-    set.into_iter().map(str::to_owned).collect()
 }

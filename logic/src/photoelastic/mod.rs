@@ -121,11 +121,6 @@ impl Head {
         self.tracker.track()
     }
 
-    /// The tracker.
-    pub const fn tracker(&self) -> &Tracker {
-        &self.tracker
-    }
-
     /// The force, None while none is known.
     pub fn force(&self) -> Option<Force> {
         self.tracker.force()

@@ -111,11 +111,6 @@ impl Split {
         whole.then(|| ((sum << 4) / count) as i32)
     }
 
-    /// The ac part, Q14 samples.
-    pub const fn ac(&self) -> i32 {
-        self.ac
-    }
-
     /// Mean size of the ac part, Q14 samples.
     pub const fn envelope(&self) -> i32 {
         self.envelope
@@ -194,7 +189,7 @@ mod tests {
                     split.process(sample);
                     let (ac, envelope) = float.process(sample);
                     let lsb = |fixed: i32| f64::from(fixed) / f64::from(1 << Q);
-                    let error = (lsb(split.ac()) - ac).abs().max((lsb(split.envelope()) - envelope).abs());
+                    let error = (lsb(split.ac) - ac).abs().max((lsb(split.envelope()) - envelope).abs());
                     worst = worst.max(error);
                     assert!(error < 2.0, "{name}, cycle {n}: {error}");
                 }

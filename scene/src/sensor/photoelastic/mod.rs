@@ -77,14 +77,6 @@ impl Head {
         }
     }
 
-    pub const fn making(&self) -> &Making {
-        &self.making
-    }
-
-    pub const fn day(&self) -> &Day {
-        &self.day
-    }
-
     /// The voltage at the pin after one scan that ends at `t_s`.
     pub fn step(&mut self, t_s: f64, touch: &Touch) -> f64 {
         let rings = self.knocks.iter().map(|knock| super::pvdf::ring_mv(knock, t_s, 0.0)).sum::<f64>();
