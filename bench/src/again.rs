@@ -6,10 +6,9 @@ use std::fmt;
 use anyhow::{Context, bail, ensure};
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::wire::{Down, Event, Identity, Received, ResetCause, Restored, Slow, Up};
-use tenax_logic::arming::DEBOUNCE_FRAMES;
 use tenax_logic::device::Device;
 
-use crate::board::agreement::{presses, slow_difference};
+use crate::board::agreement::{host_decides, presses, slow_difference};
 use tenax_serial::link::Inbox;
 use tenax_serial::link::captured::line_of;
 
@@ -73,30 +72,14 @@ impl Recorded {
             device.was_reset();
         }
         device.start(self.identity);
-        let pressed = presses(&self.events);
-        let (mut slows, mut events) = (Vec::new(), Vec::new());
-        let mut commands = self.commands.iter().peekable();
-        for frame in &self.frames {
-            while let Some((_, command)) = commands.next_if(|(before, _)| *before <= frame.sequence) {
-                device.command(command);
-            }
-            let held = |at: &u32| (at - at.min(&(DEBOUNCE_FRAMES - 1))..=*at).contains(&frame.sequence);
-            device.button(pressed.iter().any(held));
-            device.tick(frame);
-            while let Some(message) = device.next_message() {
-                match message {
-                    Up::Slow(slow) => slows.push(slow),
-                    Up::Event(event) => events.push(event),
-                    _ => {}
-                }
-            }
-        }
+        let frames = self.frames.iter().copied();
+        let said = host_decides(frames, device, &presses(&self.events), &self.commands);
         Outcome {
             frames: self.frames.len(),
             commands: self.commands.len(),
             slows: self.slows.len(),
             events: self.events.len(),
-            difference: self.difference(&slows, &events),
+            difference: self.difference(&said.slows, &said.events),
         }
     }
 

@@ -9,25 +9,14 @@ pub mod pour;
 pub mod real;
 pub mod steps;
 
-use rayon::prelude::*;
 use tenax_logic::array::Reading;
 use tenax_logic::array::taxels::Taxels;
 
-use crate::labelled::{Recording, Step};
+use crate::labelled::Step;
 
 /// What a detector said of a recording, step by step: slip or not.
 pub type Verdicts = Vec<bool>;
 
-/// What a detector says of recordings. Each recording is read by a `fresh` one, which knows nothing yet: it is told the
-/// readings of one slow frame and says whether the object slips.
-pub fn judge<D: FnMut(&Reading) -> bool>(
-    fresh: impl Fn() -> D + Sync,
-    recordings: &[Recording],
-) -> Vec<Verdicts> {
-    recordings.par_iter().map(|recording| verdicts(fresh(), &recording.steps)).collect()
-}
-
-/// What one detector says.
 pub fn verdicts(mut detector: impl FnMut(&Reading) -> bool, steps: &[Step]) -> Verdicts {
     readings(steps).iter().map(&mut detector).collect()
 }

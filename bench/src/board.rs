@@ -24,11 +24,9 @@ pub use recorder::Recorder;
 /// What the core spent, in instructions of the emulated Cortex-M4.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TickCost {
-    /// Ticks counted.
     pub count: u64,
     /// Mean of one tick of the logic, what interrupted it included.
     pub instructions_mean: f64,
-    /// Worst.
     pub instructions_max: u64,
     /// Everything that the core executed in a second: ticks, interrupts, telemetry. It sleeps for the rest.
     pub instructions_per_s: f64,
@@ -37,9 +35,7 @@ pub struct TickCost {
 /// What a run leaves behind in any case.
 #[derive(Clone, Debug, Default)]
 pub struct Summary {
-    /// Virtual time run, s.
     pub virtual_s: f64,
-    /// Time it took, s.
     pub wall_s: f64,
     /// Whether the board trusted its line from the start.
     pub trusts_line: bool,
@@ -56,7 +52,6 @@ pub struct Summary {
     pub feedback: Vec<(u32, Duty)>,
     /// Why the board started, each time it did.
     pub starts: Vec<Option<Fault>>,
-    /// The last counters.
     pub counters: Counters,
     /// Messages missing from the line by their sequence numbers.
     pub messages_missed: u64,

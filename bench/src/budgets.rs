@@ -15,17 +15,13 @@ pub struct Budgets {
     pub ram_bytes: u64,
     /// The stack at its worst.
     pub stack_bytes: u64,
-    /// A tick's instructions, mean.
     pub tick_instructions_mean: u64,
-    /// A tick's instructions, worst.
     pub tick_instructions_max: u64,
     /// Everything that the core executes in a period of 0.5 ms, mean.
     pub period_instructions_mean: u64,
     /// The array's sliding covariance, a slow frame.
     pub array_covariance_instructions: u64,
-    /// Its sliding spectrum.
     pub array_spectrum_instructions: u64,
-    /// The network that ships.
     pub array_network_instructions: u64,
     /// All that the array costs in a slow frame.
     pub array_slow_frame_instructions: u64,

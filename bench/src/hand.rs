@@ -59,12 +59,9 @@ pub enum Part {
     Twin(usize, usize),
 }
 
-/// How a hand is run.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Of every noise.
     pub seed: u64,
-    /// Whether there is a palm.
     pub palm: bool,
     /// Whether the fingers' reflexes act at all: the control.
     pub reflex: bool,
@@ -83,7 +80,6 @@ impl Default for Options {
 /// Somebody else on the bus: its bytes, whenever it has finished the last.
 pub type Intruder<'a> = &'a mut dyn FnMut(f64) -> Vec<u8>;
 
-/// What a run leaves behind.
 #[derive(Debug, Default)]
 pub struct Outcome {
     pub dropped: bool,
@@ -139,7 +135,6 @@ struct Slip {
 ///
 /// # Panics
 /// If the scene is none of several fingertips.
-#[must_use]
 pub fn run(scene: &SceneFile, options: &Options, mut intruder: Option<Intruder<'_>>) -> Outcome {
     let mut world = Fingers::new(scene, options.seed).expect("a scene of several fingertips");
     let count = world.fingers().len();
@@ -245,7 +240,6 @@ fn chip(seed: u64, finger: usize) -> Chip {
     [seed as u32, 7, finger as u32]
 }
 
-/// What a tick did.
 fn ticked(outcome: &mut Outcome, board: &Board, before: &mut GripMode) {
     let fingertip = board.device.fingertip();
     let now = fingertip.mode();

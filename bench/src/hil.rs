@@ -12,13 +12,12 @@ use tenax_hal_shim::wire::{Answer, Down, FRAME_MAX, Identity, ResetCause, Settin
 use tenax_logic::setting::SettingId;
 use tenax_serial::guide::Say;
 use tenax_serial::guide::bringup::{Asked, Figure, HARNESS, STEPS, Stream, Wire, harness, readings};
+use tenax_serial::link::ANSWER_WITHIN;
 
 use crate::again::Recorded;
 
 /// Steps of bring-up that nothing has to be done for.
 const ALONE: [&str; 3] = ["clock", "timing", "line"];
-/// How long an answer is waited for.
-const ANSWER_WITHIN: Duration = Duration::from_secs(2);
 /// How long a person may take to press the reset button.
 const PATIENCE: Duration = Duration::from_secs(60);
 /// How long a setting may take to be saved: it is saved once in 3 s.
@@ -26,14 +25,12 @@ const SAVED_WITHIN: Duration = Duration::from_secs(5);
 /// Resets through a probe.
 const RESETS: u32 = 20;
 
-/// What is fitted.
 #[derive(Clone, Debug)]
 pub struct Fitted {
     /// How long each part is measured.
     pub lasts: Duration,
     /// A shell's command that resets the board. None: somebody presses its black button.
     pub reset: Option<String>,
-    /// The loop-back harness.
     pub harness: bool,
 }
 
@@ -48,7 +45,6 @@ pub struct Report {
     pub part: Vec<Part>,
 }
 
-/// A part's figures.
 #[derive(Debug, Serialize)]
 pub struct Part {
     pub name: &'static str,
@@ -95,7 +91,6 @@ pub fn measure(wire: &mut Wire<'_>, fitted: &Fitted, say: Say<'_>) -> anyhow::Re
     Ok(report)
 }
 
-/// Resets the board.
 fn reset(command: &str) -> anyhow::Result<()> {
     let status = Command::new("sh").args(["-c", command]).status()?;
     ensure!(status.success(), "`{command}` has failed");

@@ -47,7 +47,6 @@ pub struct TooLong {
 pub enum CsvError {
     #[error("{file}: cannot be read")]
     Unreadable { file: String, source: io::Error },
-    /// Of the whole.
     #[error("{file}: {what}")]
     File { file: String, what: String },
     /// Of a row, by its line in the file, from 1; the header is line 1.
@@ -99,7 +98,6 @@ pub fn rows<R: Read>(source: R) -> csv::Reader<Rows<R>> {
     csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(Rows::new(source))
 }
 
-/// A cell's number.
 pub fn number(column: &str, cell: &str) -> Result<f64, String> {
     match cell.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
@@ -118,7 +116,6 @@ pub struct Rows<R> {
 }
 
 impl<R: Read> Rows<R> {
-    /// From its beginning.
     pub const fn new(source: R) -> Self {
         Self { source, line: 1, in_line: 0, in_all: 0 }
     }

@@ -12,7 +12,6 @@ use toml::Spanned;
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("{file}:{line}: {what}")]
 pub struct RecipeError {
-    /// The recipe.
     pub file: String,
     /// Line in it, from 1.
     pub line: usize,
@@ -23,7 +22,6 @@ pub struct RecipeError {
 /// What a check finds: the place in the text, and what is wrong there.
 pub type Checked = Result<(), (Range<usize>, String)>;
 
-/// A kind of recipe.
 pub trait Kind: DeserializeOwned + 'static {
     /// Name and text of every one in `recipes/`, built in, so that the tool finds them wherever it is run. A test holds them
     /// against the folder.
@@ -32,7 +30,6 @@ pub trait Kind: DeserializeOwned + 'static {
     /// Names of the files that it is taken for when no recipe is given; `*` and `?` match as in a shell.
     fn applies_to(&self) -> &[Spanned<String>];
 
-    /// Whether it means something.
     fn check(&self) -> Checked;
 
     /// Reads and checks one; `file` is what errors call it. An error says in which line and what is allowed.

@@ -20,7 +20,6 @@ use tenax_serial::words::in_words;
 use crate::board::Summary;
 use crate::timeline::Timeline;
 
-/// The core's clock, Hz.
 const CORE_HZ: f64 = 100e6;
 /// Cycles an instruction takes on average, at least and at most: a Cortex-M4 runs most instructions in one cycle, single
 /// loads in two and taken branches in two to four, and the flash's three wait states are added wherever its prefetch and
@@ -37,13 +36,10 @@ pub struct Report {
     pub board: &'static str,
     /// Seed of every noise.
     pub seed: u64,
-    /// Virtual time run, s.
     pub virtual_s: f64,
-    /// Time it took, s.
     pub wall_s: f64,
     /// Times the converter or its DMA overran.
     pub overruns: u32,
-    /// Control ticks.
     pub ticks: Ticks,
     /// What the core executes, in instructions.
     pub load: Load,
@@ -56,41 +52,31 @@ pub struct Report {
     /// The same scene with other grips (`run --controls`): no reflex, a constant grip of the same mean force, each detector alone,
     /// all but each.
     pub controls: Vec<bound::Control>,
-    /// Grip force.
     pub grip: Grip,
-    /// The wearer's part.
     pub wearer: wearer::Wearer,
     /// How far from slipping it was.
     pub margin: reflex::Margin,
-    /// What the reflex did.
     pub reflex: reflex::Reflex,
     /// Newtons that it added and took back: the same as below `reflex`.
     #[serde(flatten)]
     pub added: added::Sums,
-    /// What became of the object.
     pub object: reflex::Object,
     /// What the hand did by itself because it was asked to.
     pub behaviours: Vec<behaviours::Ran>,
-    /// Each detector's.
     pub detectors: scores::Detectors,
     /// Everything that went wrong, as it was reported.
     pub faults: Vec<FaultLine>,
     /// Other counts of the line and the board.
     pub line: Line,
-    /// What only a recording has.
     pub replay: Option<replay::Replay>,
 }
 
-/// Control ticks.
 #[derive(Clone, Debug, Serialize)]
 pub struct Ticks {
-    /// Run.
     pub count: u32,
     /// Frames that had no tick in time: lost ones and late ones.
     pub dropped: u32,
-    /// Instructions of one tick, mean.
     pub instructions_mean: Option<f64>,
-    /// Instructions of one tick, worst.
     pub instructions_max: Option<u64>,
     /// Part of the core at 100 MHz that the ticks take, per cent, with [`CYCLES_PER_INSTRUCTION`] at its two ends.
     pub load_percent: Option<[f64; 2]>,
@@ -139,7 +125,6 @@ fn load_percent(instructions_per_s: f64) -> [f64; 2] {
 /// Grip force, per finger.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Grip {
-    /// The greatest, N.
     pub peak_force_n: Option<f64>,
     /// The least that would have held the object at its heaviest, N.
     pub needed_force_n: Option<f64>,
@@ -183,7 +168,6 @@ pub struct Subject<'a> {
     /// Seed of every noise.
     pub seed: u64,
     pub run: &'a Summary,
-    /// When its detectors spoke.
     pub timeline: &'a Timeline,
     /// Who judged whether the wearer came first.
     pub judge: &'a wearer::Judge,

@@ -110,11 +110,9 @@ pub fn outcome(slip: &SlipSpan, macro_onset_s: f64, verdicts: &[Verdict]) -> Out
 pub struct Alarms {
     /// How long this was going on, h.
     pub hours: f64,
-    /// False alarms.
     pub count: usize,
     /// Those of them in micro slip that came to nothing.
     pub in_micro_slip: usize,
-    /// False alarms an hour.
     pub per_hour: f64,
 }
 
@@ -135,7 +133,6 @@ pub struct Counts {
     pub caught: usize,
     /// Those of them that it began in before macro onset.
     pub early: usize,
-    /// Detected later.
     pub late: usize,
     /// Nothing began; a verdict stood before.
     pub said_before: usize,
@@ -184,7 +181,6 @@ pub struct Card {
 }
 
 impl Card {
-    /// Scores one recording or scene.
     pub fn of(slips: &[SlipSpan], verdicts: &[Verdict], doing: &[Stretch]) -> Self {
         let mut card = Self::default();
         for slip in slips.iter().filter(|slip| !slip.meant) {
@@ -209,7 +205,6 @@ impl Card {
         card
     }
 
-    /// Adds another recording's.
     pub fn add(&mut self, other: &Self) {
         self.slips.add(other.slips);
         self.latencies_ms.extend(&other.latencies_ms);

@@ -57,7 +57,6 @@ pub enum Board {
     Emulated {
         /// Its ELF file.
         image: PathBuf,
-        /// How to run it.
         options: emulated::Options,
     },
 }
@@ -113,10 +112,8 @@ impl Board {
     }
 }
 
-/// What a run leaves.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// What the board left behind.
     pub run: Summary,
     pub report: Report,
     pub figure: Figure,
@@ -221,7 +218,6 @@ pub fn replay(
     replay_served(path, options, seed, board, &mut (), progress)
 }
 
-/// How to play a recording.
 #[derive(Default)]
 pub struct ReplayOptions<'a> {
     /// The recipe's name or file. None: the one that the recording's name calls for.

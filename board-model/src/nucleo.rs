@@ -20,18 +20,14 @@ use super::part::Part;
 
 /// The ST-LINK's clock on OSC_IN, Hz.
 pub const HSE_HZ: u64 = 8_000_000;
-/// The supply, mV.
 const SUPPLY_MV: u32 = 3_300;
-/// The core's clock, Hz.
 const CLOCK_HZ: NonZeroU64 = NonZeroU64::new(100_000_000).expect("not zero");
 /// SysTick's reference is the core's clock over eight.
 const REFCLK_DIVIDER: NonZeroU32 = NonZeroU32::new(8).expect("not zero");
 /// Interrupt priority bits (RM0383, section 10.1).
 const PRIORITY_BITS: u8 = 4;
-/// The board.
 #[derive(Debug)]
 pub struct Nucleo {
-    /// The chip.
     pub mcu: Part,
     memory: MemoryMap,
     instructions_per_second: NonZeroU64,

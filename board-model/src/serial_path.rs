@@ -82,9 +82,7 @@ const IDLE_FRAMES: u64 = 4;
 /// Which of the two is asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Asked {
-    /// The port.
     Port,
-    /// The controller.
     Controller,
 }
 

@@ -100,7 +100,6 @@ impl<'a> Graph<'a> {
         Ok(())
     }
 
-    /// A topic to publish on.
     pub fn publisher<M: Message>(&mut self, topic: &str) -> anyhow::Result<Publisher<'a>> {
         let token = self.endpoint::<M>(Role::Publisher, topic)?;
         let key = key::topic::<M>(self.node.domain, topic);

@@ -80,17 +80,6 @@ pub struct Channel {
     pub high_mv: u32,
 }
 
-impl Channel {
-    /// Rate of its readings, Hz, without the myosensors' two more in a slow frame.
-    #[must_use]
-    pub const fn rate_hz(&self) -> u32 {
-        match self.input {
-            Input::Direct { .. } => FRAME_HZ,
-            Input::SwitchA { .. } | Input::SwitchB { .. } => SLOW_HZ,
-        }
-    }
-}
-
 /// The kind of a channel's sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
@@ -112,7 +101,6 @@ pub enum Role {
 
 impl Role {
     /// The role of a channel (index in [`CHANNELS`]). `head_is_fitted`: a photoelastic head is in the place of film 12.
-    #[must_use]
     pub const fn of(channel: usize, head_is_fitted: bool) -> Self {
         match channel {
             HEAD if head_is_fitted => Self::Photoelastic,

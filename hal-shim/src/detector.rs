@@ -69,7 +69,6 @@ impl DetectorSet {
     pub const ALL: Self = Self(((1u16 << DetectorId::COUNT) - 1) as u8);
 
     /// The set of one detector.
-    #[must_use]
     pub const fn only(id: DetectorId) -> Self {
         Self(1 << id as u8)
     }
@@ -129,7 +128,6 @@ impl DetectorSet {
     }
 
     /// The set with these bits. None if one of them is no detector's.
-    #[must_use]
     pub const fn from_bits(bits: u8) -> Option<Self> {
         if bits & !Self::ALL.0 == 0 { Some(Self(bits)) } else { None }
     }
@@ -181,7 +179,6 @@ pub struct Evidence {
 
 impl Evidence {
     /// Whether it reports slip or a warning.
-    #[must_use]
     pub const fn says(&self) -> bool {
         self.slip || self.incipient
     }

@@ -40,7 +40,6 @@ const fn halves(word: u32) -> [u16; 2] {
 
 impl Frame {
     /// Adds up a frame's scans.
-    #[must_use]
     pub fn from_scans(sequence: u32, scans: &[Scan; SCANS_PER_FRAME]) -> Self {
         Self::from_pairs(sequence, |scan, pair| {
             let [first, second] = [2 * pair, 2 * pair + 1].map(|rank| u32::from(scans[scan][rank]));
@@ -50,7 +49,6 @@ impl Frame {
 
     /// Adds up a frame's scans, two codes at a time: `pair_of(scan, n)` is the codes of ranks `2 n` and `2 n + 1`, the
     /// first in the lower half, as they lie in a little-endian memory. Each is asked for once.
-    #[must_use]
     #[inline]
     pub fn from_pairs(sequence: u32, pair_of: impl Fn(usize, usize) -> u32) -> Self {
         // Four codes of 12 bits stay in their half of the word.
@@ -65,25 +63,21 @@ impl Frame {
     }
 
     /// A lost frame with this number: its samples are not valid.
-    #[must_use]
     pub const fn lost(sequence: u32) -> Self {
         Self { sequence, valid: false, pvdf: [0; PVDF_COUNT], switch_a: 0, switch_b: 0 }
     }
 
     /// Its slot in the slow frame, 0 to 24.
-    #[must_use]
     pub const fn slot(&self) -> u8 {
         (self.sequence % FRAMES_PER_SLOW_FRAME as u32) as u8
     }
 
     /// State of the select lines while it was sampled, 0 to 15.
-    #[must_use]
     pub const fn select(&self) -> u8 {
         select_of_slot(self.slot())
     }
 
     /// Whether it is the last one of its slow frame.
-    #[must_use]
     pub const fn ends_slow_frame(&self) -> bool {
         self.slot() == FRAMES_PER_SLOW_FRAME - 1
     }

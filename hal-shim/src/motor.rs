@@ -13,7 +13,6 @@ impl Duty {
     pub const FULL: Self = Self(1_000);
 
     /// A duty in per mille of full motor voltage; more than 1000 counts as 1000.
-    #[must_use]
     pub const fn per_mille(value: u16) -> Self {
         Self(if value > 1_000 { 1_000 } else { value })
     }

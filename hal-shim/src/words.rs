@@ -204,7 +204,6 @@ impl Code {
     }
 
     /// The code of a number's sign.
-    #[must_use]
     pub fn from_sign(number: i32) -> Self {
         match number.cmp(&0) {
             Ordering::Less => Self::Minus,

@@ -17,9 +17,7 @@ use tenax_bench::bars::Goal;
 /// Whether a promise holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// It does.
     Pass,
-    /// It does not.
     Fail,
     /// It could not be measured here.
     Skipped,
@@ -33,7 +31,6 @@ pub struct Bar {
     pub promise: String,
     /// What was measured.
     pub figure: String,
-    /// Whether it holds.
     pub verdict: Verdict,
 }
 

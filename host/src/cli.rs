@@ -103,7 +103,7 @@ enum Command {
     /// Also compiles the image for the STM32F446RE and compares the other places that may panic with budgets.toml. Exit status
     /// 1: too many. Example: cargo tenax lint-image
     LintImage,
-    /// Print every command with its options as a Markdown table
+    /// Print every command as a Markdown table
     Commands,
 }
 

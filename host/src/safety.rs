@@ -41,14 +41,12 @@ pub struct Requirement {
     pub tests: Vec<Test>,
 }
 
-/// All of it.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Matrix {
     /// In the page's order.
     pub requirements: Vec<Requirement>,
     /// Hazards that nothing keeps yet: their number and name.
     pub open: Vec<String>,
-    /// What is missing or wrong.
     pub problems: Vec<String>,
 }
 

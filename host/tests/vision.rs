@@ -28,18 +28,9 @@ fn a_held_object_is_seen_and_slips_only_when_it_does() {
 #[test]
 fn drawn_scenes_are_seen_as_they_are() {
     let report = vision(&["--sessions", "3", "--seed", "11", "--report", "json"]);
-    let keys = [
-        "fps_per_core",
-        "markers_found",
-        "failed_share",
-        "marker_px_rms",
-        "force_deg_rms",
-        "angle_deg_rms",
-        "cut_said",
-        "object_seen",
-        "object_false",
-    ];
-    for key in keys {
+    let keys = "fps_per_core markers_found failed_share marker_px_rms force_deg_rms angle_deg_rms cut_said \
+                object_seen object_false";
+    for key in keys.split(' ') {
         assert!(report.get(key).is_some(), "{key} is gone: {report}");
     }
     let number = |value: &Value| value.as_f64().unwrap_or_else(|| panic!("no number in {report}"));

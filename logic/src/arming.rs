@@ -115,7 +115,6 @@ impl Arming {
     }
 
     /// Whether consent by muscles or button is in force.
-    #[must_use]
     pub const fn is_deliberate(&self) -> bool {
         self.left > 0
     }

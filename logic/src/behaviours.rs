@@ -77,7 +77,6 @@ enum Doing {
 
 impl Running {
     /// Begins a behaviour. None if a sensor or the camera that it needs is missing.
-    #[must_use]
     pub fn begin(what: Behaviour, felt: &Felt<'_>) -> Option<Self> {
         let doing = match what {
             Behaviour::Stroke if felt.grip == Grip::Unknown => return None,
@@ -91,13 +90,11 @@ impl Running {
     }
 
     /// The behaviour.
-    #[must_use]
     pub const fn what(&self) -> Behaviour {
         self.what
     }
 
     /// Whether the behaviour expects slip and answers it itself, so that the reflex must not.
-    #[must_use]
     pub const fn answers_slip(&self) -> bool {
         match &self.doing {
             Doing::Stroke | Doing::HandOver(_) => true,

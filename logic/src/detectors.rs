@@ -73,7 +73,6 @@ impl Said {
     pub const NOTHING: Self = Self { slip: false, incipient: false };
 
     /// Slip or not, without a warning.
-    #[must_use]
     pub const fn slip(slip: bool) -> Self {
         Self { slip, incipient: false }
     }
@@ -257,19 +256,16 @@ impl Detectors {
     }
 
     /// The detectors that say slip.
-    #[must_use]
     pub const fn slip(&self) -> DetectorSet {
         self.record.slip
     }
 
     /// The detectors that warn of slip.
-    #[must_use]
     pub const fn incipient(&self) -> DetectorSet {
         self.record.incipient
     }
 
     /// The detectors that the plausibility guard ignores.
-    #[must_use]
     pub const fn ignored(&self) -> DetectorSet {
         self.record.ignored
     }

@@ -56,7 +56,6 @@ impl Default for Device {
 
 impl Device {
     /// A device with this fingertip, which has not ticked yet.
-    #[must_use]
     pub fn new(fingertip: Fingertip) -> Self {
         let keeper = fingertip.keeper();
         Self {
@@ -69,14 +68,7 @@ impl Device {
         }
     }
 
-    /// A device whose line needs no consent: for a gripper or a bench.
-    #[must_use]
-    pub fn trusting() -> Self {
-        Self::new(Fingertip::trusting())
-    }
-
     /// The fingertip.
-    #[must_use]
     pub const fn fingertip(&self) -> &Fingertip {
         &self.fingertip
     }
@@ -127,7 +119,6 @@ impl Device {
     }
 
     /// Whether the light at the hand is on: it shows what a calibration asks for, and its result.
-    #[must_use]
     pub fn light(&self) -> bool {
         self.fingertip.light()
     }
@@ -226,7 +217,6 @@ impl Device {
     }
 
     /// Whether a message waits to be sent.
-    #[must_use]
     pub fn has_message(&self) -> bool {
         self.fingertip.has_slow()
             || self.stream.has_raw()

@@ -85,13 +85,11 @@ pub struct Fingertip {
 
 impl Fingertip {
     /// A fingertip with these thresholds and limits.
-    #[must_use]
     pub fn new(config: Config) -> Self {
         Self { config, ..Self::default() }
     }
 
     /// A fingertip whose line needs no consent: for a gripper or a bench.
-    #[must_use]
     pub fn trusting() -> Self {
         Self::new(Config { line_trusted: true, ..Config::default() })
     }
@@ -118,7 +116,6 @@ impl Fingertip {
     }
 
     /// A keeper that decides when changes are saved. The present state counts as saved.
-    #[must_use]
     pub fn keeper(&self) -> Keeper {
         Keeper::new(&self.now())
     }

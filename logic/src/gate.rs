@@ -66,7 +66,6 @@ impl Gate {
     }
 
     /// Whether a release is under way.
-    #[must_use]
     pub const fn is_releasing(&self) -> bool {
         self.release > 0
     }
@@ -100,13 +99,11 @@ impl Gate {
     }
 
     /// Whether a muscle is active or was within the hold time. Call after [`tick`](Self::tick).
-    #[must_use]
     pub const fn is_active(&self) -> bool {
         self.hold > 0
     }
 
     /// Whether both myosensors are healthy, so that "not active" is known.
-    #[must_use]
     pub const fn is_known(&self) -> bool {
         self.verdict.known
     }
@@ -124,13 +121,11 @@ impl Gate {
     }
 
     /// The flexor's envelope above rest, mV. None: the sensor gives no number.
-    #[must_use]
     pub const fn flexor_mv(&self) -> Option<i16> {
         self.mv[0]
     }
 
     /// The extensor's envelope above rest, mV. None: the sensor gives no number.
-    #[must_use]
     pub const fn extensor_mv(&self) -> Option<i16> {
         self.mv[1]
     }

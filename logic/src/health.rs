@@ -21,7 +21,6 @@ pub struct Limits {
 impl Limits {
     /// Limits of a channel with `per_second` readings: lost after 25 ms of bad readings, back after 1 s of good ones, stuck
     /// after 2 s of equal ones.
-    #[must_use]
     pub const fn of(channel: &Channel, per_second: u32) -> Self {
         let lost_after = per_second / 40;
         Self {
@@ -120,19 +119,16 @@ impl SensorHealth {
     }
 
     /// Readings in a row that were equal to the one before.
-    #[must_use]
     pub const fn same(&self) -> u32 {
         self.same
     }
 
     /// Why the sensor is lost. None: it is not.
-    #[must_use]
     pub const fn lost(&self) -> Option<Reason> {
         self.lost
     }
 
     /// Whether the sensor is lost.
-    #[must_use]
     pub const fn is_lost(&self) -> bool {
         self.lost.is_some()
     }

@@ -35,7 +35,6 @@ impl Journal {
     }
 
     /// Sequence number of the frame that is being taken.
-    #[must_use]
     pub const fn frame(&self) -> u32 {
         self.frame
     }
@@ -83,7 +82,6 @@ impl Journal {
     }
 
     /// Whether an event waits.
-    #[must_use]
     pub fn has_event(&self) -> bool {
         !self.events.is_empty() || self.events_lost > 0
     }

@@ -21,7 +21,6 @@ pub struct LowPass {
 
 impl LowPass {
     /// A low-pass with this corner frequency, above 0 and below 300 Hz, at one sample a frame (2 kHz).
-    #[must_use]
     pub const fn of(hz: f64) -> Self {
         assert!(hz > 0.0 && hz < 300.0, "k is below 1/2, or a step response would overshoot");
         Self { k: (core::f64::consts::PI * 4_294_967_296.0 * hz / FRAME_HZ as f64) as i32 }

@@ -126,7 +126,6 @@ impl Muscles {
     }
 
     /// The wearer's wish and activity. During a calibration the wish is rest, and no other source may move the hand.
-    #[must_use]
     pub fn verdict(&self) -> Verdict {
         let mut verdict = self.emg.verdict();
         // A wish is decided with the extensor's reading; the flexor's activity silences from its own on.
@@ -149,13 +148,11 @@ impl Muscles {
     }
 
     /// Whether a muscle with a healthy sensor is active.
-    #[must_use]
     pub fn is_heard(&self) -> bool {
         self.emg.is_active(0) || self.emg.is_active(1)
     }
 
     /// The wearer's calibration. None: not calibrated.
-    #[must_use]
     pub const fn model(&self) -> Option<&EmgModel> {
         self.model.as_ref()
     }
@@ -173,7 +170,6 @@ impl Muscles {
     }
 
     /// Whether a calibration is under way.
-    #[must_use]
     pub const fn is_calibrating(&self) -> bool {
         self.lesson.is_some()
     }
@@ -263,7 +259,6 @@ impl Muscles {
     }
 
     /// Whether [`think`](Self::think) has a spectrum to compute.
-    #[must_use]
     pub fn has_window(&self) -> bool {
         self.lesson.is_none() && (0..2).any(|n| self.emg.window(n).is_some())
     }

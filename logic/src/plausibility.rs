@@ -45,7 +45,6 @@ impl Plausibility {
     }
 
     /// Whether the detector is ignored.
-    #[must_use]
     pub const fn is_ignored(&self) -> bool {
         self.ignored
     }
@@ -77,7 +76,6 @@ impl Disturbance {
     }
 
     /// Whether the disturbance may explain the present report.
-    #[must_use]
     pub const fn explains_it(&self) -> bool {
         self.says && !self.began_still
     }

@@ -25,7 +25,6 @@ impl LastSamples {
     }
 
     /// The last sample of every channel, in the order of [`CHANNELS`].
-    #[must_use]
     pub fn in_order(&self) -> [u16; COUNT] {
         let last = |samples: &[u16], place: u8| samples.get(usize::from(place)).copied().unwrap_or(0);
         CHANNELS.map(|channel| match channel.input {

@@ -195,7 +195,6 @@ impl Senses {
     }
 
     /// The force sensor.
-    #[must_use]
     pub const fn force_sensor(&self) -> &ForceSensor {
         &self.force_sensor
     }
@@ -206,13 +205,11 @@ impl Senses {
     }
 
     /// Each film's envelope in the slip band, Q16 samples.
-    #[must_use]
     pub const fn envelopes(&self) -> &[i32; PVDF_COUNT] {
         self.detector.envelopes()
     }
 
     /// Both myosensors.
-    #[must_use]
     pub const fn muscles(&self) -> &Muscles {
         &self.muscles
     }
@@ -223,25 +220,21 @@ impl Senses {
     }
 
     /// The gauges.
-    #[must_use]
     pub const fn gauges(&self) -> &Gauges {
         &self.gauges
     }
 
     /// The last readings of the normal-force array.
-    #[must_use]
     pub const fn taxels(&self) -> &Reading {
         self.taxels.reading()
     }
 
     /// The photoelastic head; without readings while a film is in its place.
-    #[must_use]
     pub const fn head(&self) -> &Head {
         &self.head
     }
 
     /// Whether enough films work for vibration to be judged.
-    #[must_use]
     pub const fn hears(&self) -> bool {
         self.films_usable
     }
@@ -277,7 +270,6 @@ impl Senses {
     }
 
     /// Whether the force is known and Ft/Fn is below the lowest friction of any object.
-    #[must_use]
     pub const fn cannot_slip(&self) -> bool {
         self.cannot_slip && self.forces.is_some()
     }

@@ -34,7 +34,6 @@ pub struct Row {
 
 impl Row {
     /// The values that are accepted on a line that is not trusted.
-    #[must_use]
     pub const fn range(&self) -> RangeInclusive<i32> {
         self.min..=self.max
     }

@@ -148,13 +148,11 @@ impl Log {
     }
 
     /// Words that the next record takes beside its own: the first of a session has a mark before it.
-    #[must_use]
     pub const fn mark_words(&self) -> usize {
         !self.marked as usize
     }
 
     /// Words that can still be filled before the next boot.
-    #[must_use]
     pub const fn free_words(&self) -> usize {
         if self.failed { 0 } else { self.limit.saturating_sub(self.end + self.mark_words()) }
     }

@@ -65,7 +65,6 @@ impl Gauges {
     }
 
     /// Loads, 1/16 of a sample, positive or negative; 0 of a lost gauge.
-    #[must_use]
     pub fn loads(&self) -> [i32; STRAIN_COUNT] {
         core::array::from_fn(|n| self.0[n].load)
     }

@@ -81,7 +81,6 @@ pub struct Answer {
 
 impl Finger {
     /// One that nobody has asked yet.
-    #[must_use]
     pub fn new(chip: Chip) -> Self {
         let mut session = Session::default();
         chip.iter().for_each(|&part| session.stir(part));
@@ -216,7 +215,6 @@ impl Finger {
     }
 
     /// Frames of its line that were dropped.
-    #[must_use]
     pub const fn dropped(&self) -> u32 {
         self.dropped
     }
@@ -280,7 +278,6 @@ impl Finger {
     }
 
     /// Its address, [`ALL`] while it has none.
-    #[must_use]
     pub const fn address(&self) -> u8 {
         self.address
     }
@@ -292,7 +289,6 @@ impl Finger {
     }
 
     /// Neighbours whose detectors say slip, a bit for each address from 1 on.
-    #[must_use]
     pub const fn neighbours(&self) -> u8 {
         match self.address {
             ALL => 0,
@@ -301,19 +297,16 @@ impl Finger {
     }
 
     /// What the palm wishes this finger's load to be, mN.
-    #[must_use]
     pub const fn want_mn(&self) -> Option<u16> {
         self.want_mn
     }
 
     /// What it feels, as the palm is told.
-    #[must_use]
     pub const fn felt(&self) -> Option<Felt> {
         self.state.felt
     }
 
     /// Detectors that say slip here, as the palm is told.
-    #[must_use]
     pub const fn slip(&self) -> DetectorSet {
         self.state.slip
     }

@@ -122,7 +122,6 @@ const fn reached(now_us: u32, until_us: u32) -> bool {
 
 impl Palm {
     /// A palm of a hand with these places, of which the first [`FINGERS_MAX`] count, at this time by its clock.
-    #[must_use]
     pub fn new(places: &[Place], now_us: u32) -> Self {
         let seat = |&place: &Place| Seat {
             place,
@@ -429,13 +428,11 @@ impl Palm {
     }
 
     /// The forces that were felt last cannot keep all margins below all ceilings: every finger is on its own.
-    #[must_use]
     pub const fn is_lacking(&self) -> bool {
         self.lacking
     }
 
     /// The longest cycle so far, us, and how many there were.
-    #[must_use]
     pub const fn cycles(&self) -> (u32, u32) {
         (self.longest_us, self.cycles)
     }

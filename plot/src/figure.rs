@@ -56,7 +56,6 @@ pub struct Panel {
     /// What its axis shows, with the unit.
     pub label: String,
     pub curves: Vec<Curve>,
-    /// Thresholds.
     pub levels: Vec<Level>,
     /// A strip of states at its foot.
     pub strip: Vec<Stretch>,

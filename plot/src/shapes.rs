@@ -5,7 +5,6 @@
 
 use anyhow::{Context, Result, bail};
 
-/// One element.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Shape<'a> {
     /// What it is: `rect`, `line`, `polyline`, `polygon`, `circle`, `text`, or `svg`, which is the first and has the size.

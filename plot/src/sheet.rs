@@ -9,12 +9,10 @@ pub struct Axis {
     /// What it shows, with the unit.
     pub label: String,
     pub ends: (f64, f64),
-    /// Whether it is logarithmic.
     pub log: bool,
 }
 
 impl Axis {
-    /// By decades.
     pub fn log(label: &str, from: f64, to: f64) -> Self {
         Self { label: label.to_owned(), ends: (from, to), log: true }
     }
@@ -37,32 +35,26 @@ impl Axis {
     }
 }
 
-/// How points are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
     Line,
-    /// A dashed line.
     Dashes,
     Dots,
     Rings,
     Crosses,
 }
 
-/// Points that belong together.
 #[derive(Clone, Debug)]
 pub struct Series {
     /// What they are; equal names share one entry of the legend.
     pub name: String,
-    /// Their colour.
     pub colour: RGBColor,
-    /// How they are drawn.
     pub mark: Mark,
     /// Where they are. What is outside the axes is not drawn.
     pub points: Vec<(f64, f64)>,
 }
 
 impl Series {
-    /// Points of one look.
     pub fn new(
         name: impl Into<String>,
         colour: RGBColor,
@@ -85,13 +77,10 @@ pub struct Cell {
 #[derive(Clone, Debug)]
 pub struct Panel {
     pub title: String,
-    /// To the right.
     pub x: Axis,
-    /// Upwards.
     pub y: Axis,
     /// A map, under everything else.
     pub cells: Vec<Cell>,
-    /// Curves and points.
     pub series: Vec<Series>,
     /// Words at points.
     pub words: Vec<(f64, f64, String)>,
@@ -110,7 +99,6 @@ pub struct Sheet {
     pub title: String,
     /// One line under it.
     pub subtitle: String,
-    /// Panels in a row.
     pub columns: u32,
     pub panels: Vec<Panel>,
     /// The ends of the colours of errors, if there is a map.

@@ -13,14 +13,12 @@ const BIG: [u8; 2] = [0, 0];
 const PAYLOAD_MAX: usize = 1 << 16;
 
 /// A message's payload. None for what CDR cannot say, which no message of [`crate::message`] is.
-#[must_use]
 pub fn payload(message: &impl Serialize) -> Option<Vec<u8>> {
     let body = to_vec::<_, LittleEndian>(message).ok()?;
     Some([&LITTLE[..], &body].concat())
 }
 
 /// The message of a payload, of either byte order. None where it is none, or is longer than its message and the padding behind it.
-#[must_use]
 pub fn message<M: DeserializeOwned>(payload: &[u8]) -> Option<M> {
     if payload.len() > PAYLOAD_MAX {
         return None;

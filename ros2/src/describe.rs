@@ -9,14 +9,12 @@ use sha2::{Digest, Sha256};
 /// A type whose .msg text is known: `sensor_msgs/msg/JointState`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Definition {
-    /// Its full name.
     pub name: &'static str,
     /// Its .msg text.
     pub text: &'static str,
 }
 
 /// The hash of a type, given it and all that it is made of. None where a type is missing or a line is no field.
-#[must_use]
 pub fn hash(name: &str, known: &[Definition]) -> Option<String> {
     let mut described = BTreeMap::new();
     describe(name, known, &mut described)?;

@@ -27,7 +27,6 @@ const OPEN_PERMILLE: u16 = 400;
 const CLOSE_PERMILLE_MIN: u16 = 150;
 
 /// Head of a message of a hand.
-#[must_use]
 pub fn header(hand: &str, at_ns: u64) -> Header {
     Header { stamp: Time::of_ns(at_ns), frame_id: hand.to_owned() }
 }
@@ -37,7 +36,6 @@ fn newtons(mn: i32) -> f64 {
 }
 
 /// The grip as a joint's effort.
-#[must_use]
 pub fn joint_state(header: Header, slow: &Slow) -> JointState {
     let effort = slow.forces.iter().map(|forces| newtons(forces.load_mn)).collect();
     let name = vec![format!("{}_grip", header.frame_id)];
@@ -45,7 +43,6 @@ pub fn joint_state(header: Header, slow: &Slow) -> JointState {
 }
 
 /// What it concluded.
-#[must_use]
 pub fn slip(header: Header, slow: &Slow) -> Slip {
     let mut message = Slip {
         header,
@@ -65,7 +62,6 @@ pub fn slip(header: Header, slow: &Slow) -> Slip {
 }
 
 /// How far it is from sliding.
-#[must_use]
 pub fn margin(header: Header, slow: &Slow) -> Margin {
     let permille = |permille: u16| f64::from(permille) / 1e3;
     let margin = slow.forces.and_then(|forces| forces.margin_mn(slow.s2_permille));
@@ -79,7 +75,6 @@ pub fn margin(header: Header, slow: &Slow) -> Margin {
 }
 
 /// What it reads.
-#[must_use]
 pub fn tactile(header: Header, slow: &Slow, senses: Option<&Senses>) -> Tactile {
     let forces = slow.forces.as_ref();
     Tactile {
@@ -94,7 +89,6 @@ pub fn tactile(header: Header, slow: &Slow, senses: Option<&Senses>) -> Tactile 
 }
 
 /// The ceiling of forces that a board says of itself, mN.
-#[must_use]
 pub fn ceiling_mn(about: &About) -> Option<i32> {
     about.settings.iter().find(|setting| setting.id == FORCE_CEILING).map(|setting| setting.value)
 }
@@ -106,19 +100,15 @@ pub struct Health {
     pub gone: Option<String>,
     /// What became of the last command.
     pub command: String,
-    /// Who it is.
     pub about: Option<About>,
-    /// What it counts.
     pub counters: Option<Counters>,
     /// Messages missing on the line, and frames that were none.
     pub missed: u64,
-    /// See there.
     pub bad_frames: u64,
 }
 
 impl Health {
     /// As ROS says it.
-    #[must_use]
     pub fn diagnostics(&self, hand: &str, at_ns: u64) -> DiagnosticArray {
         let counters = self.counters.unwrap_or_default();
         let lossy = counters.frames_lost > 0 || counters.ticks_late > 0 || self.missed > 0;

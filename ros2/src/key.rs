@@ -32,21 +32,18 @@ pub enum Role {
 }
 
 /// The key of a topic: `0/left/joint_states/sensor_msgs::msg::dds_::JointState_/RIHS01_...`.
-#[must_use]
 pub fn topic<M: Message>(domain: u32, name: &str) -> String {
     format!("{domain}/{}/{}/{}", name.trim_matches('/'), M::dds_name(), M::type_hash())
 }
 
 impl Node {
     /// The token that it lives.
-    #[must_use]
     pub fn token(&self) -> String {
         let Self { domain, session, id, name } = self;
         format!("@ros2_lv/{domain}/{session}/{id}/{id}/NN/%/%/{name}")
     }
 
     /// The token of one of its topics, `depth` messages of which are kept; the rest is rmw_zenoh's default: reliable, volatile.
-    #[must_use]
     pub fn endpoint<M: Message>(&self, role: Role, entity: u32, topic: &str, depth: u32) -> String {
         let Self { domain, session, id, name } = self;
         let role = match role {
@@ -62,7 +59,6 @@ impl Node {
 }
 
 /// An entity's id: the hash of its token.
-#[must_use]
 pub fn gid(token: &str) -> [u8; GID] {
     // The low half first, each little-endian.
     xxh3_128(token.as_bytes()).to_le_bytes()
@@ -80,15 +76,12 @@ pub struct Attachment {
 }
 
 impl Attachment {
-    /// Its bytes.
-    #[must_use]
     pub fn bytes(&self) -> Vec<u8> {
         let (number, time) = (self.sequence.to_le_bytes(), self.time_ns.to_le_bytes());
         [&number[..], &time, &[GID as u8], &self.gid].concat()
     }
 
     /// That of these bytes, if they are one.
-    #[must_use]
     pub fn of(bytes: &[u8]) -> Option<Self> {
         let bytes: &[u8; ATTACHMENT] = bytes.try_into().ok()?;
         let (sequence, rest) = bytes.split_first_chunk::<8>()?;
@@ -103,7 +96,6 @@ impl Attachment {
 }
 
 /// Whether a hand may be called so: what ROS allows in a name, and no more.
-#[must_use]
 pub fn is_name(name: &str) -> bool {
     let first = name.bytes().next().is_some_and(|sign| sign.is_ascii_alphabetic());
     first

@@ -31,13 +31,11 @@ pub trait Message: Serialize + DeserializeOwned {
     const NAME: &'static str;
 
     /// Its type's hash. Empty for a type of no definition, which the tests look for.
-    #[must_use]
     fn type_hash() -> String {
         hash(Self::NAME, &DEFINITIONS).unwrap_or_default()
     }
 
     /// Its type as DDS calls it, which is how keys name it: `sensor_msgs::msg::dds_::JointState_`.
-    #[must_use]
     fn dds_name() -> String {
         let (path, name) = Self::NAME.rsplit_once('/').unwrap_or(("", Self::NAME));
         format!("{}::dds_::{name}_", path.replace('/', "::"))
@@ -47,15 +45,11 @@ pub trait Message: Serialize + DeserializeOwned {
 /// `builtin_interfaces/msg/Time`: since 1970.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Time {
-    /// Seconds.
     pub sec: i32,
-    /// And nanoseconds.
     pub nanosec: u32,
 }
 
 impl Time {
-    /// Nanoseconds since 1970.
-    #[must_use]
     pub fn of_ns(ns: u64) -> Self {
         Self {
             sec: i32::try_from(ns / 1_000_000_000).unwrap_or(i32::MAX),
@@ -78,7 +72,6 @@ pub struct Header {
 pub struct JointState {
     /// When, and of which hand.
     pub header: Header,
-    /// Joints.
     pub name: Vec<String>,
     /// Empty: a fingertip's opening is calibrated to no length.
     pub position: Vec<f64>,
@@ -108,9 +101,7 @@ impl Message for GripperCommand {
 /// `diagnostic_msgs/msg/KeyValue`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct KeyValue {
-    /// Name.
     pub key: String,
-    /// Value.
     pub value: String,
 }
 
@@ -132,7 +123,6 @@ pub struct DiagnosticStatus {
 /// `diagnostic_msgs/msg/DiagnosticArray`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DiagnosticArray {
-    /// When.
     pub header: Header,
     /// One a hand.
     pub status: Vec<DiagnosticStatus>,
@@ -144,7 +134,6 @@ impl Message for DiagnosticArray {
 
 /// `tenax_msgs/msg/Tactile`: see its .msg.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[allow(missing_docs, reason = "the .msg text says what each field is")]
 pub struct Tactile {
     pub header: Header,
     pub forces_valid: bool,
@@ -161,7 +150,6 @@ impl Message for Tactile {
 
 /// `tenax_msgs/msg/Slip`: see its .msg.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[allow(missing_docs, reason = "the .msg text says what each field is")]
 #[allow(clippy::struct_excessive_bools, reason = "a message")]
 pub struct Slip {
     pub header: Header,
@@ -181,7 +169,6 @@ impl Message for Slip {
 
 /// `tenax_msgs/msg/Margin`: see its .msg.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[allow(missing_docs, reason = "the .msg text says what each field is")]
 pub struct Margin {
     pub header: Header,
     pub valid: bool,

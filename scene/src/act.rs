@@ -98,13 +98,11 @@ impl Touches {
         self.weights.push((Span::new(at_s, 2.5), newtons));
     }
 
-    /// Forgets what is over.
     fn drop_past(&mut self, t_s: f64) {
         self.touched.retain(|(span, _)| t_s < span.end_s);
         self.weights.retain(|(span, _)| t_s < span.end_s);
     }
 
-    /// What presses on the quadrants, N.
     pub(crate) fn pressed_n(&mut self, t_s: f64) -> [f64; FSR_COUNT] {
         self.drop_past(t_s);
         let weight_n: f64 = self.weights.iter().map(|(span, n)| n * part(*span, t_s)).sum();

@@ -34,7 +34,6 @@ const SIDEWAYS: f64 = 0.02;
 /// Rounds in which those that press are found.
 const ROUNDS: usize = 8;
 
-/// A finger, and what it feels.
 #[derive(Debug)]
 pub struct Finger {
     /// From the object towards it.
@@ -278,11 +277,6 @@ impl Fingers {
         self.slid_m * 1e3
     }
 
-    /// What pulls it along the fingers, N.
-    pub const fn pulls_n(&self) -> f64 {
-        self.pulls_n
-    }
-
     /// What pulls it aside, N.
     pub const fn aside_n(&self) -> [f64; 2] {
         self.aside_n
@@ -317,17 +311,14 @@ impl Finger {
         skin.converter.step(pins_v);
     }
 
-    /// The voltages at its pins.
     pub const fn pins(&self) -> &Pins {
         &self.pins
     }
 
-    /// What it feels.
     pub const fn touch(&self) -> &Touch {
         &self.touch
     }
 
-    /// The friction under it.
     pub const fn friction(&self) -> Friction {
         self.friction
     }

@@ -14,11 +14,8 @@ use crate::random::{Noise, Source};
 
 pub use self::lens::Lens;
 
-/// Columns of a picture.
 pub const WIDTH: usize = 320;
-/// Rows of a picture.
 pub const HEIGHT: usize = 240;
-/// Pixels of a picture.
 pub const PIXELS: usize = WIDTH * HEIGHT;
 /// Samples of noise that pictures take theirs from.
 const NOISE: usize = 1 << 18;
@@ -26,11 +23,8 @@ const NOISE: usize = 1 << 18;
 /// What a session is drawn from; `seed` draws the rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Seed of everything.
     pub seed: u64,
-    /// Pictures a second.
     pub rate_hz: f64,
-    /// Whether the lens is a fisheye.
     pub fisheye: bool,
 }
 
@@ -102,12 +96,10 @@ pub struct Truth {
     pub whole: bool,
     /// Whether the object moves against the finger.
     pub slides: bool,
-    /// Whether it is gripped.
     pub gripped: bool,
 }
 
 impl Session {
-    /// Draws a session.
     pub fn new(options: Options) -> Self {
         Self::under(options, Stress::default())
     }
@@ -181,7 +173,6 @@ impl Session {
         }
     }
 
-    /// The lens.
     pub const fn lens(&self) -> Lens {
         self.lens
     }

@@ -42,14 +42,7 @@ impl Pins {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Calibrated {
     /// Whose envelopes are these, mV above the live zero, flexor first.
-    Levels {
-        /// At rest.
-        rest_mv: [u16; 2],
-        /// While closing.
-        close_mv: [u16; 2],
-        /// While opening.
-        open_mv: [u16; 2],
-    },
+    Levels { rest_mv: [u16; 2], close_mv: [u16; 2], open_mv: [u16; 2] },
     /// Whose calibration was kept in these words.
     Words([i32; 10]),
 }

@@ -27,17 +27,13 @@ pub(crate) enum Source {
     Film,
     /// The wandering of the myoelectric envelopes.
     Myo,
-    /// The converter.
     Converter,
     /// Places, depths and mixtures of the strain gauges.
     StrainMaking,
-    /// The noise of the strain gauges.
     Strain,
     /// Gains and offsets of the normal-force array.
     ArrayMaking,
-    /// The noise of the normal-force array.
     Array,
-    /// Which element of the array slips.
     ArraySlips,
     /// Where the camera's pixels lie, and their jitter.
     Camera,

@@ -9,11 +9,8 @@ pub const SHIPPED_S: f64 = crate::schedule::STEP_S;
 /// held against [`Slider::small_signal`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SelfExcited {
-    /// What slides.
     pub slider: Slider,
-    /// How it is pressed, N.
     pub normal_n: f64,
-    /// On what speed, m/s.
     pub surface_m_s: f64,
 }
 

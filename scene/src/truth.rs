@@ -11,7 +11,6 @@ use crate::sensor::camera::Seen;
 
 pub use record::{Activity, MicroRun, Phase, Row, Slip};
 
-/// Rows of the trace a second.
 pub const TRACE_HZ: u32 = 200;
 /// A myosensor becomes active this far above rest, mV (the firmware's default).
 pub const MYO_ON_MV: f64 = 160.0;
@@ -24,10 +23,8 @@ pub const MICRO_PAUSE_S: f64 = 0.050;
 /// An object that is this far below the hand is not in it any more, mm: the pads are 18 mm long, and some slips are longer.
 const LEFT_MM: f64 = 40.0;
 
-/// The log.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Truth {
-    /// Every slip, in order.
     pub slips: Vec<Slip>,
     /// Runs of micro slips that came to nothing: everything stuck again before all of it slid faster than the floor.
     pub micro_runs: Vec<MicroRun>,
@@ -47,7 +44,6 @@ pub struct Truth {
     pub crushed_at_s: Option<f64>,
     /// How far they crushed it for good, mm.
     pub dent_mm: f64,
-    /// When it broke, s.
     pub broken_at_s: Option<f64>,
     /// The furthest that it turned about the pads, rad.
     pub pitch_rad: f64,
@@ -55,7 +51,6 @@ pub struct Truth {
     pub peak_grip_n: f64,
     /// The grip force of a finger while the hand carried the object: its integral, N s, and for how long, s.
     pub carried_ns: f64,
-    /// See above.
     pub carried_s: f64,
     /// What it pressed beyond the need meanwhile: its integral, N s.
     pub beyond_need_ns: f64,
@@ -67,7 +62,6 @@ pub struct Truth {
     pub phases: Vec<Phase>,
     /// When each myosensor's pin was over its threshold.
     pub activity: Vec<Activity>,
-    /// The trace, [`TRACE_HZ`] rows a second.
     pub trace: Vec<Row>,
     /// What the camera said, 30 times a second. It goes to nobody by itself.
     pub camera: Vec<Seen>,
@@ -98,11 +92,9 @@ struct Slide {
 pub(crate) struct Step<'a> {
     pub(crate) t_s: f64,
     pub(crate) touch: &'a Touch,
-    /// The object's part.
     pub(crate) state: State,
     /// Faster than this is slip, mm/s.
     pub(crate) floor_mm_s: f64,
-    /// Whether the fingers open.
     pub(crate) opens: bool,
     /// Whether a row of the trace is due.
     pub(crate) trace: bool,

@@ -141,7 +141,6 @@ impl World {
         self
     }
 
-    /// What really happened so far.
     pub const fn truth(&self) -> &Truth {
         &self.truth
     }
@@ -207,7 +206,6 @@ impl World {
         }
     }
 
-    /// Moves everything that moves.
     fn moves(&mut self, t_s: f64, drive: MotorDrive) -> State {
         self.gripper.jam(self.jams.iter().any(|jam| jam.contains(t_s)));
         self.gripper.step(drive, self.touch.normal_n);

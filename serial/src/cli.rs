@@ -10,13 +10,13 @@ pub mod play;
 pub mod port;
 pub mod record;
 pub mod selftest;
-pub mod settings;
-pub mod wiring;
 pub mod workspace;
 
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+
+use crate::{settings, wiring};
 
 /// Watches, records, plays and sets up a Tenax fingertip over its serial line.
 #[derive(Debug, Parser)]
@@ -66,7 +66,6 @@ pub fn main() -> ExitCode {
 }
 
 impl Shared {
-    /// Runs it.
     pub fn run(&self) -> anyhow::Result<ExitCode> {
         match self {
             Self::Flash(args) => flash::main(args),
@@ -76,10 +75,15 @@ impl Shared {
             Self::Record(args) => record::main(args),
             Self::Play(args) => play::main(args),
             Self::Config(args) => config::main(args),
-            Self::Wiring => wiring::main(),
-            Self::Settings => settings::main(),
+            Self::Wiring => page(&wiring::markdown()),
+            Self::Settings => page(&settings::markdown()),
         }
     }
+}
+
+fn page(text: &str) -> anyhow::Result<ExitCode> {
+    out::print(format_args!("{text}"))?;
+    Ok(ExitCode::SUCCESS)
 }
 
 /// What a command that has ended exits with; says what went wrong.

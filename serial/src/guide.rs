@@ -13,10 +13,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, bail};
 use tenax_hal_shim::wire::{Answer, Down, Forces, Refusal, Up};
 
-use crate::link::Client;
-
-/// How long the board may take to answer.
-const ANSWER_WITHIN: Duration = Duration::from_secs(2);
+use crate::link::{ANSWER_WITHIN, Client};
 
 /// Where the person reads what to do.
 pub type Say<'a> = &'a mut dyn FnMut(&str) -> anyhow::Result<()>;

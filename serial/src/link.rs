@@ -11,7 +11,7 @@ mod last;
 mod outbox;
 mod target;
 
-pub use client::{Client, is_silence};
+pub use client::{ANSWER_WITHIN, Client, is_silence};
 pub use encoder::Encoder;
 pub use inbox::{Counts, Heard, Inbox};
 pub use last::LastSeconds;

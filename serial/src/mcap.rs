@@ -91,7 +91,6 @@ struct Indexed {
     messages_length: u64,
 }
 
-/// Writes a file.
 pub struct Writer<W: Write> {
     out: W,
     packing: Packing,
@@ -108,7 +107,6 @@ pub struct Writer<W: Write> {
 }
 
 impl<W: Write> Writer<W> {
-    /// A file without messages.
     pub fn new(out: W, packing: Packing) -> io::Result<Self> {
         let mut writer = Self {
             out,
@@ -172,7 +170,6 @@ impl<W: Write> Writer<W> {
         if self.chunk.len() >= self.packing.chunk_bytes { self.end_chunk() } else { Ok(()) }
     }
 
-    /// Ends the file.
     pub fn finish(mut self) -> io::Result<W> {
         self.end_chunk()?;
         self.put(&Content::default().u32(0).record(DATA_END))?;

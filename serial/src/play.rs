@@ -19,7 +19,6 @@ const TOLD_EACH_S: f64 = 0.1;
 /// The speeds that there are, times as fast as it was recorded.
 pub const SPEEDS: (f64, f64) = (0.01, 100.0);
 
-/// Where a recording is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Playing {
     pub at_s: f64,

@@ -14,18 +14,12 @@ pub enum Kind {
     Bytes,
 }
 
-/// A value of a field.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
-    /// Of [`Kind::Number`].
     Number(f64),
-    /// Of [`Kind::Numbers`].
     Numbers(Vec<f64>),
-    /// Of [`Kind::Flag`].
     Flag(bool),
-    /// Of [`Kind::Text`].
     Text(String),
-    /// Of [`Kind::Bytes`].
     Bytes(Vec<u8>),
 }
 

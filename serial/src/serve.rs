@@ -29,10 +29,8 @@ const DOWN_FRAMES: usize = 64;
 /// How long clients may take to read what is left when the run is over.
 const LAST_READ: Duration = Duration::from_millis(500);
 
-/// Where to serve.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Options {
-    /// On a pseudo-terminal.
     pub pty: bool,
     /// A symlink to it.
     pub at: Option<PathBuf>,
@@ -44,7 +42,6 @@ pub struct Options {
     pub keys: Vec<Key>,
 }
 
-/// Who was served.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
     pub clients: u64,
@@ -134,7 +131,6 @@ impl Server {
         &self.places
     }
 
-    /// Who was served so far.
     pub fn tally(&self) -> Tally {
         self.hub.tally()
     }

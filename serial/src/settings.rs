@@ -27,7 +27,6 @@ The number names the setting on the wire and in flash.
 |---|---|---|---|---|
 ";
 
-/// The whole page.
 pub fn markdown() -> String {
     let mut page = String::from(HEAD);
     for id in SettingId::ALL {

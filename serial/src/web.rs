@@ -50,7 +50,6 @@ struct Shared {
     port: u16,
 }
 
-/// A page that is served.
 pub struct Web {
     listener: TcpListener,
     shared: Shared,

@@ -29,7 +29,6 @@ This page lists the pin of each channel and its valid voltages, for builders who
 
 ";
 
-/// The whole page.
 pub fn markdown() -> String {
     let mut page = String::from(HEAD);
     // Writing into a String cannot fail.

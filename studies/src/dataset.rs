@@ -59,7 +59,6 @@ impl Default for Plan {
     }
 }
 
-/// A data set.
 #[derive(Clone, Debug)]
 pub struct Dataset {
     pub sessions: Vec<(Session, Vec<Recording>)>,

@@ -21,7 +21,6 @@ pub mod trial;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
-use tenax_hal_shim::wire::Setting;
 
 use bench::Bench;
 use control::Control;
@@ -48,7 +47,6 @@ const TRIALS_OF_OTHERS: u64 = 10;
 pub struct Options {
     /// Seed of everything.
     pub seed: u64,
-    /// Held-out trials.
     pub trials: u64,
     /// Minutes of holding.
     pub minutes: u64,
@@ -58,17 +56,6 @@ pub struct Options {
     pub fingertips: u64,
     /// Whether their controls are tried, too.
     pub controls: bool,
-    /// Whether the films hear no mains hum: the most that a canceller of it could bring.
-    pub without_hum: bool,
-    /// Settings of the fingertips that are not the defaults, on the host only.
-    pub settings: Vec<Setting>,
-}
-
-impl Options {
-    /// A finger as these options have it.
-    fn finger(&self, finger: Finger) -> Finger {
-        if self.without_hum { finger.with(("pvdf.mains_mv", 0.0)) } else { finger }
-    }
 }
 
 impl Default for Options {
@@ -81,16 +68,12 @@ impl Default for Options {
             lifts: 20,
             fingertips: 20,
             controls: true,
-            without_hum: false,
-            settings: Vec::new(),
         }
     }
 }
 
-/// What came of it.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// What was tried.
     pub options: Options,
     /// Who ran the trials.
     pub board: &'static str,
@@ -100,13 +83,10 @@ pub struct Outcome {
     /// A trial of the finger before it learned: the largest output, 128 would be 1.
     pub untaught: u8,
     pub lessons: Vec<Trial>,
-    /// The held-out trials.
     pub trials: Vec<Trial>,
-    /// Their score.
     pub score: Score,
     /// The score of the same trials with equal weights in place of learned ones, on the host.
     pub equal: Score,
-    /// The time of holding.
     pub holding: Holding,
     /// Lifts with the reflex.
     pub lifts: Vec<Three>,
@@ -122,7 +102,7 @@ pub type Progress<'a> = &'a (dyn Fn(&str, f64) + Sync);
 
 /// Does all of it. Fails if a scene cannot be made or the board cannot be run.
 pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Result<Outcome> {
-    let finger = options.finger(Finger::plain(options.seed));
+    let finger = Finger::plain(options.seed);
     let mut untaught = Bench::default();
     let silent = untaught.trial(Setup::new(&finger, held_out(options.seed, 0), false)?);
     let loudest = silent.outputs.iter().flatten().map(|output| output.unsigned_abs()).max();
@@ -174,7 +154,7 @@ pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Resu
 type Learned = (Bench, Vec<Trial>, Vec<figures::Felt>);
 
 fn lessons_on_host(finger: &Finger, options: &Options, progress: Progress) -> anyhow::Result<Learned> {
-    let mut bench = Bench::with_settings(&options.settings)?;
+    let mut bench = Bench::default();
     let (mut lessons, mut felt) = (Vec::new(), Vec::new());
     for n in 0..LESSONS {
         let setup = Setup::new(finger, lesson(options.seed, n), true)?;
@@ -243,8 +223,8 @@ pub struct Other {
 /// The same lessons, and some held-out trials.
 fn other(options: &Options, n: u64) -> anyhow::Result<Other> {
     let own = seed(options.seed, 6, n);
-    let finger = options.finger(Finger::random(own));
-    let mut bench = Bench::with_settings(&options.settings)?;
+    let finger = Finger::random(own);
+    let mut bench = Bench::default();
     for n in 0..LESSONS {
         bench.trial(Setup::new(&finger, lesson(own, n), true)?);
     }

@@ -53,10 +53,8 @@ impl Recipe {
     }
 }
 
-/// A recording as features.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sequence {
-    /// The recording's name.
     pub name: String,
     pub session: String,
     pub material: String,
@@ -160,7 +158,6 @@ impl Spectrum {
     }
 }
 
-/// What a feature is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// The diagonal of the covariance.

@@ -25,9 +25,7 @@ pub struct Candidate {
     pub warm: bool,
     /// Passes over the data that the learning rate is spread over.
     pub epochs: usize,
-    /// The first learning rate.
     pub learning_rate: f64,
-    /// Weight decay.
     pub decay: f64,
     /// Frames seen.
     pub look_back: usize,
@@ -36,7 +34,6 @@ pub struct Candidate {
 /// What was chosen and why.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Choice {
-    /// The way.
     pub candidate: Candidate,
     /// Passes done of the candidate's; 0 is the logistic regression itself.
     pub passes: usize,
@@ -52,7 +49,6 @@ pub struct Choice {
 #[derive(Clone, Debug)]
 pub struct Trained {
     pub network: Network,
-    /// What was chosen.
     pub choice: Choice,
     /// Every candidate's best score on sessions it had not seen.
     pub tried: Vec<(Candidate, usize, f64)>,

@@ -31,11 +31,6 @@ impl Linear {
         model.bias = bias as f32;
         model
     }
-
-    pub fn logit(&self, row: &[f32]) -> f64 {
-        f64::from(self.bias)
-            + self.weights.iter().zip(row).map(|(w, x)| f64::from(*w) * f64::from(*x)).sum::<f64>()
-    }
 }
 
 /// Rows that both kinds have about as many of: the rarer kind is repeated.

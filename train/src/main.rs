@@ -164,7 +164,6 @@ fn features_of(recipe: &ArrayRecipe) -> Recipe {
     }
 }
 
-/// A file.
 struct Loaded {
     data: Data,
     sequences: Vec<Sequence>,

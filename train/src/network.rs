@@ -40,11 +40,9 @@ pub struct Settings {
 pub struct Network {
     /// Row by row, `H1` rows of [`FEATURES`].
     pub first: Vec<f32>,
-    /// Biases.
     pub first_bias: Vec<f32>,
     /// Row by row, `H2` rows of `look_back` times `H1`, the present frame first.
     pub second: Vec<f32>,
-    /// Biases.
     pub second_bias: Vec<f32>,
     /// `H2` weights.
     pub last: Vec<f32>,

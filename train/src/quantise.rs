@@ -16,15 +16,12 @@ pub type Integer<const L: usize> = Mlp<FEATURES, H1, L, H2>;
 pub struct Quantised {
     /// First layer's rows.
     pub first: Vec<Vec<i16>>,
-    /// Its biases.
     pub first_bias: Vec<i32>,
     pub first_shift: u32,
     /// Second layer's rows, all frames of a unit in one, the present frame first.
     pub second: Vec<Vec<i16>>,
-    /// Its biases.
     pub second_bias: Vec<i32>,
     pub second_shift: u32,
-    /// Last layer's weights.
     pub last: Vec<i16>,
     pub last_bias: i32,
     /// Integer logits for one of the float network's.

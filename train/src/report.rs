@@ -96,7 +96,6 @@ impl Test {
     }
 }
 
-/// Everything.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// Seed of first weights and of the order of rows.
@@ -112,7 +111,6 @@ pub struct Report {
     pub threshold_permille: u16,
     /// The edges of the verdict that is exported, if there were pours to choose them by.
     pub edges: Option<Chosen>,
-    /// Sizes of the layers.
     pub sizes: String,
     /// Scores on the pours of the validation part, which everything was chosen by, of the network that is exported.
     pub validation: Option<Test>,

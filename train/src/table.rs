@@ -30,17 +30,14 @@ impl Table {
         table
     }
 
-    /// Rows.
     pub fn len(&self) -> usize {
         self.labels.len()
     }
 
-    /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.labels.is_empty()
     }
 
-    /// The features of a row.
     pub fn row(&self, row: usize) -> &[f32] {
         &self.features[row * FEATURES..][..FEATURES]
     }

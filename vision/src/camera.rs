@@ -29,7 +29,6 @@ pub struct Summary {
     pub found: usize,
     /// What the markers say. None while too few are known.
     pub forces: Option<Forces>,
-    /// The object, if there is one.
     pub object: Option<Sighting>,
     /// How it moves, if that can be seen.
     pub flow: Option<Flow>,
@@ -39,7 +38,6 @@ pub struct Summary {
     pub background_flow: Option<Flow>,
 }
 
-/// Follows one camera's pictures.
 #[derive(Clone, Debug)]
 pub struct Camera {
     grey: Box<Plane>,

@@ -1,10 +1,7 @@
 //! A picture as planes of bytes: every loop over one is a loop over a whole slice, which the compiler vectorises.
 
-/// Columns of a picture.
 pub const WIDTH: usize = if cfg!(feature = "quarter") { 160 } else { 320 };
-/// Rows of a picture.
 pub const HEIGHT: usize = WIDTH / 4 * 3;
-/// Pixels of a picture.
 pub const PIXELS: usize = WIDTH * HEIGHT;
 /// Bytes of a picture of three planes.
 pub const FRAME_BYTES: usize = 3 * PIXELS;
@@ -25,9 +22,7 @@ pub fn plane() -> alloc::boxed::Box<Plane> {
 pub struct Frame<'a> {
     /// Red, 0 to 255.
     pub red: &'a Plane,
-    /// Green.
     pub green: &'a Plane,
-    /// Blue.
     pub blue: &'a Plane,
 }
 

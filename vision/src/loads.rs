@@ -15,7 +15,6 @@ const GROWTH_GAIN: f32 = 5.0;
 /// The least markers that say something of the skin.
 const MARKERS_MIN: usize = 6;
 
-/// A force, N.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Newtons {
     /// Shear along the picture's x.
@@ -98,7 +97,6 @@ impl Plane3 {
     }
 }
 
-/// A skin's calibration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loads {
     /// Weights of the shear's features, for x and for y, N.
@@ -108,7 +106,6 @@ pub struct Loads {
 }
 
 impl Loads {
-    /// The force that the features mean.
     pub fn newtons(&self, features: &Features) -> Newtons {
         let mut force = Newtons::default();
         for (weight, feature) in self.shear.iter().zip(features.shear) {

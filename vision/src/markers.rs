@@ -10,7 +10,6 @@ pub use self::calibration::{Calibration, FRAMES as CALIBRATION_FRAMES};
 pub use self::outline::{Edge, Fit, Outline, RAYS, irregularity};
 pub use self::window::{Blob, Levels, SIDE, Window};
 
-/// Markers that are followed at most.
 pub const MARKERS_MAX: usize = 64;
 
 /// The farthest that a marker may be from where it was found last, px: farther is a jump, not a force.
@@ -59,7 +58,6 @@ pub struct Shape {
     pub at: Point,
     /// How far its outline is from there along each ray, px.
     pub radii: [f32; RAYS],
-    /// Its pixels.
     pub area: u32,
     /// Dark pixels in its window, others' included.
     pub dark_pixels: u32,
@@ -72,7 +70,6 @@ impl Shape {
     }
 }
 
-/// A marker that is followed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Marker {
     /// As it was calibrated.
@@ -105,7 +102,6 @@ impl Marker {
         self.failures <= FAILURES_MAX && self.probation == 0 && self.failed_share >> 8 <= FAILED_SHARE_MAX
     }
 
-    /// Looks for it in a frame.
     pub fn follow(&mut self, grey: &Plane) {
         let lost = self.failures > FAILURES_MAX;
         let from = if lost && self.probation == 0 { (self.rest.at, 0.0) } else { (self.at, self.growth) };
@@ -147,7 +143,6 @@ impl Marker {
     }
 }
 
-/// All markers of a skin.
 #[derive(Clone, Debug)]
 pub struct Markers {
     markers: [Marker; MARKERS_MAX],
@@ -156,7 +151,6 @@ pub struct Markers {
 }
 
 impl Markers {
-    /// The markers that a calibration found.
     pub fn new(calibration: &Calibration) -> Self {
         let nothing = Shape { at: Point::default(), radii: [0.0; RAYS], area: 0, dark_pixels: 0 };
         let mut markers = [Marker::new(nothing); MARKERS_MAX];

@@ -13,9 +13,7 @@ pub type Word = u64;
 /// Pixels in a word of a row: a row is a whole number of them.
 #[cfg(feature = "quarter")]
 pub type Word = u32;
-/// Pixels of a word.
 pub const BITS: usize = Word::BITS as usize;
-/// Words of a row.
 pub const WORDS: usize = WIDTH / BITS;
 
 /// A set of pixels.
@@ -31,7 +29,6 @@ impl Default for Mask {
 }
 
 impl Mask {
-    /// No pixel.
     pub const EMPTY: Self = Self { rows: [[0; WORDS]; HEIGHT] };
 
     /// Its rows, the leftmost pixel of a word in the lowest bit.
@@ -39,7 +36,6 @@ impl Mask {
         &self.rows
     }
 
-    /// Its words, row by row.
     pub fn words_mut(&mut self) -> impl Iterator<Item = &mut Word> {
         self.rows.iter_mut().flatten()
     }
@@ -61,7 +57,6 @@ impl Mask {
         }
     }
 
-    /// Puts a pixel in.
     pub fn insert(&mut self, x: usize, y: usize) {
         self.rows[y][x / BITS] |= 1 << (x % BITS);
     }
@@ -80,7 +75,6 @@ impl Mask {
         rows.for_each(|into| into.iter_mut().zip(row).for_each(|(into, word)| *into |= word));
     }
 
-    /// Whether a pixel is in it.
     pub const fn contains(&self, x: usize, y: usize) -> bool {
         self.rows[y][x / BITS] >> (x % BITS) & 1 != 0
     }
@@ -109,26 +103,22 @@ impl Mask {
         both as f32 / either.max(1) as f32
     }
 
-    /// How many pixels are in it.
     pub fn count(&self) -> u32 {
         self.rows.iter().flatten().map(|word| word.count_ones()).sum()
     }
 
-    /// Keeps what is in `other` too.
     pub fn intersect(&mut self, other: &Self) {
         for (word, other) in self.words_mut().zip(other.rows.iter().flatten()) {
             *word &= other;
         }
     }
 
-    /// Takes out what is in `other`.
     pub fn subtract(&mut self, other: &Self) {
         for (word, other) in self.words_mut().zip(other.rows.iter().flatten()) {
             *word &= !other;
         }
     }
 
-    /// Adds what is in `other`.
     pub fn unite(&mut self, other: &Self) {
         for (word, other) in self.words_mut().zip(other.rows.iter().flatten()) {
             *word |= other;
@@ -366,9 +356,7 @@ const BYTES: [(u8, u8, u8); 256] = {
 /// How a set of pixels lies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moments {
-    /// Its pixels.
     pub area: u32,
-    /// Its middle.
     pub middle: Point,
     /// Second moments about the middle, px^2.
     pub xx: f32,

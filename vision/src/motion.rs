@@ -28,7 +28,6 @@ const PIXELS_MIN: usize = 60;
 const SAMPLES_MAX: usize = PIXELS * 4 / 75;
 /// Of which so many are reckoned with at once.
 const LANES: usize = 8;
-/// Rounds of the fit.
 const ROUNDS: usize = 3;
 /// A change that is not explained and is less than this counts as the rest does, grey levels.
 const NOISE: f32 = 4.0;

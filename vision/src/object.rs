@@ -79,10 +79,8 @@ impl Default for Config {
     }
 }
 
-/// What is seen of an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sighting {
-    /// How it lies.
     pub moments: Moments,
     /// The direction of its long axis, radians from -pi/2 to pi/2, from x towards y (down): by its long rims if it has such.
     pub angle_rad: f32,
@@ -128,7 +126,6 @@ pub struct Tracker {
 }
 
 impl Tracker {
-    /// One that has seen nothing.
     pub fn new(config: Config, movement: Running) -> Self {
         Self {
             config,

@@ -25,7 +25,6 @@ impl Default for Skin {
 }
 
 impl Skin {
-    /// One that has seen no picture.
     pub const fn new() -> Self {
         Self { before: [None; MARKERS_MAX] }
     }

@@ -7,7 +7,6 @@ use super::Verdicts;
 use crate::labelled::Recording;
 use crate::scorer::{Card, Stretch, Verdict};
 
-/// A step, s.
 const STEP_S: f64 = 1.0 / SLOW_HZ as f64;
 
 /// From the end of the frame that reads a step's last element to the end of the frame whose tick decides about it, s.
@@ -20,15 +19,7 @@ fn decided_after_s() -> f64 {
 pub fn stretches(first_s: f64, said: &[bool]) -> Vec<Verdict> {
     let at_s = |step: usize| first_s + step as f64 * STEP_S + decided_after_s();
     let mut all: Vec<Verdict> = Vec::new();
-    let mut before = false;
-    for (step, &now) in said.iter().enumerate() {
-        match (before, now, all.last_mut()) {
-            (false, true, _) => all.push(Verdict::new(at_s(step), f64::INFINITY)),
-            (true, false, Some(last)) => last.to_s = at_s(step),
-            _ => {}
-        }
-        before = now;
-    }
+    said.iter().enumerate().for_each(|(step, &now)| Verdict::go_on(&mut all, at_s(step), now));
     all
 }
 

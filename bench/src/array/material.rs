@@ -14,7 +14,6 @@ pub type Ends = [f64; 2];
 pub struct Material {
     /// What it is called in the data.
     pub name: &'static str,
-    /// Static friction.
     pub mu_s: Ends,
     /// Dynamic friction of slow sliding over static friction.
     pub mu_ratio: Ends,
@@ -144,7 +143,6 @@ mod tests {
 
     use super::*;
 
-    /// Every range in it.
     fn ranges(material: &impl Serialize) -> Vec<Ends> {
         fn all(value: &Value) -> Vec<Ends> {
             match value {

@@ -31,9 +31,7 @@ pub struct Saved {
     pub window: usize,
     /// See [`PreprocessorConfig`].
     pub covariance_knee: u32,
-    /// See there.
     pub spectrum_knee: u32,
-    /// See there.
     pub structure_knee: u32,
     /// First layer's rows, biases and shift.
     pub first: (Vec<Vec<i16>>, Vec<i32>, u32),

@@ -7,7 +7,6 @@ use serde::{Serialize, Serializer};
 use super::Verdicts;
 use crate::labelled::{Recording, Step};
 
-/// Steps, counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Steps {
     pub steps: usize,
@@ -27,14 +26,6 @@ pub struct Steps {
 }
 
 impl Steps {
-    /// Of one recording.
-    pub fn of(steps: &[Step], verdicts: &[bool]) -> Self {
-        let mut counted = Self::default();
-        counted.take(steps, verdicts);
-        counted
-    }
-
-    /// Adds those of another.
     pub fn take(&mut self, steps: &[Step], verdicts: &[bool]) {
         for (step, &said) in steps.iter().zip(verdicts) {
             self.steps += 1;

@@ -48,20 +48,31 @@ impl Said {
 /// frame before whose tick it took it. No frame may have been lost. Scans that do not fill a frame are left out.
 pub fn host_says(
     scans: &[Scan],
+    device: Device,
+    pressed: &[u32],
+    commands: &[(u32, Received<Down>)],
+) -> Said {
+    let (frames, _) = scans.as_chunks::<SCANS_PER_FRAME>();
+    let frames = (0..).zip(frames).map(|(sequence, scans)| Frame::from_scans(sequence, scans));
+    host_decides(frames, device, pressed, commands)
+}
+
+/// The same of frames, from the first on.
+pub fn host_decides(
+    frames: impl Iterator<Item = Frame>,
     mut device: Device,
     pressed: &[u32],
     commands: &[(u32, Received<Down>)],
 ) -> Said {
     let mut said = Said::default();
     let mut commands = commands.iter().peekable();
-    let (frames, _) = scans.as_chunks::<SCANS_PER_FRAME>();
-    for (sequence, scans) in (0..).zip(frames) {
+    for frame in frames {
+        let sequence = frame.sequence;
         while let Some((_, command)) = commands.next_if(|(at, _)| *at <= sequence) {
             said.take(device.command(command));
         }
         device
             .button(pressed.iter().any(|at| (at - at.min(&(DEBOUNCE_FRAMES - 1))..=*at).contains(&sequence)));
-        let frame = Frame::from_scans(sequence, scans);
         device.tick(&frame);
         if frame.slot() == slot_of(Job::Save) {
             let duty = device.feedback();
@@ -144,7 +155,6 @@ impl fmt::Display for Agreement {
     }
 }
 
-/// The first difference.
 fn difference(run: &Run, host: &Said) -> Option<String> {
     if let Some((image, host)) = run.slows.iter().zip(&host.slows).find(|(image, host)| image != host) {
         return Some(slow_difference(image, host));

@@ -37,7 +37,6 @@ use super::simulated::frames_in;
 use super::{FlashUse, Recorder, Run, Summary};
 use crate::image::symbols::Symbols;
 
-/// How to run.
 #[derive(Clone, Debug)]
 pub struct Options {
     /// Instructions that the core executes in a second. At 100 MHz a Cortex-M4 takes one to two cycles for most, so

@@ -86,7 +86,6 @@ pub fn device(trusts_line: bool, calibrated: Option<&EmgModel>) -> Device {
 pub struct Sectors(pub Vec<u32>);
 
 impl Sectors {
-    /// A new chip's.
     pub fn blank() -> Self {
         Self(vec![BLANK; 2 * SECTOR_WORDS])
     }

@@ -22,10 +22,8 @@ pub trait Recorder {
     fn line(&mut self, _bytes: &[u8]) {}
 }
 
-/// Nobody.
 impl Recorder for () {}
 
-/// One, or nobody.
 impl<R: Recorder> Recorder for Option<R> {
     fn scan(&mut self, codes: &Scan, drive: MotorDrive, slipping: bool) {
         if let Some(recorder) = self {
@@ -46,7 +44,6 @@ impl<R: Recorder> Recorder for Option<R> {
     }
 }
 
-/// Two, one after the other.
 impl<A: Recorder + ?Sized, B: Recorder + ?Sized> Recorder for (&mut A, &mut B) {
     fn scan(&mut self, codes: &Scan, drive: MotorDrive, slipping: bool) {
         self.0.scan(codes, drive, slipping);
@@ -64,7 +61,6 @@ impl<A: Recorder + ?Sized, B: Recorder + ?Sized> Recorder for (&mut A, &mut B) {
     }
 }
 
-/// Keeps everything.
 impl Recorder for Run {
     fn scan(&mut self, codes: &Scan, drive: MotorDrive, slipping: bool) {
         self.scans.push(*codes);

@@ -30,7 +30,6 @@ pub struct Sketch {
     pub vibration: Thin,
     /// Flexor and extensor, mV.
     pub muscles: [Thin; 2],
-    /// The motor's drive.
     pub motor: Drives,
 }
 

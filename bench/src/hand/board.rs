@@ -16,10 +16,8 @@ use crate::board::simulated::downlink::Downlink;
 /// A frame by the finger's own crystal, us.
 const FRAME_US: f64 = 500.0;
 
-/// A finger's board.
 #[derive(Debug)]
 pub struct Board {
-    /// What decides.
     pub device: Device,
     /// Its end of the bus.
     pub end: Finger,
@@ -31,9 +29,7 @@ pub struct Board {
     next_us: f64,
     sequence: u32,
     codes: [[u16; COUNT]; SCANS_PER_FRAME],
-    /// How its motor is driven.
     pub drive: MotorDrive,
-    /// It has power.
     pub is_on: bool,
     /// Pulses that nobody but the palm wished for.
     pub wished: u32,

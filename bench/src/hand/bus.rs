@@ -19,12 +19,10 @@ struct Driver {
 #[derive(Clone, Debug)]
 pub struct Wires {
     drivers: Vec<Driver>,
-    /// Nobody hears anybody.
     pub is_cut: bool,
 }
 
 impl Wires {
-    /// Between so many.
     pub fn new(count: usize) -> Self {
         Self { drivers: vec![Driver::default(); count], is_cut: false }
     }

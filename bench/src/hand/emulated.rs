@@ -40,10 +40,8 @@ pub const DELAY_SLOTS: u64 = 8;
 /// Where the chip keeps its number (RM0383, section 24.1).
 const CHIP_AT: u64 = 0x1FFF_7A10;
 
-/// How a hand is run.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Of every noise.
     pub seed: u64,
     /// When it ends, s; the scene's end if that comes first.
     pub until_s: f64,
@@ -71,7 +69,6 @@ impl Default for Options {
     }
 }
 
-/// What a fingertip did.
 #[derive(Clone, Debug, Serialize)]
 pub struct Finger {
     /// Whether the host's build of the logic and of the end of the bus, given what this image was given, says the same.
@@ -90,7 +87,6 @@ pub struct Finger {
     pub instructions_per_s: f64,
 }
 
-/// What a hand did.
 #[derive(Clone, Debug, Serialize)]
 pub struct Outcome {
     pub name: String,
@@ -112,7 +108,6 @@ pub struct Outcome {
 
 impl Outcome {
     /// Whether the images did as the host's build does, and as they promise.
-    #[must_use]
     pub fn holds(&self) -> bool {
         self.fingers.iter().all(|finger| {
             finger.agreement.holds()

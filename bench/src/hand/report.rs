@@ -62,7 +62,6 @@ pub struct Cuts {
     pub untold: usize,
 }
 
-/// All of it.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     pub scenes: Vec<Scene>,
@@ -71,7 +70,6 @@ pub struct Report {
 
 impl Report {
     /// Whether nothing that must never happen did.
-    #[must_use]
     pub fn holds(&self) -> bool {
         let cuts = self.cuts.as_ref().is_none_or(|cuts| cuts.lost + cuts.broken + cuts.untold == 0);
         cuts && self
@@ -82,7 +80,6 @@ impl Report {
 }
 
 /// Runs a scene with these seeds.
-#[must_use]
 pub fn scene(file: &SceneFile, seeds: std::ops::Range<u64>) -> Scene {
     let runs: Vec<(Outcome, Outcome)> = seeds
         .into_par_iter()
@@ -127,7 +124,6 @@ pub fn scene(file: &SceneFile, seeds: std::ops::Range<u64>) -> Scene {
 }
 
 /// Cuts something at a random instant, so many times.
-#[must_use]
 pub fn cuts(files: &[SceneFile], count: u64) -> Cuts {
     let parts: Vec<Cuts> = (0..count)
         .into_par_iter()

@@ -9,12 +9,10 @@ use std::ops::Range;
 use anyhow::{Context, Result};
 use object::{File, Object, ObjectSection, ObjectSymbol, SymbolKind};
 
-/// A function of the image.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Function {
     /// Its name, as the linker knows it.
     pub name: String,
-    /// How long it is.
     pub bytes: u64,
     /// Where its instructions are.
     pub instructions: Vec<u64>,
@@ -26,7 +24,7 @@ pub struct Function {
 
 /// What an instruction does besides going on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Step {
+pub(super) enum Step {
     /// Nothing.
     On,
     /// A branch or a call, so far from the instruction behind it (of 16 bits; of 32, from its second half's end).
@@ -187,7 +185,7 @@ const fn step_narrow(half: u16) -> Step {
 }
 
 /// An instruction of 32 bits.
-const fn step_wide(first: u16, second: u16) -> Step {
+pub(super) const fn step_wide(first: u16, second: u16) -> Step {
     let (a, b) = (first as u32, second as u32);
     let sign = a >> 10 & 1;
     if first >> 11 == 0b11110 && second & 0x8000 != 0 {

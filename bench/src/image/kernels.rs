@@ -51,7 +51,6 @@ pub struct PictureSymbols {
     pub planes: u64,
     /// When the picture was taken, and whether colours are learned.
     pub orders: u64,
-    /// What was seen.
     pub said: u64,
     /// Bytes of the heap that are in use.
     pub heap: u64,
@@ -151,11 +150,9 @@ pub struct KernelSymbols {
     pub frame: Option<[u64; 2]>,
     /// The answer: its features, a half-word each.
     pub features: u64,
-    /// The answer's logit.
     pub logit: u64,
     /// Whether there is a logit.
     pub judged: u64,
-    /// The answer's verdict.
     pub verdict: u64,
 }
 

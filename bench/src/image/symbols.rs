@@ -6,6 +6,8 @@ use std::path::Path;
 use anyhow::{Context, Result, bail, ensure};
 use object::{File, Object, ObjectSection, ObjectSymbol};
 
+use super::calls::{Step, step_wide};
+
 /// The name of the tick of the logic in the image.
 pub(crate) const TICK: &str = "tenax_control_tick";
 /// The name of what gives the logic a command.
@@ -81,29 +83,18 @@ pub(super) fn address_of(file: &File<'_>, name: &str) -> Result<u64> {
         .with_context(|| format!("has no symbol `{name}`"))
 }
 
-/// The addresses behind the calls of `target` in `text`, which begins at `base`.
+/// The addresses behind the calls of `target` in `text`, which begins at `base`: BL, immediate, in encoding T1 (ARMv7-M manual,
+/// A7.7.18).
 fn return_addresses(text: &[u8], base: u64, target: u64) -> Vec<u64> {
     let found = text.windows(4).enumerate().step_by(2).filter_map(|(offset, bytes)| {
         let after = base + offset as u64 + 4;
         let first = u16::from_le_bytes([bytes[0], bytes[1]]);
         let second = u16::from_le_bytes([bytes[2], bytes[3]]);
-        let reached = after.wrapping_add_signed(branch_with_link(first, second)?);
-        (reached == target).then_some(after)
+        let is_call = first >> 11 == 0b11110 && second & 0xD000 == 0xD000;
+        let Step::To(offset) = step_wide(first, second) else { return None };
+        (is_call && after.wrapping_add_signed(offset) == target).then_some(after)
     });
     found.collect()
-}
-
-/// The offset of a BL (immediate) in encoding T1, from the instruction behind it. (ARMv7-M manual, A7.7.18)
-fn branch_with_link(first: u16, second: u16) -> Option<i64> {
-    if first >> 11 != 0b11110 || second & 0xD000 != 0xD000 {
-        return None;
-    }
-    let (first, second) = (u32::from(first), u32::from(second));
-    let sign = first >> 10 & 1;
-    let i1 = !(second >> 13 ^ sign) & 1;
-    let i2 = !(second >> 11 ^ sign) & 1;
-    let magnitude = i1 << 23 | i2 << 22 | (first & 0x3FF) << 12 | (second & 0x7FF) << 1;
-    Some(i64::from(magnitude) - (i64::from(sign) << 24))
 }
 
 #[cfg(test)]
@@ -111,20 +102,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_call_is_told_from_its_encoding() {
-        // `bl .+4` and `bl .` as an assembler writes them.
-        assert_eq!(branch_with_link(0xF000, 0xF800), Some(0));
-        assert_eq!(branch_with_link(0xF7FF, 0xFFFE), Some(-4));
-        // `b.w` is no call.
-        assert_eq!(branch_with_link(0xF000, 0xB800), None);
-        assert_eq!(branch_with_link(0x4770, 0x4770), None);
-    }
-
-    #[test]
     fn every_call_is_found() {
         let call_next = [0x00, 0xF0, 0x00, 0xF8];
         let mut text = call_next.to_vec();
         text.extend([0x70, 0x47]);
+        // `b.w` to the same place is no call.
+        text.extend([0xFF, 0xF7, 0xFD, 0xBF]);
         assert_eq!(return_addresses(&text, 0x100, 0x104), [0x104]);
         assert!(return_addresses(&text, 0x100, 0x200).is_empty());
     }

@@ -26,7 +26,6 @@ pub enum Class {
     LoadsTarget,
 }
 
-/// An instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Instruction {
     pub class: Class,
@@ -197,8 +196,6 @@ pub struct Flash {
 impl Flash {
     /// The STM32F411's at 100 MHz.
     pub const F411: Self = Self { line: 16, kept: [64, 8], waits: 3, ahead: true };
-    /// None: all is there at once.
-    pub const NONE: Self = Self { waits: 0, ..Self::F411 };
 }
 
 /// How much an estimate leaves open.
@@ -206,7 +203,6 @@ impl Flash {
 pub struct Cycles {
     /// Every fetch is served at once and every branch taken refills in one cycle.
     pub least: u64,
-    /// As assumed.
     pub likely: u64,
     /// Every branch taken refills in three, nothing is fetched ahead.
     pub most: u64,
@@ -234,7 +230,6 @@ pub struct Core {
 }
 
 impl Core {
-    /// One whose caches are empty.
     pub fn cold(flash: Flash) -> Self {
         let lines = [Vec::new(), Vec::new()];
         Self { lines, line: u64::MAX, since: 0, before: None, cycles: Cycles::default(), flash }
@@ -360,7 +355,7 @@ mod tests {
     fn loads_that_follow_each_other_overlap_and_a_fresh_address_waits() {
         let (load, add) = (Instruction::of(0x6808, 0), Instruction::of(0x1849, 0));
         let run = |all: &[Instruction]| {
-            let mut core = Core::cold(Flash::NONE);
+            let mut core = Core::cold(Flash { waits: 0, ..Flash::F411 });
             for (n, own) in all.iter().enumerate() {
                 core.execute(2 * n as u64, *own, (2 * n as u64 + 2, None));
             }

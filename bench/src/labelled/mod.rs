@@ -10,7 +10,6 @@ mod read;
 pub mod recipe;
 pub mod resample;
 
-use std::collections::BTreeSet;
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
@@ -25,7 +24,6 @@ pub use recipe::ArrayRecipe;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Part {
-    /// To learn from.
     Train,
     /// To choose by: when to stop, and the threshold.
     Validation,
@@ -60,14 +58,12 @@ impl FromStr for Part {
 pub struct Step {
     /// The ten elements, 14-bit samples, 0 to [`SAMPLE_MAX`](tenax_hal_shim::channel::SAMPLE_MAX).
     pub samples: [u16; ARRAY_COUNT],
-    /// Whether the object slipped.
     pub slip: bool,
 }
 
 /// A recording without a gap.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
-    /// What it is called.
     pub name: String,
     /// What it shares with others that it must not be told apart from: a session or an object. Never in two parts.
     pub session: String,
@@ -102,10 +98,4 @@ impl Recording {
             exact: false,
         }
     }
-}
-
-/// The sessions of recordings, in order.
-pub fn sessions(recordings: &[Recording]) -> Vec<String> {
-    let set: BTreeSet<&str> = recordings.iter().map(|recording| recording.session.as_str()).collect();
-    set.into_iter().map(str::to_owned).collect()
 }

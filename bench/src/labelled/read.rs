@@ -69,7 +69,6 @@ struct About {
     doing: Doing,
 }
 
-/// A row, understood.
 struct Row {
     about: About,
     t_s: Option<f64>,

@@ -19,12 +19,9 @@ pub struct ArrayRecipe {
     /// Names of the files that it is taken for when no recipe is given; `*` and `?` match as in a shell.
     #[serde(default)]
     pub applies_to: Vec<Spanned<String>>,
-    /// Which columns are the array.
     pub array: Array,
-    /// Which columns tell recordings apart.
     #[serde(default)]
     pub recordings: Recordings,
-    /// Where it slipped.
     pub labels: Labels,
     /// What the network is to be shown.
     #[serde(default)]

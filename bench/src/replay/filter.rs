@@ -9,9 +9,7 @@ pub struct Filter(DirectForm2Transposed<f64>);
 /// Which side of the corner passes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pass {
-    /// Below it.
     Low,
-    /// Above it.
     High,
 }
 

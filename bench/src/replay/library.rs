@@ -6,23 +6,18 @@ use anyhow::{Context, Result};
 
 use super::recipe::Time;
 use super::{Recipe, Recording};
-use crate::recipe::{Kind, Named, RecipeError};
+use crate::recipe::{Kind, Named};
 
 /// Reads a recording, and gives the recipe to play it with: the one that was asked for, by file or by name; else the one that its name
 /// calls for, unless its columns already are channels.
 pub fn read(path: &Path, asked: Option<&str>) -> Result<(Recording, Option<Named<Recipe>>)> {
     let named = match asked {
         Some(asked) => Some(Recipe::asked(asked)?),
-        None => for_recording(path).context("in a recipe of the repository")?,
+        None => Recipe::for_file(path).context("in a recipe of the repository")?,
     };
     let time = named.as_ref().map_or_else(Time::default, |named| named.recipe.time.clone());
     let recording = Recording::read(path, &time)?;
     let is_channel = |column: &str| tenax_hal_shim::channel::by_name(column).is_some();
     let is_plain = asked.is_none() && recording.signals().all(is_channel);
     Ok((recording, named.filter(|_| !is_plain)))
-}
-
-/// The repository's recipe for a recording of this name, if there is one.
-pub fn for_recording(path: &Path) -> Result<Option<Named<Recipe>>, RecipeError> {
-    Recipe::for_file(path)
 }

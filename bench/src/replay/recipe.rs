@@ -20,7 +20,6 @@ pub struct Recipe {
     /// Names of the recordings that it is taken for when no recipe is given; `*` and `?` match as in a shell.
     #[serde(default)]
     pub applies_to: Vec<Spanned<String>>,
-    /// The recording's clock.
     #[serde(default)]
     pub time: Time,
     /// How long the first row is held before the recording begins, s: the fingertip's filters and baselines settle in it.
@@ -79,7 +78,6 @@ impl TimeUnit {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Map {
-    /// The recording's column.
     pub column: String,
     /// The channels that hear it.
     pub channels: Vec<Spanned<String>>,
@@ -111,7 +109,6 @@ pub enum RemoveOffset {
     Mean,
     /// Its mean over the first seconds.
     MeanOfFirstS(f64),
-    /// A number.
     Value(f64),
 }
 
@@ -139,7 +136,6 @@ pub struct ForceMap {
 pub struct Hold {
     /// A constant load on the force sensor.
     pub force: Option<Spanned<HoldForce>>,
-    /// Constant voltages at pins.
     #[serde(default)]
     pub pins: Vec<HoldPins>,
 }
@@ -148,7 +144,6 @@ pub struct Hold {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HoldForce {
-    /// Normal force, N.
     pub normal_n: f64,
     /// Shear along x, N.
     #[serde(default)]
@@ -168,7 +163,6 @@ pub struct HoldForce {
 #[serde(deny_unknown_fields)]
 pub struct HoldPins {
     pub channels: Vec<Spanned<String>>,
-    /// The voltage, V.
     pub volts: Spanned<f64>,
     /// Why this may be assumed.
     pub why: String,

@@ -28,7 +28,6 @@ impl Grid {
         }
     }
 
-    /// Instants a second.
     pub fn rate_hz(&self) -> f64 {
         f64::from(SCAN_HZ) * self.per_scan as f64
     }

@@ -5,7 +5,6 @@ use tenax_hal_shim::wire::{Event, EventKind};
 
 use crate::timeline::Timeline;
 
-/// One behaviour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Ran {
     pub name: &'static str,
@@ -16,7 +15,6 @@ pub struct Ran {
     pub ending: Option<&'static str>,
 }
 
-/// All of them, in order.
 pub fn of(events: &[Event], timeline: &Timeline) -> Vec<Ran> {
     let mut all: Vec<Ran> = Vec::new();
     for event in events {

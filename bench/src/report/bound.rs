@@ -12,7 +12,6 @@ pub const SAME_MM: f64 = 0.02;
 /// bound is wrong.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Bound {
-    /// Whether it kept the object.
     pub kept: Option<bool>,
     /// How far the object slid, mm.
     pub distance_mm: Option<f64>,
@@ -26,7 +25,6 @@ pub struct Bound {
 }
 
 impl Bound {
-    /// Compares.
     pub fn of(run: Option<&Fate>, bound: Option<&Fate>) -> Self {
         let (Some(run), Some(bound)) = (run, bound) else {
             return Self::default();
@@ -54,7 +52,6 @@ pub struct Control {
     pub name: String,
     /// How far the object slid, mm.
     pub distance_mm: f64,
-    /// The greatest grip force, N.
     pub peak_force_n: Option<f64>,
     /// The mean grip force while the hand carried the object, N.
     pub mean_force_n: Option<f64>,
@@ -65,7 +62,6 @@ pub struct Control {
 }
 
 impl Control {
-    /// Of a run.
     pub fn of(name: &str, fate: &Fate) -> Self {
         Self {
             name: name.to_owned(),

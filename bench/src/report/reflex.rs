@@ -22,7 +22,6 @@ pub struct Reflex {
 }
 
 impl Reflex {
-    /// Judges a run.
     pub fn of(added: &Added, timeline: &Timeline, events: &[Event], truth: Option<&Fate>) -> Self {
         let pulses = events.iter().filter_map(|event| match event.kind {
             EventKind::Mode { to: GripMode::Slip | GripMode::Incipient, .. } => {
@@ -50,14 +49,12 @@ pub struct Margin {
 }
 
 impl Margin {
-    /// Of a run.
     pub fn of(truth: Option<&Fate>) -> Self {
         let margin_mn = truth.and_then(|truth| truth.margin_n).map(|both| both.map(|n| n * 1e3));
         Self { least_mn: margin_mn.map(|[least, _]| least), last_mn: margin_mn.map(|[_, last]| last) }
     }
 }
 
-/// What became of the object.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Object {
     /// Whether the hand still had it, or let it go on purpose. Null where nobody knows.
@@ -71,7 +68,6 @@ pub struct Object {
 }
 
 impl Object {
-    /// Judges a run.
     pub fn of(truth: Option<&Fate>) -> Self {
         Self {
             kept: truth.map(Fate::kept),

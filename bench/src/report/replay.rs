@@ -18,7 +18,6 @@ use crate::timeline::{Timeline, frame_end_s};
 /// The recording's part of a report. Times are the recording's own.
 #[derive(Clone, Debug, Serialize)]
 pub struct Replay {
-    /// The file.
     pub recording: String,
     /// The recipe's name or file. Null where the columns were channels already.
     pub recipe: Option<String>,

@@ -17,7 +17,6 @@ pub struct Slip {
     pub micro_onset_s: Option<f64>,
     /// When all of it did, s.
     pub macro_onset_s: Option<f64>,
-    /// Whether any detector caught it.
     pub caught: Option<bool>,
     /// Detection minus macro onset, ms: negative is early.
     pub latency_ms: Option<f64>,
@@ -33,7 +32,6 @@ pub struct Slip {
 const WARNS: [DetectorId; 1] = [DetectorId::S2];
 
 impl Slip {
-    /// Scores a run.
     pub fn of(timeline: &Timeline, truth: Option<&Fate>) -> Self {
         let Some(truth) = truth else {
             return Self::default();
@@ -66,7 +64,6 @@ impl Slip {
     }
 }
 
-/// One detector's part.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Detector {
     /// When it was first believed, s.
@@ -90,18 +87,15 @@ pub struct Detector {
 pub struct Gate {
     /// When a muscle first became active, s.
     pub first_s: Option<f64>,
-    /// How often one did.
     pub detections: usize,
     /// Never known.
     pub false_alarms: Option<usize>,
 }
 
-/// Every detector's.
 #[derive(Clone, Debug, Default)]
 pub struct Detectors {
     /// Those of slip.
     pub all: Vec<(DetectorId, Detector)>,
-    /// The wearer's muscles.
     pub wearer: Gate,
 }
 
@@ -117,7 +111,6 @@ impl Serialize for Detectors {
 }
 
 impl Detectors {
-    /// Scores a run.
     pub fn of(timeline: &Timeline, events: &[Event], truth: Option<&Fate>) -> Self {
         let wearer = timeline.wearer(events);
         Self {

@@ -8,7 +8,6 @@ use super::replay::{Force, Meant, Muscle, Replay};
 use super::scores::Detector;
 use super::{CYCLES_PER_INSTRUCTION, Report};
 
-/// Prints as text.
 #[derive(Clone, Copy, Debug)]
 pub struct Text<'a>(pub &'a Report);
 

@@ -218,7 +218,6 @@ impl Recorder for Judge {
 }
 
 impl Judge {
-    /// A frame is whole.
     fn frame(&mut self, opens: bool) {
         let frame = self.frames;
         self.frames += 1;

@@ -49,7 +49,6 @@ impl Serialize for Doing {
     }
 }
 
-/// A stretch of one doing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretch {
     pub from_s: f64,

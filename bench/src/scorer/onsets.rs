@@ -10,7 +10,6 @@ use tenax_hal_shim::channel::SLOW_HZ;
 
 use super::SlipSpan;
 
-/// A step, s.
 const STEP_S: f64 = 1.0 / SLOW_HZ as f64;
 
 /// Slips as text; nothing for none.

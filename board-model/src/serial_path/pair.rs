@@ -27,7 +27,6 @@ use super::Lane;
 /// The two models.
 #[derive(Debug)]
 pub struct Pair {
-    /// The serial port.
     pub port: Usart,
     dma: Dma,
     bus: Bus,
@@ -48,7 +47,6 @@ struct Carried {
 #[derive(Clone, Copy, Debug)]
 pub struct Stored {
     pub address: u64,
-    /// How wide.
     pub width: Width,
     pub value: u64,
 }

@@ -65,7 +65,6 @@ pub struct Restored {
 
 impl Restored {
     /// The message of a record; None if it has more bytes than [`KEPT_MAX`].
-    #[must_use]
     pub fn of(kept: Kept, payload: &[u8]) -> Option<Self> {
         Some(Self { kept, payload: Vec::from_slice(payload).ok()? })
     }

@@ -80,7 +80,6 @@ pub enum Down {
 
 impl Down {
     /// Whether it only reads: answered without session and consent.
-    #[must_use]
     pub const fn reads(&self) -> bool {
         matches!(
             self,

@@ -58,7 +58,6 @@ impl Default for Receiver {
 
 impl Receiver {
     /// A receiver without any bytes.
-    #[must_use]
     pub const fn new() -> Self {
         Self { buffer: [0; FRAME_MAX], length: 0, overlong: false }
     }

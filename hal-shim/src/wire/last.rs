@@ -29,7 +29,6 @@ pub struct Last {
 
 impl Last {
     /// An answer without messages.
-    #[must_use]
     pub const fn nothing(from: u16) -> Self {
         Self { after: None, why: Vec::new(), length: 0, from, bytes: Vec::new() }
     }

@@ -54,7 +54,6 @@ impl Raw {
     }
 
     /// The frames.
-    #[must_use]
     pub fn frames(&self) -> [Frame; FRAMES_PER_RAW] {
         core::array::from_fn(|place| unpack(self.first.wrapping_add(place as u32), &self.frames[place].0))
     }

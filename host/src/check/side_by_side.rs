@@ -15,7 +15,6 @@ pub struct Group<'a, T> {
 }
 
 impl<'a, T> Group<'a, T> {
-    /// A group.
     pub fn new(name: impl Into<String>, measure: impl Fn() -> Result<T> + Sync + 'a) -> Self {
         Self { name: name.into(), measure: Box::new(measure) }
     }

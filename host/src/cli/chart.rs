@@ -37,8 +37,6 @@ pub struct Args {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Subject {
-    /// What the scenes' sensors say at the onset of slip, beside real recordings where they are present
-    Sensors,
     /// How the force array's network does against each quantity that sessions draw: where the method fails
     Array,
     /// What each grip pays in newtons beyond need for what it saves in millimetres: the hand, each detector alone, all but each, no
@@ -61,10 +59,6 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         Subject::Front => {
             let front = with_bar("front", |progress| chart::front::front(progress))?;
             vec![front, with_bar("delay", |progress| chart::delay::map(progress))?]
-        }
-        Subject::Sensors => {
-            let recordings = workspace::root()?.join(RECORDINGS);
-            vec![with_bar("sensors", |progress| chart::sensors::chart(&recordings, progress))?]
         }
         Subject::Vision => {
             let folder = workspace::root()?.join(RECORDINGS).join("fingervision");

@@ -3,21 +3,19 @@
 use std::fmt::Write;
 use std::process::ExitCode;
 
-use clap::{Arg, Command};
+use clap::Command;
 
 use super::out;
 
 const HEAD: &str = "\
 # Commands
 
-Printed from the tool's own help by `cargo tenax commands`; do not edit. `--help` behind any of them says what its options mean and
-gives examples.
+This page lists what `cargo tenax` can do. `--help` behind a command gives its options and examples. Printed by `cargo tenax commands`; do not edit.
 
-| command | what it does | options |
-|---|---|---|
+| command | what it does |
+|---|---|
 ";
 
-/// Prints the page.
 pub fn main(cli: &Command) -> anyhow::Result<ExitCode> {
     out::print(format_args!("{}", markdown(cli)))?;
     Ok(ExitCode::SUCCESS)
@@ -35,14 +33,8 @@ fn markdown(cli: &Command) -> String {
 fn row(page: &mut String, before: &str, command: &Command) {
     let name = format!("{before}{}", command.get_name());
     let about = command.get_about().map(ToString::to_string).unwrap_or_default().replace('|', "or");
-    let flag = |arg: &Arg| match arg.get_long() {
-        Some(long) => Some(format!("`--{long}`")),
-        None => arg.get_value_names().map(|names| format!("`{}`", names.join(" "))),
-    };
-    let shown = command.get_arguments().filter(|arg| !arg.is_hide_set() && !arg.is_global_set());
-    let options: Vec<String> = shown.filter_map(flag).map(|flag| flag.replace('|', "/")).collect();
     // Writing into a String cannot fail.
-    let _ = writeln!(page, "| `{name}` | {about} | {} |", options.join(", "));
+    let _ = writeln!(page, "| `{name}` | {about} |");
     for own in command.get_subcommands() {
         row(page, &format!("{name} "), own);
     }

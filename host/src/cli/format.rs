@@ -8,7 +8,6 @@ use serde_json::{Map, Value};
 
 use super::out;
 
-/// The two ways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Format {
     /// For people

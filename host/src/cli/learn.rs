@@ -7,9 +7,6 @@ use std::sync::{Mutex, PoisonError};
 
 use anyhow::{Context, ensure};
 
-use tenax_hal_shim::wire::Setting;
-use tenax_logic::setting::SettingId;
-
 use super::format::Format;
 use super::out;
 use super::progress::Progress;
@@ -46,12 +43,6 @@ pub struct Args {
     /// Number of random fingertips that learn the same way
     #[arg(long, value_name = "N", default_value_t = Options::default().fingertips)]
     fingertips: u64,
-    /// Simulate films without mains hum: the upper bound for hum removal
-    #[arg(long)]
-    without_hum: bool,
-    /// A setting of the fingertips (docs/settings.md), on the host only; may be given more than once
-    #[arg(long, value_name = "NAME=VALUE", requires = "host")]
-    set: Vec<String>,
     /// Seed of all random numbers
     #[arg(long, default_value_t = Options::default().seed)]
     seed: u64,
@@ -73,8 +64,6 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         lifts: args.lifts,
         fingertips: args.fingertips,
         controls: true,
-        without_hum: args.without_hum,
-        settings: args.set.iter().map(|text| setting(text)).collect::<anyhow::Result<_>>()?,
     };
     let counts = [
         ("trials", options.trials),
@@ -96,16 +85,6 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let agrees = outcome.agreement.as_ref().is_none_or(Agreement::holds);
     Ok(if agrees { ExitCode::SUCCESS } else { ExitCode::FAILURE })
-}
-
-/// A setting by its name.
-fn setting(text: &str) -> anyhow::Result<Setting> {
-    let (name, value) =
-        text.split_once('=').with_context(|| format!("--set {text}: NAME=VALUE is needed"))?;
-    let id =
-        SettingId::by_name(name).with_context(|| format!("--set {text}: no setting is called {name}"))?;
-    let value = value.parse().with_context(|| format!("--set {text}: {value} is no whole number"))?;
-    Ok(Setting { id: id.number(), value })
 }
 
 /// All of it, with a bar for each part.

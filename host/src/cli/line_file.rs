@@ -16,7 +16,6 @@ pub struct LineFile {
 }
 
 impl LineFile {
-    /// Nothing yet.
     pub fn new(path: PathBuf) -> Self {
         Self { path, file: None }
     }

@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
+use crate::selftest::FAULTS;
 use crate::serving::Serving;
 use crate::tool::tenax;
 
@@ -116,20 +117,7 @@ fn start(web: &Web, path: &str) {
 
 #[test]
 fn the_page_names_exchanged_and_dead_wires_as_the_terminal_does() {
-    let faults = "
-[[fault]]
-at_s = 0
-channel = \"array_2\"
-kind = \"swapped\"
-with = \"array_3\"
-reason = \"a test\"
-[[fault]]
-at_s = 0
-channel = \"fsr_b\"
-kind = \"dead\"
-reason = \"a test\"
-";
-    let (mut served, web) = bench(faults);
+    let (mut served, web) = bench(FAULTS);
     web.until("a bench", |event| event["bench"].is_array());
     assert_eq!(web.post("/selftest/skip").0, 409);
     start(&web, "/selftest/start/fsr/array_2/array_3");

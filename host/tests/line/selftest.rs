@@ -5,6 +5,21 @@ use std::process::{Command, Stdio};
 
 use crate::serving::Serving;
 
+/// Two wires exchanged, and a third cut.
+pub const FAULTS: &str = "
+[[fault]]
+at_s = 0
+channel = \"array_2\"
+kind = \"swapped\"
+with = \"array_3\"
+reason = \"a test\"
+[[fault]]
+at_s = 0
+channel = \"fsr_b\"
+kind = \"dead\"
+reason = \"a test\"
+";
+
 /// Runs the command on the bench with these faults; whether all pass, and all that it said.
 fn selftest(faults: &str, channels: &[&str]) -> (bool, String) {
     let bench = include_str!("../../../scenes/parts/bench.toml");
@@ -29,20 +44,7 @@ fn selftest(faults: &str, channels: &[&str]) -> (bool, String) {
 
 #[test]
 fn exchanged_and_dead_wires_are_named_with_their_inputs() {
-    let faults = "
-[[fault]]
-at_s = 0
-channel = \"array_2\"
-kind = \"swapped\"
-with = \"array_3\"
-reason = \"a test\"
-[[fault]]
-at_s = 0
-channel = \"fsr_b\"
-kind = \"dead\"
-reason = \"a test\"
-";
-    let (passes, said) = selftest(faults, &["pvdf_1", "fsr", "array_2", "array_3", "opening"]);
+    let (passes, said) = selftest(FAULTS, &["pvdf_1", "fsr", "array_2", "array_3", "opening"]);
     assert!(said.contains("array_2 (switch B, 1) and array_3 (switch B, 2): exchange their wires"));
     assert!(said.contains("fsr_b (switch A, 13): 0 mV: a cut wire"));
     assert!(!passes && said.ends_with("5 of 8 channels pass\n"));

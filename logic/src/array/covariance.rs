@@ -67,7 +67,6 @@ impl<const N: usize> SlidingCovariance<N> {
     }
 
     /// The entries on and above the diagonal, row by row: (1,1), (1,2) .. (1,10), (2,2) .. (10,10).
-    #[must_use]
     pub fn entries(&self) -> &[i32; COVARIANCES] {
         &self.entries
     }

@@ -93,7 +93,6 @@ impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const
     ArrayDetector<'m, H1, L, H2, N, M>
 {
     /// A detector without readings.
-    #[must_use]
     pub fn new(model: &'m Model<H1, L, H2, N, M>) -> Self {
         Self {
             model,
@@ -162,19 +161,16 @@ impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const
     }
 
     /// The network's logit of the last slow frame. None without features.
-    #[must_use]
     pub fn logit(&self) -> Option<i32> {
         self.logit
     }
 
     /// The last features. Invalid while [`logit`](Self::logit) is None.
-    #[must_use]
     pub fn features(&self) -> &Features {
         self.preprocessor.features()
     }
 
     /// The last verdict.
-    #[must_use]
     pub fn verdict(&self) -> ArrayVerdict {
         self.verdict
     }

@@ -46,7 +46,6 @@ pub struct Pair(u32);
 
 impl Pair {
     /// A pair of two numbers.
-    #[must_use]
     #[inline]
     pub const fn new(first: i16, second: i16) -> Self {
         Self(first as u16 as u32 | (second as u16 as u32) << 16)

@@ -18,7 +18,6 @@ pub struct Knee {
 
 impl Knee {
     /// At `value`, in the unit of what it is used on; 0 is taken as 1.
-    #[must_use]
     pub const fn at(value: u32) -> Self {
         let value = if value == 0 { 1.0 } else { value as f32 };
         Self { value, bits: value.to_bits() as i32 }

@@ -78,7 +78,6 @@ impl Default for Preprocessor {
 
 impl<const N: usize, const M: usize> Preprocessor<N, M> {
     /// A preprocessor without readings.
-    #[must_use]
     pub fn new(config: PreprocessorConfig) -> Self {
         let lag = usize::from(config.lag).clamp(1, LAG_MAX);
         Self {
@@ -149,19 +148,16 @@ impl<const N: usize, const M: usize> Preprocessor<N, M> {
     }
 
     /// The last features that [`push`](Self::push) gave.
-    #[must_use]
     pub fn features(&self) -> &Features {
         &self.features
     }
 
     /// The covariances behind the last features, samples^2.
-    #[must_use]
     pub fn covariance(&self) -> &SlidingCovariance<N> {
         &self.covariance
     }
 
     /// The spectrum behind the last features.
-    #[must_use]
     pub fn spectrum(&self) -> &SlidingSpectrum<M> {
         &self.spectrum
     }

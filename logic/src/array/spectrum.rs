@@ -95,7 +95,6 @@ impl<const M: usize> SlidingSpectrum<M> {
     /// Squared magnitudes, in the square of the sums' unit: `|sum over n of s_n exp(-2 pi i k n / M)|^2`.
     ///
     /// Real and imaginary part are rounded down to the sums' unit, and the squares to 24 bits, on every machine alike.
-    #[must_use]
     #[inline]
     pub fn powers(&self) -> [f32; BINS] {
         self.bins.map(|[re, im]| {

@@ -122,14 +122,12 @@ impl Structure {
     }
 
     /// For each lag, the newest window first: `n` times the sum over the window of squares about their mean, samples^2.
-    #[must_use]
     pub fn sums(&self) -> &[[u32; WINDOWS]; LAGS.len()] {
         &self.sums
     }
 
     /// The quiet level: the least that the sum of the shortest lag's oldest window was, slowly forgotten. As large as can be
     /// before that window was full.
-    #[must_use]
     pub const fn quiet(&self) -> u32 {
         self.quiet
     }

@@ -35,7 +35,6 @@ impl Taxels {
     }
 
     /// The last reading of every element.
-    #[must_use]
     pub const fn reading(&self) -> &Reading {
         &self.reading
     }

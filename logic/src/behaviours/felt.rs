@@ -54,7 +54,6 @@ pub enum Skin {
 
 impl Skin {
     /// The present readings. None if no skin gives valid readings.
-    #[must_use]
     pub fn now(felt: &Felt<'_>) -> Option<Self> {
         if let Some(view) = felt.view {
             return Some(Self::Markers {
@@ -127,7 +126,6 @@ impl Skin {
 impl Felt<'_> {
     /// Whether the skin may feel something new: a picture came, or a cycle of the taxels is over. In between nobody needs to look at
     /// every cell.
-    #[must_use]
     pub const fn skin_is_new(&self) -> bool {
         self.view_is_new || self.cycle_is_over
     }

@@ -63,13 +63,11 @@ impl SettingId {
     };
 
     /// The setting with this number. None: there is no such setting.
-    #[must_use]
     pub fn from_number(number: u8) -> Option<Self> {
         Self::ALL.into_iter().find(|id| id.number() == number)
     }
 
     /// The setting with this name, or with one that it had before.
-    #[must_use]
     pub fn by_name(name: &str) -> Option<Self> {
         let mut all = ROWS.iter().map(|row| (row.name, row.id)).chain(BEFORE);
         all.find(|(own, _)| *own == name).map(|(_, id)| id)

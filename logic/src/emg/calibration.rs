@@ -126,7 +126,6 @@ pub struct Calibration {
 
 impl Calibration {
     /// Begins with the first prompt at this frame.
-    #[must_use]
     pub fn begin(frame: u32) -> Self {
         Self { began: frame, phases: [Phase::default(); 3], over: None }
     }

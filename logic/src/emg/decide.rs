@@ -146,13 +146,11 @@ pub struct Decide {
 
 impl Decide {
     /// A decision for this calibrated wearer; None: not calibrated.
-    #[must_use]
     pub fn new(model: Option<&EmgModel>) -> Self {
         Self::with(&FITTED, model)
     }
 
     /// With other constants, to fit them.
-    #[must_use]
     pub fn with(fitted: &'static Fitted, model: Option<&EmgModel>) -> Self {
         Self {
             fitted,
@@ -180,13 +178,11 @@ impl Decide {
     }
 
     /// The present wish.
-    #[must_use]
     pub const fn wish(&self) -> Wish {
         self.wish
     }
 
     /// The electrode whose contraction is wished; at rest the opening one.
-    #[must_use]
     pub fn mover(&self) -> usize {
         let site = usize::from(self.wish != Wish::Close);
         // The compiler is to see that it is one of two, here and below.
@@ -195,7 +191,6 @@ impl Decide {
 
     /// Rest level of the other electrode, and its least rise with the present wish, Q10 octaves. None for a wearer whose other
     /// electrode hardly rises.
-    #[must_use]
     pub fn hears(&self) -> Option<[i32; 2]> {
         let site = usize::from(self.wish != Wish::Close);
         match &self.sites {
@@ -205,7 +200,6 @@ impl Decide {
     }
 
     /// Strength of the last wish, 0 to 1000 per mille: for the speed.
-    #[must_use]
     pub fn strength_permille(&self) -> u16 {
         let f = self.fitted;
         let site = match self.wish {

@@ -96,7 +96,6 @@ impl Watch {
     }
 
     /// The last judgement.
-    #[must_use]
     pub const fn fit(&self) -> Fit {
         self.fit
     }

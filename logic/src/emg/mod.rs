@@ -82,13 +82,11 @@ impl Default for Emg {
 
 impl Emg {
     /// Recognition for a calibrated wearer; None: only very clear contractions move the hand.
-    #[must_use]
     pub fn new(model: Option<&EmgModel>) -> Self {
         Self::of(Decide::new(model))
     }
 
     /// Recognition with another decision, to fit its constants.
-    #[must_use]
     pub fn of(decide: Decide) -> Self {
         Self {
             decide,
@@ -169,7 +167,6 @@ impl Emg {
     }
 
     /// The level of each electrode of the last 0.1 s, flexor first.
-    #[must_use]
     pub fn levels(&self) -> Point {
         self.proof.levels()
     }
@@ -189,13 +186,11 @@ impl Emg {
     }
 
     /// The last verdict.
-    #[must_use]
     pub const fn verdict(&self) -> Verdict {
         self.verdict
     }
 
     /// Both electrodes as they were decided on, flexor first: for who fits what follows from them.
-    #[must_use]
     pub const fn electrodes(&self) -> [Electrode; 2] {
         self.electrodes
     }

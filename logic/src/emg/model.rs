@@ -109,51 +109,43 @@ impl EmgModel {
     }
 
     /// The electrode that is relatively stronger when the wearer closes: 0 the flexor's, 1 the extensor's.
-    #[must_use]
     pub const fn closing_site(&self) -> usize {
         let [close, open] = [self.close[1] - self.close[0], self.open[1] - self.open[0]];
         if open >= close { 0 } else { 1 }
     }
 
     /// The electrode of the opening contraction: 0 the flexor's, 1 the extensor's.
-    #[must_use]
     pub const fn opening_site(&self) -> usize {
         1 - self.closing_site()
     }
 
     /// Levels at rest.
-    #[must_use]
     pub const fn rest(&self) -> Point {
         self.rest
     }
 
     /// Levels of the contraction that closes.
-    #[must_use]
     pub const fn close(&self) -> Point {
         self.close
     }
 
     /// Levels of the contraction that opens.
-    #[must_use]
     pub const fn open(&self) -> Point {
         self.open
     }
 
     /// Standard deviation at rest.
-    #[must_use]
     pub const fn spread(&self) -> Point {
         self.spread
     }
 
     /// How well the three states separate: the smallest distance of two of them, in thousandths of their common
     /// standard deviation. From 2200 a calibration is taken; nearly all recordings have 4000 and more.
-    #[must_use]
     pub const fn separation_permille(&self) -> i32 {
         self.separation_permille
     }
 
     /// The words to save.
-    #[must_use]
     pub const fn to_words(&self) -> [i32; MODEL_WORDS] {
         let Self { rest, close, open, spread, separation_permille } = self;
         [

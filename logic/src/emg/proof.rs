@@ -239,7 +239,6 @@ impl Proof {
     }
 
     /// The highest level of each electrode in the block that is under way.
-    #[must_use]
     pub fn levels(&self) -> Point {
         self.blocks.map(|[.., now]| now.into())
     }

@@ -271,25 +271,21 @@ impl Trust {
     }
 
     /// Its quality.
-    #[must_use]
     pub fn quality(&self) -> Quality {
         self.lost.unwrap_or_default()
     }
 
     /// Whether it is taken for a muscle's.
-    #[must_use]
     pub fn is_good(&self) -> bool {
         self.lost.is_none()
     }
 
     /// Whether the envelope has been constant for 0.2 s.
-    #[must_use]
     pub const fn is_still(&self) -> bool {
         self.flat >= FLAT_FRAMES / 5
     }
 
     /// Whether the electrode is doubted because its envelope is constant: its level then counts as hum.
-    #[must_use]
     pub fn hums(&self) -> bool {
         matches!(self.lost, Some(Quality::Flat | Quality::Hum)) && self.flat >= FLAT_FRAMES
     }
@@ -303,31 +299,26 @@ impl Trust {
     }
 
     /// Whether a contraction has turned as a muscle does.
-    #[must_use]
     pub const fn has_turned(&self) -> bool {
         self.proofs >= 1
     }
 
     /// Whether it has done so twice: one jump from a fault to another turns once.
-    #[must_use]
     pub const fn has_turned_twice(&self) -> bool {
         self.proofs >= 2
     }
 
     /// Whether it may still be a muscle's: not doubted, nor at the top of its range for 0.5 s, nor standing still for 0.6 s.
-    #[must_use]
     pub const fn is_sound(&self) -> bool {
         self.lost.is_none() && self.at_top < TOP_FRAMES / 3 && self.flat < 3 * FLAT_FRAMES / 5
     }
 
     /// Whether it has climbed for 1 s without a turn.
-    #[must_use]
     pub const fn is_straight(&self) -> bool {
         self.climbing >= PROOF_LASTS && self.since_proof >= PROOF_LASTS
     }
 
     /// The last 64 readings, one a slow frame, 128 uV a unit, if the window is full, for [`mains_of`](super::mains::mains_of).
-    #[must_use]
     pub fn window(&self) -> Option<&[i16; WINDOW]> {
         (usize::from(self.filled) == WINDOW).then_some(&self.window)
     }

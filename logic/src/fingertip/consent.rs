@@ -26,7 +26,6 @@ impl Fingertip {
     }
 
     /// The commands that the serial line may give.
-    #[must_use]
     pub fn line(&self) -> Line {
         self.arming.line(self.config.line_trusted)
     }
@@ -68,7 +67,6 @@ impl Fingertip {
     }
 
     /// Whether the light at the hand is on: [`Muscles::light`](crate::muscles::Muscles::light).
-    #[must_use]
     pub fn light(&self) -> bool {
         self.senses.muscles().light(self.journal.frame())
     }

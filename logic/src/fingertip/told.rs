@@ -15,7 +15,6 @@ use crate::vibration::Q;
 
 impl Fingertip {
     /// The configuration in force.
-    #[must_use]
     pub const fn config(&self) -> &Config {
         &self.config
     }
@@ -26,13 +25,11 @@ impl Fingertip {
     }
 
     /// Whether the last tick ended a slow frame that was not taken yet.
-    #[must_use]
     pub const fn has_slow(&self) -> bool {
         self.slow.is_some()
     }
 
     /// Whether an event waits.
-    #[must_use]
     pub fn has_event(&self) -> bool {
         self.journal.has_event()
     }
@@ -43,25 +40,21 @@ impl Fingertip {
     }
 
     /// Sequence number of the last frame taken.
-    #[must_use]
     pub const fn frame(&self) -> u32 {
         self.journal.frame()
     }
 
     /// The vibration envelope of each film, samples (14 bits).
-    #[must_use]
     pub fn films(&self) -> [u16; PVDF_COUNT] {
         self.senses.envelopes().map(|envelope| u16::try_from(envelope >> Q).unwrap_or(u16::MAX))
     }
 
     /// The detectors that report slip, believed or not.
-    #[must_use]
     pub const fn slip(&self) -> DetectorSet {
         self.detectors.slip()
     }
 
     /// The detectors that warn of slip, believed or not.
-    #[must_use]
     pub const fn incipient(&self) -> DetectorSet {
         self.detectors.incipient()
     }
@@ -75,33 +68,28 @@ impl Fingertip {
     }
 
     /// Mode of the reflex.
-    #[must_use]
     pub const fn mode(&self) -> GripMode {
         self.mode
     }
 
     /// Whether a myosensor is active, its hold time included.
-    #[must_use]
     pub const fn wearer_active(&self) -> bool {
         self.senses.gate.is_active()
     }
 
     /// Whether the wearer renews the blind budget: a muscle with a healthy myosensor is active, or the button opens the hand.
     /// A lost myosensor counts as active, but renews nothing.
-    #[must_use]
     pub fn wearer_renews(&self) -> bool {
         let gate = &self.senses.gate;
         gate.is_active() && (gate.is_known() || gate.is_releasing() || self.senses.muscles().is_heard())
     }
 
     /// The Hebbian network's weights, with the maxima of its inputs.
-    #[must_use]
     pub fn learned(&self) -> Learned {
         self.detectors.hebbian.learned()
     }
 
     /// State of the network for telemetry.
-    #[must_use]
     pub fn network(&self) -> NetworkState {
         self.detectors.hebbian.state(self.journal.frame())
     }

@@ -183,13 +183,11 @@ impl FrictionDetector {
     }
 
     /// The ratio at which the object slid in this grasp, per mille, until slip is reported again. None: it has not slid.
-    #[must_use]
     pub const fn slid_permille(&self) -> Option<u16> {
         self.slid
     }
 
     /// The last Ft/Fn, per mille, None while there is none.
-    #[must_use]
     pub const fn ratio_permille(&self) -> Option<u16> {
         self.ratio_permille
     }

@@ -50,7 +50,6 @@ impl ForceSensor {
     }
 
     /// The quadrant (0 to 3) whose reading contradicts the other three. None if none does.
-    #[must_use]
     pub fn blamed(&self) -> Option<usize> {
         self.drift.blamed()
     }
@@ -91,7 +90,6 @@ impl ForceSensor {
     }
 
     /// The zeros, uV above rest.
-    #[must_use]
     pub const fn zero_uv(&self) -> &[i32; FSR_COUNT] {
         &self.zero_uv
     }

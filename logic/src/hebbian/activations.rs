@@ -40,13 +40,11 @@ impl<const N: usize> Default for Activations<N> {
 
 impl<const N: usize> Activations<N> {
     /// These activations, each clamped to +-1.
-    #[must_use]
     pub fn new(activations: [Activation; N]) -> Self {
         Self(activations.map(|activation| activation.into_bits().clamp(-ONE, ONE)))
     }
 
     /// As integers, 2^26 is 1.
-    #[must_use]
     pub const fn as_bits(&self) -> &[i32; N] {
         &self.0
     }
@@ -109,7 +107,6 @@ pub struct Normaliser<const N: usize> {
 
 impl<const N: usize> Normaliser<N> {
     /// A normaliser without readings: every maximum is at its floor.
-    #[must_use]
     pub fn new(config: &NormaliserConfig<N>) -> Self {
         Self { scales: config.floors.map(|floor| Scale::new(0, floor.min(config.ceiling))) }
     }
@@ -172,13 +169,11 @@ impl<const N: usize> Normaliser<N> {
     }
 
     /// The running maxima, raw units.
-    #[must_use]
     pub fn maxima(&self) -> [u32; N] {
         self.scales.map(|scale| scale.largest)
     }
 
     /// A normaliser with these maxima, each clamped between its floor and the ceiling, and no zeros.
-    #[must_use]
     pub fn from_maxima(config: &NormaliserConfig<N>, maxima: &[u32; N]) -> Self {
         let mut normaliser = Self::new(config);
         for (scale, &largest) in normaliser.scales.iter_mut().zip(maxima) {

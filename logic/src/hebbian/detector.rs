@@ -248,31 +248,26 @@ impl HebbianDetector {
     }
 
     /// Whether the films' part of o1 reports slip.
-    #[must_use]
     pub const fn slips(&self) -> bool {
         self.films_say
     }
 
     /// Whether the look-ahead of shear warns of slip.
-    #[must_use]
     pub const fn warns(&self) -> bool {
         self.warns
     }
 
     /// Outputs from touch alone, relative motion (o1) and direction (o2); 128 would be 1.
-    #[must_use]
     pub fn outputs(&self) -> [i8; NETWORK_OUTPUTS] {
         self.outputs.map(|output| (output.into_bits() >> 19).clamp(-128, 127) as i8)
     }
 
     /// The PVDF part of o1, per mille.
-    #[must_use]
     pub const fn by_films_permille(&self) -> i32 {
         (self.by_films * 1_000 / ONE) as i32
     }
 
     /// Whether it has seen the finger unloaded, so that it can tell hum from slip.
-    #[must_use]
     pub const fn is_quiet_known(&self) -> bool {
         self.pvdf_part.is_quiet_known()
     }
@@ -283,7 +278,6 @@ impl HebbianDetector {
     }
 
     /// Updates of the weights since the start or the last [`forget`](Self::forget).
-    #[must_use]
     pub const fn updates(&self) -> u32 {
         self.updates
     }
@@ -304,7 +298,6 @@ impl HebbianDetector {
     }
 
     /// Weights and maxima, to be saved.
-    #[must_use]
     pub fn learned(&self) -> Learned {
         Learned::of(&self.normaliser, &self.network, self.shear.learned())
     }

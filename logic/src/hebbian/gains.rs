@@ -31,7 +31,6 @@ impl<const N: usize> Default for Gains<N> {
 
 impl<const N: usize> Gains<N> {
     /// Gains of these weights and maxima (raw units).
-    #[must_use]
     pub fn of(weights: &[Weight], maxima: &[u32]) -> Self {
         let mut gains = Self::default();
         for ((gain, weight), &largest) in gains.0.iter_mut().zip(weights).zip(maxima) {
@@ -45,7 +44,6 @@ impl<const N: usize> Gains<N> {
     }
 
     /// Each receptor's.
-    #[must_use]
     pub const fn each(&self) -> &[Gain; N] {
         &self.0
     }

@@ -160,7 +160,6 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
     }
 
     /// A network with these weights, each clamped to +-8.
-    #[must_use]
     pub fn from_weights(weights: &[[Weight; INPUTS]; OUTPUTS]) -> Self {
         let mut network = Self::default();
         let rows = network.weights.iter_mut().zip(&mut network.magnitudes);

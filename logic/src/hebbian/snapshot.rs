@@ -55,7 +55,6 @@ pub struct Contents<const I: usize, const O: usize> {
 
 impl<const I: usize, const O: usize> Contents<I, O> {
     /// Contents from a network, the normaliser that its weights belong to, and one more word.
-    #[must_use]
     pub fn of(normaliser: &Normaliser<I>, network: &Network<I, O>, more: u32) -> Self {
         Self { maxima: normaliser.maxima(), weights: network.weights(), more }
     }

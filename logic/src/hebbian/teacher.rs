@@ -70,7 +70,6 @@ impl Teacher {
     }
 
     /// Age of the newest picture, ms. None before the first.
-    #[must_use]
     pub fn age_ms(&self) -> Option<u16> {
         (self.heard > 0).then_some(self.age_ms)
     }

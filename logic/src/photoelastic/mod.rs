@@ -97,43 +97,31 @@ impl Head {
     }
 
     /// Whether the head gives valid readings.
-    #[must_use]
     pub const fn is_usable(&self) -> bool {
         self.is_usable
     }
 
     /// Whether the ac part has the size and the swings of slip.
-    #[must_use]
     pub const fn vibrates(&self) -> bool {
         self.presence.is_slip()
     }
 
     /// Mean size of the ac part, samples (14 bits).
-    #[must_use]
     pub const fn level(&self) -> i32 {
         self.split.envelope() >> Q
     }
 
     /// The two parts of the signal.
-    #[must_use]
     pub const fn split(&self) -> &Split {
         &self.split
     }
 
     /// What is known about the force.
-    #[must_use]
     pub const fn track(&self) -> Track {
         self.tracker.track()
     }
 
-    /// The tracker.
-    #[must_use]
-    pub const fn tracker(&self) -> &Tracker {
-        &self.tracker
-    }
-
     /// The force, None while none is known.
-    #[must_use]
     pub fn force(&self) -> Option<Force> {
         self.tracker.force()
     }
@@ -158,7 +146,6 @@ impl Head {
     /// Forces in place of a force sensor without a number. Each errs to its safe side, for any shear: Fn, which friction
     /// uses, is the least force that fits the light, and the load is the most, so that neither a ceiling nor an
     /// empty hand is missed. Shear is 0 and the ratio None. None without a reading.
-    #[must_use]
     pub fn stand_in(&self) -> Option<Forces> {
         let Force { least_mn, most_mn } = self.force()?;
         Some(Forces { fn_mn: least_mn, fx_mn: 0, fy_mn: 0, ft_mn: 0, load_mn: most_mn, ratio_permille: None })

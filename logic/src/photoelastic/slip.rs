@@ -36,7 +36,6 @@ impl Presence {
     }
 
     /// Whether it is slip.
-    #[must_use]
     pub const fn is_slip(&self) -> bool {
         self.slip
     }

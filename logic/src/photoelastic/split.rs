@@ -111,26 +111,17 @@ impl Split {
         whole.then(|| ((sum << 4) / count) as i32)
     }
 
-    /// The ac part, Q14 samples.
-    #[must_use]
-    pub const fn ac(&self) -> i32 {
-        self.ac
-    }
-
     /// Mean size of the ac part, Q14 samples.
-    #[must_use]
     pub const fn envelope(&self) -> i32 {
         self.envelope
     }
 
     /// Swings in a row, none further apart than an eighth of a second.
-    #[must_use]
     pub const fn swings(&self) -> u16 {
         self.swings
     }
 
     /// Time of one swing, 1/16 of a frame; 0 if it is not known.
-    #[must_use]
     pub const fn period_q4(&self) -> u16 {
         if self.swings < 2 { 0 } else { self.period_q4 }
     }
@@ -198,7 +189,7 @@ mod tests {
                     split.process(sample);
                     let (ac, envelope) = float.process(sample);
                     let lsb = |fixed: i32| f64::from(fixed) / f64::from(1 << Q);
-                    let error = (lsb(split.ac()) - ac).abs().max((lsb(split.envelope()) - envelope).abs());
+                    let error = (lsb(split.ac) - ac).abs().max((lsb(split.envelope()) - envelope).abs());
                     worst = worst.max(error);
                     assert!(error < 2.0, "{name}, cycle {n}: {error}");
                 }

@@ -56,13 +56,11 @@ pub struct Force {
 
 impl Force {
     /// Middle of the range from least to most, mN.
-    #[must_use]
     pub const fn mn(&self) -> i32 {
         (self.least_mn + self.most_mn) / 2
     }
 
     /// Half the width of that range, mN: the true force is within [`mn`](Self::mn) +- this.
-    #[must_use]
     pub const fn uncertainty_mn(&self) -> i32 {
         self.most_mn - self.mn()
     }
@@ -175,7 +173,6 @@ impl Tracker {
     }
 
     /// What is known about the force.
-    #[must_use]
     pub const fn track(&self) -> Track {
         match (self.part, self.known) {
             (None, _) => Track::Unknown,
@@ -185,7 +182,6 @@ impl Tracker {
     }
 
     /// The force, None without a reading.
-    #[must_use]
     pub fn force(&self) -> Option<Force> {
         let (curve, part) = (self.today.as_ref()?, self.part?);
         let of = |branch| range(curve, branch, part);

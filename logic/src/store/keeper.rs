@@ -41,7 +41,6 @@ pub struct Keeper {
 
 impl Keeper {
     /// A keeper that takes the state `now` as saved.
-    #[must_use]
     pub const fn new(now: &Now) -> Self {
         Self {
             settings_changed: now.settings_changed,

@@ -44,7 +44,6 @@ pub enum Record {
 
 impl Record {
     /// Kind of the record.
-    #[must_use]
     pub const fn kept(&self) -> Kept {
         match self {
             Self::Network(_) => Kept::Network,

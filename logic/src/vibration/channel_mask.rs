@@ -26,7 +26,6 @@ pub struct ChannelMask {
 
 impl ChannelMask {
     /// The masked channels, one bit each, film 1 lowest.
-    #[must_use]
     pub const fn masked(&self) -> u16 {
         self.masked
     }

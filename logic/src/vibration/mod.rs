@@ -219,7 +219,6 @@ impl VibrationDetector {
     }
 
     /// Each film's envelope in the slip band, Q16 samples; 0 of one that gives no number.
-    #[must_use]
     pub const fn envelopes(&self) -> &[i32; PVDF_COUNT] {
         &self.envelopes
     }

@@ -25,7 +25,6 @@ impl ChannelName {
         self.0
     }
 
-    /// Its name.
     pub const fn name(self) -> &'static str {
         CHANNELS[self.0].name
     }

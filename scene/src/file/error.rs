@@ -10,11 +10,6 @@ pub struct SceneError {
 }
 
 impl SceneError {
-    /// The line, counted from 1.
-    pub const fn line(&self) -> usize {
-        self.line
-    }
-
     /// At byte `start` of the file's text.
     pub(super) fn at(start: usize, what: String, text: &str, file: &str) -> Self {
         let before = text.get(..start).unwrap_or(text);

@@ -38,7 +38,6 @@ pub struct SceneFile {
     pub title: String,
     /// The paper and section that it is made after.
     pub from: String,
-    /// How long it lasts.
     duration_s: Duration,
     /// The relative speed above which the object counts as slipping.
     slip_floor_mm_s: Speed,
@@ -152,7 +151,6 @@ impl SceneFile {
         self.fingers.as_ref().map_or(0, |fingers| fingers.finger.len())
     }
 
-    /// How long it lasts, s.
     pub const fn duration_s(&self) -> f64 {
         self.duration_s.get()
     }

@@ -25,7 +25,6 @@ macro_rules! quantities {
                 Self(value)
             }
 
-            /// The number.
             pub const fn get(self) -> f64 {
                 self.0
             }

@@ -7,7 +7,6 @@ use super::friction::Friction;
 /// Elements of the shipped patch. The worst error of the shear is `0.375 / N^2` of `mu P`: 0.07 %.
 pub const ELEMENTS: NonZeroU16 = NonZeroU16::new(24).unwrap();
 
-/// What a patch is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pad {
     /// Radius a of the contact, m. It is kept under every load: a fingertip that is flattened already. Assumed.
@@ -34,26 +33,13 @@ impl Pad {
 
 /// One ring of the patch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Element {
+struct Element {
     area_part: f64,
     load_part: f64,
     /// Of the ring while it sticks, N/m.
     stiffness_n_per_m: f64,
     bristle_m: f64,
     sticks: bool,
-    released_n: f64,
-}
-
-impl Element {
-    /// Whether it sticks.
-    pub const fn sticks(&self) -> bool {
-        self.sticks
-    }
-
-    /// The shear that it let go of in the last step, N: this micro-slip event is what a PVDF film over it hears.
-    pub const fn released_n(&self) -> f64 {
-        self.released_n
-    }
 }
 
 /// What a step of the patch did.
@@ -94,7 +80,6 @@ impl BrushPatch {
                 stiffness_n_per_m: (high * high - low * low) * pad.stiffness_n_per_m(),
                 bristle_m: 0.0,
                 sticks: true,
-                released_n: 0.0,
             }
         };
         Self { pad, elements: (0..elements.get()).map(ring).collect() }
@@ -115,7 +100,6 @@ impl BrushPatch {
             let trial_m = element.bristle_m + by_m;
             let slides_m = friction.mu_d * whole_m;
             let slid = !element.sticks;
-            element.released_n = 0.0;
             element.sticks = if slid {
                 trial_m.abs() < slides_m || rests
             } else {
@@ -127,19 +111,13 @@ impl BrushPatch {
             } else {
                 element.bristle_m = slides_m.copysign(trial_m);
                 if !slid {
-                    element.released_n = drop * element.load_part * normal_n;
                     outcome.let_go += 1;
-                    outcome.released_n += element.released_n;
+                    outcome.released_n += drop * element.load_part * normal_n;
                 }
             }
             outcome.shear_n += element.stiffness_n_per_m * element.bristle_m;
         }
         outcome
-    }
-
-    /// The rings, from the edge of the contact to its centre.
-    pub fn elements(&self) -> &[Element] {
-        &self.elements
     }
 
     /// The part of the radius that sticks, c/a.
@@ -157,7 +135,6 @@ impl BrushPatch {
         self.elements.iter().all(|element| !element.sticks)
     }
 
-    /// Energy in its bristles, J.
     pub fn energy_j(&self) -> f64 {
         let squares =
             self.elements.iter().map(|element| element.area_part * element.bristle_m * element.bristle_m);

@@ -5,7 +5,6 @@
 
 use super::friction::Friction;
 
-/// A contact, and whether it sticks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidCoulomb {
     sticks: bool,
@@ -14,7 +13,6 @@ pub struct RigidCoulomb {
 /// What a step of friction did.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
-    /// Speed after the step, m/s.
     pub speed_m_s: f64,
     /// Mean friction force during the step, N, on the body.
     pub force_n: f64,
@@ -29,7 +27,6 @@ impl Default for RigidCoulomb {
 }
 
 impl RigidCoulomb {
-    /// Whether it sticks.
     pub const fn sticks(&self) -> bool {
         self.sticks
     }

@@ -77,7 +77,6 @@ impl Surface {
         self.patches.push(Patch { wetting: dried, drying, friction });
     }
 
-    /// The coefficients at `t_s`.
     pub fn at(&self, t_s: f64) -> Friction {
         self.patches.iter().filter(|patch| t_s >= patch.wetting.begin_s).fold(self.dry, |dry, patch| {
             let part = smooth(patch.wetting.progress(t_s)) * (1.0 - patch.dried(t_s));

@@ -245,7 +245,6 @@ impl Grasp {
         self.shared || self.taken
     }
 
-    /// Whether another hand has taken it.
     pub const fn is_taken(&self) -> bool {
         self.taken
     }

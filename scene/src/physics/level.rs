@@ -25,7 +25,6 @@ pub struct Push {
     pub normal_n: f64,
     /// Pads that press alike and share the friction.
     pub pads: f64,
-    /// Their friction.
     pub friction: Friction,
     /// What they hold, kg.
     pub mass_kg: f64,
@@ -40,7 +39,6 @@ pub struct Outcome {
     pub speed_m_s: f64,
     /// Mean friction of all pads during the step, N, on the mass.
     pub force_n: f64,
-    /// Whether any of it sticks.
     pub sticks: bool,
     /// The part of the area that sticks.
     pub stuck_part: f64,
@@ -80,7 +78,6 @@ impl Level {
         }
     }
 
-    /// Goes on by `dt_s`.
     pub fn step(&mut self, push: Push, dt_s: f64) -> Outcome {
         let push = Push { normal_n: push.normal_n.max(0.0), ..push };
         match self {

@@ -57,7 +57,6 @@ impl Body {
         self.dent_mm
     }
 
-    /// Whether it is broken.
     pub const fn is_broken(&self) -> bool {
         self.broken
     }

@@ -25,7 +25,6 @@ pub const TOUCH_N: f64 = 0.05;
 /// What the sensed fingertip feels of the world in one step: all that the sensors are told.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Touch {
-    /// Normal force on the pad, N.
     pub normal_n: f64,
     /// Shear on the pad, N, positive where the object pulls the fingertip down (or along the stroke).
     pub shear_n: f64,
@@ -35,7 +34,6 @@ pub struct Touch {
     pub turn_m_s: f64,
     /// Torsion on the pad, N m.
     pub torque_nm: f64,
-    /// Whether any of the contact sticks.
     pub sticks: bool,
     /// The part of the contact's area that sticks.
     pub stuck_part: f64,

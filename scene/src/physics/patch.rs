@@ -26,12 +26,6 @@ impl Patch {
         }
     }
 
-    /// The part of the area that sticks.
-    pub const fn stuck_part(&self) -> f64 {
-        self.stuck_part
-    }
-
-    /// Energy in its bristles, J.
     pub fn energy_j(&self) -> f64 {
         self.brush.energy_j()
     }

@@ -75,7 +75,6 @@ impl Pitch {
         }
     }
 
-    /// Goes on by one scan.
     pub fn step(&mut self, load: Load, friction: Friction) -> Turn {
         let Load { mass_kg, weight_n, normal_n, .. } = load;
         let inertia_kg_m2 = mass_kg * self.gyration_m * self.gyration_m;
@@ -129,7 +128,6 @@ impl Pitch {
         self.speed_rad_s * TORSION * self.radius_m
     }
 
-    /// Whether it turns.
     pub const fn turns(&self) -> bool {
         !self.contact.sticks()
     }

@@ -3,7 +3,6 @@
 use crate::file::sections;
 use crate::schedule::{Span, smooth};
 
-/// The pulls of a scene.
 #[derive(Clone, Debug)]
 pub(crate) struct Pulls(Vec<Pull>);
 
@@ -29,7 +28,6 @@ impl Pulls {
         Self(pulls.iter().map(pull).collect())
     }
 
-    /// One more.
     pub(crate) fn push(&mut self, at_s: f64, for_s: f64, force_n: f64, ramp_s: f64) {
         let (comes, goes) = (Span::new(at_s, ramp_s), Span::new(at_s + for_s, ramp_s));
         self.0.push(Pull { comes, goes, force_n, takes: false });

@@ -82,13 +82,12 @@ pub struct StribeckSlider {
     slider: Slider,
     position_m: f64,
     speed_m_s: f64,
-    shear_n: f64,
 }
 
 impl StribeckSlider {
     /// At rest, its spring loose.
     pub const fn new(slider: Slider) -> Self {
-        Self { slider, position_m: 0.0, speed_m_s: 0.0, shear_n: 0.0 }
+        Self { slider, position_m: 0.0, speed_m_s: 0.0 }
     }
 
     /// Deflected by `position_m`, moving at `speed_m_s`.
@@ -116,16 +115,12 @@ impl StribeckSlider {
         let free_m_s = self.speed_m_s + pull_n / mass_kg * dt_s;
         let stopping_ns = mass_kg * (surface_m_s - free_m_s);
         let limit_ns = friction.mu(self.speed_m_s - surface_m_s) * normal_n * dt_s;
-        let impulse_ns = if stopping_ns.abs() <= limit_ns {
-            self.speed_m_s = surface_m_s;
-            stopping_ns
+        self.speed_m_s = if stopping_ns.abs() <= limit_ns {
+            surface_m_s
         } else {
-            let sliding_ns = limit_ns.copysign(stopping_ns);
-            self.speed_m_s = free_m_s + sliding_ns / mass_kg;
-            sliding_ns
+            free_m_s + limit_ns.copysign(stopping_ns) / mass_kg
         };
         self.position_m += self.speed_m_s * dt_s;
-        self.shear_n = impulse_ns / dt_s;
     }
 
     /// Deflection of its spring, m: what the photoelastic layer sees.
@@ -133,14 +128,8 @@ impl StribeckSlider {
         self.position_m
     }
 
-    /// Speed of the mass, m/s.
     pub const fn speed_m_s(&self) -> f64 {
         self.speed_m_s
-    }
-
-    /// Friction on the mass in the last inner step, N.
-    pub const fn shear_n(&self) -> f64 {
-        self.shear_n
     }
 }
 

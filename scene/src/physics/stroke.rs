@@ -83,7 +83,6 @@ impl Stroke {
         }
     }
 
-    /// Where the probe is, m.
     pub const fn probe_m(&self) -> f64 {
         self.probe_m
     }

@@ -31,7 +31,6 @@ impl Vibrator {
         }
     }
 
-    /// Drives it from now on.
     pub(crate) fn drive(&mut self, duty: Duty) {
         self.duty = f64::from(duty.as_per_mille()) / 1e3;
     }

@@ -46,7 +46,6 @@ impl Wearer {
         Self { contractions: contractions.collect() }
     }
 
-    /// They contract once more.
     pub(crate) fn contract(&mut self, at_s: f64, for_s: f64, intent: Intent, until_grip_n: f64) {
         // What opens and closes a hand that is not calibrated, too.
         let level_mv = if intent == Intent::Close { 900.0 } else { 2_000.0 };

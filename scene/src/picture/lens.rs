@@ -5,7 +5,6 @@
 pub struct Lens {
     /// Focal length, px. Infinite: no distortion.
     pub focal_px: f64,
-    /// Middle of the picture, px.
     pub middle: (f64, f64),
 }
 

@@ -35,17 +35,12 @@ pub struct Story {
 
 /// When the object begins to come, is grasped, let go, and is gone, s.
 pub const COMES_S: f64 = 1.0;
-/// See [`COMES_S`].
 pub const GRASPED_S: f64 = 2.0;
-/// See [`COMES_S`].
 pub const LET_GO_S: f64 = 8.0;
-/// See [`COMES_S`].
 pub const GONE_S: f64 = 9.0;
-/// When a story ends, s.
 pub const END_S: f64 = 10.0;
 /// When it slides, s: begin and end of both slides.
 pub const SLIDES_S: [(f64, f64); 2] = [(3.0, 3.4), (5.0, 5.5)];
-/// When it turns, s.
 pub const TURN_S: (f64, f64) = (6.6, 7.2);
 /// When it is pulled at without sliding, s.
 const SHEARS_S: [f64; 3] = [2.4, 4.1, 6.0];
@@ -81,7 +76,6 @@ impl Story {
         }
     }
 
-    /// The world at an instant.
     pub fn at(&self, t_s: f64) -> State {
         let near = smooth(t_s, COMES_S, GRASPED_S - 0.1) - smooth(t_s, LET_GO_S + 0.1, GONE_S);
         let mut object = (
@@ -118,7 +112,6 @@ impl Story {
         SLIDES_S.iter().chain([&TURN_S]).any(|&(from_s, to_s)| (from_s..to_s).contains(&t_s))
     }
 
-    /// Whether it is gripped.
     pub fn gripped(t_s: f64) -> bool {
         (GRASPED_S + 0.3..LET_GO_S - 0.3).contains(&t_s)
     }

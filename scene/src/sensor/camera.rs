@@ -99,7 +99,6 @@ impl Eye {
         Some(seen)
     }
 
-    /// The newest words that have arrived.
     pub(crate) const fn said(&self) -> Option<Seen> {
         self.post.arrived
     }

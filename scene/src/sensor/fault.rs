@@ -19,7 +19,6 @@ fn shown_before(channel: usize) -> Option<usize> {
     CHANNELS.iter().position(|channel| channel.input == input)
 }
 
-/// All faults of a scene.
 #[derive(Clone, Debug)]
 pub(crate) struct Faults(Vec<Fault>);
 

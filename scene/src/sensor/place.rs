@@ -18,7 +18,6 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// All of the contact.
     pub(super) const EVERYWHERE: Self = Self { low: 0.0, high: 1.0, own: 0.0 };
 
     /// Evenly over the area, at a depth of 0 (all that it hears is of its place) to 1 (half of it).

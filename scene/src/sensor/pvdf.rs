@@ -193,7 +193,6 @@ fn hum_mv(hum: &Hum, t_s: f64) -> f64 {
     hum.peak_mv.get() * libm::sin(TAU * hum.hum_hz.get() * t_s)
 }
 
-/// Whether a knock is still heard.
 fn rings(knock: &Knock, t_s: f64) -> bool {
     let decay_s = knock.decay_ms.get() / 1e3;
     (0.0..KNOCK_DECAYS * decay_s).contains(&(t_s - knock.at_s.get_ref().get()))

@@ -31,7 +31,6 @@ const ANGLE_LASTS_S: f64 = 2.0;
 /// One pixel in the world, mm: 320 of them over 30 mm of skin.
 const PIXEL_MM: f64 = 0.094;
 
-/// The camera and its computer.
 #[derive(Debug)]
 pub(crate) struct SkinCamera {
     parameters: Skin,

@@ -12,7 +12,6 @@ pub struct Slip {
     pub macro_onset_s: f64,
     /// When it stuck again or was lost, s. None while it goes on.
     pub end_s: Option<f64>,
-    /// How far, mm.
     pub distance_mm: f64,
     /// Whether the wearer was opening the hand, so that it was meant.
     pub meant: bool,
@@ -32,7 +31,6 @@ pub struct MicroRun {
 pub struct Phase {
     /// What they wanted; None is rest.
     pub intent: Option<Intent>,
-    /// From, s.
     pub begin_s: f64,
     /// To, s. None while it goes on.
     pub end_s: Option<f64>,
@@ -52,7 +50,6 @@ pub struct Activity {
 /// One row of the trace.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
-    /// When, s.
     pub t_s: f64,
     /// Normal force of each finger, N.
     pub grip_n: f64,
@@ -64,7 +61,6 @@ pub struct Row {
     pub position_mm: f64,
     /// Speed of the object over the pad, mm/s.
     pub slide_mm_s: f64,
-    /// Whether any of the contact sticks.
     pub sticks: bool,
     /// The part of the contact's area that sticks.
     pub stuck_part: f64,

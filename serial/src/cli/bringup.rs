@@ -47,7 +47,6 @@ pub struct Args {
     out: Option<PathBuf>,
 }
 
-/// What `--out` writes.
 #[derive(Serialize)]
 struct Report<'a> {
     step: &'a str,

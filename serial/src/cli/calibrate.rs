@@ -59,7 +59,6 @@ pub struct Line {
 }
 
 impl Line {
-    /// Opens it.
     pub fn open(&self) -> anyhow::Result<Client> {
         Client::open(&port::or_found(self.port.as_ref())?)
     }
@@ -73,7 +72,6 @@ fn weight(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Calibrates one sensor.
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     hand(&args.what)
 }

@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::time::Duration;
 
 use anyhow::{Context, bail};
 use clap::Subcommand;
@@ -11,12 +10,9 @@ use tenax_logic::setting::SettingId;
 
 use super::{out, port};
 use crate::link::captured::line_of;
-use crate::link::{Client, Target};
+use crate::link::{ANSWER_WITHIN, Client, Target};
 use crate::settings;
 use crate::suggest::{Suggestion, Suggestions};
-
-/// How long a board may take to answer.
-const ANSWER_WITHIN: Duration = Duration::from_secs(2);
 
 /// Show and change a board's settings.
 #[derive(Debug, clap::Args)]
@@ -84,7 +80,6 @@ enum Command {
     },
 }
 
-/// Shows and changes settings.
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     // What is wrong with a file or a name is said before the board is asked.
     let wanted = wanted(&args.command)?;
@@ -95,11 +90,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     match &args.command {
         Command::Suggest { .. } => {}
         Command::List => out::print(format_args!("{}", list(&all(&mut client)?)))?,
-        Command::Get { name } => {
-            let answer = client.ask(&Down::Get(settings::named(name)?.number()), ANSWER_WITHIN)?;
-            let Answer::Setting(setting) = answer else { bail!("the board answers {answer:?}") };
-            out::say!("{}", setting.value)?;
-        }
+        Command::Get { name } => out::say!("{}", client.setting(settings::named(name)?)?)?,
         Command::Export { file } => {
             let text = match client.ask(&Down::About, ANSWER_WITHIN)? {
                 Answer::About(about) => settings::backup(&about, &all(&mut client)?),

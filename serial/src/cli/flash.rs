@@ -44,7 +44,6 @@ Examples:
 The ELF's path is printed: other programmers take it, too, such as
   openocd -f board/st_nucleo_f4.cfg -c 'program FILE verify reset exit'";
 
-/// Flashes the image.
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     match Command::new("probe-rs").arg("--version").output() {
         Ok(output) if output.status.success() => {}

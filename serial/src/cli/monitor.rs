@@ -3,22 +3,18 @@
 use std::io::{self, IsTerminal};
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::time::Duration;
 
 use anyhow::{Context, bail};
 use tenax_hal_shim::wire::{Answer, Down, SETTINGS_PER_ANSWER, Setting};
 use tenax_logic::setting::SettingId;
 
 use super::{config, out, port};
-use crate::link::{Client, Target};
+use crate::link::{ANSWER_WITHIN, Client, Target};
 use crate::monitor::app;
 use crate::monitor::source::Places;
 use crate::web::Web;
 use crate::words::AnswerWords;
 use crate::{monitor, settings};
-
-/// How long a board may take to answer.
-const ANSWER_WITHIN: Duration = Duration::from_secs(2);
 
 /// Watch a board's serial line.
 #[derive(Debug, clap::Args)]

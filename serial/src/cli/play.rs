@@ -67,7 +67,6 @@ fn exported(args: &Args) -> anyhow::Result<Option<Vec<PathBuf>>> {
     args.csv.as_ref().map(|folder| csv::export(&line_of(&args.file)?, folder)).transpose()
 }
 
-/// Plays a recording.
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some(written) = exported(args)? {
         for path in written {

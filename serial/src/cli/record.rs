@@ -12,14 +12,12 @@ use tenax_hal_shim::wire::{Answer, Down, Setting, Up};
 use tenax_logic::setting::SettingId;
 
 use super::{out, port};
-use crate::link::{Client, LastSeconds, Target};
+use crate::link::{ANSWER_WITHIN, Client, LastSeconds, Target};
 use crate::record::{self, Recording, topics};
 use crate::words::in_words;
 
 /// The board streams for as long after each time that it is asked.
 const HOLD_S: u16 = 5;
-/// How long a board may take to answer.
-const ANSWER_WITHIN: Duration = Duration::from_secs(2);
 /// How soon a setting is in flash: settings are saved every 3 s at most.
 const SAVED_WITHIN: Duration = Duration::from_secs(4);
 

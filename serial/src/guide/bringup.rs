@@ -21,7 +21,6 @@ pub use self::noise::readings;
 pub use self::wire::{Stream, Wire};
 use super::Say;
 
-/// What a step measured.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figure {
     pub name: String,
@@ -85,7 +84,6 @@ pub struct Asked {
 
 type Run = fn(&mut Wire<'_>, &Asked, Say<'_>) -> anyhow::Result<Vec<Figure>>;
 
-/// A step.
 pub struct Step {
     pub name: &'static str,
     /// What a person does.
@@ -93,7 +91,6 @@ pub struct Step {
     pub run: Run,
 }
 
-/// All steps in their order.
 pub const STEPS: [Step; 10] = [
     Step {
         name: "power",

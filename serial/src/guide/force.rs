@@ -36,7 +36,6 @@ pub struct Weighed {
     pub read_n: f64,
 }
 
-/// What came of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibration {
     /// Every weight, in its order.

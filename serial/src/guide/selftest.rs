@@ -92,7 +92,6 @@ fn mean(rows: &[Row]) -> Row {
 /// What the channel that is asked for does now.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Level {
-    /// Its reading, mV.
     pub mv: f64,
     /// How far it is from its rest, a film by its envelope, and how far is a touch, mV.
     pub moved_mv: f64,
@@ -109,7 +108,6 @@ enum Step {
     Over,
 }
 
-/// The test as it goes.
 pub struct Selftest {
     roles: [Role; COUNT],
     channels: Vec<usize>,
@@ -142,7 +140,6 @@ impl Selftest {
         }
     }
 
-    /// Whether it is over.
     pub fn is_over(&self) -> bool {
         self.step == Step::Over
     }
@@ -152,7 +149,6 @@ impl Selftest {
         self.verdicts[channel]
     }
 
-    /// Whether any reading was heard.
     pub const fn has_begun(&self) -> bool {
         self.began.is_some()
     }
@@ -455,7 +451,6 @@ impl Selftest {
         lines
     }
 
-    /// Whether all pass.
     pub fn passes(&self) -> bool {
         self.channels.iter().all(|&channel| matches!(self.verdicts[channel], Some(Verdict::Pass(_))))
     }

@@ -7,9 +7,12 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
 use tenax_hal_shim::wire::{Answer, BadFrame, Down, Refusal, Up};
+use tenax_logic::setting::SettingId;
 
 use super::{Counts, Heard, Inbox, Line, Outbox, Target};
 
+/// How long a board may take to answer.
+pub const ANSWER_WITHIN: Duration = Duration::from_secs(2);
 /// How often a session is asked for, if somebody else on the line asks for one at the same time.
 const SESSIONS_MAX: u32 = 8;
 
@@ -18,7 +21,6 @@ const EACH: Duration = Duration::from_micros(2_500);
 /// Commands that one with a long answer counts as.
 const LONG: u32 = 6;
 
-/// A client of a board.
 pub struct Client {
     up: Box<dyn Read + Send>,
     outbox: Option<Outbox<Box<dyn Write + Send>>>,
@@ -49,7 +51,6 @@ impl Client {
         target.open().map(Self::from)
     }
 
-    /// What has been counted.
     pub fn counts(&self) -> Counts {
         self.inbox.counts()
     }
@@ -104,6 +105,14 @@ impl Client {
             }
         }
         Ok(answer)
+    }
+
+    /// A setting's value. Fails as [`ask`](Self::ask) does, or if the board answers something else.
+    pub fn setting(&mut self, id: SettingId) -> anyhow::Result<i32> {
+        match self.ask(&Down::Get(id.number()), ANSWER_WITHIN)? {
+            Answer::Setting(own) => Ok(own.value),
+            other => bail!("the board does not say its {}: {other:?}", id.row().name),
+        }
     }
 
     /// Opens a session, without which the board only lets read. False if it refused. Fails as [`ask`](Self::ask) does.

@@ -60,7 +60,6 @@ impl Inbox {
         Some(Ok(Heard { received: heard, missed }))
     }
 
-    /// What has been counted.
     pub const fn counts(&self) -> Counts {
         self.counts
     }

@@ -1,15 +1,10 @@
 //! What a board keeps of the seconds before its last run ended in a fault: fetched piece by piece.
 
-use std::time::Duration;
-
 use anyhow::{bail, ensure};
 use tenax_hal_shim::wire::{Answer, Down, Up};
 use tenax_hal_shim::words::Fault;
 
-use super::{Client, Inbox};
-
-/// How long the board may take for a piece.
-const PIECE_WITHIN: Duration = Duration::from_secs(2);
+use super::{ANSWER_WITHIN, Client, Inbox};
 
 /// What had gone up a line before a fault.
 #[derive(Clone, Debug)]
@@ -27,7 +22,7 @@ impl LastSeconds {
     pub fn fetch(client: &mut Client) -> anyhow::Result<Option<Self>> {
         let mut line = Vec::new();
         loop {
-            let answer = client.ask(&Down::Last(line.len() as u16), PIECE_WITHIN)?;
+            let answer = client.ask(&Down::Last(line.len() as u16), ANSWER_WITHIN)?;
             let Answer::Last(piece) = answer else { bail!("the board answers {answer:?}") };
             let Some(after) = piece.after else {
                 ensure!(line.is_empty(), "somebody else has fetched it in the meantime");
@@ -49,7 +44,7 @@ impl LastSeconds {
 
     /// Tells the board that it is in safe hands: it keeps what it says from now on. Fails if the board does not answer.
     pub fn let_go(client: &mut Client) -> anyhow::Result<()> {
-        client.ask(&Down::Last(u16::MAX), PIECE_WITHIN).map(drop)
+        client.ask(&Down::Last(u16::MAX), ANSWER_WITHIN).map(drop)
     }
 
     /// From and to, frames of the board's time.

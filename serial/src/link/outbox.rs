@@ -16,7 +16,6 @@ pub struct Outbox<W> {
 }
 
 impl<W: Write> Outbox<W> {
-    /// One that has sent nothing.
     pub fn new(line: W) -> Self {
         Self { line, encoder: Encoder::default() }
     }

@@ -18,7 +18,6 @@ const READ_TIMEOUT: Duration = Duration::from_millis(100);
 /// How long a TCP address may take to answer.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
 
-/// Where a line is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Target {
     /// A serial port or a pseudo-terminal: `/dev/ttyACM0`, `COM3`, `/dev/pts/5`.
@@ -33,7 +32,6 @@ pub enum Target {
     File(PathBuf),
 }
 
-/// A line that is open.
 pub struct Line {
     /// What comes up. A read that finds nothing for 0.1 s fails with `TimedOut` or `WouldBlock`; a file ends.
     pub up: Box<dyn Read + Send>,

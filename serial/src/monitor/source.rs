@@ -8,12 +8,10 @@ use std::time::{Duration, Instant};
 
 use tenax_hal_shim::wire::{Answer, BadFrame, Down};
 
-use crate::link::{Client, Counts, Heard, Target};
+use crate::link::{ANSWER_WITHIN, Client, Counts, Heard, Target};
 use crate::play::{self, Playing, Reel, Told as Played};
 use crate::truth::{self, Bench, Told, Truth};
 
-/// How long a board may take to answer.
-const ANSWER_WITHIN: Duration = Duration::from_secs(2);
 /// Pause before a line is opened again.
 const AGAIN_AFTER: Duration = Duration::from_millis(500);
 /// Readings are asked for this often, for twice as long.
@@ -22,7 +20,6 @@ const STREAM_EVERY: Duration = Duration::from_secs(2);
 /// What there is to tell.
 #[derive(Debug)]
 pub enum News {
-    /// The line is open.
     Open,
     /// It is not, and why.
     Gone(String),
@@ -40,10 +37,8 @@ pub enum News {
     Answered(Down, Result<Answer, String>),
 }
 
-/// What is watched.
 #[derive(Clone, Debug)]
 pub struct Places {
-    /// The board's line.
     pub line: Target,
     /// Where what really happens is told, if that is known.
     pub truth: Option<Target>,

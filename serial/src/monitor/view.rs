@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::ops::RangeInclusive;
 use std::time::{Duration, Instant};
 
-use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ, mv_from_sample};
+use tenax_hal_shim::channel::{CHANNELS, mv_from_sample};
 use tenax_hal_shim::detector::{DetectorId, DetectorSet, Evidence};
 use tenax_hal_shim::wire::{
     About, Answer, BadFrame, Counters, Down, EventKind, Senses, Slow, TickRecord, Up,
@@ -15,6 +15,7 @@ use tenax_logic::setting::SettingId;
 use super::source::News;
 use crate::link::{Counts, Heard};
 use crate::play::Playing;
+use crate::record::topics::seconds;
 use crate::truth::{Bench, Truth};
 use crate::words::{AnswerWords, Words, why};
 
@@ -58,18 +59,14 @@ pub struct Fate {
 pub struct View {
     /// Why there is no line, if there is none.
     pub gone: Option<String>,
-    /// The last slow frame.
     pub slow: Option<Slow>,
-    /// The last readings.
     pub senses: Option<Senses>,
-    /// The last counters.
     pub counters: Option<Counters>,
     pub about: Option<About>,
     /// Settings whose value was said.
     pub settings: BTreeMap<u8, i32>,
     /// Readings, the oldest first.
     pub history: VecDeque<Point>,
-    /// What each detector did.
     pub fates: [Fate; DetectorId::COUNT],
     /// What is wrong now, in words.
     pub faults: BTreeSet<String>,
@@ -288,9 +285,4 @@ impl View {
             self.other_version = Some(why(bad));
         }
     }
-}
-
-/// When a frame ended, s.
-pub fn seconds(frame: u32) -> f64 {
-    (f64::from(frame) + 1.0) / f64::from(FRAME_HZ)
 }

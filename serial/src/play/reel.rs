@@ -83,7 +83,6 @@ impl Reel {
         Self { kind: Kind::Captured { pieces }, length_s: at_s }
     }
 
-    /// How long it is, s.
     pub const fn length_s(&self) -> f64 {
         self.length_s
     }

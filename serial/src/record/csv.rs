@@ -1,6 +1,7 @@
 //! A recording as CSV, a file a topic: the same values as in MCAP, with the time in a column.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
@@ -15,36 +16,49 @@ const LIST: usize = tenax_hal_shim::channel::PVDF_COUNT;
 
 /// Writes what a line says into `folder`; returns the files. Fails if one cannot be written.
 pub fn export(line: &[u8], folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
+    let create = |topic: Topic, path: &Path| {
+        let mut file = csv::Writer::from_path(path)?;
+        file.write_record(columns(topic).map(|(name, _)| name))?;
+        Ok(file)
+    };
+    let put = |file: &mut csv::Writer<File>, time_s: f64, values: &[Value]| {
+        let time = format!("{time_s:.4}");
+        Ok(file.write_record([time].into_iter().chain(values.iter().flat_map(cells)))?)
+    };
+    files(line, folder, "csv", create, put, |mut file| Ok(file.flush()?))
+}
+
+/// A file a topic, begun with its first row and ended with the line; returns their paths.
+pub(super) fn files<T>(
+    line: &[u8],
+    folder: &Path,
+    extension: &str,
+    create: impl Fn(Topic, &Path) -> anyhow::Result<T>,
+    put: impl Fn(&mut T, f64, &[Value]) -> anyhow::Result<()>,
+    finish: impl Fn(T) -> anyhow::Result<()>,
+) -> anyhow::Result<Vec<PathBuf>> {
     std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
-    let mut files: BTreeMap<String, csv::Writer<File>> = BTreeMap::new();
+    let mut files: BTreeMap<String, T> = BTreeMap::new();
     let (mut inbox, mut last, mut paths) = (Inbox::default(), 0, Vec::new());
     for heard in line.iter().filter_map(|&byte| inbox.push(byte)).flatten() {
         for (topic, frame, values) in rows(&heard.received.message, last) {
             last = last.max(frame);
             let file = match files.entry(topic.name()) {
-                std::collections::btree_map::Entry::Occupied(file) => file.into_mut(),
-                std::collections::btree_map::Entry::Vacant(place) => {
-                    let path = file_of(topic, folder, "csv");
-                    let mut file = csv::Writer::from_path(&path)
-                        .with_context(|| format!("cannot write {}", path.display()))?;
-                    file.write_record(columns(topic).map(|(name, _)| name))?;
+                Entry::Occupied(file) => file.into_mut(),
+                Entry::Vacant(place) => {
+                    let name = topic.name().trim_matches('/').replace('/', "-");
+                    let path = folder.join(name).with_extension(extension);
+                    let file =
+                        create(topic, &path).with_context(|| format!("cannot write {}", path.display()))?;
                     paths.push(path);
                     place.insert(file)
                 }
             };
-            let time = format!("{:.4}", seconds(frame));
-            file.write_record([time].into_iter().chain(values.iter().flat_map(cells)))?;
+            put(file, seconds(frame), &values)?;
         }
     }
-    for file in files.values_mut() {
-        file.flush()?;
-    }
+    files.into_values().try_for_each(finish)?;
     Ok(paths)
-}
-
-/// The file of a topic.
-pub fn file_of(topic: Topic, folder: &Path, extension: &str) -> PathBuf {
-    folder.join(topic.name().trim_matches('/').replace('/', "-")).with_extension(extension)
 }
 
 /// The columns of a topic: the time, and its fields, a list as a column each.

@@ -1,7 +1,6 @@
 //! A recording as Parquet, a file a topic: the same values as in MCAP and CSV, with the time in a column, for data frames and
 //! training.
 
-use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -13,9 +12,8 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 
-use super::csv::{columns, file_of};
-use super::topics::{Topic, rows, seconds};
-use crate::link::Inbox;
+use super::csv::{columns, files};
+use super::topics::Topic;
 use crate::protobuf::{Kind, Value};
 
 /// Rows of a group: some 30 s of ticks, so that a long recording takes little memory.
@@ -35,29 +33,7 @@ enum Column {
 
 /// Writes what a line says into `folder`; returns the files. Fails if one cannot be written.
 pub fn export(line: &[u8], folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
-    std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
-    let mut tables: BTreeMap<String, Table> = BTreeMap::new();
-    let (mut inbox, mut last, mut paths) = (Inbox::default(), 0, Vec::new());
-    for heard in line.iter().filter_map(|&byte| inbox.push(byte)).flatten() {
-        for (topic, frame, values) in rows(&heard.received.message, last) {
-            last = last.max(frame);
-            let table = match tables.entry(topic.name()) {
-                std::collections::btree_map::Entry::Occupied(table) => table.into_mut(),
-                std::collections::btree_map::Entry::Vacant(place) => {
-                    let path = file_of(topic, folder, "parquet");
-                    let table = Table::create(topic, &path)
-                        .with_context(|| format!("cannot write {}", path.display()))?;
-                    paths.push(path);
-                    place.insert(table)
-                }
-            };
-            table.push(seconds(frame), &values)?;
-        }
-    }
-    for table in tables.into_values() {
-        table.finish()?;
-    }
-    Ok(paths)
+    files(line, folder, "parquet", Table::create, Table::push, Table::finish)
 }
 
 impl Table {
@@ -103,7 +79,6 @@ impl Table {
         if full { self.group() } else { Ok(()) }
     }
 
-    /// Writes the rows so far.
     fn group(&mut self) -> anyhow::Result<()> {
         let mut group = self.file.next_row_group()?;
         for column in &mut self.columns {

@@ -76,7 +76,6 @@ impl Topic {
         }
     }
 
-    /// The fields of its messages.
     pub fn fields(self) -> Vec<(String, Kind)> {
         match self {
             Self::Line => vec![("data".to_owned(), Kind::Bytes)],

@@ -2,7 +2,6 @@
 
 use tenax_hal_shim::wire::FRAME_MAX;
 
-/// Gathers a frame.
 #[derive(Debug, Default)]
 pub struct Framer {
     bytes: Vec<u8>,

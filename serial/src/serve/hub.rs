@@ -6,7 +6,6 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::Tally;
 
-/// A frame of the line.
 pub type Frame = Arc<[u8]>;
 
 /// Frames on their way to a client: two seconds and a half of a line at rest.
@@ -53,7 +52,6 @@ impl Hub {
         frames
     }
 
-    /// Hands a frame to everybody.
     pub fn publish(&self, frame: &[u8]) {
         let mut clients = self.clients();
         if clients.senders.is_empty() {
@@ -100,7 +98,6 @@ impl Hub {
         self.writers.load(Relaxed)
     }
 
-    /// Who was served.
     pub fn tally(&self) -> Tally {
         Tally { clients: self.served.load(Relaxed), dropped: self.dropped.load(Relaxed) }
     }

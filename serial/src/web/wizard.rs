@@ -19,7 +19,6 @@ pub struct Wizard {
 }
 
 impl Wizard {
-    /// The test.
     pub const fn session(&self) -> Option<&Session> {
         self.session.as_ref()
     }
@@ -34,7 +33,6 @@ impl Wizard {
         self.number
     }
 
-    /// Lines so far.
     pub fn lines(&self) -> usize {
         self.session.as_ref().map_or(0, |session| session.said().len())
     }

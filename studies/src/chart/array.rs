@@ -28,7 +28,7 @@ pub fn chart(progress: Progress) -> anyhow::Result<Chart> {
 }
 
 fn of(draws: &[Draw]) -> anyhow::Result<Chart> {
-    let header = ["quantity", "from", "to", "auc", "balanced", "caught_50ms", "false_per_hour"];
+    let header = "quantity,from,to,auc,balanced,caught_50ms,false_per_hour";
     let rows = draws.iter().flat_map(|draw| {
         draw.parts.iter().map(|part| {
             let caught = part.caught.map_or(String::new(), |caught| format!("{caught:.4}"));
@@ -39,7 +39,7 @@ fn of(draws: &[Draw]) -> anyhow::Result<Chart> {
             row
         })
     });
-    let csv = csv(&header, rows)?;
+    let csv = csv(header, rows)?;
     let sheet = Sheet::new(
         "Slip from normal force: where the network that ships fails",
         "Pours of the test part, material outside of the training's hull included. Each point is a quarter of the sessions; \

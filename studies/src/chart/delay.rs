@@ -36,7 +36,6 @@ const HELD_N: f64 = 1.35 * MASS_KG * GRAVITY_M_S2 / 2.0 / MU_S[0];
 const SPEED_MM_S: f64 = 120.0;
 const FORCE_N: f64 = 140.0;
 
-/// One run.
 struct Point {
     pulse_ms: u32,
     delay_ms: f64,
@@ -158,17 +157,8 @@ pub fn map(progress: Progress) -> anyhow::Result<Chart> {
         let numbers = numbers.map(|value| format!("{value:.4}"));
         numbers.into_iter().chain([cell.kept.to_string(), cell.pulses.to_string()]).collect()
     });
-    let header = [
-        "pulse_ms",
-        "delay_ms",
-        "stiffness_n_per_mm",
-        "slid_mm",
-        "peak_over_needed",
-        "theory_slid_mm",
-        "kept",
-        "pulses",
-    ];
-    let csv = csv(&header, rows)?;
+    let header = "pulse_ms,delay_ms,stiffness_n_per_mm,slid_mm,peak_over_needed,theory_slid_mm,kept,pulses";
+    let csv = csv(header, rows)?;
     let panels = PULSES_MS.map(|pulse_ms| panel(pulse_ms, &cells)).into();
     let sheet = Sheet {
         title: "Decision delay by stiffness by gain".to_owned(),

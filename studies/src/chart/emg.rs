@@ -20,9 +20,8 @@ pub fn chart(folder: &Path, progress: Progress) -> anyhow::Result<Chart> {
         let words = [point.control, point.calibration].map(str::to_owned);
         words.into_iter().chain(numbers(point).map(|number| format!("{number:.4}"))).collect()
     });
-    let header =
-        ["control", "calibration", "asks", "false_per_hour", "right", "latency_p50_s", "latency_p95_s"];
-    let csv = csv(&header, rows)?;
+    let header = "control,calibration,asks,false_per_hour,right,latency_p50_s,latency_p95_s";
+    let csv = csv(header, rows)?;
     let right = |point: &Point| point.right();
     let late = |point: &Point| point.score.latency_s_p95;
     let panels = ["same session", "other posture"]

@@ -61,9 +61,8 @@ pub fn front(progress: Progress) -> anyhow::Result<Chart> {
         ];
         words.into_iter().chain(numbers.map(number)).collect()
     });
-    let header =
-        ["scene", "seed", "grip", "kept", "slid_mm", "beyond_need_n", "mean_n", "peak_n", "needed_n"];
-    let csv = csv(&header, rows)?;
+    let header = "scene,seed,grip,kept,slid_mm,beyond_need_n,mean_n,peak_n,needed_n";
+    let csv = csv(header, rows)?;
     let all = panel("all scenes that hold something, mean", &runs.iter().collect::<Vec<_>>());
     let own = OWN.map(|name| panel(name, &runs.iter().filter(|run| run.scene == name).collect::<Vec<_>>()));
     let sheet = Sheet::new(

@@ -54,18 +54,8 @@ pub fn chart(table: &Path, progress: Progress) -> Result<Chart> {
         let numbers = load.truth_n.iter().chain(&load.mean_n).chain([&load.varies_n, &load.spread_px]);
         std::iter::once(load.mass_g).chain(numbers.copied()).map(|value| format!("{value:.4}")).collect()
     });
-    let header = [
-        "mass_g",
-        "x_n",
-        "normal_n",
-        "z_n",
-        "told_x_n",
-        "told_normal_n",
-        "told_z_n",
-        "normal_sd_n",
-        "spread_px",
-    ];
-    let csv = csv(&header, rows)?;
+    let header = "mass_g,x_n,normal_n,z_n,told_x_n,told_normal_n,told_z_n,normal_sd_n,spread_px";
+    let csv = csv(header, rows)?;
     let sheet = Sheet::new(
         "Known loads on a real FingerVision skin",
         "A dot is a load, the mean of ten pictures, told by a calibration on all other loads",

@@ -6,7 +6,6 @@ pub mod emg;
 pub mod front;
 pub mod loads;
 pub mod photoelastic;
-pub mod sensors;
 pub mod table;
 pub mod vision;
 
@@ -17,14 +16,11 @@ use tenax_plot::sheet::{Sheet, draw};
 pub struct Chart {
     /// Its file name, without extension.
     pub name: &'static str,
-    /// The drawing.
     pub svg: String,
-    /// The numbers.
     pub csv: String,
 }
 
 impl Chart {
-    /// Draws it.
     fn new(name: &'static str, sheet: &Sheet, csv: String) -> anyhow::Result<Self> {
         Ok(Self { name, svg: draw::svg(sheet)?, csv })
     }
@@ -33,10 +29,10 @@ impl Chart {
 /// Told how much is done, from 0 to 1.
 pub type Progress<'a> = tenax_bench::jobs::Told<'a>;
 
-/// The rows of a CSV file, under its header.
-fn csv(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> anyhow::Result<String> {
+/// The rows of a CSV file, under the names of its columns, `a,b,c`.
+fn csv(header: &str, rows: impl IntoIterator<Item = Vec<String>>) -> anyhow::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(header)?;
+    writer.write_record(header.split(','))?;
     for row in rows {
         writer.write_record(row)?;
     }

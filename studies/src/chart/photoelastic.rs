@@ -272,7 +272,7 @@ fn table(runs: &[Vec<Point>], curves: &[(Material, Vec<Seen>)], region: &Region)
         let seen = f64::from(u8::from(point.seen));
         rows.push(row("seen", format!("{:.3} s/m", point.steepness_s_m), point.rate_mm_s, seen));
     }
-    csv(&["what", "which", "x", "y"], rows.into_iter().map(Vec::from))
+    csv("what,which,x,y", rows.into_iter().map(Vec::from))
 }
 
 /// A calibration: its weights and curve, and what is left between them. Fails if it cannot be drawn.
@@ -323,6 +323,6 @@ pub fn residuals(calibration: &balance::Calibration) -> anyhow::Result<Chart> {
     let rows = weighed
         .iter()
         .map(|w| [w.force_n, w.level_mv, w.read_n].map(|number| format!("{number:.4}")).to_vec());
-    let csv = csv(&["force_n", "level_mv", "read_n"], rows)?;
+    let csv = csv("force_n,level_mv,read_n", rows)?;
     Chart::new("photoelastic-calibration", &sheet, csv)
 }

@@ -93,7 +93,7 @@ pub fn failures(progress: Progress) -> Result<Chart> {
         let numbers = shares(report).map(|(_, value)| text(value));
         [DIFFICULTIES[number].name.to_owned(), step.to_string()].into_iter().chain(numbers).collect()
     });
-    let csv = csv(&["difficulty", "step", "seen", "recall", "false", "seen_falsely"], rows)?;
+    let csv = csv("difficulty,step,seen,recall,false,seen_falsely", rows)?;
     let looks = [
         (colour::BLUE, Mark::Line),
         (colour::GREEN, Mark::Dashes),

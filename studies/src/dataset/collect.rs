@@ -14,7 +14,6 @@ use super::story::Story;
 use tenax_bench::report::fate;
 use tenax_bench::scorer::SlipSpan;
 
-/// One scan, s.
 const SCAN_S: f64 = 1.0 / SCAN_HZ as f64;
 
 /// One time step of a recording.

@@ -26,7 +26,6 @@ pub struct Manifest {
     /// Of the data's bytes.
     pub sha256: String,
     pub columns: &'static str,
-    /// Steps a second.
     pub rate_hz: u32,
     /// The material that only the test has.
     pub held_out: &'static str,

@@ -53,7 +53,6 @@ enum Plan {
     Open,
 }
 
-/// The operator of one recording.
 #[derive(Debug)]
 pub struct Operator {
     rng: ChaCha8Rng,

@@ -39,9 +39,7 @@ pub struct Session {
     pub seed: u64,
     /// Which array: gains and offsets of its elements.
     pub specimen: u32,
-    /// Static friction.
     pub mu_s: f64,
-    /// Dynamic friction.
     pub mu_d: f64,
     /// Rise of dynamic friction with each decade of speed, as a part.
     pub mu_per_decade: f64,

@@ -28,7 +28,6 @@ pub struct Part {
     pub balanced: f64,
     /// Part of their slips that was caught. Null if there was none.
     pub caught: Option<f64>,
-    /// False alarms an hour.
     pub false_per_hour: f64,
 }
 

@@ -26,7 +26,6 @@ pub use self::score::Score;
 use self::trial::{Kind, Trial, Trials};
 use self::two_channel::Session;
 
-/// One person.
 #[derive(Clone, Debug, Serialize)]
 pub struct Person {
     /// Its number in the file names.
@@ -48,11 +47,8 @@ pub struct Person {
 /// The whole folder: medians over people.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// See [`Person`].
     pub same_session: Option<Score>,
-    /// See [`Person`].
     pub other_posture: Option<Score>,
-    /// See [`Person`].
     pub first_day_kept: Option<Score>,
     /// Part of the calibrations that were refused.
     pub refused_part: f64,
@@ -69,11 +65,8 @@ pub struct Report {
 /// 95 % intervals, people and their sessions drawn again.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Intervals {
-    /// See [`Person`].
     pub same_session: Option<Interval>,
-    /// See [`Person`].
     pub other_posture: Option<Interval>,
-    /// See [`Person`].
     pub first_day_kept: Option<Interval>,
 }
 

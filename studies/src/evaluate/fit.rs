@@ -103,13 +103,10 @@ pub struct Held {
     pub fitted_on: Vec<u32>,
     /// Mean cost of the others: of the round figures, of what ships (which has seen them), and of what was fitted.
     pub plain_cost: f64,
-    /// See above.
     pub shipped_cost: f64,
-    /// See above.
     pub fitted_cost: f64,
 }
 
-/// What was found.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// Of what ships and of what was found: mean cost of a person, of the promises and of faults.

@@ -20,7 +20,6 @@ pub const TIMES: usize = 10;
 /// The two tasks, as the paper orders them.
 pub const TASKS: [Story; 2] = [Story::Pick, Story::Pour];
 
-/// What came of one try.
 #[derive(Clone, Debug, Serialize)]
 pub struct Try {
     /// Of the box.
@@ -59,13 +58,9 @@ pub struct Row {
     pub kept_by: BTreeMap<String, usize>,
     /// Means over the tries: slid, the bound's, mm; greatest force, the bound's, needed, N.
     pub distance_mm: f64,
-    /// See above.
     pub bound_distance_mm: f64,
-    /// See above.
     pub peak_force_n: f64,
-    /// See above.
     pub bound_peak_force_n: f64,
-    /// See above.
     pub needed_force_n: f64,
 }
 

@@ -14,7 +14,6 @@ pub const FIRST_S: f64 = ARRAY_COUNT as f64 / FRAME_HZ as f64;
 /// step before.
 #[derive(Clone, Debug, Default)]
 pub struct Steps {
-    /// They.
     pub steps: Vec<Step>,
     samples: [u16; ARRAY_COUNT],
     /// The sum of the codes of the frame that is not yet whole.
@@ -38,7 +37,6 @@ impl Recorder for Steps {
 }
 
 impl Steps {
-    /// A frame is whole.
     fn frame(&mut self, frame: usize) {
         let place = frame % usize::from(FRAMES_PER_SLOW_FRAME);
         let sum = std::mem::take(&mut self.sum);

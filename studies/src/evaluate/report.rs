@@ -16,7 +16,6 @@ use tenax_bench::scorer::{Alarms, Card, Counts, Doing};
 /// Slips, counted by [`tenax_bench::scorer`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct EventScores {
-    /// What became of them.
     #[serde(flatten)]
     pub slips: Counts,
     /// Median time from macro onset to the detection, of those caught, ms: negative is early.

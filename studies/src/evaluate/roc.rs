@@ -13,7 +13,6 @@ use tenax_bench::scorer::Doing;
 const FALSE_2800: [f64; 14] =
     [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 36.0, 60.0, 100.0, 150.0, 200.0, 300.0, 450.0, 700.0];
 
-/// One threshold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Point {
     /// Slip is a logit of at least this.
@@ -22,7 +21,6 @@ pub struct Point {
     pub recall: f64,
     /// Part of the steps that are called slip that is: precision.
     pub precision: f64,
-    /// Balanced accuracy.
     pub balanced: f64,
     /// Missed steps in 2800.
     pub missed_2800: f64,
@@ -34,7 +32,6 @@ pub struct Point {
     pub false_per_hour: f64,
 }
 
-/// The curve.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Roc {
     /// Probability that a step that slips has a higher logit than one that does not.

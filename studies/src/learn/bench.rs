@@ -4,7 +4,7 @@ use anyhow::{Context, anyhow};
 use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, PVDF_COUNT, SLOW_HZ};
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{Down, NETWORK_OUTPUTS, NetworkState, RECEPTORS, Setting, Slow};
+use tenax_hal_shim::wire::{NETWORK_OUTPUTS, NetworkState, RECEPTORS, Slow};
 use tenax_hal_shim::words;
 use tenax_logic::detectors::Said;
 use tenax_logic::fingertip::Fingertip;
@@ -99,7 +99,6 @@ impl Bench {
         world
     }
 
-    /// Goes through a trial.
     pub fn trial(&mut self, setup: Setup) -> Trial {
         self.trial_for(f64::INFINITY, setup)
     }
@@ -113,16 +112,6 @@ impl Bench {
         });
         trial.end(world.truth().clone());
         trial
-    }
-
-    /// A new fingertip with these settings. Fails if a setting does not take its value.
-    pub fn with_settings(settings: &[Setting]) -> anyhow::Result<Self> {
-        let mut bench = Self::default();
-        for setting in settings {
-            let taken = bench.fingertip.command(&Down::Set(*setting));
-            taken.map_err(|refusal| anyhow!("setting {} to {}: {refusal:?}", setting.id, setting.value))?;
-        }
-        Ok(bench)
     }
 
     /// What it has learned: maxima, weights, the ratio of slip.
@@ -163,7 +152,6 @@ impl Bench {
         &self.said
     }
 
-    /// Weights and activations.
     pub fn network(&self) -> NetworkState {
         self.fingertip.network()
     }

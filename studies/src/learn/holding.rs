@@ -21,7 +21,6 @@ const KNOCKS: u32 = 6;
 const SWINGS: u32 = 2;
 const RUNS: u32 = 2;
 
-/// What came of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Holding {
     /// How long nothing slipped, h.

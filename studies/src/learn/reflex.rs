@@ -20,7 +20,6 @@ const POUR_S: f64 = 4.0;
 /// What moves more slowly along the hand than this is secured, mm/s: the scenes' floor of slip.
 const FLOOR_MM_S: f64 = 1.0;
 
-/// One run.
 #[derive(Clone, Debug, Default)]
 pub struct Reflexed {
     /// From its beginning, s (of the lift, or of the pour), and how far the object has sunk in the hand since, mm.

@@ -26,7 +26,6 @@ const CYCLES: usize = 40;
 /// One weight, and what was read under it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Weighed {
-    /// Its weight, N.
     pub force_n: f64,
     /// What the pin has, mV.
     pub level_mv: f64,

@@ -7,9 +7,7 @@ use tenax_logic::config::Config;
 use tenax_logic::photoelastic::track::Hints;
 use tenax_logic::photoelastic::{Head, HeadConfig};
 
-/// One cycle, s.
 pub const CYCLE_S: f64 = SCANS_PER_FRAME as f64 * FRAMES_PER_SLOW_FRAME as f64 / SCAN_HZ as f64;
-/// One scan, s.
 pub const SCAN_S: f64 = 1.0 / SCAN_HZ as f64;
 /// Noise of a conversion, rms, codes.
 const CONVERTER_LSB: f64 = 1.0;
@@ -22,9 +20,7 @@ pub fn mean_head() -> HeadConfig {
 /// Reads a pin and steps the head's logic.
 #[derive(Debug)]
 pub struct Bench {
-    /// The calibration.
     pub config: HeadConfig,
-    /// The logic.
     pub head: Head,
     converter: ChaCha8Rng,
     scans: u64,

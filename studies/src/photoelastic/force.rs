@@ -23,7 +23,6 @@ const AT_THE_PEAK_N: f64 = 0.06;
 #[derive(Clone, Copy, Debug)]
 pub struct Point {
     pub t_s: f64,
-    /// The true force, N.
     pub true_n: f64,
     /// What was read, None while nothing is known.
     pub read_n: Option<f64>,
@@ -33,7 +32,6 @@ pub struct Point {
     pub range_n: (f64, f64),
     /// The true shear, of the force.
     pub shear: f64,
-    /// Whether the branch is known.
     pub is_certain: bool,
     pub is_wrong: bool,
 }
@@ -146,7 +144,6 @@ impl Session {
         session
     }
 
-    /// The head.
     pub const fn making(&self) -> &Making {
         &self.making
     }
@@ -224,7 +221,6 @@ impl Session {
     }
 }
 
-/// Full scale, N.
 const FULL_SCALE_N: f64 = 6.0;
 
 /// What many runs come to.

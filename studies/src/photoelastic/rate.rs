@@ -26,14 +26,11 @@ const LOADS_N: (f64, f64) = (0.7, 2.0);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Material {
-    /// The aluminium block.
     Aluminium,
-    /// The plastic block.
     Plastic,
 }
 
 impl Material {
-    /// Both.
     pub const ALL: [Self; 2] = [Self::Aluminium, Self::Plastic];
 
     /// For a person.
@@ -57,7 +54,6 @@ impl Material {
 #[derive(Debug)]
 pub struct Rig {
     head: Head,
-    /// What reads it.
     pub bench: Bench,
 }
 

@@ -55,7 +55,6 @@ pub fn measured_mm_s(drop: f64) -> Option<f64> {
     Some((low + high) / 2.0)
 }
 
-/// A point of the map.
 #[derive(Clone, Copy, Debug)]
 pub struct Point {
     /// How fast it slides, mm/s.
@@ -72,11 +71,9 @@ pub struct Region {
     pub boundary: Vec<(f64, f64, f64)>,
     /// The largest difference of the two, %; infinite if it vibrates on the wrong side.
     pub boundary_pct: f64,
-    /// The map.
     pub points: Vec<Point>,
 }
 
-/// Measures it.
 pub fn region(progress: &mut dyn FnMut(f64)) -> Region {
     let mut boundary_pct = 0.0_f64;
     let mut boundary = Vec::new();

@@ -31,7 +31,6 @@ const SMOOTH: usize = 3;
 /// A weight of each of the shear's features.
 type OfEach = [f64; SHEAR_FEATURES];
 
-/// A row of the table.
 #[derive(Clone, Debug, Deserialize)]
 struct Row {
     image: String,
@@ -249,7 +248,6 @@ fn unshrunk(samples: &[Sample], axis: usize, by: f64, row: impl Fn(&Sample) -> V
     weights
 }
 
-/// Ridge regression.
 fn ridge(rows: &[Vec<f64>], targets: &[f64], ridge: f64) -> Vec<f64> {
     let unknowns = rows.first().map_or(0, Vec::len);
     let mut equations = Equations::new(unknowns);

@@ -44,7 +44,6 @@ pub enum Next {
     Picture(Planes, u32, u32),
     /// Nothing has come for too long: the instant.
     Silence(u32),
-    /// There are no more.
     End,
 }
 
@@ -55,7 +54,6 @@ struct Sent {
     due_ms: f64,
 }
 
-/// Pictures, one after the other.
 pub struct Feed {
     sent: Receiver<Result<Sent>>,
     /// Whether it goes on in real time, and since when.

@@ -22,7 +22,6 @@ use super::source::Source;
 /// What to do with the pictures.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Where they come from.
     pub source: Source,
     /// Pictures a second, unless the video says it.
     pub rate_hz: Option<f64>,
@@ -38,7 +37,6 @@ pub struct Plan {
     pub holds: Option<Arc<AtomicBool>>,
 }
 
-/// What became of them.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Report {
     /// Pictures.
@@ -82,7 +80,6 @@ pub enum Told<'a> {
 }
 
 impl Plan {
-    /// Pictures a second.
     fn rate_hz(&self) -> f64 {
         self.rate_hz.or_else(|| self.source.rate_hz()).unwrap_or(30.0)
     }

@@ -8,10 +8,8 @@ use anyhow::{Context, Result, bail};
 use tenax_scene::picture::{Options, Session};
 use tenax_vision::frame::{FRAME_BYTES, HEIGHT, WIDTH};
 
-/// Where pictures come from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// A video file.
     Video(PathBuf),
     /// A folder of pictures, in the order of their names.
     Folder(PathBuf),
@@ -23,7 +21,6 @@ pub enum Source {
     Drawn {
         /// What draws it.
         seed: u64,
-        /// Pictures a second.
         rate_hz: u32,
     },
 }
@@ -31,7 +28,6 @@ pub enum Source {
 /// Pictures of 320 x 240, planes green, blue, red.
 #[derive(Debug)]
 pub enum Pictures {
-    /// What `ffmpeg` decodes.
     Decoded(Decoded),
     Drawn(Box<Session>),
 }

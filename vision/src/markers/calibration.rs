@@ -54,7 +54,6 @@ impl Default for Calibration {
 }
 
 impl Calibration {
-    /// One that has seen nothing.
     pub const fn new() -> Self {
         Self { candidates: [None; MARKERS_MAX], frames: 0 }
     }

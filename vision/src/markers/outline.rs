@@ -49,9 +49,7 @@ pub struct Edge {
 /// Edges seen from one place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outline {
-    /// The place.
     pub middle: Point,
-    /// What each ray met.
     pub edges: [Edge; RAYS],
 }
 
@@ -62,7 +60,6 @@ pub struct Fit {
     pub x: f32,
     /// Moved down, px.
     pub y: f32,
-    /// Grown in radius, px.
     pub growth: f32,
     /// Rays that agree.
     pub rays: usize,

@@ -21,14 +21,12 @@ pub struct Window {
 pub struct Blob {
     /// Its middle.
     pub at: Point,
-    /// Its pixels.
     pub area: u32,
     /// Whether it reaches the window's border, where nobody knows how it goes on.
     pub cut: bool,
 }
 
 impl Blob {
-    /// No blob.
     pub const NONE: Self = Self { at: Point { x: 0.0, y: 0.0 }, area: 0, cut: true };
 }
 

@@ -3,20 +3,16 @@
 use alloc::boxed::Box;
 use alloc::vec;
 
-/// Bins of hue.
 pub const HUES: usize = 100;
-/// Bins of saturation.
 pub const SATURATIONS: usize = 10;
 /// Steps of brightness, each with its own bins: a grey card and a white wall differ in nothing else. 1 is the paper's.
 pub const VALUES: usize = 6;
-/// Bins of all three.
 pub const BINS: usize = VALUES * HUES * SATURATIONS;
 /// Bits of each colour that the table looks at: with 5 the hue of a nearly grey card falls into bins at random.
 const BITS: u32 = 6;
 /// Whether bins are looked up: the table takes half a megabyte, which a microcontroller does not have.
 const LOOKED_UP: bool = !cfg!(feature = "quarter");
 
-/// The bin of a colour.
 pub fn bin(red: u8, green: u8, blue: u8) -> u16 {
     let (red, green, blue) = (i32::from(red), i32::from(green), i32::from(blue));
     let (value, least) = (red.max(green).max(blue), red.min(green).min(blue));
@@ -41,7 +37,6 @@ const fn coarse(level: u8) -> u8 {
     level >> (8 - BITS) << (8 - BITS) | 1 << (7 - BITS)
 }
 
-/// The bins of all colours.
 #[derive(Clone, Debug)]
 pub struct Bins {
     table: Box<[u16]>,
@@ -54,7 +49,6 @@ impl Default for Bins {
 }
 
 impl Bins {
-    /// Computes the table.
     pub fn new() -> Self {
         let mut table = vec![0; if LOOKED_UP { 1 << (3 * BITS) } else { 0 }].into_boxed_slice();
         for (at, entry) in table.iter_mut().enumerate() {
@@ -64,7 +58,6 @@ impl Bins {
         Self { table }
     }
 
-    /// The bin of a colour.
     #[inline]
     pub fn of(&self, red: u8, green: u8, blue: u8) -> usize {
         if !LOOKED_UP {

@@ -19,7 +19,6 @@ const RIM_MIN_PX: u32 = 60;
 /// How far from the rim the colours are compared, px: it is found to a pixel or two only.
 const REACH: usize = 3;
 
-/// Whether `object` is a ghost.
 pub fn is_one(object: &Mask, skin: &Mask, frame: &Frame, scene: &Scene) -> bool {
     let mut rim = object.clone();
     rim.erode(1);

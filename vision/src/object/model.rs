@@ -17,7 +17,6 @@ const GAIN_HALVES: u32 = 1;
 /// The most that a bin holds.
 const FULL: u32 = 255;
 
-/// The object's colours.
 #[derive(Clone, Debug)]
 pub struct ObjectModel {
     /// What each of the last frames added.
@@ -33,7 +32,6 @@ impl Default for ObjectModel {
 }
 
 impl ObjectModel {
-    /// One that knows no object.
     pub fn new() -> Self {
         Self { added: vec![[0; BINS]; FRAMES].into_boxed_slice(), sums: Box::new([0; BINS]), next: 0 }
     }
@@ -58,7 +56,6 @@ impl ObjectModel {
         self.sums[bin].min(FULL as u16) as u8
     }
 
-    /// Knows no object again.
     pub fn forget(&mut self) {
         self.added.iter_mut().for_each(|frame| frame.fill(0));
         self.sums.fill(0);

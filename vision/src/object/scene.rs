@@ -52,7 +52,6 @@ impl Default for Scene {
 }
 
 impl Scene {
-    /// One that has seen nothing.
     pub fn new() -> Self {
         Self { red: levels(), green: levels(), blue: levels(), varies: levels(), frames: 0 }
     }
@@ -135,7 +134,6 @@ impl Scene {
         })
     }
 
-    /// The scene's colour at a pixel.
     #[inline]
     pub fn colour(&self, at: usize) -> (u8, u8, u8) {
         let level = |plane: &Levels| (plane[at] >> FRACTION) as u8;

@@ -16,7 +16,6 @@ pub struct Commands {
 }
 
 impl Commands {
-    /// A command was sent.
     pub fn send(&mut self, command: Received<Down>) {
         self.sent.push_back(command);
     }

@@ -25,7 +25,6 @@ pub struct CostMeter {
 }
 
 impl CostMeter {
-    /// One that has counted nothing.
     pub fn new(symbols: &Symbols, told: Option<Sender<Tick>>) -> Self {
         Self {
             tick: symbols.tick,
@@ -59,7 +58,6 @@ impl CostMeter {
         }
     }
 
-    /// Ticks that have ended.
     pub const fn ticks(&self) -> u64 {
         self.count
     }

@@ -42,7 +42,6 @@ const INSTRUCTIONS_PER_SECOND: NonZeroU64 = NonZeroU64::new(100_000_000).expect(
 /// What the core made of one reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Answer {
-    /// What the detector says.
     pub verdict: ArrayVerdict,
     /// What by. None while its windows are not full or too many elements have no reading.
     pub evidence: Option<Evidence>,
@@ -68,7 +67,6 @@ impl Answer {
     }
 }
 
-/// What is run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kernels {
     Detector,
@@ -76,7 +74,6 @@ pub enum Kernels {
     All,
 }
 
-/// What a run gave.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outcome {
     /// For each recording, for each reading.

@@ -56,7 +56,6 @@ pub struct World {
     pub stack_bytes: Option<u64>,
     /// Why the run ended early, if it did.
     pub broken: Option<Broken>,
-    /// What the ticks cost.
     pub cost: CostMeter,
     /// Who follows some ticks instruction by instruction, if anybody does.
     pub followed: Option<Followed>,
@@ -64,7 +63,6 @@ pub struct World {
     pub coupling: Option<Coupling>,
     /// What was sent, and when it was taken.
     pub commands: Commands,
-    /// The flash's words.
     pub flash: FlashArray,
     /// Whole scans that the plant lasts.
     scans: usize,

@@ -6,7 +6,6 @@ use std::collections::VecDeque;
 use tenax_hal_shim::wire::{BadFrame, Counters, Down, Received, Receiver};
 use tenax_logic::allowance::{Allowance, BURST};
 
-/// What comes down.
 #[derive(Debug, Default)]
 pub struct Downlink {
     receiver: Receiver,
@@ -46,7 +45,6 @@ impl Downlink {
         self.opening.take().map(|nonce| self.number(Down::Open { nonce })).into_iter().collect()
     }
 
-    /// Bytes have come.
     pub fn take(&mut self, bytes: &[u8]) {
         for &byte in bytes {
             let frame = self.frame;

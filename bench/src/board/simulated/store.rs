@@ -31,7 +31,6 @@ impl Store {
         self.saving.is_none()
     }
 
-    /// Begins to save a record.
     pub fn save(&mut self, record: Record) {
         let words =
             record.payload(&mut [0; PAYLOAD_BYTES]).len() / 4 + OVERHEAD_WORDS + self.log.mark_words();

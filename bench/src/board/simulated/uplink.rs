@@ -13,7 +13,6 @@ use tenax_serial::link::Encoder;
 /// Frames between two messages with the counters: ten a second.
 const COUNTERS_FRAMES: u32 = FRAME_HZ / 10;
 
-/// Where messages go.
 pub struct Uplink<'a> {
     encoder: Encoder,
     summary: &'a mut Summary,

@@ -48,7 +48,6 @@ impl Agreement {
     }
 
     /// Whether nothing differs.
-    #[must_use]
     pub const fn holds(&self) -> bool {
         self.difference.is_none()
     }

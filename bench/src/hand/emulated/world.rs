@@ -76,7 +76,6 @@ impl Log {
     }
 }
 
-/// Around one image.
 pub struct World {
     n: usize,
     hub: Arc<Hub>,

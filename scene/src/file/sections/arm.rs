@@ -35,9 +35,7 @@ impl Arm {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Move {
-    /// When it begins.
     pub at_s: Spanned<Instant>,
-    /// How long it takes.
     pub for_s: Duration,
     /// To this height over where the hand grasped.
     pub to_mm: Height,
@@ -47,11 +45,8 @@ pub struct Move {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Swing {
-    /// When it begins.
     pub at_s: Spanned<Instant>,
-    /// How many times.
     pub cycles: NonZeroU8,
-    /// How often.
     pub rate_hz: Hertz,
     /// Acceleration of the strongest.
     pub peak_m_s2: Acceleration,
@@ -61,11 +56,9 @@ pub struct Swing {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Robot {
-    /// Mass of the probe.
     pub probe_kg: Kilograms,
     /// Compliance of the arm along the stroke.
     pub stiffness_n_per_mm: Stiffness,
-    /// Its damping.
     pub damping: Damping,
     /// How long load and speed take to come and to go.
     pub ramp_ms: Milliseconds,
@@ -75,11 +68,9 @@ pub struct Robot {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Press {
-    /// When the load begins to come.
     pub at_s: Spanned<Instant>,
     /// Until it is gone.
     pub for_s: Duration,
-    /// The load.
     pub load_n: Newtons,
 }
 
@@ -87,9 +78,7 @@ pub struct Press {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sweep {
-    /// When it begins.
     pub at_s: Spanned<Instant>,
-    /// How long it lasts.
     pub for_s: Duration,
     /// How fast; negative is back.
     pub speed_mm_s: Velocity,

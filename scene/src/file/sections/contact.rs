@@ -22,7 +22,6 @@ pub enum Level {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
-    /// How much of it is modelled.
     #[serde(default)]
     pub level: Level,
     /// Static friction.
@@ -70,7 +69,6 @@ impl Contact {
         self.mu_per_decade.as_ref().map_or(0.0, |part| part.get_ref().get())
     }
 
-    /// Stribeck's speed.
     pub fn stribeck_mm_s(&self) -> Speed {
         // Assumed, as the strip's in `physics::stribeck`.
         self.stribeck_mm_s.as_ref().map_or(Speed::of(3.0), |speed| *speed.get_ref())
@@ -81,11 +79,9 @@ impl Contact {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Wet {
-    /// When it begins.
     pub at_s: Spanned<Instant>,
     /// When it begins to go back; never without it.
     pub until_s: Option<Spanned<Instant>>,
-    /// How long each change takes.
     pub ramp_ms: Milliseconds,
     /// Static friction while it lasts.
     pub mu_s: Mu,

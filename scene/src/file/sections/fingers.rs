@@ -10,7 +10,6 @@ use crate::file::quantity::{Direction, Duration, Instant, Milliseconds, Newtons}
 pub struct Fingers {
     /// When whatever the object stands on is taken away, within half a second.
     pub lift_s: Instant,
-    /// The fingers.
     pub finger: Vec<Finger>,
     /// The hand turns, so that the object leans on its fingers.
     #[serde(default)]
@@ -20,7 +19,6 @@ pub struct Fingers {
     pub drag: Vec<Drag>,
 }
 
-/// A finger.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Finger {
@@ -35,9 +33,7 @@ pub struct Finger {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tilt {
-    /// When it begins.
     pub at_s: Instant,
-    /// How long it takes.
     pub for_s: Duration,
     /// By how much, on top of the turns before. The object leans towards 0 degrees.
     pub by_deg: Direction,
@@ -47,14 +43,10 @@ pub struct Tilt {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Drag {
-    /// When it begins.
     pub at_s: Instant,
-    /// How long it lasts.
     pub for_s: Duration,
     /// How long it takes to come and to go.
     pub ramp_ms: Milliseconds,
-    /// How hard.
     pub force_n: Newtons,
-    /// Where to.
     pub to_deg: Direction,
 }

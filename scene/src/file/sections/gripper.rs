@@ -5,7 +5,6 @@ use toml::Spanned;
 
 use crate::file::quantity::{DeadTime, Millimetres, NewtonsMax, Play, Speed};
 
-/// The hand's motor and fingers.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Gripper {

@@ -12,11 +12,9 @@ use crate::file::quantity::{
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Knock {
-    /// When.
     pub at_s: Spanned<Instant>,
     /// First peak, at the film.
     pub peak_mv: Millivolts,
-    /// What rings.
     pub ring_hz: RingHertz,
     /// Until it has fallen to 1/e.
     pub decay_ms: Milliseconds,
@@ -35,13 +33,10 @@ impl Knock {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Hum {
-    /// When.
     pub at_s: Spanned<Instant>,
-    /// How long.
     pub for_s: Duration,
     /// Peak at the film.
     pub peak_mv: Millivolts,
-    /// Its frequency.
     pub hum_hz: Hertz,
 }
 
@@ -61,9 +56,7 @@ pub struct Vibrator {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ElectrodeLift {
-    /// When.
     pub at_s: Spanned<Instant>,
-    /// How long.
     pub for_s: Duration,
     /// `myo_flexor` or `myo_extensor`.
     pub channel: Spanned<ChannelName>,
@@ -75,13 +68,10 @@ pub struct ElectrodeLift {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Jam {
-    /// When.
     pub at_s: Spanned<Instant>,
-    /// How long.
     pub for_s: Duration,
 }
 
-/// What a broken sensor does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FaultKind {
@@ -105,7 +95,6 @@ pub enum FaultKind {
     Bridged,
 }
 
-/// A sensor breaks.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SensorFault {
@@ -113,11 +102,8 @@ pub struct SensorFault {
     pub at_s: Spanned<Instant>,
     /// When it works again; never without it.
     pub until_s: Option<Spanned<Instant>>,
-    /// Which.
     pub channel: Spanned<ChannelName>,
-    /// How.
     pub kind: FaultKind,
-    /// The force of `pressed`.
     pub press_n: Option<Spanned<Newtons>>,
     /// The rate of `drift`: of a quadrant of the force sensor N/s, of any other channel mV/s at the pin.
     pub drift_per_s: Option<Spanned<Drift>>,

@@ -7,7 +7,6 @@ use crate::file::quantity::{
     Damping, Duration, Instant, Kilograms, KilogramsAdded, Lever, Millimetres, Newtons, Stiffness,
 };
 
-/// Something to grasp.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Object {
@@ -39,7 +38,6 @@ pub struct Pitch {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Table {
-    /// Stiffness of the mat.
     pub mat_n_per_mm: Stiffness,
     /// Damping of the mat under the empty object.
     pub damping: Damping,
@@ -49,7 +47,6 @@ pub struct Table {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Fill {
-    /// When it begins.
     pub at_s: Spanned<Instant>,
     /// How long it takes, evenly.
     pub for_s: Duration,

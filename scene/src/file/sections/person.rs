@@ -19,15 +19,12 @@ pub enum Intent {
     Both,
 }
 
-/// The wearer contracts.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Muscle {
-    /// When.
     pub at_s: Spanned<Instant>,
     /// How long at most.
     pub for_s: Duration,
-    /// What for.
     pub intent: Intent,
     /// How strongly: envelope above rest.
     pub level_mv: Millivolts,
@@ -35,19 +32,15 @@ pub struct Muscle {
     pub until_grip_n: Option<Newtons>,
 }
 
-/// What somebody types.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "String")]
 pub enum CommandKind {
     /// A behaviour begins; a turn is by `value` degrees.
     Begin(Behaviour),
-    /// The behaviour that goes on ends.
     End,
-    /// The force sensor is zeroed.
     Zero,
     /// The hand is closed with `duty_permille` for `for_s`.
     Close,
-    /// The hand is opened, likewise.
     Open,
     /// Somebody at the hand presses the board's button: consent to what the line sends.
     Consent,
@@ -89,9 +82,7 @@ impl TryFrom<String> for CommandKind {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Command {
-    /// When.
     pub at_s: Spanned<Instant>,
-    /// What.
     pub kind: Spanned<CommandKind>,
     /// Of a setting, in the unit that the kind names.
     pub value: Option<Spanned<i32>>,

@@ -9,9 +9,7 @@ use crate::file::quantity::{Duration, Instant, Milliseconds, Pulling};
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Pull {
-    /// When it begins.
     pub at_s: Spanned<Instant>,
-    /// How long it lasts.
     pub for_s: Duration,
     /// How hard: upwards; negative is down.
     pub force_n: Pulling,

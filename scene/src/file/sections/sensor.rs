@@ -21,9 +21,7 @@ pub struct Pvdf {
     pub high_pass_hz: Hertz,
     /// Mean time in which the skin passes a deformation on to a film; deeper films take up to 1.5 times as long.
     pub skin_ms: Milliseconds,
-    /// For 1 N of normal force.
     pub normal_mv_per_n: Gain,
-    /// For 1 N of shear.
     pub shear_mv_per_n: Gain,
     /// For 1 N of shear let go by a contact that begins to slide.
     pub release_mv_per_n: Gain,
@@ -37,9 +35,7 @@ pub struct Pvdf {
     pub motor_mv: Millivolts,
     /// Frequency of the gear's teeth at full speed.
     pub motor_hz: Hertz,
-    /// Mains hum.
     pub mains_mv: Millivolts,
-    /// Frequency of the mains.
     pub mains_hz: Hertz,
     /// Broadband noise up to half the frame rate, rms.
     pub noise_mv: Millivolts,
@@ -53,7 +49,6 @@ pub struct Fsr {
     pub hysteresis: Part,
     /// How much more a lasting load reads in the end than at first.
     pub creep: Part,
-    /// How long that takes.
     pub creep_s: Duration,
 }
 
@@ -75,7 +70,6 @@ pub struct Myo {
     pub mains_mv: Millivolts,
 }
 
-/// The strain gauges.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Strain {
@@ -91,13 +85,11 @@ pub struct Strain {
     pub drift_mv_per_min: Millivolts,
     /// How much more a lasting load reads in the end than at first.
     pub creep: Part,
-    /// How long that takes.
     pub creep_s: Duration,
     /// Noise of a reading, rms.
     pub noise_mv: Millivolts,
 }
 
-/// The normal-force array.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Array {
@@ -134,7 +126,6 @@ pub struct Array {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Skin {
-    /// Pictures a second.
     pub rate_hz: Hertz,
     /// From the instant of a picture until its summary has come over the serial line.
     pub delay_ms: DeadTime,
@@ -158,7 +149,6 @@ pub struct Skin {
 pub struct Camera {
     /// One pixel in the world.
     pub pixel_mm: Millimetres,
-    /// Images a second.
     pub rate_hz: Hertz,
     /// Jitter of a mark's place, rms, pixels.
     pub jitter_px: Part,

@@ -34,7 +34,6 @@ pub struct Day {
     pub source: f64,
     /// How the source goes on drifting, as a part of its first, in a minute.
     pub source_per_min: f64,
-    /// Ambient light, mV.
     pub ambient_mv: f64,
     /// What ageing of the epoxy adds to the frozen birefringence, rad.
     pub aged_rad: f64,
@@ -43,7 +42,6 @@ pub struct Day {
 }
 
 impl Making {
-    /// The mean head.
     pub const MEAN: Self = Self {
         peak_n: PEAK_N,
         back_n: BACK_N,

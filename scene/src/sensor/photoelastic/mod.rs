@@ -77,16 +77,6 @@ impl Head {
         }
     }
 
-    /// How it was made.
-    pub const fn making(&self) -> &Making {
-        &self.making
-    }
-
-    /// Its day.
-    pub const fn day(&self) -> &Day {
-        &self.day
-    }
-
     /// The voltage at the pin after one scan that ends at `t_s`.
     pub fn step(&mut self, t_s: f64, touch: &Touch) -> f64 {
         let rings = self.knocks.iter().map(|knock| super::pvdf::ring_mv(knock, t_s, 0.0)).sum::<f64>();

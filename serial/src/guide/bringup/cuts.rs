@@ -4,14 +4,14 @@ use std::process::Command;
 use std::thread;
 use std::time::Duration;
 
-use anyhow::{bail, ensure};
-use tenax_hal_shim::wire::{Answer, Down, EventKind, Setting, Up};
+use anyhow::ensure;
+use tenax_hal_shim::wire::{Down, EventKind, Setting, Up};
 use tenax_hal_shim::words::{Fault, Kept};
 use tenax_logic::setting::SettingId;
 
 use super::wire::{Stream, Wire};
 use super::{Asked, Figure};
-use crate::guide::{ANSWER_WITHIN, Say};
+use crate::guide::Say;
 
 /// The setting that is changed, by one.
 const CHANGED: SettingId = SettingId::S1;
@@ -22,13 +22,6 @@ const PATIENCE: Duration = Duration::from_secs(120);
 /// How long what a start says is listened to.
 const STARTED: Duration = Duration::from_millis(500);
 
-fn value(wire: &mut Wire<'_>) -> anyhow::Result<i32> {
-    match wire.client.ask(&Down::Get(CHANGED.number()), ANSWER_WITHIN)? {
-        Answer::Setting(own) => Ok(own.value),
-        other => bail!("the board does not say its settings: {other:?}"),
-    }
-}
-
 /// The flash did not take a record, or has no room for it.
 const fn is_refused(message: &Up) -> bool {
     matches!(message, Up::Event(event)
@@ -38,7 +31,7 @@ const fn is_refused(message: &Up) -> bool {
 /// Cuts the power again and again.
 pub(super) fn cuts(wire: &mut Wire<'_>, asked: &Asked, say: Say<'_>) -> anyhow::Result<Vec<Figure>> {
     let times = asked.times.unwrap_or(100);
-    let first = value(wire)?;
+    let first = wire.client.setting(CHANGED)?;
     let other = if first > CHANGED.row().min { first - 1 } else { first + 1 };
     let (mut kept, mut new, mut forgotten, mut foreign, mut failed) = (first, 0, 0, 0, 0);
     for n in 1..=times {
@@ -62,7 +55,7 @@ pub(super) fn cuts(wire: &mut Wire<'_>, asked: &Asked, say: Say<'_>) -> anyhow::
             Ok(false)
         })?;
         failed += u32::from(!matches!(fault, None | Some(Fault::SupplySagged)));
-        let now = value(wire)?;
+        let now = wire.client.setting(CHANGED)?;
         new += u32::from(now == next);
         forgotten += u32::from(saved && now != next);
         foreign += u32::from(now != next && now != kept);

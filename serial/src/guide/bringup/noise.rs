@@ -7,12 +7,12 @@ use tenax_hal_shim::channel::{
 };
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::schedule::SCHEDULE;
-use tenax_hal_shim::wire::{Answer, Down, Up};
+use tenax_hal_shim::wire::Up;
 use tenax_logic::setting::SettingId;
 
 use super::wire::{Stream, Wire};
 use super::{Asked, Figure};
-use crate::guide::{ANSWER_WITHIN, Say};
+use crate::guide::Say;
 
 /// A sample, mV.
 const SAMPLE_MV: f64 = REFERENCE_MV as f64 / SAMPLE_MAX as f64;
@@ -142,10 +142,7 @@ pub(super) fn interference(wire: &mut Wire<'_>, asked: &Asked, say: Say<'_>) -> 
     let films: Vec<usize> = (PVDF..PVDF + PVDF_COUNT).collect();
     let others: Vec<usize> =
         (0..COUNT).filter(|n| !films.contains(n) && ![OPENING, MOTOR_CURRENT].contains(n)).collect();
-    let s1_mv = match wire.client.ask(&Down::Get(SettingId::S1.number()), ANSWER_WITHIN)? {
-        Answer::Setting(own) => f64::from(own.value),
-        other => anyhow::bail!("the board does not say its S1: {other:?}"),
-    };
+    let s1_mv = f64::from(wire.client.setting(SettingId::S1)?);
     let rest = Levels::heard(wire, 2 * lasts)?;
     let mut figures = vec![Figure::told("films' envelope at rest", rest.envelope_mv, "mV")];
     type Way = fn(Duty) -> MotorDrive;

@@ -9,8 +9,8 @@ use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Answer, DRIVE_HOLD_MAX_MS, Down, Refusal, Up};
 use tenax_hal_shim::words::Fault;
 
-use super::super::{ANSWER_WITHIN, Say};
-use crate::link::Client;
+use super::super::Say;
+use crate::link::{ANSWER_WITHIN, Client};
 
 /// The board streams for so long after it is asked, s; it is asked again in half of it.
 const HOLD_S: u16 = 4;
@@ -30,7 +30,6 @@ pub struct Stream {
     pub senses: bool,
 }
 
-/// The line.
 pub struct Wire<'a> {
     open: &'a dyn Fn() -> anyhow::Result<Client>,
     pub client: Client,

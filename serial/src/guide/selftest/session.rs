@@ -4,11 +4,11 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
 use tenax_hal_shim::channel::{CHANNELS, COUNT, Role, by_name};
-use tenax_hal_shim::wire::{Answer, Down, Up};
+use tenax_hal_shim::wire::{Down, Up};
 use tenax_logic::setting::SettingId;
 
 use super::{REST_PROMPT, Selftest};
-use crate::guide::{ANSWER_WITHIN, Say, ask};
+use crate::guide::{Say, ask};
 use crate::link::Client;
 
 /// Silence after which a board is said to send nothing.
@@ -49,7 +49,6 @@ impl Session {
         })
     }
 
-    /// The test itself.
     pub const fn test(&self) -> &Selftest {
         &self.test
     }
@@ -86,13 +85,8 @@ impl Session {
 
 /// Runs the test to its end; whether all pass.
 pub fn run(client: &mut Client, words: &[String], limit_s: u32, say: Say<'_>) -> anyhow::Result<bool> {
-    let mut flag = |id: SettingId| -> anyhow::Result<bool> {
-        match client.ask(&Down::Get(id.number()), ANSWER_WITHIN)? {
-            Answer::Setting(own) => Ok(own.value != 0),
-            other => bail!("the board does not say its settings: {other:?}"),
-        }
-    };
-    let (head, no_wearer) = (flag(SettingId::Head)?, flag(SettingId::NoWearer)?);
+    let (head, no_wearer) =
+        (client.setting(SettingId::Head)? != 0, client.setting(SettingId::NoWearer)? != 0);
     let mut session = Session::begin(words, head, no_wearer, limit_s)?;
     let stream = Down::Stream { raw: false, senses: true, hold_s: 10 };
     let (mut asked, mut printed) = (None::<Instant>, 0);

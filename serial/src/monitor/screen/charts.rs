@@ -13,7 +13,6 @@ use crate::monitor::view::{Point, View};
 /// Seconds that are shown.
 const SPAN_S: f64 = 10.0;
 
-/// One quantity.
 struct Trace<'a> {
     title: String,
     values: Vec<(f64, f64)>,

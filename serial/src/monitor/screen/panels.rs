@@ -159,7 +159,6 @@ pub fn senses_height(width: u16) -> u16 {
     lines as u16 + 3
 }
 
-/// Every sensor's reading.
 pub fn senses(frame: &mut Frame<'_>, area: Rect, view: &View) {
     let Some(senses) = &view.senses else {
         return frame.render_widget(Paragraph::new("not heard yet").block(block("sensors")), area);

@@ -76,7 +76,6 @@ pub struct Heard {
     /// What is scored: from when to when, s.
     pub span_s: (f64, f64),
     pub slips: Vec<SlipSpan>,
-    /// What each row said.
     pub said: Vec<Vec<Verdict>>,
 }
 
@@ -125,7 +124,6 @@ impl Plan {
         Ok(Fingertip { number, finger, session, taught: kept })
     }
 
-    /// So many fingertips there are.
     pub const fn count(&self) -> usize {
         4 * self.fingers
     }

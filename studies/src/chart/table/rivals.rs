@@ -99,6 +99,7 @@ impl Score for plain::Loudness {
     }
 }
 
+#[derive(Clone)]
 struct Ratio;
 
 impl Score for Ratio {
@@ -160,12 +161,6 @@ impl Rival {
             threshold: Some(threshold),
             make: Box::new(move || vec![make(threshold)]),
         }
-    }
-}
-
-impl Clone for Ratio {
-    fn clone(&self) -> Self {
-        Self
     }
 }
 

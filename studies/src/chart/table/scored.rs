@@ -145,7 +145,6 @@ impl Scored {
         })
     }
 
-    /// Hours of this kind.
     pub fn hours(&self, kind: Kind) -> f64 {
         self.alarms[kind as usize].1
     }

@@ -30,7 +30,6 @@ const PLAYED: usize = 3 * CONTRACTIONS as usize + 2;
 /// Sessions of a kind, and in how many of them the wearer is asked.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Row {
-    /// How many there are.
     pub sessions: usize,
     /// After the first judgement, and ever in three.
     pub moved_at_first: usize,

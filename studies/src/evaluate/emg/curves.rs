@@ -24,7 +24,6 @@ const HAND: [f64; 9] = [0.5, 0.65, 0.8, 0.9, 1.0, 1.1, 1.25, 1.4, 1.6];
 /// Rows for which plain control waits.
 const PLAIN_DWELL: usize = 3;
 
-/// A point of a curve.
 #[derive(Clone, Debug, Serialize)]
 pub struct Point {
     /// Who decides.
@@ -128,13 +127,11 @@ pub fn curves(folder: &Path) -> anyhow::Result<Vec<Point>> {
 
 impl Point {
     /// Mean of the windows right of closing and opening.
-    #[must_use]
     pub fn right(&self) -> f64 {
         f64::midpoint(self.score.close_right, self.score.open_right)
     }
 
     /// Whether the hand ships so.
-    #[must_use]
     pub fn ships(&self) -> bool {
         self.control == "hand" && self.asks == 1.0
     }

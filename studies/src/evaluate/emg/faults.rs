@@ -60,7 +60,6 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// Each of them.
     pub const ALL: [Self; 7] = [
         Self::Lifted,
         Self::Loose,
@@ -93,7 +92,6 @@ enum Where {
     Both,
 }
 
-/// One fault.
 #[derive(Clone, Copy, Debug)]
 struct Drawn {
     fault: Fault,
@@ -273,7 +271,6 @@ fn case(fitted: &'static Fitted, trial: &Trial, wearer: usize, rng: &mut ChaCha8
 /// Cases of a kind, and what came of them.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Row {
-    /// How many there were.
     pub cases: usize,
     /// Those that opened by more than is safe, and the most that one did, mm.
     pub dropped: usize,
@@ -297,7 +294,6 @@ impl Row {
     }
 }
 
-/// What faults did.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// Of what they were drawn.

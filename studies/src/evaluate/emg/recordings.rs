@@ -41,7 +41,6 @@ pub(super) fn numbers(stem: &str) -> Option<[u32; 3]> {
     Some([person.parse().ok()?, day.parse().ok()?, posture.parse().ok()?])
 }
 
-/// One recording.
 #[derive(Debug)]
 pub(in crate::evaluate) struct Recording {
     uv: Vec<[f64; 4]>,
@@ -85,7 +84,6 @@ impl Recording {
         Ok(Self { uv, labels })
     }
 
-    /// How many rows it has.
     pub(super) const fn rows(&self) -> usize {
         self.uv.len()
     }

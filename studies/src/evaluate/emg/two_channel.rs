@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use serde::Serialize;
-use tenax_bench::replay::library;
+use tenax_bench::recipe::Kind;
+use tenax_bench::replay::Recipe;
 use tenax_bench::replay::meaning::Motion;
 use tenax_bench::replay::muscles::{Muscles, calibrate};
 use tenax_logic::emg::constants::Fitted;
@@ -26,7 +27,6 @@ const WINDOW_S: f64 = 0.25;
 /// within a contraction, of which the front end has heard nothing before.
 const FRONT_END_S: f64 = 0.056;
 
-/// A recording of one movement.
 #[derive(Clone, Debug)]
 pub struct Movement {
     /// Its name without the session's.
@@ -38,12 +38,10 @@ pub struct Movement {
     muscles: Muscles,
 }
 
-/// The recordings of a session.
 #[derive(Clone, Debug)]
 pub struct Session {
     /// Its letter; the first has none.
     pub name: String,
-    /// What was recorded.
     pub movements: Vec<Movement>,
     calibrations: Vec<Calibrated>,
 }
@@ -68,7 +66,7 @@ const fn wish(motion: Motion) -> Wish {
 
 impl Movement {
     fn read(path: &Path, name: &str) -> anyhow::Result<Self> {
-        let recipe = library::for_recording(path)?.context("no recipe is for it")?.recipe;
+        let recipe = Recipe::for_file(path)?.context("no recipe is for it")?.recipe;
         let file = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
         let meaning = recipe.meaning_of(file);
         Ok(Self {
@@ -89,14 +87,11 @@ impl Movement {
         self.is_held() && self.wants != Wish::Rest
     }
 
-    /// Whether it is rest.
-    #[must_use]
     pub fn is_rest(&self) -> bool {
         self.wants == Wish::Rest && self.never.len() == 2
     }
 
     /// As electrodes would hear it that hear so much more or less, flexor first.
-    #[must_use]
     pub fn heard_with(&self, gains: [f64; 2]) -> Self {
         let mut heard = self.clone();
         for (_, pair) in &mut heard.muscles.pairs {
@@ -108,7 +103,6 @@ impl Movement {
     }
 
     /// What a hand says of it.
-    #[must_use]
     pub fn play(&self, mut emg: Emg) -> Played<'_> {
         let mut doubts = Vec::new();
         let mut was = [Quality::Good; 2];
@@ -166,7 +160,6 @@ pub struct Played<'a> {
 
 impl Played<'_> {
     /// The longest stretch of what must not be, ms.
-    #[must_use]
     pub fn wrong_ms(&self) -> u32 {
         self.movement.never.iter().map(|&wish| self.longest_ms(wish)).max().unwrap_or(0)
     }
@@ -185,7 +178,6 @@ impl Played<'_> {
     }
 
     /// Of a held movement that moves the hand: windows in most of which the hand does, and windows in all.
-    #[must_use]
     pub fn windows(&self) -> Option<[u32; 2]> {
         let wants = self.movement.wants;
         let is_right = |from_s: &f64| {
@@ -221,7 +213,6 @@ pub(super) fn sessions(files: &[PathBuf]) -> anyhow::Result<Vec<Session>> {
     Ok(sessions.into_iter().map(|(name, movements)| Session::new(name, movements)).collect())
 }
 
-/// How a session was understood.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// Its letter; the first has none.
@@ -271,7 +262,6 @@ impl Session {
     }
 
     /// Every calibration that there can be.
-    #[must_use]
     pub fn calibrations(&self) -> &[Calibrated] {
         &self.calibrations
     }
@@ -282,7 +272,6 @@ impl Session {
     }
 
     /// Scores every calibration on what it was not taken from.
-    #[must_use]
     pub fn score(&self, fitted: &'static Fitted) -> Report {
         let mut report = Report {
             session: self.name.clone(),

@@ -8,17 +8,13 @@ use crate::image::kernels::Kernel;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Cost {
     pub name: String,
-    /// How often it ran.
     pub calls: u64,
-    /// The call that cost least.
     pub least: u64,
-    /// The call that cost most.
     pub most: u64,
     sum: u64,
 }
 
 impl Cost {
-    /// The mean of all calls.
     pub fn mean(&self) -> f64 {
         self.sum as f64 / self.calls as f64
     }

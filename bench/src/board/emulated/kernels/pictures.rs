@@ -21,18 +21,15 @@ const LOOK_NS: u64 = 10_000_000;
 /// Looks without a new picture after which the core is given up.
 const PATIENCE: u32 = 200;
 
-/// A picture for the core.
 #[derive(Clone, Debug)]
 pub struct Picture {
     /// Its planes, green, blue and red.
     pub gbrp: Vec<u8>,
-    /// When it was taken.
     pub taken_ms: u32,
     /// Whether the object's colours are learned.
     pub learn: bool,
 }
 
-/// What a run gave.
 #[derive(Debug)]
 pub struct Outcome {
     /// What the core said of each picture.
