@@ -48,7 +48,7 @@ pub struct Args {
     /// The network in this folder of `tenax train` instead of the one that ships
     #[arg(long, value_name = "DIR", conflicts_with = "online")]
     network: Option<PathBuf>,
-    /// Fit scale and threshold to each session's first N seconds without slip, which are not scored
+    /// Fit scale and threshold to N seconds of each session without slip, which are not scored; once from each quiet recording on
     #[arg(long, value_name = "N", requires = "dataset")]
     adapt: Option<f64>,
     /// Seed of the built-in data set, or of the online tasks
@@ -138,18 +138,15 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What a network that has adapted to each session says of the rest of it.
+/// What a network that has adapted to each session says of the rest of it: every calibration together.
 fn adapted(network: &Network, recordings: &[Recording], quiet_s: f64) -> anyhow::Result<Report> {
-    let judged = adapt::adapt(network, recordings, quiet_s)?;
-    let said: Vec<Verdicts> = judged
-        .logits
-        .iter()
-        .zip(&judged.on)
+    let calibrations = adapt::adapt(network, recordings, quiet_s)?;
+    let judged = || calibrations.iter().flat_map(|own| own.logits.iter().zip(&own.on));
+    let said: Vec<Verdicts> = judged()
         .map(|(logits, &on)| logits.iter().map(|logit| logit.is_some_and(|logit| logit >= on)).collect())
         .collect();
-    let mut report = Report::new(&judged.recordings, &said, &said);
-    report.real = Real::of(&judged.recordings, &judged.logits, &judged.on);
-    Ok(report)
+    let scored: Vec<Recording> = calibrations.iter().flat_map(|own| own.recordings.clone()).collect();
+    Ok(Report { real: Real::of(&calibrations), ..Report::new(&scored, &said, &said) })
 }
 
 /// Recordings of a real array, and how long a network may hold each object quietly to adapt to it, s.
