@@ -14,6 +14,7 @@ use super::workspace;
 use tenax_bench::array::network::Network;
 use tenax_bench::array::real::{Logits, Real};
 use tenax_bench::array::{Verdicts, adapt, readings};
+use tenax_bench::jobs::Told;
 use tenax_bench::labelled::{self, Part, Recording, library};
 use tenax_bench::session::Board;
 use tenax_studies::dataset::session::{Sizes, sessions};
@@ -60,6 +61,9 @@ pub struct Args {
     /// Part of the built-in data set. Choose by validation; keep test for final scores
     #[arg(long, value_name = "train|validation|test", default_value = "test", conflicts_with = "dataset")]
     part: Part,
+    /// Sessions with one drawn quantity at a time outside the range of training, by quantity under `by_material`, instead of the test part
+    #[arg(long, conflicts_with_all = ["dataset", "part", "online"])]
+    outside: bool,
     /// The paper's two tasks with the whole hand, instead of recordings
     #[arg(long, conflicts_with_all = ["dataset", "sessions"])]
     online: bool,
@@ -126,7 +130,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             // The network that ships looks back over one frame, itself: there is no other to compare it with.
             let mut report = Report::new(&recordings, &said, &said);
             report.roc = Roc::of(&recordings, &logits);
-            if args.dataset.is_none() {
+            if args.dataset.is_none() && !args.outside {
                 report.real = real(&network)?;
                 let drawn = sessions(args.seed, Sizes::of_train(args.sessions));
                 report.by_draw = draws::draws(&drawn, &recordings, &said, &logits);
@@ -172,7 +176,11 @@ fn recordings(args: &Args) -> anyhow::Result<Vec<Recording>> {
         bail!("--sessions must be at least 1");
     }
     let plan = Plan { seed: args.seed, sessions: args.sessions, label: Label::Truth };
-    let csv = with_bar("sessions", |progress| Dataset::make_split(plan, args.part, progress))?.csv()?;
+    let make = |progress: Told| match args.outside {
+        true => Dataset::make_outside(plan, progress),
+        false => Dataset::make_split(plan, args.part, progress),
+    };
+    let csv = with_bar("sessions", make)?.csv()?;
     // The same bytes that `tenax dataset` writes, read as a user's file is.
     let name = "array_dataset.csv";
     let recipe = library::choose(name.as_ref(), None)?;
