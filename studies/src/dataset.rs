@@ -78,6 +78,12 @@ impl Dataset {
         Self::record(plan, all, progress)
     }
 
+    /// Makes sessions in which one quantity at a time lies outside of what was learned, a quarter of `plan.sessions` of each material for
+    /// each: see [`session::outside`]. Fails as [`make`](Self::make) does.
+    pub fn make_outside(plan: Plan, progress: Told) -> anyhow::Result<Self> {
+        Self::record(plan, session::outside(plan.seed, plan.sessions.div_ceil(4)), progress)
+    }
+
     fn record(plan: Plan, all: Vec<Session>, progress: Told) -> anyhow::Result<Self> {
         let jobs = Jobs::new(all.len() * Story::ALL.len(), progress);
         let recorded = all.into_par_iter().map(|session| {

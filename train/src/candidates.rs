@@ -6,7 +6,7 @@ use crate::fit::Candidate;
 use crate::network::{H1, H2};
 
 /// The way for a large data set with validation sessions: quickly from random weights, with all but variances and structure functions
-/// scaled to a tenth, since the rest tells arrays apart sooner than sliding (`docs/training.md`). The penalty of a squared weight of a
+/// scaled to a tenth, since the rest tells arrays apart sooner than sliding. The penalty of a squared weight of a
 /// logistic regression that it could begin as is 1e-4 a row.
 pub const SHIPPED: [Candidate; 1] = [Candidate {
     shyness: 0.1,

@@ -2,8 +2,9 @@
 //!
 //! A network has learned on arrays of some noise. What lies outside of that it takes for something else, so it refuses, and says
 //! what it measured. `--adapt N` takes the first N seconds in which something is held and does not slip: they give the scale,
-//! which brings the array's noise into what was learned, and the threshold, which one of a hundred quiet steps exceeds. Those
-//! seconds are not scored.
+//! which brings the array's noise into what was learned, and the threshold, which one of a hundred quiet steps exceeds. If the array's
+//! noise is one that was learned, the threshold is not below the network's own: a few quiet seconds are too quiet by chance. Those
+//! seconds are not scored. Which quiet recordings come first is chance, too, so each of them once is the first.
 
 use std::collections::BTreeMap;
 
@@ -76,14 +77,45 @@ pub struct Judged {
     pub on: Vec<i32>,
 }
 
-/// Adapts to each session's first `quiet_s` seconds without slip, and judges the rest.
+/// Adapts to `quiet_s` seconds without slip of each session, and judges the rest: once beginning with each of its quiet recordings.
 /// Fails if a session has no quiet recording that is long enough for the network's windows.
-pub fn adapt(network: &Network, recordings: &[Recording], quiet_s: f64) -> anyhow::Result<Judged> {
-    let mut judged = Judged::default();
-    for (session, own) in sessions(recordings) {
-        let is_quiet = |recording: &&Recording| recording.steps.iter().all(|step| !step.slip);
+pub fn adapt(network: &Network, recordings: &[Recording], quiet_s: f64) -> anyhow::Result<Vec<Judged>> {
+    let sessions: Vec<Session> = sessions(recordings).into_iter().map(Session::of).collect();
+    let times = sessions.iter().map(|session| session.quiet.len()).min().unwrap_or_default();
+    (0..times.max(1))
+        .map(|first| {
+            let mut judged = Judged::default();
+            for session in &sessions {
+                session.judge(network, first, quiet_s, &mut judged)?;
+            }
+            Ok(judged)
+        })
+        .collect()
+}
+
+struct Session<'a> {
+    name: &'a str,
+    recordings: Vec<&'a Recording>,
+    /// Those of them in which nothing slips.
+    quiet: Vec<&'a Recording>,
+}
+
+impl<'a> Session<'a> {
+    fn of((name, recordings): (&'a str, Vec<&'a Recording>)) -> Self {
+        let is_quiet = |own: &&Recording| own.steps.iter().all(|step| !step.slip);
+        Self { name, quiet: recordings.iter().copied().filter(is_quiet).collect(), recordings }
+    }
+
+    /// Adapts to the quiet recordings from the `first` on.
+    fn judge(
+        &self,
+        network: &Network,
+        first: usize,
+        quiet_s: f64,
+        judged: &mut Judged,
+    ) -> anyhow::Result<()> {
         let (mut quiet, mut steps) = (Vec::new(), 0.0);
-        for recording in own.iter().copied().filter(is_quiet) {
+        for &recording in self.quiet.iter().cycle().skip(first).take(self.quiet.len()) {
             if steps >= quiet_s * f64::from(SLOW_HZ) {
                 break;
             }
@@ -98,12 +130,14 @@ pub fn adapt(network: &Network, recordings: &[Recording], quiet_s: f64) -> anyho
             .collect();
         ensure!(
             !logits.is_empty(),
-            "{session}: no recording in which nothing slips is long enough to adapt to"
+            "{}: no recording in which nothing slips is long enough to adapt to",
+            self.name
         );
         logits.sort_unstable();
         let rank = ((1.0 - QUIET_PART) * logits.len() as f64) as usize;
-        let on = logits[rank.min(logits.len() - 1)].saturating_add(1);
-        for recording in own {
+        let own = if scale == 1.0 { network.on() } else { i32::MIN };
+        let on = logits[rank.min(logits.len() - 1)].saturating_add(1).max(own);
+        for &recording in &self.recordings {
             if quiet.iter().any(|used| used.name == recording.name) {
                 continue;
             }
@@ -111,8 +145,8 @@ pub fn adapt(network: &Network, recordings: &[Recording], quiet_s: f64) -> anyho
             judged.recordings.push(recording.clone());
             judged.on.push(on);
         }
+        Ok(())
     }
-    Ok(judged)
 }
 
 /// What brings a noise into what was learned: 1 if it is there.

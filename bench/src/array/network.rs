@@ -99,12 +99,23 @@ impl Network {
         Ok(Self { windows, noise_samples: saved.noise_samples })
     }
 
+    const fn judgement(&self) -> &Judgement {
+        match &self.windows {
+            Windows::Ten(model) => &model.judgement,
+            Windows::Forty(model) => &model.judgement,
+        }
+    }
+
+    /// The logit at which it says slip.
+    pub fn on(&self) -> i32 {
+        let Judgement { on_permille, logit_per_nat, .. } = *self.judgement();
+        let on = f64::from(on_permille.clamp(1, 999)) / 1e3;
+        (f64::from(logit_per_nat) * (on / (1.0 - on)).ln()).round() as i32
+    }
+
     /// How confident it is in each step of one recording.
     pub fn confidences(&self, steps: &[Step]) -> Confidences {
-        let per_nat = match &self.windows {
-            Windows::Ten(model) => model.judgement.logit_per_nat,
-            Windows::Forty(model) => model.judgement.logit_per_nat,
-        };
+        let per_nat = self.judgement().logit_per_nat;
         let (logits, _) = self.judge(&super::readings(steps));
         logits.into_iter().map(|logit| logit.map(|logit| logistic_permille(logit, per_nat))).collect()
     }

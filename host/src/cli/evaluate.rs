@@ -14,6 +14,7 @@ use super::workspace;
 use tenax_bench::array::network::Network;
 use tenax_bench::array::real::{Logits, Real};
 use tenax_bench::array::{Verdicts, adapt, readings};
+use tenax_bench::jobs::Told;
 use tenax_bench::labelled::{self, Part, Recording, library};
 use tenax_bench::session::Board;
 use tenax_studies::dataset::session::{Sizes, sessions};
@@ -48,7 +49,7 @@ pub struct Args {
     /// The network in this folder of `tenax train` instead of the one that ships
     #[arg(long, value_name = "DIR", conflicts_with = "online")]
     network: Option<PathBuf>,
-    /// Fit scale and threshold to each session's first N seconds without slip, which are not scored
+    /// Fit scale and threshold to N seconds of each session without slip, which are not scored; once from each quiet recording on
     #[arg(long, value_name = "N", requires = "dataset")]
     adapt: Option<f64>,
     /// Seed of the built-in data set, or of the online tasks
@@ -60,6 +61,9 @@ pub struct Args {
     /// Part of the built-in data set. Choose by validation; keep test for final scores
     #[arg(long, value_name = "train|validation|test", default_value = "test", conflicts_with = "dataset")]
     part: Part,
+    /// Sessions with one drawn quantity at a time outside the range of training, by quantity under `by_material`, instead of the test part
+    #[arg(long, conflicts_with_all = ["dataset", "part", "online"])]
+    outside: bool,
     /// The paper's two tasks with the whole hand, instead of recordings
     #[arg(long, conflicts_with_all = ["dataset", "sessions"])]
     online: bool,
@@ -126,7 +130,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             // The network that ships looks back over one frame, itself: there is no other to compare it with.
             let mut report = Report::new(&recordings, &said, &said);
             report.roc = Roc::of(&recordings, &logits);
-            if args.dataset.is_none() {
+            if args.dataset.is_none() && !args.outside {
                 report.real = real(&network)?;
                 let drawn = sessions(args.seed, Sizes::of_train(args.sessions));
                 report.by_draw = draws::draws(&drawn, &recordings, &said, &logits);
@@ -138,18 +142,15 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What a network that has adapted to each session says of the rest of it.
+/// What a network that has adapted to each session says of the rest of it: every calibration together.
 fn adapted(network: &Network, recordings: &[Recording], quiet_s: f64) -> anyhow::Result<Report> {
-    let judged = adapt::adapt(network, recordings, quiet_s)?;
-    let said: Vec<Verdicts> = judged
-        .logits
-        .iter()
-        .zip(&judged.on)
+    let calibrations = adapt::adapt(network, recordings, quiet_s)?;
+    let judged = || calibrations.iter().flat_map(|own| own.logits.iter().zip(&own.on));
+    let said: Vec<Verdicts> = judged()
         .map(|(logits, &on)| logits.iter().map(|logit| logit.is_some_and(|logit| logit >= on)).collect())
         .collect();
-    let mut report = Report::new(&judged.recordings, &said, &said);
-    report.real = Real::of(&judged.recordings, &judged.logits, &judged.on);
-    Ok(report)
+    let scored: Vec<Recording> = calibrations.iter().flat_map(|own| own.recordings.clone()).collect();
+    Ok(Report { real: Real::of(&calibrations), ..Report::new(&scored, &said, &said) })
 }
 
 /// Recordings of a real array, and how long a network may hold each object quietly to adapt to it, s.
@@ -175,7 +176,11 @@ fn recordings(args: &Args) -> anyhow::Result<Vec<Recording>> {
         bail!("--sessions must be at least 1");
     }
     let plan = Plan { seed: args.seed, sessions: args.sessions, label: Label::Truth };
-    let csv = with_bar("sessions", |progress| Dataset::make_split(plan, args.part, progress))?.csv()?;
+    let make = |progress: Told| match args.outside {
+        true => Dataset::make_outside(plan, progress),
+        false => Dataset::make_split(plan, args.part, progress),
+    };
+    let csv = with_bar("sessions", make)?.csv()?;
     // The same bytes that `tenax dataset` writes, read as a user's file is.
     let name = "array_dataset.csv";
     let recipe = library::choose(name.as_ref(), None)?;

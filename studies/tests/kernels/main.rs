@@ -146,9 +146,9 @@ fn every_row_of_the_table_has_its_costs() {
 /// Cycles that others have published, beside the estimate. Their sources are not in this tree: `TENAX_PUBLISHED` names a CSV file
 /// (elf,kernel,cycles, then the flash: line,lines,literals,waits,ahead) of images with the mailbox's symbols; without it this is skipped.
 ///
-/// Those that were met, all without waits but the last two: on an STM32F407 ChaCha of 8, 12 and 20 rounds (joostrijneveld/chacha-arm-cortex-m:
-/// 414, 572, 888; estimated 380, 530, 830), AES-128's key expansion and one block (Ko-/aes-armcortexm: 255, 645; 238, 617); X25519, by its
-/// author's count (Emill/X25519-Cortex-M4: 548 873; 532 974). What measures is in the first five, about ten cycles of a call. On an
+/// Those that were met, all without waits but the last two: on an STM32F407 ChaCha of 8, 12 and 20 rounds (chacha-arm-cortex-m:
+/// 414, 572, 888; estimated 380, 530, 830), AES-128's key expansion and one block (aes-armcortexm: 255, 645; 238, 617); X25519, by its
+/// author's count (X25519-Cortex-M4: 548 873; 532 974). What measures is in the first five, about ten cycles of a call. On an
 /// STM32WLE5, whose flash is assumed, two of p256-cm4: 2.7 and 2.3 % more than published.
 #[test]
 fn published_cycles_are_met() {
