@@ -88,42 +88,35 @@ impl Fingertip {
     }
 
     fn step_behaviour(&mut self, verdicts: Verdicts) -> MotorDrive {
-        if self.behaviour.is_none() {
-            return MotorDrive::Coast;
-        }
-        if self.senses.gate.is_active() || self.link.drive().is_some() {
-            self.end(Ending::TakenOver);
-            return MotorDrive::Coast;
-        }
-        if !self.senses.all_ready(&self.config) {
-            self.end(Ending::SensorLost);
-            return MotorDrive::Coast;
-        }
-        let Some(mut running) = self.behaviour.take() else { return MotorDrive::Coast };
-        let is_over = match running.what() {
+        let Some(running) = &self.behaviour else { return MotorDrive::Coast };
+        let is_silent_too_long = match running.what() {
             Behaviour::Stroke => self.link.ends_stroke(),
-            _ => running.answers_slip() && self.link.is_exhausted(),
+            _ => self.link.is_exhausted() && running.answers_slip(),
         };
-        if is_over {
+        let ends = if self.senses.gate.is_active() || self.link.drive().is_some() {
+            Ending::TakenOver
+        } else if !self.senses.all_ready(&self.config) {
+            Ending::SensorLost
+        } else if is_silent_too_long {
+            Ending::TooLong
+        } else {
+            let Some(mut running) = self.behaviour.take() else { return MotorDrive::Coast };
+            let felt = self.felt(Some(verdicts));
+            let (grip, course) = (felt.grip, running.step(&self.config.behaviour, &felt));
             self.behaviour = Some(running);
-            self.end(Ending::TooLong);
-            return MotorDrive::Coast;
-        }
-        let felt = self.felt(Some(verdicts));
-        let (grip, course) = (felt.grip, running.step(&self.config.behaviour, &felt));
-        self.behaviour = Some(running);
-        let ends = match course {
-            Course::On(Wish::Tighten(_)) if !self.reflex.link_may_close(&self.config.grip, grip) => {
-                Ending::Ceiling
+            match course {
+                Course::On(Wish::Tighten(_)) if !self.reflex.link_may_close(&self.config.grip, grip) => {
+                    Ending::Ceiling
+                }
+                Course::On(wish @ Wish::Relax(_)) => match may_relax(self.line(), grip, self.mode) {
+                    true => return wish.drive(),
+                    false if self.line() == Line::Reading => Ending::NotArmed,
+                    // The reflex tightens, and the behaviour waits for it.
+                    false => return MotorDrive::Coast,
+                },
+                Course::On(wish) => return wish.drive(),
+                Course::Ends(ending) => ending,
             }
-            Course::On(wish @ Wish::Relax(_)) => match may_relax(self.line(), grip, self.mode) {
-                true => return wish.drive(),
-                false if self.line() == Line::Reading => Ending::NotArmed,
-                // The reflex tightens, and the behaviour waits for it.
-                false => return MotorDrive::Coast,
-            },
-            Course::On(wish) => return wish.drive(),
-            Course::Ends(ending) => ending,
         };
         self.end(ends);
         MotorDrive::Coast
