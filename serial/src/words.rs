@@ -168,6 +168,10 @@ fn answer_words(f: &mut fmt::Formatter<'_>, of: u16, frame: u32, answer: &Answer
             "refused: command {of}: nobody at the hand has consented: contract both muscles for 2 s or press the blue \
              button, then send it again within a minute"
         ),
+        Answer::Refused(Refusal::HeldTooLong) => write!(
+            f,
+            "refused: command {of}: the line has silenced the reflex for too long; move a muscle, consent again, or wait as long"
+        ),
         Answer::Refused(refusal) => write!(f, "refused: command {of}: {refusal:?}"),
         Answer::Setting(own) => setting_words(f, own),
         Answer::Settings(all) => {
