@@ -84,14 +84,6 @@ fn a_friction_that_the_grasp_has_shown_is_not_warned_of() {
     assert!(without_n < 1.0, "{without_n} N without need in {} pulses", report.reflex.pulses);
 }
 
-#[test]
-fn a_light_object_that_slides_below_s1_is_felt_by_its_shear() {
-    let report = ran("light-wet");
-    // Without the shear no detector reports anything, and it is lost.
-    assert_eq!(report.object.kept, Some(true), "{:?}", report.slip);
-    assert!(report.reflex.pulses > 0);
-}
-
 // Shows R3, W1.
 #[test]
 fn one_sound_electrode_is_enough_to_save_a_glass() {

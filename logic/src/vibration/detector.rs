@@ -1,20 +1,15 @@
-//! S1 as a detector: the conditioning has compared the envelope already. While the shear falls ([`Falling`]), a quarter of S1 is slip.
+//! S1 as a detector: the conditioning has compared the envelope already.
 
 use tenax_hal_shim::channel::SLOW_HZ;
 use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
 
 use crate::detectors::{Description, Detector, Said, Sensed, confidence};
-use crate::vibration::falling::Falling;
 use crate::vibration::settings::VibrationConfig;
-
-/// The part of S1 from which vibration is slip while the shear falls: 1/4, 25 mV, where quiet films have 3.
-const FALLING_PART: u16 = 4;
 
 /// The last verdict of S1.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct S1 {
     level: u16,
-    falling: Falling,
     health: DetectorHealth,
 }
 
@@ -24,16 +19,11 @@ impl Detector for S1 {
     const IMPLAUSIBLE_AFTER: u16 = SLOW_HZ as u16 / 2;
     type Config = VibrationConfig;
 
-    fn step(&mut self, config: &VibrationConfig, sensed: &Sensed<'_>) -> Option<Said> {
+    fn step(&mut self, _config: &VibrationConfig, sensed: &Sensed<'_>) -> Option<Said> {
         self.level = sensed.vibration.level;
         self.health = if sensed.vibration_known { DetectorHealth::Working } else { DetectorHealth::Blind };
-        if sensed.forces_are_new {
-            self.falling.feel(sensed.forces);
-        }
-        let falls =
-            self.falling.is_on() && !sensed.vibration.impact && self.level >= config.s1 / FALLING_PART;
         // What is heard far below the threshold is answered as a warning is.
-        Some(Said { slip: sensed.vibration.s1 || falls, incipient: sensed.vibration.slides })
+        Some(Said { slip: sensed.vibration.s1, incipient: sensed.vibration.slides })
     }
 
     fn describe(&self, config: &VibrationConfig) -> Description {

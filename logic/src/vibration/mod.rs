@@ -9,7 +9,6 @@
 
 pub mod channel_mask;
 pub mod detector;
-pub mod falling;
 mod film;
 pub mod hum;
 pub mod quality;
