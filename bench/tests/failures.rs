@@ -75,15 +75,6 @@ fn hum_that_closing_does_not_change_is_not_answered_for_long() {
     assert!(peak_n < 16.0, "{peak_n} N");
 }
 
-#[test]
-fn a_friction_that_the_grasp_has_shown_is_not_warned_of() {
-    let report = ran("filled-twice");
-    assert_eq!((report.object.kept, report.slip.macro_slips), (Some(true), Some(0)));
-    let without_n = report.added.added_without_need_n.unwrap();
-    // 5.1 N in 11 pulses while S2 was 0.8 of what the grasp had shown.
-    assert!(without_n < 1.0, "{without_n} N without need in {} pulses", report.reflex.pulses);
-}
-
 // Shows R3, W1.
 #[test]
 fn one_sound_electrode_is_enough_to_save_a_glass() {

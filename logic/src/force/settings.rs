@@ -17,7 +17,7 @@ settings! {
     FrictionConfig:
     /// S2: threshold of Ft/Fn above which it warns, until a stroke measures it
     2 S2 "s2-permille" "per mille" [290, 310, trusted 150, 1_500] = 300 => Number(s2_permille);
-    /// S2 from a stroke: this part of the friction that was measured
+    /// S2 from a stroke or grasp: this part of the friction that was measured
     9 S2OfMuS "s2-of-mu-s-permille" "per mille" [300, 950] = 800 => Number(s2_of_mu_s_permille);
     /// Normal force from which the finger counts as loaded
     10 Loaded "loaded-mn" "mN" [300, 700, trusted 300, 2_000] = 600 => Number(loaded_mn);
