@@ -25,7 +25,8 @@ fn is_quiet(run: &Outcome) -> bool {
 
 #[test]
 fn what_fingertips_keep_alone_a_hand_keeps_and_its_bus_keeps_its_bars() {
-    let scenes: Vec<Scene> = hands().iter().map(|(name, _)| report::scene(&scene(name), MORE_SEEDS)).collect();
+    let scenes: Vec<Scene> =
+        hands().iter().map(|(name, _)| report::scene(&scene(name), MORE_SEEDS)).collect();
     let report = report::Report { scenes, cuts: None };
     println!("{report}");
     assert!(report.holds());

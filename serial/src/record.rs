@@ -17,12 +17,13 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use anyhow::{Context, bail};
 use tenax_hal_shim::wire::{About, Answer, FRAME_MAX, Received, Up, encode};
 
-use self::topics::{Topic, rows, seconds};
+use self::topics::{Topic, rows};
 use crate::link::Inbox;
 use crate::link::captured::is_recording;
 use crate::mcap::{Packing, Writer};
 use crate::protobuf::{self, PACKAGE, Value};
 use crate::settings;
+use crate::words::seconds;
 
 /// What a recording that begins now is called: `tenax-20261123T081500Z.mcap`.
 pub fn name_now() -> PathBuf {

@@ -12,8 +12,6 @@ use tenax_hal_shim::wire::{
 use tenax_hal_shim::words::{Calibration, Fault, Kept, Line};
 use tenax_logic::setting::SettingId;
 
-use crate::record::topics::seconds;
-
 /// The names of detectors, one blank between them.
 pub fn names(set: DetectorSet) -> String {
     let names: Vec<&str> =
@@ -253,6 +251,11 @@ fn setting_words(f: &mut fmt::Formatter<'_>, setting: &Setting) -> fmt::Result {
         Some(id) => write!(f, "{} = {} {}", id.row().name, setting.value, id.row().unit),
         None => write!(f, "setting {} = {}, which this tool does not know", setting.id, setting.value),
     }
+}
+
+/// When a frame ended, s of the board's time.
+pub fn seconds(frame: u32) -> f64 {
+    (f64::from(frame) + 1.0) / f64::from(FRAME_HZ)
 }
 
 fn slow_words(f: &mut fmt::Formatter<'_>, slow: &Slow) -> fmt::Result {

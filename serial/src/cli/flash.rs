@@ -99,6 +99,11 @@ mod tests {
         // Said by the profile that the other inherits from.
         assert_eq!(run.as_table_mut().unwrap().remove("debug-assertions"), Some(false.into()));
         assert_eq!(flashed.as_table_mut().unwrap().remove("inherits"), Some("release".into()));
+        // Against the checks that the workspace's release build has of its own crates.
+        let package = flashed.as_table_mut().unwrap().remove("package").expect("it takes back the checks");
+        let checks =
+            package.as_table().unwrap().values().flat_map(|package| package.as_table().unwrap().values());
+        assert!(checks.into_iter().all(|check| *check == false.into()), "{package}");
         assert_eq!(run, flashed);
     }
 }

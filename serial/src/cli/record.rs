@@ -13,7 +13,7 @@ use tenax_logic::setting::SettingId;
 
 use super::{out, port};
 use crate::link::{ANSWER_WITHIN, Client, LastSeconds, Target};
-use crate::record::{self, Recording, topics};
+use crate::record::{self, Recording};
 use crate::words::in_words;
 
 /// The board streams for as long after each time that it is asked.
@@ -167,7 +167,7 @@ impl Joined {
             out::note!(
                 "it begins {:.1} s after the board's start: it can be watched, plotted and exported, but not replayed. For one \
                  that can be: tenax record --from-start",
-                topics::seconds(frame.unwrap_or(0))
+                crate::words::seconds(frame.unwrap_or(0))
             );
         }
         self.is_known |= frame.is_some();
@@ -217,7 +217,7 @@ fn last(client: &mut Client, path: &Path) -> anyhow::Result<ExitCode> {
     // Only now that it is in a file.
     LastSeconds::let_go(client)?;
     let span = kept.span().map_or_else(String::new, |(from, to)| {
-        let (from_s, to_s) = (topics::seconds(from), topics::seconds(to));
+        let (from_s, to_s) = (crate::words::seconds(from), crate::words::seconds(to));
         format!(", {:.2} s, from {from_s:.2} to {to_s:.2} s", to_s - from_s)
     });
     out::note!(

@@ -15,8 +15,8 @@ use tenax_logic::setting::SettingId;
 use super::source::News;
 use crate::link::{Counts, Heard};
 use crate::play::Playing;
-use crate::record::topics::seconds;
 use crate::truth::{Bench, Truth};
+use crate::words::seconds;
 use crate::words::{AnswerWords, Words, why};
 
 /// Slow frames whose readings are drawn: ten seconds.

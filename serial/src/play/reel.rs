@@ -10,7 +10,7 @@ use crate::link::captured::{self, TOPIC, is_recording};
 use crate::link::{Heard, Inbox};
 use crate::mcap::{self, Chunk, Topics};
 use crate::protobuf;
-use crate::record::topics::seconds;
+use crate::words::seconds;
 
 /// How long a piece of a captured line is, s.
 const PIECE_S: f64 = 0.5;

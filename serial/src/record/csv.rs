@@ -8,8 +8,9 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 
 use super::protobuf::{Kind, Value};
-use super::topics::{Topic, rows, seconds};
+use super::topics::{Topic, rows};
 use crate::link::Inbox;
+use crate::words::seconds;
 
 /// Numbers of a frame's films, and of the films' envelopes.
 const LIST: usize = tenax_hal_shim::channel::PVDF_COUNT;

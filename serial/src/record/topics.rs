@@ -1,6 +1,6 @@
 //! What of a board's messages goes where in a recording: topics, their fields, and the values, for MCAP and CSV alike.
 
-use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ, mv_from_sample};
+use tenax_hal_shim::channel::{CHANNELS, mv_from_sample};
 use tenax_hal_shim::detector::{DetectorId, Evidence};
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
@@ -9,7 +9,7 @@ use tenax_logic::setting::SettingId;
 
 use crate::link::captured;
 use crate::protobuf::{Kind, Value};
-use crate::words::{Words, names};
+use crate::words::{Words, names, seconds};
 
 /// Where values go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -213,11 +213,6 @@ fn identifier(name: &str, unit: &str) -> String {
     let name: String =
         name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' }).collect();
     format!("{name}_{unit}")
-}
-
-/// When a frame ended, s of the board's time.
-pub fn seconds(frame: u32) -> f64 {
-    (f64::from(frame) + 1.0) / f64::from(FRAME_HZ)
 }
 
 /// What a message says, each with the frame that it is of. `last` is the frame that was heard of last, for messages that
