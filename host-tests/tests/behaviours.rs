@@ -270,6 +270,36 @@ fn a_turn_in_which_nothing_slips_gives_up_before_the_object_falls() {
     assert_eq!(ending(&bench), Some(Ending::NoSlip));
 }
 
+/// A turn may silence the reflex no longer than a drive, and leaves no loosened grasp.
+// Shows L4.
+#[test]
+fn a_turn_that_takes_too_long_makes_the_grasp_as_firm_as_before() {
+    let mut bench = Bench::holding(15);
+    bench.fingertip.command(&set(SettingId::LineTrusted, 0)).expect("a trusted line may give it back");
+    for step in 0..600 {
+        bench.fingertip.button((100..400).contains(&step));
+        bench.step();
+    }
+    watch(&mut bench, 200, &view(0, 20, 0));
+    begin(&mut bench, Behaviour::Turn { by_ddeg: 200 });
+    let loosens = watch(&mut bench, 19_000, &view(0, 20, 0));
+    let firms = watch(&mut bench, 20_000, &view(0, 20, 0));
+    let sum = |drives: &[MotorDrive]| -> i32 {
+        let each = drives.iter().map(|drive| match drive {
+            MotorDrive::Open(duty) => i32::from(duty.as_per_mille()),
+            MotorDrive::Close(duty) => -i32::from(duty.as_per_mille()),
+            MotorDrive::Coast => 0,
+        });
+        each.sum()
+    };
+    assert!(
+        sum(&loosens) > 0 && !loosens.iter().any(|drive| drive.closes()),
+        "nothing slips: it only loosens"
+    );
+    assert!(!opens(&firms[1_000..]) && sum(&loosens) + sum(&firms) <= 0, "{} {}", sum(&loosens), sum(&firms));
+    assert_eq!(ending(&bench), Some(Ending::TooLong));
+}
+
 /// Begun again and again, behaviours that answer slip themselves take of the line's 10 s; then the reflex listens for as long.
 // Shows L4.
 #[test]

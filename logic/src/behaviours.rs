@@ -103,6 +103,17 @@ impl Running {
         }
     }
 
+    /// The reflex may be silent no longer: a turn makes the grasp as firm as it was, and goes on until then. Whether it goes on.
+    pub fn gives_reflex_back(&mut self) -> bool {
+        match &mut self.doing {
+            Doing::Turn(turn) => {
+                turn.secure(Ending::TooLong);
+                true
+            }
+            _ => false,
+        }
+    }
+
     /// Advances by one tick.
     pub fn step(&mut self, config: &BehaviourConfig, felt: &Felt<'_>) -> Course {
         self.elapsed = self.elapsed.saturating_add(1);

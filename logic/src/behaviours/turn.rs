@@ -48,8 +48,8 @@ pub struct Turn {
     target_ddeg: i32,
     first_mn: i32,
     load_mn: i32,
-    /// Whether it was loosened as far as it may be, and nothing slipped.
-    gives_up: bool,
+    /// Why it ends once the grasp is as firm as at first.
+    ends: Ending,
     /// The sign of the way there.
     sign: i32,
     phase: Phase,
@@ -83,7 +83,7 @@ impl Turn {
             target_ddeg: angle_ddeg + i32::from(by_ddeg),
             first_mn: load_mn,
             load_mn,
-            gives_up: false,
+            ends: Ending::Done,
             sign: i32::from(by_ddeg).signum(),
             phase: Phase::Loosens,
             movement: Movement::default(),
@@ -105,6 +105,12 @@ impl Turn {
         !matches!(self.phase, Phase::Secures) && self.tightens_for < FALLS_FRAMES
     }
 
+    /// Makes the grasp as firm as at first, while the reflex may tighten, and then ends for this reason.
+    pub fn secure(&mut self, ends: Ending) {
+        self.ends = ends;
+        self.enter(Phase::Secures);
+    }
+
     pub fn step(&mut self, config: &BehaviourConfig, felt: &Felt<'_>) -> Course {
         let slips = match self.look(config, felt) {
             Ok(slips) => slips,
@@ -116,8 +122,8 @@ impl Turn {
                 self.enter(Phase::Tightens);
             }
             Phase::Loosens if self.load_mn.saturating_mul(LEAST_PART) < self.first_mn => {
-                self.gives_up = true;
-                self.enter(Phase::Secures);
+                // As loose as it may be, and nothing slipped.
+                self.secure(Ending::NoSlip);
             }
             Phase::Loosens => {
                 if self.movement.is_over() || (self.is_far(config) && !self.movement.drives()) {
@@ -136,7 +142,7 @@ impl Turn {
             }
             Phase::Secures => {
                 if self.loosened <= 0 {
-                    return Course::Ends(if self.gives_up { Ending::NoSlip } else { Ending::Done });
+                    return Course::Ends(self.ends);
                 }
                 self.movement = Movement::lasting(config, tighten(config), 1);
             }

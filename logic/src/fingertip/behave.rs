@@ -88,7 +88,7 @@ impl Fingertip {
     }
 
     fn step_behaviour(&mut self, verdicts: Verdicts) -> MotorDrive {
-        let Some(running) = &self.behaviour else { return MotorDrive::Coast };
+        let Some(running) = &mut self.behaviour else { return MotorDrive::Coast };
         let is_silent_too_long = match running.what() {
             Behaviour::Stroke => self.link.ends_stroke(),
             _ => self.link.is_exhausted() && running.answers_slip(),
@@ -97,7 +97,7 @@ impl Fingertip {
             Ending::TakenOver
         } else if !self.senses.all_ready(&self.config) {
             Ending::SensorLost
-        } else if is_silent_too_long {
+        } else if is_silent_too_long && !running.gives_reflex_back() {
             Ending::TooLong
         } else {
             let Some(mut running) = self.behaviour.take() else { return MotorDrive::Coast };
