@@ -87,6 +87,7 @@ impl Fingertip {
         wish
     }
 
+    #[inline(never)]
     fn step_behaviour(&mut self, verdicts: Verdicts) -> MotorDrive {
         let Some(running) = &mut self.behaviour else { return MotorDrive::Coast };
         let is_silent_too_long = match running.what() {
