@@ -1,17 +1,20 @@
-//! Wires of the analogue switches that are cut: with the resistor of docs/hardware.md each is noticed, without it a switch's open
-//! input keeps its neighbour's charge, and hardly any is.
+//! Wires that are cut. With the resistor of docs/hardware.md each of the analogue switches' is noticed; without it a switch's open
+//! input keeps its neighbour's charge, and hardly any is. A film's is noticed for its bias is gone.
 
 use rayon::prelude::*;
 use tenax_bench::board::Run;
 use tenax_bench::session::Board;
-use tenax_hal_shim::channel::{CHANNELS, COUNT, FRAME_HZ, STRAIN};
-use tenax_hal_shim::wire::EventKind;
+use tenax_hal_shim::channel::{CHANNELS, COUNT, FRAME_HZ, PVDF, PVDF_COUNT, STRAIN};
+use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::wire::{Event, EventKind};
 use tenax_hal_shim::words::{Fault, Reason};
 use tenax_scene::{SceneFile, World};
 
 /// When the wire is cut, and how soon that has to be noticed, s.
 const CUT_S: u32 = 3;
 const WITHIN_S: f64 = 0.5;
+/// The same of a film, whose bias falls first.
+const FILM_WITHIN_S: f64 = 0.6;
 
 fn run(channel: usize, kind: &str) -> Run {
     let bench = include_str!("../../scenes/parts/bench.toml").replace("= 3600", "= 5");
@@ -27,7 +30,11 @@ fn run(channel: usize, kind: &str) -> Run {
 type Noticed = Option<(f64, Reason)>;
 
 fn noticed(channel: usize, kind: &str) -> Noticed {
-    run(channel, kind).events.iter().find_map(|event| match event.kind {
+    noticed_in(&run(channel, kind), channel)
+}
+
+fn noticed_in(run: &Run, channel: usize) -> Noticed {
+    run.events.iter().find_map(|event| match event.kind {
         EventKind::Fault(Fault::SensorLost { channel: lost, reason }) if usize::from(lost) == channel => {
             Some((f64::from(event.frame) / f64::from(FRAME_HZ) - f64::from(CUT_S), reason))
         }
@@ -53,4 +60,40 @@ fn each_of_the_thirty_is_noticed_with_its_resistor_and_hardly_one_without() {
     assert!(late.is_empty(), "{late:?}");
     let unnoticed = all.iter().filter(|(_, [_, open])| open.is_none()).count();
     assert!(unnoticed >= 25, "the control: {unnoticed} of {} are not noticed", all.len());
+}
+
+// Shows R5.
+#[test]
+fn each_film_that_is_cut_before_its_amplifier_is_noticed_and_moves_nothing() {
+    let films: Vec<(usize, Run)> =
+        (PVDF..PVDF + PVDF_COUNT).into_par_iter().map(|channel| (channel, run(channel, "cut"))).collect();
+    for (channel, run) in &films {
+        let noticed = noticed_in(run, *channel);
+        println!("{:<14} {noticed:?}", CHANNELS[*channel].name);
+        let in_time =
+            matches!(noticed, Some((after_s, Reason::Dead)) if (0.0..FILM_WITHIN_S).contains(&after_s));
+        assert!(in_time, "{}: {noticed:?}", CHANNELS[*channel].name);
+    }
+}
+
+// Shows R5.
+#[test]
+fn a_film_that_is_cut_while_the_hand_holds_moves_nothing() {
+    let holds = include_str!("../../scenes/parts/bench.toml")
+        .replace("= 3600", "= 12")
+        .replace("without = [\"muscle\", \"move\"]", "");
+    for channel in PVDF..PVDF + PVDF_COUNT {
+        let name = CHANNELS[channel].name;
+        let fault =
+            format!("\n[[fault]]\nat_s = 9\nchannel = \"{name}\"\nkind = \"cut\"\nreason = \"a test\"\n");
+        let scene =
+            SceneFile::parse(&(holds.clone() + &fault), "holds").unwrap_or_else(|error| panic!("{error}"));
+        let run = Board::Host.run(World::new(&scene, 1), &mut |_| {}).unwrap().0;
+        let lost = |event: &Event| matches!(event.kind, EventKind::Fault(Fault::SensorLost { channel: lost, .. }) if usize::from(lost) == channel);
+        assert!(run.events.iter().any(lost), "{name}");
+        let closed = run.drives.iter().position(|drive| *drive != MotorDrive::Coast);
+        assert!(closed.is_some(), "the control: the hand has closed");
+        let after = run.drives.len() / 12 * 9;
+        assert!(run.drives[after..].iter().all(|drive| *drive == MotorDrive::Coast), "{name}");
+    }
 }

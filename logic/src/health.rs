@@ -118,6 +118,14 @@ impl SensorHealth {
         }
     }
 
+    /// Takes the sensor for lost although its readings are valid: it is back after `back_after` of them without another call.
+    pub fn lose(&mut self, reason: Reason) -> Option<Change> {
+        self.good = 0;
+        let is_new = self.lost.is_none();
+        self.lost.get_or_insert(reason);
+        is_new.then_some(Change::Lost(reason))
+    }
+
     /// Readings in a row that were equal to the one before.
     pub const fn same(&self) -> u32 {
         self.same

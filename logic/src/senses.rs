@@ -302,13 +302,14 @@ impl Senses {
         }
     }
 
-    /// Listens for steady sliding. Call it once a slow frame, always after the same tick.
+    /// Listens for steady sliding, and looks for cut wires of films. Call it once a slow frame, always after the same tick.
     #[inline(never)]
     pub fn think(&mut self, config: &Config, journal: &mut Journal) {
         // A muscle's spectrum, twice in 64 cycles, leaves no time for the quadrants as well.
         if !self.muscles().has_window() {
             self.blame(config, journal);
         }
+        self.films.slow(|film, change| report(journal, PVDF + film, Some(change)));
         let forces = self.forces.filter(|_| matches!(self.grip, Grip::Holds(_)));
         self.detector.slow(&Hand { forces, wearer: self.gate.is_active(), striking: self.striking });
     }

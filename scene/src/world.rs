@@ -291,6 +291,7 @@ impl Plant for World {
             pins_v[HEAD] = head.step(t_s, &self.touch);
         }
         self.touches.apply(t_s, pins_v);
+        self.faults.cut_films(t_s, pins_v);
         self.converter.step(pins_v);
         self.faults.apply(t_s, pins_v);
         &self.pins

@@ -10,7 +10,7 @@
 
 use super::constants::Fitted;
 
-/// What the board decides with.
+/// The constants of the model that the image runs.
 pub static FITTED: Fitted = Fitted {
     mean_readings: 30,
     begins: [450, 690],

@@ -3,7 +3,9 @@
 //! Nearly every sample of nearly every film is plain: in range, different from the last, of a film that is not lost. So
 //! all twelve are asked at once, two in a word, and only if one is not plain is each looked at by itself.
 
-use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ, PVDF, PVDF_COUNT, SAMPLE_MAX};
+use tenax_hal_shim::channel::{CHANNELS, FRAME_HZ, PVDF, PVDF_COUNT, SAMPLE_MAX, SLOW_HZ, sample_from_mv};
+use tenax_hal_shim::front_end::PVDF_CUT_MV;
+use tenax_hal_shim::words::Reason;
 
 use super::Trust;
 use crate::health::{Change, Limits, SensorHealth};
@@ -11,6 +13,14 @@ use crate::health::{Change, Limits, SensorHealth};
 /// Equal samples in a row that a live film, with 30 of them rms of noise, hardly ever gives: before the jump of a film
 /// that freezes has come through its filters, the film is suspect.
 const DOUBTED_AFTER: u32 = 2;
+
+/// What an amplifier without its film gives, samples: the resistors and the amplifier's offset move it by less than 40 mV, and its
+/// film's rest as much.
+const CUT: core::ops::RangeInclusive<u16> =
+    sample_from_mv(PVDF_CUT_MV - 40)..=sample_from_mv(PVDF_CUT_MV + 40);
+/// Slow frames in a row after which this is a cut wire, 0.5 s. Vibration swings around the film's rest: only one of a multiple of
+/// [`SLOW_HZ`], within 1 Hz, is always seen in one place.
+const CUT_AFTER: u8 = (SLOW_HZ / 2) as u8;
 
 const LIMITS: Limits = Limits::of(&CHANNELS[PVDF], FRAME_HZ);
 
@@ -26,6 +36,8 @@ pub struct PvdfQuality {
     /// Whether `health` has not been told of `last`, which was plain.
     behind: bool,
     any_lost: bool,
+    /// Slow frames in a row in which each film was in [`CUT`].
+    cut_frames: [u8; PVDF_COUNT],
 }
 
 impl PvdfQuality {
@@ -43,6 +55,20 @@ impl PvdfQuality {
             return None;
         }
         self.check_each(samples, changed)
+    }
+
+    /// Looks for films whose wire is cut before the amplifier. Call it once a slow frame. Calls `changed` for a film that was lost.
+    pub fn slow(&mut self, mut changed: impl FnMut(usize, Change)) {
+        let films = self.cut_frames.iter_mut().zip(&self.last).zip(&mut self.health);
+        for (n, ((frames, last), health)) in films.enumerate() {
+            *frames = if CUT.contains(last) { frames.saturating_add(1) } else { 0 };
+            if *frames >= CUT_AFTER {
+                self.any_lost = true;
+                if let Some(change) = health.lose(Reason::Dead) {
+                    changed(n, change);
+                }
+            }
+        }
     }
 
     #[inline(never)]
@@ -159,6 +185,50 @@ mod tests {
                 _ => noise(n, film),
             })
         }));
+    }
+
+    /// Lost and back, in frames, of a film that rests at `rest_mv(frame)` and swings around it by `swing` samples at `hz`.
+    fn told(hz: f64, swing: f64, rest_mv: impl Fn(u32) -> u32, frames: u32) -> std::vec::Vec<(u32, Change)> {
+        let (mut films, mut told) = (PvdfQuality::default(), std::vec::Vec::new());
+        for n in 0..frames {
+            let phase = core::f64::consts::TAU * hz * f64::from(n) / f64::from(FRAME_HZ);
+            let mut samples = [9_000 + (n % 2) as u16; PVDF_COUNT];
+            let rest = f64::from(sample_from_mv(rest_mv(n)));
+            samples[4] = (rest + swing * phase.sin()) as u16 + (n % 2) as u16;
+            films.check(&samples, |film, change| {
+                assert_eq!(film, 4);
+                told.push((n, change));
+            });
+            if n % (FRAME_HZ / SLOW_HZ) == 7 {
+                films.slow(|film, change| {
+                    assert_eq!(film, 4);
+                    told.push((n, change));
+                });
+            }
+        }
+        told
+    }
+
+    #[test]
+    fn a_wire_that_is_cut_before_the_amplifier_is_told_and_is_back_when_it_is_mended() {
+        let rest_mv = |n| if (10_000..20_000).contains(&n) { PVDF_CUT_MV } else { 1_650 };
+        let [(lost, Change::Lost(Reason::Dead)), (back, Change::Back)] = told(0.0, 0.0, rest_mv, 30_000)[..]
+        else {
+            panic!("lost once, back once");
+        };
+        assert!((10_950..11_050).contains(&lost) && (21_900..22_100).contains(&back), "{lost} {back}");
+    }
+
+    #[test]
+    fn no_vibration_is_a_cut_wire_but_one_that_beats_with_the_looks() {
+        // A hum, a slip, a motor: 20 mV to what clips.
+        for hz in [16.0, 40.0, 50.0, 60.0, 100.0, 120.0, 150.0, 158.0, 213.0, 237.0, 300.0] {
+            for swing in [100.0, 500.0, 700.0, 2_000.0, 8_000.0] {
+                assert_eq!(told(hz, swing, |_| 1_650, 10_000), [], "{hz} Hz, {swing}");
+            }
+        }
+        // The boundary: always seen at the same place of its swing.
+        assert!(!told(160.0, -600.0, |_| 1_650, 10_000).is_empty());
     }
 
     #[test]

@@ -1,12 +1,17 @@
 //! Sensors that break, when and how the scene says.
 
-use tenax_hal_shim::channel::{CHANNELS, COUNT, FSR, FSR_COUNT, Input, REFERENCE_MV, SWITCH_INPUTS};
+use tenax_hal_shim::channel::{
+    CHANNELS, COUNT, FSR, FSR_COUNT, Input, PVDF, PVDF_COUNT, REFERENCE_MV, SWITCH_INPUTS,
+};
+use tenax_hal_shim::front_end::PVDF_CUT_MV;
 
 use crate::file::sections::{FaultKind, SensorFault};
 use crate::schedule::Span;
 
 /// How fast a cut wire's input loses its charge, s: 100 kohm and 4.7 kohm, 1 uF.
 const CUT_S: f64 = 0.105;
+/// How fast the amplifier of a film whose wire is cut comes to rest, s: 82 Mohm and 120 pF.
+const FILM_CUT_S: f64 = 0.010;
 
 /// The channel whose input a switch shows before this one's.
 fn shown_before(channel: usize) -> Option<usize> {
@@ -66,6 +71,16 @@ impl Faults {
         pressed_n
     }
 
+    /// Puts on the films' pins what their amplifiers give whose wires are cut. Before the converter's noise, which exceeds the amplifier's.
+    pub(crate) fn cut_films(&mut self, t_s: f64, pins_v: &mut [f64; COUNT]) {
+        for fault in self.0.iter_mut().filter(|fault| fault.is_cut_film() && fault.span.contains(t_s)) {
+            let pin_v = &mut pins_v[fault.channel];
+            let rest_v = f64::from(PVDF_CUT_MV) / 1e3;
+            let swing_v = *fault.stuck_v.get_or_insert(*pin_v) - rest_v;
+            *pin_v = rest_v + swing_v * libm::exp(-(t_s - fault.span.begin_s) / FILM_CUT_S);
+        }
+    }
+
     /// Puts on the pins what broken sensors put there. After the noise: a dead or stuck pin has none.
     pub(crate) fn apply(&mut self, t_s: f64, pins_v: &mut [f64; COUNT]) {
         for fault in self.0.iter_mut().filter(|fault| fault.span.contains(t_s)) {
@@ -83,6 +98,7 @@ impl Faults {
             let pin_v = &mut pins_v[fault.channel];
             *pin_v = match fault.kind {
                 FaultKind::Dead => 0.0,
+                FaultKind::Cut if fault.is_cut_film() => *pin_v,
                 FaultKind::Cut => *fault.stuck_v.get_or_insert(*pin_v) * (-since_s / CUT_S).exp(),
                 FaultKind::Open => before_v,
                 FaultKind::Saturated => f64::from(REFERENCE_MV) / 1e3,
@@ -96,6 +112,10 @@ impl Faults {
 }
 
 impl Fault {
+    fn is_cut_film(&self) -> bool {
+        self.kind == FaultKind::Cut && (PVDF..PVDF + PVDF_COUNT).contains(&self.channel)
+    }
+
     fn drifted(&self, t_s: f64) -> f64 {
         (t_s - self.span.begin_s) * self.drift_per_s
     }

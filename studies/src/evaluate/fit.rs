@@ -286,7 +286,7 @@ fn file(
          //! board reads, calibrated from two repetitions of a session; with {FAULTS} faults drawn over them and what `promises.rs` has:\n\
          //! {rounds} rounds of a random search, seed {seed}, from the constants before. Cost {first:.3} to {least:.3}.\n//!\n\
          //! Fitted anew on all but one, from round figures, and scored on that one; median (95 % interval, people and sessions drawn\n\
-         //! again):\n//!\n{}\nuse super::constants::Fitted;\n\n/// What the board decides with.\n\
+         //! again):\n//!\n{}\nuse super::constants::Fitted;\n\n/// The constants of the model that the image runs.\n\
          pub static FITTED: Fitted = {fitted:?};\n",
         persons.join(", "),
         rows.concat(),

@@ -77,7 +77,8 @@ pub struct Jam {
 pub enum FaultKind {
     /// 0 V: a cut wire, a lost supply.
     Dead,
-    /// Its wire is cut before a switch's input that has 100 kohm to ground and 1 uF, as docs/hardware.md asks for: the voltage falls.
+    /// Its wire is cut. Before a switch's input that has 100 kohm to ground and 1 uF, as docs/hardware.md asks for: the voltage falls.
+    /// Before a film's amplifier: it loses its bias.
     Cut,
     /// The same without the resistor: the switch's output keeps the charge of the input that was shown before.
     Open,
