@@ -64,7 +64,7 @@ fn each_of_the_thirty_is_noticed_with_its_resistor_and_hardly_one_without() {
 
 // Shows R5.
 #[test]
-fn each_film_that_is_cut_before_its_amplifier_is_noticed_and_moves_nothing() {
+fn each_film_that_is_cut_before_its_amplifier_is_noticed() {
     let films: Vec<(usize, Run)> =
         (PVDF..PVDF + PVDF_COUNT).into_par_iter().map(|channel| (channel, run(channel, "cut"))).collect();
     for (channel, run) in &films {

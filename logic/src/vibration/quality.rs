@@ -228,7 +228,7 @@ mod tests {
             }
         }
         // The boundary: always seen at the same place of its swing.
-        assert!(!told(160.0, -600.0, |_| 1_650, 10_000).is_empty());
+        assert!(!told(160.0, 1_350.0, |_| 1_650, 10_000).is_empty());
     }
 
     #[test]
