@@ -168,17 +168,17 @@ pub struct Evidence {
     pub confidence_permille: u16,
     /// Direction of slip.
     pub direction: Direction,
-    /// Sequence number of the frame in which it decided this.
+    /// Sequence number of the frame in which the detector decided this.
     pub decided_at: u32,
-    /// Whether it has the input that it needs.
+    /// Whether the detector has the input that it needs.
     pub health: DetectorHealth,
-    /// The number that it compares with its threshold: the envelope (S1, 14-bit samples), Ft/Fn (S2, per mille), the PVDF part of o1
-    /// (Hebbian, per mille), the logit (MLP), the rate of slip (photoelastic, um/s).
+    /// The number that is compared with the threshold: the envelope (S1, 14-bit samples), Ft/Fn (S2, per mille), the
+    /// PVDF part of o1 (Hebbian, per mille), the logit (MLP), the rate of slip (photoelastic, um/s).
     pub raw: i32,
 }
 
 impl Evidence {
-    /// Whether it reports slip or a warning.
+    /// Whether the detector reports slip or a warning.
     pub const fn says(&self) -> bool {
         self.slip || self.incipient
     }

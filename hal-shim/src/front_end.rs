@@ -43,5 +43,6 @@ pub fn fsr_quadrants_n(normal_n: f64, shear_x_n: f64, shear_y_n: f64) -> [f64; 4
 /// Myoelectric envelope of a relaxed muscle, mV.
 pub const MYO_REST_MV: u32 = 300;
 
-/// Motor current: the bridge's mirror above rest for 1 A, mV (docs/hardware.md).
+/// Sensitivity of the motor's current channel, mV per A: the bridge's current mirror rises by this above its voltage at
+/// rest (docs/hardware.md).
 pub const MOTOR_MV_PER_A: u32 = 2_400;

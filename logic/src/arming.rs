@@ -67,7 +67,7 @@ impl Act {
     }
 }
 
-/// State of the consents and of the time that is left.
+/// Decides which commands of the serial line are allowed: tracks the acts of consent and how long each still lasts.
 #[derive(Clone, Debug)]
 pub struct Arming {
     left: u32,

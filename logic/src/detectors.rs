@@ -33,7 +33,7 @@ pub struct Sensed<'a> {
     pub valid: bool,
     /// The vibration of all PVDF channels.
     pub vibration: Vibration,
-    /// Each PVDF channel's envelope in the slip band, Q16 samples.
+    /// Each PVDF channel's envelope in the slip band, 14-bit samples in Q16: 65536 is one sample.
     pub envelopes: &'a [i32; PVDF_COUNT],
     /// Whether any PVDF channel gives numbers.
     pub vibration_known: bool,
@@ -41,7 +41,7 @@ pub struct Sensed<'a> {
     pub strain: &'a Gauges,
     /// Forces, None while the force sensor gives no number.
     pub forces: Option<&'a Forces>,
-    /// Whether this frame brought new ones.
+    /// Whether this frame brought new forces.
     pub forces_are_new: bool,
     /// The normal-force array's last readings.
     pub taxels: &'a Reading,

@@ -21,7 +21,8 @@ const RELEASED_FRAMES: u32 = 1_000;
 /// Frames of known rest that renew both limits: 4 s.
 const RENEWED_AFTER: u32 = 8_000;
 
-/// State of both muscles, the hold time and the limits of unproven wishes.
+/// The myoelectric gate: turns the muscles' verdict into the wearer's drive, holds activity for a while, and limits
+/// unproven wishes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Gate {
     verdict: Verdict,

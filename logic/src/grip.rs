@@ -118,7 +118,9 @@ impl Reflex {
         }
     }
 
-    /// The mode has changed: starts its time, and sizes a pulse.
+    /// Handles a change of mode: restarts the time in the mode ([`elapsed`](Self::elapsed)), counts the pulses in a
+    /// row, and plans the length of the new mode's pulse from the missing force. `grip` is the present load. Call it
+    /// once at a change.
     #[inline(never)]
     pub fn enter(&mut self, mode: GripMode, grip: Grip) {
         match mode {

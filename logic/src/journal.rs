@@ -39,14 +39,15 @@ impl Journal {
         self.frame
     }
 
-    /// Stores the record of this frame's tick at its slot, 0 to 24.
+    /// Stores the record of this frame's tick at its slot, 0 to 24. A larger slot is ignored.
     pub fn tick(&mut self, place: u8, record: TickRecord) {
         if let Some(slot) = self.ticks.get_mut(usize::from(place)) {
             *slot = record;
         }
     }
 
-    /// Takes the ticks of the slow frame and the checksum of their samples; a new slow frame begins.
+    /// Returns the ticks of the slow frame and the checksum ([`SamplesSum`]) of their samples, and begins a new
+    /// checksum.
     pub fn take_slow(
         &mut self,
     ) -> ([TickRecord; tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME as usize], u32) {

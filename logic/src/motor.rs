@@ -135,7 +135,9 @@ impl Motor {
         }
     }
 
-    /// Takes the drive that was asked for in the last frame, and the one that was allowed. Call it every [`STEP_FRAMES`].
+    /// Records the last frame's drives for [`judge`](Self::judge): `asked` was requested, `drive` is what the limits
+    /// allowed of it. A request for the other direction than the last ends a stall. Call it every [`STEP_FRAMES`]
+    /// frames.
     pub const fn step(&mut self, asked: MotorDrive, drive: MotorDrive) {
         let opens = match asked {
             MotorDrive::Coast => return,

@@ -24,7 +24,8 @@ impl LastSamples {
         self.switch_b[select] = frame.switch_b;
     }
 
-    /// The last sample of every channel, in the order of [`CHANNELS`].
+    /// Returns the last 14-bit sample of every channel, in the order of [`CHANNELS`]; 0 for a channel without a sample
+    /// yet.
     pub fn in_order(&self) -> [u16; COUNT] {
         let last = |samples: &[u16], place: u8| samples.get(usize::from(place)).copied().unwrap_or(0);
         CHANNELS.map(|channel| match channel.input {

@@ -62,12 +62,13 @@ impl Receiver {
         Self { buffer: [0; FRAME_MAX], length: 0, overlong: false }
     }
 
-    /// Takes one byte. Some when it ends a frame.
+    /// Takes one byte. Returns the decoded frame, or why it was skipped, when the byte ends a frame; else None.
     pub fn push<T: DeserializeOwned>(&mut self, byte: u8) -> Option<Result<Received<T>, BadFrame>> {
         self.push_if(byte, || true)
     }
 
-    /// Takes one byte. Some when it ends a frame, which is decoded if there is `time` for it.
+    /// Takes one byte. Returns the decoded frame, or why it was skipped, when the byte ends a frame; else None. If
+    /// `time` says no, the frame is not decoded and is [`BadFrame::Skipped`].
     pub fn push_if<T: DeserializeOwned>(
         &mut self,
         byte: u8,

@@ -12,7 +12,7 @@ pub const PIECE_MAX: usize = 256;
 /// Bytes of the reason, at most.
 pub const WHY_MAX: usize = 48;
 
-/// A piece of the messages before the last run ended in a fault.
+/// A piece of the board's last messages before a fault ended its last run.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Last {
     /// The fault. None: nothing is kept.
@@ -23,7 +23,7 @@ pub struct Last {
     pub length: u16,
     /// Offset of this piece, bytes.
     pub from: u16,
-    /// Frames as they went up the line, the oldest first. The first of all may be torn.
+    /// Encoded frames as they went up the line, the oldest first. The oldest of all may lack its beginning.
     pub bytes: Vec<u8, PIECE_MAX>,
 }
 

@@ -10,7 +10,7 @@ use postcard::{Error, Result};
 /// A block that is full: of 254 bytes, and no zero is behind it.
 const FULL: u8 = 0xFF;
 
-/// Stuffs what is pushed into a buffer.
+/// Encodes the bytes that are pushed as COBS into a buffer. A push fails if the buffer is full.
 pub struct Stuffed<'b> {
     buffer: &'b mut [u8],
     length: usize,
@@ -19,7 +19,7 @@ pub struct Stuffed<'b> {
 }
 
 impl<'b> Stuffed<'b> {
-    /// Begins with the first block. None if there is no room for it.
+    /// Returns an encoder that writes to `buffer`. None if the buffer is empty.
     pub fn new(buffer: &'b mut [u8]) -> Option<Self> {
         (!buffer.is_empty()).then_some(Self { buffer, length: 1, block: 0 })
     }
@@ -58,7 +58,7 @@ impl<'b> Flavor for Stuffed<'b> {
     }
 }
 
-/// Takes the blocks' lengths out again, in place; gives what is left. None if a block is longer than the frame.
+/// Decodes COBS in place and returns the decoded bytes. None if a block is longer than the frame.
 pub fn unstuff(frame: &mut [u8]) -> Option<&[u8]> {
     let (mut from, mut to) = (0, 0);
     while let Some(&code) = frame.get(from) {

@@ -32,9 +32,9 @@ pub struct TickRecord {
     pub outputs: [i8; NETWORK_OUTPUTS],
     /// The detectors that report slip or warn of it, believed or not.
     pub said: DetectorSet,
-    /// Of these, the believed ones.
+    /// The detectors in `said` whose report the plausibility guard believes.
     pub believed: DetectorSet,
-    /// Of these, the ones for which the reflex closes the hand.
+    /// The detectors in `believed` for which the reflex closes the hand.
     pub acted: DetectorSet,
     /// Drive of the motor.
     pub drive: MotorDrive,

@@ -15,7 +15,7 @@ pub struct Counters {
     pub frames: u32,
     /// Frames lost.
     pub frames_lost: u32,
-    /// Times the converter or its DMA overran and was restarted, since the start.
+    /// Number of overruns of the converter or its DMA. Each restarted them.
     pub overruns: u32,
     /// Control ticks run.
     pub ticks: u32,

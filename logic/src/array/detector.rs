@@ -56,11 +56,11 @@ pub struct Model<
     const N: usize = COVARIANCE_WINDOW,
     const M: usize = SPECTRUM_WINDOW,
 > {
-    /// Settings of its features.
+    /// Settings of the network's features.
     pub preprocessor: PreprocessorConfig,
     /// The network.
     pub network: Mlp<FEATURES, H1, L, H2>,
-    /// Calibration and thresholds of its logit.
+    /// Calibration of the network's logit, and the thresholds of the verdict.
     pub judgement: Judgement,
 }
 
@@ -107,10 +107,10 @@ impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const
         }
     }
 
-    /// Takes one slow frame.
+    /// Takes the readings of one slow frame and returns the verdict.
     ///
-    /// Without features (windows not full, too many elements dead) it gives no slip, confidence 0, and an age that
-    /// grows until there are features again.
+    /// While there are no features (windows not full, too many elements dead) the verdict is no slip, confidence 0, and
+    /// an age, ms, that grows until there are features again.
     pub fn push(&mut self, reading: &Reading) -> ArrayVerdict {
         (0..SHARES).for_each(|share| _ = self.work(share, reading));
         self.verdict
@@ -207,8 +207,9 @@ const LOGISTIC: [u16; 33] = [
     995, 996, 997, 998, 998, 998, 999, 999, 999, 999, 1_000, 1_000,
 ];
 
-/// `1000 / (1 + exp(-logit / per_nat))`, straight between points a quarter apart: within 3 of it. A `per_nat` below 1 is
-/// taken as 1.
+/// Returns the logistic function of a logit, 0 to 1000 per mille: `1000 / (1 + exp(-logit / per_nat))`, interpolated
+/// between points a quarter apart. The error is at most 3. `per_nat` is the rise of the logit that multiplies the
+/// odds by e; a value below 1 counts as 1.
 #[must_use]
 pub fn logistic_permille(logit: i32, per_nat: i32) -> u16 {
     let per_nat = i64::from(per_nat.max(1));

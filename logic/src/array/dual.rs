@@ -62,7 +62,8 @@ impl Pair {
 pub mod portable {
     use super::{Pair, ROWS};
 
-    /// As [`dot_rows`](super::dot_rows).
+    /// The portable twin of [`dot_rows`](super::dot_rows): `sums[r] + sum over n of rows[r][n] inputs[n]`, wrapping. It
+    /// takes any length and alignment.
     #[must_use]
     pub fn dot_rows<const I: usize>(
         rows: &[[i16; I]; ROWS],
@@ -82,7 +83,7 @@ pub mod portable {
         row.iter().zip(inputs).fold(sum, |sum, (&w, &x)| sum.wrapping_add(i32::from(w) * i32::from(x)))
     }
 
-    /// As [`multiply_subtract`](super::multiply_subtract).
+    /// The portable twin of [`multiply_subtract`](super::multiply_subtract): `sum + a[0] b[0] - a[1] b[1]`, wrapping.
     #[must_use]
     pub fn multiply_subtract(a: Pair, b: Pair, sum: i32) -> i32 {
         let ([a0, a1], [b0, b1]) = (a.get(), b.get());
@@ -118,7 +119,8 @@ mod arm {
         most
     }
 
-    /// Sums of products, of rows and inputs that [`suits`] accepts.
+    /// The assembly of [`dot_rows`](super::dot_rows): `sums[r] + sum over n of rows[r][n] inputs[n]`, wrapping. Only
+    /// for rows and inputs that [`suits`] accepts; with others it faults or sums too few numbers.
     #[inline]
     pub fn dot_rows<const I: usize>(
         rows: &[[i16; I]; ROWS],

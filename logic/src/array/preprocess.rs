@@ -18,7 +18,8 @@ pub type Features = [i16; FEATURES];
 /// Settings of the features.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PreprocessorConfig {
-    /// Lag of a difference, slow frames, 1 to [`LAG_MAX`] (equation 1: 1); other values are clamped.
+    /// Lag of a difference, slow frames, 1 to [`LAG_MAX`]; other values are clamped. Bamshad 2023, equation 1, has a
+    /// lag of 1.
     pub lag: u8,
     /// Covariance below which a feature is linear instead of logarithmic, samples^2: about that of noise alone.
     pub covariance_knee: u32,

@@ -24,7 +24,7 @@ use super::past::{Changes, Past};
 pub const LAGS: [usize; 6] = [1, 2, 4, 8, 16, 32];
 /// Number of short lags.
 const SHORT: usize = 4;
-/// Windows of each lag.
+/// Number of windows of each lag. They are 1, 1, 2, 4, 8 and 16 slow frames long, the newest first.
 pub const WINDOWS: usize = 6;
 /// Edges of the windows, slow frames ago: the newest change, the one before, then octaves.
 const EDGES: [usize; WINDOWS + 1] = [0, 1, 2, 4, 8, 16, 32];
@@ -92,7 +92,7 @@ impl Structure {
         }
     }
 
-    /// Takes the changes over the long lags: the second half.
+    /// Takes the changes over the long lags: the second half of [`push`](Self::push).
     pub fn push_long(&mut self, past: &Past) {
         self.push_lags(past, SHORT..LAGS.len());
     }
@@ -121,13 +121,15 @@ impl Structure {
         self.sums = [[0; WINDOWS]; LAGS.len()];
     }
 
-    /// For each lag, the newest window first: `n` times the sum over the window of squares about their mean, samples^2.
+    /// Returns the sums, a row for each lag, the newest window first. Each is `n` times the sum over the window of the
+    /// squared changes about their mean, samples^2; `n` is the number of elements whose change is known.
     pub fn sums(&self) -> &[[u32; WINDOWS]; LAGS.len()] {
         &self.sums
     }
 
-    /// The quiet level: the least that the sum of the shortest lag's oldest window was, slowly forgotten. As large as can be
-    /// before that window was full.
+    /// Returns the quiet level, in the unit of [`sums`](Self::sums): the minimum of the sum over the shortest lag's
+    /// oldest window. The minimum rises by 2^-8 of itself each slow frame. It is `u32::MAX` until that window has been
+    /// full.
     pub const fn quiet(&self) -> u32 {
         self.quiet
     }

@@ -38,7 +38,8 @@ pub struct Felt<'a> {
     pub stirs: bool,
 }
 
-/// The cells of the skin, with their readings at the behaviour's begin.
+/// The skin's cells with their readings at the behaviour's begin: the camera's markers if it sees them, else the
+/// taxels.
 #[derive(Clone, Copy, Debug)]
 pub enum Skin {
     /// The camera's markers.
@@ -48,7 +49,7 @@ pub enum Skin {
         /// Shear at the behaviour's begin, mN.
         shear_mn: [i16; MARKERS],
     },
-    /// The taxels' samples at the behaviour's begin.
+    /// The taxels' 14-bit samples at the behaviour's begin; None for a taxel without a valid reading.
     Taxels([Option<u16>; ELEMENTS]),
 }
 

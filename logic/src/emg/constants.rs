@@ -1,6 +1,7 @@
 //! The constants of the wearer's model: their meaning here, their values in [`fitted`](super::fitted).
 
-/// Shares and places are per mille of what was calibrated, levels Q10 octaves, times readings of a pair, 240 a second.
+/// The constants with which the board recognises the wearer's wish. Shares and places are per mille of what was
+/// calibrated, levels are Q10 octaves, times are readings of a pair, 240 a second.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fitted {
     /// Readings over which shares and ratio are averaged.

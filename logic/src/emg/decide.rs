@@ -182,7 +182,7 @@ impl Decide {
         self.wish
     }
 
-    /// The electrode whose contraction is wished; at rest the opening one.
+    /// Returns the electrode that contracts for the present wish, 0 (flexor) or 1 (extensor); at rest, the opening one.
     pub fn mover(&self) -> usize {
         let site = usize::from(self.wish != Wish::Close);
         // The compiler is to see that it is one of two, here and below.

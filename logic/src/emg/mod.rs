@@ -114,8 +114,9 @@ impl Emg {
         self.verdict
     }
 
-    /// Takes one channel's reading, as they come: 0 the flexor's, others the extensor's, with which the pair is complete
-    /// and decided on. A reading that was missed is to be told too, as none.
+    /// Takes the reading of one channel above the live zero, uV: channel 0 is the flexor, others the extensor. Pass
+    /// None for a missing reading too: gaps are counted. The extensor's reading completes the pair and updates the
+    /// verdict.
     pub fn read(&mut self, channel: usize, uv: Option<i32>) {
         let n = channel.min(1);
         let [active, inactive] = self.decide.active_levels(n);
@@ -171,7 +172,8 @@ impl Emg {
         self.proof.levels()
     }
 
-    /// Whether a channel can be believed.
+    /// Whether the last reading of channel 0 (flexor) or another (extensor) was in range and its electrode is not
+    /// doubted.
     #[must_use]
     pub fn is_known(&self, channel: usize) -> bool {
         self.known[channel.min(1)]
@@ -195,19 +197,21 @@ impl Emg {
         self.electrodes
     }
 
-    /// Whether a channel is active: 0 the flexor's, others the extensor's.
+    /// Whether channel 0 (flexor) or another (extensor) is active: its level is above the threshold of activity, and
+    /// its electrode is not doubted.
     #[must_use]
     pub fn is_active(&self, channel: usize) -> bool {
         self.is_raised(channel) && !self.electrodes[channel.min(1)].doubted
     }
 
-    /// Whether a channel stands above where it is active, doubted or not.
+    /// Whether the level of channel 0 (flexor) or another (extensor) is above its threshold of activity, with
+    /// hysteresis, even if the electrode is doubted.
     #[must_use]
     pub fn is_raised(&self, channel: usize) -> bool {
         self.raised[channel.min(1)]
     }
 
-    /// Quality of an envelope: channel 0 is the flexor, others the extensor.
+    /// Returns the quality of an envelope: channel 0 is the flexor, others the extensor.
     #[must_use]
     pub fn quality(&self, channel: usize) -> Quality {
         match self.trust[channel.min(1)].quality() {
@@ -216,13 +220,15 @@ impl Emg {
         }
     }
 
-    /// A full window of a channel, for [`mains::mains_of`] outside the tick.
+    /// Returns the window of channel 0 (flexor) or another (extensor), the input of [`mains::mains_of`] outside the
+    /// tick: 64 readings, one a slow frame, the oldest first, 128 uV a unit. None until it is full.
     #[must_use]
     pub fn window(&self, channel: usize) -> Option<&[i16; WINDOW]> {
         self.trust[channel.min(1)].window()
     }
 
-    /// Takes what the window said, and begins the next one.
+    /// Takes the result of a channel's window ([`mains::mains_of`]), and begins the next window. Channel 0 is the
+    /// flexor.
     pub const fn hear(&mut self, channel: usize, mains: Mains) {
         let channel = if channel == 0 { 0 } else { 1 };
         self.trust[channel].hear(mains);

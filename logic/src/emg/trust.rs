@@ -137,8 +137,8 @@ impl Default for Trust {
 }
 
 impl Trust {
-    /// Takes a reading above the live zero, uV, none where the sensor gives no number; `active` is the level from which it is
-    /// active. Gives what is to be decided on: a gap is bridged.
+    /// Takes a reading above the live zero, uV, None where the sensor gives no number. `active` is the level, Q10
+    /// octaves, from which the muscle is active. Returns the reading; in a gap of up to 50 ms, the last one before it.
     pub fn take(&mut self, active: i32, uv: Option<i32>) -> Option<i32> {
         let Some(uv) = uv else {
             self.missing = self.missing.saturating_add(1);
@@ -270,12 +270,12 @@ impl Trust {
         turned
     }
 
-    /// Its quality.
+    /// Returns the quality of the envelope.
     pub fn quality(&self) -> Quality {
         self.lost.unwrap_or_default()
     }
 
-    /// Whether it is taken for a muscle's.
+    /// Whether the envelope is taken for a muscle's.
     pub fn is_good(&self) -> bool {
         self.lost.is_none()
     }
@@ -298,27 +298,31 @@ impl Trust {
             && (uv - self.hum_uv).abs() <= self.hum_uv / HUM_PART + STILL_UV
     }
 
-    /// Whether a contraction has turned as a muscle does.
+    /// Whether the present contraction has one proof of the last second: its envelope fell back by 3 % or curved, as a
+    /// muscle's does.
     pub const fn has_turned(&self) -> bool {
         self.proofs >= 1
     }
 
-    /// Whether it has done so twice: one jump from a fault to another turns once.
+    /// Whether the present contraction has two such proofs, at least 0.15 s apart: one jump from a fault to another
+    /// gives only one.
     pub const fn has_turned_twice(&self) -> bool {
         self.proofs >= 2
     }
 
-    /// Whether it may still be a muscle's: not doubted, nor at the top of its range for 0.5 s, nor standing still for 0.6 s.
+    /// Whether the envelope may still be a muscle's: not doubted, nor at the top of its range for 0.5 s, nor standing
+    /// still for 0.6 s.
     pub const fn is_sound(&self) -> bool {
         self.lost.is_none() && self.at_top < TOP_FRAMES / 3 && self.flat < 3 * FLAT_FRAMES / 5
     }
 
-    /// Whether it has climbed for 1 s without a turn.
+    /// Whether the active envelope has neither fallen back by 3 % nor given a proof for 1 s.
     pub const fn is_straight(&self) -> bool {
         self.climbing >= PROOF_LASTS && self.since_proof >= PROOF_LASTS
     }
 
-    /// The last 64 readings, one a slow frame, 128 uV a unit, if the window is full, for [`mains_of`](super::mains::mains_of).
+    /// Returns the window, the input of [`mains_of`](super::mains::mains_of): 64 readings, one a slow frame, the oldest
+    /// first, 128 uV a unit. None until it is full; then it stays until [`hear`](Self::hear).
     pub fn window(&self) -> Option<&[i16; WINDOW]> {
         (usize::from(self.filled) == WINDOW).then_some(&self.window)
     }

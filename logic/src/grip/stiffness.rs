@@ -20,7 +20,8 @@ const FRACTION: u32 = 4;
 /// Upper limit of the stiffness, mN a frame at full duty: 4 N.
 const MOST: u32 = 4_000 << FRACTION;
 
-/// Stiffness by the motor's travel, in per mille of duty times frames.
+/// The stiffness of the grasp: the force that closing adds for the motor's travel. It is learned from readings of the
+/// load while the motor closes. Travel is in per mille of duty times frames.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Stiffness {
     /// Force that a frame at full duty adds, mN with [`FRACTION`] bits; 0 before the first closing.

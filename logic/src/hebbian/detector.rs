@@ -69,7 +69,7 @@ pub static NORMALISER: NormaliserConfig<RECEPTORS> = NormaliserConfig {
 /// Input of the detector in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Felt<'a> {
-    /// Each film's envelope, Q16 samples.
+    /// Each film's envelope, 14-bit samples in Q16: 65536 is one sample.
     pub envelopes: &'a [i32; PVDF_COUNT],
     /// The gauges: loads in 1/16 of a sample.
     pub gauges: &'a Gauges,

@@ -118,7 +118,8 @@ impl<const INPUTS: usize, const OUTPUTS: usize> Network<INPUTS, OUTPUTS> {
         self.learn_some(rule, activations, &codes.map(Some));
     }
 
-    /// Like [`learn`](Self::learn); an output with None keeps its weights.
+    /// One update of the weights (Tada 2006, equations 5 and 6), as [`learn`](Self::learn) does. An output whose code
+    /// is None keeps its weights; one whose code is [`Code::Zero`] only forgets.
     pub fn learn_some(
         &mut self,
         rule: &Rule,

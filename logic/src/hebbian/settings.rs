@@ -10,9 +10,10 @@ pub struct HebbianConfig {
     pub slip_permille: u16,
     /// Time below the threshold before slip is reported if only some films show it, in frames.
     pub slip_frames: u32,
-    /// Time below the threshold before slip is reported if all films show it, in frames: longer than an impact.
+    /// Time below the threshold before slip is reported if all films show it, in frames. It is longer than an impact
+    /// lasts.
     pub everywhere_frames: u32,
-    /// Time after an impact or a run of the motor in which it is not evaluated, in frames: the envelopes' decay and
+    /// Time after an impact or a run of the motor in which o1 is not evaluated, in frames: the envelopes' decay and
     /// the motor's dead time.
     pub loud_frames: u32,
     /// Time by which Ft/Fn is extrapolated, ms; 0: no warnings.
@@ -40,7 +41,7 @@ settings! {
     5 HebbianSlip "hebbian-slip-permille" "per mille" [10, 1_000] = 100 => Number(slip_permille);
     /// Hebbian: time below the threshold before slip is reported, if only some PVDF channels show it
     11 HebbianTime "hebbian-ms" "ms" [1, 100] = 15 => Ms(slip_frames);
-    /// Hebbian: the same if all PVDF channels show it, longer than an impact
+    /// Hebbian: time below the threshold before slip is reported, if all PVDF channels show it; longer than an impact
     12 HebbianEverywhere "hebbian-everywhere-ms" "ms" [1, 500] = 40 => Ms(everywhere_frames);
     /// Hebbian: time after an impact or a fast run of the motor in which it is not evaluated
     13 HebbianAfterNoise "hebbian-after-noise-ms" "ms" [0, 1_000] = 100 => Ms(loud_frames);

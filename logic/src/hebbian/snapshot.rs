@@ -15,7 +15,7 @@ use super::activations::{Normaliser, NormaliserConfig};
 use super::network::{Network, Weight};
 use crate::checksum::CRC;
 
-/// The version of the layout above. A snapshot of another is refused.
+/// Version of a snapshot's layout. [`restore`] refuses a snapshot of another version.
 pub const VERSION: u8 = 2;
 
 const HEADER: usize = 4;

@@ -49,8 +49,8 @@ pub struct Teacher {
 }
 
 impl Teacher {
-    /// Takes a message, and the age of the picture that it was made from, ms. A message from an older picture than the
-    /// last one, one that overtook it, is dropped.
+    /// Takes a teacher's codes and the age of the picture that they were made from, ms. Codes of an older picture than
+    /// the newest received are dropped. After a silence of more than `fresh_ms`, the codes before it no longer count.
     pub fn receive(&mut self, config: &TeacherConfig, codes: Codes, age_ms: u16) {
         if self.age_ms > config.fresh_ms {
             // After a silence it has to be believed anew.

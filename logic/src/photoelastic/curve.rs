@@ -86,7 +86,7 @@ mod tests {
     use super::*;
     use std::f64::consts::{FRAC_PI_2, PI};
 
-    /// Figure 14 as `F = 1.7 (2 phase / pi)^1.82`.
+    /// Dubey 2006, figure 14, as `F = 1.7 (2 phase / pi)^1.82`: F in N, phase in rad, the peak at pi / 2.
     pub const FIGURE_14: Curve = Curve {
         dark_q4: 32_000,
         bright_q4: 207_000,

@@ -116,7 +116,7 @@ impl Head {
         &self.split
     }
 
-    /// What is known about the force.
+    /// Returns whether the present force is known to be on the rising or the falling branch of the calibration curve.
     pub const fn track(&self) -> Track {
         self.tracker.track()
     }

@@ -6,8 +6,9 @@
 
 use crate::emg::log2::{LEVEL_Q, level_of};
 
-/// A calibration. Logarithms and factors in Q10; amplitude as a part of the span in Q20, frequency in mHz, force in mN, rate
-/// in um/s.
+/// A calibration of the slip rate: `log2 rate = a + b log2 amplitude + c log2 frequency + d log2 force` (a fit, no
+/// published law). Logarithms and factors are Q10. The amplitude is a part of the span in Q20, the frequency in mHz,
+/// the force in mN, the rate in um/s.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RateFit {
     /// a.
@@ -43,7 +44,8 @@ fn exp2(x: i32) -> i32 {
 }
 
 impl RateFit {
-    /// Inputs of the fit: log2, Q10, of amplitude (samples, Q20), frequency (mHz, of a period in 1/16 frames) and force (mN).
+    /// Returns the inputs of the fit: log2, Q10, of amplitude (a part of the span, Q20), frequency (mHz, of a period in
+    /// 1/16 frames) and force (mN).
     #[must_use]
     pub fn features(amplitude_q20: i32, period_q4: u16, force_mn: i32) -> [i32; 3] {
         // 2000 frames a second in 1/16: 32 000 000 mHz over the period. A quarter of it has room.
@@ -51,7 +53,7 @@ impl RateFit {
         [log2(amplitude_q20), log2(quarter_mhz) + (2 << LEVEL_Q), log2(force_mn)]
     }
 
-    /// The rate, um/s.
+    /// Returns the rate of slip, um/s, 0 to 20 000, for an amplitude, a period (1/16 frames) and a force (mN).
     #[must_use]
     pub fn rate_um_s(&self, amplitude_q20: i32, period_q4: u16, force_mn: i32) -> i32 {
         let [amplitude, frequency, force] = Self::features(amplitude_q20, period_q4, force_mn).map(i64::from);

@@ -50,11 +50,11 @@ pub struct Survey {
     pub sector: Sector,
     /// None if its opening words are not whole.
     pub generation: Option<u32>,
-    /// The newest whole record of each kind.
+    /// The newest whole record of each kind, indexed by [`Kept`].
     pub newest: [Option<Entry>; Kept::ALL.len()],
-    /// Whether a damaged or unfinished record of the kind follows it.
+    /// For each kind, whether a damaged or unfinished record of it follows the newest whole one.
     pub damaged: [bool; Kept::ALL.len()],
-    /// The highest sequence number of its whole records, 0 if it has none.
+    /// The highest sequence number of the sector's whole records, 0 if it has none.
     pub last_sequence: u32,
     /// Offset of the first word of the blank rest, words.
     pub end: usize,
@@ -122,7 +122,8 @@ pub fn is_blank(area: &impl FlashArea, sector: Sector) -> bool {
     (0..area.sector_words()).all(|word| area.read(sector, word) == BLANK)
 }
 
-/// Writes the opening words of a sector, so that records can be appended.
+/// Writes the opening words (magic, `generation`, CRC-32) of an erased sector, so that records can be appended. Fails
+/// if a word cannot be programmed or reads back differently.
 pub fn write_opening(area: &mut impl FlashArea, sector: Sector, generation: u32) -> Result<(), FlashFailed> {
     for (n, word) in opening(generation).into_iter().enumerate() {
         super::program(area, sector, n, word)?;
