@@ -211,7 +211,7 @@ impl Reflex {
         self.relax.is_on()
     }
 
-    /// A detector reports slip or a warning: ends a release step.
+    /// Ends a release step. Call it when a detector reports slip or a warning.
     pub fn hear(&mut self) {
         self.relax.hear();
     }
@@ -242,7 +242,8 @@ impl Reflex {
         self.elapsed
     }
 
-    /// Advances by one frame.
+    /// Advances the time in `mode` by one frame. In a mode that closes, it spends a frame of the blind budget if the
+    /// force is unknown or an electrode is lost.
     pub fn tick(&mut self, mode: GripMode, grip: Grip) {
         self.elapsed = self.elapsed.saturating_add(1);
         self.since_incipient = self.since_incipient.saturating_add(1);

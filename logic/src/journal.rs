@@ -64,7 +64,9 @@ impl Journal {
         self.event(EventKind::Fault(fault));
     }
 
-    /// Queues an event. Not inlined: events are rare, and each caller would carry a copy of the queue's code.
+    /// Queues an event of the present frame. If the queue is full the event is dropped and counted:
+    /// [`next_event`](Self::next_event) reports the number. Not inlined: events are rare, and each caller would carry a
+    /// copy of the queue's code.
     #[inline(never)]
     pub fn event(&mut self, kind: EventKind) {
         self.lost |= matches!(
@@ -87,7 +89,8 @@ impl Journal {
         !self.events.is_empty() || self.events_lost > 0
     }
 
-    /// Takes the oldest event that waits.
+    /// Takes the oldest event that waits; after the last, the number of dropped events, if there were any. None if
+    /// nothing waits.
     pub fn next_event(&mut self) -> Option<Event> {
         self.events.pop_front().or_else(|| {
             let lost = core::mem::take(&mut self.events_lost);

@@ -174,9 +174,10 @@ impl Muscles {
         self.lesson.is_some()
     }
 
-    /// Whether the light at the hand is on: a short flash a second asks for rest, on for closing, five flashes a second for opening.
-    /// Then on for 2 s: taken; ten flashes a second for 2 s: refused. Two short flashes every 4 s: the calibration does not fit any more;
-    /// three: the electrodes look exchanged.
+    /// Returns whether the light at the hand is on in this frame. During a calibration, a short flash a second asks for
+    /// rest, a steady light for closing, five flashes a second for opening. For 2 s after it, a steady light means that
+    /// the calibration was taken, ten flashes a second that it was refused. Otherwise two short flashes every 4 s mean
+    /// that the calibration does not fit any more, three that the electrodes look exchanged.
     #[must_use]
     pub fn light(&self, frame: u32) -> bool {
         if let Some(lesson) = &self.lesson {

@@ -70,7 +70,8 @@ pub struct Slow {
     pub lesson: Option<Codes>,
     /// Each detector's last conclusion, believed or not.
     pub evidence: Vec<(DetectorId, Evidence), DETECTORS_MAX>,
-    /// Checksum of every valid sample of the slow frame's ticks, to compare the input of board and replay.
+    /// Checksum ([`SamplesSum`](super::SamplesSum)) of every valid sample of the slow frame's ticks, to compare the
+    /// input of board and replay.
     pub samples_sum: u32,
     /// The commands that the serial line may give.
     pub line: Line,

@@ -34,12 +34,12 @@ pub struct Counters {
     pub control_permille: u16,
 }
 
-/// An event.
+/// What happened at the board (a fault, a change of mode, a consent) and when.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Event {
     /// Sequence number of the frame in which it happened.
     pub frame: u32,
-    /// The event.
+    /// What happened.
     pub kind: EventKind,
 }
 

@@ -23,11 +23,12 @@ pub struct PreprocessorConfig {
     pub lag: u8,
     /// Covariance below which a feature is linear instead of logarithmic, samples^2: about that of noise alone.
     pub covariance_knee: u32,
-    /// Knee of a bin's power, samples^2.
+    /// Power of a bin below which a feature is linear instead of logarithmic, samples^2.
     pub spectrum_knee: u32,
-    /// Knee of a structure function, samples^2 for each frame of its window, times the number of elements.
+    /// Knee of a structure function's sum for each slow frame of its window, samples^2 times the number of elements.
+    /// Below the knee a feature is linear instead of logarithmic.
     pub structure_knee: u32,
-    /// With more elements than this without a reading, there are no features.
+    /// Most elements without a reading with which there are features.
     pub dead_max: u8,
 }
 

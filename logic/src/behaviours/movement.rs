@@ -13,32 +13,32 @@ pub struct Movement {
 }
 
 impl Movement {
-    /// A small one that closes.
+    /// A small movement that closes the hand.
     pub const fn tighten(config: &BehaviourConfig) -> Self {
         Self::lasting(config, Wish::Tighten(Duty::per_mille(config.duty_permille)), config.movement_frames)
     }
 
-    /// A small one that opens.
+    /// A small movement that opens the hand.
     pub const fn relax(config: &BehaviourConfig) -> Self {
         Self::lasting(config, Wish::Relax(Duty::per_mille(config.duty_permille)), config.movement_frames)
     }
 
-    /// One that lasts for so many frames.
+    /// A movement with this wish that lasts for this number of frames.
     pub const fn lasting(config: &BehaviourConfig, wish: Wish, frames: u32) -> Self {
         Self { wish, drives_left: frames, waits_left: config.wait_frames }
     }
 
-    /// Whether it is over, its wait included.
+    /// Whether the movement and the wait after it are over.
     pub const fn is_over(&self) -> bool {
         self.drives_left == 0 && self.waits_left == 0
     }
 
-    /// Whether it still drives.
+    /// Whether the movement still drives the hand.
     pub const fn drives(&self) -> bool {
         self.drives_left > 0
     }
 
-    /// Goes on by one tick.
+    /// Advances by one tick. Returns the wish; `Rest` during the wait.
     pub const fn step(&mut self) -> Wish {
         if self.drives_left > 0 {
             self.drives_left -= 1;

@@ -18,7 +18,7 @@ pub struct Fitted {
     pub fall: i32,
     /// Smallest fall of the level that ends a wish: a contraction fluctuates.
     pub least_fall: i32,
-    /// Readings over which the highest share is forgotten.
+    /// Time constant with which the highest share is forgotten, readings.
     pub crest_readings: i32,
     /// A wish begins again this share above the lowest one since: tone that stays is no new wish.
     pub rise: i32,
@@ -34,7 +34,7 @@ pub struct Fitted {
     pub dwell: [i32; 3],
     /// Readings above all that was calibrated that open at once.
     pub at_once_readings: i32,
-    /// Readings over which rest is followed.
+    /// Time constant with which the level of rest is followed, readings.
     pub rest_readings: i32,
     /// After a contraction the opposite muscle often contracts weakly for a while. So after other activity no opening begins for
     /// the first number of readings, and only a strong one for the second.
@@ -50,7 +50,7 @@ pub struct Fitted {
 }
 
 impl Fitted {
-    /// How many there are.
+    /// Number of constants.
     pub const COUNT: usize = 27;
 
     /// Each of them, in the order of the fields: for who fits them.

@@ -150,7 +150,7 @@ impl Decide {
         Self::with(&FITTED, model)
     }
 
-    /// With other constants, to fit them.
+    /// A decision with other constants than [`FITTED`], to fit them.
     pub fn with(fitted: &'static Fitted, model: Option<&EmgModel>) -> Self {
         Self {
             fitted,
@@ -189,8 +189,8 @@ impl Decide {
         self.sites.map_or(site, |sites| sites.electrode[site]) & 1
     }
 
-    /// Rest level of the other electrode, and its least rise with the present wish, Q10 octaves. None for a wearer whose other
-    /// electrode hardly rises.
+    /// Returns, for the electrode that is not the [`mover`](Self::mover), its rest level and the least rise that the
+    /// present wish must show on it, Q10 octaves. None for a wearer whose contractions hardly raise that electrode.
     pub fn hears(&self) -> Option<[i32; 2]> {
         let site = usize::from(self.wish != Wish::Close);
         match &self.sites {

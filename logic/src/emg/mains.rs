@@ -32,7 +32,7 @@ const LEAST_LINE_UV: u32 = 400;
 /// The least part of all alternating power above 5 Hz that lies in the lines, per mille. White noise has 230.
 const LEAST_SHARE_PERMILLE: u16 = 600;
 
-/// Result of a window.
+/// The mains in a window of an envelope: the result of [`mains_of`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Mains {
     /// Amplitude of all lines together, uV.
@@ -42,7 +42,7 @@ pub struct Mains {
 }
 
 impl Mains {
-    /// Whether there is a line that stands out.
+    /// Whether the mains lines stand out: of at least 400 uV and 60 % of the power.
     #[must_use]
     pub const fn is_heard(self) -> bool {
         self.line_uv >= LEAST_LINE_UV && self.share_permille >= LEAST_SHARE_PERMILLE

@@ -32,23 +32,26 @@ const fn at(forces: &Forces) -> At {
 }
 
 impl Asked {
-    /// A warning is on: notes load and shear, if none are noted.
+    /// Notes load and shear as a warning begins. Later calls change nothing until [`renew`](Self::renew).
     pub fn begin(&mut self, forces: &Forces) {
         self.0.get_or_insert(at(forces));
     }
 
-    /// Renews the limit: slip was confirmed, or another grasp begins.
+    /// Forgets what was noted. Call it when slip is confirmed or another grasp begins: the next warning may add force
+    /// again.
     pub const fn renew(&mut self) {
         self.0 = None;
     }
 
-    /// Whether the load has grown by all that the warning may add, and `on_top_mn` more.
+    /// Whether the load has grown since [`begin`](Self::begin) by more than the half that a warning may add, and
+    /// `on_top_mn`. False before `begin`.
     #[must_use]
     pub fn in_vain(&self, forces: &Forces, on_top_mn: i32) -> bool {
         self.0.is_some_and(|began| forces.load_mn > began.load_mn + began.load_mn / GROWTH_PART + on_top_mn)
     }
 
-    /// Whether the load has grown by more than 1/8 and `on_top_mn`, and the shear has not grown with it as that of a sliding object does.
+    /// Whether the load has grown since [`begin`](Self::begin) by more than 1/8 and `on_top_mn`, and the shear by less
+    /// than a quarter of what a sliding object's would. False if the shear is not known.
     #[must_use]
     pub fn is_held(&self, forces: &Forces, on_top_mn: i32) -> bool {
         let (Some(began), now) = (self.0, at(forces)) else { return false };

@@ -57,7 +57,8 @@ impl Relax {
         self.left = 0;
     }
 
-    /// A detector reports slip or a warning. If that came after a step, the step went too far: the load before it becomes the floor.
+    /// Ends a release step. Call it when a detector reports slip or a warning. The load before the last step becomes
+    /// the floor if it is the higher one: the step went too far.
     pub fn hear(&mut self) {
         self.floor_mn = self.floor_mn.map(|floor_mn| floor_mn.max(self.before_mn));
         (self.quiet, self.left) = (0, 0);

@@ -27,7 +27,7 @@ pub struct GripConfig {
 }
 
 impl GripConfig {
-    /// Whether the reflex may release force that it added.
+    /// Whether `relax-choice` lets the reflex release force that it added. `no_wearer`: nobody wears the hand.
     #[must_use]
     pub const fn may_relax(&self, no_wearer: bool) -> bool {
         self.relax >= if no_wearer { 1 } else { 2 }

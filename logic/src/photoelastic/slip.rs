@@ -35,7 +35,7 @@ impl Presence {
         self.slip |= self.large >= LASTS && split.swings() - self.before >= SWINGS;
     }
 
-    /// Whether it is slip.
+    /// Whether the ac part is slip: large for 45 ms and three swings, until it is below half of the threshold.
     pub const fn is_slip(&self) -> bool {
         self.slip
     }
