@@ -2,7 +2,7 @@
 //!
 //! Here lives a model of the chip or its board, each with the reason why `rigless`'s own does not do; the chip's memories and
 //! its flash array, which it leaves out; and the far end of the serial line. Every reason is one of two: `rigless` does not
-//! draw it (words of the flash, a timer's trigger of the converter), or stops the core for what nobody sees (README of docs/tools.md).
+//! draw it (words of the flash, a timer's trigger of the converter), or stops the core for what nobody sees (`docs/tools.md`).
 //! No plant, no scene, no report, and nothing that knows the image's symbols: the bench drives the board and reads it.
 //! Each stand-in has a test beside `rigless`'s own model, event for event; [`Models::Rigless`] runs without them.
 #![forbid(unsafe_code)]

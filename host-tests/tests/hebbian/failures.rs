@@ -282,7 +282,7 @@ fn twenty_fingers_learn_with_the_same_rates() {
     assert!(fates(NORMALISER.average_shift).all(|fate| fate == Fate::Useful));
     let single = fates(0).filter(|&fate| fate == Fate::Useful).count();
     println!("{single} of 20 fingers are useful with the maxima of single readings");
-    assert_eq!(single, 19, "docs/hebbian.md says 19");
+    assert_eq!(single, 19, "of 20 fingers");
 }
 
 /// Lessons without the lowering say 'up' twice as long as 'down': what feels the grasp takes part in the direction.

@@ -10,7 +10,7 @@
 //! r_ij  = (|w_ij| + delta) / ((sum_j |w_ij|) + delta)        (6)
 //! ```
 //!
-//! How the equations are read, what they settle at and where they fail is derived in `docs/hebbian.md`.
+//! `docs/hebbian.md` has the measured limits.
 //!
 //! Everything is integer, so that a PC and a Cortex-M4 agree to the last bit. Single precision would cost the same
 //! (a multiply-add is one instruction in both), but it drops an update below 2^-24 of its weight, which is every useful

@@ -1,7 +1,7 @@
 //! From the dc part to force: the calibration curve as data, and both forces that one intensity can mean.
 //!
 //! The intensity follows a sine squared (equation 9), so its phase is an arcsine of a root. Force over phase is a table: the
-//! paper's curve is not symmetric, and no formula of it is known (`docs/photoelastic.md`). In phase the table needs few
+//! paper's curve is not symmetric, and no formula of it is known. In phase the table needs few
 //! knots, where in voltage it would need many at the peak.
 
 /// Half a turn of phase, from no load to the force at which the intensity is back at its first value.

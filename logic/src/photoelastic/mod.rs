@@ -8,8 +8,6 @@
 //! | dc to a phase, and both forces it can mean | [`curve`] | every cycle |
 //! | which of them, whatever the shear | [`track`] | every cycle |
 //! | how fast it slips | [`rate`] | every cycle, if asked |
-//!
-//! `docs/photoelastic.md` says how the paper's equations are read.
 
 pub mod curve;
 mod detector;

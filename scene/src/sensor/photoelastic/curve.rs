@@ -53,7 +53,7 @@ impl Making {
     };
 
     /// A head of this seed. `spread` is the part by which force and voltages differ from the mean one, either way; what the
-    /// paper says nothing of is drawn over a decade (`docs/photoelastic.md`).
+    /// paper says nothing of is drawn over a decade.
     pub fn drawn(seeds: Seeds, spread: f64) -> Self {
         let mut noise = Noise::new(seeds.making, Source::HeadMaking);
         let mut near = |mean: f64, part: f64| mean * noise.between(1.0 - part * spread, 1.0 + part * spread);

@@ -1,6 +1,4 @@
 //! Equations 3 to 9 of Dubey 2006, as printed, with the sensor's dimensions.
-//!
-//! `docs/photoelastic.md` lists how each is read and what the paper's own figure 14 contradicts.
 
 /// The photoelastic layer between crossed polarisers.
 #[derive(Clone, Copy, Debug, PartialEq)]
