@@ -25,6 +25,11 @@ pub const fn frames(ms: u32) -> u32 {
 /// Inputs of one analogue switch (CD74HC4067).
 pub const SWITCH_INPUTS: u8 = 16;
 
+/// The input of switch B that is at the supply.
+pub const HIGH_SELECT: u8 = 14;
+/// The input of switch B that is at ground.
+pub const LOW_SELECT: u8 = 15;
+
 /// The largest 12-bit code of one conversion.
 pub const CODE_MAX: u16 = 4_095;
 /// The largest sample: the sum of four largest codes.

@@ -1,8 +1,8 @@
 //! The samples that a board gives to the logic every 0.5 ms.
 
 use crate::channel::{
-    CHANNELS, COUNT, FRAMES_PER_SLOW_FRAME, Input, PVDF_COUNT, RANK_SWITCH_A, RANK_SWITCH_B, SCAN_LEN,
-    SCANS_PER_FRAME,
+    CHANNELS, CODE_MAX, COUNT, FRAMES_PER_SLOW_FRAME, HIGH_SELECT, Input, PVDF_COUNT, RANK_SWITCH_A,
+    RANK_SWITCH_B, SCAN_LEN, SCANS_PER_FRAME,
 };
 use crate::schedule::select_of_slot;
 
@@ -85,10 +85,13 @@ impl Frame {
 
 /// The codes of one scan if the channels' pins have the codes in `pins` (0 to 4095) and the select lines show `select` (0 to 15).
 ///
-/// This is the wiring seen from outside: an emulated or simulated board uses it to put pins on the converter.
+/// This is the wiring seen from outside, with the inputs of known voltage: an emulated or simulated board uses it to put pins on the converter.
 #[must_use]
 pub fn scan_of_pins(pins: &[u16; COUNT], select: u8) -> Scan {
     let mut scan = [0; SCAN_LEN];
+    if select == HIGH_SELECT {
+        scan[RANK_SWITCH_B] = CODE_MAX;
+    }
     for (channel, &code) in CHANNELS.iter().zip(pins) {
         match channel.input {
             Input::Direct { rank } => scan[usize::from(rank)] = code,

@@ -8,10 +8,10 @@ pub mod teaching;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use tenax_hal_shim::channel::{
-    ARRAY, ARRAY_COUNT, CHANNELS, COUNT, FRAMES_PER_SLOW_FRAME, FSR, MYO_EXTENSOR, MYO_FLEXOR, PVDF,
-    PVDF_COUNT, SAMPLE_MAX, sample_from_mv,
+    ARRAY, ARRAY_COUNT, CHANNELS, COUNT, FRAMES_PER_SLOW_FRAME, FSR, HIGH_SELECT, MYO_EXTENSOR, MYO_FLEXOR,
+    PVDF, PVDF_COUNT, RANK_SWITCH_A, RANK_SWITCH_B, SAMPLE_MAX, sample_from_mv,
 };
-use tenax_hal_shim::frame::Frame;
+use tenax_hal_shim::frame::{Frame, scan_of_pins};
 use tenax_hal_shim::front_end::{MYO_REST_MV, fsr_mv, fsr_quadrants_n};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::{Job, slot_of};
@@ -19,6 +19,7 @@ use tenax_hal_shim::wire::{Down, Event, EventKind, Setting, Slow, TickRecord};
 use tenax_hal_shim::words::{Cause, DriveSource, GripMode, Kept};
 use tenax_logic::emg::model::EmgModel;
 use tenax_logic::fingertip::Fingertip;
+use tenax_logic::samples::LastSamples;
 use tenax_logic::setting::SettingId;
 use tenax_logic::store::payload;
 
@@ -69,7 +70,12 @@ pub struct Bench {
     pub lively: f64,
     /// A myosensor's pin whose electrode is off the skin: it does not fluctuate.
     pub lifted: Option<usize>,
+    /// Select lines that are stuck low, and high, a bit each.
+    pub stuck_lines: [u8; 2],
+    /// Whether the switches' inputs of known voltage are wired; without, both are at ground.
+    pub known_inputs: bool,
     pub frames: u32,
+    samples: LastSamples,
     muscle_noise: ChaCha8Rng,
     /// Two low-passes each.
     wander: [[f64; 2]; 2],
@@ -93,7 +99,10 @@ impl Bench {
             sliding_mv: 0.0,
             lively: 0.06,
             lifted: None,
+            stuck_lines: [0; 2],
+            known_inputs: true,
             frames: 0,
+            samples: LastSamples::default(),
             muscle_noise: ChaCha8Rng::seed_from_u64(seed ^ 0x0E46),
             wander: [[0.0; 2]; 2],
             noise: ChaCha8Rng::seed_from_u64(seed),
@@ -149,9 +158,15 @@ impl Bench {
         }
         let mut frame = Frame { valid: true, ..Frame::lost(sequence) };
         frame.pvdf.copy_from_slice(&samples[PVDF..PVDF + PVDF_COUNT]);
-        let wired = tenax_hal_shim::frame::scan_of_pins(&samples, frame.select());
-        frame.switch_a = wired[tenax_hal_shim::channel::RANK_SWITCH_A];
-        frame.switch_b = wired[tenax_hal_shim::channel::RANK_SWITCH_B];
+        let [low, high] = self.stuck_lines;
+        let shown = frame.select() & !low | high;
+        let wired = scan_of_pins(&samples, shown);
+        frame.switch_a = wired[RANK_SWITCH_A];
+        frame.switch_b = match shown {
+            HIGH_SELECT if self.known_inputs => SAMPLE_MAX,
+            HIGH_SELECT => 0,
+            _ => wired[RANK_SWITCH_B],
+        };
         frame
     }
 
@@ -198,8 +213,9 @@ impl Bench {
     pub fn give(&mut self, frame: &Frame) -> MotorDrive {
         let drive = self.fingertip.tick(frame);
         // As the device does.
+        self.samples.record(frame);
         if frame.slot() == slot_of(Job::Think) {
-            self.fingertip.think();
+            self.fingertip.think(&self.samples);
         }
         self.slows.extend(self.fingertip.take_slow());
         while let Some(event) = self.fingertip.next_event() {

@@ -17,12 +17,10 @@ fn calibrate(bench: &mut Bench, phases: [[f64; 2]; 3]) -> Vec<Calibration> {
                 bench.run(25).iter().all(|drive| !drive.opens() && !drive.closes()),
                 "the muscles move nothing"
             );
-            bench.fingertip.think();
         }
     }
     bench.muscles(50.0, 50.0);
     bench.run(25);
-    bench.fingertip.think();
     bench.run(25);
     let told = bench.events.iter().filter_map(|event| match event.kind {
         EventKind::Calibration(step) => Some(step),
@@ -114,7 +112,6 @@ fn contract(bench: &mut Bench, contractions: [[f64; 2]; 2], count: usize) -> usi
         let mut lit = 0;
         for _ in 0..frames / 25 {
             bench.run(25);
-            bench.fingertip.think();
             lit += usize::from(bench.fingertip.light());
         }
         lit

@@ -19,6 +19,7 @@ mod random_steps;
 mod ranges;
 mod reflex;
 mod restart;
+mod select_lines;
 mod shear;
 mod sliding;
 mod store;

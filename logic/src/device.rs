@@ -146,7 +146,7 @@ impl Device {
         self.stream.record(frame);
         // After the motor has been driven, so that nothing waits for it.
         if frame.slot() == slot_of(Job::Think) {
-            self.fingertip.think();
+            self.fingertip.think(&self.samples);
         }
     }
 

@@ -31,6 +31,7 @@ use crate::grip::relax::Reading;
 use crate::grip::{Grip, Reflex};
 use crate::journal::Journal;
 use crate::mode;
+use crate::samples::LastSamples;
 use crate::senses::Senses;
 use crate::store::keeper::{Keeper, Now};
 use crate::store::payload;
@@ -160,9 +161,9 @@ impl Fingertip {
         self.act(frame)
     }
 
-    /// Computes on muscles and films what takes too long for a tick. Call it once a slow frame, always after the same tick.
-    pub fn think(&mut self) {
-        self.senses.think(&self.config, &mut self.journal);
+    /// Computes once a slow frame what takes too long for a tick, from the last samples too. Call it always after the same tick.
+    pub fn think(&mut self, samples: &LastSamples) {
+        self.senses.think(&self.config, samples, &mut self.journal);
         if self.senses.muscles_mut().think(&mut self.journal) {
             self.calibrated = self.calibrated.wrapping_add(1);
         }

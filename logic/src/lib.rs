@@ -49,7 +49,7 @@ pub mod photoelastic;
 pub mod plausibility;
 pub mod rescue;
 pub mod restart;
-mod samples;
+pub mod samples;
 pub mod senses;
 pub mod session;
 pub mod setting;

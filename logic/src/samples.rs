@@ -24,6 +24,11 @@ impl LastSamples {
         self.switch_b[select] = frame.switch_b;
     }
 
+    /// The last 14-bit sample of each input of switch B; 0 of one without a sample yet.
+    pub const fn switch_b(&self) -> &[u16; SWITCH_INPUTS as usize] {
+        &self.switch_b
+    }
+
     /// Returns the last 14-bit sample of every channel, in the order of [`CHANNELS`]; 0 for a channel without a sample
     /// yet.
     pub fn in_order(&self) -> [u16; COUNT] {

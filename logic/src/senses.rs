@@ -1,6 +1,7 @@
 //! Conditions a frame: which sensors are valid, and the quantities that they measure.
 
 mod force;
+mod select_lines;
 
 use tenax_hal_shim::channel::{
     ARRAY, CHANNELS, COUNT, FSR, FSR_COUNT, HEAD, MYO_EXTENSOR, MYO_FLEXOR, OPENING, PVDF, PVDF_COUNT, Role,
@@ -13,6 +14,7 @@ use tenax_hal_shim::schedule::SCHEDULE;
 use tenax_hal_shim::wire::Forces;
 use tenax_hal_shim::words::{Capability, Fault, Reason};
 
+use self::select_lines::SelectLines;
 use crate::array::Reading;
 use crate::array::taxels::Taxels;
 use crate::config::Config;
@@ -26,6 +28,7 @@ use crate::motor::Motor;
 use crate::muscles::Muscles;
 use crate::photoelastic::Head;
 use crate::photoelastic::track::Hints;
+use crate::samples::LastSamples;
 use crate::strain::Gauges;
 use crate::vibration::quality::PvdfQuality;
 use crate::vibration::sliding::Hand;
@@ -53,6 +56,7 @@ static FSR_LIMITS: Limits = Limits::of(&CHANNELS[FSR], SLOW_HZ);
 #[derive(Clone, Debug, Default)]
 pub struct Senses {
     films: PvdfQuality,
+    select_lines: SelectLines,
     fsr: [SensorHealth; FSR_COUNT],
     muscles: Muscles,
     fsr_readings: [Option<u16>; FSR_COUNT],
@@ -110,10 +114,12 @@ impl Senses {
         self.forces_are_new = false;
         let slot = &SCHEDULE[usize::from(frame.slot())];
         if let Some(channel) = slot.switch_a {
-            self.on_switch_a(config, usize::from(channel), frame.switch_a, journal);
+            let sample = self.select_lines.believed(frame.switch_a);
+            self.on_switch_a(config, usize::from(channel), sample, journal);
         }
         if let Some(channel) = slot.switch_b {
-            self.on_switch_b(usize::from(channel), frame.switch_b, journal);
+            let sample = self.select_lines.believed(frame.switch_b);
+            self.on_switch_b(usize::from(channel), sample, journal);
         }
         self.weigh(config);
         self.gate.tick(&config.gate, self.unloaded);
@@ -302,13 +308,14 @@ impl Senses {
         }
     }
 
-    /// Listens for steady sliding, and looks for cut wires of films. Call it once a slow frame, always after the same tick.
+    /// Listens for steady sliding, and looks for cut wires of films and select lines. Call it once a slow frame, always after the same tick.
     #[inline(never)]
-    pub fn think(&mut self, config: &Config, journal: &mut Journal) {
+    pub fn think(&mut self, config: &Config, samples: &LastSamples, journal: &mut Journal) {
         // A muscle's spectrum, twice in 64 cycles, leaves no time for the quadrants as well.
         if !self.muscles().has_window() {
             self.blame(config, journal);
         }
+        self.select_lines.look(samples.switch_b());
         self.films.slow(|film, change| report(journal, PVDF + film, Some(change)));
         let forces = self.forces.filter(|_| matches!(self.grip, Grip::Holds(_)));
         self.detector.slow(&Hand { forces, wearer: self.gate.is_active(), striking: self.striking });

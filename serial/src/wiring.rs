@@ -25,7 +25,7 @@ This page lists the pin of each channel and its valid voltages, for builders who
 | nFAULT of the motor bridge | PC8 |
 | [palm's bus](hand.md#the-bus), USART1: to the transceiver, from it, DE with /RE | PA15, PA10, PA12 |
 | serial line USART2 through the ST-LINK: to the PC, from it | PA2, PA3 |
-| free inputs | switch B, 14 and 15 |
+| known voltages, against broken select lines | switch B: 14 at 3.3 V, 15 at ground |
 
 ";
 

@@ -12,6 +12,7 @@ use tenax_logic::config::Config;
 use tenax_logic::detectors::{Detector, Detectors, Sensed};
 use tenax_logic::hebbian::HebbianDetector;
 use tenax_logic::journal::Journal;
+use tenax_logic::samples::LastSamples;
 use tenax_logic::senses::Senses;
 use tenax_scene::plant::Plant;
 use tenax_scene::{SceneFile, Seeds, World};
@@ -253,6 +254,7 @@ impl Line {
 struct Ears {
     config: Config,
     senses: Senses,
+    samples: LastSamples,
     detectors: Detectors,
     controls: Vec<(HebbianDetector, bool)>,
     journal: Journal,
@@ -273,18 +275,19 @@ impl Ears {
                 controls.push((network, false));
             }
         }
-        let (config, senses, journal, taxels, features) = Default::default();
-        Ok(Self { config, senses, detectors, controls, journal, taxels, features })
+        let (config, senses, samples, journal, taxels, features) = Default::default();
+        Ok(Self { config, senses, samples, detectors, controls, journal, taxels, features })
     }
 
     fn take(&mut self, frame: &Frame, drive: MotorDrive, hear: &mut dyn FnMut(&Felt<'_>)) {
-        let Self { config, senses, detectors, controls, journal, taxels, features } = self;
+        let Self { config, senses, samples, detectors, controls, journal, taxels, features } = self;
         if frame.sequence == ZEROED_AT {
             // Refused while something is held, and then it follows by itself.
             let _is_zeroed = senses.zero();
         }
         journal.begin(frame);
         senses.process(config, frame, journal);
+        samples.record(frame);
         let duty = match drive {
             MotorDrive::Close(duty) | MotorDrive::Open(duty) => duty.as_per_mille(),
             MotorDrive::Coast => 0,
@@ -307,7 +310,7 @@ impl Ears {
         hear(&Felt { frame, sensed: &sensed, believed, controls, features: new });
         senses.driven(drive, false, false, 1);
         if frame.ends_slow_frame() {
-            senses.think(config, journal);
+            senses.think(config, samples, journal);
             let _told = journal.take_slow();
         }
         while journal.next_event().is_some() {}
