@@ -23,7 +23,7 @@ settings! {
     /// S1: threshold of a PVDF channel's vibration envelope above which it reports slip
     1 S1 "s1-mv" "mV" [30, 150, trusted 20, 1_500] = 100 => Mv(s1);
     /// Least vibration above the slip band that counts as an impact
-    6 ImpactLevel "impact-level-mv" "mV" [10, 100, trusted 10, 300] = 20 => Mv(impact_level);
+    6 ImpactLevel "impact-level-mv" "mV" [10, 40, trusted 10, 300] = 20 => Mv(impact_level);
     /// Vibration is an impact if its envelope above the slip band exceeds this part of the one inside it
     7 ImpactRatio "impact-ratio-permille" "per mille" [300, 1_000, trusted 300, 3_000] = 500 => Number(impact_permille);
     /// Longest impact; vibration that lasts longer is slip
