@@ -103,7 +103,8 @@ impl Running {
         }
     }
 
-    /// The reflex may be silent no longer: a turn makes the grasp as firm as it was, and goes on until then. Whether it goes on.
+    /// Says that the reflex may be silent no longer. Returns whether the behaviour goes on: a turn does, until the grasp is as firm as at
+    /// its begin; any other ends.
     pub fn gives_reflex_back(&mut self) -> bool {
         match &mut self.doing {
             Doing::Turn(turn) => {
