@@ -15,6 +15,7 @@ use tenax_logic::force::{ForceSensor, FrictionDetector};
 use tenax_logic::hebbian::HebbianDetector;
 use tenax_logic::hebbian::settings::HebbianConfig;
 use tenax_logic::journal::Journal;
+use tenax_logic::samples::LastSamples;
 use tenax_logic::senses::Senses;
 use tenax_logic::strain::Gauges;
 use tenax_logic::vibration::detector::S1;
@@ -64,6 +65,7 @@ pub fn comes() -> Option<[u16; SCAN_LEN]> {
 pub struct Frames {
     config: Config,
     senses: Senses,
+    last: LastSamples,
     journal: Journal,
     quality: PvdfQuality,
     films: VibrationDetector,
@@ -109,12 +111,13 @@ impl Frames {
         }
         self.journal.begin(&frame);
         self.senses.process(&self.config, &frame, &mut self.journal);
+        self.last.record(&frame);
         let sensed = self.senses.sensed(&self.config, &frame, 0, false);
         black_box(tenax_kernel_s1(&mut self.s1, &self.config.vibration, &sensed));
         black_box(tenax_kernel_s2(&mut self.s2, &self.config.friction, &sensed));
         black_box(tenax_kernel_hebbian(&mut self.hebbian, &self.config.hebbian, &sensed));
         if frame.ends_slow_frame() {
-            self.senses.think(&self.config, &mut self.journal);
+            self.senses.think(&self.config, &self.last, &mut self.journal);
             let reading = *sensed_taxels(&self.senses, &self.config, &frame);
             if tenax_kernel_features(&mut self.features, &reading) {
                 let weights = black_box([3; FEATURES]);
