@@ -1,6 +1,6 @@
 //! A select line of the analogue switches that is cut, stuck or shorted: the switches show other inputs than the board asks for.
 
-use tenax_hal_shim::channel::{CHANNELS, FSR, Input, MYO_EXTENSOR, MYO_FLEXOR};
+use tenax_hal_shim::channel::{ARRAY, ARRAY_COUNT, CHANNELS, FSR, Input, MYO_EXTENSOR, MYO_FLEXOR, OPENING};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::EventKind;
 use tenax_hal_shim::words::{Capability, Fault, Reason};
@@ -23,7 +23,9 @@ fn every_stuck_line_takes_all_switched_sensors_within_0_1_s_and_opens_nothing() 
         let mut bench = Bench::holding(81);
         bench.stuck_lines = lines;
         let drives = bench.run(4_000);
-        for channel in [FSR, MYO_FLEXOR, MYO_EXTENSOR] {
+        // Stuck high, S1 and S3 leave both muscles where they are, and S2 shows them voltages that no muscle has.
+        let muscles = if lines[1] > 1 { &[][..] } else { &[MYO_FLEXOR, MYO_EXTENSOR] };
+        for &channel in [FSR].iter().chain(muscles) {
             let told = bench.events.iter().find(|event| {
                 matches!(event.kind, EventKind::Fault(Fault::SensorLost { channel: lost, reason })
                     if usize::from(lost) == channel && reason == Reason::Dead)
@@ -36,6 +38,11 @@ fn every_stuck_line_takes_all_switched_sensors_within_0_1_s_and_opens_nothing() 
             );
         }
         assert!(drives.iter().all(|drive| *drive == MotorDrive::Coast), "{lines:?}");
+        bench.muscles(50.0, 900.0);
+        let opens = bench.run(800).iter().any(|drive| drive.opens());
+        assert_eq!(opens, [[0, 2], [0, 8]].contains(&lines), "{lines:?}: who still commands");
+        bench.muscles(50.0, 50.0);
+        bench.run(400);
         bench.stuck_lines = [0; 2];
         bench.run(8_000);
         let back = EventKind::Fault(Fault::CapabilityBack(Capability::Force));
@@ -84,5 +91,18 @@ fn without_the_known_inputs_it_is_not_noticed_and_no_other_fault_is_taken_for_it
                 (0..CHANNELS.len()).filter(|other| *other != channel && is_lost(&bench, *other)).count();
             assert_eq!(others, 0, "{} at {mv} mV", CHANNELS[channel].name);
         }
+    }
+}
+
+/// Two neighbours of which one is shorted and the other dead look like a line that is stuck high: the wearer still opens.
+// Shows W4.
+#[test]
+fn two_broken_neighbours_do_not_make_the_hand_deaf_to_the_wearer() {
+    for even in (ARRAY..ARRAY + ARRAY_COUNT).step_by(2).chain([OPENING]) {
+        let mut bench = Bench::holding(85);
+        (bench.pins_mv[even], bench.pins_mv[even + 1]) = (3_300.0, 0.0);
+        bench.run(800);
+        bench.muscles(50.0, 900.0);
+        assert!(bench.run(800).iter().any(|drive| drive.opens()), "{}", CHANNELS[even].name);
     }
 }

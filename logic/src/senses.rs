@@ -118,8 +118,7 @@ impl Senses {
             self.on_switch_a(config, usize::from(channel), sample, journal);
         }
         if let Some(channel) = slot.switch_b {
-            let sample = self.select_lines.believed(frame.switch_b);
-            self.on_switch_b(usize::from(channel), sample, journal);
+            self.on_switch_b(usize::from(channel), frame.switch_b, journal);
         }
         self.weigh(config);
         self.gate.tick(&config.gate, self.unloaded);
@@ -377,13 +376,16 @@ impl Senses {
     }
 
     fn on_switch_b(&mut self, channel: usize, sample: u16, journal: &mut Journal) {
+        let lines = self.select_lines;
         match channel {
             ARRAY..MYO_FLEXOR => {
-                let change = self.taxels.read(channel - ARRAY, sample);
+                let change = self.taxels.read(channel - ARRAY, lines.believed(sample));
                 report(journal, channel, change);
             }
-            MYO_FLEXOR..=MYO_EXTENSOR => self.muscle(channel - MYO_FLEXOR, sample, journal),
-            _ => self.motor.take(channel, Some(sample)),
+            MYO_FLEXOR..=MYO_EXTENSOR => {
+                self.muscle(channel - MYO_FLEXOR, lines.believed_muscle(sample), journal);
+            }
+            _ => self.motor.take(channel, Some(lines.believed(sample))),
         }
     }
 
