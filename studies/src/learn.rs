@@ -54,6 +54,8 @@ pub struct Options {
     pub lifts: u64,
     /// Fingers made by chance.
     pub fingertips: u64,
+    /// Whether their films lie in directions of their own, as the paper's do.
+    pub turned_films: bool,
     /// Whether their controls are tried, too.
     pub controls: bool,
 }
@@ -67,6 +69,7 @@ impl Default for Options {
             minutes: 200,
             lifts: 20,
             fingertips: 20,
+            turned_films: false,
             controls: true,
         }
     }
@@ -223,7 +226,10 @@ pub struct Other {
 /// The same lessons, and some held-out trials.
 fn other(options: &Options, n: u64) -> anyhow::Result<Other> {
     let own = seed(options.seed, 6, n);
-    let finger = Finger::random(own);
+    let mut finger = Finger::random(own);
+    if options.turned_films {
+        finger = finger.with(("pvdf.film_directions", 1.0));
+    }
     let mut bench = Bench::default();
     for n in 0..LESSONS {
         bench.trial(Setup::new(&finger, lesson(own, n), true)?);

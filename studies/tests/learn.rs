@@ -11,7 +11,8 @@ use tenax_studies::learn::trial::{Setup, Word};
 use tenax_studies::learn::{self, Options, Outcome};
 
 /// So few trials that a test may run them; the bars themselves are measured by `tenax check`.
-const FEW: Options = Options { seed: 11, trials: 4, minutes: 2, lifts: 3, fingertips: 1, controls: true };
+const FEW: Options =
+    Options { seed: 11, trials: 4, minutes: 2, lifts: 3, fingertips: 1, turned_films: false, controls: true };
 
 fn outcome() -> Outcome {
     learn::run(&FEW, &Board::Host, &|_, _| ()).unwrap()

@@ -27,7 +27,7 @@ pub struct Args {
     /// Folder for SVG, PNG and CSV
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
-    /// photoelastic and table only: how to print the figures
+    /// levels, photoelastic and table only: how to print the figures
     #[arg(long, value_enum, default_value_t = Format::Text)]
     report: Format,
     /// table only: rows of your own, with your detector's reports (docs/table.md)
@@ -42,6 +42,8 @@ enum Subject {
     /// What each grip pays in newtons beyond need for what it saves in millimetres: the hand, each detector alone, all but each, no
     /// reflex, constant grip, the bound; and decision delay by stiffness by gain
     Front,
+    /// What each level of contact changes of every scene's outcome, and what it costs
+    Levels,
     /// How well the wearer is understood on recorded people, and how late, against false motions: the hand and plain control
     Emg,
     /// What each detector catches and costs, pairs, the hand and plain rivals beside it, on the same fingertips and hours
@@ -59,6 +61,11 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         Subject::Front => {
             let front = with_bar("front", |progress| chart::front::front(progress))?;
             vec![front, with_bar("delay", |progress| chart::delay::map(progress))?]
+        }
+        Subject::Levels => {
+            let (chart, report) = with_bar("levels", |progress| chart::levels::chart(progress))?;
+            out::unless_closed(args.report.show(&report))?;
+            vec![chart]
         }
         Subject::Vision => {
             let folder = workspace::root()?.join(RECORDINGS).join("fingervision");

@@ -43,6 +43,9 @@ pub struct Args {
     /// Number of random fingertips that learn the same way
     #[arg(long, value_name = "N", default_value_t = Options::default().fingertips)]
     fingertips: u64,
+    /// Random fingertips whose films lie in random directions, too: some hear the grip more than slip
+    #[arg(long)]
+    turned_films: bool,
     /// Seed of all random numbers
     #[arg(long, default_value_t = Options::default().seed)]
     seed: u64,
@@ -63,6 +66,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         minutes: args.minutes,
         lifts: args.lifts,
         fingertips: args.fingertips,
+        turned_films: args.turned_films,
         controls: true,
     };
     let counts = [

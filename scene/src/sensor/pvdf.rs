@@ -1,6 +1,6 @@
 //! PVDF films in the skin: piezoelectric, so they hear change, not load.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{SQRT_2, TAU};
 
 use tenax_hal_shim::channel::{PVDF_COUNT, SCANS_PER_FRAME};
 use tenax_hal_shim::front_end::PVDF_REST_MV;
@@ -16,7 +16,7 @@ use crate::schedule::{STEP_S, Span};
 /// A knock is forgotten after this many times its decay: e^-12 of millivolts is below any code.
 const KNOCK_DECAYS: f64 = 12.0;
 
-/// Twelve films, each with its own gain, sign, depth and place.
+/// Twelve films, each with its own gain, sign, depth and place, and if asked for its direction.
 ///
 /// What deforms the skin (load, shear, and the shear let go as places of it slip) reaches a film through the skin, two
 /// poles, and the charge amplifier's high-pass: a step becomes the bump of about 25 ms that the recordings show. What the
@@ -25,6 +25,8 @@ const KNOCK_DECAYS: f64 = 12.0;
 /// Load and shear are those of the whole patch. What lets go and what slides is a film's own place first, and the rest of
 /// the patch as far as its depth spreads it: so a patch that lets go from its edge inwards is heard by one film after the
 /// other, before any of it is macro slip.
+///
+/// A film with a direction of its own is stretched by pressure or by shear, as it lies: what is let go and the texture are shear.
 #[derive(Debug)]
 pub(crate) struct Films {
     parameters: Pvdf,
@@ -50,6 +52,9 @@ struct Film {
     /// Of the texture and of a knock's ring: where the film lies. In turns.
     phase: f64,
     place: Place,
+    /// How much of pressure and of shear it hears, over a film that lies as those of the recordings.
+    pressure: f64,
+    shear: f64,
     /// The shear that it has heard being let go, N.
     released_n: f64,
 }
@@ -68,7 +73,8 @@ impl Films {
         let mut films: [Film; PVDF_COUNT] = std::array::from_fn(|n| {
             gains[n] = making.sign() * making.between(1.0 - spread, 1.0 + spread);
             skin[n] = LowPass::with_tau_s(skin_s * making.between(0.67, 1.5));
-            Film { phase: making.between(0.0, 1.0), place: Place::EVERYWHERE, released_n: 0.0 }
+            let phase = making.between(0.0, 1.0);
+            Film { phase, place: Place::EVERYWHERE, pressure: 1.0, shear: 1.0, released_n: 0.0 }
         });
         let amplifier = LowPass::with_corner_hz(parameters.high_pass_hz.get());
         for film in &mut films {
@@ -78,6 +84,13 @@ impl Films {
         let mut about_1 = || libm::pow(10.0, parameters.film_decades.get() * making.between(-0.5, 0.5));
         gains.iter_mut().for_each(|gain| *gain *= about_1());
         let noises = std::array::from_fn(|_| about_1());
+        let turned = parameters.film_directions.get();
+        for film in &mut films {
+            // So that the mean of the squares is that of films that lie alike.
+            let turn = making.between(0.0, TAU);
+            film.pressure += turned * (SQRT_2 * libm::cos(turn).abs() - 1.0);
+            film.shear += turned * (SQRT_2 * libm::sin(turn) - 1.0);
+        }
         Self {
             parameters: parameters.clone(),
             knocks: knocks.to_vec(),
@@ -112,7 +125,8 @@ impl Films {
         // Pressure over its peak at the edge of what slides: the brush's s.
         let edge = if touch.sticks { (1.0 - touch.stuck_part).max(0.0).sqrt() } else { 1.0 };
         let last_edge = std::mem::replace(&mut self.last_edge, edge);
-        let load_mv = p.normal_mv_per_n.get() * touch.normal_n + p.shear_mv_per_n.get() * touch.shear_n;
+        let pressed_mv = p.normal_mv_per_n.get() * touch.normal_n;
+        let sheared_mv = p.shear_mv_per_n.get() * touch.shear_n;
 
         let change_n_per_s = (touch.normal_n - self.last_normal_n).abs() / STEP_S;
         self.last_normal_n = touch.normal_n;
@@ -150,14 +164,22 @@ impl Films {
             }
         }
         let release_mv_per_n = p.release_mv_per_n.get();
-        let under_mv = std::array::from_fn(|n| load_mv + release_mv_per_n * self.films[n].released_n);
+        let under_mv = std::array::from_fn(|n| {
+            let film = &self.films[n];
+            film.pressure * pressed_mv
+                + film.shear * sheared_mv
+                + film.shear * release_mv_per_n * film.released_n
+        });
         let [upper, lower] = &mut self.skin;
         let deformed_mv = *lower.step(upper.step(&under_mv));
         let slow_mv = self.amplifiers.step(&deformed_mv);
         let mut films_mv: [f64; PVDF_COUNT] = std::array::from_fn(|n| deformed_mv[n] - slow_mv[n]);
         if texture_mv > 0.0 {
             for (film_mv, film) in films_mv.iter_mut().zip(&self.films) {
-                *film_mv += texture_mv * film.place.slides(edge) * spike(self.texture_phase + film.phase);
+                *film_mv += texture_mv
+                    * film.shear
+                    * film.place.slides(edge)
+                    * spike(self.texture_phase + film.phase);
             }
         }
         for knock in self.knocks.iter().filter(|knock| rings(knock, t_s)) {

@@ -4,6 +4,7 @@ pub mod array;
 pub mod delay;
 pub mod emg;
 pub mod front;
+pub mod levels;
 pub mod loads;
 pub mod photoelastic;
 pub mod table;

@@ -17,6 +17,8 @@ pub struct Pvdf {
     pub spread: Part,
     /// Decades over which a film's gain is drawn, beside that, and by itself its noise: both evenly over their logarithm.
     pub film_decades: Part,
+    /// How far a film's direction is drawn: 0, all lie alike; 1, each feels pressure and shear in a mixture of its own, as gauges do.
+    pub film_directions: Part,
     /// Corner of the charge amplifier's high-pass.
     pub high_pass_hz: Hertz,
     /// Mean time in which the skin passes a deformation on to a film; deeper films take up to 1.5 times as long.
