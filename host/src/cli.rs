@@ -22,7 +22,7 @@ mod safety;
 mod scenes;
 mod size;
 mod sweep;
-mod test;
+pub(crate) mod test;
 mod train;
 mod vision;
 

@@ -75,6 +75,12 @@ fn the_commands_page_is_the_tools() {
     );
 }
 
+#[test]
+fn every_figure_of_a_page_is_answered_for() {
+    let wrong = tenax::check::pages::unanswered(&root()).unwrap();
+    assert!(wrong.is_empty(), "docs/figures.toml has to say where they come from: {wrong:#?}");
+}
+
 /// Pages of `docs/` and the README, all words together: the bar of plain pages.
 const WORDS_MAX: usize = 20_000;
 const SENTENCE_MAX: usize = 25;
