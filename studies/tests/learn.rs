@@ -75,7 +75,7 @@ fn before_learning_it_says_nothing_and_afterwards_it_sees_micro_slip() {
     );
     assert_eq!(keys(&json["lead_s"]), "mean sd min");
     assert_eq!(keys(&json["slip"]), "said_s_mean lead_s lead_s_no_delay missed false_per_hour equal_weights");
-    assert_eq!(keys(&json["fingertips"]), "count worst_lead_s missed slippery even");
+    assert_eq!(keys(&json["fingertips"]), "count worst_lead_s missed slippery even all");
     // The camera's delay is all that is between the two.
     let means = ["lead_s", "lead_s_no_delay"].map(|key| json[key]["mean"].as_f64().unwrap());
     assert!((means[0] - means[1] - 0.053).abs() < 1e-3, "{means:?}");

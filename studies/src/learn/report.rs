@@ -224,6 +224,7 @@ pub struct Fingertips {
     pub slippery: Group,
     /// Where it keeps more.
     pub even: Group,
+    pub all: Group,
 }
 
 #[derive(Clone, Debug, Default, Serialize)]
@@ -346,8 +347,9 @@ impl Report {
                     outcome.others.iter().map(|other| other.score.first.missed).sum(),
                     outcome.others.iter().map(|other| other.score.trials).sum(),
                 ],
-                slippery: outcome.group(true),
-                even: outcome.group(false),
+                slippery: outcome.group(|ratio| ratio <= SLIPPERY),
+                even: outcome.group(|ratio| ratio > SLIPPERY),
+                all: outcome.group(|_| true),
             },
         }
     }
@@ -374,9 +376,9 @@ impl Outcome {
         seen.map(|other| other.score.first.lead().mean).min_by(f64::total_cmp)
     }
 
-    /// The fingers made by chance whose sliding keeps at most 0.75 of static friction, or the others.
-    pub fn group(&self, slippery: bool) -> Group {
-        Group::of(self.others.iter().filter(|other| (other.ratio <= SLIPPERY) == slippery))
+    /// The fingers made by chance of which this accepts the part of static friction that sliding keeps.
+    fn group(&self, accepts: impl Fn(f64) -> bool) -> Group {
+        Group::of(self.others.iter().filter(|other| accepts(other.ratio)))
     }
 }
 
