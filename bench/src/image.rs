@@ -3,7 +3,9 @@
 pub mod calls;
 pub mod kernels;
 pub mod panics;
+pub mod pointers;
 pub mod size;
+pub mod stack;
 pub mod symbols;
 pub mod timing;
 

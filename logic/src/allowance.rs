@@ -62,5 +62,8 @@ mod tests {
         assert_eq!(all, 5, "every long answer that there is");
         assert!((0..2).all(|_| allowance.admits(0) && allowance.affords(&Down::Ping)));
         assert!(!allowance.admits(3) && allowance.admits(4));
+        // A long answer that is not earned yet is refused, and costs what its message does.
+        assert!(allowance.admits(4 + 5 * FRAMES_EACH) && !allowance.affords(&Down::Network));
+        assert!(allowance.admits(4 + 7 * FRAMES_EACH) && allowance.affords(&Down::Network));
     }
 }

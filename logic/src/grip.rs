@@ -334,6 +334,7 @@ mod tests {
         assert_eq!(pulse_frames(GripMode::Incipient, true, Grip::Holds(5_000)), config.incipient_frames);
         assert_eq!(pulse_frames(GripMode::Slip, true, Grip::Holds(config.ceiling_mn)), 0);
         assert_eq!(pulse_frames(GripMode::Slip, true, Grip::Unloaded), 0);
+        assert_eq!(pulse_frames(GripMode::Settle, true, Grip::Holds(5_000)), 0);
     }
 
     /// What a pulse adds to a load of 8 N, mN, where a frame at full duty adds this much 30 ms later, and so much is lacking.

@@ -9,6 +9,8 @@ use std::ops::Range;
 use anyhow::{Context, Result};
 use object::{File, Object, ObjectSection, ObjectSymbol, SymbolKind};
 
+use super::stack::taken;
+
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Function {
     /// Its name, as the linker knows it.
@@ -20,6 +22,8 @@ pub struct Function {
     pub calls: BTreeSet<usize>,
     /// Calls whose target is in a register: nobody knows where they lead.
     pub indirect: usize,
+    /// Bytes of the stack that its instructions take, all of them. None where that is not known.
+    pub stack: Option<u64>,
 }
 
 /// What an instruction does besides going on.
@@ -62,7 +66,8 @@ impl Calls {
             let next = places.get(place + 1).copied().unwrap_or(end);
             // The linker fills up to the next one with bytes that would read as branches. Assembler's symbols may have no size.
             let until = if *size == 0 { next } else { next.min(start + size) };
-            let mut function = Function { name: name.clone(), bytes: until - start, ..Function::default() };
+            let mut function =
+                Function { name: name.clone(), bytes: until - start, stack: Some(0), ..Function::default() };
             let is_data = |at: u64| data.range(..=at).next_back().is_some_and(|(_, &is_data)| is_data);
             function.read(code, base, start..until, &places, is_data);
             calls.0.push(function);
@@ -140,13 +145,17 @@ impl Function {
             }
             let wide = first >> 11 >= 0b11101;
             self.instructions.push(at);
-            let step = if wide { step_wide(first, half(at + 2).unwrap_or(0)) } else { step_narrow(first) };
+            let second = if wide { half(at + 2).unwrap_or(0) } else { 0 };
+            let step = if wide { step_wide(first, second) } else { step_narrow(first) };
+            self.stack = self.stack.zip(taken(first, second)).map(|(all, more)| all + more);
             match step {
                 Step::On => {}
                 Step::Indirect => self.indirect += 1,
                 Step::To(offset) => {
                     let target = (at + 4).wrapping_add_signed(offset);
-                    if !span.contains(&target) {
+                    // BL to its own begin: it calls itself.
+                    let is_call = wide && second & 0xD000 == 0xD000;
+                    if !span.contains(&target) || is_call && target == span.start {
                         self.calls.insert(places.partition_point(|&place| place <= target).saturating_sub(1));
                     }
                 }

@@ -7,20 +7,12 @@ use std::path::Path;
 use anyhow::{Context, Result, ensure};
 use object::{File, Object, ObjectSection};
 
-use super::calls::{Calls, Function};
+use super::calls::Calls;
+use super::pointers::calls_and_handlers;
 use super::symbols::TICK;
 
 /// What every panic ends in.
 const PANIC: &str = "rust_begin_unwind";
-/// Where a Cortex-M finds its exceptions: after the stack and the start, which are no interrupts.
-const VECTORS: &str = ".vector_table";
-/// An image of ours has so many handlers at least: of faults, of the frame, the line, the bus, the supply.
-const HANDLERS_MIN: usize = 10;
-/// What an interrupt calls through a task's waker, and a task when it registers one.
-const WAKER: &str = "embassy_executor3raw5waker";
-/// Names of functions that may call through a pointer: there it is a waker, or the executor that polls a task.
-const MAY_CALL_POINTERS: [&str; 7] =
-    ["DMA1_STREAM", "DMA2_STREAM0", "TIM2", "USART2", "I2C3_ER", "tenax_firmware", "embassy_executor"];
 
 /// What was found about control and the interrupts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,47 +27,21 @@ pub struct Control {
 pub fn check(elf: &Path) -> Result<Control> {
     let bytes = std::fs::read(elf).with_context(|| format!("reading the image {}", elf.display()))?;
     let file = File::parse(&*bytes).context("not an ELF file")?;
-    let vectors = file.section_by_name(VECTORS).context("has no vectors")?.data()?;
-    let calls = Calls::of(&file)?;
-    let handlers = handlers(&calls, vectors);
-    ensure!(
-        handlers.len() >= HANDLERS_MIN,
-        "has {} handlers of interrupts: some were not found",
-        handlers.len()
-    );
-    check_calls(&calls, handlers).with_context(|| format!("the image {}", elf.display()))
+    let (calls, handlers) = calls_and_handlers(&file)?;
+    check_calls(&calls, &handlers).with_context(|| format!("the image {}", elf.display()))
 }
 
-/// The functions that the table of vectors names, but for the start.
-fn handlers(calls: &Calls, vectors: &[u8]) -> BTreeSet<usize> {
-    let word = |bytes: &[u8]| bytes.try_into().map_or(0, u32::from_le_bytes);
-    let at: BTreeSet<u64> =
-        vectors.chunks_exact(4).skip(2).map(|bytes| u64::from(word(bytes) & !1)).collect();
-    let is_named = |own: &Function| own.instructions.first().is_some_and(|first| at.contains(first));
-    calls.0.iter().enumerate().filter(|(_, own)| is_named(own)).map(|(place, _)| place).collect()
-}
-
-/// From every handler, and from everything that leads to the tick, what they lead to.
-fn check_calls(calls: &Calls, handlers: BTreeSet<usize>) -> Result<Control> {
+/// What every handler leads to: the tick, and no panic.
+fn check_calls(calls: &Calls, handlers: &BTreeSet<usize>) -> Result<Control> {
     let ticks = calls.named(|name| name == TICK);
-    ensure!(!ticks.is_empty(), "has no function {TICK}");
-    let mut roots = calls.callers(&ticks);
-    ensure!(!roots.is_empty(), "{TICK} is never called");
-    let found = handlers.len();
-    roots.extend(handlers);
-    roots.extend(calls.named(|name| name.contains(WAKER)));
     let panics = calls.named(|name| name.contains(PANIC));
     ensure!(!panics.is_empty(), "has no function {PANIC}: nothing can be said about panics");
-
-    let reached = calls.reached(&roots);
-    for &place in reached.keys() {
-        let own = &calls.0[place];
-        let way = || calls.way(&reached, place);
-        ensure!(!panics.contains(&place), "control may panic:\n    {}", way());
-        let may = MAY_CALL_POINTERS.iter().any(|part| own.name.contains(part));
-        ensure!(may || own.indirect == 0, "control calls through a pointer:\n    {}", way());
+    let reached = calls.reached(handlers);
+    ensure!(ticks.iter().any(|tick| reached.contains_key(tick)), "no interrupt calls {TICK}");
+    for &place in &panics {
+        ensure!(!reached.contains_key(&place), "control may panic:\n    {}", calls.way(&reached, place));
     }
-    Ok(Control { functions: reached.len(), handlers: found })
+    Ok(Control { functions: reached.len(), handlers: handlers.len() })
 }
 
 /// The places from which an image may panic, by the crate that they are in: each has a `Location` among the constants.
@@ -165,56 +131,39 @@ mod tests {
         }
     }
 
-    fn image(more: &[(&str, &[usize], usize)]) -> Calls {
-        let shape: [(&str, &[usize], usize); 8] = [
-            ("DMA2_STREAM0", &[], 1),
-            ("TIM2", &[], 1),
-            ("I2C3_ER", &[], 1),
-            ("_ZN16embassy_executor3raw4poll", &[4], 1),
-            ("tenax_control_tick", &[7], 0),
-            ("_ZN16embassy_executor3raw5waker4wake", &[], 0),
-            ("rust_begin_unwind", &[], 0),
-            ("logic", &[8], 0),
+    /// Handlers of which one leads to the tick, what `more` adds, and from where the logic goes on.
+    fn image(more: &[(&str, &[usize])]) -> Calls {
+        let shape: [(&str, &[usize]); 5] = [
+            ("TIM2", &[]),
+            ("I2C3_ER", &[2]),
+            ("tenax_control_tick", &[3]),
+            ("logic", &[5]),
+            ("rust_begin_unwind", &[]),
         ];
-        let function = |&(name, calls, indirect): &(&str, &[usize], usize)| Function {
+        let function = |&(name, calls): &(&str, &[usize])| Function {
             name: name.to_owned(),
-            calls: calls.iter().copied().filter(|&place| place < 8 + more.len()).collect(),
-            indirect,
+            calls: calls.iter().copied().filter(|&place| place < 5 + more.len()).collect(),
             ..Function::default()
         };
         Calls(shape.iter().chain(more).map(function).collect())
     }
 
     #[test]
-    fn handlers_are_those_of_the_table_but_for_stack_and_start() {
-        let mut calls = image(&[]);
-        for (place, own) in calls.0.iter_mut().enumerate() {
-            own.instructions = vec![0x0800_0100 + 0x10 * place as u64];
-        }
-        let table = [0x2002_0000, 0x0800_0131, 0x0800_0101, 0, 0x0800_0121_u32].map(u32::to_le_bytes);
-        assert_eq!(handlers(&calls, table.as_flattened()), BTreeSet::from([0, 2]));
-    }
-
-    #[test]
-    fn a_panic_or_an_unknown_call_that_a_tick_may_reach_is_found_with_its_way() {
-        let handlers = || BTreeSet::from([0, 1, 2]);
-        let found = |functions| Control { functions, handlers: 3 };
-        assert_eq!(check_calls(&image(&[]), handlers()).unwrap(), found(7));
-        // The control: what the tick does not reach may do all of it.
-        let elsewhere = [("rest", &[][..], 0), ("telemetry", &[6][..], 1)];
-        assert_eq!(check_calls(&image(&elsewhere), handlers()).unwrap(), found(8));
+    fn a_panic_that_a_tick_or_an_interrupt_may_reach_is_found_with_its_way() {
+        let check =
+            |more: &[(&str, &[usize])], handlers| check_calls(&image(more), &BTreeSet::from_iter(handlers));
+        assert_eq!(check(&[], vec![0, 1]).unwrap(), Control { functions: 4, handlers: 2 });
+        // The control: what the tick does not reach may panic.
+        let elsewhere = [("rest", &[][..]), ("telemetry", &[4][..])];
+        assert_eq!(check(&elsewhere, vec![0, 1]).unwrap(), Control { functions: 5, handlers: 2 });
         // The same, in an interrupt.
-        let error = check_calls(&image(&elsewhere), BTreeSet::from([0, 1, 2, 9])).unwrap_err().to_string();
-        assert!(error.starts_with("control may panic:\n    telemetry\n"), "{error}");
-        for (function, says) in [
-            (("root", &[6][..], 0), "control may panic"),
-            (("root", &[][..], 1), "control calls through a pointer"),
-        ] {
-            let error = check_calls(&image(&[function]), handlers()).unwrap_err().to_string();
-            assert!(
-                error.starts_with(says) && error.contains("tenax_control_tick\n    -> logic\n    -> root"),
-                "{error}"
-            );
-        }
+        let error = check(&elsewhere, vec![0, 1, 6]).unwrap_err().to_string();
+        assert_eq!(error, "control may panic:\n    telemetry\n    -> rust_begin_unwind");
+        let error = check(&[("root", &[4])], vec![0, 1]).unwrap_err().to_string();
+        assert!(
+            error.contains("tenax_control_tick\n    -> logic\n    -> root\n    -> rust_begin_unwind"),
+            "{error}"
+        );
+        assert_eq!(check(&[], vec![0]).unwrap_err().to_string(), "no interrupt calls tenax_control_tick");
     }
 }

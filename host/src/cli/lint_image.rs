@@ -1,4 +1,4 @@
-//! `tenax lint-image`: Clippy on the image's package, and no way to panic in its control.
+//! `tenax lint-image`: Clippy on the image's package, no way to panic in its control, and how deep its stack may get.
 
 use std::process::ExitCode;
 
@@ -7,6 +7,7 @@ use super::workspace;
 use tenax_bench::budgets::Budgets;
 use tenax_bench::image;
 use tenax_bench::image::panics;
+use tenax_bench::image::stack::Bound;
 
 /// The chip besides the board's for which the image is compiled, to show what a port takes.
 const PORT: &str = "stm32f446re";
@@ -24,6 +25,13 @@ pub fn main() -> anyhow::Result<ExitCode> {
         control.functions,
         control.handlers
     )?;
+
+    let bound = Bound::of(&elf)?;
+    out::say!("image: the stack takes at most {} of {} bytes, whatever runs:", bound.bytes, bound.free)?;
+    for (level, (bytes, way)) in &bound.levels {
+        let who = level.map_or("main program".to_owned(), |level| format!("priority {level}"));
+        out::say!("image:   {bytes:>6} {who}\n    {}", way.join("\n    "))?;
+    }
 
     let budgets = Budgets::of_checkout()?;
     let sites = panics::sites(&elf)?;

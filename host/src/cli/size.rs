@@ -9,6 +9,7 @@ use super::workspace;
 use tenax_bench::budgets::{Budgets, Line};
 use tenax_bench::image;
 use tenax_bench::image::size::{FLASH_BYTES, RAM_BYTES, Size};
+use tenax_bench::image::stack::Bound;
 use tenax_bench::report::Report;
 use tenax_bench::session::{self, Board};
 
@@ -36,7 +37,14 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
 /// Every budget, beside what the image takes and what a run of the default scene on it took. Fails if the image cannot be built or read.
 pub fn lines(root: &Path, report: &Report) -> anyhow::Result<Vec<Line>> {
     let budgets = Budgets::of_checkout()?;
-    let size = Size::read(&image::build(root)?)?;
+    let elf = image::build(root)?;
+    let (size, stack) = (Size::read(&elf)?, Bound::of(&elf)?);
+    let painted = report.stack_bytes.unwrap_or(0);
+    anyhow::ensure!(
+        painted <= stack.bytes,
+        "the stack took {painted} bytes, more than {}, its bound",
+        stack.bytes
+    );
     let bytes = |what, measured, budget, of| Line { what, unit: "bytes", measured, budget, of: Some(of) };
     let instructions =
         |what, measured, budget| Line { what, unit: "instructions", measured, budget, of: None };
@@ -49,6 +57,7 @@ pub fn lines(root: &Path, report: &Report) -> anyhow::Result<Vec<Line>> {
         bytes("flash", Some(size.flash), budgets.flash_bytes, FLASH_BYTES),
         bytes("RAM, variables", Some(size.ram), budgets.ram_bytes, RAM_BYTES),
         bytes("worst stack", report.stack_bytes, budgets.stack_bytes, RAM_BYTES - size.ram),
+        bytes("stack, by calls", Some(stack.bytes), stack.free, RAM_BYTES - size.ram),
         instructions("tick, mean", mean(report.load.tick_instructions_mean), budgets.tick_instructions_mean),
         instructions("tick, worst", report.ticks.instructions_max, budgets.tick_instructions_max),
         instructions(

@@ -177,11 +177,6 @@ impl Decide {
         }
     }
 
-    /// The present wish.
-    pub const fn wish(&self) -> Wish {
-        self.wish
-    }
-
     /// Returns the electrode that contracts for the present wish, 0 (flexor) or 1 (extensor); at rest, the opening one.
     pub fn mover(&self) -> usize {
         let site = usize::from(self.wish != Wish::Close);

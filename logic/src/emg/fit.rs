@@ -166,6 +166,30 @@ mod tests {
         assert_eq!(told_to([close, open], &[close, [80.0, 200.0]], 40), moved);
     }
 
+    #[test]
+    fn a_contraction_of_more_than_a_minute_or_of_a_fault_does_not_count() {
+        let model = EmgModel::of_uv([60_000, 50_000], [450_000, 165_000], [150_000, 1_400_000]).unwrap();
+        let least = LEAST_FRAMES as u16;
+        let counts = |last: u16, has_fault: bool| {
+            let (mut watch, mut done) = (Watch::default(), false);
+            let lengths = [least; CONTRACTIONS as usize - 1].into_iter().chain([last]);
+            for (number, length) in lengths.enumerate() {
+                let mut take = |active, known| {
+                    let verdict = Verdict { active, known, ..Verdict::default() };
+                    done |= watch.take(&model, model.close(), verdict);
+                };
+                let is_last = number + 1 == usize::from(CONTRACTIONS);
+                (1..=length).for_each(|frame| take(true, !(has_fault && is_last && frame == length)));
+                (0..OVER_FRAMES).for_each(|_| take(false, true));
+            }
+            done
+        };
+        assert!(
+            counts(MOST_FRAMES - 1, false) && !counts(MOST_FRAMES, false) && !counts(MOST_FRAMES + 1, false)
+        );
+        assert!(counts(least, false) && !counts(least, true));
+    }
+
     // Shows W9.
     #[test]
     fn exchanged_plugs_are_told_after_twelve_contractions() {

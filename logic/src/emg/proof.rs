@@ -233,7 +233,8 @@ impl Proof {
         }
         (self.wish, self.age, self.over) = (wish, 0, 0);
         self.before = [0, 1].map(|n: usize| self.before(n));
-        self.heard = wish == self.last.0 && self.last.1 < GOES_ON_FRAMES && wish != Wish::Rest;
+        // It is no rest, which is never proven.
+        self.heard = wish == self.last.0 && self.last.1 < GOES_ON_FRAMES;
         self.apart = self.heard;
         self.proven = false;
     }

@@ -217,3 +217,17 @@ fn an_electrode_that_swings_and_is_not_heard_is_doubted() {
         assert_eq!([emg.quality(0), emg.quality(1)], [Quality::Good; 2], "{hz} Hz");
     }
 }
+
+#[test]
+fn what_an_electrode_that_swings_alone_wishes_is_not_proven_though_it_is_heard_then() {
+    let swing = |t: f64| 0.5 - 0.5 * (TAU * 1.3 * t).cos();
+    for swings in [false, true] {
+        let mut emg = wearer();
+        run(&mut emg, 2.0, rest);
+        // Below what opens, so that no wish makes the next harder to believe.
+        run(&mut emg, 3.0, |t| [rest(t)[0], if swings { 50.0 + 800.0 * swing(t) } else { rest(t)[1] }]);
+        let opening = run(&mut emg, 1.5, |t| [alive(200.0, t), alive(2_000.0, t)]);
+        assert!(part(&opening, Wish::Open) > 0.5, "{swings}");
+        assert_eq!(opening.iter().any(|v| v.proven), !swings);
+    }
+}

@@ -182,6 +182,8 @@ mod tests {
                 (2, 5..=79) => 7_777,
                 (3, 20) => 0,
                 (4, 33..=34) if n % 2 == 0 => 0,
+                // No converter gives this.
+                (5, 36..=38) => SAMPLE_MAX + 1 + (n % 2) as u16,
                 _ => noise(n, film),
             })
         }));

@@ -82,3 +82,11 @@ fn a_lost_sensor_comes_back_once_it_has_been_good_for_a_second() {
     go_on(&mut watch, 2.0, 0.2, |_| 50.0);
     assert_eq!(watch.quality(), Quality::Good);
 }
+
+#[test]
+fn only_a_still_envelope_that_is_doubted_hums_and_only_where_it_stands() {
+    let still = watch(2.0, |_| 400.0);
+    assert!(still.hums_at(400_000) && still.hums_at(402_000));
+    assert!(!still.hums_at(800_000) && !still.hums_at(100_000));
+    assert!(!watch(2.0, muscle).hums_at(400_000));
+}
