@@ -177,3 +177,26 @@ fn panel(tried: &[Tried], title: &str, axis: Axis, of: impl Fn(&Run) -> f64) -> 
     let named = |what: &str| Axis { label: format!("{label} {what}"), ..axis.clone() };
     Panel::new(title, named("the level that ships"), named("another"), series.collect())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lost_object_a_millimetre_and_a_tenth_of_the_force_are_changes() {
+        let own = Run { kept: true, slid_mm: 5.2, peak_n: 16.0, took_s: 1.0 };
+        assert_eq!(Run { slid_mm: 6.1, peak_n: 17.5, ..own }.changed(&own), None);
+        assert_eq!(Run { kept: false, ..own }.changed(&own).unwrap(), "lost, not kept");
+        assert_eq!(
+            Run { slid_mm: 3.0, peak_n: 20.0, ..own }.changed(&own).unwrap(),
+            "3.0 mm, not 5.2; 20.0 N, not 16.0"
+        );
+    }
+
+    #[test]
+    fn every_level_runs_and_the_glass_is_lost_where_friction_falls_with_speed() {
+        let (name, text) = tenax_scene::builtin().iter().find(|(name, _)| *name == "glass").unwrap();
+        let tried = at_every_level(name, text, 1).unwrap().unwrap();
+        assert_eq!((tried.own, tried.runs.map(|run| run.unwrap().kept)), (0, [true, true, false]));
+    }
+}
