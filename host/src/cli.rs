@@ -22,7 +22,7 @@ mod safety;
 mod scenes;
 mod size;
 mod sweep;
-pub(crate) mod test;
+mod test;
 mod train;
 mod vision;
 

@@ -9,7 +9,7 @@ use anyhow::Context;
 use serde::Deserialize;
 
 use super::Bar;
-use crate::cli::test;
+use crate::suite;
 
 /// Pages that a command or a trainer writes: other tests hold them, or nobody edits them.
 const WRITTEN: [&str; 5] =
@@ -113,7 +113,7 @@ pub fn bars(root: &Path, own: &str, slow: bool) -> anyhow::Result<Vec<Bar>> {
     let commands: BTreeSet<&String> = figures.row.iter().flat_map(|row| &row.of).collect();
     for command in commands.into_iter().filter(|command| slow || *command == QUICK) {
         let mut run = match command.strip_prefix("test ") {
-            Some(_) => test::all(),
+            Some(_) => suite::all(),
             None => Command::new(std::env::current_exe()?),
         };
         for word in command.trim_start_matches("test ").split(' ') {

@@ -6,9 +6,10 @@ use std::sync::Mutex;
 
 use tenax_launch::status::Status;
 
-use super::{out, size, test, workspace};
+use super::{out, size, workspace};
 use crate::check::side_by_side::{Group, measure};
 use crate::check::{Bar, Verdict, array, default_scene, learn, mistakes, pages, recordings, wearer};
+use crate::suite;
 use tenax_bench::board::Run;
 use tenax_bench::budgets::Line;
 use tenax_bench::live::Use;
@@ -46,7 +47,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         Group::new("wearer in all scenes", wearer::scenes),
         Group::new("random hands", || {
             Ok(vec![wearer::random(
-                test::all()
+                suite::all()
                     .args(["--quiet", "--test", "fingertip", "--", "wearer::", "random_steps::"])
                     .current_dir(&root),
             )])
