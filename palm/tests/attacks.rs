@@ -144,12 +144,6 @@ fn attack(frames: u32) {
 
 // Shows L7.
 #[test]
-fn frames_of_nobody_wish_for_nothing() {
-    attack(400_000);
-}
-
-#[test]
-#[ignore = "the whole bar, a minute: cargo test --release -p tenax-palm --test attacks -- --ignored"]
 fn ten_million_frames_of_nobody_wish_for_nothing() {
     attack(10_000_000);
 }
