@@ -50,7 +50,7 @@ pub struct Args {
     #[arg(long, value_name = "DIR", conflicts_with = "online")]
     network: Option<PathBuf>,
     /// Fit scale and threshold to N seconds of each session without slip, which are not scored; once from each quiet recording on
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", conflicts_with = "online")]
     adapt: Option<f64>,
     /// Seed of the built-in data set, or of the online tasks
     #[arg(long, default_value_t = 1)]
