@@ -21,6 +21,11 @@ pub fn build(root: &Path) -> Result<PathBuf> {
     tenax_launch::image::build(root, Binary::Image)
 }
 
+/// Builds the image of a palm. Fails as [`build`] does.
+pub fn build_palm(root: &Path) -> Result<PathBuf> {
+    tenax_launch::image::build(root, Binary::Palm)
+}
+
 /// Builds the image of every detector's kernels, for [`run_frames`](crate::board::emulated::kernels::run_frames). Fails as [`build`] does.
 pub fn build_frames(root: &Path) -> Result<PathBuf> {
     tenax_launch::image::build(root, Binary::Frames)

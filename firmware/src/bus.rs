@@ -12,10 +12,6 @@ use core::sync::atomic::{AtomicBool, AtomicU8, AtomicU32, Ordering::Relaxed, com
 use cortex_m::peripheral::NVIC;
 use embassy_stm32::gpio::{Level, Output, Speed};
 use embassy_stm32::interrupt::{InterruptExt, Priority};
-use embassy_stm32::pac::dma::regs::{Ixr, Ndtr};
-use embassy_stm32::pac::dma::vals::Dir;
-use embassy_stm32::pac::gpio::vals::{Moder, Ospeedr, Pupdr};
-use embassy_stm32::pac::usart::regs::Sr;
 use embassy_stm32::pac::{self, Interrupt};
 use embassy_stm32::peripherals::{DMA2_CH5, DMA2_CH7, PA10, PA12, PA15, USART1};
 use embassy_stm32::{Peri, interrupt};
@@ -27,12 +23,10 @@ use tenax_palm::bus::{BAUD, BEGINS_US, Chip, FRAME_MAX, bytes_us};
 use tenax_palm::finger::{Answer, Finger};
 
 use crate::commands;
-use crate::deadline::{Slot, clock_us};
+use crate::deadline::Slot;
+use crate::micros::clock_us;
+use crate::port::BUS;
 
-/// Streams of DMA2, and the channel that both are for USART1 (RM0383, table 28).
-const RX: usize = 5;
-const TX: usize = 7;
-const CHANNEL: u8 = 4;
 /// Bytes that DMA writes around in: 0.5 ms of a full bus, and control takes a tenth of that from who reads them.
 const RING_LEN: usize = 256;
 /// USART1's clock, APB2.
@@ -94,37 +88,8 @@ pub fn start(
     };
     // SAFETY: nobody looks at it before the interrupts are enabled below.
     unsafe { addr_of_mut!(END).cast::<End>().write(end) };
-    for pin in [10, 15] {
-        // The receiver lets go of its pin while the driver is on.
-        pac::GPIOA.pupdr().modify(|w| w.set_pupdr(pin, Pupdr::PULL_UP));
-        pac::GPIOA.ospeedr().modify(|w| w.set_ospeedr(pin, Ospeedr::MEDIUM_SPEED));
-        pac::GPIOA.afr(1).modify(|w| w.set_afr(pin - 8, 7));
-        pac::GPIOA.moder().modify(|w| w.set_moder(pin, Moder::ALTERNATE));
-    }
     pac::RCC.apb2enr().modify(|w| w.set_usart1en(true));
-    let ring = addr_of_mut!(RING);
-    let rx = pac::DMA2.st(RX);
-    rx.par().write_value(pac::USART1.dr().as_ptr() as u32);
-    rx.m0ar().write_value(ring as u32);
-    rx.ndtr().write_value(Ndtr(RING_LEN as u32));
-    rx.cr().write(|w| {
-        w.set_chsel(CHANNEL);
-        w.set_dir(Dir::PERIPHERAL_TO_MEMORY);
-        w.set_minc(true);
-        w.set_circ(true);
-        w.set_en(true);
-    });
-    pac::USART1.brr().write(|w| w.set_brr((CLOCK_HZ / BAUD) as u16));
-    pac::USART1.cr3().write(|w| {
-        w.set_dmar(true);
-        w.set_dmat(true);
-    });
-    pac::USART1.cr1().write(|w| {
-        w.set_ue(true);
-        w.set_te(true);
-        w.set_re(true);
-        w.set_idleie(true);
-    });
+    BUS.open((CLOCK_HZ / BAUD) as u16, [15, 10], addr_of_mut!(RING));
     interrupt::USART1.set_priority(Priority::P1);
     interrupt::I2C3_EV.set_priority(Priority::P4);
     // SAFETY: what their handlers use is set up above.
@@ -144,7 +109,7 @@ unsafe fn USART1() {
         let [at_us, to] = &PAUSE;
         // The pause is a byte long by now.
         at_us.store(clock_us().wrapping_sub(bytes_us(1)), Relaxed);
-        to.store(RING_LEN as u32 - pac::DMA2.st(RX).ndtr().read().0, Relaxed);
+        to.store((RING_LEN - BUS.left()) as u32, Relaxed);
         NVIC::pend(Interrupt::I2C3_EV);
     }
     if seen.tc() && pac::USART1.cr1().read().tcie() {
@@ -198,7 +163,7 @@ fn say(answer: Answer, at_us: u32, out: &[u8; FRAME_MAX]) {
     }
     // SAFETY: nobody sends from it: see above.
     unsafe { addr_of_mut!(ANSWER).write(*out) };
-    pac::DMA2.st(TX).ndtr().write_value(Ndtr(answer.length as u32));
+    BUS.prepare(addr_of!(ANSWER).cast(), answer.length);
     let due_us = at_us.wrapping_add(answer.after_us);
     // Between a look at the clock and the wires nothing comes, so that neither what is late is begun nor a slot is missed.
     cortex_m::interrupt::free(|_| {
@@ -226,33 +191,13 @@ pub fn begin() {
         return;
     }
     pac::GPIOA.bsrr().write(|w| w.set_bs(12, true));
-    let tx = pac::DMA2.st(TX);
-    let mut flags = Ixr(0);
-    flags.set_tcif(TX - 4, true);
-    flags.set_htif(TX - 4, true);
-    flags.set_feif(TX - 4, true);
-    pac::DMA2.ifcr(1).write_value(flags);
-    tx.par().write_value(pac::USART1.dr().as_ptr() as u32);
-    tx.m0ar().write_value(addr_of!(ANSWER) as u32);
-    // Of what a written zero clears, only that all is sent.
-    let mut sent = Sr(u32::MAX);
-    sent.set_tc(false);
-    pac::USART1.sr().write_value(sent);
-    compiler_fence(SeqCst);
-    tx.cr().write(|w| {
-        w.set_chsel(CHANNEL);
-        w.set_dir(Dir::MEMORY_TO_PERIPHERAL);
-        w.set_minc(true);
-        w.set_en(true);
-    });
-    pac::USART1.cr1().modify(|w| w.set_tcie(true));
+    BUS.begin();
 }
 
 /// Leaves the wires to the others.
 fn let_go() {
     pac::GPIOA.bsrr().write(|w| w.set_br(12, true));
-    pac::USART1.cr1().modify(|w| w.set_tcie(false));
-    pac::DMA2.st(TX).cr().write(|w| w.set_en(false));
+    BUS.end();
     Slot::cancel();
     SENDING.store(false, Relaxed);
 }

@@ -13,8 +13,7 @@ use embassy_stm32::peripherals::TIM2;
 use embassy_stm32::{Peri, interrupt::Priority};
 use embassy_sync::waitqueue::AtomicWaker;
 
-use crate::clock::CORE_HZ;
-use crate::{bus, mail};
+use crate::{bus, mail, micros};
 
 /// Who waits: control alone, for one thing at a time.
 pub static WAITING: AtomicWaker = AtomicWaker::new();
@@ -50,11 +49,6 @@ impl Micros {
     }
 }
 
-/// The clock, us, for whoever compares two instants of the same half hour.
-pub fn clock_us() -> u32 {
-    pac::TIM2.cnt().read()
-}
-
 /// The clock and its compare register.
 pub struct Deadline {
     _timer: Peri<'static, TIM2>,
@@ -63,18 +57,13 @@ pub struct Deadline {
 impl Deadline {
     /// Starts the clock.
     pub fn new(timer: Peri<'static, TIM2>) -> Self {
-        pac::RCC.apb1enr().modify(|w| w.set_tim2en(true));
-        pac::TIM2.arr().write_value(u32::MAX);
-        pac::TIM2.psc().write_value((CORE_HZ / 1_000_000 - 1) as u16);
+        micros::start();
         pac::TIM2.ccr(BEAT).write_value(BEAT_US);
-        // The update takes the prescaler up.
-        pac::TIM2.egr().write(|w| w.set_ug(true));
         pac::TIM2.sr().write(|w| w.0 = 0);
         pac::TIM2.dier().write(|w| {
             w.set_ccie(0, true);
             w.set_ccie(BEAT, true);
         });
-        pac::TIM2.cr1().write(|w| w.set_cen(true));
         typelevel::TIM2::set_priority(Priority::P1);
         // SAFETY: the handler is bound in `main`, and nothing is in a critical section yet.
         unsafe { typelevel::TIM2::enable() };
@@ -83,7 +72,7 @@ impl Deadline {
 
     /// Now.
     pub fn now(&self) -> Micros {
-        Micros(pac::TIM2.cnt().read())
+        Micros(micros::clock_us())
     }
 
     /// Waits until `ready` gives something, or until after `at`: then None. Ready is asked once more at the end, so what

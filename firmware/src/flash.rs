@@ -15,7 +15,7 @@ use embassy_stm32::pac::flash::vals::Psize;
 use embassy_stm32::peripherals::FLASH;
 use tenax_hal_shim::flash::{BLANK, FlashArea, FlashFailed, Sector};
 
-use crate::deadline::clock_us;
+use crate::micros::clock_us;
 
 unsafe extern "C" {
     static __store_start: u32;

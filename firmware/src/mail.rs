@@ -18,7 +18,7 @@ use tenax_logic::allowance::BURST;
 use tenax_logic::store::record::Record;
 
 use crate::counts;
-use crate::deadline::clock_us;
+use crate::micros::clock_us;
 
 /// A bounded queue that nobody waits to put something into.
 struct Mailbox<T, const N: usize>(Mutex<CriticalSectionRawMutex, Deque<T, N>>);

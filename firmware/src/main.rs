@@ -34,6 +34,8 @@ mod identity;
 mod last_words;
 mod line;
 mod mail;
+mod micros;
+mod port;
 mod scan;
 mod stack;
 mod store;

@@ -11,7 +11,7 @@ use embassy_stm32::interrupt::{InterruptExt, Priority};
 use embassy_stm32::pac::{EXTI, FLASH, PWR};
 use tenax_logic::restart::Mark;
 
-use crate::deadline::clock_us;
+use crate::micros::clock_us;
 use crate::last_words;
 
 /// PLS: 2.93 V falling, 3.03 V rising.

@@ -5,7 +5,7 @@ use core::mem::MaybeUninit;
 use static_cell::ConstStaticCell;
 use tenax_hal_shim::wire::{FRAME_MAX, Received, Up, encode};
 
-use crate::deadline::clock_us;
+use crate::micros::clock_us;
 use crate::{black_box, bus, counts, line, mail};
 
 /// The message that is being sent.

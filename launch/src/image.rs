@@ -31,6 +31,8 @@ pub enum Binary {
     Frames,
     /// A small camera's, picture by picture.
     Pictures,
+    /// What a palm's board is flashed with.
+    Palm,
 }
 
 impl Binary {
@@ -41,6 +43,7 @@ impl Binary {
             Self::Kernels => "tenax-kernels",
             Self::Frames => "tenax-frames",
             Self::Pictures => "tenax-pictures",
+            Self::Palm => "tenax-palm-image",
         }
     }
 }

@@ -124,7 +124,7 @@ pub const fn bytes_us(bytes: u32) -> u32 {
 }
 
 /// Bytes of a line at once: the same on the wire, and an answer is ready sooner than with one after the other.
-mod bytes {
+pub(crate) mod bytes {
     use core::fmt;
 
     use heapless::Vec;

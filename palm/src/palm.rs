@@ -1,6 +1,7 @@
 //! The palm's end of the bus: it gives addresses, polls, notices who is lost or babbles, and wishes for forces.
 
 use heapless::{Deque, Vec};
+use serde::{Deserialize, Serialize};
 use tenax_hal_shim::wire::{Receiver, encode};
 use tenax_logic::force::friction::LEAST_PERMILLE;
 
@@ -8,6 +9,7 @@ use crate::bus::{
     ALL, BEGINS_US, CLAIM_SLOT_US, CLAIM_SLOTS, CYCLE_US, Chip, FINGERS_MAX, FRAME_MAX, Felt, MISSED_MAX,
     Packet, Poll, State, Word, bytes_us,
 };
+use crate::places::{Place, Places};
 use crate::share::{Contact, Forces, load, share};
 
 /// Cycles between two sharings: 12 ms.
@@ -28,20 +30,11 @@ const GAP_US: u32 = 10;
 /// Bytes in [`NOISE_US`] that belong to no answer, from which the bus is noisy.
 const NOISE_MAX: u32 = 64;
 const NOISE_US: u32 = 50_000;
-
-/// A place in the hand: whose it is, and where the force of a finger there points.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
-    /// The finger's chip.
-    pub chip: Chip,
-    /// Per mille, in the plane of the grip.
-    pub normal: [i16; 2],
-    /// The most that it may press, mN.
-    pub ceiling_mn: i32,
-}
+/// From one stranger's report to the next, us.
+pub const STRANGER_US: u32 = 300_000;
 
 /// What happened on the bus. Addresses count from 1 on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Report {
     /// The finger answers.
     Found(u8),
@@ -53,7 +46,7 @@ pub enum Report {
     BusLost,
     /// Somebody says what belongs to no answer.
     Noise,
-    /// A finger that has no place in this hand.
+    /// A finger that has no place in this hand: at most one in [`STRANGER_US`], so that a hand that knows nobody hears of all of them.
     Stranger(Chip),
 }
 
@@ -101,11 +94,14 @@ pub struct Palm {
     next: usize,
     has_claimed: bool,
     is_fresh: bool,
+    /// Nothing more is to be said in this cycle, unless something is heard.
+    rests: bool,
     claim: u8,
     stray: u32,
     stray_us: u32,
     is_noisy: bool,
     lacking: bool,
+    stranger_us: u32,
     reports: Deque<Report, 16>,
 }
 
@@ -149,28 +145,36 @@ impl Palm {
             next: 0,
             has_claimed: false,
             is_fresh: true,
+            rests: false,
             claim: 0,
             stray: 0,
             stray_us: now_us,
             is_noisy: false,
             lacking: false,
+            stranger_us: now_us.wrapping_sub(STRANGER_US),
             reports: Deque::new(),
         }
     }
 
+    /// Whether [`step`](Self::step) would do anything.
+    #[must_use]
+    pub const fn is_due(&self, now_us: u32) -> bool {
+        reached(now_us, self.free_us)
+            && match self.stage {
+                Stage::Asked { until_us, .. } | Stage::Claims { until_us } => reached(now_us, until_us),
+                Stage::Free => !self.rests || reached(now_us, self.cycle_us.wrapping_add(CYCLE_US)),
+            }
+    }
+
     /// How many bytes of `out` are to be sent now; mostly none. Call it whenever nothing is being sent, at least every 10 us.
     pub fn step(&mut self, now_us: u32, out: &mut [u8; FRAME_MAX]) -> usize {
-        if !reached(now_us, self.free_us) {
+        if !self.is_due(now_us) {
             return 0;
         }
-        match self.stage {
-            Stage::Asked { until_us, .. } | Stage::Claims { until_us } if !reached(now_us, until_us) => {
-                return 0;
-            }
-            Stage::Asked { seat, .. } => self.miss(seat),
-            Stage::Claims { .. } | Stage::Free => {}
+        if let Stage::Asked { seat, .. } = self.stage {
+            self.miss(seat);
         }
-        self.stage = Stage::Free;
+        (self.stage, self.rests) = (Stage::Free, false);
         let length = self.speak(now_us, out).unwrap_or(0);
         if length > 0 {
             // What was garbled before ends here, too.
@@ -219,9 +223,9 @@ impl Palm {
             self.stage = Stage::Asked { seat: n, until_us: now_us, has_begun: false };
             return frame(seat.number, n as u8 + 1, Word::Poll(poll), out);
         }
-        // One place in time for each that is missing: with four fingers there is no more room.
+        // One place in time for each that is missing: with four fingers there is no more room. Who knows no finger looks for all.
         let missing = self.seats.iter().filter(|seat| !seat.is_known && seat.cut_us.is_none()).count();
-        let slots = CLAIM_SLOTS.min(missing as u8);
+        let slots = if self.seats.is_empty() { CLAIM_SLOTS } else { CLAIM_SLOTS.min(missing as u8) };
         let window_us = BEGINS_US + u32::from(slots) * CLAIM_SLOT_US;
         let since_us = now_us.wrapping_sub(self.cycle_us);
         if slots > 0 && !self.has_claimed && since_us + 40 + window_us <= CYCLE_US {
@@ -232,6 +236,8 @@ impl Palm {
         }
         if since_us >= CYCLE_US {
             self.begin(now_us, since_us);
+        } else {
+            self.rests = true;
         }
         None
     }
@@ -268,6 +274,7 @@ impl Palm {
             Stage::Claims { .. } => {}
             Stage::Free => self.stray = self.stray.saturating_add(1),
         }
+        self.rests = false;
         let packet = match self.receiver.push::<Packet>(byte)? {
             Ok(received) => received.message,
             Err(_) => {
@@ -290,7 +297,11 @@ impl Palm {
                 match self.seats.iter_mut().find(|seat| seat.place.chip == chip) {
                     Some(seat) if seat.cut_us.is_none() => seat.assign = Some(nonce),
                     Some(_) => {}
-                    None => self.report(Report::Stranger(chip)),
+                    None if reached(now_us, self.stranger_us.wrapping_add(STRANGER_US)) => {
+                        self.stranger_us = now_us;
+                        self.report(Report::Stranger(chip));
+                    }
+                    None => {}
                 }
                 None
             }
@@ -435,6 +446,18 @@ impl Palm {
     /// The longest cycle so far, us, and how many there were.
     pub const fn cycles(&self) -> (u32, u32) {
         (self.longest_us, self.cycles)
+    }
+
+    /// The places that it was made with.
+    #[must_use]
+    pub fn places(&self) -> Places {
+        self.seats.iter().map(|seat| seat.place).collect()
+    }
+
+    /// Whether a finger that answers holds something.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.seats.iter().any(|seat| seat.felt().is_some())
     }
 
     /// A byte for a finger's line; false if too many wait.

@@ -5,7 +5,8 @@ use proptest::test_runner::{RngAlgorithm, TestRng};
 use tenax_hal_shim::wire::encode;
 use tenax_palm::bus::{ALL, CYCLE_US, Chip, FRAME_MAX, Packet, Poll, State, Word, bytes_us};
 use tenax_palm::finger::Finger;
-use tenax_palm::palm::{Palm, Place, Report};
+use tenax_palm::palm::{Palm, Report};
+use tenax_palm::places::Place;
 
 const CHIPS: [Chip; 2] = [[1, 2, 3], [4, 5, 6]];
 /// A frame that has come and gone is taken as this long, us.

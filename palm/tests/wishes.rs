@@ -3,7 +3,8 @@
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::wire::{Receiver, encode};
 use tenax_palm::bus::{CYCLE_US, FRAME_MAX, Felt, Packet, State, Word, bytes_us};
-use tenax_palm::palm::{Palm, Place};
+use tenax_palm::palm::Palm;
+use tenax_palm::places::Place;
 
 /// A palm whose fingers answer what they are told to, at once.
 struct Hand {

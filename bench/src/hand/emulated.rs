@@ -1,10 +1,11 @@
-//! A hand whose fingertips are the real image, instruction by instruction, on one bus with the host's palm.
+//! A hand whose fingertips and palm are the real images, instruction by instruction, on one bus.
 //!
 //! Each image runs on a thread of its own and stops every 12.5 us, where all wait for each other: the bytes that each put on the wires go
-//! to the palm and, [`DELAY_SLOTS`] later, to the others. So the wires are as if they were long; nothing else differs from a bus without
+//! to the others, [`DELAY_SLOTS`] later. So the wires are as if they were long; nothing else differs from a bus without
 //! stops. The images' crystals are one.
 
 mod hub;
+mod palm;
 mod replay;
 mod world;
 
@@ -12,9 +13,10 @@ use std::fmt;
 use std::num::NonZeroU64;
 use std::path::Path;
 use std::sync::Arc;
+use std::thread::ScopedJoinHandle;
 
 use anyhow::{Context, Result, anyhow};
-use rigless::emulator::{self, Start, Watch};
+use rigless::emulator::{self, Driver, Start, Watch};
 use rigless::image::Image;
 use rigless::session::Session;
 use rigless::time::VirtualNanos;
@@ -24,16 +26,18 @@ use tenax_board_model::line::Line;
 use tenax_board_model::nucleo::Nucleo;
 use tenax_hal_shim::wire::Down;
 use tenax_palm::bus::Chip;
-use tenax_palm::palm::{Palm, Place, Report};
+use tenax_palm::palm::Report;
+use tenax_palm::places::{Place, Places, pack};
 use tenax_scene::SceneFile;
 use tenax_scene::fingers::Fingers;
 
 use self::hub::{Hand, Hub};
+pub use self::palm::Agreement as PalmAgreement;
 pub use self::replay::Agreement;
 use self::world::{Log, World};
 use crate::board::emulated::cost::paint;
-use crate::board::kept::{Provision, Sectors, model_of};
-use crate::image::symbols::Symbols;
+use crate::board::kept::{Provision, STORE, Sectors, model_of};
+use crate::image::symbols::{PalmSymbols, Symbols};
 
 /// Slots of a byte from the sender to a finger: the longest time between two stops.
 pub const DELAY_SLOTS: u64 = 8;
@@ -87,15 +91,26 @@ pub struct Finger {
     pub instructions_per_s: f64,
 }
 
+/// The palm's image.
+#[derive(Clone, Debug, Serialize)]
+pub struct PalmDid {
+    /// Whether the host's build of the palm, given what this image was given, says the same.
+    pub agreement: PalmAgreement,
+    pub stack_bytes: u64,
+    /// It never sleeps.
+    pub instructions_per_s: f64,
+}
+
 #[derive(Clone, Debug, Serialize)]
 pub struct Outcome {
     pub name: String,
     pub fingers: Vec<Finger>,
+    pub palm: PalmDid,
     pub seconds: f64,
     pub dropped: bool,
-    /// The longest cycle of polls, us, and how many there were.
+    /// The longest from one poll of a finger to its next, us, and how many polls there were.
     pub cycle_us: u32,
-    pub cycles: u32,
+    pub polls: u64,
     /// From the last byte of a poll on the wires to the first of its answer, us: the longest, the wires' delay left out.
     pub answer_us: f64,
     /// Bytes that two drivers garbled.
@@ -109,7 +124,7 @@ pub struct Outcome {
 impl Outcome {
     /// Whether the images did as the host's build does, and as they promise.
     pub fn holds(&self) -> bool {
-        self.fingers.iter().all(|finger| {
+        self.palm.agreement.holds() && self.fingers.iter().all(|finger| {
             finger.agreement.holds()
                 && finger.agreement.left_out == 0
                 && finger.missing == 0
@@ -118,8 +133,8 @@ impl Outcome {
     }
 }
 
-/// Runs the hand of a scene on images. Fails if an image cannot be read or placed, or falls silent.
-pub fn run(image: &Path, scene: &SceneFile, options: &Options) -> Result<Outcome> {
+/// Runs the hand of a scene on images, the fingertips' and the palm's. Fails if one cannot be read or placed, or falls silent.
+pub fn run([image, palm_image]: [&Path; 2], scene: &SceneFile, options: &Options) -> Result<Outcome> {
     let fingers = Fingers::new(scene, options.seed).context("the scene has no [fingers]")?;
     let count = fingers.fingers().len();
     let wearer = fingers.calibrated().map(|calibrated| model_of(&calibrated)).transpose()?;
@@ -128,15 +143,31 @@ pub fn run(image: &Path, scene: &SceneFile, options: &Options) -> Result<Outcome
     let ceiling_mn = provision.device().fingertip().config().grip.ceiling_mn;
     let normals =
         fingers.fingers().iter().map(|finger| finger.pushes().map(|part| (part * 1e3).round() as i16));
-    let places: Vec<Place> =
+    let places: Places =
         chips.iter().zip(normals).map(|(&chip, normal)| Place { chip, normal, ceiling_mn }).collect();
     let symbols = Symbols::read(image)?;
     let seconds = scene.duration_s().min(options.until_s);
-    let hub = Arc::new(Hub::new(Hand::new(fingers, Palm::new(&places, 0), &options.commands), count));
+    let palm_symbols = PalmSymbols::read(palm_image)?;
+    let hub = Arc::new(Hub::new(Hand::new(fingers)));
+    let palm_world =
+        palm::World::new(count, hub.clone(), palm_symbols.clone(), seconds, &options.commands);
     let cores = (options.models, options.instructions_per_second);
     let kept = Sectors::provisioned(&provision).image();
 
-    let runs: Vec<Result<Log>> = std::thread::scope(|scope| {
+    let (runs, palm_ran) = std::thread::scope(|scope| {
+        let palm = scope.spawn(|| {
+            let kept = pack(&places).context("more fingers than a palm has")?;
+            let images = [
+                Image::read(palm_image, None).context("reading the palm's image")?,
+                paint(&palm_symbols.stack)?,
+                Image::new(Path::new("flash"), kept.iter().flat_map(|word| word.to_le_bytes()).collect(), Some(STORE))?,
+            ];
+            let ran = execute(&images, cores, &palm_symbols.does, palm_world);
+            if ran.is_err() {
+                hub.leave();
+            }
+            Ok(ran?.log)
+        });
         let images: Vec<_> = chips
             .iter()
             .enumerate()
@@ -152,33 +183,28 @@ pub fn run(image: &Path, scene: &SceneFile, options: &Options) -> Result<Outcome
                         Image::new(Path::new("chip"), number, Some(CHIP_AT))?,
                     ];
                     let world = World::new(n, hub.clone(), symbols, seconds, stuck_s);
-                    let ran = execute(&images, cores, symbols, world);
+                    let does = symbols.bus.into_iter().chain([symbols.tick, symbols.command]);
+                    let ran = execute(&images, cores, &does.collect::<Vec<_>>(), world);
                     if ran.is_err() {
                         hub.leave();
                     }
-                    ran
+                    Ok(ran?.log)
                 })
             })
             .collect();
-        let join = |thread: std::thread::ScopedJoinHandle<'_, Result<Log>>| {
-            thread
-                .join()
-                .map_err(|_| anyhow!("the emulator panicked; its message is above"))
-                .and_then(|ran| ran)
-        };
-        images.into_iter().map(join).collect()
+        (images.into_iter().map(join).collect::<Vec<Result<Log>>>(), join(palm))
     });
     let logs = runs.into_iter().collect::<Result<Vec<Log>>>()?;
-    let mut hand = Arc::into_inner(hub).context("an image still has the hub")?.into_hand()?;
-    let (cycle_us, cycles) = hand.palm.cycles();
+    let palm = palm_ran?;
+    let hand = Arc::into_inner(hub).context("an image still has the hub")?.into_hand()?;
     let done = logs.iter().enumerate().map(|(n, log)| {
         let counters = log.counters();
-        let line = hand.lines[n].counts();
+        let line = palm.lines[n].counts();
         Finger {
             agreement: Agreement::of(log, chips[n], wearer.as_ref()),
             messages: line.messages,
             missing: line.missed + line.bad_frames,
-            answers: hand.answers[n],
+            answers: palm.answers[n],
             late: counters.ticks_late,
             lost: counters.frames_lost + counters.overruns,
             dropped: counters.telemetry_dropped,
@@ -190,44 +216,59 @@ pub fn run(image: &Path, scene: &SceneFile, options: &Options) -> Result<Outcome
     Ok(Outcome {
         name: scene.name.clone(),
         fingers,
+        palm: PalmDid {
+            agreement: PalmAgreement::of(&palm, &places),
+            stack_bytes: palm.stack_bytes,
+            instructions_per_s: palm.instructions_per_s,
+        },
         seconds,
         dropped: hand.fingers.is_dropped(),
-        cycle_us,
-        cycles,
+        cycle_us: hand.cycle_us,
+        polls: hand.polls,
         answer_us: hand.answer_ns as f64 / 1e3,
         garbled: hand.garbled,
         clock_us: hand.clock_us,
-        reports: std::mem::take(&mut hand.reports),
+        reports: palm.reports,
     })
 }
 
-fn execute(
+fn join<T>(thread: ScopedJoinHandle<'_, Result<T>>) -> Result<T> {
+    thread.join().map_err(|_| anyhow!("the emulator panicked; its message is above")).flatten()
+}
+
+fn execute<W: Driver<Nucleo> + 'static>(
     images: &[Image],
     (models, rate): (Models, NonZeroU64),
-    symbols: &Symbols,
-    world: World,
-) -> Result<Log> {
+    does: &[u64],
+    world: W,
+) -> Result<W> {
     let board = Nucleo::new(models, rate, Line::default())?;
     let mut session = Session::new(Box::new(board), 0, VirtualNanos(1))?;
-    for address in symbols.bus.into_iter().chain([symbols.tick, symbols.command]) {
+    for &address in does {
         session.watch(Watch::Instruction(address));
     }
     let finished = emulator::run(session, &Start::new(images), world).context("the emulator")?;
-    Ok(finished.driver.log)
+    Ok(finished.driver)
 }
 
 impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { name, seconds, dropped, cycle_us, cycles, answer_us, garbled, clock_us, .. } = self;
-        writeln!(f, "{name}, {seconds} s, each fingertip an image")?;
+        let Self { name, palm, seconds, dropped, cycle_us, polls, answer_us, garbled, clock_us, .. } = self;
+        writeln!(f, "{name}, {seconds} s, each fingertip and the palm an image")?;
         writeln!(f, "  object      {}", if *dropped { "dropped" } else { "kept" })?;
         writeln!(
             f,
-            "  bus         {cycles} cycles, {cycle_us} us at most; an answer begins within {answer_us:.0} us, clocks within {clock_us:.0} us; {garbled} bytes garbled"
+            "  bus         {polls} polls, a finger's every {cycle_us} us at most; an answer begins within {answer_us:.0} us, clocks within {clock_us:.0} us; {garbled} bytes garbled"
         )?;
         for (report, t_s) in self.reports.iter().map(|(t_s, report)| (report, t_s)) {
             writeln!(f, "  {t_s:>7.3} s   {report:?}")?;
         }
+        let PalmDid { agreement, stack_bytes, instructions_per_s } = palm;
+        writeln!(
+            f,
+            "palm\n  host        {agreement}\n  image       {:.1} M instructions a second, stack {stack_bytes} bytes",
+            instructions_per_s / 1e6
+        )?;
         for (n, finger) in self.fingers.iter().enumerate() {
             let Finger { agreement, messages, missing, late, lost, stack_bytes, instructions_per_s, .. } =
                 finger;

@@ -15,6 +15,9 @@ const COMMAND: &str = "tenax_control_command";
 /// The names of what its end of the bus does.
 const BUS: [&str; 3] = ["tenax_bus_hear", "tenax_bus_tick", "tenax_bus_said"];
 const BUS_DOES: &str = "TENAX_BUS_DOES";
+/// The names of what a palm's image does.
+const PALM: [&str; 3] = ["tenax_palm_hear", "tenax_palm_step", "tenax_palm_take"];
+const PALM_DOES: &str = "TENAX_PALM_DOES";
 
 /// Addresses in an image.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -33,23 +36,53 @@ pub struct Symbols {
     pub stack: Range<u64>,
 }
 
+/// Addresses in a palm's image.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PalmSymbols {
+    /// What it does: hears the bus, says something on it, takes what came down its line.
+    pub does: [u64; 3],
+    /// The words that say with what.
+    pub with: u64,
+    /// RAM above the image's variables.
+    pub stack: Range<u64>,
+}
+
+impl PalmSymbols {
+    /// Reads them from an ELF file.
+    pub fn read(elf: &Path) -> Result<Self> {
+        read(elf, |file| {
+            let [hear, step, take] = PALM.map(|name| entry(file, name));
+            Ok(Self { does: [hear?, step?, take?], with: address_of(file, PALM_DOES)?, stack: stack(file)? })
+        })
+    }
+}
+
+fn read<T>(elf: &Path, of: impl FnOnce(&File<'_>) -> Result<T>) -> Result<T> {
+    let bytes = std::fs::read(elf).with_context(|| format!("reading the image {}", elf.display()))?;
+    let symbols = File::parse(&*bytes).context("not an ELF file").and_then(|file| of(&file));
+    symbols.with_context(|| format!("the image {}", elf.display()))
+}
+
+/// RAM above an image's variables.
+fn stack(file: &File<'_>) -> Result<Range<u64>> {
+    let stack = address_of(file, "__sheap")?..address_of(file, "_stack_start")?;
+    ensure!(stack.start < stack.end, "leaves no RAM for the stack");
+    Ok(stack)
+}
+
 impl Symbols {
     /// Reads them from an ELF file.
     pub fn read(elf: &Path) -> Result<Self> {
-        let bytes = std::fs::read(elf).with_context(|| format!("reading the image {}", elf.display()))?;
-        Self::parse(&bytes).with_context(|| format!("the image {}", elf.display()))
+        read(elf, Self::of)
     }
 
-    fn parse(elf: &[u8]) -> Result<Self> {
-        let file = File::parse(elf).context("not an ELF file")?;
-        let (tick, after_tick) = entry_and_return(&file, TICK)?;
-        let command = entry(&file, COMMAND)?;
-        let [hear, tick_of_bus, said] = BUS.map(|name| entry(&file, name));
+    fn of(file: &File<'_>) -> Result<Self> {
+        let (tick, after_tick) = entry_and_return(file, TICK)?;
+        let command = entry(file, COMMAND)?;
+        let [hear, tick_of_bus, said] = BUS.map(|name| entry(file, name));
         let bus = [hear?, tick_of_bus?, said?];
-        let bus_does = address_of(&file, BUS_DOES)?;
-        let stack = address_of(&file, "__sheap")?..address_of(&file, "_stack_start")?;
-        ensure!(stack.start < stack.end, "leaves no RAM for the stack");
-        Ok(Self { tick, after_tick, command, bus, bus_does, stack })
+        let bus_does = address_of(file, BUS_DOES)?;
+        Ok(Self { tick, after_tick, command, bus, bus_does, stack: stack(file)? })
     }
 }
 

@@ -1,4 +1,7 @@
-//! Two images on one bus with the host's palm.
+//! Two fingertips' images and the palm's on one bus.
+
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use tenax_bench::board::emulated::Models;
 use tenax_bench::hand::emulated::{Options, run};
@@ -7,6 +10,13 @@ use tenax_hal_shim::wire::Down;
 use tenax_palm::bus::CYCLE_US;
 use tenax_palm::palm::Report;
 
+/// Of a fingertip and of the palm.
+fn images() -> [&'static Path; 2] {
+    static PALM: OnceLock<PathBuf> = OnceLock::new();
+    let palm = PALM.get_or_init(|| tenax_bench::image::build_palm(super::root()).expect("the palm's image"));
+    [super::image(), palm]
+}
+
 /// They are found, polled, and carry their lines; one of them is asked something through the palm. To every byte on the bus the host's
 /// build says the same.
 #[test]
@@ -14,7 +24,7 @@ fn two_images_and_a_palm_say_what_the_host_says() {
     let scene = load_scene("pinch").unwrap();
     let until_s = 0.4;
     let commands = vec![(0.1, 1, Down::Ping)];
-    let outcome = run(super::image(), &scene, &Options { until_s, commands, ..Options::default() }).unwrap();
+    let outcome = run(images(), &scene, &Options { until_s, commands, ..Options::default() }).unwrap();
     println!("{outcome}");
     assert!(outcome.holds());
     let found: Vec<Report> = outcome.reports.iter().map(|(_, report)| *report).collect();
@@ -35,7 +45,7 @@ fn two_images_and_a_palm_say_what_the_host_says() {
 fn an_answer_without_an_end_is_given_up_before_a_finger_is_lost() {
     let scene = load_scene("pinch").unwrap();
     let options = Options { until_s: 0.15, stuck: Some((0.1, 0)), ..Options::default() };
-    let outcome = run(super::image(), &scene, &options).unwrap();
+    let outcome = run(images(), &scene, &options).unwrap();
     println!("{outcome}");
     assert!(outcome.garbled > 0);
     let found: Vec<Report> = outcome.reports.iter().map(|(_, report)| *report).collect();
@@ -52,7 +62,7 @@ fn the_buss_models_do_as_rigless_own() {
     let scene = load_scene("pinch").unwrap();
     let [quick, rigless] = [Models::Quick, Models::Rigless].map(|models| {
         let options = Options { until_s: 0.05, models, ..Options::default() };
-        let outcome = run(super::image(), &scene, &options).unwrap();
+        let outcome = run(images(), &scene, &options).unwrap();
         assert!(outcome.holds() && outcome.fingers[0].agreement.answers > 20, "{outcome}");
         format!("{outcome:?}")
     });

@@ -34,10 +34,11 @@ use tenax_scene::plant::{Pins, Plant};
 /// The image of this checkout.
 fn image() -> &'static Path {
     static IMAGE: OnceLock<PathBuf> = OnceLock::new();
-    IMAGE.get_or_init(|| {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package is in the workspace");
-        tenax_bench::image::build(root).expect("the image")
-    })
+    IMAGE.get_or_init(|| tenax_bench::image::build(root()).expect("the image"))
+}
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the package is in the workspace")
 }
 
 /// Every pin swings through the converter's range at its own phase, so that no two ever read alike for long; and somebody

@@ -17,8 +17,8 @@ use super::progress::Progress;
   tenax hand --scene ice --seeds 40     one scene
   tenax hand --seeds 1 --cuts 1000      1000 runs in which a finger, the palm or the bus fails
   tenax hand --report json > hand.json  for programs
-  tenax hand --emulated                 two images on one bus with the host's palm
-  tenax hand --emulated --scene ice --until 6   five images, 6 s")]
+  tenax hand --emulated                 two fingertips' images and the palm's on one bus
+  tenax hand --emulated --scene ice --until 6   six images, 6 s")]
 pub struct Args {
     /// Scenes of scenes/hand/, or files like them [default: all of them]
     #[arg(long, value_name = "NAME|FILE.toml")]
@@ -29,7 +29,7 @@ pub struct Args {
     /// Number of runs in which a finger, the palm or the bus fails at a random instant
     #[arg(long, default_value_t = 40)]
     cuts: u64,
-    /// Run each scene once with an emulated board for each fingertip, and compare with the host's build byte for byte [default
+    /// Run each scene once with an emulated board for each fingertip and for the palm, and compare with the host's build byte for byte [default
     /// scene: pinch]
     #[arg(long, conflicts_with_all = ["seeds", "cuts"])]
     emulated: bool,
@@ -78,11 +78,12 @@ fn emulated(args: &Args, files: &[SceneFile]) -> anyhow::Result<ExitCode> {
     use super::workspace;
     use tenax_bench::hand::emulated::{Options, run};
 
-    let image = tenax_bench::image::build(&workspace::root()?)?;
+    let root = workspace::root()?;
+    let (image, palm) = (tenax_bench::image::build(&root)?, tenax_bench::image::build_palm(&root)?);
     let options = Options { until_s: args.until.unwrap_or(f64::INFINITY), ..Options::default() };
     let mut holds = true;
     for file in files {
-        let outcome = run(&image, file, &options)?;
+        let outcome = run([&image, &palm], file, &options)?;
         holds &= outcome.holds();
         args.report.print(&outcome, &outcome)?;
     }

@@ -1,4 +1,4 @@
-//! Where the images wait for each other, and what lies between them: object, wires, and the host's palm.
+//! Where the images wait for each other, and what lies between them: object and wires.
 
 use std::collections::VecDeque;
 use std::sync::{Condvar, Mutex, PoisonError};
@@ -7,11 +7,9 @@ use std::time::Duration;
 use anyhow::{Result, bail};
 use tenax_hal_shim::channel::{COUNT, SCAN_HZ, SCANS_PER_FRAME};
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{Down, Up};
-use tenax_palm::bus::FRAME_MAX;
-use tenax_palm::palm::{Palm, Report};
+use tenax_hal_shim::wire::{Received, Receiver};
+use tenax_palm::bus::{Packet, Word};
 use tenax_scene::fingers::Fingers;
-use tenax_serial::link::{Encoder, Inbox};
 
 use super::DELAY_SLOTS;
 
@@ -53,49 +51,48 @@ struct Side {
     is_on: bool,
 }
 
-/// Object, wires and palm.
+/// Object and wires.
 #[derive(Debug)]
 pub struct Hand {
     pub fingers: Fingers,
-    pub palm: Palm,
-    pub lines: Vec<Inbox>,
-    /// Answers that came up each line.
-    pub answers: Vec<u64>,
-    pub reports: Vec<(f64, Report)>,
     pub garbled: u64,
     /// From a poll's end to its answer's beginning, ns, at most.
     pub answer_ns: u64,
     /// How far the end of a frame that the palm was told was off, us.
     pub clock_us: f64,
+    /// The longest from one poll of a finger to its next, us, and how many polls there were.
+    pub cycle_us: u32,
+    pub polls: u64,
+    /// Of the fingers and, last, of the palm.
     sides: Vec<Side>,
-    palm_bytes: VecDeque<u8>,
     slot: u64,
+    /// Whoever listens to the wires: frames, and in which slot one began.
+    listener: Receiver,
+    began: Option<u64>,
     asked_ns: Option<u64>,
-    /// Bytes for the fingers' lines, and from when on, us.
-    commands: VecDeque<(u32, usize, Vec<u8>)>,
+    /// What the palm's clock shows more than ours, us.
+    ahead_us: f64,
+    /// When each finger was asked last, us.
+    polled_us: Vec<Option<f64>>,
 }
 
 impl Hand {
-    pub fn new(fingers: Fingers, palm: Palm, commands: &[(f64, usize, Down)]) -> Self {
+    pub fn new(fingers: Fingers) -> Self {
         let count = fingers.fingers().len();
-        let mut encoder = Encoder::default();
-        let commands = commands
-            .iter()
-            .map(|(at_s, finger, command)| ((at_s * 1e6) as u32, *finger, encoder.frame(command).1.to_vec()));
         Self {
             fingers,
-            palm,
-            lines: (0..count).map(|_| Inbox::default()).collect(),
-            answers: vec![0; count],
-            reports: Vec::new(),
             garbled: 0,
             answer_ns: 0,
             clock_us: 0.0,
-            sides: (0..count).map(|_| Side::default()).collect(),
-            palm_bytes: VecDeque::new(),
+            cycle_us: 0,
+            polls: 0,
+            sides: (0..=count).map(|_| Side::default()).collect(),
             slot: 0,
+            listener: Receiver::new(),
+            began: None,
             asked_ns: None,
-            commands: commands.collect(),
+            ahead_us: 0.0,
+            polled_us: vec![None; count],
         }
     }
 
@@ -103,7 +100,8 @@ impl Hand {
     fn stop(&mut self, did: Vec<Did>) -> Vec<Given> {
         let mut given: Vec<Given> = did.iter().map(|_| Given::default()).collect();
         let until_ns = did.iter().map(|did| did.now_ns).min().unwrap_or(0);
-        let drives: Option<Vec<MotorDrive>> = did.iter().map(|did| did.drive).collect();
+        let count = self.polled_us.len();
+        let drives: Option<Vec<MotorDrive>> = did.iter().take(count).map(|did| did.drive).collect();
         for (side, did) in self.sides.iter_mut().zip(did) {
             side.bytes.extend(did.bytes);
             side.drivers.extend(did.drivers);
@@ -124,25 +122,7 @@ impl Hand {
     /// One byte's time on the wires.
     fn pass(&mut self, given: &mut [Given]) {
         let ends_ns = (self.slot + 1) * SLOT_NS;
-        let now_us = (ends_ns / 1_000) as u32;
-        if let Some((_, finger, bytes)) = self.commands.pop_front_if(|(at_us, ..)| *at_us <= now_us) {
-            // It has room for more than is ever sent in a test.
-            bytes.iter().for_each(|&byte| _ = self.palm.line_byte(finger, byte));
-        }
-        if self.palm_bytes.is_empty() {
-            let mut out = [0; FRAME_MAX];
-            let length = self.palm.step(now_us, &mut out);
-            self.palm_bytes.extend(&out[..length]);
-            let t_s = ends_ns as f64 / 1e9;
-            while let Some(report) = self.palm.next_report() {
-                self.reports.push((t_s, report));
-            }
-        }
-        let palm_byte = self.palm_bytes.pop_front();
-        if palm_byte.is_some() && self.palm_bytes.is_empty() {
-            self.asked_ns = Some(ends_ns);
-        }
-        let mut spoken: Vec<(Option<usize>, u8)> = palm_byte.into_iter().map(|byte| (None, byte)).collect();
+        let mut spoken: Vec<(usize, u8)> = Vec::new();
         let mut on = 0;
         for (n, side) in self.sides.iter_mut().enumerate() {
             let was_on = side.is_on;
@@ -153,39 +133,56 @@ impl Hand {
             while let Some((_, byte)) = side.bytes.pop_front_if(|(at, _)| *at <= ends_ns) {
                 // Without its driver nobody hears it.
                 if side.is_on || was_on {
-                    spoken.push((Some(n), byte));
+                    spoken.push((n, byte));
                 }
             }
         }
         let Some(&(by, byte)) = spoken.first() else { return };
-        let alone = spoken.len() == 1 && on == usize::from(by.is_some());
+        let alone = spoken.len() == 1 && on == 1;
         let byte = if alone { byte } else { spoken.iter().fold(0x81, |all, (_, byte)| all ^ byte) | 1 };
         self.garbled += u64::from(!alone);
         for (n, (side, given)) in self.sides.iter().zip(given).enumerate() {
             // Its receiver is off while its driver is on.
-            if !side.is_on && by != Some(n) {
+            if !side.is_on && by != n {
                 given.bytes.push(((self.slot + DELAY_SLOTS) * SLOT_NS, byte));
             }
         }
-        if palm_byte.is_none() {
-            if let Some(asked_ns) = self.asked_ns.take() {
-                let took_ns = (self.slot * SLOT_NS).saturating_sub(asked_ns + DELAY_SLOTS * SLOT_NS);
-                self.answer_ns = self.answer_ns.max(took_ns);
-            }
-            if let Some(finger) = self.palm.hear(byte, now_us) {
-                let Some(state) = self.palm.state(finger) else { return };
-                for &byte in &state.line {
-                    if let Some(Ok(heard)) = self.lines[finger].push(byte) {
-                        self.answers[finger] +=
-                            u64::from(matches!(heard.received.message, Up::Answer { .. }));
-                    }
+        self.listen(byte, by == self.polled_us.len());
+    }
+
+    /// A byte was on the wires, the palm's or a finger's.
+    fn listen(&mut self, byte: u8, palm: bool) {
+        let (slot, ends_ns) = (self.slot, (self.slot + 1) * SLOT_NS);
+        if !palm && let Some(asked_ns) = self.asked_ns.take() {
+            let took_ns = (slot * SLOT_NS).saturating_sub(asked_ns + DELAY_SLOTS * SLOT_NS);
+            self.answer_ns = self.answer_ns.max(took_ns);
+        }
+        if byte != 0 {
+            self.began.get_or_insert(slot);
+        }
+        let heard = self.listener.push::<Packet>(byte);
+        let Some(began) = self.began.filter(|_| byte == 0) else { return };
+        self.began = None;
+        // A zero came before it.
+        let began_us = (began.saturating_sub(1) * SLOT_NS) as f64 / 1e3;
+        let Some(Ok(Received { message: Packet { address, word }, .. })) = heard else { return };
+        match word {
+            Word::Poll(poll) => {
+                self.asked_ns = Some(ends_ns);
+                self.polls += 1;
+                self.ahead_us = f64::from(poll.stamp_us) - began_us;
+                if let Some(polled_us) = self.polled_us.get_mut(usize::from(address).wrapping_sub(1)) {
+                    let cycle_us = polled_us.replace(began_us).map_or(0.0, |polled_us| began_us - polled_us);
+                    self.cycle_us = self.cycle_us.max(cycle_us as u32);
                 }
-                if state.frame_at_us > 0 {
-                    let scans = (f64::from(state.frame) + 1.0) * SCANS_PER_FRAME as f64 - 1.0;
-                    let ended_us = scans * 1e6 / f64::from(SCAN_HZ) + SCAN_TAKES_US;
-                    self.clock_us = self.clock_us.max((f64::from(state.frame_at_us) - ended_us).abs());
-                }
             }
+            Word::State(state) if state.frame_at_us > 0 => {
+                let scans = (f64::from(state.frame) + 1.0) * SCANS_PER_FRAME as f64 - 1.0;
+                let ended_us = scans * 1e6 / f64::from(SCAN_HZ) + SCAN_TAKES_US;
+                let told_us = f64::from(state.frame_at_us) - self.ahead_us;
+                self.clock_us = self.clock_us.max((told_us - ended_us).abs());
+            }
+            _ => {}
         }
     }
 }
@@ -208,7 +205,8 @@ struct State {
 }
 
 impl Hub {
-    pub fn new(hand: Hand, count: usize) -> Self {
+    pub fn new(hand: Hand) -> Self {
+        let count = hand.sides.len();
         let nobody = || (0..count).map(|_| None).collect();
         let given = (0..count).map(|_| None).collect();
         let state = State { hand, did: nobody(), given, round: 0, is_broken: false };

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use rigless::emulator::{AccessKind, Driver, Host, Settled, Stop};
+use rigless::emulator::{Access, AccessKind, Driver, Host, Settled, Stop};
 use rigless::mcu::Operate;
 use rigless::session::Session;
 use rigless::soc::Width;
@@ -14,16 +14,17 @@ use tenax_hal_shim::channel::SCAN_HZ;
 use tenax_hal_shim::frame::{Scan, scan_of_pins};
 use tenax_hal_shim::wire::{Counters, Receiver, Up};
 
-use super::hub::{Did, Hub, STOP_NS};
+use super::hub::{Did, Hub, SLOT_NS, STOP_NS};
 use crate::board::emulated::cost::stack_used;
 use crate::board::emulated::wires::Wires;
 use crate::image::symbols::Symbols;
 
-const STOPS_PER_SCAN: u64 = 1_000_000_000 / SCAN_HZ as u64 / STOP_NS;
+/// From one scan to the next.
+pub const STOPS_PER_SCAN: u64 = 1_000_000_000 / SCAN_HZ as u64 / STOP_NS;
 /// While the timer's phase is not known, every this often it is looked for.
-const SEEK_NS: u64 = 5_000;
+pub const SEEK_NS: u64 = 5_000;
 /// An image that has not begun to scan by now never will.
-const BOOT_NS: u64 = 3_000_000_000;
+pub const BOOT_NS: u64 = 3_000_000_000;
 /// Where the bus's driver is switched, and by which bits: PA12.
 const GPIOA_BSRR: u64 = 0x4002_0018;
 const DRIVER_ON: u64 = 1 << 12;
@@ -32,7 +33,7 @@ const DRIVER_OFF: u64 = 1 << 28;
 const USART1_CR1: u64 = 0x4001_100C;
 const CR1_TCIE: u64 = 1 << 6;
 /// How long a word of the flash takes, ns.
-const WORD_NS: u64 = 16_000;
+pub const WORD_NS: u64 = 16_000;
 
 /// What an image did that its end of the bus, or its logic, saw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -173,27 +174,8 @@ impl World {
         if let Some(end) = mcu.bus_end(stop.at) {
             end.down.extend(given.bytes.into_iter().map(|(at, byte)| (VirtualNanos(began.0 + at), byte)));
         }
-        next = self.next_burst(session, stop.at, next);
+        next = next_burst(session, stop.at, next);
         Some(next)
-    }
-
-    /// No later than where the next bytes begin behind a pause: the port asks for the first of them when it is stopped at.
-    fn next_burst(
-        &self,
-        session: &mut Session<Nucleo>,
-        now: VirtualNanos,
-        next: VirtualNanos,
-    ) -> VirtualNanos {
-        let Some(end) = session.board_mut().mcu.bus_end(now) else { return next };
-        let mut last = None;
-        for &(begins, _) in &end.down {
-            let follows = last.is_some_and(|last: VirtualNanos| begins.0 == last.0 + super::hub::SLOT_NS);
-            last = Some(begins);
-            if begins > now && !follows {
-                return next.min(begins);
-            }
-        }
-        next
     }
 
     fn end(&mut self, session: &mut Session<Nucleo>, stop: Stop, host: &mut dyn Host) {
@@ -212,17 +194,35 @@ impl World {
     }
 }
 
+/// No later than where the next bytes begin behind a pause: the port asks for the first of them when it is stopped at.
+pub fn next_burst(session: &mut Session<Nucleo>, now: VirtualNanos, next: VirtualNanos) -> VirtualNanos {
+    let Some(end) = session.board_mut().mcu.bus_end(now) else { return next };
+    let mut last = None;
+    for &(begins, _) in &end.down {
+        let follows = last.is_some_and(|last: VirtualNanos| begins.0 == last.0 + SLOT_NS);
+        last = Some(begins);
+        if begins > now && !follows {
+            return next.min(begins);
+        }
+    }
+    next
+}
+
+/// What a store to the pins' register does to the bus's driver: when, and whether it is on then.
+pub fn driver_of(access: &Access) -> Option<(u64, bool)> {
+    if access.kind != AccessKind::Write || access.address != GPIOA_BSRR {
+        return None;
+    }
+    let is_on = access.value & DRIVER_ON != 0;
+    (is_on || access.value & DRIVER_OFF != 0).then_some((access.virtual_time.0, is_on))
+}
+
 impl Driver<Nucleo> for World {
     fn on_settled(&mut self, session: &mut Session<Nucleo>, host: &mut dyn Host, settled: Settled) {
         match settled {
             Settled::Hit(hit) => self.hit(hit.address, host),
             Settled::Access { access, .. } => {
-                if access.kind == AccessKind::Write && access.address == GPIOA_BSRR {
-                    let is_on = access.value & DRIVER_ON != 0;
-                    if is_on || access.value & DRIVER_OFF != 0 {
-                        self.drivers.push((access.virtual_time.0, is_on));
-                    }
-                }
+                self.drivers.extend(driver_of(&access));
                 self.flash.accessed(&access, session, host);
             }
             Settled::Stop(stop) => self.flash.stopped(stop, session, host),
@@ -239,7 +239,7 @@ impl Driver<Nucleo> for World {
         let due = self.began.map(|(began, _)| VirtualNanos(began.0 + self.stops * STOP_NS));
         if let Some(due) = due.filter(|&due| stop.at < due) {
             // A stop for the first byte behind a pause.
-            return Some(self.next_burst(session, stop.at, due));
+            return Some(next_burst(session, stop.at, due));
         }
         let pulses = session.board_mut().mcu.trigger_pulses(stop.at);
         let pulse = pulses > self.pulses;
