@@ -11,8 +11,8 @@ use embassy_stm32::interrupt::{InterruptExt, Priority};
 use embassy_stm32::pac::{EXTI, FLASH, PWR};
 use tenax_logic::restart::Mark;
 
-use crate::micros::clock_us;
 use crate::last_words;
+use crate::micros::clock_us;
 
 /// PLS: 2.93 V falling, 3.03 V rising.
 const LEVEL_6: u8 = 6;

@@ -112,7 +112,9 @@ fn is_serial(arguments: &[OsString]) -> bool {
     let mut words = arguments.iter().map(|argument| argument.to_str());
     match words.next().flatten() {
         Some("calibrate") => matches!(words.next().flatten(), Some("emg" | "force" | "friction")),
-        Some("config" | "flash" | "monitor" | "play" | "record" | "selftest" | "settings" | "wiring") => true,
+        Some(
+            "config" | "flash" | "monitor" | "palm" | "play" | "record" | "selftest" | "settings" | "wiring",
+        ) => true,
         _ => false,
     }
 }
@@ -124,7 +126,9 @@ pub fn image_of(arguments: &[OsString]) -> &'static [Binary] {
     match command {
         _ if has(&["--host", "--help", "-h"]) => &[],
         Some("check" | "size") => &[Binary::Image, Binary::Kernels],
-        Some("test") => &[Binary::Image, Binary::Kernels, Binary::Frames, Binary::Pictures],
+        Some("test") => &[Binary::Image, Binary::Palm, Binary::Kernels, Binary::Frames, Binary::Pictures],
+        Some("hand") if has(&["--emulated"]) => &[Binary::Image, Binary::Palm],
+        Some("flash") if has(&["--palm"]) => &[Binary::Palm],
         Some("flash" | "learn" | "run") => &[Binary::Image],
         _ => &[],
     }

@@ -10,6 +10,8 @@ use crate::bus::{FINGERS_MAX, bytes};
 use crate::palm::{Palm, Report};
 use crate::places::Places;
 
+/// Its rate, baud, 8N1: 50 MHz over 25. Five fingers that say all they can fill a line of the fingertip's rate.
+pub const BAUD: u32 = 2_000_000;
 /// Bytes of a finger's line in one message up, and down.
 pub const PIECE_UP: usize = 200;
 /// See [`PIECE_UP`].
@@ -151,11 +153,18 @@ mod tests {
             if length == 0 {
                 break;
             }
-            heard.extend(out[..length].iter().filter_map(|&byte| receiver.push::<Up>(byte)).map(|up| up.unwrap().message));
+            heard.extend(
+                out[..length]
+                    .iter()
+                    .filter_map(|&byte| receiver.push::<Up>(byte))
+                    .map(|up| up.unwrap().message),
+            );
         }
         let pieces: std::vec::Vec<(u8, usize)> = heard
             .iter()
-            .filter_map(|up| if let Up::Line { finger, bytes } = up { Some((*finger, bytes.len())) } else { None })
+            .filter_map(
+                |up| if let Up::Line { finger, bytes } = up { Some((*finger, bytes.len())) } else { None },
+            )
             .collect();
         assert_eq!(heard[0], Up::Hand(places));
         assert_eq!(pieces, [(2, PIECE_UP), (3, PIECE_UP), (2, 10), (3, 10)]);

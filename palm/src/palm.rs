@@ -156,17 +156,24 @@ impl Palm {
         }
     }
 
+    /// From when on [`step`](Self::step) does something, if nothing is heard before.
+    #[must_use]
+    pub const fn due_us(&self) -> u32 {
+        let until_us = match self.stage {
+            Stage::Asked { until_us, .. } | Stage::Claims { until_us } => until_us,
+            Stage::Free if self.rests => self.cycle_us.wrapping_add(CYCLE_US),
+            Stage::Free => self.free_us,
+        };
+        if reached(until_us, self.free_us) { until_us } else { self.free_us }
+    }
+
     /// Whether [`step`](Self::step) would do anything.
     #[must_use]
     pub const fn is_due(&self, now_us: u32) -> bool {
-        reached(now_us, self.free_us)
-            && match self.stage {
-                Stage::Asked { until_us, .. } | Stage::Claims { until_us } => reached(now_us, until_us),
-                Stage::Free => !self.rests || reached(now_us, self.cycle_us.wrapping_add(CYCLE_US)),
-            }
+        reached(now_us, self.due_us())
     }
 
-    /// How many bytes of `out` are to be sent now; mostly none. Call it whenever nothing is being sent, at least every 10 us.
+    /// How many bytes of `out` are to be sent now; mostly none. Call it whenever nothing is being sent, within 10 us of when it is due.
     pub fn step(&mut self, now_us: u32, out: &mut [u8; FRAME_MAX]) -> usize {
         if !self.is_due(now_us) {
             return 0;

@@ -3,8 +3,9 @@
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::wire::{Receiver, encode};
 use tenax_palm::bus::{CYCLE_US, FRAME_MAX, Felt, Packet, State, Word, bytes_us};
+use tenax_palm::line::{Down, FRAME_UP_MAX, Lines, Up};
 use tenax_palm::palm::Palm;
-use tenax_palm::places::Place;
+use tenax_palm::places::{Place, Places};
 
 /// A palm whose fingers answer what they are told to, at once.
 struct Hand {
@@ -74,6 +75,31 @@ fn who_lacks_margin_is_wished_the_least_force_and_nobody_else_anything() {
     pair.states[0] = Some(felt(4_500));
     assert_eq!(pair.wishes(45), [Some(5.25), Some(5.25)]);
     assert_eq!(pair.wishes(20), [Some(5.0), Some(5.0)]);
+}
+
+#[test]
+fn who_holds_something_keeps_its_fingers() {
+    let mut pair = Hand::at(&[0.0, 180.0]);
+    let (mut lines, keep) = (Lines::default(), Down::Keep(Places::new()));
+    let mut tell = |palm: &mut Palm, down: &Down| {
+        let mut buffer = [0; 256];
+        let frame = encode(1, down, &mut buffer).unwrap();
+        let wished = frame.iter().find_map(|&byte| lines.hear(byte, palm));
+        let mut out = [0; FRAME_UP_MAX];
+        let length = lines.next(palm, &mut out);
+        let mut receiver = Receiver::new();
+        (
+            wished,
+            out[..length].iter().find_map(|&byte| receiver.push::<Up>(byte)).map(|up| up.unwrap().message),
+        )
+    };
+    pair.wishes(5);
+    while pair.palm.next_report().is_some() {}
+    assert_eq!(tell(&mut pair.palm, &keep), (None, Some(Up::Refused)));
+    assert_eq!(tell(&mut pair.palm, &Down::Ask), (None, Some(Up::Hand(pair.palm.places()))));
+    pair.states = vec![Some(State::default()); 2];
+    pair.wishes(5);
+    assert_eq!(tell(&mut pair.palm, &keep), (Some(Places::new()), None));
 }
 
 #[test]

@@ -24,15 +24,15 @@ use serde::Serialize;
 use tenax_board_model::Models;
 use tenax_board_model::line::Line;
 use tenax_board_model::nucleo::Nucleo;
-use tenax_hal_shim::wire::Down;
 use tenax_palm::bus::Chip;
+use tenax_palm::line;
 use tenax_palm::palm::Report;
 use tenax_palm::places::{Place, Places, pack};
 use tenax_scene::SceneFile;
 use tenax_scene::fingers::Fingers;
 
 use self::hub::{Hand, Hub};
-pub use self::palm::Agreement as PalmAgreement;
+pub use self::palm::{Agreement as PalmAgreement, to_finger};
 pub use self::replay::Agreement;
 use self::world::{Log, World};
 use crate::board::emulated::cost::paint;
@@ -53,8 +53,8 @@ pub struct Options {
     pub instructions_per_second: NonZeroU64,
     /// Which models the chips are made of.
     pub models: Models,
-    /// Commands that go down a finger's line through the palm: when, s, and to whom, from 0 on.
-    pub commands: Vec<(f64, usize, Down)>,
+    /// What a PC sends to the palm, and when, s.
+    pub commands: Vec<(f64, line::Down)>,
     /// Who loses the interrupt that ends an answer, once, so that its driver stays on, and from when on, s.
     pub stuck: Option<(f64, usize)>,
 }
@@ -108,28 +108,32 @@ pub struct Outcome {
     pub palm: PalmDid,
     pub seconds: f64,
     pub dropped: bool,
-    /// The longest from one poll of a finger to its next, us, and how many polls there were.
+    /// The longest cycle of polls, us, and how many there were.
     pub cycle_us: u32,
-    pub polls: u64,
+    pub cycles: u32,
     /// From the last byte of a poll on the wires to the first of its answer, us: the longest, the wires' delay left out.
     pub answer_us: f64,
     /// Bytes that two drivers garbled.
     pub garbled: u64,
     /// How far the frames' ends that the palm was told were off, us; the wires' delay of 16 us is in it.
     pub clock_us: f64,
+    /// What the palm reported and answered on its line, and when, s.
     #[serde(skip)]
     pub reports: Vec<(f64, Report)>,
+    #[serde(skip)]
+    pub said: Vec<(f64, line::Up)>,
 }
 
 impl Outcome {
     /// Whether the images did as the host's build does, and as they promise.
     pub fn holds(&self) -> bool {
-        self.palm.agreement.holds() && self.fingers.iter().all(|finger| {
-            finger.agreement.holds()
-                && finger.agreement.left_out == 0
-                && finger.missing == 0
-                && finger.late + finger.lost == 0
-        })
+        self.palm.agreement.holds()
+            && self.fingers.iter().all(|finger| {
+                finger.agreement.holds()
+                    && finger.agreement.left_out == 0
+                    && finger.missing == 0
+                    && finger.late + finger.lost == 0
+            })
     }
 }
 
@@ -149,8 +153,7 @@ pub fn run([image, palm_image]: [&Path; 2], scene: &SceneFile, options: &Options
     let seconds = scene.duration_s().min(options.until_s);
     let palm_symbols = PalmSymbols::read(palm_image)?;
     let hub = Arc::new(Hub::new(Hand::new(fingers)));
-    let palm_world =
-        palm::World::new(count, hub.clone(), palm_symbols.clone(), seconds, &options.commands);
+    let palm_world = palm::World::new(count, hub.clone(), palm_symbols.clone(), seconds, &options.commands);
     let cores = (options.models, options.instructions_per_second);
     let kept = Sectors::provisioned(&provision).image();
 
@@ -160,7 +163,11 @@ pub fn run([image, palm_image]: [&Path; 2], scene: &SceneFile, options: &Options
             let images = [
                 Image::read(palm_image, None).context("reading the palm's image")?,
                 paint(&palm_symbols.stack)?,
-                Image::new(Path::new("flash"), kept.iter().flat_map(|word| word.to_le_bytes()).collect(), Some(STORE))?,
+                Image::new(
+                    Path::new("flash"),
+                    kept.iter().flat_map(|word| word.to_le_bytes()).collect(),
+                    Some(STORE),
+                )?,
             ];
             let ran = execute(&images, cores, &palm_symbols.does, palm_world);
             if ran.is_err() {
@@ -224,11 +231,12 @@ pub fn run([image, palm_image]: [&Path; 2], scene: &SceneFile, options: &Options
         seconds,
         dropped: hand.fingers.is_dropped(),
         cycle_us: hand.cycle_us,
-        polls: hand.polls,
+        cycles: hand.cycles,
         answer_us: hand.answer_ns as f64 / 1e3,
         garbled: hand.garbled,
         clock_us: hand.clock_us,
         reports: palm.reports,
+        said: palm.said,
     })
 }
 
@@ -253,12 +261,12 @@ fn execute<W: Driver<Nucleo> + 'static>(
 
 impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { name, palm, seconds, dropped, cycle_us, polls, answer_us, garbled, clock_us, .. } = self;
+        let Self { name, palm, seconds, dropped, cycle_us, cycles, answer_us, garbled, clock_us, .. } = self;
         writeln!(f, "{name}, {seconds} s, each fingertip and the palm an image")?;
         writeln!(f, "  object      {}", if *dropped { "dropped" } else { "kept" })?;
         writeln!(
             f,
-            "  bus         {polls} polls, a finger's every {cycle_us} us at most; an answer begins within {answer_us:.0} us, clocks within {clock_us:.0} us; {garbled} bytes garbled"
+            "  bus         {cycles} cycles, {cycle_us} us at most; an answer begins within {answer_us:.0} us, clocks within {clock_us:.0} us; {garbled} bytes garbled"
         )?;
         for (report, t_s) in self.reports.iter().map(|(t_s, report)| (report, t_s)) {
             writeln!(f, "  {t_s:>7.3} s   {report:?}")?;

@@ -60,9 +60,9 @@ pub struct Hand {
     pub answer_ns: u64,
     /// How far the end of a frame that the palm was told was off, us.
     pub clock_us: f64,
-    /// The longest from one poll of a finger to its next, us, and how many polls there were.
+    /// The longest cycle of polls, us, and how many there were.
     pub cycle_us: u32,
-    pub polls: u64,
+    pub cycles: u32,
     /// Of the fingers and, last, of the palm.
     sides: Vec<Side>,
     slot: u64,
@@ -72,8 +72,9 @@ pub struct Hand {
     asked_ns: Option<u64>,
     /// What the palm's clock shows more than ours, us.
     ahead_us: f64,
-    /// When each finger was asked last, us.
-    polled_us: Vec<Option<f64>>,
+    /// Who was asked last, and when the cycle began, us.
+    asked: u8,
+    cycle_began_us: Option<f64>,
 }
 
 impl Hand {
@@ -85,14 +86,15 @@ impl Hand {
             answer_ns: 0,
             clock_us: 0.0,
             cycle_us: 0,
-            polls: 0,
+            cycles: 0,
             sides: (0..=count).map(|_| Side::default()).collect(),
             slot: 0,
             listener: Receiver::new(),
             began: None,
             asked_ns: None,
             ahead_us: 0.0,
-            polled_us: vec![None; count],
+            asked: 0,
+            cycle_began_us: None,
         }
     }
 
@@ -100,7 +102,7 @@ impl Hand {
     fn stop(&mut self, did: Vec<Did>) -> Vec<Given> {
         let mut given: Vec<Given> = did.iter().map(|_| Given::default()).collect();
         let until_ns = did.iter().map(|did| did.now_ns).min().unwrap_or(0);
-        let count = self.polled_us.len();
+        let count = self.fingers.fingers().len();
         let drives: Option<Vec<MotorDrive>> = did.iter().take(count).map(|did| did.drive).collect();
         for (side, did) in self.sides.iter_mut().zip(did) {
             side.bytes.extend(did.bytes);
@@ -147,7 +149,7 @@ impl Hand {
                 given.bytes.push(((self.slot + DELAY_SLOTS) * SLOT_NS, byte));
             }
         }
-        self.listen(byte, by == self.polled_us.len());
+        self.listen(byte, by + 1 == self.sides.len());
     }
 
     /// A byte was on the wires, the palm's or a finger's.
@@ -169,11 +171,12 @@ impl Hand {
         match word {
             Word::Poll(poll) => {
                 self.asked_ns = Some(ends_ns);
-                self.polls += 1;
                 self.ahead_us = f64::from(poll.stamp_us) - began_us;
-                if let Some(polled_us) = self.polled_us.get_mut(usize::from(address).wrapping_sub(1)) {
-                    let cycle_us = polled_us.replace(began_us).map_or(0.0, |polled_us| began_us - polled_us);
-                    self.cycle_us = self.cycle_us.max(cycle_us as u32);
+                // Whoever comes before the last one begins the next cycle.
+                if address <= std::mem::replace(&mut self.asked, address) {
+                    let before_us = self.cycle_began_us.replace(began_us);
+                    self.cycle_us = self.cycle_us.max(before_us.map_or(0.0, |us| began_us - us) as u32);
+                    self.cycles += 1;
                 }
             }
             Word::State(state) if state.frame_at_us > 0 => {

@@ -12,12 +12,12 @@ use serde::Serialize;
 use tenax_board_model::flash::FlashArray;
 use tenax_board_model::nucleo::Nucleo;
 use tenax_hal_shim::channel::SCAN_HZ;
-use tenax_hal_shim::wire::{self, Down, Receiver, encode};
+use tenax_hal_shim::wire::{self, Down, Receiver};
 use tenax_palm::bus::FRAME_MAX;
-use tenax_palm::line::{self, Lines, PIECE_DOWN};
+use tenax_palm::line::{self, Lines};
 use tenax_palm::palm::{Palm, Report};
 use tenax_palm::places::Places;
-use tenax_serial::link::{Encoder, Inbox};
+use tenax_serial::link::{Encoder, Inbox, behind};
 
 use super::hub::{Did, Hub, STOP_NS};
 use super::world::{BOOT_NS, SEEK_NS, STOPS_PER_SCAN, WORD_NS, driver_of, next_burst};
@@ -25,13 +25,20 @@ use crate::board::emulated::cost::stack_used;
 use crate::image::symbols::PalmSymbols;
 
 /// Bytes of each of the image's rings.
-const RING: u32 = 256;
+const RING: u32 = 512;
 /// Stops from one look at its line to the next: 1 ms.
 const LINE_STOPS: u64 = 80;
+
+/// A message to a finger's line, as a PC sends it to the palm's.
+pub fn to_finger(finger: u8, command: &Down) -> line::Down {
+    line::Down::Line { finger, bytes: Encoder::default().frame(command).1.iter().copied().collect() }
+}
 
 /// What the image did that its palm saw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Event {
+    /// It starts, at this instant, us.
+    Start { at_us: u32 },
     /// It reads the bus until its ring stood there, at this instant, us.
     Hear { at_us: u32, to: u32 },
     /// Its palm may speak, at this instant, us.
@@ -43,7 +50,6 @@ enum Event {
 /// What it was given and did.
 #[derive(Debug, Default)]
 pub struct Log {
-    began_us: u32,
     events: Vec<Event>,
     heard: Vec<u8>,
     sent: Vec<u8>,
@@ -53,6 +59,7 @@ pub struct Log {
     pub instructions_per_s: f64,
     /// What it said on its line: when what was reported, s; each finger's line, and the answers in it.
     pub reports: Vec<(f64, Report)>,
+    pub said: Vec<(f64, line::Up)>,
     pub lines: Vec<Inbox>,
     pub answers: Vec<u64>,
 }
@@ -66,6 +73,7 @@ pub struct World {
     stops_max: u64,
     /// The first of its steps, and what had been executed then.
     began: Option<(VirtualNanos, u64)>,
+    start: Option<Event>,
     stops: u64,
     drivers: Vec<(u64, bool)>,
     receiver: Receiver,
@@ -80,15 +88,9 @@ impl World {
         hub: Arc<Hub>,
         symbols: PalmSymbols,
         seconds: f64,
-        commands: &[(f64, usize, Down)],
+        commands: &[(f64, line::Down)],
     ) -> Self {
-        let mut encoder = Encoder::default();
-        let commands = commands.iter().map(|(at_s, finger, command)| {
-            let bytes = encoder.frame(command).1.iter().copied().collect();
-            let down = line::Down::Line { finger: *finger as u8 + 1, bytes };
-            let mut frame = [0; 2 * PIECE_DOWN];
-            (*at_s, encode(0, &down, &mut frame).expect("room for a piece").to_vec())
-        });
+        let commands = commands.iter().map(|(at_s, down)| (*at_s, behind::frame(0, down)));
         let log = Log {
             lines: (0..fingers).map(|_| Inbox::default()).collect(),
             answers: vec![0; fingers],
@@ -103,6 +105,7 @@ impl World {
             // The fingertips' last scan is nobody's to wait for.
             stops_max: ((seconds * f64::from(SCAN_HZ)) as u64 - 1) * STOPS_PER_SCAN + 1,
             began: None,
+            start: None,
             stops: 0,
             drivers: Vec::new(),
             receiver: Receiver::new(),
@@ -119,8 +122,9 @@ impl World {
             _ if address == take => Event::Take { to: with(2) },
             _ => return,
         };
-        if self.log.events.is_empty() {
-            self.log.began_us = with(3);
+        let start = Event::Start { at_us: with(3) };
+        if self.start.replace(start) != Some(start) {
+            self.log.events.push(start);
         }
         self.log.events.push(event);
     }
@@ -166,7 +170,8 @@ impl World {
                     }
                 }
                 Some(line::Up::Bus(report)) => self.log.reports.push((t_s, report)),
-                Some(line::Up::Hand(_) | line::Up::Refused) | None => {}
+                Some(said) => self.log.said.push((t_s, said)),
+                None => {}
             }
         }
     }
@@ -231,7 +236,7 @@ pub struct Agreement {
 }
 
 impl Agreement {
-    /// Of an image that knows these fingers.
+    /// Of an image that knows these fingers, until it starts anew.
     pub fn of(log: &Log, places: &Places) -> Self {
         let mut agreement = Self::default();
         agreement.difference = agreement.replay(log, places).err();
@@ -244,11 +249,14 @@ impl Agreement {
     }
 
     fn replay(&mut self, log: &Log, places: &Places) -> Result<(), String> {
-        let (mut palm, mut lines) = (Palm::new(places, log.began_us), Lines::default());
+        let (mut palm, mut lines) = (Palm::new(places, 0), Lines::default());
+        let mut has_started = false;
         let (mut heard, mut down) = (Ring::new(&log.heard), Ring::new(&log.down));
         let mut out = [0; FRAME_MAX];
         for event in &log.events {
             match *event {
+                Event::Start { .. } if has_started => return Ok(()),
+                Event::Start { at_us } => (palm, has_started) = (Palm::new(places, at_us), true),
                 Event::Hear { at_us, to } => heard.until(to, |byte| {
                     if let Some(finger) = palm.hear(byte, at_us) {
                         lines.answered(&palm, finger);
@@ -272,7 +280,7 @@ impl Agreement {
             }
         }
         let left = log.sent.len() - self.bytes;
-        if left > 0 && left > FRAME_MAX {
+        if left > FRAME_MAX {
             return Err(format!("from byte {} on the image said what the host does not", self.bytes));
         }
         Ok(())

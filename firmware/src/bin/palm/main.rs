@@ -1,7 +1,8 @@
 //! The palm's image, for a board of its own: it polls its fingertips over the bus, shares the force, and passes their lines to a PC.
 //!
-//! What it says is decided in `tenax-palm`; here bytes are moved. One loop does it, without an interrupt: it has nothing else to do, and
-//! nothing that could come between. It drives no motor. If it stops, its fingertips go on alone, and the watchdog resets it.
+//! What it says is decided in `tenax-palm`; here bytes are moved. One loop does it, and sleeps until a frame ends on the bus or the palm is
+//! due. The interrupt of the bus lets go of the wires at the end of a frame, for an answer may begin while the loop is at something else.
+//! It drives no motor. If it stops, its fingertips go on alone, and the watchdog resets it.
 //!
 //! | what | where |
 //! |---|---|
@@ -26,17 +27,17 @@ mod watchdog;
 
 use core::panic::PanicInfo;
 use core::ptr::{addr_of, addr_of_mut};
-use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use core::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
 
 use cortex_m::peripheral::SCB;
 use cortex_m_rt::{ExceptionFrame, entry, exception};
-use embassy_stm32::Peripherals;
+use embassy_stm32::interrupt::InterruptExt;
 use embassy_stm32::pac::gpio::vals::Moder;
-use embassy_stm32::pac::{DMA1, GPIOA, RCC, USART2};
+use embassy_stm32::pac::{DMA1, GPIOA, RCC, TIM2, USART2};
+use embassy_stm32::{Peripherals, interrupt};
 use static_cell::StaticCell;
-use tenax_hal_shim::wire;
 use tenax_palm::bus::{self, FRAME_MAX};
-use tenax_palm::line::{Answer, FRAME_UP_MAX, Lines};
+use tenax_palm::line::{self, Answer, FRAME_UP_MAX, Lines};
 use tenax_palm::palm::Palm;
 use tenax_palm::places::{self, Places};
 
@@ -53,6 +54,8 @@ const DRIVER: usize = 12;
 /// Bytes that are read at once where their frame has not ended: fewer are not worth the way.
 const AT_ONCE: usize = 16;
 
+/// A frame is on its way.
+static SENDING: AtomicBool = AtomicBool::new(false);
 /// What is being sent. DMA reads it.
 static mut FRAME: [u8; FRAME_MAX] = [0; FRAME_MAX];
 static mut FRAME_UP: [u8; FRAME_UP_MAX] = [0; FRAME_UP_MAX];
@@ -82,7 +85,7 @@ fn main() -> ! {
     RCC.apb1enr().modify(|w| w.set_usart2en(true));
     RCC.apb2enr().modify(|w| w.set_usart1en(true));
     let mut bus = Ring::of_bus(BUS, (clock::CORE_HZ / bus::BAUD) as u16, [15, 10]);
-    let mut line = Ring::of_line(LINE, ((clock::APB1_HZ + wire::BAUD / 2) / wire::BAUD) as u16, [2, 3]);
+    let mut pc = Ring::of_line(LINE, (clock::APB1_HZ / line::BAUD) as u16, [2, 3]);
     // SAFETY: nobody else takes them.
     let p = unsafe { Peripherals::steal() };
     let mut flash = Flash::new(p.FLASH);
@@ -98,16 +101,17 @@ fn main() -> ! {
     let mut watchdog = Watchdog::new(p.IWDG);
     watchdog.start();
 
-    let (mut is_sending, mut is_telling) = (false, false);
+    // SAFETY: what their handlers use is set up above.
+    unsafe {
+        interrupt::USART1.enable();
+        interrupt::TIM2.enable();
+    }
+    TIM2.dier().write(|w| w.set_ccie(0, true));
+    let (mut is_telling, mut is_told) = (false, false);
     loop {
         watchdog.feed();
-        if is_sending && sent(BUS) {
-            GPIOA.bsrr().write(|w| w.set_br(DRIVER, true));
-            BUS.end();
-            is_sending = false;
-        }
         let (now_us, end) = (clock_us(), bus.end());
-        let due = !is_sending && palm.is_due(now_us);
+        let due = !SENDING.load(Relaxed) && palm.is_due(now_us);
         if bus.is_whole(end) || bus.waits(end) >= if due { 1 } else { AT_ONCE } {
             does(AT, now_us);
             does(BUS_END, end as u32);
@@ -118,27 +122,43 @@ fn main() -> ! {
             let length = tenax_palm_step(palm, now_us, unsafe { &mut *addr_of_mut!(FRAME) });
             if length > 0 {
                 BUS.prepare(addr_of!(FRAME).cast(), length);
+                SENDING.store(true, Relaxed);
+                is_told = false;
                 GPIOA.bsrr().write(|w| w.set_bs(DRIVER, true));
                 BUS.begin();
-                is_sending = true;
             }
-        } else if line.waits(line.end()) > 0 {
-            let end = line.end();
+        } else if is_told || !SENDING.load(Relaxed) {
+            sleep(palm.due_us());
+        } else if pc.waits(pc.end()) > 0 {
+            let end = pc.end();
             does(LINE_END, end as u32);
-            if let Some(places) = tenax_palm_take(palm, lines, &mut line, end) {
+            if let Some(places) = tenax_palm_take(palm, lines, &mut pc, end) {
                 handed::give(&places);
                 give_up();
             }
-        } else if !is_telling || sent(LINE) {
-            LINE.end();
-            // SAFETY: DMA is done with it.
-            let length = lines.next(palm, unsafe { &mut *addr_of_mut!(FRAME_UP) });
-            is_telling = length > 0;
-            if is_telling {
-                LINE.prepare(addr_of!(FRAME_UP).cast(), length);
-                LINE.begin();
+        } else {
+            // This and the one before take longer than an answer may wait: their time is while a poll is on its way.
+            is_told = true;
+            if !is_telling || LINE.usart.sr().read().tc() {
+                LINE.end();
+                // SAFETY: DMA is done with it.
+                let length = lines.next(palm, unsafe { &mut *addr_of_mut!(FRAME_UP) });
+                is_telling = length > 0;
+                if is_telling {
+                    LINE.prepare(addr_of!(FRAME_UP).cast(), length);
+                    LINE.begin();
+                }
             }
         }
+    }
+}
+
+/// Until something happens on the bus, or this instant.
+fn sleep(until_us: u32) {
+    TIM2.ccr(0).write_value(until_us);
+    // An interrupt before this is remembered: it does not sleep then.
+    if until_us.wrapping_sub(clock_us()).cast_signed() > 0 {
+        cortex_m::asm::wfe();
     }
 }
 
@@ -148,9 +168,25 @@ fn does(place: usize, word: u32) {
     }
 }
 
-/// Whether the last bit of what was begun is out.
-fn sent(port: Port) -> bool {
-    port.usart.sr().read().tc()
+/// What the loop sleeps until.
+#[interrupt]
+unsafe fn TIM2() {
+    embassy_stm32::pac::TIM2.sr().write(|w| w.0 = 0);
+}
+
+/// A pause, which the loop is woken by, or the last bit of a frame is out.
+#[interrupt]
+unsafe fn USART1() {
+    let seen = BUS.usart.sr().read();
+    if seen.idle() {
+        // With the status before, this clears the flag. DMA has had the byte.
+        let _last = BUS.usart.dr().read();
+    }
+    if seen.tc() && BUS.usart.cr1().read().tcie() {
+        GPIOA.bsrr().write(|w| w.set_br(DRIVER, true));
+        BUS.end();
+        SENDING.store(false, Relaxed);
+    }
 }
 
 /// Not inlined, as the next two, so that the emulated board can tell by these names what was done when.

@@ -4,8 +4,8 @@ use core::ptr::addr_of_mut;
 
 use crate::port::Port;
 
-/// Bytes of each: 0.5 ms of a full bus, 2.8 ms of a full line.
-const LEN: usize = 256;
+/// Bytes of each: 1 ms of a full bus, 2.6 ms of a full line.
+const LEN: usize = 512;
 
 static mut BUS: [u8; LEN] = [0; LEN];
 static mut LINE: [u8; LEN] = [0; LEN];
