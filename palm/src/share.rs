@@ -66,8 +66,9 @@ pub fn share(contacts: &[Contact], load: [i64; 2]) -> Option<Forces> {
                 continue;
             }
             for corner in 0..1u8 << bounds.len() {
-                // The bits of the free ones choose nothing.
+                // The bits of the free ones choose nothing: they have their lower bounds at least.
                 if corner & (1 << one | 1 << two) == 0
+                    && best.as_ref().is_none_or(|(least, _)| floor(&bounds, corner) < *least)
                     && let Some(forces) = at_corner(&bounds, load, [one, two], corner)
                 {
                     let sum = forces.iter().map(|&mn| i64::from(mn)).sum();
@@ -79,6 +80,15 @@ pub fn share(contacts: &[Contact], load: [i64; 2]) -> Option<Forces> {
         }
     }
     best.map(|(_, forces)| forces)
+}
+
+/// The sum of forces below which no force of a corner is.
+fn floor(bounds: &[([i64; 2], i64, i64)], corner: u8) -> i64 {
+    bounds
+        .iter()
+        .enumerate()
+        .map(|(n, &(_, least, most))| if corner >> n & 1 == 1 { most } else { least })
+        .sum()
 }
 
 /// The forces of one corner: fingers other than `free` at their upper bound where `corner` has their bit, else at the lower.
@@ -114,8 +124,9 @@ fn rounded(part: i64, whole: i64, (least, most): (i64, i64)) -> Option<i32> {
     if whole == 0 {
         return None;
     }
-    let nearest = (part + whole / 2).div_euclid(whole);
-    (least..=most).contains(&nearest).then_some(nearest as i32)
+    let part = part + whole / 2;
+    // Most are outside, and a product says so sooner than a quotient.
+    (least * whole..(most + 1) * whole).contains(&part).then(|| part.div_euclid(whole) as i32)
 }
 
 #[cfg(test)]
