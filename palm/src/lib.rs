@@ -2,7 +2,7 @@
 //!
 //! [`bus`] has the words of the bus, [`finger`] a finger's end of it, [`palm`] the palm's. [`clock`] brings a finger's time to the
 //! palm's, and [`share`] allots the least forces that keep each finger's margin. Who owns a serial port moves the bytes; nothing here
-//! waits, allocates or knows a pin.
+//! waits, allocates or knows a pin. [`can`] has what a fingertip says where no palm asks.
 //!
 //! The palm only adds evidence. It warns a finger's reflex, which answers as it answers its own warnings: below the ceiling, never while a
 //! muscle is active, never by opening. `docs/hand.md` lists the degraded hands.
@@ -13,6 +13,7 @@
 extern crate std;
 
 pub mod bus;
+pub mod can;
 pub mod clock;
 pub mod finger;
 pub mod palm;
