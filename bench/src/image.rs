@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use tenax_launch::image::Binary;
-pub use tenax_launch::image::{TARGET, clippy, port};
+pub use tenax_launch::image::{TARGET, clippy};
 
 /// Builds the image of the workspace at `root`, fetching what it takes, and gives its ELF file.
 /// An error says what to install, or what the compiler said.
@@ -24,6 +24,11 @@ pub fn build(root: &Path) -> Result<PathBuf> {
 /// Builds the image of a palm. Fails as [`build`] does.
 pub fn build_palm(root: &Path) -> Result<PathBuf> {
     tenax_launch::image::build(root, Binary::Palm)
+}
+
+/// Builds the image for the STM32F446RE: the same logic, with CAN in place of the palm's bus. Fails as [`build`] does.
+pub fn build_f446(root: &Path) -> Result<PathBuf> {
+    tenax_launch::image::build(root, Binary::F446)
 }
 
 /// Builds the image of every detector's kernels, for [`run_frames`](crate::board::emulated::kernels::run_frames). Fails as [`build`] does.

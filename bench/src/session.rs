@@ -68,6 +68,18 @@ impl Board {
         Ok(Self::Emulated { image: crate::image::build(root)?, options: emulated::Options::default() })
     }
 
+    /// The same with the image for the STM32F446RE.
+    #[cfg(feature = "emulator")]
+    pub fn emulated_f446(root: &Path) -> anyhow::Result<Self> {
+        Ok(Self::Emulated { image: crate::image::build_f446(root)?, options: emulated::Options::default() })
+    }
+
+    /// Says how to get an emulated board.
+    #[cfg(not(feature = "emulator"))]
+    pub fn emulated_f446(root: &Path) -> anyhow::Result<Self> {
+        Self::emulated(root)
+    }
+
     /// Says how to get an emulated board.
     #[cfg(not(feature = "emulator"))]
     pub fn emulated(_root: &Path) -> anyhow::Result<Self> {

@@ -9,6 +9,7 @@
 #![allow(missing_docs, reason = "a part of the tool: where a name says it all, nothing repeats it")]
 
 mod bridge_timer;
+pub mod can;
 mod dma2;
 pub mod flash;
 pub mod line;

@@ -10,6 +10,7 @@ use rigless::time::VirtualNanos;
 
 use super::Models;
 use super::bridge_timer::BridgeTimer;
+use super::can::Can;
 use super::dma2::Shared;
 use super::line::{BusEnd, Line};
 use super::scan_path;
@@ -26,7 +27,7 @@ const USART1: usize = 0;
 /// TIM3, in the order of the chip's general timers.
 const TIM3: usize = 1;
 
-/// An STM32F427, whose peripherals contain the F411's.
+/// An STM32F427, whose peripherals contain the F411's and those of the F446 that are in use.
 #[derive(Debug)]
 pub struct Part {
     /// `rigless`'s own models.
@@ -40,6 +41,7 @@ struct Own {
     shared: Shared,
     timer: UnwatchedTimer,
     bridge: BridgeTimer,
+    can: Can,
     serial: SerialPath<Line>,
     scan_controller: usize,
     port: usize,
@@ -57,6 +59,8 @@ enum Answers {
     BusPort,
     ScanTimer,
     BridgeTimer,
+    /// Which the F411 has not.
+    Can,
     Serial(serial_path::Asked),
     /// The vibration motor's timer: the registers hold what is written to them, and nothing happens.
     RegistersAlone,
@@ -73,11 +77,13 @@ impl Own {
         answers[port] = Answers::Serial(serial_path::Asked::Port);
         answers[bus.slot("DMA1")?] = Answers::Serial(serial_path::Asked::Controller);
         answers[bus.slot("TIM1")?] = Answers::BridgeTimer;
+        answers[bus.slot("CAN1")?] = Answers::Can;
         answers[bus.slot("TIM4")?] = Answers::RegistersAlone;
         Ok(Self {
             shared: Shared::new()?,
             timer: UnwatchedTimer::new(TIM3)?,
             bridge: BridgeTimer::default(),
+            can: Can::default(),
             serial: SerialPath::new(&STLINK, Some(line))?,
             scan_controller,
             port,
@@ -143,6 +149,11 @@ impl Part {
         }
     }
 
+    /// The CAN port, where a model draws it.
+    pub fn can(&mut self) -> Option<&mut Can> {
+        self.own.as_mut().map(|own| &mut own.can)
+    }
+
     /// How many pulses the scan's timer, TIM3, has sent on its TRGO.
     pub fn trigger_pulses(&mut self, now: VirtualNanos) -> u64 {
         match &mut self.own {
@@ -204,6 +215,7 @@ impl Mcu for Part {
             own.shared.scan.restarted();
             own.timer.restarted();
             own.bridge = BridgeTimer::default();
+            own.can.restarted();
             own.serial.restarted(at);
             own.shared.bus.restarted(at);
         }
@@ -237,6 +249,7 @@ impl Mcu for Part {
             Answers::Serial(asked) => (chip.bus_mut(), Some(own.serial.of(asked))),
             Answers::ScanTimer => (chip.bus_mut(), Some(&mut own.timer)),
             Answers::BridgeTimer => (chip.bus_mut(), Some(&mut own.bridge)),
+            Answers::Can => (chip.bus_mut(), Some(&mut own.can)),
             Answers::RegistersAlone => (chip.bus_mut(), None),
         }
     }

@@ -125,8 +125,10 @@ const BEAT_US: u32 = 100_000;
 const SLOT: usize = 1;
 
 /// When an answer on the bus may begin. The bus alone asks for one.
+#[cfg(feature = "stm32f411re")]
 pub struct Slot;
 
+#[cfg(feature = "stm32f411re")]
 impl Slot {
     /// Lets it begin at this instant, some us from now.
     pub fn at(us: u32) {

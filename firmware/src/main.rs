@@ -1,4 +1,4 @@
-//! The image of the fingertip's microcontroller (STM32F411RE).
+//! The image of the fingertip's microcontroller (STM32F411RE; [`chip`] has another).
 //!
 //! Tasks move data; what it means is decided in `tenax-logic`. Who runs where, the most urgent first:
 //!
@@ -20,6 +20,7 @@
 
 mod black_box;
 mod bridge;
+#[cfg_attr(feature = "stm32f446re", path = "can.rs")]
 mod bus;
 mod button;
 mod chip;
@@ -179,6 +180,9 @@ async fn main(spawner: Spawner) {
     });
     spawner.spawn(once(store::store(flash, log)));
     // A fingertip whose control does not run says nothing on the bus.
+    #[cfg(feature = "stm32f446re")]
+    bus::start(crystal, p.CAN1, (p.PB8, p.PB9), identity::of(cause).chip);
+    #[cfg(feature = "stm32f411re")]
     bus::start(p.USART1, (p.DMA2_CH5, p.DMA2_CH7), (p.PA15, p.PA10), p.PA12, identity::of(cause).chip);
     let urgent = URGENT.start(interrupt::I2C3_ER);
     urgent.spawn(once(control::control(scan, control)));

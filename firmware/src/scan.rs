@@ -13,14 +13,13 @@ use embassy_stm32::gpio::AnyPin;
 use embassy_stm32::pac;
 use embassy_stm32::pac::adc::regs::{Smpr1, Smpr2, Sqr1, Sqr2, Sqr3};
 use embassy_stm32::pac::adc::vals::{Dds, Exten, SampleTime};
-use embassy_stm32::pac::adccommon::vals::Adcpre;
 use embassy_stm32::pac::timer::vals::Mms;
 use embassy_stm32::peripherals::{ADC1, DMA2_CH0, TIM3};
 use tenax_hal_shim::channel::{FRAME_HZ, SCAN, SCAN_HZ, SCAN_LEN};
 use tenax_hal_shim::frame::Frame;
 
 use crate::bus;
-use crate::chip::ADC_COMMON;
+use crate::chip::{ADC, ADC_COMMON};
 use crate::clock::CORE_HZ;
 use crate::counts;
 use crate::deadline::{Deadline, Micros};
@@ -151,7 +150,7 @@ impl Scan {
 fn reset() {
     pac::RCC.apb2rstr().modify(|w| w.set_adcrst(true));
     pac::RCC.apb2rstr().modify(|w| w.set_adcrst(false));
-    ADC_COMMON.ccr().modify(|w| w.set_adcpre(Adcpre::DIV4));
+    ADC_COMMON.ccr().modify(|w| w.set_adcpre(ADC));
     pac::ADC1.cr2().modify(|w| w.set_adon(true));
 }
 

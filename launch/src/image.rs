@@ -33,20 +33,39 @@ pub enum Binary {
     Pictures,
     /// What a palm's board is flashed with.
     Palm,
+    /// The same as the first for an STM32F446RE, which says its evidence on CAN.
+    F446,
 }
 
 impl Binary {
     /// Its file's name.
     const fn name(self) -> &'static str {
         match self {
-            Self::Image => PACKAGE,
+            Self::Image | Self::F446 => PACKAGE,
             Self::Kernels => "tenax-kernels",
             Self::Frames => "tenax-frames",
             Self::Pictures => "tenax-pictures",
             Self::Palm => "tenax-palm-image",
         }
     }
+
+    /// What it is built with besides.
+    const fn features(self) -> &'static [&'static str] {
+        match self {
+            Self::Pictures => &["--features", "pictures"],
+            Self::F446 => PORT,
+            _ => &[],
+        }
+    }
+
+    /// Where it is built, in the image's folder: one of the same name does not overwrite the other.
+    const fn folder(self) -> &'static str {
+        if matches!(self, Self::F446) { "f446" } else { "" }
+    }
 }
+
+/// What the package is built with for the other chip.
+const PORT: &[&str] = &["--no-default-features", "--features", "stm32f446re"];
 
 /// Builds what is asked for of the workspace at `root`, fetching what it takes, and gives its ELF file.
 /// An error says what to install, or what the compiler said.
@@ -59,50 +78,47 @@ pub fn build(root: &Path, binary: Binary) -> Result<PathBuf> {
 
 /// Its program. How it is built is in the sources, but for what [`Toolchain`] finds.
 fn program(root: &Path, binary: Binary) -> Program<'_> {
-    let file = target_dir(root).join(TARGET).join(PROFILE).join(binary.name());
+    let file = target_dir(root).join(binary.folder()).join(TARGET).join(PROFILE).join(binary.name());
     Program { root, file, how: binary.name().to_owned() }
 }
 
 /// The same, beside other jobs.
 pub fn job<'a>(root: &'a Path, binaries: &[Binary]) -> Job<'a> {
-    // The camera's is built by itself: what is flashed has none of its features.
-    let (own, others): (Vec<Binary>, _) = binaries.iter().partition(|&&binary| binary == Binary::Pictures);
-    let bins = |binaries: &[Binary]| -> Vec<&str> {
-        binaries.iter().flat_map(|binary| ["--bin", binary.name()]).collect()
-    };
-    let mut builds = vec![bins(&others)];
-    if !own.is_empty() {
-        builds.push([bins(&own), vec!["--features", "pictures"]].concat());
-    }
-    builds.retain(|build| !build.is_empty());
+    // What has features of its own is built by itself: what is flashed has none of them.
+    let (own, others): (Vec<Binary>, _) = binaries.iter().partition(|binary| !binary.features().is_empty());
+    let groups = [others].into_iter().chain(own.into_iter().map(|binary| vec![binary]));
+    let builds: Vec<(&str, Vec<&str>)> = groups
+        .filter_map(|group| {
+            let first = group.first()?;
+            let bins = group.iter().flat_map(|binary| ["--bin", binary.name()]);
+            Some((first.folder(), bins.chain(first.features().iter().copied()).collect()))
+        })
+        .collect();
     let programs: Vec<_> = binaries.iter().map(|&binary| program(root, binary)).collect();
     let run = move |desk: &Desk| {
         if programs.iter().all(Program::is_fresh) {
             return Ok(());
         }
         let begun = SystemTime::now();
-        builds.iter().try_for_each(|build| run(root, "build", build, desk))?;
+        builds.iter().try_for_each(|(folder, build)| run(root, folder, "build", build, desk))?;
         programs.iter().try_for_each(|program| program.built(begun))
     };
     Job { name: "image", done: "built", run: Box::new(run) }
 }
 
-/// Lints the image's package with the toolchain that builds it; a warning is an error. An error says what to install, or what Clippy said.
+/// Lints the image's package with the toolchain that builds it, for both chips; a warning is an error. An error says what to install, or
+/// what Clippy said.
 pub fn clippy(root: &Path) -> Result<()> {
-    let run =
-        move |desk: &Desk| run(root, "clippy", &["--features", "pictures", "--", "--deny", "warnings"], desk);
+    let run = move |desk: &Desk| {
+        let deny = ["--", "--deny", "warnings"];
+        run(root, "", "clippy", &[["--features", "pictures"].as_slice(), &deny].concat(), desk)?;
+        let port = [["--bin", PACKAGE].as_slice(), PORT, &deny].concat();
+        run(root, Binary::F446.folder(), "clippy", &port, desk)
+    };
     jobs::run(vec![Job { name: "image", done: "linted", run: Box::new(run) }])
 }
 
-/// Compiles the image's package for another chip, named as the package's features are: what a port takes is in the sources.
-/// An error says what to install, or what the compiler said.
-pub fn port(root: &Path, chip: &str) -> Result<()> {
-    let more = ["--bin", PACKAGE, "--no-default-features", "--features", chip];
-    let run = move |desk: &Desk| run(root, "check", &more, desk);
-    jobs::run(vec![Job { name: "image", done: "compiled for another chip", run: Box::new(run) }])
-}
-
-fn run(root: &Path, verb: &str, more: &[&str], desk: &Desk) -> Result<()> {
+fn run(root: &Path, folder: &str, verb: &str, more: &[&str], desk: &Desk) -> Result<()> {
     desk.state("looking for its compiler");
     let toolchain = Toolchain::find(root, desk)?;
     if verb == "clippy" {
@@ -114,7 +130,7 @@ fn run(root: &Path, verb: &str, more: &[&str], desk: &Desk) -> Result<()> {
         .args(["--profile", PROFILE, "--package", PACKAGE, "--target", TARGET])
         .args(toolchain.build_std())
         .arg("--target-dir")
-        .arg(target_dir(root))
+        .arg(target_dir(root).join(folder))
         .args(more);
     cargo::run(&mut command, desk).with_context(|| format!("cargo {verb} of the image with {toolchain}"))
 }

@@ -126,9 +126,12 @@ pub fn image_of(arguments: &[OsString]) -> &'static [Binary] {
     match command {
         _ if has(&["--host", "--help", "-h"]) => &[],
         Some("check" | "size") => &[Binary::Image, Binary::Kernels],
-        Some("test") => &[Binary::Image, Binary::Palm, Binary::Kernels, Binary::Frames, Binary::Pictures],
+        Some("test") => {
+            &[Binary::Image, Binary::Palm, Binary::Kernels, Binary::Frames, Binary::Pictures, Binary::F446]
+        }
         Some("hand") if has(&["--emulated"]) => &[Binary::Image, Binary::Palm],
         Some("flash") if has(&["--palm"]) => &[Binary::Palm],
+        Some("run") if has(&["f446", "--chip=f446"]) => &[Binary::F446],
         Some("flash" | "learn" | "run") => &[Binary::Image],
         _ => &[],
     }
@@ -175,6 +178,7 @@ mod tests {
     #[test]
     fn only_what_runs_the_image_waits_for_it() {
         assert_eq!(image("run --seed 2"), [Binary::Image]);
+        assert_eq!(image("run --chip f446"), [Binary::F446]);
         assert_eq!(image("size --check"), [Binary::Image, Binary::Kernels]);
         for none in ["run --host", "run --help", "scenes", "chart emg", ""] {
             assert_eq!(image(none), [], "{none}");

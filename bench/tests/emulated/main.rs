@@ -6,6 +6,7 @@ mod behaviours;
 mod bringup;
 mod converter;
 mod coupling;
+mod f446;
 mod faults;
 mod feedback;
 mod hand;

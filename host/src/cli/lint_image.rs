@@ -1,23 +1,37 @@
-//! `tenax lint-image`: Clippy on the image's package, no way to panic in its control, and how deep its stack may get.
+//! `tenax lint-image`: Clippy on the image's package for both chips, no way to panic in its control, and how deep its stack may get.
 
 use std::process::ExitCode;
+
+use anyhow::ensure;
 
 use super::out;
 use super::workspace;
 use tenax_bench::budgets::Budgets;
 use tenax_bench::image;
 use tenax_bench::image::panics;
+use tenax_bench::image::size::{FLASH_BYTES, Size};
 use tenax_bench::image::stack::Bound;
-
-/// The chip besides the board's for which the image is compiled, to show what a port takes.
-const PORT: &str = "stm32f446re";
 
 pub fn main() -> anyhow::Result<ExitCode> {
     let root = workspace::root()?;
     image::clippy(&root)?;
     out::say!("image: no warnings")?;
-    image::port(&root, PORT)?;
-    out::say!("image: compiles for {PORT}, too")?;
+    let port = image::build_f446(&root)?;
+    let size = Size::read(&port)?;
+    let functions = panics::check(&port)?.functions;
+    let bound = Bound::of(&port)?;
+    ensure!(
+        size.flash <= FLASH_BYTES && bound.bytes <= bound.free,
+        "the image for the F446 takes {size:?}, {bound:?}"
+    );
+    out::say!(
+        "image: for the F446 it takes {} bytes of flash and {} of RAM, none of {functions} functions can panic, and the stack takes at \
+         most {} of {} bytes",
+        size.flash,
+        size.ram,
+        bound.bytes,
+        bound.free
+    )?;
     let elf = image::build(&root)?;
     let control = panics::check(&elf)?;
     out::say!(

@@ -3,7 +3,7 @@
 use tenax_hal_shim::channel::PVDF_COUNT;
 use tenax_hal_shim::detector::DetectorSet;
 use tenax_hal_shim::motor::Duty;
-use tenax_hal_shim::wire::{Event, NetworkState, Slow};
+use tenax_hal_shim::wire::{Event, Forces, NetworkState, Slow};
 use tenax_hal_shim::words::GripMode;
 
 use super::Fingertip;
@@ -92,5 +92,15 @@ impl Fingertip {
     /// State of the network for telemetry.
     pub fn network(&self) -> NetworkState {
         self.detectors.hebbian.state(self.journal.frame())
+    }
+
+    /// Forces of the last slow frame. None while the force sensor gives no number.
+    pub const fn forces(&self) -> Option<Forces> {
+        self.senses.forces
+    }
+
+    /// The S2 in force, per mille.
+    pub fn s2_permille(&self) -> u16 {
+        self.detectors.s2.s2_permille(&self.config.friction)
     }
 }
