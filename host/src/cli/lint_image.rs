@@ -48,13 +48,18 @@ pub fn main() -> anyhow::Result<ExitCode> {
     }
 
     let budgets = Budgets::of_checkout()?;
-    let sites = panics::sites(&elf)?;
     let mut kept = true;
-    for (source, &count) in &sites {
-        let most = budgets.panic_sites.get(source).copied().unwrap_or(0);
-        kept &= count <= most;
-        let passed = if count > most { "  PASSED" } else { "" };
-        out::say!("image: {source:<16} {count:>4} places that may panic, at most {most}{passed}")?;
+    for (name, elf) in [("image", elf), ("palm", image::build_palm(&root)?)] {
+        let sites = panics::sites(&elf)?;
+        if sites.is_empty() {
+            out::say!("{name}: no place may panic")?;
+        }
+        for (source, &count) in &sites {
+            let most = budgets.panic_sites.get(source).copied().unwrap_or(0);
+            kept &= count <= most;
+            let passed = if count > most { "  PASSED" } else { "" };
+            out::say!("{name}: {source:<16} {count:>4} places that may panic, at most {most}{passed}")?;
+        }
     }
     Ok(if kept { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

@@ -12,6 +12,9 @@
 #![no_std]
 #![no_main]
 
+#[allow(dead_code, unused_imports, reason = "a palm has no converter")]
+#[path = "../../chip.rs"]
+mod chip;
 #[path = "../../clock.rs"]
 mod clock;
 #[path = "../../flash.rs"]
