@@ -36,6 +36,7 @@ mod last_words;
 mod line;
 mod mail;
 mod micros;
+#[cfg(feature = "stm32f411re")]
 mod port;
 mod scan;
 mod stack;
