@@ -5,14 +5,17 @@ use std::sync::OnceLock;
 
 use tenax_bench::board::Run;
 use tenax_bench::board::agreement::Agreement;
-use tenax_bench::board::emulated::{self, Options};
+use tenax_bench::board::emulated::{self, Mishap, Models, Options};
 use tenax_bench::image::size::{FLASH_BYTES, Size};
 use tenax_bench::image::{build_f446, panics, stack};
 use tenax_bench::session::load_scene;
 use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
 use tenax_hal_shim::detector::DetectorSet;
+use tenax_hal_shim::words::Fault;
 use tenax_palm::can::{Evidence, Margin, Word, unpack};
 use tenax_scene::World;
+
+use crate::{Rest, Swing};
 
 fn image() -> &'static Path {
     static IMAGE: OnceLock<PathBuf> = OnceLock::new();
@@ -84,6 +87,25 @@ fn a_bus_without_anybody_changes_nothing() {
     assert_eq!((&alone.drives, &alone.events, alone.counters.ticks_late), (&heard.drives, &heard.events, 0));
     assert_eq!(alone.can, []);
     assert!(alone.can_given_up as usize + 4 >= heard.can.len(), "{} given up", alone.can_given_up);
+}
+
+/// A port that acknowledges nothing, not even that it is set up, is left alone.
+#[test]
+fn a_dead_port_changes_nothing() {
+    let options = Options { models: Models::Rigless, ..Options::default() };
+    let run = emulated::run(image(), Swing::new(0.3), &options, &mut |_| {}).expect("it runs").0;
+    let agreement = Agreement::of(&run);
+    assert!(agreement.holds() && run.slows.len() == 24, "{agreement}");
+    assert_eq!((run.can.len(), run.counters.ticks_late, run.counters.overruns), (0, 0, 0));
+}
+
+/// On its own oscillator the chip would disturb others.
+#[test]
+fn without_a_crystal_it_is_silent() {
+    let options = Options { mishaps: vec![(0.2, Mishap::CrystalStops(false))], ..Options::default() };
+    let run = emulated::run(image(), Rest::new(Swing::new(0.5)), &options, &mut |_| {}).expect("it runs").0;
+    assert_eq!(run.starts, [None, Some(Fault::CrystalLost)]);
+    assert!((26..=34).contains(&run.can.len()), "{} frames in 0.2 s", run.can.len());
 }
 
 /// In the F411's memory map, and no way to panic.
