@@ -1,7 +1,8 @@
 //! A palm's board, from a PC: which fingers its hand has, and what happens on its bus.
 
+use std::collections::VecDeque;
 use std::fmt;
-use std::io::{ErrorKind, Write};
+use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -108,7 +109,7 @@ impl fmt::Display for Told {
 pub struct Palm {
     line: Line,
     receiver: Receiver,
-    heard: std::collections::VecDeque<Up>,
+    heard: VecDeque<Up>,
     number: u16,
 }
 
@@ -165,7 +166,7 @@ impl Palm {
         }
         let mut bytes = [0; 4096];
         let length = match self.line.up.read(&mut bytes) {
-            Ok(0) => return Err(std::io::Error::from(ErrorKind::UnexpectedEof).into()),
+            Ok(0) => return Err(io::Error::from(ErrorKind::UnexpectedEof).into()),
             Ok(length) => length,
             Err(error) if is_silence(&error) => 0,
             Err(error) => return Err(error.into()),
@@ -181,13 +182,18 @@ impl Palm {
 
 impl From<Line> for Palm {
     fn from(line: Line) -> Self {
-        Self { line, receiver: Receiver::new(), heard: std::collections::VecDeque::new(), number: 0 }
+        Self { line, receiver: Receiver::new(), heard: VecDeque::new(), number: 0 }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::io::Read;
+    use std::net::{TcpListener, TcpStream};
+    use tenax_hal_shim::wire::encode;
+    use tenax_palm::bus::{Packet, Word};
+    use tenax_palm::line::{self, FRAME_UP_MAX, Lines};
 
     #[test]
     fn a_hand_is_read_and_what_is_wrong_is_named() {
@@ -205,9 +211,49 @@ mod tests {
         assert!(error(&finger("1-2-3", 1e3)).contains("at_deg = 1000 is no direction"));
         let six: String = (0..6).map(|n| finger(&format!("1-2-{n}"), 0.0)).collect();
         assert!(error(&six).contains("6 fingers; a palm has 5 at most"));
-        assert!(
-            error("[[finger]]\nchip = \"1-2-3\"\n").contains("line 1")
-                || error("[[finger]]\nchip = \"1-2-3\"\n").contains("at_deg")
-        );
+        assert!(error("[[finger]]\nchip = \"1-2-3\"\n").contains("missing field `at_deg`"));
+    }
+
+    /// A palm's board as far as its line goes, with a finger that has no place.
+    fn board() -> Line {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let near = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
+        let (mut far, _) = listener.accept().unwrap();
+        std::thread::spawn(move || {
+            let (mut palm, mut lines) = (tenax_palm::palm::Palm::new(&[], 0), Lines::default());
+            let here = Packet { address: 0, word: Word::Here { chip: [1, 2, 3], nonce: 7 } };
+            let mut frame = [0; 64];
+            let here = encode(1, &here, &mut frame).unwrap();
+            here.iter().for_each(|&byte| _ = palm.hear(byte, 0));
+            let (mut byte, mut out) = ([0], [0; FRAME_UP_MAX]);
+            while far.read_exact(&mut byte).is_ok() {
+                if let Some(places) = lines.hear(byte[0], &mut palm) {
+                    palm = tenax_palm::palm::Palm::new(&places, 0);
+                    lines.answer(line::Answer::Hand);
+                }
+                let length = lines.next(&mut palm, &mut out);
+                far.write_all(&out[..length]).unwrap();
+            }
+        });
+        near.set_read_timeout(Some(Duration::from_millis(100))).unwrap();
+        Line { up: Box::new(near.try_clone().unwrap()), down: Some(Box::new(near)) }
+    }
+
+    #[test]
+    fn a_palm_says_who_is_there_and_keeps_who_is_named() {
+        let mut palm = Palm::from(board());
+        assert_eq!(palm.hand().unwrap(), Places::new());
+        let places = parse("[[finger]]\nchip = \"1-2-3\"\nat_deg = 90\nceiling_n = 20\n").unwrap();
+        palm.keep(&places).unwrap();
+        assert_eq!(palm.hand().unwrap(), places);
+    }
+
+    #[test]
+    fn reports_are_told_in_words() {
+        let mut palm = Palm::from(board());
+        // Whatever comes makes the board look at what it has to say.
+        palm.line.down.as_mut().unwrap().write_all(&[0]).unwrap();
+        let report = std::iter::repeat_with(|| palm.report().unwrap()).take(20).flatten().next().unwrap();
+        assert_eq!(Told(report).to_string(), "chip 00000001-00000002-00000003 is no finger of this hand");
     }
 }
