@@ -152,9 +152,8 @@ impl Palm {
         self.number = self.number.wrapping_add(1);
         let began = Instant::now();
         while began.elapsed() < within {
-            match self.next()? {
-                Some(answer @ (Up::Hand(_) | Up::Refused)) => return Ok(answer),
-                Some(_) | None => {}
+            if let Some(answer @ (Up::Hand(_) | Up::Refused)) = self.next()? {
+                return Ok(answer);
             }
         }
         bail!("no answer in {} s: is this a palm's line?", within.as_secs())
