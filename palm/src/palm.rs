@@ -96,8 +96,6 @@ pub struct Palm {
     is_fresh: bool,
     /// Nothing more is to be said in this cycle, unless something is heard.
     rests: bool,
-    /// The force is shared at the end of this cycle.
-    shares: bool,
     claim: u8,
     stray: u32,
     stray_us: u32,
@@ -148,7 +146,6 @@ impl Palm {
             has_claimed: false,
             is_fresh: true,
             rests: false,
-            shares: false,
             claim: 0,
             stray: 0,
             stray_us: now_us,
@@ -247,11 +244,7 @@ impl Palm {
         if since_us >= CYCLE_US {
             self.begin(now_us, since_us);
         } else {
-            // All have answered, and nobody waits for the palm until the next cycle.
             self.rests = true;
-            if core::mem::take(&mut self.shares) {
-                self.allot();
-            }
         }
         None
     }
@@ -265,8 +258,7 @@ impl Palm {
             seat.slips_until = seat.slips_until.filter(|&until_us| !reached(now_us, until_us));
             seat.strikes = if self.cycles.is_multiple_of(STRIKES_CYCLES) { 0 } else { seat.strikes };
         }
-        if core::mem::replace(&mut self.shares, self.cycles.is_multiple_of(SHARE_CYCLES)) {
-            // The cycle before had no rest.
+        if self.cycles.is_multiple_of(SHARE_CYCLES) {
             self.allot();
         }
         if reached(now_us, self.stray_us.wrapping_add(NOISE_US)) {
@@ -343,9 +335,8 @@ impl Palm {
         }
         (seat.missed, seat.held_mn) = (0, None);
         seat.state = Some(state);
-        self.shares |= begins;
-        if contracts {
-            self.seats.iter_mut().for_each(|seat| seat.want_mn = None);
+        if begins || contracts {
+            self.allot();
         }
     }
 
