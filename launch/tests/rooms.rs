@@ -14,7 +14,7 @@ const STANDS_ON: [(&str, &[&str]); 18] = [
     ("vision/quarter", &[]),
     ("firmware", &["hal-shim", "logic", "palm", "vision/quarter"]),
     ("launch", &[]),
-    ("serial", &["hal-shim", "launch", "logic"]),
+    ("serial", &["hal-shim", "launch", "logic", "palm"]),
     ("plot", &[]),
     ("board-model", &["hal-shim"]),
     ("bench", &["board-model", "hal-shim", "launch", "logic", "palm", "plot", "scene", "serial"]),
