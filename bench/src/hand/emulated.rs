@@ -97,7 +97,7 @@ pub struct PalmDid {
     /// Whether the host's build of the palm, given what this image was given, says the same.
     pub agreement: PalmAgreement,
     pub stack_bytes: u64,
-    /// It never sleeps.
+    /// Everything that the core executed in a second.
     pub instructions_per_s: f64,
 }
 
