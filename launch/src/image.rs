@@ -125,7 +125,9 @@ fn run(root: &Path, folder: &str, verb: &str, more: &[&str], desk: &Desk) -> Res
         toolchain.fetch_clippy(desk)?;
     }
     let mut command = toolchain.cargo(verb);
+    // What both chips' images are made of is compiled once, whichever folder each then stands in.
     command
+        .env("CARGO_BUILD_BUILD_DIR", target_dir(root))
         .current_dir(root)
         .args(["--profile", PROFILE, "--package", PACKAGE, "--target", TARGET])
         .args(toolchain.build_std())
