@@ -1,6 +1,8 @@
 //! Scenes in which a reflex of many guards failed, beside their bound: what has to be kept, and with how much.
 //! `cargo test -p tenax-bench --test all failures -- --nocapture` prints the table of docs/scenes.md.
 
+use std::sync::OnceLock;
+
 use crate::common::{asked, parsed, text};
 use tenax_bench::disturbances;
 use tenax_bench::report::Report;
@@ -23,8 +25,11 @@ const SCENES: [(&str, bool, f64); 10] = [
     ("dead-extensor", true, f64::INFINITY),
 ];
 
-fn ran(name: &str) -> Report {
-    crate::common::ran(&parsed(&text(name)), 1).report
+/// What became of one of them, which is played once, whichever tests look at it.
+fn ran(name: &str) -> &'static Report {
+    static RAN: [OnceLock<Report>; SCENES.len()] = [const { OnceLock::new() }; SCENES.len()];
+    let at = SCENES.iter().position(|(own, ..)| *own == name).expect("a scene of the table");
+    RAN[at].get_or_init(|| crate::common::ran(&parsed(&text(name)), 1).report)
 }
 
 #[test]

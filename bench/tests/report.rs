@@ -117,13 +117,14 @@ fn no_hand_and_no_control_is_better_than_the_bound() {
         let file = parsed(&text(scene));
         let outcome = ran(&file, 1);
         let controls = if whole { controls::runs(&file, 1, &outcome.truth) } else { Vec::new() };
-        for (name, fate) in std::iter::once(("the hand".to_owned(), outcome.truth)).chain(controls) {
-            let bound = controls::bound(&file, 1, &fate);
-            let own = Bound::of(Some(&fate), Some(&bound));
-            let longer = bound.distance_mm - fate.distance_mm > SAME_MM;
-            let harder = own.peak_force_ratio.is_some_and(|ratio| ratio < 1.0 - TOLERANCE);
-            if longer || harder || (fate.kept() && !bound.kept()) {
-                worse.push(format!("{scene}, {name}: {own:?}"));
+        let beside = |fate: &Fate| Bound::of(Some(fate), Some(&controls::bound(&file, 1, fate)));
+        let controls = controls.into_iter().map(|(name, fate)| (name, beside(&fate), fate));
+        let hand = ("the hand".to_owned(), outcome.report.bound, outcome.truth);
+        for (name, bound, fate) in std::iter::once(hand).chain(controls) {
+            let longer = bound.distance_mm.unwrap() - fate.distance_mm > SAME_MM;
+            let harder = bound.peak_force_ratio.is_some_and(|ratio| ratio < 1.0 - TOLERANCE);
+            if longer || harder || (fate.kept() && bound.kept == Some(false)) {
+                worse.push(format!("{scene}, {name}: {bound:?}"));
             }
         }
     }

@@ -60,12 +60,12 @@ impl Hand {
 
 // Shows B9.
 #[test]
-fn a_grasp_at_the_ceiling_for_an_hour_stops_no_motor() {
+fn a_grasp_at_the_ceiling_for_a_quarter_of_an_hour_stops_no_motor() {
     // What is held gives way by 2 N a second, and slips for ever as far as anybody knows: the reflex closes up to the ceiling all
-    // the hour.
+    // the time. The winding's heat settles within seconds.
     let mut hand = Hand::new(71);
     let mut most_n: f64 = 0.0;
-    for frame in 0..3_600 * FRAMES_PER_S {
+    for frame in 0..900 * FRAMES_PER_S {
         hand.bench.fingertip.inject(Said::slip(frame > 4 * FRAMES_PER_S));
         hand.width_mm -= 2.0 / 1.5 * FRAME_S * f64::from(u8::from(hand.width_mm > 20.0));
         if hand.width_mm <= 20.0 {
@@ -76,8 +76,8 @@ fn a_grasp_at_the_ceiling_for_an_hour_stops_no_motor() {
         most_n = most_n.max(hand.force_n());
     }
     let driven_s = f64::from(hand.drives) * FRAME_S;
-    println!("driven for {driven_s:.0} s of the hour, up to {most_n:.1} N");
-    assert!(driven_s > 60.0 && most_n > 39.0, "the control: {driven_s} s, {most_n} N");
+    println!("driven for {driven_s:.0} s of the quarter, up to {most_n:.1} N");
+    assert!(driven_s > 15.0 && most_n > 39.0, "the control: {driven_s} s, {most_n} N");
     assert_eq!(hand.stops(), []);
 }
 

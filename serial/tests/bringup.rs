@@ -1,5 +1,4 @@
 //! Steps of bring-up on a board that is played: one that forgets what it told as saved.
-#![cfg(unix)]
 
 use std::cell::Cell;
 use std::io::{Read, Write};

@@ -1,8 +1,6 @@
 //! Markers that are drawn where the test says, moved, covered and imitated.
 
-mod common;
-
-use common::{Noise, draw_discs, plane};
+use crate::common::{Noise, draw_discs, plane};
 use tenax_vision::frame::Plane;
 use tenax_vision::markers::{Calibration, Failure, Markers};
 

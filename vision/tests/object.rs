@@ -1,8 +1,6 @@
 //! An object that is drawn before a background of its own colours, moved, held and taken away.
 
-mod common;
-
-use common::{Noise, plane};
+use crate::common::{Noise, plane};
 use tenax_vision::frame::{Frame, PIXELS, Plane, WIDTH};
 use tenax_vision::mask::Mask;
 use tenax_vision::object::{Config, Running, Sighting, Tracker};

@@ -1,10 +1,8 @@
 //! The markers of the real sensor, beside what its author's software makes of the same video.
 
-mod common;
-
 use std::collections::HashMap;
 
-use common::{for_each_frame, plane, recording};
+use crate::common::{for_each_frame, plane, recording};
 use tenax_vision::Point;
 use tenax_vision::markers::{Calibration, Markers};
 

@@ -1,11 +1,9 @@
 //! The object in the real video, beside outlines of the cards that were drawn by hand.
 
-mod common;
-
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use common::{for_each_frame, plane, recording};
+use crate::common::{for_each_frame, plane, recording};
 use tenax_vision::mask::Mask;
 use tenax_vision::object::{Config, Running, Tracker};
 

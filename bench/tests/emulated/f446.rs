@@ -25,17 +25,17 @@ fn image() -> &'static Path {
     })
 }
 
-fn glass(image: &Path, options: &Options) -> Run {
-    let world = World::new(&load_scene("glass").expect("a scene"), 1);
+fn picked_up(image: &Path, options: &Options) -> Run {
+    let world = World::new(&load_scene("array-pick").expect("a scene"), 1);
     emulated::run(image, world, options, &mut |_| {}).expect("it runs").0
 }
 
 fn heard() -> &'static Run {
     static HEARD: OnceLock<Run> = OnceLock::new();
-    HEARD.get_or_init(|| glass(image(), &Options::default()))
+    HEARD.get_or_init(|| picked_up(image(), &Options::default()))
 }
 
-/// A glass that water makes slippery: every tick as on the host, and each slow frame's evidence and margin on CAN are those that the host
+/// A picked-up object that slips: every tick as on the host, and each slow frame's evidence and margin on CAN are those that the host
 /// finds in the same codes.
 #[test]
 fn it_decides_what_the_host_decides_and_says_so_on_can() {
@@ -82,7 +82,7 @@ fn it_decides_what_the_host_decides_and_says_so_on_can() {
 /// Nobody acknowledges: each frame is given up when the next is due, and the fingertip is none the wiser.
 #[test]
 fn a_bus_without_anybody_changes_nothing() {
-    let (heard, alone) = (heard(), glass(image(), &Options { can_is_alone: true, ..Options::default() }));
+    let (heard, alone) = (heard(), picked_up(image(), &Options { can_is_alone: true, ..Options::default() }));
     assert_eq!((alone.slows == heard.slows, alone.scans == heard.scans), (true, true));
     assert_eq!((&alone.drives, &alone.events, alone.counters.ticks_late), (&heard.drives, &heard.events, 0));
     assert_eq!(alone.can, []);

@@ -102,17 +102,17 @@ fn dma_that_cannot_reach_its_ring_is_a_panic_in_every_scan_of_a_frame() {
 fn a_board_that_restarts_again_and_again_stays_off_in_the_end_and_its_button_opens() {
     let drive = MotorDrive::Close(Duty::per_mille(400));
     let mut plant = Swing::new(4.2).holding(2.5, 1.2);
-    // Each time it drives, it hangs: so it would close a little further after each restart.
-    let mut mishaps = Vec::new();
+    // Each time it drives, it hangs or its supply breaks down: so it would close a little further after each restart.
+    let (mut mishaps, mut starts) = (Vec::new(), vec![None]);
     for n in 0..6 {
         let at_s = 0.3 + 0.35 * f64::from(n);
         plant = plant.sending(at_s - 0.05, Down::Drive { drive, hold_ms: 250 });
-        mishaps.push((at_s, Mishap::CoreHangs));
+        let hangs = n % 2 == 0;
+        mishaps.push((at_s, if hangs { Mishap::CoreHangs } else { Mishap::BrownsOut }));
+        starts.push(Some(if hangs { Fault::WatchdogReset } else { Fault::SupplySagged }));
     }
+    starts[6] = Some(Fault::TooManyRestarts);
     let run = run(Rest::new(plant), &Options { mishaps, ..Options::default() });
-    let mut starts = vec![None];
-    starts.extend([Some(Fault::WatchdogReset); 5]);
-    starts.push(Some(Fault::TooManyRestarts));
     assert_eq!(run.starts, starts);
     let last = 0.3 + 0.35 * 5.0;
     assert!(drives(&run, 0.0, last).contains(&drive), "before, it does what it is told");

@@ -9,7 +9,7 @@ use tenax_scene::World;
 
 use crate::run;
 
-/// That the block is kept is `studies/tests/photoelastic.rs`; here the image does what the host does.
+/// That the block is kept is `studies/tests/all/photoelastic.rs`; here the image does what the host does.
 #[test]
 fn the_image_answers_a_pulled_block_with_it_as_the_host_would() {
     let file = session::load_scene("head-alone").unwrap();

@@ -1,7 +1,6 @@
 //! A lesson on the emulated board, beside the same on the host.
-#![cfg(feature = "emulator")]
 
-#[path = "../../host-tests/src/onsets.rs"]
+#[path = "../../../host-tests/src/onsets.rs"]
 mod onsets;
 
 use std::path::Path;
@@ -16,7 +15,7 @@ use tenax_studies::learn::chain::Chain;
 use tenax_studies::learn::finger::Finger;
 use tenax_studies::learn::trial::Setup;
 
-use onsets::held_against_evidence;
+use self::onsets::held_against_evidence;
 
 /// What `tenax learn` says of all its trials: the camera teaches over the line, and every weight is the host's.
 #[test]

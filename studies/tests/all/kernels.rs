@@ -1,5 +1,4 @@
 //! The array detector on the emulated core against this machine's, and what it costs there. Builds its image first.
-#![cfg(feature = "emulator")]
 
 mod pictures;
 #[cfg(unix)]
