@@ -4,6 +4,7 @@
 //! to the others, [`DELAY_SLOTS`] later. So the wires are as if they were long; nothing else differs from a bus without
 //! stops. The images' crystals are one.
 
+mod course;
 mod hub;
 mod palm;
 mod replay;
@@ -189,7 +190,7 @@ pub fn run([image, palm_image]: [&Path; 2], scene: &SceneFile, options: &Options
                         Image::new(Path::new("flash"), kept.1.clone(), Some(kept.0))?,
                         Image::new(Path::new("chip"), number, Some(CHIP_AT))?,
                     ];
-                    let world = World::new(n, hub.clone(), symbols, seconds, stuck_s);
+                    let world = World::new(n, hub.clone(), symbols.clone(), seconds, stuck_s);
                     let does = symbols.bus.into_iter().chain([symbols.tick, symbols.command]);
                     let ran = execute(&images, cores, &does.collect::<Vec<_>>(), world);
                     if ran.is_err() {
@@ -215,8 +216,8 @@ pub fn run([image, palm_image]: [&Path; 2], scene: &SceneFile, options: &Options
             late: counters.ticks_late,
             lost: counters.frames_lost + counters.overruns,
             dropped: counters.telemetry_dropped,
-            stack_bytes: log.stack_bytes,
-            instructions_per_s: log.instructions_per_s,
+            stack_bytes: log.kept.stack_bytes,
+            instructions_per_s: log.kept.instructions_per_s,
         }
     });
     let fingers = done.collect();
@@ -225,8 +226,8 @@ pub fn run([image, palm_image]: [&Path; 2], scene: &SceneFile, options: &Options
         fingers,
         palm: PalmDid {
             agreement: PalmAgreement::of(&palm, &places),
-            stack_bytes: palm.stack_bytes,
-            instructions_per_s: palm.instructions_per_s,
+            stack_bytes: palm.kept.stack_bytes,
+            instructions_per_s: palm.kept.instructions_per_s,
         },
         seconds,
         dropped: hand.fingers.is_dropped(),

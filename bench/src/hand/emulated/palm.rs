@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 use std::fmt;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use rigless::emulator::{Driver, Host, Settled, Stop};
@@ -9,7 +10,6 @@ use rigless::session::Session;
 use rigless::soc::Width;
 use rigless::time::VirtualNanos;
 use serde::Serialize;
-use tenax_board_model::flash::FlashArray;
 use tenax_board_model::nucleo::Nucleo;
 use tenax_hal_shim::channel::SCAN_HZ;
 use tenax_hal_shim::wire::{self, Down, Receiver};
@@ -19,9 +19,8 @@ use tenax_palm::palm::{Palm, Report};
 use tenax_palm::places::Places;
 use tenax_serial::link::{Encoder, Inbox, behind};
 
-use super::hub::{Did, Hub, STOP_NS};
-use super::world::{BOOT_NS, SEEK_NS, STOPS_PER_SCAN, WORD_NS, driver_of, next_burst};
-use crate::board::emulated::cost::stack_used;
+use super::course::{Course, Kept, STOPS_PER_SCAN};
+use super::hub::Hub;
 use crate::image::symbols::PalmSymbols;
 
 /// Bytes of each of the image's rings.
@@ -51,12 +50,9 @@ enum Event {
 #[derive(Debug, Default)]
 pub struct Log {
     events: Vec<Event>,
-    heard: Vec<u8>,
-    sent: Vec<u8>,
     /// What went down its line.
     down: Vec<u8>,
-    pub stack_bytes: u64,
-    pub instructions_per_s: f64,
+    pub kept: Kept,
     /// What it said on its line: when what was reported, s; each finger's line, and the answers in it.
     pub reports: Vec<(f64, Report)>,
     pub said: Vec<(f64, line::Up)>,
@@ -65,17 +61,12 @@ pub struct Log {
 }
 
 pub struct World {
-    n: usize,
-    hub: Arc<Hub>,
+    /// Its time begins with the first of its steps.
+    course: Course,
     pub log: Log,
     symbols: PalmSymbols,
-    flash: FlashArray,
     stops_max: u64,
-    /// The first of its steps, and what had been executed then.
-    began: Option<(VirtualNanos, u64)>,
     start: Option<Event>,
-    stops: u64,
-    drivers: Vec<(u64, bool)>,
     receiver: Receiver,
     /// Bytes for its line, and from when on, s.
     commands: VecDeque<(f64, Vec<u8>)>,
@@ -97,17 +88,12 @@ impl World {
             ..Log::default()
         };
         Self {
-            n: fingers,
-            hub,
+            course: Course::new(fingers, hub),
             log,
             symbols,
-            flash: FlashArray::new(WORD_NS),
             // The fingertips' last scan is nobody's to wait for.
             stops_max: ((seconds * f64::from(SCAN_HZ)) as u64 - 1) * STOPS_PER_SCAN + 1,
-            began: None,
             start: None,
-            stops: 0,
-            drivers: Vec::new(),
             receiver: Receiver::new(),
             commands: commands.collect(),
         }
@@ -130,25 +116,12 @@ impl World {
     }
 
     fn stop(&mut self, session: &mut Session<Nucleo>, stop: Stop) -> Option<VirtualNanos> {
-        let (began, _) = self.began?;
-        let since = |at: u64| at.saturating_sub(began.0);
-        let mut did = Did { now_ns: since(stop.at.0), ..Did::default() };
-        did.drivers = std::mem::take(&mut self.drivers).into_iter().map(|(at, on)| (since(at), on)).collect();
-        if let Some(end) = session.board_mut().mcu.bus_end(stop.at) {
-            let bytes = std::mem::take(&mut end.up);
-            self.log.sent.extend(bytes.iter().map(|(_, byte)| byte));
-            did.bytes = bytes.into_iter().map(|(at, byte)| (since(at.0), byte)).collect();
+        let did = self.course.did(session, stop.at);
+        if self.course.stops.is_multiple_of(LINE_STOPS) {
+            self.line(session, stop.at, did.now_ns as f64 / 1e9);
         }
-        if self.stops.is_multiple_of(LINE_STOPS) {
-            self.line(session, stop.at, since(stop.at.0) as f64 / 1e9);
-        }
-        let given = self.hub.meet(self.n, did)?;
-        self.stops += 1;
-        let next = VirtualNanos(began.0 + self.stops * STOP_NS);
-        if let Some(end) = session.board_mut().mcu.bus_end(stop.at) {
-            end.down.extend(given.bytes.into_iter().map(|(at, byte)| (VirtualNanos(began.0 + at), byte)));
-        }
-        Some(next_burst(session, stop.at, next))
+        let given = self.course.meet(did)?;
+        self.course.go_on(session, stop.at, given.bytes)
     }
 
     /// What came up its line, and what is due down.
@@ -179,14 +152,8 @@ impl World {
 
 impl Driver<Nucleo> for World {
     fn on_settled(&mut self, session: &mut Session<Nucleo>, host: &mut dyn Host, settled: Settled) {
-        match settled {
-            Settled::Hit(hit) => self.hit(hit.address, host),
-            Settled::Access { access, .. } => {
-                self.drivers.extend(driver_of(&access));
-                self.flash.accessed(&access, session, host);
-            }
-            Settled::Stop(stop) => self.flash.stopped(stop, session, host),
-            _ => {}
+        if let Some(address) = self.course.settled(session, host, settled) {
+            self.hit(address, host);
         }
     }
 
@@ -196,33 +163,17 @@ impl Driver<Nucleo> for World {
         stop: Stop,
         host: &mut dyn Host,
     ) -> Option<VirtualNanos> {
-        let due = self.began.map(|(began, _)| VirtualNanos(began.0 + self.stops * STOP_NS));
-        if let Some(due) = due.filter(|&due| stop.at < due) {
-            // A stop for the first byte behind a pause.
-            return Some(next_burst(session, stop.at, due));
+        if let Some(next) = self.course.between(session, stop.at) {
+            return Some(next);
         }
-        if self.began.is_none() {
-            if self.log.events.is_empty() {
-                let waits = stop.at.0 < BOOT_NS;
-                if !waits {
-                    self.hub.leave();
-                }
-                return waits.then_some(VirtualNanos(stop.at.0 + SEEK_NS));
-            }
-            self.began = Some((stop.at, stop.instruction_count));
+        if let ControlFlow::Break(next) = self.course.begins(stop, !self.log.events.is_empty()) {
+            return next;
         }
-        if self.stops >= self.stops_max {
-            if let Some(end) = session.board_mut().mcu.bus_end(stop.at) {
-                self.log.heard = std::mem::take(&mut end.heard);
-            }
-            self.log.stack_bytes = stack_used(&self.symbols.stack, host);
-            if let Some((began, executed)) = self.began {
-                let lasted_s = (stop.at.0 - began.0) as f64 / 1e9;
-                self.log.instructions_per_s = (stop.instruction_count - executed) as f64 / lasted_s;
-            }
-            return None;
+        if self.course.stops < self.stops_max {
+            return self.stop(session, stop);
         }
-        self.stop(session, stop)
+        self.log.kept = self.course.end(session, stop, host, &self.symbols.stack);
+        None
     }
 }
 
@@ -251,7 +202,7 @@ impl Agreement {
     fn replay(&mut self, log: &Log, places: &Places) -> Result<(), String> {
         let (mut palm, mut lines) = (Palm::new(places, 0), Lines::default());
         let mut has_started = false;
-        let (mut heard, mut down) = (Ring::new(&log.heard), Ring::new(&log.down));
+        let (mut heard, mut down) = (Ring::new(&log.kept.heard), Ring::new(&log.down));
         let mut out = [0; FRAME_MAX];
         for event in &log.events {
             match *event {
@@ -265,7 +216,7 @@ impl Agreement {
                 Event::Take { to } => down.until(to, |byte| _ = lines.hear(byte, &mut palm))?,
                 Event::Step { at_us } => {
                     let length = palm.step(at_us, &mut out);
-                    let rest = &log.sent[self.bytes..];
+                    let rest = &log.kept.sent[self.bytes..];
                     let frame = &out[..length];
                     if rest.starts_with(frame) {
                         self.frames += usize::from(length > 0);
@@ -279,7 +230,7 @@ impl Agreement {
                 }
             }
         }
-        let left = log.sent.len() - self.bytes;
+        let left = log.kept.sent.len() - self.bytes;
         if left > FRAME_MAX {
             return Err(format!("from byte {} on the image said what the host does not", self.bytes));
         }

@@ -169,14 +169,14 @@ impl<'a> Replay<'a> {
         self.ring = to % RING;
         let mut out = [0; FRAME_MAX];
         for _ in 0..count {
-            let Some(&byte) = self.log.heard.get(self.heard) else {
+            let Some(&byte) = self.log.kept.heard.get(self.heard) else {
                 return self.differs(format!("the image read {} bytes more than came", self.heard));
             };
             self.heard += 1;
             let Some(answer) = self.end.hear(byte, at_us, &mut out) else { continue };
             self.has_joined = true;
             let answer = &out[..answer.length];
-            let rest = &self.log.sent[self.sent..];
+            let rest = &self.log.kept.sent[self.sent..];
             if rest.starts_with(answer) {
                 self.sent += answer.len();
                 self.agreement.answers += 1;
@@ -191,7 +191,7 @@ impl<'a> Replay<'a> {
     }
 
     fn conclude(mut self) -> Agreement {
-        let left = self.log.sent.len() - self.sent;
+        let left = self.log.kept.sent.len() - self.sent;
         if left > FRAME_MAX {
             self.differs(format!("from byte {} on the image sent what the host does not", self.sent));
         }
