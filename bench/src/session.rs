@@ -178,7 +178,8 @@ pub fn scene_alone(
     judged(file, seed, board, line, recorder, &mut |_| {}, &|_| None)
 }
 
-/// As [`scene`], with the board's line used so; `recorder` is told of the scene's run as it goes.
+/// As [`scene`], with the board's line used so; `recorder` is told of the scene's run as it goes. `progress` hears of an infinite time
+/// while the bound is searched, which can take longer than the run.
 pub fn scene_served(
     file: &SceneFile,
     seed: u64,
@@ -210,6 +211,7 @@ fn judged(
     let (run, Served { mut plant, .. }) = board.record(plant, &mut (&mut witness, recorder), progress)?;
     plant.draw();
     let truth = Fate { grips: std::mem::take(&mut plant.grips), ..Fate::of(plant.world.truth(), file) };
+    progress(f64::INFINITY);
     let bound = bound(&truth);
     witness.sketch.needs = Some(plant.needs);
     let (report, mut figure, _) =

@@ -24,8 +24,11 @@ impl Progress {
         Self { what: what.to_owned(), virtual_s, said: Mutex::new(Instant::now()), status: Status::new(what) }
     }
 
-    /// So many virtual seconds have gone by.
+    /// So many virtual seconds have gone by; infinitely many while the bound of a scene is searched.
     pub fn at(&self, virtual_s: f64) {
+        if virtual_s.is_infinite() {
+            return self.status.say(format!("{}: searching the least force that holds", self.what));
+        }
         let part = (virtual_s / self.virtual_s).clamp(0.0, 1.0);
         // Whoever finds another thread saying it has nothing to add.
         let Ok(mut said) = self.said.try_lock() else {
