@@ -21,6 +21,7 @@ use crate::image::symbols::Symbols;
 /// The port of the bus, and its interrupt at the end of an answer.
 const USART1_CR1: u64 = 0x4001_100C;
 const CR1_TCIE: u64 = 1 << 6;
+
 /// What an image did that its end of the bus, or its logic, saw.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
