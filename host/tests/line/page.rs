@@ -32,13 +32,14 @@ fn points(page: &mut Page, plot: &str, [r, g, b]: [u8; 3]) -> u64 {
 }
 
 #[test]
+#[cfg_attr(not(chromium), ignore = "no Chromium here: TENAX_CHROMIUM names one that is not on PATH")]
 fn a_person_sees_the_board_beside_the_truth_zooms_pauses_and_sets_a_setting() {
     // The glass is grasped within a second, and with that the consent of who switched the board on is over.
     let glass = include_str!("../../../scenes/glass.toml");
     let glass = glass.replacen("\n[contact]", "\nline_trusted = true\n\n[contact]", 1);
     let mut served = Serving::start_telling(&glass);
     let web = Web::watching(&served.places[0], &["--control", "--truth", &served.places[1]]);
-    let Some(mut page) = Page::open(&web.url) else { return served.kill() };
+    let mut page = Page::open(&web.url);
 
     until(&mut page, "at('mode').textContent !== '-' && points.length > 40");
     let settings = format!("document.querySelectorAll('#settings tr').length === {}", SettingId::ALL.len());
@@ -113,12 +114,13 @@ fn a_person_sees_the_board_beside_the_truth_zooms_pauses_and_sets_a_setting() {
 }
 
 #[test]
+#[cfg_attr(not(chromium), ignore = "no Chromium here: TENAX_CHROMIUM names one that is not on PATH")]
 fn a_person_tests_the_wires_and_grips_at_the_bench_in_the_page() {
     let bench = include_str!("../../../scenes/parts/bench.toml");
     let dead = "\n[[fault]]\nat_s = 0\nchannel = \"fsr_b\"\nkind = \"dead\"\nreason = \"a test\"\n";
     let mut served = Serving::start_telling(&format!("{bench}{dead}"));
     let web = Web::watching(&served.places[0], &["--control", "--truth", &served.places[1]]);
-    let Some(mut page) = Page::open(&web.url) else { return served.kill() };
+    let mut page = Page::open(&web.url);
     until(
         &mut page,
         "at('keys').childElementCount === 8 && !at('keys').firstChild.disabled && points.length > 40",

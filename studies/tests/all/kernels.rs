@@ -143,18 +143,16 @@ fn every_row_of_the_table_has_its_costs() {
 }
 
 /// Cycles that others have published, beside the estimate. Their sources are not in this tree: `TENAX_PUBLISHED` names a CSV file
-/// (elf,kernel,cycles, then the flash: line,lines,literals,waits,ahead) of images with the mailbox's symbols; without it this is skipped.
+/// (elf,kernel,cycles, then the flash: line,lines,literals,waits,ahead) of images with the mailbox's symbols.
 ///
 /// Those that were met, all without waits but the last two: on an STM32F407 ChaCha of 8, 12 and 20 rounds (chacha-arm-cortex-m:
 /// 414, 572, 888; estimated 380, 530, 830), AES-128's key expansion and one block (aes-armcortexm: 255, 645; 238, 617); X25519, by its
 /// author's count (X25519-Cortex-M4: 548 873; 532 974). What measures is in the first five, about ten cycles of a call. On an
 /// STM32WLE5, whose flash is assumed, two of p256-cm4: 2.7 and 2.3 % more than published.
 #[test]
+#[ignore = "needs counts and images of others: TENAX_PUBLISHED=table.csv cargo test ... -- --ignored"]
 fn published_cycles_are_met() {
-    let Some(table) = std::env::var_os("TENAX_PUBLISHED") else {
-        println!("skipped: TENAX_PUBLISHED is not set");
-        return;
-    };
+    let table = std::env::var_os("TENAX_PUBLISHED").expect("TENAX_PUBLISHED names a table");
     for row in std::fs::read_to_string(table).unwrap().lines().skip(1) {
         let [elf, kernel, numbers @ ..] = &row.split(',').collect::<Vec<_>>()[..] else { panic!("{row}") };
         let numbers: Vec<u64> = numbers.iter().map(|number| number.parse().unwrap()).collect();
