@@ -26,3 +26,21 @@ fn a_gripper_keeps_what_it_lifts_and_one_that_waits_for_a_wearer_leaves_it_behin
         assert_eq!(control["object"]["kept"], false, "what is left behind is not kept");
     }
 }
+
+/// The robot lifts while its fingers still close, so that the block slips along them. In the control its
+/// motor counts as louder than slip.
+// Shows R1.
+#[test]
+fn what_slips_while_a_robot_closes_is_answered() {
+    let quiet = text("pick-up");
+    let loud = format!("{quiet}\n[[command]]\nat_s = 0.2\nkind = \"set-noisy-duty-permille\"\nvalue = 50\n");
+    for seed in 1..=4 {
+        let [quiet, loud] = [&quiet, &loud].map(|text| {
+            let report = ran(&parsed(text), seed).report;
+            (report.object.kept, report.slip.distance_mm.unwrap())
+        });
+        println!("seed {seed}: {quiet:?} {loud:?}");
+        assert!(quiet.0 == Some(true) && quiet.1 < 10.0, "seed {seed}: {quiet:?}");
+        assert!(loud.0 == Some(false) && loud.1 > 60.0, "seed {seed}: {loud:?}");
+    }
+}

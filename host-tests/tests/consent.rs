@@ -5,6 +5,7 @@ use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{Answer, Down, EventKind, Received, Refusal, Up};
 use tenax_hal_shim::words::{Code, Consent, GripMode, Line};
 use tenax_host_tests::{Bench, set};
+use tenax_logic::config::Config;
 use tenax_logic::device::Device;
 use tenax_logic::fingertip::Fingertip;
 use tenax_logic::setting::SettingId;
@@ -178,6 +179,30 @@ fn to_coast_silences_no_reflex() {
         bench.run(200);
     }
     assert!(bench.by_reflex() > 500, "{}", bench.by_reflex());
+}
+
+/// As slowly as the motor is quieter than slip; a hand that is held where it is, or closes faster, does not listen.
+// Shows R1, L4.
+#[test]
+fn a_line_that_closes_slowly_silences_no_reflex() {
+    let by_reflex = |duty: u16, muscle_mv: f64| {
+        let mut bench = Bench::holding(8);
+        bench.muscles(muscle_mv, 40.0);
+        bench.run(600);
+        bench.slows.clear();
+        bench.vibration_mv = 800.0;
+        for _ in 0..40 {
+            let close = Down::Drive { drive: MotorDrive::Close(Duty::per_mille(duty)), hold_ms: 100 };
+            let _ = bench.fingertip.command(&close);
+            bench.run(200);
+        }
+        bench.by_reflex()
+    };
+    let loud = Config::default().hebbian.loud_duty_permille;
+    assert!(by_reflex(1, 40.0) > 500 && by_reflex(loud - 1, 40.0) > 500);
+    for (duty, muscle_mv) in [(0, 40.0), (loud, 40.0), (1_000, 40.0), (1, 400.0)] {
+        assert_eq!(by_reflex(duty, muscle_mv), 0, "{duty} per mille, {muscle_mv} mV");
+    }
 }
 
 /// By consent, of an untrusted line: a gripper's may hold for as long as it likes.

@@ -29,6 +29,12 @@ pub const fn arbitrate(wishes: Wishes) -> (MotorDrive, DriveSource) {
             (MotorDrive::Coast, DriveSource::Nobody)
         }
         Wishes { wearer: close @ MotorDrive::Close(_), .. } => (close, DriveSource::Wearer),
+        // Slip while the line closes: the faster of both.
+        Wishes { link: Some(MotorDrive::Close(link)), reflex: close @ MotorDrive::Close(own), .. }
+            if own.as_per_mille() > link.as_per_mille() =>
+        {
+            (close, DriveSource::Reflex)
+        }
         // Then a command that moves the hand. It opens nothing that the wearer holds, and one to coast asks for nothing: it
         // does not silence the reflex.
         Wishes { link: Some(drive @ (MotorDrive::Open(_) | MotorDrive::Close(_))), .. } => {
@@ -60,7 +66,8 @@ mod tests {
     fn the_contract_over_every_combination() {
         let mut checked = 0;
         for wearer in wishes(1) {
-            for link in [None].into_iter().chain(wishes(2).map(Some)) {
+            // Slower and faster than the reflex.
+            for link in [None].into_iter().chain([wishes(2), wishes(5)].concat().into_iter().map(Some)) {
                 for (reflex, behaviour) in
                     wishes(3).into_iter().flat_map(|reflex| wishes(4).map(|behaviour| (reflex, behaviour)))
                 {
@@ -71,7 +78,7 @@ mod tests {
                 }
             }
         }
-        assert_eq!(checked, 3 * 4 * 3 * 3 * 2);
+        assert_eq!(checked, 3 * 7 * 3 * 3 * 2);
     }
 
     fn check(wishes: Wishes) {
@@ -81,6 +88,7 @@ mod tests {
         let link_opens = link.is_some_and(MotorDrive::opens) && !wearer_asks;
         let free = !wearer_asks && link.is_none_or(|link| link == MotorDrive::Coast);
         let behaves = free && !reflex.closes() && behaviour != MotorDrive::Coast;
+        let is_faster = !wearer_asks && link == Some(MotorDrive::Close(Duty::per_mille(2)));
         let open_asked = wearer.opens() || link_opens || (behaves && behaviour.opens());
         assert_eq!(drive.opens(), open_asked, "nothing else opens, and nothing stops the wearer");
         let own = match source {
@@ -94,7 +102,7 @@ mod tests {
         assert_eq!(source == DriveSource::Wearer, wearer != MotorDrive::Coast);
         assert!(!(wearer_asks && source == DriveSource::Link));
         assert!(link != Some(MotorDrive::Coast) || source != DriveSource::Link);
-        assert_eq!(source == DriveSource::Reflex, free && reflex.closes());
+        assert_eq!(source == DriveSource::Reflex, (free || is_faster) && reflex.closes());
         assert_eq!(source == DriveSource::Behaviour, behaves, "the reflex tightens what a behaviour loosens");
         assert!(!(wearer_active && matches!(source, DriveSource::Reflex | DriveSource::Behaviour)));
         assert!(source != DriveSource::Reflex || drive.closes());

@@ -307,7 +307,7 @@ impl Fingertip {
                 vibration: self.senses.vibration.level,
                 outputs: self.detectors.hebbian.outputs(),
                 said: verdicts.said,
-                believed: verdicts.slip.or(verdicts.incipient),
+                believed: verdicts.believed,
                 acted: match (self.mode, source) {
                     (GripMode::Slip, DriveSource::Reflex) => verdicts.slip,
                     (GripMode::Incipient, DriveSource::Reflex) => verdicts.incipient,
@@ -328,7 +328,7 @@ impl Fingertip {
         let config = self.config.grip;
         let answered = self.behaviour.as_ref().is_some_and(Running::answers_slip);
         let before = self.mode;
-        let taken_over = self.senses.gate.is_active() || self.link_drive().is_some() || answered;
+        let taken_over = self.senses.gate.is_active() || self.link_silences() || answered;
         self.cause(if self.senses.ready(&self.config) { Cause::SensorsReady } else { Cause::SensorsLost });
         self.cause(if taken_over { Cause::TakenOver } else { Cause::Released });
         let may_close = self.reflex.may_close(&config, grip);
@@ -355,10 +355,10 @@ impl Fingertip {
 
     /// Reports why a pulse begins: margin, detectors that report, detectors that are believed.
     #[inline(never)]
-    fn explain(&mut self, Verdicts { said, slip, incipient }: Verdicts) {
+    fn explain(&mut self, Verdicts { said, believed, .. }: Verdicts) {
         let s2_permille = self.detectors.s2.s2_permille(&self.config.friction);
         let margin_mn = self.senses.forces.and_then(|forces| forces.margin_mn(s2_permille));
-        self.journal.event(EventKind::Pulse { margin_mn, said, believed: slip.or(incipient) });
+        self.journal.event(EventKind::Pulse { margin_mn, said, believed });
     }
 
     /// Changes the mode if the table has a step for this cause; mostly it has none.

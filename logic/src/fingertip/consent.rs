@@ -98,4 +98,14 @@ impl Fingertip {
         let grip = self.senses.grip;
         (drive.opens() || self.reflex.link_may_close(&self.config.grip, grip)).then_some(drive)
     }
+
+    /// Whether the line's drive silences the reflex: it opens, holds the hand where it is (duty 0), or closes with a motor that is
+    /// louder than slip.
+    pub(super) fn link_silences(&self) -> bool {
+        let loud_permille = self.config.hebbian.loud_duty_permille;
+        match self.link_drive() {
+            Some(MotorDrive::Close(duty)) => !(1..loud_permille).contains(&duty.as_per_mille()),
+            drive => drive.is_some(),
+        }
+    }
 }

@@ -26,6 +26,8 @@ impl Acting {
 pub(super) struct Verdicts {
     /// Detectors that report slip or a warning.
     pub said: DetectorSet,
+    /// Those of them that are believed.
+    pub believed: DetectorSet,
     /// Detectors whose report of slip is believed and may be acted on.
     pub slip: DetectorSet,
     /// Detectors whose warning is believed and may be acted on.
@@ -37,10 +39,10 @@ impl Verdicts {
     pub fn of(detectors: &Detectors, Acting(acting): Acting, cannot: bool) -> Self {
         let (slip, incipient) = (detectors.slip(), detectors.incipient());
         let heard = |said: DetectorSet| said.without(detectors.ignored());
-        let verdicts = |said: DetectorSet| {
-            if cannot && !by_two_senses(heard(slip)) { DetectorSet::NONE } else { heard(said).and(acting) }
-        };
-        Self { said: slip.or(incipient), slip: verdicts(slip), incipient: verdicts(incipient) }
+        let said = slip.or(incipient);
+        let believed = if cannot && !by_two_senses(heard(slip)) { DetectorSet::NONE } else { heard(said) };
+        let acted = believed.and(acting);
+        Self { said, believed, slip: slip.and(acted), incipient: incipient.and(acted) }
     }
 }
 

@@ -45,7 +45,7 @@ settings! {
     12 HebbianEverywhere "hebbian-everywhere-ms" "ms" [1, 500] = 40 => Ms(everywhere_frames);
     /// Hebbian: time after an impact or a fast run of the motor in which it is not evaluated
     13 HebbianAfterNoise "hebbian-after-noise-ms" "ms" [0, 1_000] = 100 => Ms(loud_frames);
-    /// Motor duty above which the motor's noise disturbs the Hebbian detector
+    /// Motor duty whose noise disturbs the Hebbian detector; a line's closing then silences the reflex
     14 NoisyDuty "noisy-duty-permille" "per mille" [10, 1_000] = 100 => Number(loud_duty_permille);
     /// Teacher's pictures older than this are ignored
     15 TeacherFresh "teacher-fresh-ms" "ms" [40, 1_000] = 120 => Number(teacher.fresh_ms);

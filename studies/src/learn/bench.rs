@@ -4,12 +4,13 @@ use anyhow::{Context, anyhow};
 use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, PVDF_COUNT, SLOW_HZ};
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{NETWORK_OUTPUTS, NetworkState, RECEPTORS, Slow};
+use tenax_hal_shim::wire::{Down, NETWORK_OUTPUTS, NetworkState, RECEPTORS, Setting, Slow};
 use tenax_hal_shim::words;
 use tenax_logic::detectors::Said;
 use tenax_logic::fingertip::Fingertip;
 use tenax_logic::hebbian::network::Weight;
 use tenax_logic::hebbian::{self, FingertipNetwork, Normaliser, snapshot};
+use tenax_logic::setting::SettingId;
 use tenax_scene::World;
 use tenax_scene::plant::Plant;
 
@@ -67,6 +68,10 @@ impl Bench {
             Judge::Vision => DetectorSet::only(DetectorId::Injected),
             Judge::Bound => DetectorSet::NONE,
         });
+        // A lesson had switched them off.
+        let none = Down::Set(Setting { id: SettingId::DetectorsOff.number(), value: 0 });
+        // A trusted line may.
+        let _ = self.fingertip.command(&none);
         let mut seen = 0;
         let (mut drive, mut ahead) = (MotorDrive::Coast, Ahead::default());
         let slow_frames = slow_frames(&world).min((for_s * f64::from(SLOW_HZ)) as usize);
