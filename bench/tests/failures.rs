@@ -73,11 +73,10 @@ fn cells_that_drift_add_nothing() {
 fn hum_that_closing_does_not_change_is_not_answered_for_long() {
     let report = ran("hum-after-slip");
     let without_n = report.added.added_without_need_n.unwrap();
-    // 9.0 N while only half as much force again ended it. 2.3 N, and a peak of 17.7 N, while the slip before had twice the pulse: on a
-    // tighter grip Ft/Fn fell below all friction at once.
-    assert!(without_n < 3.5, "{without_n} N without need in {} pulses", report.reflex.pulses);
+    // 9.0 N while only half as much force again ended it, 3.2 while one kind of sensor was believed from an Ft/Fn of 0.07.
+    assert!(without_n < 1.5, "{without_n} N without need in {} pulses", report.reflex.pulses);
     let peak_n = report.grip.peak_force_n.unwrap();
-    assert!(peak_n < 16.0, "{peak_n} N");
+    assert!(peak_n < 14.0, "{peak_n} N");
 }
 
 // Shows R3, W1.
@@ -129,6 +128,7 @@ fn minutes_of_disturbances_slip_nowhere_and_drop_nothing() {
         report.bound
     );
     assert_eq!((report.object.kept, report.slip.macro_slips), (Some(true), Some(0)));
+    assert!(report.added.added_without_need_n.unwrap() < 0.5, "{:?}", report.reflex);
     assert_eq!(
         (report.bound.kept, report.bound.distance_mm.map(|mm| mm < SAME_MM)),
         (Some(true), Some(true))

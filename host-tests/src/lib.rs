@@ -113,7 +113,7 @@ impl Bench {
     pub fn holding(seed: u64) -> Self {
         let mut bench = Self::new(seed);
         bench.run(200);
-        bench.load(4.0, 0.4);
+        bench.load(4.0, 0.6);
         bench.run(800);
         assert_eq!(bench.fingertip.mode(), GripMode::Watch);
         bench

@@ -140,7 +140,7 @@ impl Adversary {
                         self.bench.pins_mv[n] = f64::from(channel.rest_mv);
                     }
                 }
-                self.bench.load(4.0, 0.4);
+                self.bench.load(4.0, 0.6);
             }
         }
     }

@@ -115,7 +115,7 @@ fn a_camera_that_goes_dark_ends_what_it_began_and_the_hand_holds_on() {
         assert_eq!(ending(&bench), Some(Ending::SensorLost), "{what:?}");
         assert!(drives[200..].iter().all(|drive| *drive == MotorDrive::Coast), "{what:?}");
         // And its reflex is back.
-        bench.load(4.0, 0.4);
+        bench.load(4.0, 0.6);
         bench.run(600);
         bench.vibration_mv = 800.0;
         assert!(bench.run(400).iter().any(|drive| drive.closes()), "{what:?}");

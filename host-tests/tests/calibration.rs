@@ -98,7 +98,7 @@ fn whoever_comes_to_hold_something_can_let_it_go() {
         "the control: while it is empty, they move nothing"
     );
     bench.muscles(50.0, 50.0);
-    bench.load(4.0, 0.4);
+    bench.load(4.0, 0.6);
     bench.run(1_000);
     bench.muscles(50.0, 900.0);
     assert!(bench.run(100).iter().any(|drive| drive.opens()));

@@ -35,7 +35,7 @@ fn all_that_change() -> Vec<Down> {
 fn strangers(seed: u64) -> Bench {
     let mut bench = Bench::of(Fingertip::default(), seed);
     bench.run(200);
-    bench.load(4.0, 0.4);
+    bench.load(4.0, 0.6);
     bench.run(1_000);
     assert_eq!(bench.fingertip.mode(), GripMode::Watch);
     bench
@@ -92,7 +92,7 @@ fn an_empty_hand_just_switched_on_consents_but_not_to_trust_for_ever() {
     let trust = set(SettingId::LineTrusted, 1);
     assert_eq!(bench.fingertip.command(&set(SettingId::S1, 120)), Ok(()));
     assert_eq!(bench.fingertip.command(&trust), Err(Refusal::NotArmed));
-    bench.load(4.0, 0.4);
+    bench.load(4.0, 0.6);
     bench.run(100);
     assert_eq!(
         bench.fingertip.command(&set(SettingId::S1, 130)),
@@ -138,7 +138,7 @@ fn a_links_close_ends_at_the_force_ceiling() {
     bench.fingertip.command(&set(SettingId::ForceCeiling, 5_000)).unwrap();
     bench.fingertip.command(&CLOSE).unwrap();
     assert!(bench.run(100).iter().any(|drive| drive.closes()), "4 N are held, 5 N are allowed");
-    bench.load(5.5, 0.4);
+    bench.load(5.5, 0.8);
     bench.run(30);
     for _ in 0..20 {
         bench.fingertip.command(&CLOSE).unwrap();

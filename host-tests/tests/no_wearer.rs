@@ -20,7 +20,7 @@ fn gripper(seed: u64, no_wearer: bool) -> Bench {
     bench.pins_mv[MYO_FLEXOR] = 0.0;
     bench.pins_mv[MYO_EXTENSOR] = 0.0;
     bench.run(800);
-    bench.load(4.0, 0.4);
+    bench.load(4.0, 0.6);
     bench.run(800);
     bench
 }

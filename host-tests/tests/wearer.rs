@@ -100,7 +100,7 @@ fn an_array_that_hears_slip_in_an_empty_hand_closes_no_full_one() {
     assert!(bench.by_reflex() > 100);
     bench.load(0.0, 0.0);
     noisy(&mut bench, &mut rng, 5);
-    bench.load(4.0, 0.4);
+    bench.load(4.0, 0.6);
     bench.run(500);
     bench.slows.clear();
     noisy(&mut bench, &mut rng, 10);
@@ -146,7 +146,7 @@ fn a_force_whose_frames_are_lost_is_not_the_force_of_now() {
         let mut bench = Bench::holding(15);
         bench.load(4.0, 2.0);
         assert!(bench.run(100).iter().any(|drive| drive.closes()), "it begins to slip");
-        bench.load(4.0, 0.4);
+        bench.load(4.0, 0.6);
         run_losing(&mut bench, lost, 400);
         let drives = run_losing(&mut bench, lost, 4_000);
         assert!(drives.iter().all(|drive| *drive == MotorDrive::Coast), "places {lost:?} are lost");

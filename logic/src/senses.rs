@@ -65,8 +65,6 @@ pub struct Senses {
     pressed: bool,
     /// The quadrant (0 to 3) that was reported to contradict the others.
     blamed: Option<u8>,
-    /// Ft/Fn is below the least friction, `LEAST_PERMILLE`.
-    cannot_slip: bool,
     force_sensor: ForceSensor,
     detector: VibrationDetector,
     gauges: Gauges,
@@ -272,11 +270,6 @@ impl Senses {
             }
             Some(forces) => (Grip::Holds(forces.load_mn), false),
         };
-    }
-
-    /// Whether the force is known and Ft/Fn is below the lowest friction of any object.
-    pub const fn cannot_slip(&self) -> bool {
-        self.cannot_slip && self.forces.is_some()
     }
 
     #[inline(always)]

@@ -13,7 +13,7 @@ use super::sensing::{Sensing, taught_detectors};
 const PARTS: [fn(&mut Bench); 8] = [
     |_| {},
     |bench| {
-        bench.load(4.0, 0.4);
+        bench.load(4.0, 0.6);
         bench.press(700.0);
     },
     |bench| bench.vibration_mv = SLIP_MV,
@@ -24,7 +24,7 @@ const PARTS: [fn(&mut Bench); 8] = [
         bench.load(4.0, 2.4);
     },
     |bench| {
-        bench.load(4.0, 0.4);
+        bench.load(4.0, 0.6);
         bench.sliding_mv = 60.0;
     },
     |bench| bench.sliding_mv = 0.0,

@@ -63,7 +63,7 @@ fn run(bench: &mut Bench, sensing: &mut Sensing, toy: &mut Fall, frames: u32) ->
 fn a_detector_written_outside_the_logic_judges_what_the_logic_senses() {
     let (mut bench, mut sensing, mut toy) = (Bench::new(1), Sensing::default(), Fall::default());
     assert_eq!(toy.describe(&FallConfig { fall_mn: 500 }).health, DetectorHealth::Blind);
-    bench.load(4.0, 0.4);
+    bench.load(4.0, 0.6);
     assert!(run(&mut bench, &mut sensing, &mut toy, 2_000).is_empty(), "a steady force falls nowhere");
     bench.load(2.0, 0.2);
     let slips = run(&mut bench, &mut sensing, &mut toy, 500);

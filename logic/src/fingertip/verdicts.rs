@@ -35,12 +35,12 @@ pub(super) struct Verdicts {
 }
 
 impl Verdicts {
-    /// `cannot`: Ft/Fn is below the lowest friction of any object. A single sense is then not believed.
-    pub fn of(detectors: &Detectors, Acting(acting): Acting, cannot: bool) -> Self {
+    /// `unlikely`: by the forces nothing slips. A single sense is then not believed.
+    pub fn of(detectors: &Detectors, Acting(acting): Acting, unlikely: bool) -> Self {
         let (slip, incipient) = (detectors.slip(), detectors.incipient());
         let heard = |said: DetectorSet| said.without(detectors.ignored());
         let said = slip.or(incipient);
-        let believed = if cannot && !by_two_senses(heard(slip)) { DetectorSet::NONE } else { heard(said) };
+        let believed = if unlikely && !by_two_senses(heard(slip)) { DetectorSet::NONE } else { heard(said) };
         let acted = believed.and(acting);
         Self { said, believed, slip: slip.and(acted), incipient: incipient.and(acted) }
     }

@@ -7,7 +7,9 @@
 //!
 //! A grasp shows it, too: Ft is never above mu Fn, whether the object holds or slides. So friction is at least the highest ratio
 //! that has lasted for 50 ms. S2 is set below that as below a stroke's, if it is higher, until the finger lets go or a muscle is active.
-//! No object slips at a ratio below [`LEAST_PERMILLE`].
+//! No object slips at a ratio below [`LEAST_PERMILLE`], and few do below [`UNLIKELY_PERMILLE`]: there no kind of sensor alone is believed.
+//! Once slip was answered in a grasp, slip at the ratio that its pulse aimed at is likely, too: an object that turns about the pads has
+//! less shear than it has load.
 
 use tenax_hal_shim::wire::Forces;
 
@@ -23,7 +25,8 @@ const FALL_PERMILLE: u32 = 850;
 /// The least friction, per mille: nothing that a finger holds slips at a smaller ratio. A dry hand on metal has 0.1 or more, a wet one on
 /// glass 0.15, and what slides keeps 0.6 of it.
 pub const LEAST_PERMILLE: u16 = 70;
-
+/// The least static friction of a wet hand on glass, 0.15, less the force sensor's error, per mille.
+const UNLIKELY_PERMILLE: u16 = 130;
 /// The smallest ratio that is taken for friction where one is measured or learned, per mille: noise at the touch is none.
 pub const FOUND_PERMILLE: u16 = 100;
 /// Readings for which a ratio has to last, 50 ms.
@@ -95,6 +98,10 @@ pub struct FrictionDetector {
     carried: Option<[i32; CARRIED_FOR]>,
     /// Readings since the hand moved.
     still: u8,
+    /// See [`is_slip_unlikely`](Self::is_slip_unlikely).
+    unlikely: bool,
+    /// The least ratio that a pulse against slip aimed at in this grasp, per mille. None: no slip was answered.
+    aimed: Option<u16>,
 }
 
 impl FrictionDetector {
@@ -152,10 +159,14 @@ impl FrictionDetector {
     pub fn process(&mut self, config: &FrictionConfig, ratio_permille: Option<u16>) -> bool {
         self.ratio_permille = ratio_permille;
         let Some(ratio) = ratio_permille else {
-            self.s2 = false;
+            (self.s2, self.unlikely) = (false, false);
             self.renew();
             return false;
         };
+        let likely = self.aimed.map_or(UNLIKELY_PERMILLE, |aimed| aimed.min(UNLIKELY_PERMILLE));
+        // What has just begun to slide has lost shear.
+        let of_late = self.shown.before.iter().fold(ratio, |most, &before| most.max(before));
+        self.unlikely = ratio < LEAST_PERMILLE || of_late < likely;
         self.shown.add(ratio);
         if let Some(stroke) = &mut self.stroke {
             stroke.add(ratio);
@@ -163,6 +174,11 @@ impl FrictionDetector {
         let threshold = u32::from(self.s2_permille(config)) * if self.s2 { OFF_PERMILLE } else { 1_000 };
         self.s2 = u32::from(ratio) * 1_000 > threshold;
         self.s2
+    }
+
+    /// Whether slip is so unlikely at the last Ft/Fn that no kind of sensor alone is believed.
+    pub const fn is_slip_unlikely(&self) -> bool {
+        self.unlikely
     }
 
     /// S2 in this grasp, per mille: as set or measured, or higher if the grasp has shown more friction.
@@ -174,12 +190,16 @@ impl FrictionDetector {
 
     /// Forgets the friction of this grasp: a muscle is active and changes the contact.
     pub fn renew(&mut self) {
-        (self.shown, self.slid) = (Shown::default(), None);
+        (self.shown, self.slid, self.aimed) = (Shown::default(), None, None);
     }
 
     /// A pulse against slip begins: the sliding friction is not known yet.
-    pub const fn slips(&mut self) {
+    pub fn slips(&mut self) {
         self.slid = None;
+        if let Some(ratio) = self.ratio_permille {
+            let aims = (i32::from(ratio) * 1_000 / SLIPPED_PERMILLE) as u16;
+            self.aimed = Some(self.aimed.map_or(aims, |aimed| aimed.min(aims)));
+        }
     }
 
     /// The ratio at which the object slid in this grasp, per mille, until slip is reported again. None: it has not slid.
@@ -218,6 +238,28 @@ mod tests {
         let seen = [Some(300), Some(301), Some(289), Some(288), Some(289), None, Some(900), None]
             .map(|ratio| detector.process(&CONFIG, ratio));
         assert_eq!(seen, [false, true, true, false, false, false, true, false]);
+    }
+
+    #[test]
+    fn slip_is_unlikely_below_what_a_wet_hand_has_but_for_what_slid_just_now_or_before_in_this_grasp() {
+        let mut detector = FrictionDetector::default();
+        let unlikely = |detector: &mut FrictionDetector, ratio: u16| {
+            detector.process(&CONFIG, Some(ratio));
+            detector.is_slip_unlikely()
+        };
+        assert_eq!([129, 130, 300].map(|ratio| unlikely(&mut detector, ratio)), [true, false, false]);
+        // Three readings after it stuck.
+        assert_eq!([70, 69, 70, 70].map(|ratio| unlikely(&mut detector, ratio)), [false, true, false, true]);
+        // Answered at 0.135, aimed at 0.1.
+        unlikely(&mut detector, 135);
+        detector.slips();
+        let after = [99; 5].map(|ratio| unlikely(&mut detector, ratio));
+        assert_eq!(after, [false, false, false, true, true]);
+        assert!(!unlikely(&mut detector, 100));
+        detector.renew();
+        assert!(unlikely(&mut detector, 100), "a muscle has moved it");
+        assert!(unlikely(&mut detector, 100) && !detector.process(&CONFIG, None));
+        assert!(!detector.is_slip_unlikely(), "nothing is known");
     }
 
     #[test]

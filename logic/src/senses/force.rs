@@ -5,7 +5,6 @@ use tenax_hal_shim::words::{Fault, Reason};
 
 use super::{DOUBTED_AFTER, FSR_LIMITS, OPEN_FRAMES, PRESSED_UV, Senses, report};
 use crate::config::Config;
-use crate::force::friction::LEAST_PERMILLE;
 use crate::force::fsr;
 use crate::health::Change;
 use crate::journal::Journal;
@@ -46,7 +45,7 @@ impl Senses {
         let opened = self.open_frames > 0;
         let forces = self.force_sensor.process(samples, config.friction.loaded_mn, opened);
         let Some(mut forces) = forces else {
-            (self.forces, self.cannot_slip) = (None, false);
+            self.forces = None;
             return;
         };
         if self.pressed {
@@ -54,7 +53,6 @@ impl Senses {
             forces.ratio_permille = None;
         }
         self.forces = Some(forces);
-        self.cannot_slip = forces.ratio_permille.is_some_and(|ratio| ratio < LEAST_PERMILLE);
         if self.open_frames >= OPEN_FRAMES {
             self.force_sensor.follow();
             self.doubt_load(config, journal);

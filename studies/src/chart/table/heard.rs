@@ -304,7 +304,7 @@ impl Ears {
             *taxel = Some(frame.switch_b);
         }
         let new = if slot == ARRAY_COUNT { features.push(taxels) } else { None };
-        let (believed, believes) = believed(detectors, senses.cannot_slip());
+        let (believed, believes) = believed(detectors, detectors.s2.is_slip_unlikely());
         let says = |n: usize| believes && controls.get(n).is_some_and(|(_, says)| *says);
         let controls = std::array::from_fn(says);
         hear(&Felt { frame, sensed: &sensed, believed, controls, features: new });
