@@ -23,3 +23,4 @@ mod replay;
 mod report;
 mod selftest;
 mod sliding;
+mod subsets;
