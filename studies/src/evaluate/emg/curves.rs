@@ -79,12 +79,18 @@ impl Plain {
     }
 }
 
-/// The shipped constants, asking for so much more of a contraction.
+/// The shipped constants, asking for so much more or less of a contraction.
 fn asking(times: f64) -> &'static Fitted {
     let scaled = |share: i32| (f64::from(share) * times).round() as i32;
     let mut fitted = FITTED.clone();
     fitted.begins = fitted.begins.map(scaled);
     fitted.ends = fitted.ends.map(scaled);
+    // What asks for less of a contraction also averages and waits less.
+    let less = |own: i32| (f64::from(own) * times.min(1.0).powi(2)) as i32;
+    fitted.rise = less(fitted.rise);
+    fitted.dwell = fitted.dwell.map(less);
+    fitted.after_readings = fitted.after_readings.map(less);
+    fitted.mean_readings = less(fitted.mean_readings).max(1);
     // A few for each curve.
     Box::leak(Box::new(fitted))
 }
