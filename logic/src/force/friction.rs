@@ -166,7 +166,10 @@ impl FrictionDetector {
         let likely = self.aimed.map_or(UNLIKELY_PERMILLE, |aimed| aimed.min(UNLIKELY_PERMILLE));
         // What has just begun to slide has lost shear.
         let of_late = self.shown.before.iter().fold(ratio, |most, &before| most.max(before));
-        self.unlikely = ratio < LEAST_PERMILLE || of_late < likely;
+        // What comes to be pulled at has not shown all of its shear yet.
+        let [.., oldest] = self.shown.before;
+        let grown = if oldest > 0 { ratio.saturating_sub(oldest) } else { 0 };
+        self.unlikely = ratio < LEAST_PERMILLE || of_late + grown < likely;
         self.shown.add(ratio);
         if let Some(stroke) = &mut self.stroke {
             stroke.add(ratio);
@@ -248,7 +251,7 @@ mod tests {
             detector.is_slip_unlikely()
         };
         assert_eq!([129, 130, 300].map(|ratio| unlikely(&mut detector, ratio)), [true, false, false]);
-        // Three readings after it stuck.
+        // Three readings after it stuck. As much again is expected of shear that grows.
         assert_eq!([70, 69, 70, 70].map(|ratio| unlikely(&mut detector, ratio)), [false, true, false, true]);
         // Answered at 0.135, aimed at 0.1.
         unlikely(&mut detector, 135);
@@ -256,6 +259,9 @@ mod tests {
         let after = [99; 5].map(|ratio| unlikely(&mut detector, ratio));
         assert_eq!(after, [false, false, false, true, true]);
         assert!(!unlikely(&mut detector, 100));
+        detector.renew();
+        assert!(unlikely(&mut detector, 80) && unlikely(&mut detector, 80) && unlikely(&mut detector, 80));
+        assert_eq!([104, 105].map(|ratio| unlikely(&mut detector, ratio)), [true, false]);
         detector.renew();
         assert!(unlikely(&mut detector, 100), "a muscle has moved it");
         assert!(unlikely(&mut detector, 100) && !detector.process(&CONFIG, None));
