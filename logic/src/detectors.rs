@@ -213,6 +213,13 @@ impl Record {
     }
 }
 
+/// Whether at least two of these report slip: films, array, head, injected reports.
+fn by_two_senses(slip: DetectorSet) -> bool {
+    let films = slip.contains(DetectorId::S1) || slip.contains(DetectorId::Hebbian);
+    let others = [DetectorId::Mlp, DetectorId::Photoelastic, DetectorId::Injected];
+    u8::from(films) + others.into_iter().map(|id| u8::from(slip.contains(id))).sum::<u8>() >= 2
+}
+
 /// The detector's number, from a reference to it.
 const fn id_of<D: Detector>(_: &D) -> DetectorId {
     D::ID
@@ -265,9 +272,15 @@ impl Detectors {
         self.record.incipient
     }
 
-    /// The detectors that the plausibility guard ignores.
-    pub const fn ignored(&self) -> DetectorSet {
-        self.record.ignored
+    /// The detectors whose reports are believed: all but those that report slip of an empty hand; none where slip is unlikely and only
+    /// one kind of sensor reports it.
+    pub fn credible(&self) -> DetectorSet {
+        let Record { slip, ignored, .. } = self.record;
+        if self.s2.is_slip_unlikely() && !by_two_senses(slip.without(ignored)) {
+            DetectorSet::NONE
+        } else {
+            DetectorSet::ALL.without(ignored)
+        }
     }
 
     /// Each detector's last conclusion.

@@ -260,7 +260,7 @@ impl Fingertip {
             }
         }
         let acting = self.acting.but(self.config.detectors_off);
-        let verdicts = Verdicts::of(&self.detectors, acting, self.detectors.s2.is_slip_unlikely());
+        let verdicts = Verdicts::of(&self.detectors, acting);
         if !verdicts.said.is_empty() {
             self.reflex.hear();
         }

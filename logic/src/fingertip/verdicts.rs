@@ -1,6 +1,6 @@
 //! From the detectors' reports to those that are believed and acted on.
 
-use tenax_hal_shim::detector::{DetectorId, DetectorSet};
+use tenax_hal_shim::detector::DetectorSet;
 
 use crate::detectors::Detectors;
 
@@ -35,20 +35,11 @@ pub(super) struct Verdicts {
 }
 
 impl Verdicts {
-    /// `unlikely`: by the forces nothing slips. A single sense is then not believed.
-    pub fn of(detectors: &Detectors, Acting(acting): Acting, unlikely: bool) -> Self {
+    pub fn of(detectors: &Detectors, Acting(acting): Acting) -> Self {
         let (slip, incipient) = (detectors.slip(), detectors.incipient());
-        let heard = |said: DetectorSet| said.without(detectors.ignored());
         let said = slip.or(incipient);
-        let believed = if unlikely && !by_two_senses(heard(slip)) { DetectorSet::NONE } else { heard(said) };
+        let believed = said.and(detectors.credible());
         let acted = believed.and(acting);
         Self { said, believed, slip: slip.and(acted), incipient: incipient.and(acted) }
     }
-}
-
-/// Whether at least two of these report slip: films, array, head, injected reports.
-fn by_two_senses(slip: DetectorSet) -> bool {
-    let films = slip.contains(DetectorId::S1) || slip.contains(DetectorId::Hebbian);
-    let others = [DetectorId::Mlp, DetectorId::Photoelastic, DetectorId::Injected];
-    u8::from(films) + others.into_iter().map(|id| u8::from(slip.contains(id))).sum::<u8>() >= 2
 }

@@ -304,7 +304,9 @@ impl Ears {
             *taxel = Some(frame.switch_b);
         }
         let new = if slot == ARRAY_COUNT { features.push(taxels) } else { None };
-        let (believed, believes) = believed(detectors, detectors.s2.is_slip_unlikely());
+        let credible = detectors.credible();
+        let believed = detectors.slip().or(detectors.incipient()).and(credible);
+        let believes = credible.contains(DetectorId::Hebbian);
         let says = |n: usize| believes && controls.get(n).is_some_and(|(_, says)| *says);
         let controls = std::array::from_fn(says);
         hear(&Felt { frame, sensed: &sensed, believed, controls, features: new });
@@ -315,18 +317,6 @@ impl Ears {
         }
         while journal.next_event().is_some() {}
     }
-}
-
-/// As the fingertip believes them: not those that report slip of an empty hand, and no single sense where by the forces nothing can slip.
-/// Whether it would believe a control of the network, too.
-fn believed(detectors: &Detectors, cannot: bool) -> (DetectorSet, bool) {
-    let heard = |said: DetectorSet| said.without(detectors.ignored());
-    let slip = heard(detectors.slip());
-    let films = slip.contains(DetectorId::S1) || slip.contains(DetectorId::Hebbian);
-    if cannot && !(films && slip.contains(DetectorId::Mlp)) {
-        return (DetectorSet::NONE, false);
-    }
-    (slip.or(heard(detectors.incipient())), !detectors.ignored().contains(DetectorId::Hebbian))
 }
 
 /// The last so many frames of a pour of the table's kind.
