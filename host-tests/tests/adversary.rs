@@ -265,7 +265,7 @@ struct Seen {
     stray_mm: f64,
     /// Whether another change of the muscles came before or with it.
     beside: bool,
-    /// Whether the force sensor last said that nothing is touched.
+    /// Whether the force sensor says that nothing is touched.
     empty: bool,
     strayed_at: u32,
     strays: u32,
@@ -289,6 +289,10 @@ impl Adversary {
     fn go(&mut self, step: u32, seen: &mut Seen) -> MotorDrive {
         let slot = self.bench.frames % 25;
         let drive = self.step(step);
+        // Of this frame: what a slow frame says at its end came earlier, and a full opening of the frames between is half a millimetre.
+        let tip = &self.bench.fingertip;
+        let least_mn = tip.config().friction.loaded_mn / 4;
+        seen.empty = tip.forces().is_some_and(|forces| forces.load_mn < least_mn);
         if matches!(self.pins[1], Pin::Muscle(mv) if mv > 100.0) {
             seen.asked_at = Some(step);
         }
@@ -330,8 +334,6 @@ impl Adversary {
         }
         let Some(slow) = self.bench.slows.pop() else { return drive };
         self.bench.events.clear();
-        let least_mn = self.bench.fingertip.config().friction.loaded_mn / 4;
-        seen.empty = slow.forces.is_some_and(|forces| forces.load_mn < least_mn);
         let half_lost = self.half_lost(step);
         for (place, tick) in slow.ticks.iter().enumerate() {
             let reflex = tick.source == DriveSource::Reflex;
