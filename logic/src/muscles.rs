@@ -128,8 +128,6 @@ impl Muscles {
     /// The wearer's wish and activity. During a calibration the wish is rest, and no other source may move the hand.
     pub fn verdict(&self) -> Verdict {
         let mut verdict = self.emg.verdict();
-        // A wish is decided with the extensor's reading; the flexor's activity silences from its own on.
-        verdict.active |= self.emg.is_active(0) || self.emg.is_active(1);
         let [flexor, extensor] = [0, 1].map(|n: usize| self.emg.is_known(n));
         verdict.half_known = verdict.known || flexor && self.idle[1] || extensor && self.idle[0];
         let at_rest = Verdict {

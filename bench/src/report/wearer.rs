@@ -167,7 +167,7 @@ impl Judge {
         // Whoever contracts with less than any muscle does is active all the same; a wearer whose rest is strong, later.
         let on_mv = calibrated.map_or([ON_MV; 2], |model| {
             let decide = Decide::new(Some(model));
-            [0, 1].map(|n| ON_MV.max(mv_of(decide.active_levels(n)[0]).ceil() as i64 + 1))
+            [0, 1].map(|n| ON_MV.max(i64::from(decide.active_uv(n)[0]) / 1_000 + 2))
         });
         Self {
             on_mv,

@@ -1,10 +1,10 @@
 //! What the wearer wants: rest, close or open, from both envelopes.
 //!
-//! Four numbers a reading: each site's *share* of the rise that calibration found there, and the *place* of the electrodes'
+//! Three numbers a slow frame: each site's *share* of the rise that calibration found there, and the *place* of the electrodes'
 //! ratio between calibrated closing and opening; averaged over 0.13 s. The place says which way, the share of that way's site
 //! says whether; both with hysteresis and dwell. A wish ends when its site falls from its own crest, and begins by a rise, so
 //! that tone is none. Rest is followed while nothing is wished: what has been added to it (hum, tone) is subtracted.
-//! A reading above all that was calibrated opens at once: what it may move before it is proven is the gate's business.
+//! A slow frame above all that was calibrated opens at once: what it may move before it is proven is the gate's business.
 
 use super::constants::Fitted;
 use super::fitted::FITTED;
@@ -17,10 +17,10 @@ pub const OVER_UV: i32 = 2_950_000;
 const STRONG: i32 = 1_000;
 /// Share of closing that closes even without a reading of the opening site, per mille.
 const ALONE: i32 = 900;
-/// Readings without a wish after which rest is followed.
-const CALM_READINGS: u16 = 120;
-/// Readings over which what stands still is subtracted: 0.3 s.
-const HUM_READINGS: i32 = 64;
+/// Slow frames without a wish after which rest is followed.
+const CALM_FRAMES: u16 = 40;
+/// Slow frames over which what stands still is subtracted: 0.3 s.
+const HUM_FRAMES: i32 = 21;
 /// The most that is subtracted as hum or tone, uV.
 const MOST_DRIFT_UV: i32 = 1_500_000;
 /// Share from which a muscle is active, and below which it no longer is, per mille; [`ACTIVE_UV`] limits both levels.
@@ -33,7 +33,7 @@ const HEARS_SPREADS: i32 = 1;
 /// Without calibration: where closing and opening begin, and how far the other electrode is below.
 const DEFAULT_BEGINS_UV: [i32; 2] = [600_000, 1_500_000];
 const DEFAULT_OVER: [i32; 2] = [1_322, 2_900];
-const DEFAULT_READINGS: i32 = 72;
+const DEFAULT_FRAMES: i32 = 24;
 /// Without calibration: least rise of the other electrode, Q10 octaves.
 const DEFAULT_HEARS: i32 = 256;
 
@@ -49,11 +49,13 @@ pub enum Wish {
     Open,
 }
 
-/// Present state of one electrode.
+/// One electrode in a slow frame.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Electrode {
-    /// Envelope above the live zero, uV; None: no valid reading.
+    /// Mean envelope above the live zero, uV, [`OVER_UV`] at most; None: no valid reading.
     pub uv: Option<i32>,
+    /// Whether a reading was above [`OVER_UV`].
+    pub over: bool,
     /// Whether the electrode is doubted: it then blocks nothing, and starts only a strong wish.
     pub doubted: bool,
     /// Whether the envelope has been constant for a while.
@@ -81,7 +83,7 @@ struct Sites {
     hears: [Option<i32>; 2],
     close_ratio: i32,
     turn: i32,
-    active: [[i32; 2]; 2],
+    active_uv: [[i32; 2]; 2],
 }
 
 impl Sites {
@@ -118,22 +120,30 @@ impl Sites {
             }),
             close_ratio: close[1] - close[0],
             turn: ((open[1] - open[0]) - (close[1] - close[0])).max(256),
-            active: [0, 1].map(|n: usize| [active[0][n].max(rest[n] + 300), active[1][n].max(rest[n] + 200)]),
+            // The least envelope of each level.
+            active_uv: [0, 1].map(|n: usize| {
+                [0, 1].map(|k: usize| uv_of(active[k][n].max(rest[n] + [300, 200][k]) - 1) + 1)
+            }),
         }
     }
 }
 
-/// State machine from pairs of EMG envelopes to the wearer's wish: rest, close or open.
+/// From slow frames of EMG envelopes to the wearer's wish: rest, close or open.
 #[derive(Clone, Debug)]
 pub struct Decide {
-    fitted: &'static Fitted,
     sites: Option<Sites>,
+    machine: Machine,
+}
+
+/// Its state machine.
+#[derive(Clone, Debug)]
+struct Machine {
+    fitted: &'static Fitted,
     wish: Wish,
-    /// The wish of the last readings, and for how many of them.
+    /// The wish of the last slow frames, and for how many of them.
     next: Wish,
     stands: i32,
-    strong: i32,
-    /// Readings since activity that is no opening, and since opening.
+    /// Slow frames since activity that is no opening, and since opening.
     since: [i32; 2],
     calm: u16,
     /// Shares of both sites and the place, averaged, Q4.
@@ -152,13 +162,56 @@ impl Decide {
 
     /// A decision with other constants than [`FITTED`], to fit them.
     pub fn with(fitted: &'static Fitted, model: Option<&EmgModel>) -> Self {
+        Self { sites: model.map(|model| Sites::of(fitted, model)), machine: Machine::new(fitted) }
+    }
+
+    /// Envelopes, uV, from which electrode 0 (flexor) or 1 (extensor) is active, and below which it is no more.
+    #[must_use]
+    pub fn active_uv(&self, electrode: usize) -> [i32; 2] {
+        self.sites
+            .as_ref()
+            .map_or(ACTIVE_UV, |sites| sites.active_uv[usize::from(sites.electrode[1] == electrode)])
+    }
+
+    /// Returns the electrode that contracts for the present wish, 0 (flexor) or 1 (extensor); at rest, the opening one.
+    pub fn mover(&self) -> usize {
+        let site = self.machine.site();
+        // The compiler is to see that it is one of two, here and below.
+        self.sites.as_ref().map_or(site, |sites| sites.electrode[site]) & 1
+    }
+
+    /// Returns, for the electrode that is not the [`mover`](Self::mover), its rest level and the least rise that the
+    /// present wish must show on it, Q10 octaves. None for a wearer whose contractions hardly raise that electrode.
+    pub fn hears(&self) -> Option<[i32; 2]> {
+        let site = self.machine.site();
+        match &self.sites {
+            Some(sites) => Some([sites.rest[1 - site], sites.hears[site]?]),
+            None => Some([FLOOR_LEVEL, DEFAULT_HEARS]),
+        }
+    }
+
+    /// Strength of the last wish, 0 to 1000 per mille: for the speed.
+    pub fn strength_permille(&self) -> u16 {
+        self.machine.strength_permille()
+    }
+
+    /// Takes both electrodes of a slow frame, flexor first. Gives the wearer's wish.
+    pub fn take(&mut self, electrodes: &[Electrode; 2]) -> Wish {
+        match &self.sites {
+            Some(sites) => self.machine.calibrated(sites, sites.electrode.map(|n| electrodes[n & 1])),
+            None => self.machine.uncalibrated(electrodes),
+        }
+        self.machine.wish
+    }
+}
+
+impl Machine {
+    fn new(fitted: &'static Fitted) -> Self {
         Self {
             fitted,
-            sites: model.map(|model| Sites::of(fitted, model)),
             wish: Wish::Rest,
             next: Wish::Rest,
             stands: 0,
-            strong: 0,
             since: [i32::MAX; 2],
             calm: 0,
             mean: [0; 3],
@@ -168,84 +221,52 @@ impl Decide {
         }
     }
 
-    /// Levels (Q10 octaves) above which electrode 0 (flexor) or 1 (extensor) becomes active, and below which it is no more.
-    #[must_use]
-    pub fn active_levels(&self, electrode: usize) -> [i32; 2] {
-        match &self.sites {
-            Some(sites) => sites.active[usize::from(sites.electrode[1] == electrode)],
-            None => ACTIVE_UV.map(level_of),
+    /// The site of the present wish; at rest, the opening one.
+    fn site(&self) -> usize {
+        usize::from(self.wish != Wish::Close)
+    }
+
+    fn strength_permille(&self) -> u16 {
+        if self.wish == Wish::Rest {
+            return 0;
         }
-    }
-
-    /// Returns the electrode that contracts for the present wish, 0 (flexor) or 1 (extensor); at rest, the opening one.
-    pub fn mover(&self) -> usize {
-        let site = usize::from(self.wish != Wish::Close);
-        // The compiler is to see that it is one of two, here and below.
-        self.sites.map_or(site, |sites| sites.electrode[site]) & 1
-    }
-
-    /// Returns, for the electrode that is not the [`mover`](Self::mover), its rest level and the least rise that the
-    /// present wish must show on it, Q10 octaves. None for a wearer whose contractions hardly raise that electrode.
-    pub fn hears(&self) -> Option<[i32; 2]> {
-        let site = usize::from(self.wish != Wish::Close);
-        match &self.sites {
-            Some(sites) => Some([sites.rest[1 - site], sites.hears[site]?]),
-            None => Some([FLOOR_LEVEL, DEFAULT_HEARS]),
-        }
-    }
-
-    /// Strength of the last wish, 0 to 1000 per mille: for the speed.
-    pub fn strength_permille(&self) -> u16 {
-        let f = self.fitted;
-        let site = match self.wish {
-            Wish::Rest => return 0,
-            Wish::Close => 0,
-            Wish::Open => 1,
-        };
+        let (f, site) = (self.fitted, self.site());
         let above = self.mean[site] / 16 - f.ends[site];
         (above.min(STRONG - f.ends[site]).max(0) * 1_000 / (STRONG - f.ends[site]).max(1)) as u16
     }
 
-    /// Takes a reading of both electrodes, flexor first. Gives the wearer's wish.
-    pub fn take(&mut self, electrodes: &[Electrode; 2]) -> Wish {
-        match self.sites {
-            Some(sites) => self.calibrated(&sites, sites.electrode.map(|n| electrodes[n & 1])),
-            None => self.uncalibrated(electrodes),
-        }
-        self.wish
-    }
-
     fn calibrated(&mut self, sites: &Sites, electrodes: [Electrode; 2]) {
         let f = self.fitted;
-        let uv = electrodes.map(|electrode| electrode.uv);
-        let over = uv.map(|uv| uv.is_some_and(|uv| uv >= OVER_UV));
+        let over = electrodes[1].over;
         // The least of spans and turn is far above 1, which the compiler is to see.
         // What gives no number stands at rest; what that means for the other is decided below.
         let level = [0, 1].map(|n: usize| {
-            let subtracted = uv[n].map(|uv| uv.min(OVER_UV) - (self.drift[n] >> 8));
+            let subtracted = electrodes[n].uv.map(|uv| uv - (self.drift[n] >> 8));
             subtracted.map_or(sites.rest[n], level_of)
         });
         let share = [0, 1].map(|n: usize| (level[n] - sites.rest[n]) * 1_000 / sites.span[n].max(1));
         let place = (level[1] - level[0] - sites.close_ratio) * 1_000 / sites.turn.max(1);
         let now = [share[0].min(1_300), share[1].min(1_300), place.clamp(-1_000, 2_000)];
         for (mean, now) in self.mean.iter_mut().zip(now) {
-            *mean += (now * 16 - *mean) / f.mean_readings.max(1);
+            *mean += (now * 16 - *mean) / f.mean_frames.max(1);
         }
-        let blind = [0, 1].map(|n: usize| uv[n].is_none() || electrodes[n].doubted);
+        let blind = electrodes.map(|electrode| electrode.uv.is_none() || electrode.doubted);
         let wish = self.wanted(sites, blind, over);
         // A doubted closing electrode says nothing about the ratio. Soon after other activity it takes more.
-        let lately = !blind[0] && self.since[0] < f.after_readings[0];
+        let lately = !blind[0] && self.since[0] < f.after_frames[0];
         let strong = level[1] - sites.rest[1] - sites.span[1] >= if lately { f.firmer } else { 0 };
         let alone = share[0] < sites.both[1] + f.both || electrodes[0].still;
         let apart = (place >= f.place_begins && alone) || blind[0];
-        let opens = apart && strong && !over[1];
-        self.strong = if opens { self.strong.saturating_add(1) } else { 0 };
-        self.settle(wish, now);
+        self.settle(wish);
+        if apart && strong && !over && self.wish != Wish::Open {
+            (self.wish, self.next, self.stands) = (Wish::Open, Wish::Open, 0);
+            self.mean = now.map(|value| value * 16);
+        }
         self.follow(sites, electrodes, wish);
     }
 
     /// The wish by the averaged shares and place.
-    fn wanted(&mut self, sites: &Sites, blind: [bool; 2], over: [bool; 2]) -> Wish {
+    fn wanted(&mut self, sites: &Sites, blind: [bool; 2], over: bool) -> Wish {
         let f = self.fitted;
         let [closes, opens, place] = self.mean.map(|mean| mean / 16);
         let own = match self.wish {
@@ -256,7 +277,7 @@ impl Decide {
         for (n, share) in [closes, opens].into_iter().enumerate() {
             if own == Some(n) {
                 self.crest =
-                    (self.crest + (share * 256 - self.crest) / f.crest_readings.max(1)).max(share * 256);
+                    (self.crest + (share * 256 - self.crest) / f.crest_frames.max(1)).max(share * 256);
                 self.trough[n] = share;
             }
             self.trough[n] = self.trough[n].min(share);
@@ -270,11 +291,11 @@ impl Decide {
         self.since[0] = if busy { 0 } else { self.since[0].saturating_add(1) };
         self.since[1] = if self.wish == Wish::Open { 0 } else { self.since[1].saturating_add(1) };
         let calm =
-            self.since[0] >= f.after_readings[1] || (self.since[0] >= f.after_readings[0] && opens >= STRONG);
+            self.since[0] >= f.after_frames[1] || (self.since[0] >= f.after_frames[0] && opens >= STRONG);
         let may_open = calm && !blind[0] && !blind[1] && closes < sites.both[1];
-        let may_close = !over[1] && !blind[0] && (!blind[1] || closes >= ALONE);
+        let may_close = !over && !blind[0] && (!blind[1] || closes >= ALONE);
         match self.wish {
-            Wish::Open if over[1] => Wish::Open,
+            Wish::Open if over => Wish::Open,
             Wish::Open if (place >= f.place_stays[1] || blind[0]) && opens >= ends(1) => Wish::Open,
             Wish::Close
                 if may_close
@@ -297,11 +318,11 @@ impl Decide {
     }
 
     /// A wish has to stand for a while, soon after the opposite one for longer.
-    fn settle(&mut self, wish: Wish, now: [i32; 3]) {
+    fn settle(&mut self, wish: Wish) {
         let f = self.fitted;
         let dwell = match wish {
             Wish::Rest => f.dwell[0],
-            Wish::Close if self.since[1] < f.after_readings[0] => f.after_dwell,
+            Wish::Close if self.since[1] < f.after_frames[0] => f.after_dwell,
             Wish::Close => f.dwell[1],
             Wish::Open => f.dwell[2],
         };
@@ -309,10 +330,6 @@ impl Decide {
         self.next = wish;
         if self.stands >= dwell {
             self.wish = wish;
-        }
-        if self.strong >= f.at_once_readings && self.wish != Wish::Open {
-            (self.wish, self.next, self.stands) = (Wish::Open, Wish::Open, 0);
-            self.mean = now.map(|value| value * 16);
         }
     }
 
@@ -325,17 +342,16 @@ impl Decide {
             && self.mean[1] < 16 * f.ends[1];
         self.calm = if calm { self.calm.saturating_add(1) } else { 0 };
         for (n, Electrode { uv, hums, .. }) in electrodes.into_iter().enumerate() {
-            let Some(uv) = uv.filter(|_| self.calm >= CALM_READINGS || hums) else { continue };
+            let Some(uv) = uv.filter(|_| self.calm >= CALM_FRAMES || hums) else { continue };
             let added = (uv - sites.rest_uv[n]).min(MOST_DRIFT_UV) * 256;
-            self.drift[n] +=
-                (added - self.drift[n]) / if hums { HUM_READINGS } else { f.rest_readings.max(1) };
+            self.drift[n] += (added - self.drift[n]) / if hums { HUM_FRAMES } else { f.rest_frames.max(1) };
         }
     }
 
     /// Only what nobody can mistake, and only if it lasts. Opening does not need the flexor.
     fn uncalibrated(&mut self, electrodes: &[Electrode; 2]) {
-        let level = electrodes.map(|electrode| electrode.uv.map(|uv| level_of(uv.min(OVER_UV))));
-        let is_over = electrodes[1].uv.is_some_and(|uv| uv >= OVER_UV);
+        let level = electrodes.map(|electrode| electrode.uv.map(level_of));
+        let is_over = electrodes[1].over;
         let wants = |n: usize, wish: Wish| {
             let slack = if self.wish == wish { 512 } else { 0 };
             let stands_out = |own: i32| {
@@ -353,7 +369,7 @@ impl Decide {
         };
         self.stands = if wish == self.next { self.stands.saturating_add(1) } else { 1 };
         self.next = wish;
-        if wish == Wish::Rest || self.stands >= DEFAULT_READINGS {
+        if wish == Wish::Rest || self.stands >= DEFAULT_FRAMES {
             self.wish = wish;
         }
         self.mean = [16 * 750; 3];

@@ -4,7 +4,7 @@
 //! (`../shared/data/myobock`), read 240 times a second as the board reads, calibrated from two repetitions of the same session.
 //! How: a random search over a grid, scored by windows right, windows the wrong way, false motions at rest and latency; each
 //! person counts alike. `least_rise`, `hysteresis`, `least_end`, `least_fall` and `place_stays` of closing were then set by hand with the
-//! two-channel recordings in view; so were `mean_readings`, `begins` of opening, `after_readings` and `busy`, one at a time: fewer false
+//! two-channel recordings in view; so were `mean_frames`, `begins` of opening, `after_frames` and `busy`, one at a time: fewer false
 //! motions for two of the four people, and more for none. Nobody was held apart. Not used: faults, scenes. `docs/emg.md` has what it
 //! scores on whom.
 
@@ -12,24 +12,23 @@ use super::constants::Fitted;
 
 /// The constants of the model that the image runs.
 pub static FITTED: Fitted = Fitted {
-    mean_readings: 30,
+    mean_frames: 10,
     begins: [450, 690],
     ends: [450, 500],
     hysteresis: 250,
     least_end: 200,
     fall: 300,
     least_fall: 1_200,
-    crest_readings: 960,
+    crest_frames: 320,
     rise: 400,
     least_rise: 600,
     least_spreads: 3,
     place_begins: 480,
     place_stays: [520, 400],
-    dwell: [6, 9, 18],
-    at_once_readings: 2,
-    rest_readings: 1_024,
-    after_readings: [120, 240],
-    after_dwell: 36,
+    dwell: [2, 3, 6],
+    rest_frames: 341,
+    after_frames: [40, 80],
+    after_dwell: 12,
     firmer: 270,
     both: 300,
     busy: 450,

@@ -40,6 +40,63 @@ pub const fn uv_of_sample(sample: u16) -> i32 {
 /// Pairs of readings in a slow frame.
 const PAIRS: u8 = 3;
 
+/// What is known of an electrode.
+#[derive(Clone, Debug, Default)]
+struct Channel {
+    trust: Trust,
+    /// Envelopes from which the muscle is active, and below which it is no more, uV.
+    active_uv: [i32; 2],
+    /// Sum of the numbers of this slow frame, how many they are, and whether one was above [`OVER_UV`].
+    sum_uv: i32,
+    count: i32,
+    over: bool,
+    raised: bool,
+    /// Whether the last reading was in range.
+    in_range: bool,
+}
+
+impl Channel {
+    fn read(&mut self, uv: Option<i32>) {
+        let in_range = uv.filter(|&uv| uv < OVER_UV);
+        let bridged = self.trust.take(in_range);
+        if let Some(uv) = uv.or(bridged) {
+            self.sum_uv += uv.min(OVER_UV);
+            self.count += 1;
+        }
+        if uv.is_some() && in_range.is_none() {
+            self.over = true;
+        } else {
+            self.raised = bridged.is_some_and(|uv| uv >= self.active_uv[usize::from(self.raised)]);
+        }
+        self.in_range = in_range.is_some();
+    }
+
+    /// The level of the last reading: what a mean of them would hide of noise is not a muscle's.
+    fn level(&self) -> Option<i32> {
+        if self.over { Some(const { level_of(OVER_UV) }) } else { self.trust.last_uv().map(level_of) }
+    }
+
+    /// The slow frame that has ended.
+    fn end(&mut self) -> Electrode {
+        let uv = (self.count > 0).then(|| self.sum_uv / self.count.max(1));
+        let over = self.over;
+        (self.sum_uv, self.count, self.over) = (0, 0, false);
+        if let Some(uv) = uv.filter(|_| !over) {
+            self.trust.judge(self.active_uv[0], uv);
+        }
+        let trust = &self.trust;
+        Electrode { uv, over, doubted: !trust.is_good(), still: trust.is_still(), hums: trust.hums() }
+    }
+
+    fn is_known(&self) -> bool {
+        self.in_range && self.trust.is_good()
+    }
+
+    fn is_active(&self) -> bool {
+        self.raised && self.trust.is_good()
+    }
+}
+
 /// The wearer's wish and activity, from both muscles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Verdict {
@@ -62,11 +119,9 @@ pub struct Verdict {
 pub struct Emg {
     decide: Decide,
     proof: Proof,
-    /// Pairs since the last proof.
+    channels: [Channel; 2],
+    /// Pairs of this slow frame.
     pairs: u8,
-    trust: [Trust; 2],
-    raised: [bool; 2],
-    known: [bool; 2],
     /// Whether each electrode swings while the other one does not: reported, and no proof.
     lone: [bool; 2],
     electrodes: [Electrode; 2],
@@ -89,12 +144,10 @@ impl Emg {
     /// Recognition with another decision, to fit its constants.
     pub fn of(decide: Decide) -> Self {
         Self {
+            channels: [0, 1].map(|n| Channel { active_uv: decide.active_uv(n), ..Channel::default() }),
             decide,
             proof: Proof::default(),
             pairs: 0,
-            trust: Default::default(),
-            raised: [false; 2],
-            known: [false; 2],
             lone: [false; 2],
             electrodes: Default::default(),
             verdict: Verdict::default(),
@@ -104,6 +157,9 @@ impl Emg {
     /// Changes the calibration. The wish begins at rest; the sensors' state stays.
     pub fn calibrate(&mut self, model: Option<&EmgModel>) {
         self.decide = Decide::new(model);
+        for (n, channel) in self.channels.iter_mut().enumerate() {
+            channel.active_uv = self.decide.active_uv(n);
+        }
         self.verdict = Verdict::default();
     }
 
@@ -115,54 +171,47 @@ impl Emg {
     }
 
     /// Takes the reading of one channel above the live zero, uV: channel 0 is the flexor, others the extensor. Pass
-    /// None for a missing reading too: gaps are counted. The extensor's reading completes the pair and updates the
-    /// verdict.
+    /// None for a missing reading too: gaps are counted. The extensor's third reading completes a slow frame and updates the
+    /// verdict; activity and doubt are in it at once.
     pub fn read(&mut self, channel: usize, uv: Option<i32>) {
         let n = channel.min(1);
-        let [active, inactive] = self.decide.active_levels(n);
-        let in_range = uv.filter(|&uv| uv < OVER_UV);
-        let bridged = self.trust[n].take(active, in_range);
-        let doubted = !self.trust[n].is_good();
-        self.electrodes[n] = Electrode {
-            uv: uv.or(bridged),
-            doubted,
-            still: self.trust[n].is_still(),
-            hums: self.trust[n].hums(),
-        };
-        let threshold = if self.raised[n] { inactive } else { active };
-        let over = uv.is_some() && in_range.is_none();
-        self.raised[n] =
-            if over { self.raised[n] } else { bridged.is_some_and(|uv| level_of(uv) >= threshold) };
-        // Silence does not wait for the other half of the pair.
-        self.verdict.active |= self.is_active(n);
-        self.known[n] = !doubted && in_range.is_some();
-        self.verdict.known &= self.known[n];
+        let channel = &mut self.channels[n];
+        channel.read(uv);
+        let good = channel.trust.is_good();
+        self.verdict.active |= good & channel.raised;
+        self.verdict.known &= good & channel.in_range;
         if n == 1 {
-            self.decide();
+            self.pairs += 1;
+            if self.pairs >= PAIRS {
+                self.pairs = 0;
+                self.decide();
+            }
         }
+    }
+
+    /// Whether the last pair completed a slow frame.
+    pub const fn is_whole(&self) -> bool {
+        self.pairs == 0
     }
 
     #[inline(never)]
     fn decide(&mut self) {
+        let levels = self.channels.each_ref().map(Channel::level);
+        let [flexor, extensor] = &mut self.channels;
+        self.electrodes = [flexor.end(), extensor.end()];
         let wish = self.decide.take(&self.electrodes);
-        self.pairs += 1;
-        let mut proven = self.verdict.proven && wish == self.verdict.wish;
-        // A proof takes tenths of a second: once a slow frame is enough.
-        if self.pairs >= PAIRS {
-            self.pairs = 0;
-            let mover = self.decide.mover();
-            let levels = self.electrodes.map(|electrode| electrode.uv.map(|uv| level_of(uv.min(OVER_UV))));
-            self.lone = self.proof.lone(levels, self.raised);
-            let (trust, hears) = (&self.trust[mover], self.decide.hears());
-            proven =
-                self.proof.take(levels, wish, mover, trust, hears, self.raised[mover]) && !self.lone[mover];
-        }
+        let mover = self.decide.mover();
+        let raised = self.channels.each_ref().map(|channel| channel.raised);
+        self.lone = self.proof.lone(levels, raised);
+        let (trust, hears) = (&self.channels[mover].trust, self.decide.hears());
+        let proven = self.proof.take(levels, wish, mover, trust, hears, raised[mover]) && !self.lone[mover];
+        let [flexor, extensor] = &self.channels;
         self.verdict = Verdict {
             wish,
             strength_permille: self.decide.strength_permille(),
             proven,
-            active: self.is_active(0) || self.is_active(1) || wish != Wish::Rest,
-            known: self.known[0] && self.known[1],
+            active: flexor.is_active() || extensor.is_active() || wish != Wish::Rest,
+            known: flexor.is_known() && extensor.is_known(),
             half_known: false,
         };
     }
@@ -176,15 +225,14 @@ impl Emg {
     /// doubted.
     #[must_use]
     pub fn is_known(&self, channel: usize) -> bool {
-        self.known[channel.min(1)]
+        self.channels[channel.min(1)].is_known()
     }
 
     /// Whether a reading of a channel, uV, can be no muscle's at work: it is below activity, or stands where it has stood still.
     #[must_use]
     pub fn is_idle(&self, channel: usize, uv: i32) -> bool {
-        let n = channel.min(1);
-        let [_, inactive] = self.decide.active_levels(n);
-        level_of(uv) < inactive || self.trust[n].hums_at(uv)
+        let channel = &self.channels[channel.min(1)];
+        uv < channel.active_uv[1] || channel.trust.hums_at(uv)
     }
 
     /// The last verdict.
@@ -201,20 +249,20 @@ impl Emg {
     /// its electrode is not doubted.
     #[must_use]
     pub fn is_active(&self, channel: usize) -> bool {
-        self.is_raised(channel) && !self.electrodes[channel.min(1)].doubted
+        self.channels[channel.min(1)].is_active()
     }
 
     /// Whether the level of channel 0 (flexor) or another (extensor) is above its threshold of activity, with
     /// hysteresis, even if the electrode is doubted.
     #[must_use]
     pub fn is_raised(&self, channel: usize) -> bool {
-        self.raised[channel.min(1)]
+        self.channels[channel.min(1)].raised
     }
 
     /// Returns the quality of an envelope: channel 0 is the flexor, others the extensor.
     #[must_use]
     pub fn quality(&self, channel: usize) -> Quality {
-        match self.trust[channel.min(1)].quality() {
+        match self.channels[channel.min(1)].trust.quality() {
             Quality::Good if self.lone[channel.min(1)] => Quality::LeadOff,
             quality => quality,
         }
@@ -224,13 +272,13 @@ impl Emg {
     /// tick: 64 readings, one a slow frame, the oldest first, 128 uV a unit. None until it is full.
     #[must_use]
     pub fn window(&self, channel: usize) -> Option<&[i16; WINDOW]> {
-        self.trust[channel.min(1)].window()
+        self.channels[channel.min(1)].trust.window()
     }
 
     /// Takes the result of a channel's window ([`mains::mains_of`]), and begins the next window. Channel 0 is the
     /// flexor.
     pub const fn hear(&mut self, channel: usize, mains: Mains) {
         let channel = if channel == 0 { 0 } else { 1 };
-        self.trust[channel].hear(mains);
+        self.channels[channel].trust.hear(mains);
     }
 }

@@ -169,13 +169,15 @@ impl Proof {
         });
         self.hears = if heard == Some(true) { self.hears.saturating_add(1) } else { 0 };
         self.heard |= self.age <= HEARD_FRAMES && self.hears >= HEARD_FOR;
-        self.proven |= match (heard, wish) {
-            (Some(_), Wish::Open) => {
-                self.apart |= self.rise_apart();
-                self.heard && self.apart && (trust.has_turned() || self.is_gradual(mover))
-            }
-            _ => self.heard || trust.has_turned_twice(),
-        };
+        if !self.proven {
+            self.proven = match (heard, wish) {
+                (Some(_), Wish::Open) => {
+                    self.apart = self.apart || self.rise_apart();
+                    self.heard && self.apart && (trust.has_turned() || self.is_gradual(mover))
+                }
+                _ => self.heard || trust.has_turned_twice(),
+            };
+        }
         if self.over > OVER_FRAMES || !(over || trust.is_sound() && raised) {
             // It is over, though its wish may last for a moment, or it is no muscle's. Whatever follows is another contraction, which has to be heard.
             (self.proven, self.heard, self.age) = (false, false, HEARD_FRAMES);

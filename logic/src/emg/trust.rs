@@ -4,8 +4,6 @@
 //! of the other one. Proof is what no single fault does: the envelope turns or curves again and again; that the other electrode
 //! hears it too is asked for in [`decide`](super::decide).
 
-use super::decide::OVER_UV;
-use super::level::level_of;
 use super::mains::{Mains, UNIT_UV, WINDOW};
 
 /// Top of an envelope's range, uV above the live zero: 3.15 V at the pin.
@@ -81,13 +79,11 @@ impl core::fmt::Display for Quality {
 /// Watches one electrode.
 #[derive(Clone, Debug)]
 pub struct Trust {
-    lost: Option<Quality>,
+    quality: Quality,
     good: u16,
-    last_uv: Option<i32>,
+    /// Readings in a row without a number, and the last one with it, uV.
     missing: u8,
-    /// Sum of the present slow frame's readings, uV.
-    sum_uv: i32,
-    count: u8,
+    last_uv: i32,
     /// Means of the last slow frames, in a ring.
     past_uv: [i32; 2 * LAG],
     place: u8,
@@ -105,21 +101,22 @@ pub struct Trust {
     since_proof: u16,
     window: [i16; WINDOW],
     filled: u8,
+    /// Whether the window has a reading of this slow frame.
+    kept: bool,
     mains: bool,
 }
 
 impl Default for Trust {
+    /// Nothing is known yet.
     fn default() -> Self {
         Self {
-            lost: None,
+            quality: Quality::Good,
             good: 0,
-            last_uv: None,
             missing: 0,
-            sum_uv: 0,
-            count: 0,
+            last_uv: 0,
             past_uv: [0; 2 * LAG],
             place: 0,
-            anchor_uv: i32::MIN / 2,
+            anchor_uv: 0,
             flat: 0,
             hum_uv: 0,
             active_for: 0,
@@ -131,49 +128,48 @@ impl Default for Trust {
             since_proof: 0,
             window: [0; WINDOW],
             filled: 0,
+            kept: false,
             mains: false,
         }
     }
 }
 
 impl Trust {
-    /// Takes a reading above the live zero, uV, None where the sensor gives no number. `active` is the level, Q10
-    /// octaves, from which the muscle is active. Returns the reading; in a gap of up to 50 ms, the last one before it.
-    pub fn take(&mut self, active: i32, uv: Option<i32>) -> Option<i32> {
+    /// Takes a reading above the live zero, uV, None where the sensor gives no number. Returns the reading; in a gap of up to 50 ms,
+    /// the last one before it.
+    pub fn take(&mut self, uv: Option<i32>) -> Option<i32> {
         let Some(uv) = uv else {
             self.missing = self.missing.saturating_add(1);
             if self.missing > BRIDGED_READINGS {
-                self.last_uv = None;
                 (self.proofs, self.hum_uv) = (0, 0);
                 self.lose(Quality::LeadOff);
             }
-            return self.last_uv;
+            return self.last_uv();
         };
-        self.missing = 0;
-        self.last_uv = Some(uv);
-        if self.count == 0 && usize::from(self.filled) < WINDOW {
+        (self.missing, self.last_uv) = (0, uv);
+        if !self.kept && usize::from(self.filled) < WINDOW {
             self.window[usize::from(self.filled)] = (uv / UNIT_UV).clamp(-32_768, 32_767) as i16;
             self.filled += 1;
-        }
-        self.sum_uv += uv.min(OVER_UV);
-        self.count += 1;
-        if self.count == 3 {
-            let mean_uv = self.sum_uv / 3;
-            (self.sum_uv, self.count) = (0, 0);
-            self.judge(active, mean_uv);
+            self.kept = true;
         }
         Some(uv)
     }
 
-    /// Takes the mean of a slow frame.
-    fn judge(&mut self, active: i32, uv: i32) {
-        let (middle, far) = (self.before(LAG), self.before(2 * LAG));
-        let curve_uv = (uv - 2 * middle + far).abs();
-        let place = usize::from(self.place) % (2 * LAG);
-        self.past_uv[place] = uv;
-        self.place = (place as u8 + 1) % (2 * LAG) as u8;
+    /// The last reading, bridged, uV.
+    pub fn last_uv(&self) -> Option<i32> {
+        (self.missing <= BRIDGED_READINGS).then_some(self.last_uv)
+    }
 
-        let is_active = level_of(uv) >= active;
+    /// Takes the mean of a slow frame, uV; `active_uv` is the envelope from which the muscle is active.
+    pub fn judge(&mut self, active_uv: i32, uv: i32) {
+        self.kept = false;
+        let place = usize::from(self.place) % (2 * LAG);
+        let (middle, far) = (self.past_uv[(place + LAG) % (2 * LAG)], self.past_uv[place]);
+        let curve_uv = (uv - 2 * middle + far).abs();
+        self.past_uv[place] = uv;
+        self.place = place as u8 + 1;
+
+        let is_active = uv >= active_uv;
         self.active_for = if is_active { self.active_for.saturating_add(1) } else { 0 };
         let is_top = uv >= TOP_UV;
         self.at_top = if is_top { self.at_top.saturating_add(1) } else { 0 };
@@ -183,46 +179,37 @@ impl Trust {
         // A muscle does not let go of half in 50 ms: what does has come off, or back on, and proves nothing.
         self.prove((turned || curves) && uv >= middle / 2);
 
-        let climbs = is_active && self.climbing >= CREEP_FRAMES;
-        let bad = if self.at_top >= TOP_FRAMES {
-            Some(Quality::Saturated)
-        } else if is_active && self.flat >= FLAT_FRAMES {
-            Some(if self.mains { Quality::Hum } else { Quality::Flat })
-        } else if climbs {
+        let constant = if self.mains { Quality::Hum } else { Quality::Flat };
+        let quality = if self.at_top >= TOP_FRAMES {
+            Quality::Saturated
+        } else if !is_active {
+            Quality::Good
+        } else if self.flat >= FLAT_FRAMES {
+            constant
+        } else if self.climbing >= CREEP_FRAMES {
             let creeps = self.crest_uv - self.foot_uv > self.foot_uv / 16;
-            Some(if creeps {
-                Quality::Creep
-            } else if self.mains {
-                Quality::Hum
-            } else {
-                Quality::Flat
-            })
+            if creeps { Quality::Creep } else { constant }
         } else if self.active_for >= ENDLESS_FRAMES {
-            Some(Quality::Endless)
+            Quality::Endless
         } else {
-            None
+            Quality::Good
         };
-        match bad {
-            Some(quality) => self.lose(quality),
-            None => self.good = self.good.saturating_add(1),
+        match quality {
+            Quality::Good => self.good = self.good.saturating_add(1),
+            bad => self.lose(bad),
         }
         // A fault may end in another: nothing is good again before a muscle has been seen at rest or at work.
         if self.good >= BACK_FRAMES && (!is_active || self.has_turned_twice()) {
-            self.lost = None;
+            self.quality = Quality::Good;
         }
     }
 
     fn lose(&mut self, quality: Quality) {
         self.good = 0;
         // The first reason stays, but a still envelope may later turn out to be mains.
-        if self.lost.is_none() || (self.lost == Some(Quality::Flat) && quality == Quality::Hum) {
-            self.lost = Some(quality);
+        if self.is_good() || (self.quality == Quality::Flat && quality == Quality::Hum) {
+            self.quality = quality;
         }
-    }
-
-    /// The mean of this many slow frames ago, 1 to 2 [`LAG`].
-    fn before(&self, frames: usize) -> i32 {
-        self.past_uv[(usize::from(self.place) + 2 * LAG - frames) % (2 * LAG)]
     }
 
     /// A working muscle turns again and again. One jump from a fault to another does so once.
@@ -271,13 +258,13 @@ impl Trust {
     }
 
     /// Returns the quality of the envelope.
-    pub fn quality(&self) -> Quality {
-        self.lost.unwrap_or_default()
+    pub const fn quality(&self) -> Quality {
+        self.quality
     }
 
     /// Whether the envelope is taken for a muscle's.
-    pub fn is_good(&self) -> bool {
-        self.lost.is_none()
+    pub const fn is_good(&self) -> bool {
+        matches!(self.quality, Quality::Good)
     }
 
     /// Whether the envelope has been constant for 0.2 s.
@@ -287,14 +274,14 @@ impl Trust {
 
     /// Whether the electrode is doubted because its envelope is constant: its level then counts as hum.
     pub fn hums(&self) -> bool {
-        matches!(self.lost, Some(Quality::Flat | Quality::Hum)) && self.flat >= FLAT_FRAMES
+        matches!(self.quality, Quality::Flat | Quality::Hum) && self.flat >= FLAT_FRAMES
     }
 
     /// Whether this reading, uV, is still at the constant level for which the electrode is doubted. An active muscle would
     /// change it.
     #[must_use]
     pub fn hums_at(&self, uv: i32) -> bool {
-        matches!(self.lost, Some(Quality::Flat | Quality::Hum))
+        matches!(self.quality, Quality::Flat | Quality::Hum)
             && (uv - self.hum_uv).abs() <= self.hum_uv / HUM_PART + STILL_UV
     }
 
@@ -313,7 +300,7 @@ impl Trust {
     /// Whether the envelope may still be a muscle's: not doubted, nor at the top of its range for 0.5 s, nor standing
     /// still for 0.6 s.
     pub const fn is_sound(&self) -> bool {
-        self.lost.is_none() && self.at_top < TOP_FRAMES / 3 && self.flat < 3 * FLAT_FRAMES / 5
+        self.is_good() && self.at_top < TOP_FRAMES / 3 && self.flat < 3 * FLAT_FRAMES / 5
     }
 
     /// Whether the active envelope has neither fallen back by 3 % nor given a proof for 1 s.

@@ -3,24 +3,23 @@
 use super::*;
 
 static F: Fitted = Fitted {
-    mean_readings: 30,
+    mean_frames: 10,
     begins: [450, 690],
     ends: [450, 500],
     hysteresis: 250,
     least_end: 200,
     fall: 300,
     least_fall: 1_200,
-    crest_readings: 960,
+    crest_frames: 320,
     rise: 400,
     least_rise: 600,
     least_spreads: 3,
     place_begins: 480,
     place_stays: [520, 400],
-    dwell: [6, 9, 18],
-    at_once_readings: 2,
-    rest_readings: 1_024,
-    after_readings: [120, 240],
-    after_dwell: 36,
+    dwell: [2, 3, 6],
+    rest_frames: 341,
+    after_frames: [40, 80],
+    after_dwell: 12,
     firmer: 270,
     both: 300,
     busy: 450,
@@ -48,14 +47,17 @@ fn a_wearers_levels_are_those_of_the_calibration() {
     assert_eq!((weak.begins, weak.ends, weak.fall), ([480, 690], [280, 489], [960, 967]));
     assert_eq!((weak.both, weak.hears), ([622, 420], [Some(150), None]));
     assert_eq!((weak.close_ratio, weak.turn), (-750, 1_940));
-    assert_eq!(weak.active, [[16_037, 15_912], [16_134, 16_010]]);
+    assert_eq!(weak.active_uv.map(|own| own.map(level_of)), [[16_037, 15_912], [16_134, 16_010]]);
     // A rest that wanders, and an opening that the other electrode just hears.
     let noisy = Sites::of(&F, &model([[15_600, 15_700], [17_600, 16_200], [15_900, 17_800], [450, 510]]));
     assert_eq!((noisy.begins, noisy.ends, noisy.fall), ([675, 728], [450, 500], [600, 571]));
     assert_eq!((noisy.both, noisy.hears), ([538, 450], [Some(250), Some(150)]));
     // A rest above what is activity for everybody, and an electrode that falls with the other's contraction.
     let loud = Sites::of(&F, &model([[17_800, 15_700], [20_000, 17_700], [17_700, 19_800], [100, 100]]));
-    assert_eq!(loud.active, [[18_100, 18_000], [15_700 + 4_100 * 350 / 1_000, 15_700 + 4_100 / 4]]);
+    assert_eq!(
+        loud.active_uv.map(|own| own.map(level_of)),
+        [[18_100, 18_000], [15_700 + 4_100 * 350 / 1_000, 15_700 + 4_100 / 4]]
+    );
     assert_eq!((loud.both, loud.hears), ([787, 300], [Some(500), None]));
     assert_eq!(loud.fall, [545, 300]);
 }
@@ -64,21 +66,21 @@ fn a_wearers_levels_are_those_of_the_calibration() {
 fn electrodes_that_are_swapped_are_the_same_wearer() {
     for (levels, sites) in [(WEAK, [0, 1]), (swapped(WEAK), [1, 0])] {
         let mut decide = Decide::with(&F, Some(&model(levels)));
-        assert_eq!(sites.map(|n| decide.active_levels(n)), [[16_037, 15_912], [16_134, 16_010]]);
+        assert_eq!(sites.map(|n| decide.active_uv(n).map(level_of)), [[16_037, 15_912], [16_134, 16_010]]);
         for (wish, site, hears) in
             [(Wish::Rest, 1, None), (Wish::Close, 0, Some([15_700, 150])), (Wish::Open, 1, None)]
         {
-            decide.wish = wish;
+            decide.machine.wish = wish;
             assert_eq!((decide.mover(), decide.hears()), (sites[site], hears), "{wish:?}");
         }
     }
     let mut nobody = Decide::with(&F, None);
     for (wish, mover, strength) in [(Wish::Rest, 1, 0), (Wish::Close, 0, 545), (Wish::Open, 1, 500)] {
         nobody.take(&[Electrode::default(); 2]);
-        nobody.wish = wish;
+        nobody.machine.wish = wish;
         assert_eq!((nobody.mover(), nobody.hears()), (mover, Some([FLOOR_LEVEL, DEFAULT_HEARS])));
         assert_eq!(nobody.strength_permille(), strength);
-        assert_eq!(nobody.active_levels(0), ACTIVE_UV.map(level_of));
+        assert_eq!(nobody.active_uv(0), ACTIVE_UV);
     }
 }
 
@@ -105,12 +107,12 @@ const CALM: State = State {
     over: false,
 };
 
-fn asked(state: State) -> (Wish, Decide) {
+fn asked(state: State) -> (Wish, Machine) {
     let State { wish, mean, since, trough, crest, blind, over } = state;
     let sites = Sites { fall: [300; 2], ..sites() };
-    let mut decide =
-        Decide { wish, mean: mean.map(|mean| mean * 16), since, trough, crest, ..Decide::with(&F, None) };
-    (decide.wanted(&sites, blind, [false, over]), decide)
+    let mut machine =
+        Machine { wish, mean: mean.map(|mean| mean * 16), since, trough, crest, ..Machine::new(&F) };
+    (machine.wanted(&sites, blind, over), machine)
 }
 
 fn wants(state: State) -> Wish {
@@ -128,12 +130,12 @@ fn opening_begins_from_its_share_and_place_while_the_other_site_is_calm() {
         (State { mean: [420, 690, 480], ..opens }, false),
         (State { blind: [true, false], ..opens }, false),
         (State { blind: [false, true], ..opens }, false),
-        // Soon after other activity: not yet, only strongly, like any other. This reading counts.
-        (State { since: [238, 1_000], ..opens }, false),
-        (State { since: [239, 1_000], ..opens }, true),
-        (State { since: [119, 1_000], mean: [0, 999, 480], ..opens }, false),
-        (State { since: [119, 1_000], mean: [0, 1_000, 480], ..opens }, true),
-        (State { since: [118, 1_000], mean: [0, 1_000, 480], ..opens }, false),
+        // Soon after other activity: not yet, only strongly, like any other. This frame counts.
+        (State { since: [78, 1_000], ..opens }, false),
+        (State { since: [79, 1_000], ..opens }, true),
+        (State { since: [39, 1_000], mean: [0, 999, 480], ..opens }, false),
+        (State { since: [39, 1_000], mean: [0, 1_000, 480], ..opens }, true),
+        (State { since: [38, 1_000], mean: [0, 1_000, 480], ..opens }, false),
         // Tone that stays is no new wish.
         (State { trough: [0, 400], mean: [0, 799, 480], ..opens }, false),
         (State { trough: [0, 400], mean: [0, 800, 480], ..opens }, true),
@@ -219,7 +221,7 @@ fn a_wish_goes_on_until_it_falls_below_its_end_or_from_its_crest() {
 fn crest_trough_and_activity_are_remembered() {
     let closes = State { wish: Wish::Close, mean: [700, 300, 0], crest: 256_000, trough: [900, 200], ..CALM };
     let (_, after) = asked(closes);
-    assert_eq!((after.crest, after.trough), (255_920, [700, 200]));
+    assert_eq!((after.crest, after.trough), (255_760, [700, 200]));
     let (_, after) = asked(State { mean: [1_200, 100, 0], ..closes });
     assert_eq!((after.crest, after.trough), (1_200 * 256, [1_200, 100]));
     assert_eq!(asked(State { wish: Wish::Rest, ..closes }).1.crest, 0);
@@ -237,13 +239,13 @@ fn crest_trough_and_activity_are_remembered() {
     }
 }
 
-/// What one reading of these levels, closing site first, leaves of who reads `since` as this.
-fn read(levels: [i32; 2], since: i32, of: impl Fn(&mut [Electrode; 2])) -> Decide {
+/// What one slow frame of these levels, closing site first, leaves so long after other activity.
+fn read(levels: [i32; 2], since: i32, of: impl Fn(&mut [Electrode; 2])) -> Machine {
     let mut electrodes = levels.map(|level| Electrode { uv: Some(uv_of(level)), ..Electrode::default() });
     of(&mut electrodes);
-    let mut decide = Decide { since: [since; 2], ..Decide::with(&F, None) };
-    decide.calibrated(&sites(), electrodes);
-    decide
+    let mut machine = Machine { since: [since; 2], ..Machine::new(&F) };
+    machine.calibrated(&sites(), electrodes);
+    machine
 }
 
 #[test]
@@ -252,8 +254,8 @@ fn what_is_above_all_that_was_calibrated_is_strong() {
     let still = |electrodes: &mut [Electrode; 2]| electrodes[0].still = true;
     let doubted = |electrodes: &mut [Electrode; 2]| electrodes[0].doubted = true;
     let blind = |electrodes: &mut [Electrode; 2]| electrodes[0].uv = None;
-    let at = |uv: i32| move |electrodes: &mut [Electrode; 2]| electrodes[1].uv = Some(uv);
-    for (is_strong, decide) in [
+    let over = |electrodes: &mut [Electrode; 2]| electrodes[1].over = true;
+    for (is_strong, machine) in [
         (true, read([15_600, 16_940], 1_000, none)),
         (false, read([15_600, 16_939], 1_000, none)),
         // The closing site is calm, or stands still.
@@ -266,73 +268,66 @@ fn what_is_above_all_that_was_calibrated_is_strong() {
         (true, read([16_759, 16_940], 1_000, doubted)),
         (true, read([16_759, 16_940], 1_000, blind)),
         // Soon after other activity it takes more.
-        (true, read([15_600, 16_940], 119, none)),
-        (false, read([15_600, 17_209], 118, none)),
-        (true, read([15_600, 17_210], 118, none)),
+        (true, read([15_600, 16_940], 39, none)),
+        (false, read([15_600, 17_209], 38, none)),
+        (true, read([15_600, 17_210], 38, none)),
         (true, read([15_600, 16_940], 0, doubted)),
-        (true, read([15_600, 16_940], 1_000, at(OVER_UV - 1))),
-        (false, read([15_600, 16_940], 1_000, at(OVER_UV))),
+        (false, read([15_600, 16_940], 1_000, over)),
         (false, read([15_600, 16_940], 1_000, |electrodes| electrodes[1].uv = None)),
     ] {
-        assert_eq!(decide.strong, i32::from(is_strong), "{:?}", decide.mean);
+        assert_eq!(machine.wish == Wish::Open, is_strong, "{:?}", machine.mean);
     }
-    // Shares and place, 1/30 of them; what follows rest is subtracted.
-    assert_eq!(read([15_600, 16_940], 1_000, none).mean, [0, 533, 574]);
-    let mut hums = Decide { drift: [0, 20_000 << 8], since: [1_000; 2], ..Decide::with(&F, None) };
+    // An opening at once has the shares and the place of its frame; else a tenth of them is averaged. What follows rest is subtracted.
+    let opened = [0, 1_000, 1_077].map(|own| 16 * own);
+    assert_eq!(read([15_600, 16_940], 1_000, none).mean, opened);
+    assert_eq!(read([15_600, 16_320], 1_000, none).mean, [0, 800, 1_211]);
+    let mut hums = Machine { drift: [0, 20_000 << 8], since: [1_000; 2], ..Machine::new(&F) };
     let uv = [uv_of(15_600), uv_of(16_940) + 20_000].map(Some);
     hums.calibrated(&sites(), uv.map(|uv| Electrode { uv, ..Electrode::default() }));
-    assert_eq!((hums.mean, hums.strong), ([0, 533, 574], 1));
+    assert_eq!((hums.mean, hums.wish), (opened, Wish::Open));
 }
 
 #[test]
-fn a_wish_stands_for_its_dwell_and_a_strong_one_for_two_readings() {
+fn a_wish_stands_for_its_dwell() {
     let takes = |from: Wish, to: Wish, since: i32| {
-        let mut decide = Decide { wish: from, next: from, since: [1_000, since], ..Decide::with(&F, None) };
+        let mut machine = Machine { wish: from, next: from, since: [1_000, since], ..Machine::new(&F) };
         (1..100).find(|_| {
-            decide.settle(to, [0; 3]);
-            decide.wish == to
+            machine.settle(to);
+            machine.wish == to
         })
     };
-    assert_eq!(takes(Wish::Close, Wish::Rest, 1_000), Some(6));
-    assert_eq!(takes(Wish::Rest, Wish::Close, 120), Some(9));
-    assert_eq!(takes(Wish::Rest, Wish::Close, 119), Some(36));
-    assert_eq!(takes(Wish::Rest, Wish::Open, 0), Some(18));
-    let strong = |wish: Wish, strong: i32| {
-        let mut decide = Decide { wish, strong, ..Decide::with(&F, None) };
-        decide.settle(Wish::Rest, [1, 2, 3]);
-        (decide.wish, decide.mean)
-    };
-    assert_eq!(strong(Wish::Close, 1), (Wish::Close, [0; 3]));
-    assert_eq!(strong(Wish::Close, 2), (Wish::Open, [16, 32, 48]));
-    assert_eq!(strong(Wish::Open, 2), (Wish::Open, [0; 3]));
+    assert_eq!(takes(Wish::Close, Wish::Rest, 1_000), Some(2));
+    assert_eq!(takes(Wish::Rest, Wish::Close, 40), Some(3));
+    assert_eq!(takes(Wish::Rest, Wish::Close, 39), Some(12));
+    assert_eq!(takes(Wish::Rest, Wish::Open, 0), Some(6));
 }
 
 #[test]
 fn rest_is_followed_after_half_a_second_of_it_and_hum_at_once() {
     let sites = sites();
-    let follows = |decide: Decide, above: [i32; 2], wish: Wish, hums: bool, readings: u16| {
-        let mut decide = decide;
+    let follows = |machine: Machine, above: [i32; 2], wish: Wish, hums: bool, frames: u16| {
+        let mut machine = machine;
         let uv = [0, 1].map(|n: usize| Some(sites.rest_uv[n] + above[n]));
         let electrodes = uv.map(|uv| Electrode { uv, hums, ..Electrode::default() });
-        (0..readings).for_each(|_| decide.follow(&sites, electrodes, wish));
-        decide.drift
+        (0..frames).for_each(|_| machine.follow(&sites, electrodes, wish));
+        machine.drift
     };
-    let calm = || Decide::with(&F, None);
+    let calm = || Machine::new(&F);
     let above = [40_000, 20_000];
-    assert_eq!(follows(calm(), above, Wish::Rest, false, CALM_READINGS - 1), [0; 2]);
-    assert_eq!(follows(calm(), above, Wish::Rest, false, CALM_READINGS), [10_000, 5_000]);
-    assert_eq!(follows(calm(), above, Wish::Rest, false, CALM_READINGS + 1), [19_990, 9_995]);
-    assert_eq!(follows(calm(), above, Wish::Rest, true, 1), [160_000, 80_000]);
-    assert_eq!(follows(calm(), [2_000_000; 2], Wish::Rest, true, 1), [6_000_000; 2]);
-    let lasts = 2 * CALM_READINGS;
+    assert_eq!(follows(calm(), above, Wish::Rest, false, CALM_FRAMES - 1), [0; 2]);
+    assert_eq!(follows(calm(), above, Wish::Rest, false, CALM_FRAMES), [30_029, 15_014]);
+    assert_eq!(follows(calm(), above, Wish::Rest, false, CALM_FRAMES + 1), [59_970, 29_984]);
+    assert_eq!(follows(calm(), above, Wish::Rest, true, 1), [487_619, 243_809]);
+    assert_eq!(follows(calm(), [2_000_000; 2], Wish::Rest, true, 1), [18_285_714; 2]);
+    let lasts = 2 * CALM_FRAMES;
     assert_eq!(follows(calm(), above, Wish::Close, false, lasts), [0; 2]);
-    for (decide, is_calm) in [
-        (Decide { wish: Wish::Open, ..calm() }, false),
-        (Decide { mean: [16 * 450, 0, 0], ..calm() }, false),
-        (Decide { mean: [16 * 450 - 1, 16 * 500 - 1, 0], ..calm() }, true),
-        (Decide { mean: [0, 16 * 500, 0], ..calm() }, false),
+    for (machine, is_calm) in [
+        (Machine { wish: Wish::Open, ..calm() }, false),
+        (Machine { mean: [16 * 450, 0, 0], ..calm() }, false),
+        (Machine { mean: [16 * 450 - 1, 16 * 500 - 1, 0], ..calm() }, true),
+        (Machine { mean: [0, 16 * 500, 0], ..calm() }, false),
     ] {
-        assert_eq!(follows(decide, above, Wish::Rest, false, lasts) != [0; 2], is_calm);
+        assert_eq!(follows(machine, above, Wish::Rest, false, lasts) != [0; 2], is_calm);
     }
     let mut lost = calm();
     (0..lasts).for_each(|_| lost.follow(&sites, [Electrode::default(); 2], Wish::Rest));
@@ -341,11 +336,12 @@ fn rest_is_followed_after_half_a_second_of_it_and_hum_at_once() {
 
 #[test]
 fn without_calibration_a_wish_stands_out_by_what_is_set_and_for_so_long() {
+    let at = |uv: Option<i32>| Electrode { uv, over: uv == Some(OVER_UV), ..Electrode::default() };
     let lacks = |uv: i32, by: i32| uv_of(level_of(uv) - by);
     let next = |wish: Wish, uv: [Option<i32>; 2]| {
-        let mut decide = Decide { wish, next: wish, ..Decide::with(&F, None) };
-        decide.take(&uv.map(|uv| Electrode { uv, ..Electrode::default() }));
-        decide.next
+        let mut machine = Machine { wish, next: wish, ..Machine::new(&F) };
+        machine.uncalibrated(&uv.map(at));
+        machine.next
     };
     let [close_uv, open_uv] = DEFAULT_BEGINS_UV;
     for (from, slack) in [(Wish::Rest, 0), (Wish::Close, 512), (Wish::Open, 0)] {
@@ -370,8 +366,8 @@ fn without_calibration_a_wish_stands_out_by_what_is_set_and_for_so_long() {
     assert_eq!(next(Wish::Rest, [Some(close_uv), None]), Wish::Rest);
 
     let mut decide = Decide::with(&F, None);
-    let closes = [Some(close_uv), Some(0)].map(|uv| Electrode { uv, ..Electrode::default() });
+    let closes = [Some(close_uv), Some(0)].map(at);
     let stands = (1..200).find(|_| decide.take(&closes) == Wish::Close);
-    assert_eq!(stands, Some(DEFAULT_READINGS));
+    assert_eq!(stands, Some(DEFAULT_FRAMES));
     assert_eq!(decide.take(&[Electrode { uv: Some(0), ..Electrode::default() }; 2]), Wish::Rest);
 }

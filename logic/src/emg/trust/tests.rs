@@ -2,7 +2,7 @@ use super::*;
 use crate::emg::mains::mains_of;
 use std::f64::consts::TAU;
 
-const ACTIVE: i32 = level_of(120_000);
+const ACTIVE_UV: i32 = 120_000;
 /// When the readings of a slow frame are, s.
 const AT_S: [f64; 3] = [0.005, 0.008, 0.011];
 
@@ -15,9 +15,10 @@ fn watch(seconds: f64, of: impl Fn(f64) -> f64) -> Trust {
 
 fn go_on(watch: &mut Trust, from_s: f64, seconds: f64, of: impl Fn(f64) -> f64) {
     for slow in 0..(seconds * 80.0) as u32 {
-        for at in AT_S {
-            let mv = of(from_s + f64::from(slow) / 80.0 + at);
-            watch.take(ACTIVE, (mv < 2_950.0).then_some((mv * 1e3) as i32));
+        let readings = AT_S.map(|at| of(from_s + f64::from(slow) / 80.0 + at));
+        let numbers = readings.map(|mv| watch.take((mv < 2_950.0).then_some((mv * 1e3) as i32)));
+        if let [Some(first), Some(second), Some(third)] = numbers {
+            watch.judge(ACTIVE_UV, (first + second + third) / 3);
         }
         if let Some(window) = watch.window().copied() {
             watch.hear(mains_of(&window));

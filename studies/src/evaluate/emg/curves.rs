@@ -86,11 +86,11 @@ fn asking(times: f64) -> &'static Fitted {
     fitted.begins = fitted.begins.map(scaled);
     fitted.ends = fitted.ends.map(scaled);
     // What asks for less of a contraction also averages and waits less.
-    let less = |own: i32| (f64::from(own) * times.min(1.0).powi(2)) as i32;
+    let less = |own: i32| (f64::from(own) * times.min(1.0).powi(2)).round() as i32;
     fitted.rise = less(fitted.rise);
     fitted.dwell = fitted.dwell.map(less);
-    fitted.after_readings = fitted.after_readings.map(less);
-    fitted.mean_readings = less(fitted.mean_readings).max(1);
+    fitted.after_frames = fitted.after_frames.map(less);
+    fitted.mean_frames = less(fitted.mean_frames).max(1);
     // A few for each curve.
     Box::leak(Box::new(fitted))
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use tenax_logic::emg::constants::Fitted;
-use tenax_logic::emg::decide::{Decide, Electrode};
+use tenax_logic::emg::decide::{Decide, Electrode, Wish};
 use tenax_logic::emg::model::EmgModel;
 use tenax_logic::emg::trust::Quality;
 use tenax_logic::emg::{Emg, Verdict};
@@ -45,21 +45,26 @@ impl Trial<'_> {
         self.recording.pairs(0..self.recording.rows(), self.sites).into_iter().map(|(_, uv)| uv)
     }
 
-    /// Both electrodes as they are decided on. They do not depend on what is fitted.
+    /// Both electrodes in each slow frame, as they are decided on. They do not depend on what is fitted.
     pub fn hear(&self) -> Vec<[Electrode; 2]> {
         let mut emg = Emg::new(Some(&self.model));
         let hear = |uv: [i32; 2]| {
             emg.take(uv.map(Some));
-            emg.electrodes()
+            emg.is_whole().then(|| emg.electrodes())
         };
-        self.pairs().map(hear).collect()
+        self.pairs().filter_map(hear).collect()
     }
 
     /// As [`play`](Self::play), of what was [heard](Self::hear), and without proofs and doubts: to fit.
     pub fn decide(&self, fitted: &'static Fitted, heard: &[[Electrode; 2]]) -> Vec<Said> {
         let mut decide = Decide::with(fitted, Some(&self.model));
-        self.recording
-            .by_row(heard.iter().map(|electrodes| Said { wish: decide.take(electrodes), ..Said::default() }))
+        let mut wish = Wish::Rest;
+        let said = heard.iter().flat_map(|electrodes| {
+            let before = std::mem::replace(&mut wish, decide.take(electrodes));
+            // It is known with the frame's last pair.
+            [before, before, wish]
+        });
+        self.recording.by_row(said.map(|wish| Said { wish, ..Said::default() }))
     }
 
     /// What was said, counted less the repetitions that were calibrated from.
