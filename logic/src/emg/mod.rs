@@ -81,7 +81,7 @@ impl Channel {
         let uv = (self.count > 0).then(|| self.sum_uv / self.count.max(1));
         let over = self.over;
         (self.sum_uv, self.count, self.over) = (0, 0, false);
-        if let Some(uv) = uv.filter(|_| !over) {
+        if let Some(uv) = uv {
             self.trust.judge(self.active_uv[0], uv);
         }
         let trust = &self.trust;

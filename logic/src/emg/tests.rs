@@ -233,3 +233,18 @@ fn what_an_electrode_that_swings_alone_wishes_is_not_proven_though_it_is_heard_t
         assert_eq!(opening.iter().any(|v| v.proven), !swings);
     }
 }
+
+#[test]
+fn what_wavers_about_the_end_of_the_range_is_doubted() {
+    for channel in 0..2 {
+        let mut emg = wearer();
+        run(&mut emg, 2.0, rest);
+        // Each slow frame has a reading above the range and one within it.
+        run(&mut emg, 2.0, |t| {
+            let mv = 2_950.0 + 40.0 * (TAU * 80.0 * t + 1.0).sin();
+            if channel == 0 { [mv, rest(t)[1]] } else { [rest(t)[0], mv] }
+        });
+        assert_eq!(emg.quality(channel), Quality::Saturated);
+        assert!(!emg.is_known(channel), "{channel}");
+    }
+}
