@@ -10,6 +10,7 @@ mod emg;
 mod failures;
 mod feedback;
 mod figure;
+mod golden;
 mod gripper;
 mod hand;
 mod mixes;

@@ -3,6 +3,8 @@
 #[path = "../../../host-tests/src/onsets.rs"]
 pub mod onsets;
 
+pub mod hash;
+
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 

@@ -1,16 +1,20 @@
 //! The image takes every code right and decides what the host's own build of the logic decides.
 
+use std::collections::BTreeMap;
 use std::num::NonZeroU64;
 
 use tenax_bench::board::agreement::Agreement;
 use tenax_bench::board::emulated::Options;
 use tenax_bench::board::simulated;
+use tenax_bench::session;
 use tenax_hal_shim::channel::SCAN_HZ;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{Answer, Down, Setting};
 use tenax_hal_shim::words::Code;
 use tenax_logic::setting::SettingId;
+use tenax_scene::World;
 
+use crate::hash::{compare, of_run};
 use crate::onsets::held_against_evidence;
 use crate::{Rest, Swing, plain, run};
 
@@ -31,6 +35,14 @@ fn ten_seconds_without_a_lost_code() {
     assert!(agreement.holds(), "{agreement}");
     let onsets = held_against_evidence(&run.slows);
     assert!(onsets.iter().any(|frames| !frames.is_empty()), "a detector has spoken");
+}
+
+/// The default scene's line of the golden gate (`bench/tests/golden.rs`) on the emulated board.
+#[test]
+fn the_default_scene_decides_as_held() {
+    let file = session::load_scene(session::DEFAULT_SCENE).expect("a shipped scene is good");
+    let hash = of_run(&run(World::new(&file, 1), &Options::default()));
+    compare("emulated", &BTreeMap::from([(format!("{} 1", session::DEFAULT_SCENE), hash)]));
 }
 
 /// The check above can fail: one code off by one is another CRC.

@@ -10,6 +10,8 @@ mod f446;
 mod faults;
 mod feedback;
 mod hand;
+#[path = "../common/hash.rs"]
+mod hash;
 mod head;
 mod last;
 mod link;
