@@ -6,7 +6,6 @@
 //! It stands on the serial tools, on the plots, on scenes and logic; the studies and the tool stand on it.
 //! The emulated board is behind the feature `emulator`; the models under it are `tenax-board-model`'s.
 #![forbid(unsafe_code)]
-#![allow(missing_docs, reason = "a part of the tool: where a name says it all, nothing repeats it")]
 
 pub mod again;
 pub mod array;

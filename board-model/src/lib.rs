@@ -6,7 +6,6 @@
 //! No plant, no scene, no report, and nothing that knows the image's symbols: the bench drives the board and reads it.
 //! Each stand-in has a test beside `rigless`'s own model, event for event; [`Models::Rigless`] runs without them.
 #![forbid(unsafe_code)]
-#![allow(missing_docs, reason = "a part of the tool: where a name says it all, nothing repeats it")]
 
 mod bridge_timer;
 pub mod can;

@@ -1,6 +1,5 @@
 //! What the tests in `tests/` share: a fingertip on a bench, with a knob for the voltage of every pin.
 #![forbid(unsafe_code)]
-#![allow(missing_docs, reason = "a part of the tool: where a name says it all, nothing repeats it")]
 
 pub mod onsets;
 pub mod teaching;

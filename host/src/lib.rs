@@ -6,7 +6,6 @@
 //! Nothing depends on this crate; what a test or a study wants of it belongs below.
 //! Its binary is `tenax-host` in the target folder, where `tenax` is the serial tools'; `cargo tenax` starts the one that it takes.
 #![forbid(unsafe_code)]
-#![allow(missing_docs, reason = "a part of the tool: where a name says it all, nothing repeats it")]
 
 pub mod check;
 pub mod cli;

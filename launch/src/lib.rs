@@ -3,7 +3,6 @@
 //! The tool takes minutes to compile the first time, and cannot say so before it is compiled. The tool uses this library too:
 //! to build the image when it is asked to, and to show how far a run is.
 #![forbid(unsafe_code)]
-#![allow(missing_docs, reason = "a part of the tool: where a name says it all, nothing repeats it")]
 
 mod cargo;
 pub mod fresh;

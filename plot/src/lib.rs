@@ -6,7 +6,6 @@
 //! It depends on no other crate of the workspace, so that it compiles beside them all.
 //! The charts of the studies use its fonts and colours, and have their own sheets.
 #![forbid(unsafe_code)]
-#![allow(missing_docs, reason = "a part of the tool: where a name says it all, nothing repeats it")]
 
 pub mod draw;
 pub mod figure;

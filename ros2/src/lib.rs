@@ -3,7 +3,6 @@
 //!
 //! No network: that is the bridge's, which takes 200 packages more.
 #![forbid(unsafe_code)]
-#![allow(missing_docs, reason = "a part of the tool: where a name says it all, nothing repeats it")]
 
 pub mod cdr;
 pub mod describe;

@@ -31,7 +31,6 @@
 //! | [`bound`] | the least force that holds, planned ahead |
 //! | [`truth`] | nothing of the world: it writes down what really happened |
 #![forbid(unsafe_code)]
-#![allow(missing_docs, reason = "a part of the tool: where a name says it all, nothing repeats it")]
 
 pub mod act;
 pub mod bound;

@@ -6,7 +6,6 @@
 //! A command that the whole tool has, too, is defined here once, in [`cli`].
 //! What is built here is paid for by whoever waits for `tenax monitor`: 90 s from nothing, on two cores.
 #![forbid(unsafe_code)]
-#![allow(missing_docs, reason = "a part of the tool: where a name says it all, nothing repeats it")]
 
 pub mod cli;
 pub mod guide;

@@ -6,7 +6,6 @@
 //! A number of a page is made here, by one command that the page names; nothing else depends on this crate but the tool.
 //! One study may use another's result (charts draw the others'), never the other way round.
 #![forbid(unsafe_code)]
-#![allow(missing_docs, reason = "a part of the tool: where a name says it all, nothing repeats it")]
 
 pub mod chart;
 pub mod dataset;

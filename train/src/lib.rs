@@ -2,7 +2,6 @@
 //!
 //! A package of its own, so that `tenax run` never compiles what only training needs.
 #![forbid(unsafe_code)]
-#![allow(missing_docs, reason = "a part of the tool: where a name says it all, nothing repeats it")]
 
 pub mod candidates;
 pub mod export;

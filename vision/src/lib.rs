@@ -5,7 +5,6 @@
 //! needs no `std`: where pictures come from is the caller's business.
 #![no_std]
 #![forbid(unsafe_code)]
-#![allow(missing_docs, reason = "a part of the tool: where a name says it all, nothing repeats it")]
 
 extern crate alloc;
 
