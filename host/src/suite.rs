@@ -47,9 +47,8 @@ mod tests {
         let manifest: toml::Table = manifest.parse().unwrap();
         let members = manifest["workspace"]["members"].as_array().unwrap();
         // The image is tested on the emulated board, by the tool's tests.
-        // The quarter is vision's sources, held against the emulated core.
         // The bridge's zenoh compiles for three minutes; `.ci/run` names the command that tests it.
-        let elsewhere = ["host", "firmware", "vision/quarter", "bridge"];
+        let elsewhere = ["host", "firmware", "bridge"];
         for member in members.iter().filter_map(|member| member.as_str()) {
             assert!([&PACKAGES[..], &elsewhere].concat().contains(&member), "{member}");
         }

@@ -17,20 +17,14 @@ const MARKERS_MIN: usize = 6;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Newtons {
-    /// Shear along the picture's x.
     pub x: f32,
-    /// Shear along the picture's y.
     pub y: f32,
-    /// Into the skin.
     pub normal: f32,
 }
 
-/// What the markers' moves are, for a calibration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Features {
-    /// Of each marker: right, down, growth.
     pub shear: [f32; SHEAR_FEATURES],
-    /// Of all together.
     pub normal: [f32; NORMAL_FEATURES],
 }
 
@@ -39,8 +33,7 @@ pub struct Features {
 struct Plane3([f32; 3]);
 
 impl Features {
-    /// Of a skin's markers. Those that were not found are taken to move as the others around them do: by the best
-    /// plane. None if too few were found.
+    /// Features of a skin's markers; a lost one moves as the plane through the others. None if too few were found.
     pub fn of(markers: &[Marker]) -> Option<Self> {
         let known = || markers.iter().filter(|marker| marker.found.is_ok() && marker.known());
         if known().count() < MARKERS_MIN {
@@ -99,9 +92,7 @@ impl Plane3 {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loads {
-    /// Weights of the shear's features, for x and for y, N.
     pub shear: [[f32; 2]; SHEAR_FEATURES],
-    /// Weights of the normal force's, N.
     pub normal: [f32; NORMAL_FEATURES],
 }
 
@@ -123,7 +114,6 @@ mod tests {
     use super::*;
     use crate::frame::Point;
     use crate::markers::{RAYS, Shape};
-    use alloc::vec::Vec;
 
     fn markers() -> Vec<Marker> {
         let at = |at: u16| Point { x: 60.0 + 50.0 * f32::from(at % 5), y: 40.0 + 40.0 * f32::from(at / 5) };

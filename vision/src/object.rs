@@ -14,7 +14,6 @@ mod model;
 mod movement;
 mod scene;
 
-use alloc::boxed::Box;
 
 use crate::frame::{Frame, PIXELS, Plane, Point, WIDTH, plane};
 use crate::mask::{Mask, Moments};
@@ -25,39 +24,32 @@ pub use self::model::{Histogram, ObjectModel};
 pub use self::movement::Running;
 pub use self::scene::Scene;
 
-/// What differs from the scene while there is an object is believed to be the scene in one frame of so many.
 const DOUBT_FRAMES: u32 = 32;
 /// And while there is none.
 const DOUBT_FRAMES_EMPTY: u32 = 4;
 /// Every so many pixels of the scene stand for all of it: a prime, so that no column is taken again and again.
 const SAMPLE: usize = 13;
-/// Half the width of what is no part of a larger object, px: a spot of the background that leans on it.
 const SPUR_PX: usize = 5;
-/// How far a held object moves from one frame to the next at most, px.
+/// Largest move of a held object from one frame to the next, px.
 const LEAP_PX: usize = 3;
 /// Pieces of an object that are smaller than this part of the largest are noise, per cent.
 const PIECES_PERCENT: u32 = 25;
-/// How far apart they are at most, px: what is further away is a spot of the background.
+/// Largest distance between them, px: what is further away is a spot of the background.
 const APART_PX: usize = 32;
-/// How many times the least area of an object is halved for what the hand holds.
+/// Halvings of the least area for what the hand holds.
 const HELD_HALVED: u32 = 3;
-/// One of which less than the first of these is seen, of what was, is seen in part, until more than the second is; per cent.
+/// Hysteresis of "seen in part": below the first share of what was seen, until above the second, per cent.
 const WHOLE_PERCENT: (u32, u32) = (60, 90);
-/// Moving pixels below which an object is still.
 const STILL_PX: u32 = 150;
 /// Frames after which what looks like a ghost is one.
 const GHOST_FRAMES: u32 = 3;
 /// Frames in which what comes in front of the scene counts as moving.
 const ARRIVED_FRAMES: u32 = 4;
-/// How far from moving pixels others belong to what moves, px.
 const INSIDE_PX: usize = 10;
 
-/// How far around a moving pixel others may be of the same object, px.
 const MOVES_PX: usize = 4;
-/// How far around an object what differs from the scene may be more of it, px.
 const CLOSE_PX: usize = 16;
 
-/// Numbers that a person may choose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
     /// Back projection from which a pixel's colour is the object's, 1 to 255.
@@ -69,7 +61,6 @@ pub struct Config {
     pub learn_min: f32,
     /// The scene follows what is no object by this power of two of frames.
     pub scene_rate: u32,
-    /// Whether a hand that brings an object is left out of it.
     pub skip_hand: bool,
 }
 
@@ -86,16 +77,12 @@ pub struct Sighting {
     pub angle_rad: f32,
     /// The share of its outline that lies on the long rims. 0: it has none, and the angle is that of the second moments.
     pub rims: f32,
-    /// Part of the picture that it covers.
     pub area: f32,
-    /// Moving pixels on it.
     pub slip_px: u32,
-    /// Whether a part of it is seen: it goes on beyond the picture's border, or most of what was seen of a held one has the wall's
-    /// colours now. Middle and angle are those of the part.
     pub cut: bool,
 }
 
-/// Follows an object. Nothing is allocated after `new`.
+/// Follows an object.
 #[derive(Clone, Debug)]
 pub struct Tracker {
     config: Config,
@@ -104,10 +91,8 @@ pub struct Tracker {
     movement: Running,
     model: ObjectModel,
     object: Mask,
-    /// The object and the hand that brings it.
     near: Mask,
     moving: Mask,
-    /// What differed from the scene a few frames ago.
     apart: Mask,
     slip: Mask,
     bytes: Box<Plane>,
@@ -115,13 +100,10 @@ pub struct Tracker {
     lens: Option<Rectifier>,
     frames: u32,
     seen: bool,
-    /// Where its middle is in the picture.
     middle: Option<Point>,
     /// The most pixels of it that were seen since the hand has closed on it; 0: it has not.
     grasped: u32,
-    /// Whether so much of that is missing that the rest is a part.
     is_part: bool,
-    /// Frames in a row in which the object looked like a ghost.
     ghosts: u32,
 }
 
@@ -150,12 +132,10 @@ impl Tracker {
         }
     }
 
-    /// From here on the object's middle and angle are those behind this lens.
     pub fn rectify(&mut self, lens: Rectifier) {
         self.lens = Some(lens);
     }
 
-    /// The object's pixels in the last frame.
     pub const fn object(&self) -> &Mask {
         &self.object
     }
@@ -165,24 +145,20 @@ impl Tracker {
         self.middle
     }
 
-    /// The object's pixels and those of the hand that brings it.
     pub const fn near(&self) -> &Mask {
         &self.near
     }
 
-    /// The moving pixels of the last frame, the object's and others.
     pub const fn moving(&self) -> &Mask {
         &self.moving
     }
 
-    /// The moving pixels on the object.
     pub const fn slip(&self) -> &Mask {
         &self.slip
     }
 
     /// Takes a frame and its grey plane. With `learn`, the object's colours are learned from what moves: until the hand
     /// closes. What moves in `skin`, where the markers are, is no slip. None while there is no object.
-    #[inline(never)]
     pub fn step(&mut self, frame: &Frame, grey: &Plane, skin: &Mask, learn: bool) -> Option<Sighting> {
         self.frames = self.frames.saturating_add(1);
         self.movement.step(grey, &mut self.bytes);
@@ -270,7 +246,6 @@ impl Tracker {
         Some(Sighting { moments, angle_rad: rims.angle, rims: rims.share, area, slip_px, cut })
     }
 
-    /// Takes what is seen now for the scene, and forgets the object.
     fn lay_ghost(&mut self, frame: &Frame) {
         self.near.invert();
         self.near.unpack(&mut self.held);
@@ -280,7 +255,6 @@ impl Tracker {
         (self.ghosts, self.seen, self.middle) = (0, false, None);
     }
 
-    /// Learns the colours of what moves and is not the scene.
     fn learn(&mut self, frame: &Frame, differs: &Mask) {
         // What has come in front of the scene moves, too, though it be as bright as the scene.
         let mut new = self.apart.clone();
@@ -314,7 +288,6 @@ impl Tracker {
         self.model.learn(&moving, &hidden);
     }
 
-    /// Keeps of a mask the pixels that have the object's colours.
     fn project(&self, frame: &Frame, mask: &mut Mask) {
         let least = self.config.colour_min;
         mask.keep(frame, |red, green, blue| self.model.value(self.bins.of(red, green, blue)) >= least);
@@ -341,8 +314,6 @@ impl Tracker {
     }
 }
 
-/// How many pixels of `slip` there are, at most four times as many as on one half of the object: what slips does so at both
-/// ends, and a spot of the moving background beside it at one.
 fn spread_count(slip: &Mask, object: &Moments) -> u32 {
     let (sin, cos) = (libm::sinf(object.angle_rad()), libm::cosf(object.angle_rad()));
     let (mut here, mut there) = (0u32, 0u32);

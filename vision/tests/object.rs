@@ -5,7 +5,6 @@ use tenax_vision::frame::{Frame, PIXELS, Plane, WIDTH};
 use tenax_vision::mask::Mask;
 use tenax_vision::object::{Config, Running, Sighting, Tracker};
 
-/// A slanted rod, 150 x 40 px, about `middle`.
 #[derive(Clone, Copy)]
 struct Rod {
     middle: (f32, f32),
@@ -65,7 +64,6 @@ impl Camera {
         self.tracker.step(&frame, &self.grey, &Mask::EMPTY, learn)
     }
 
-    /// Brings the rod in from the right and holds it still.
     fn bring(&mut self, angle_rad: f32) -> Rod {
         let at = |x: f32| Rod { middle: (x, 120.0), angle_rad };
         for step in 0..40 {

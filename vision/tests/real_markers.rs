@@ -6,7 +6,6 @@ use crate::common::{for_each_frame, plane, recording};
 use tenax_vision::Point;
 use tenax_vision::markers::{Calibration, Markers};
 
-/// Where the author's software has its markers: by frame and marker. Values that it repeats were not found anew.
 fn authors(path: &std::path::Path) -> HashMap<(usize, usize), Point> {
     let text = std::fs::read_to_string(path).expect("readable");
     let mut last = HashMap::new();

@@ -10,7 +10,6 @@ use tenax_vision::object::{Config, Running, Tracker};
 /// Frames without card or hand; a person walks about behind the skin in the first and in the last.
 const EMPTY: [Range<usize>; 3] = [0..260, 1540..1640, 2660..2932];
 
-/// Outlines by frame.
 fn outlines() -> BTreeMap<usize, Vec<(f32, f32)>> {
     let rows = include_str!("outlines/cards.csv").lines().filter(|line| !line.starts_with('#'));
     let rows =
@@ -19,7 +18,6 @@ fn outlines() -> BTreeMap<usize, Vec<(f32, f32)>> {
         .collect()
 }
 
-/// Follows the object through the video.
 fn follow() -> (f32, f32, f32) {
     let video = recording("skin_video_54fps.m4v");
     let outlines = outlines();

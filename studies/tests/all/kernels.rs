@@ -1,6 +1,5 @@
 //! The array detector on the emulated core against this machine's, and what it costs there. Builds its image first.
 
-mod pictures;
 #[cfg(unix)]
 mod qemu;
 

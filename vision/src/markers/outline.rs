@@ -8,13 +8,11 @@ use crate::frame::{HEIGHT, Plane, Point, WIDTH};
 
 /// Rays from the middle.
 pub const RAYS: usize = 16;
-/// How far from where it is expected an edge is looked for, px.
 const REACH: f32 = 2.5;
 /// Steps along a ray, px.
 const STEP: f32 = 0.5;
 /// Samples along a ray: one more at each end, for the slope.
 const SAMPLES: usize = (2.0 * REACH / STEP) as usize + 3;
-/// As many as vectors have room for.
 const LANES: usize = SAMPLES.next_multiple_of(8);
 /// The rise from the marker to its surround that counts as an edge, grey levels.
 const CONTRAST_MIN: f32 = 10.0;
@@ -37,38 +35,28 @@ const DIRECTIONS: [(f32, f32); RAYS] = [
     (0.0, -1.0), (0.382_683_43, -0.923_879_5), (0.707_106_77, -0.707_106_77), (0.923_879_5, -0.382_683_43),
 ];
 
-/// What one ray met.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Edge {
-    /// Where, px from the middle.
     pub radius: f32,
-    /// How much brighter it is outside, grey levels; 0 if no edge was met.
     pub contrast: f32,
 }
 
-/// Edges seen from one place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outline {
     pub middle: Point,
     pub edges: [Edge; RAYS],
 }
 
-/// How an outline lies to a calibrated one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fit {
-    /// Moved to the right, px.
     pub x: f32,
-    /// Moved down, px.
     pub y: f32,
     pub growth: f32,
-    /// Rays that agree.
     pub rays: usize,
-    /// Their rms distance from what the fit says, px.
     pub stray: f32,
 }
 
 impl Outline {
-    /// Looks from `middle` for edges near `radii`.
     pub fn look(grey: &Plane, middle: Point, radii: &[f32; RAYS]) -> Self {
         let mut edges = [Edge::default(); RAYS];
         for ((edge, &radius), direction) in edges.iter_mut().zip(radii).zip(DIRECTIONS) {
@@ -121,13 +109,11 @@ pub fn irregularity(radii: &[f32; RAYS]) -> f32 {
     libm::sqrtf(sum / n) / mean
 }
 
-/// How far `edge` is from where `fit` puts it, px.
 fn residual(fit: &Fit, ray: usize, edge: Edge, radius: f32) -> f32 {
     let (cos, sin) = DIRECTIONS[ray];
     (edge.radius - radius - fit.growth - fit.x * cos - fit.y * sin).abs()
 }
 
-/// Growth and move that bring `radii` nearest to the edges that are used, the clear ones counting more.
 fn least_squares(edges: &[Edge; RAYS], radii: &[f32; RAYS], used: &[bool; RAYS]) -> Option<Fit> {
     let (mut n, mut c, mut s, mut cc, mut cs, mut ss) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     let (mut b, mut bc, mut bs) = (0.0f32, 0.0, 0.0);
@@ -164,7 +150,6 @@ fn least_squares(edges: &[Edge; RAYS], radii: &[f32; RAYS], used: &[bool; RAYS])
     Some(fit)
 }
 
-/// The edge that a ray meets near `radius`: the middle of the rise, each place counting by the square of its slope.
 fn along(grey: &Plane, middle: Point, radius: f32, (cos, sin): (f32, f32)) -> Edge {
     let first = radius - REACH - STEP;
     let place = |k: usize| {
@@ -200,7 +185,6 @@ fn along(grey: &Plane, middle: Point, radius: f32, (cos, sin): (f32, f32)) -> Ed
     Edge { radius: first + STEP * weighted / sum, contrast: rise as f32 / (2 * ONE_LEVEL) as f32 }
 }
 
-/// Whether a place has four pixels around it.
 fn is_inside((x, y): (f32, f32)) -> bool {
     x >= 0.0 && y >= 0.0 && x < (WIDTH - 1) as f32 && y < (HEIGHT - 1) as f32
 }

@@ -1,6 +1,4 @@
 use super::*;
-use alloc::vec;
-use alloc::vec::Vec;
 
 fn rectangle(left: usize, top: usize, right: usize, bottom: usize) -> Mask {
     let (mut mask, mut block) = (Mask::EMPTY, Mask::EMPTY);

@@ -1,11 +1,9 @@
 //! What moves: pixels that are not as they were a moment ago.
 
-use alloc::boxed::Box;
 
 use super::scene::levels;
 use crate::frame::{PIXELS, Plane};
 
-/// A running mean of the grey level.
 #[derive(Clone, Debug)]
 pub struct Running {
     mean: Box<[i16; PIXELS]>,
@@ -15,21 +13,18 @@ pub struct Running {
 }
 
 impl Running {
-    /// A pixel moves if it is more than `apart` grey levels from the mean of the last 2^`rate` frames or so.
     pub fn new(apart: u8, rate: u32) -> Self {
         Self { mean: levels(), started: false, apart: i16::from(apart), rate }
     }
 }
 
 impl Default for Running {
-    /// Twice the noise of a cheap camera, and a mean that has forgotten a move after some six frames.
     fn default() -> Self {
         Self::new(14, 2)
     }
 }
 
 impl Running {
-    /// Takes a grey plane; marks with 1 what moves.
     pub fn step(&mut self, grey: &Plane, into: &mut Plane) {
         let (rate, limit) = (if self.started { self.rate } else { 0 }, self.apart << 7);
         let mean = &mut *self.mean;
