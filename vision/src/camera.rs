@@ -7,7 +7,7 @@ use crate::frame::{Frame, HEIGHT, PIXELS, Plane, WIDTH, plane};
 use crate::markers::{Calibration, Marker, Markers};
 use crate::mask::Mask;
 use crate::motion::{self, ARM_PX, Flow};
-use crate::object::{Config, Running, Sighting, Tracker};
+use crate::object::{Sighting, Tracker};
 use crate::quality::{Blind, Watch};
 use crate::rectify::Rectifier;
 use crate::skin::Skin;
@@ -73,21 +73,23 @@ fn half_turn(rad: f32) -> f32 {
     rad - PI * libm::roundf(rad / PI)
 }
 
-impl Camera {
-    pub fn new(config: Config) -> Self {
+impl Default for Camera {
+    fn default() -> Self {
         Self {
             grey: plane(),
             before: plane(),
-            calibration: Calibration::new(),
+            calibration: Calibration::default(),
             markers: None,
-            object: Tracker::new(config, Running::default()),
+            object: Tracker::default(),
             watch: Watch::default(),
             skin: Skin::new(),
             heading: Heading::default(),
             frames: 0,
         }
     }
+}
 
+impl Camera {
     pub fn rectify(&mut self, lens: Rectifier) {
         self.object.rectify(lens);
     }

@@ -12,9 +12,10 @@ pub mod markers;
 pub mod mask;
 pub mod motion;
 pub mod object;
+mod plane_fit;
 pub mod quality;
 pub mod rectify;
-pub mod skin;
+mod skin;
 
 pub use camera::{Camera, Summary};
 pub use frame::{Frame, Plane, Point};

@@ -1,12 +1,12 @@
 //! The object behind the skin, and whether it slips (FingerVision 2017, section III).
 //!
 //! The paper takes for the object whatever has the colours of what moved. A white card before a white wall has no colour of
-//! its own, so a pixel must also differ from what the camera remembers there ([`Scene`]), and the colours that are taken
+//! its own, so a pixel must also differ from what the camera remembers there (`Scene`), and the colours that are taken
 //! away from the object's are those that it now hides. Either alone is not enough: a person who walks by behind the skin
 //! differs from the scene, and a wall has the colours of a card.
 
 mod axis;
-pub mod colour;
+mod colour;
 mod cut;
 mod ghost;
 mod hand;
@@ -14,15 +14,14 @@ mod model;
 mod movement;
 mod scene;
 
-
 use crate::frame::{Frame, PIXELS, Plane, Point, WIDTH, plane};
 use crate::mask::{Mask, Moments};
 use crate::rectify::Rectifier;
 
 use self::colour::{BINS, Bins};
-pub use self::model::{Histogram, ObjectModel};
-pub use self::movement::Running;
-pub use self::scene::Scene;
+use self::model::{Histogram, ObjectModel};
+use self::movement::Running;
+use self::scene::Scene;
 
 const DOUBT_FRAMES: u32 = 32;
 /// And while there is none.
@@ -50,25 +49,14 @@ const INSIDE_PX: usize = 10;
 const MOVES_PX: usize = 4;
 const CLOSE_PX: usize = 16;
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Config {
-    /// Back projection from which a pixel's colour is the object's, 1 to 255.
-    pub colour_min: u8,
-    /// The least part of the picture that is an object: what is smaller may be somebody behind the skin, or a spot where the
-    /// light has changed.
-    pub area_min: f32,
-    /// The least part of the picture that must move, and differ from the scene, for its colours to be learned.
-    pub learn_min: f32,
-    /// The scene follows what is no object by this power of two of frames.
-    pub scene_rate: u32,
-    pub skip_hand: bool,
-}
-
-impl Default for Config {
-    fn default() -> Self {
-        Self { colour_min: 45, area_min: 0.04, learn_min: 0.01, scene_rate: 5, skip_hand: true }
-    }
-}
+/// Back projection from which a pixel's colour is the object's, 1 to 255.
+const COLOUR_MIN: u8 = 45;
+/// The least part of the picture that is an object: what is smaller may be a person behind the skin, or a spot in another light.
+const AREA_MIN: f32 = 0.04;
+/// The least part of the picture that must move, and differ from the scene, for its colours to be learned.
+const LEARN_MIN: f32 = 0.01;
+/// The scene follows what is no object by this power of two of frames.
+const SCENE_RATE: u32 = 5;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sighting {
@@ -85,7 +73,6 @@ pub struct Sighting {
 /// Follows an object.
 #[derive(Clone, Debug)]
 pub struct Tracker {
-    config: Config,
     bins: Bins,
     scene: Scene,
     movement: Running,
@@ -107,13 +94,12 @@ pub struct Tracker {
     ghosts: u32,
 }
 
-impl Tracker {
-    pub fn new(config: Config, movement: Running) -> Self {
+impl Default for Tracker {
+    fn default() -> Self {
         Self {
-            config,
             bins: Bins::new(),
             scene: Scene::new(),
-            movement,
+            movement: Running::new(),
             model: ObjectModel::new(),
             object: Mask::EMPTY,
             near: Mask::EMPTY,
@@ -131,7 +117,9 @@ impl Tracker {
             ghosts: 0,
         }
     }
+}
 
+impl Tracker {
     pub fn rectify(&mut self, lens: Rectifier) {
         self.lens = Some(lens);
     }
@@ -199,8 +187,8 @@ impl Tracker {
         self.object = differs;
         self.near.clone_from(&self.object);
         // A hand that has closed took the object from somebody's.
-        if learn && self.config.skip_hand {
-            let least = (self.config.area_min * PIXELS as f32) as u32;
+        if learn {
+            let least = (AREA_MIN * PIXELS as f32) as u32;
             hand::leave_out(&mut self.object, frame, self.scene.mean_colour(), least);
         }
 
@@ -213,7 +201,7 @@ impl Tracker {
             self.grasped = self.grasped.max(self.object.count());
         }
         let halved = if self.grasped > 0 { HELD_HALVED } else { u32::from(self.seen) };
-        let area_min = self.config.area_min / (1 << halved) as f32;
+        let area_min = AREA_MIN / (1 << halved) as f32;
         let moments = self.object.moments().filter(|moments| part(moments.area) >= area_min);
         (self.seen, self.middle) = (moments.is_some(), moments.map(|moments| moments.middle));
         if !self.seen {
@@ -262,7 +250,7 @@ impl Tracker {
         new.unite(&self.moving);
         new.intersect(differs);
         new.erode(1);
-        if (new.count() as f32) < self.config.learn_min * PIXELS as f32 {
+        if (new.count() as f32) < LEARN_MIN * PIXELS as f32 {
             return;
         }
         // The inside of a plain object looks the same while it moves.
@@ -289,8 +277,7 @@ impl Tracker {
     }
 
     fn project(&self, frame: &Frame, mask: &mut Mask) {
-        let least = self.config.colour_min;
-        mask.keep(frame, |red, green, blue| self.model.value(self.bins.of(red, green, blue)) >= least);
+        mask.keep(frame, |red, green, blue| self.model.value(self.bins.of(red, green, blue)) >= COLOUR_MIN);
     }
 
     /// Lets the scene follow what is not hidden by the object and a margin around it. What differs may be an object that is
@@ -310,7 +297,7 @@ impl Tracker {
         }
         hidden.dilate(3);
         hidden.unpack(&mut self.held);
-        self.scene.follow(frame, &self.held, self.config.scene_rate);
+        self.scene.follow(frame, &self.held, SCENE_RATE);
     }
 }
 

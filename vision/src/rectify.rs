@@ -2,7 +2,6 @@
 //!
 //! The lens is equidistant, r = f theta, which one number describes.
 
-
 use crate::force::MIDDLE;
 use crate::frame::{PIXELS, Point, WIDTH};
 use crate::mask::{Mask, Moments};

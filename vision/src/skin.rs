@@ -16,12 +16,6 @@ pub struct Skin {
     before: [Option<Point>; MARKERS_MAX],
 }
 
-impl Default for Skin {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 impl Skin {
     pub const fn new() -> Self {
         Self { before: [None; MARKERS_MAX] }

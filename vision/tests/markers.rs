@@ -28,7 +28,7 @@ fn number(markers: &Markers, disc: (f32, f32, f32)) -> usize {
 }
 
 fn calibrated(background: impl Fn(f32, f32) -> f32, noise: &mut Noise, grey: &mut Plane) -> Markers {
-    let mut calibration = Calibration::new();
+    let mut calibration = Calibration::default();
     loop {
         draw_discs(&discs(still), &background, 2.0, noise, grey);
         if calibration.frame(grey) {
@@ -144,7 +144,7 @@ fn two_blobs_are_a_failure_and_a_jump_is_no_force() {
 #[test]
 fn what_moves_or_is_not_round_is_no_marker() {
     let (mut noise, mut grey) = (Noise(9), plane(0));
-    let mut calibration = Calibration::new();
+    let mut calibration = Calibration::default();
     loop {
         let mut drawn = discs(still);
         // One that moves, and one that is two discs in one.

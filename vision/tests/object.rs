@@ -3,7 +3,7 @@
 use crate::common::{Noise, plane};
 use tenax_vision::frame::{Frame, PIXELS, Plane, WIDTH};
 use tenax_vision::mask::Mask;
-use tenax_vision::object::{Config, Running, Sighting, Tracker};
+use tenax_vision::object::{Sighting, Tracker};
 
 #[derive(Clone, Copy)]
 struct Rod {
@@ -52,7 +52,7 @@ struct Camera {
 
 impl Camera {
     fn new(seed: u64) -> Self {
-        let tracker = Tracker::new(Config::default(), Running::default());
+        let tracker = Tracker::default();
         let mut camera = Self { world: World::new(seed), tracker, grey: plane(0) };
         (0..20).for_each(|_| assert!(camera.look(None, 0.0, true).is_none()));
         camera

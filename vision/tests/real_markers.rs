@@ -24,7 +24,7 @@ fn authors(path: &std::path::Path) -> HashMap<(usize, usize), Point> {
 fn the_real_video_gives_its_markers() {
     let (video, table) = (recording("skin_video_54fps.m4v"), recording("author_markers.csv"));
     let authors = authors(&table);
-    let (mut grey, mut calibration, mut markers) = (plane(0), Calibration::new(), None::<Markers>);
+    let (mut grey, mut calibration, mut markers) = (plane(0), Calibration::default(), None::<Markers>);
     let mut pairs: Vec<(usize, usize)> = Vec::new();
     let mut last: Vec<Option<Point>> = Vec::new();
     let (mut updates, mut failed, mut worst_jump) = (0, 0, 0.0f32);

@@ -45,15 +45,11 @@ struct Candidate {
 
 impl Default for Calibration {
     fn default() -> Self {
-        Self::new()
+        Self { candidates: [None; MARKERS_MAX], frames: 0 }
     }
 }
 
 impl Calibration {
-    pub const fn new() -> Self {
-        Self { candidates: [None; MARKERS_MAX], frames: 0 }
-    }
-
     pub fn frame(&mut self, grey: &Plane) -> bool {
         if self.frames == 0 {
             self.search(grey);

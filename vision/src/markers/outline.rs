@@ -5,6 +5,7 @@
 //! marker was calibrated: a ray that sees no edge, or another one, is left out.
 
 use crate::frame::{HEIGHT, Plane, Point, WIDTH};
+use crate::plane_fit::PlaneFit;
 
 /// Rays from the middle.
 pub const RAYS: usize = 16;
@@ -115,31 +116,19 @@ fn residual(fit: &Fit, ray: usize, edge: Edge, radius: f32) -> f32 {
 }
 
 fn least_squares(edges: &[Edge; RAYS], radii: &[f32; RAYS], used: &[bool; RAYS]) -> Option<Fit> {
-    let (mut n, mut c, mut s, mut cc, mut cs, mut ss) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
-    let (mut b, mut bc, mut bs) = (0.0f32, 0.0, 0.0);
+    let mut plane = PlaneFit::default();
     let mut rays = 0;
     for ray in (0..RAYS).filter(|&ray| used[ray]) {
-        let (cos, sin) = DIRECTIONS[ray];
         let weight = edges[ray].contrast.min(CONTRAST_FULL) / CONTRAST_FULL;
-        let off = edges[ray].radius - radii[ray];
+        plane.add(weight, DIRECTIONS[ray], edges[ray].radius - radii[ray]);
         rays += 1;
-        n += weight;
-        (c, s) = (c + weight * cos, s + weight * sin);
-        (cc, cs, ss) = (cc + weight * cos * cos, cs + weight * cos * sin, ss + weight * sin * sin);
-        (b, bc, bs) = (b + weight * off, bc + weight * off * cos, bs + weight * off * sin);
     }
     if rays < RAYS_MIN {
         return None;
     }
-    // A stiff wish that it has not grown: of half an outline nobody can tell growth from a move.
-    let n_stiff = n + 1.0;
-    let det = n_stiff * (cc * ss - cs * cs) - c * (c * ss - cs * s) + s * (c * cs - cc * s);
-    if det < 0.02 * n_stiff * n * n {
-        return None;
-    }
-    let growth = (b * (cc * ss - cs * cs) - c * (bc * ss - cs * bs) + s * (bc * cs - cc * bs)) / det;
-    let x = (n_stiff * (bc * ss - cs * bs) - b * (c * ss - cs * s) + s * (c * bs - bc * s)) / det;
-    let y = (n_stiff * (cc * bs - bc * cs) - c * (c * bs - bc * s) + b * (c * cs - cc * s)) / det;
+    // Growth is drawn towards 0: half an outline does not tell growth from a move.
+    let n = plane.weight();
+    let [growth, x, y] = plane.solve(1.0, 0.02 * (n + 1.0) * n * n)?;
     let mut fit = Fit { x, y, growth, rays, stray: 0.0 };
     let mut sum = 0.0;
     for ray in (0..RAYS).filter(|&ray| used[ray]) {
@@ -163,7 +152,6 @@ fn along(grey: &Plane, middle: Point, radius: f32, (cos, sin): (f32, f32)) -> Ed
     // All places first, for the compiler's vectors.
     let (mut xs, mut ys) = ([0; LANES], [0; LANES]);
     for k in 0..LANES {
-        // To 32 bits with a sign it is one instruction, on a PC and on a microcontroller.
         let (x, y) = place(k);
         (xs[k], ys[k]) = ((x * 256.0) as i32, (y * 256.0) as i32);
     }

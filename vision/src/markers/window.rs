@@ -148,8 +148,7 @@ mod tests {
     use super::*;
 
     fn picture(discs: &[(f32, f32, f32)]) -> Box<Plane> {
-        let mut grey: Box<Plane> =
-            vec![200; crate::frame::PIXELS].into_boxed_slice().try_into().unwrap();
+        let mut grey: Box<Plane> = vec![200; crate::frame::PIXELS].into_boxed_slice().try_into().unwrap();
         for (at, level) in grey.iter_mut().enumerate() {
             let (x, y) = ((at % WIDTH) as f32, (at / WIDTH) as f32);
             if discs.iter().any(|&(cx, cy, r)| libm::hypotf(x - cx, y - cy) <= r) {

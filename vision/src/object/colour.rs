@@ -1,6 +1,5 @@
 //! Hue and saturation in 100 x 10 bins (FingerVision 2017, section III B), and six steps of brightness.
 
-
 pub const HUES: usize = 100;
 pub const SATURATIONS: usize = 10;
 /// Steps of brightness, each with its own bins: a grey card and a white wall differ in nothing else. 1 is the paper's.
@@ -35,12 +34,6 @@ const fn coarse(level: u8) -> u8 {
 #[derive(Clone, Debug)]
 pub struct Bins {
     table: Box<[u16]>,
-}
-
-impl Default for Bins {
-    fn default() -> Self {
-        Self::new()
-    }
 }
 
 impl Bins {

@@ -1,6 +1,5 @@
 //! What colours the object has (FingerVision 2017, equation 1).
 
-
 use super::colour::BINS;
 
 /// A count of pixels for each bin: one colour covers less than 65 536 of them.
@@ -20,12 +19,6 @@ pub struct ObjectModel {
     added: Box<[[u8; BINS]]>,
     sums: Box<Histogram>,
     next: usize,
-}
-
-impl Default for ObjectModel {
-    fn default() -> Self {
-        Self::new()
-    }
 }
 
 impl ObjectModel {

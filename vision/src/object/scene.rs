@@ -3,7 +3,6 @@
 //! For each pixel: its colour and how much that varies. It follows slowly where nothing is held in front of it and stands
 //! still where the object is, so that an object that is held still does not become background.
 
-
 use crate::frame::{Frame, PIXELS, Plane, WIDTH};
 use crate::mask::Mask;
 
@@ -36,12 +35,6 @@ pub(super) fn levels() -> Levels {
     match vec![0; PIXELS].into_boxed_slice().try_into() {
         Ok(plane) => plane,
         Err(_) => unreachable!("its length is that of a plane"),
-    }
-}
-
-impl Default for Scene {
-    fn default() -> Self {
-        Self::new()
     }
 }
 
