@@ -1,5 +1,4 @@
-//! What anybody would try first, to be held against the detectors: `tenax chart table` scores this very source on the PC and counts
-//! its instructions here. None of it is in the image that is flashed.
+//! The simplest rivals of the detectors: loudness, a ratio of forces, a logistic regression.
 
 /// How loud the loudest film is, without a filter for hum, impacts or a film that is doubted.
 #[derive(Clone, Debug, Default)]
