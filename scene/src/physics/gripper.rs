@@ -193,22 +193,6 @@ mod tests {
     }
 
     #[test]
-    fn it_comes_to_press_as_asked_and_no_harder() {
-        let mut gripper = Gripper::new(&sections::Gripper::default());
-        let mut drive = MotorDrive::Coast;
-        for scan in 0..8_000 {
-            let grip_n = gripper.grip_n(WIDTH_MM, STIFFNESS_N_PER_MM);
-            if scan % SCANS_PER_FRAME == 0 {
-                let asked = gripper.closing_to(12.0, grip_n, (WIDTH_MM, STIFFNESS_N_PER_MM));
-                drive = asked.unwrap_or(MotorDrive::Coast);
-            }
-            gripper.step(drive, grip_n);
-        }
-        let grip_n = gripper.grip_n(WIDTH_MM, STIFFNESS_N_PER_MM);
-        assert!((12.0..12.1).contains(&grip_n), "{grip_n} N");
-    }
-
-    #[test]
     fn a_blocked_motor_moves_nothing_and_draws_its_duty() {
         let blocked = |gripper: &mut Gripper, drive, part: f64| {
             run(gripper, drive, 0.1);

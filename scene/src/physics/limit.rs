@@ -57,35 +57,3 @@ impl Body {
         self.broken
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::SceneFile;
-
-    fn can(limits: &str) -> Body {
-        let (_, glass) = crate::builtin()[0];
-        let text = glass.replace("mass_kg = 0.25", &format!("{limits}\nmass_kg = 0.25"));
-        Body::new(SceneFile::parse(&text, "can").unwrap().object.as_ref().unwrap().get_ref())
-    }
-
-    #[test]
-    fn it_yields_at_its_limit_and_keeps_the_dent() {
-        let mut can = can("crush_n = 8");
-        assert_eq!((can.bears(7.9), can.dent_mm()), (7.9, 0.0));
-        // The fingers want 11 N at 3 N/mm: 3 N too much is 1 mm a finger.
-        assert_eq!((can.bears(11.0), can.dent_mm()), (8.0, 2.0));
-        assert_eq!(can.width_mm(), 68.0);
-        assert_eq!((can.bears(5.0), can.dent_mm()), (5.0, 2.0));
-    }
-
-    #[test]
-    fn it_breaks_once_and_for_good() {
-        let mut egg = can("break_n = 20");
-        egg.bears(19.9);
-        assert!(!egg.is_broken());
-        egg.bears(20.1);
-        egg.bears(0.0);
-        assert!(egg.is_broken() && egg.dent_mm() == 0.0);
-    }
-}

@@ -194,20 +194,6 @@ mod tests {
         assert!(!alone.turns() && shared.turns());
     }
 
-    #[test]
-    fn what_turns_gives_up_its_friction_along_the_pad_over_a_way_and_not_at_once() {
-        let mut pitch = pitch(4.0, 0.0);
-        pitch.step(Load { shear_part: 0.9, ..under(2.0) }, FRICTION);
-        assert!(pitch.turns());
-        pitch.step(Load { shear_part: 0.9, ..under(2.0) }, FRICTION);
-        let at_once = pitch.leaves(FRICTION).mu_d / FRICTION.mu_d;
-        while pitch.angle_rad() * TORSION * 0.005 < 5.0 * LEANS_M {
-            pitch.step(Load { shear_part: 0.9, ..under(2.0) }, FRICTION);
-        }
-        let later = pitch.leaves(FRICTION).mu_d / FRICTION.mu_d;
-        assert!(at_once > 0.8 && later <= LEAST + 1e-2, "{at_once}, {later}");
-    }
-
     proptest! {
         #[test]
         fn torsional_friction_never_adds_energy(

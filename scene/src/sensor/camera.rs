@@ -120,21 +120,15 @@ mod tests {
     }
 
     #[test]
-    fn thirty_images_a_second_make_twenty_nine_words() {
-        assert_eq!(words(0.0, 0.0).len(), 29);
-        assert!(words(0.0, 0.0).iter().all(|seen| (seen.v1, seen.v2) == (0, 0)));
-    }
-
-    #[test]
-    fn as_one_is_1_and_apart_is_minus_1() {
+    fn still_as_one_apart_and_slow_are_told_by_29_words_a_second() {
         // 50 mm/s is more than a pixel an image.
-        assert!(words(50.0, 50.0).iter().all(|seen| (seen.v1, seen.v2) == (1, 1)));
-        assert!(words(-50.0, -50.0).iter().all(|seen| (seen.v1, seen.v2) == (1, -1)));
-        assert!(words(50.0, 0.0).iter().all(|seen| (seen.v1, seen.v2) == (-1, 1)));
-    }
-
-    #[test]
-    fn slow_motion_chatters() {
+        for (hand_mm_s, object_mm_s, said) in
+            [(0.0, 0.0, (0, 0)), (50.0, 50.0, (1, 1)), (-50.0, -50.0, (1, -1)), (50.0, 0.0, (-1, 1))]
+        {
+            let words = words(hand_mm_s, object_mm_s);
+            assert_eq!(words.len(), 29);
+            assert!(words.iter().all(|seen| (seen.v1, seen.v2) == said), "{said:?}");
+        }
         // Tada's 25 mm/s are 0.63 of a pixel an image: some 18 of 29 images see it, and no two in a row do without.
         let words = words(25.0, 25.0);
         let seen = words.iter().filter(|seen| seen.v2 == 1).count();

@@ -234,23 +234,6 @@ mod tests {
     }
 
     #[test]
-    fn directions_are_drawn_where_asked_and_films_hear_as_much_as_before_on_the_mean() {
-        let films = |part: f64| {
-            let parameters = Pvdf { film_directions: Part::of(part), ..Pvdf::default() };
-            (1..=100).flat_map(move |making| {
-                Films::new(&parameters, (&[], &[]), 1.0, Seeds { making, noise: 1 }).films
-            })
-        };
-        assert!(films(0.0).all(|film| film.pressure == 1.0 && film.shear == 1.0));
-        for hears in [|film: &Film| film.pressure, |film: &Film| film.shear] {
-            let square = films(1.0).map(|film| hears(&film).powi(2)).sum::<f64>() / 1_200.0;
-            // Of 1200 squares between 0 and 2, whose deviation is 0.7: five standard errors.
-            assert!((square - 1.0).abs() < 0.1, "{square}");
-        }
-        assert!(films(1.0).any(|film| film.shear < -1.0) && films(1.0).any(|film| film.shear > 1.0));
-    }
-
-    #[test]
     fn gains_and_noises_are_drawn_over_the_decade_and_nothing_else_is() {
         let (mut widest, mut together) = (0.0_f64, 0.0);
         for seed in 0..50 {
