@@ -101,7 +101,7 @@ impl World {
             wearer: Wearer::new(&scene.muscle),
             gripper: Gripper::new(&scene.gripper),
             vibrator: scene.vibrator.as_ref().map(Vibrator::new),
-            jams: scene.jam.iter().map(|jam| Span::new(jam.at_s.get_ref().get(), jam.for_s.get())).collect(),
+            jams: scene.jam.iter().map(|jam| Span::of(&jam.at_s, jam.for_s)).collect(),
             task,
             touch: Touch::default(),
             films: Films::new(&scene.pvdf, (&scene.knock, &scene.hum), scene.contact.pitch_mm.get(), seeds),

@@ -62,7 +62,7 @@ impl Grasp {
         let fills = scene
             .fill
             .iter()
-            .map(|fill| (Span::new(fill.at_s.get_ref().get(), fill.for_s.get()), fill.add_kg.get_ref().get()))
+            .map(|fill| (Span::of(&fill.at_s, fill.for_s), fill.add_kg.get_ref().get()))
             .collect();
         Self {
             empty_kg,

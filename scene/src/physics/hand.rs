@@ -25,7 +25,7 @@ impl Hand {
         let moves = moves.iter().map(|step| {
             let by_m = step.to_mm.get() / 1e3 - from_m;
             from_m += by_m;
-            (Span::new(step.at_s.get_ref().get(), step.for_s.get()), by_m)
+            (Span::of(&step.at_s, step.for_s), by_m)
         });
         let moves = moves.collect();
         let swings = swings.iter().map(|swing| {

@@ -9,7 +9,7 @@ use super::front_end_v;
 use super::place::Place;
 use crate::file::sections::{Hum, Knock, Pvdf};
 use crate::physics::{TOUCH_N, Touch};
-use crate::pole::{LowPass, LowPasses};
+use crate::pole::LowPass;
 use crate::random::{Noise, Seeds, Source};
 use crate::schedule::{STEP_S, Span};
 
@@ -36,8 +36,8 @@ pub(crate) struct Films {
     films: [Film; PVDF_COUNT],
     gains: [f64; PVDF_COUNT],
     noises: [f64; PVDF_COUNT],
-    skin: [LowPasses<PVDF_COUNT>; 2],
-    amplifiers: LowPasses<PVDF_COUNT>,
+    skin: [[LowPass; 2]; PVDF_COUNT],
+    amplifiers: [LowPass; PVDF_COUNT],
     noise: Noise,
     last_normal_n: f64,
     last_edge: f64,
@@ -89,16 +89,13 @@ impl Films {
         Self {
             parameters: parameters.clone(),
             knocks: knocks.to_vec(),
-            hums: hums
-                .iter()
-                .map(|hum| (Span::new(hum.at_s.get_ref().get(), hum.for_s.get()), hum.clone()))
-                .collect(),
+            hums: hums.iter().map(|hum| (Span::of(&hum.at_s, hum.for_s), hum.clone())).collect(),
             pitch_m: pitch_mm / 1e3,
             films,
             gains,
             noises,
-            skin: [LowPasses::new(skin); 2],
-            amplifiers: LowPasses::new([amplifier; PVDF_COUNT]),
+            skin: skin.map(|pole| [pole; 2]),
+            amplifiers: [amplifier; PVDF_COUNT],
             noise: Noise::new(seeds.noise, Source::Film),
             last_normal_n: 0.0,
             last_edge: 0.0,
@@ -159,16 +156,15 @@ impl Films {
             }
         }
         let release_mv_per_n = p.release_mv_per_n.get();
-        let under_mv = std::array::from_fn(|n| {
+        let mut films_mv: [f64; PVDF_COUNT] = std::array::from_fn(|n| {
             let film = &self.films[n];
-            film.pressure * pressed_mv
+            let under_mv = film.pressure * pressed_mv
                 + film.shear * sheared_mv
-                + film.shear * release_mv_per_n * film.released_n
+                + film.shear * release_mv_per_n * film.released_n;
+            let [upper, lower] = &mut self.skin[n];
+            let deformed_mv = lower.step(upper.step(under_mv));
+            deformed_mv - self.amplifiers[n].step(deformed_mv)
         });
-        let [upper, lower] = &mut self.skin;
-        let deformed_mv = *lower.step(upper.step(&under_mv));
-        let slow_mv = self.amplifiers.step(&deformed_mv);
-        let mut films_mv: [f64; PVDF_COUNT] = std::array::from_fn(|n| deformed_mv[n] - slow_mv[n]);
         if texture_mv > 0.0 {
             for (film_mv, film) in films_mv.iter_mut().zip(&self.films) {
                 *film_mv += texture_mv
