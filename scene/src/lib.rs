@@ -26,7 +26,6 @@
 //! | [`physics`] | contact at three levels, gripper, grasped object, stroked surface, hand, wearer |
 //! | [`sensor`] | PVDF, strain, FSR, force array, myoelectric, camera, photoelastic head, opening, motor current, and the faults of all of them |
 //! | [`picture`] | what a camera behind a clear skin sees, drawn pixel by pixel |
-//! | [`fingers`] | several fingertips around one object |
 //! | [`act`] | what a person at the bench does meanwhile |
 //! | [`bound`] | the least force that holds, planned ahead |
 //! | [`truth`] | nothing of the world: it writes down what really happened |

@@ -73,7 +73,7 @@ pub(crate) struct Step<'a> {
     pub(crate) trace: bool,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct State {
     pub(crate) carried: bool,
     pub(crate) dropped: bool,

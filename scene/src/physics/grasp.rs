@@ -26,9 +26,9 @@ pub struct Grasp {
     fills: Vec<(Span, f64)>,
     pulls: Pulls,
     shared: bool,
-    taken: bool,
+    pub(crate) taken: bool,
     surface: Surface,
-    body: Body,
+    pub(crate) body: Body,
     pitch: Option<Pitch>,
     pad_m: f64,
     mat_n_per_m: f64,
@@ -42,9 +42,10 @@ pub struct Grasp {
     lifted: bool,
     slid_m: f64,
     speed_m_s: f64,
-    mass_kg: f64,
+    pub(crate) mass_kg: f64,
     table_n: f64,
-    needed_n: f64,
+    /// The least grip force of each finger that would hold the object at this instant, N.
+    pub(crate) needed_n: f64,
     needs_n: [f64; 2],
     shear_n: f64,
     holds: f64,
@@ -113,7 +114,7 @@ impl Grasp {
         let grip_n = if self.in_hand { self.body.bears(grip_n) } else { 0.0 };
 
         let depth_m = -self.height_m(hand);
-        let sinking_m_s = -(self.speed_m_s + hand.speed_m_s());
+        let sinking_m_s = -(self.speed_m_s + hand.speed_m_s);
         self.table_n = if depth_m > 0.0 {
             (self.mat_n_per_m * depth_m + self.mat_ns_per_m * sinking_m_s).max(0.0)
         } else {
@@ -121,7 +122,7 @@ impl Grasp {
         };
         self.shared = self.pulls.takes(t_s);
         let free_n =
-            self.table_n + self.pulls.force_n(t_s) - self.mass_kg * (GRAVITY_M_S2 + hand.acceleration_m_s2());
+            self.table_n + self.pulls.force_n(t_s) - self.mass_kg * (GRAVITY_M_S2 + hand.acceleration_m_s2);
         let drag_ns_per_m = self.drag_ns_per_m(dry, grip_n);
         // Backward Euler: no drag turns the motion round.
         let free_m_s =
@@ -147,7 +148,7 @@ impl Grasp {
         self.shear_n = shear_n;
         self.lifted |= grip_n > TOUCH_N && self.table_n == 0.0;
         self.taken |= self.in_hand && self.shared && self.lifted && grip_n == 0.0;
-        self.in_hand &= self.slid_m.abs() <= self.pad_m && !self.body.is_broken() && !self.taken;
+        self.in_hand &= self.slid_m.abs() <= self.pad_m && !self.body.broken && !self.taken;
         // Pulled out of the fingers: they had it in their hand.
         self.taken |= !self.in_hand && self.shared && self.lifted;
         let drop_n = (friction.mu_s - friction.mu_d) * grip_n;
@@ -169,7 +170,7 @@ impl Grasp {
     fn turn(&mut self, friction: Friction, grip_n: f64, drag_ns_per_m: f64, hand: &Hand) -> Turn {
         let Some(pitch) = self.pitch.as_mut().filter(|_| self.in_hand) else { return Turn::default() };
         let hangs = self.table_n == 0.0;
-        let weight_n = if hangs { self.mass_kg * (GRAVITY_M_S2 + hand.acceleration_m_s2()) } else { 0.0 };
+        let weight_n = if hangs { self.mass_kg * (GRAVITY_M_S2 + hand.acceleration_m_s2) } else { 0.0 };
         let slide_m_s = if self.sticks { 0.0 } else { self.speed_m_s };
         let load = Load {
             mass_kg: self.mass_kg,
@@ -201,15 +202,11 @@ impl Grasp {
     /// How the fingers feel it: its width, mm, and the stiffness of pad and object together, N/mm a finger. None once
     /// it has left the pads: the fingers close on nothing.
     pub fn between_the_fingers(&self) -> Option<(f64, f64)> {
-        self.in_hand.then(|| (self.body.width_mm(), self.body.stiffness_n_per_mm()))
+        self.in_hand.then(|| (self.body.width_mm(), self.body.stiffness_n_per_mm))
     }
 
     pub fn height_m(&self, hand: &Hand) -> f64 {
-        self.rest_m + hand.height_m() + self.slid_m
-    }
-
-    pub const fn mass_kg(&self) -> f64 {
-        self.mass_kg
+        self.rest_m + hand.height_m + self.slid_m
     }
 
     pub fn table_part(&self) -> f64 {
@@ -228,16 +225,8 @@ impl Grasp {
         self.shared || self.taken
     }
 
-    pub const fn is_taken(&self) -> bool {
-        self.taken
-    }
-
     pub fn pitch_rad(&self) -> f64 {
-        self.pitch.as_ref().map_or(0.0, Pitch::angle_rad)
-    }
-
-    pub const fn body(&self) -> &Body {
-        &self.body
+        self.pitch.as_ref().map_or(0.0, |pitch| pitch.angle_rad)
     }
 
     /// What stops it if it slides or turns: what sliding friction needs to carry it, and to take its speed within
@@ -257,11 +246,6 @@ impl Grasp {
 
     pub fn margin_n(&self, grip_n: f64) -> f64 {
         self.holds * (grip_n - self.needed_n)
-    }
-
-    /// The least grip force that would hold it at this instant, N.
-    pub const fn needed_n(&self) -> f64 {
-        self.needed_n
     }
 }
 

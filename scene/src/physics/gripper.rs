@@ -23,10 +23,12 @@ pub struct Gripper {
     step_mm: f64,
     pipeline: VecDeque<MotorDrive>,
     aim_mm: f64,
-    opening_mm: f64,
-    speed_mm_s: f64,
-    current: f64,
-    is_jammed: bool,
+    /// Distance between the pads when nothing is compressed, mm.
+    pub(crate) opening_mm: f64,
+    pub(crate) speed_mm_s: f64,
+    /// Current that the bridge shows over the stall current at the whole supply: the motor's, times the duty (DRV8874, section 7.3.3).
+    pub(crate) current_part: f64,
+    pub(crate) is_jammed: bool,
 }
 
 impl Gripper {
@@ -41,19 +43,15 @@ impl Gripper {
             aim_mm: parameters.opening_mm.get_ref().get(),
             opening_mm: parameters.opening_mm.get_ref().get(),
             speed_mm_s: 0.0,
-            current: 0.0,
+            current_part: 0.0,
             is_jammed: false,
         }
-    }
-
-    pub const fn jam(&mut self, is_jammed: bool) {
-        self.is_jammed = is_jammed;
     }
 
     pub fn step(&mut self, drive: MotorDrive, grip_n: f64) {
         self.pipeline.push_back(drive);
         let load = grip_n / self.force_max_n;
-        let (speed, current) = match self.pipeline.pop_front().unwrap_or(drive) {
+        let (speed, current_part) = match self.pipeline.pop_front().unwrap_or(drive) {
             MotorDrive::Coast => (0.0, 0.0),
             MotorDrive::Close(duty) => {
                 let duty = f64::from(duty.as_per_mille()) / 1e3;
@@ -72,7 +70,7 @@ impl Gripper {
         self.aim_mm = (self.aim_mm + speed * self.speed_max_mm_s * STEP_S).clamp(0.0, self.range_mm);
         self.opening_mm = self.reach(load);
         self.speed_mm_s = (self.opening_mm - before_mm) / STEP_S;
-        self.current = current;
+        self.current_part = current_part;
     }
 
     /// What the motor has to be told for the next frame so that each finger comes to press with `target_n` and no more, once
@@ -123,28 +121,14 @@ impl Gripper {
         goal_mm.clamp(self.opening_mm - closing_mm, self.opening_mm + self.speed_max_mm_s * STEP_S)
     }
 
-    pub const fn opening_mm(&self) -> f64 {
-        self.opening_mm
-    }
-
     /// The opening as a part of the whole range.
     pub fn opening_part(&self) -> f64 {
         self.opening_mm / self.range_mm
     }
 
-    pub const fn speed_mm_s(&self) -> f64 {
-        self.speed_mm_s
-    }
-
     /// The speed as a part of the fastest, 0 to 1.
     pub fn speed_part(&self) -> f64 {
         (self.speed_mm_s / self.speed_max_mm_s).abs()
-    }
-
-    /// The current that the bridge shows, as a part of the stall current at the whole supply: the motor's, which makes torque, while
-    /// the bridge drives it, so duty times as much (DRV8874, section 7.3.3).
-    pub const fn current_part(&self) -> f64 {
-        self.current
     }
 
     pub fn grip_n(&self, width_mm: f64, stiffness_n_per_mm: f64) -> f64 {
@@ -170,13 +154,13 @@ mod tests {
     #[test]
     fn it_moves_one_dead_time_late_at_both_ends() {
         let mut gripper = Gripper::new(&sections::Gripper::default());
-        let open_mm = gripper.opening_mm();
+        let open_mm = gripper.opening_mm;
         run(&mut gripper, MotorDrive::Close(Duty::per_mille(500)), 0.030);
-        assert_eq!(gripper.opening_mm(), open_mm);
+        assert_eq!(gripper.opening_mm, open_mm);
         run(&mut gripper, MotorDrive::Coast, 0.030);
-        assert!((open_mm - gripper.opening_mm() - 0.030 * 60.0).abs() < 0.01);
+        assert!((open_mm - gripper.opening_mm - 0.030 * 60.0).abs() < 0.01);
         run(&mut gripper, MotorDrive::Coast, 0.1);
-        assert!((open_mm - gripper.opening_mm() - 0.030 * 60.0).abs() < 0.01);
+        assert!((open_mm - gripper.opening_mm - 0.030 * 60.0).abs() < 0.01);
     }
 
     #[test]
@@ -196,10 +180,10 @@ mod tests {
     fn a_blocked_motor_moves_nothing_and_draws_its_duty() {
         let blocked = |gripper: &mut Gripper, drive, part: f64| {
             run(gripper, drive, 0.1);
-            let opening_mm = gripper.opening_mm();
+            let opening_mm = gripper.opening_mm;
             run(gripper, drive, 0.1);
-            assert_eq!(gripper.opening_mm(), opening_mm, "{drive:?}");
-            assert!((gripper.current_part() - part).abs() < 1e-9, "{drive:?}");
+            assert_eq!(gripper.opening_mm, opening_mm, "{drive:?}");
+            assert!((gripper.current_part - part).abs() < 1e-9, "{drive:?}");
         };
         let half = Duty::per_mille(500);
         for step_mm in [0.0, 0.5] {
@@ -208,11 +192,11 @@ mod tests {
                 ..sections::Gripper::default()
             });
             run(&mut gripper, MotorDrive::Open(Duty::FULL), 0.05);
-            assert_eq!(gripper.current_part(), 0.0, "the control: it moves");
-            gripper.jam(true);
+            assert_eq!(gripper.current_part, 0.0, "the control: it moves");
+            gripper.is_jammed = true;
             blocked(&mut gripper, MotorDrive::Open(half), 0.25);
             blocked(&mut gripper, MotorDrive::Close(Duty::FULL), 1.0);
-            gripper.jam(false);
+            gripper.is_jammed = false;
             run(&mut gripper, MotorDrive::Open(Duty::FULL), 1.0);
             assert_eq!(gripper.opening_part(), 1.0);
             blocked(&mut gripper, MotorDrive::Open(half), 0.25);
@@ -226,9 +210,9 @@ mod tests {
         for _ in 0..40 {
             run(&mut gripper, MotorDrive::Close(Duty::per_mille(50)), 0.033);
             run(&mut gripper, MotorDrive::Coast, 0.1);
-            let steps = gripper.opening_mm() / 0.5;
-            assert!((steps - steps.round()).abs() < 1e-9, "{} mm", gripper.opening_mm());
+            let steps = gripper.opening_mm / 0.5;
+            assert!((steps - steps.round()).abs() < 1e-9, "{} mm", gripper.opening_mm);
         }
-        assert!(gripper.opening_mm() < 85.0);
+        assert!(gripper.opening_mm < 85.0);
     }
 }

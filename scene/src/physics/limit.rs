@@ -9,11 +9,12 @@ use crate::file::sections::Object;
 #[derive(Clone, Debug)]
 pub struct Body {
     width_mm: f64,
-    stiffness_n_per_mm: f64,
+    /// Of pad and object together, N/mm a finger.
+    pub(crate) stiffness_n_per_mm: f64,
     crush_n: f64,
     break_n: f64,
-    dent_mm: f64,
-    broken: bool,
+    pub(crate) dent_mm: f64,
+    pub(crate) broken: bool,
 }
 
 impl Body {
@@ -43,17 +44,5 @@ impl Body {
 
     pub fn width_mm(&self) -> f64 {
         self.width_mm - self.dent_mm
-    }
-
-    pub const fn stiffness_n_per_mm(&self) -> f64 {
-        self.stiffness_n_per_mm
-    }
-
-    pub const fn dent_mm(&self) -> f64 {
-        self.dent_mm
-    }
-
-    pub const fn is_broken(&self) -> bool {
-        self.broken
     }
 }

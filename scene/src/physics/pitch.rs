@@ -21,7 +21,8 @@ pub struct Pitch {
     gyration_m: f64,
     radius_m: f64,
     contact: RigidCoulomb,
-    angle_rad: f64,
+    /// Positive towards the load.
+    pub(crate) angle_rad: f64,
     speed_rad_s: f64,
     used_part: f64,
     turn_part: f64,
@@ -115,11 +116,6 @@ impl Pitch {
 
     pub const fn turns(&self) -> bool {
         !self.contact.sticks()
-    }
-
-    /// How far it has turned, rad, positive towards the load.
-    pub const fn angle_rad(&self) -> f64 {
-        self.angle_rad
     }
 }
 

@@ -22,7 +22,7 @@ pub struct Stroke {
     surface: Surface,
     contact: Level,
     carriage_m: f64,
-    probe_m: f64,
+    pub(crate) probe_m: f64,
     speed_m_s: f64,
 }
 
@@ -70,18 +70,13 @@ impl Stroke {
             normal_n: load_n,
             shear_n: -outcome.force_n,
             slide_m_s: self.speed_m_s,
-            turn_m_s: 0.0,
-            torque_nm: 0.0,
             sticks: outcome.sticks,
             stuck_part: outcome.stuck_part,
             let_go: outcome.let_go,
             released_n: if load_n > TOUCH_N { outcome.released_n } else { 0.0 },
             drop_n,
+            ..Touch::default()
         }
-    }
-
-    pub const fn probe_m(&self) -> f64 {
-        self.probe_m
     }
 
     fn over_time(&self, list: &[(Span, f64)], t_s: f64) -> f64 {
