@@ -1,4 +1,4 @@
-//! What somebody types on the serial line during a scene.
+//! Commands of a scene on the serial line.
 
 use std::collections::VecDeque;
 

@@ -1,4 +1,4 @@
-//! What a board sees of a world: voltages on its pins, and a motor that moves something.
+//! A world as a board sees it: voltages at its pins, and a motor.
 
 use tenax_hal_shim::channel::{CHANNELS, CODE_MAX, COUNT, REFERENCE_MV};
 use tenax_hal_shim::frame::{Frame, scan_of_pins};

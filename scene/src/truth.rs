@@ -1,4 +1,4 @@
-//! What really happened in a world, exactly: what a report compares the fingertip with. Nothing here reaches a pin.
+//! The exact log of a world, which a report compares the fingertip with. None of it reaches a pin.
 
 mod record;
 

@@ -1,4 +1,4 @@
-//! What no single number can know: whether the numbers of a scene fit each other.
+//! Checks of the numbers of a scene against each other.
 
 use std::ops::Range;
 

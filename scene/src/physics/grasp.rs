@@ -199,8 +199,7 @@ impl Grasp {
         self.pitch.as_ref().is_some_and(Pitch::turns)
     }
 
-    /// How the fingers feel it: its width, mm, and the stiffness of pad and object together, N/mm a finger. None once
-    /// it has left the pads: the fingers close on nothing.
+    /// Width, mm, and stiffness of pad and object together, N/mm a finger. None once the object has left the pads.
     pub fn between_the_fingers(&self) -> Option<(f64, f64)> {
         self.in_hand.then(|| (self.body.width_mm(), self.body.stiffness_n_per_mm))
     }
@@ -229,16 +228,14 @@ impl Grasp {
         self.pitch.as_ref().map_or(0.0, |pitch| pitch.angle_rad)
     }
 
-    /// What stops it if it slides or turns: what sliding friction needs to carry it, and to take its speed within
-    /// [`STOPS_S`], N of each finger. None while it sticks.
+    /// Grip force of each finger that carries a sliding or turning object and stops it within [`STOPS_S`], N. None while it sticks.
     pub fn stops_n(&self) -> Option<f64> {
         let carries_n = self.needed_n * self.holds / self.slides;
         let brakes_n = self.mass_kg * self.rubs_m_s() / STOPS_S / PADS / self.slides;
         (!self.sticks || self.turns()).then_some(carries_n + brakes_n)
     }
 
-    /// The least grip force of each finger under which all that sticks now would stick, N: what is needed, and what the skin's spring
-    /// takes on top of it as it swings.
+    /// The least grip force of each finger under which all that sticks would stick, the swing of the skin's spring included, N.
     pub fn carries_n(&self) -> f64 {
         let [along_n, turning_n] = self.needs_n;
         along_n.max(self.shear_n.abs() / self.holds).hypot(turning_n)

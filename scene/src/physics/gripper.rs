@@ -10,11 +10,9 @@ use crate::schedule::STEP_S;
 
 /// Fingers, motor and gear.
 ///
-/// The duty sets the finger speed, less what the load takes: `v = v_max (duty - F / F_max)`, so the fingers stall at
-/// `duty F_max`. The gear does not run backwards: a load never opens the hand, driven or not. What the bridge is told
-/// reaches the fingers one dead time later, starting and stopping alike (gear play, friction, the motor's inertia). A
-/// position-controlled gripper moves by whole steps, each as fast as it can. At the ends of its range and while its gear is jammed
-/// nothing moves, and the motor is blocked.
+/// The duty sets the finger speed, less what the load takes: `v = v_max (duty - F / F_max)`, so the fingers stall at `duty F_max`. A
+/// load never opens the hand. A drive reaches the fingers one dead time later. A position-controlled gripper moves by whole steps,
+/// each as fast as it can. At the ends of its range and while the gear is jammed the motor is blocked.
 #[derive(Clone, Debug)]
 pub struct Gripper {
     speed_max_mm_s: f64,
@@ -73,8 +71,8 @@ impl Gripper {
         self.current_part = current_part;
     }
 
-    /// What the motor has to be told for the next frame so that each finger comes to press with `target_n` and no more, once
-    /// what it was told before has reached the fingers; None if it will press so hard anyway.
+    /// Drive for the next frame with which each finger comes to press with `target_n` and no more, once the drives before it have
+    /// reached the fingers. None if it will press so hard anyway.
     pub fn closing_to(
         &self,
         target_n: f64,

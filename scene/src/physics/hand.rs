@@ -1,4 +1,4 @@
-//! How the wearer's arm carries the hand: up, down, and swinging.
+//! The wearer's arm, which carries the hand up, down, and swinging.
 
 use crate::file::sections::{Move, Swing};
 use crate::pole::LowPass;

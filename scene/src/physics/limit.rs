@@ -1,4 +1,4 @@
-//! What an object bears: a can that is crushed, a crane of paper that tears.
+//! Limits of an object: a can that is crushed, an egg that breaks.
 
 use crate::file::sections::Object;
 

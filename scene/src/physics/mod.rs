@@ -1,4 +1,4 @@
-//! What moves, and what makes it move.
+//! Everything that moves.
 
 pub mod brush;
 pub mod contact;

@@ -28,12 +28,9 @@ const WAVE_RATIO: f64 = 1.7;
 
 /// Ten shares of one load.
 ///
-/// At rest an element carries what the patch presses on it under the cover, the more the nearer it is to the contact's
-/// middle. The weight that hangs on the pad tilts the load along it and torsion tilts it across the diagonal. What slips
-/// moves load from one element to its neighbours: a ring of the patch that lets go (micro slip) once, an element that
-/// slides again and again, as its contacts are renewed at its own speed, and the unevenness of the surface with it. Most
-/// of that stays in the sum, so the covariance changes more than the spectrum of the sum: all that the detector of
-/// Bamshad 2023 (section 4) has to go by. A knock and the gear press on all of it.
+/// At rest an element carries more the nearer it is to the contact's middle. The weight on the pad tilts the load along it, torsion
+/// across the diagonal. Slip moves load between neighbours and mostly stays in the sum, so the covariance changes more than the
+/// spectrum of the sum, as the detector of Bamshad 2023 (section 4) expects. A knock and the gear press on all of it.
 #[derive(Debug)]
 pub(crate) struct Elements {
     parameters: Array,

@@ -1,4 +1,4 @@
-//! What the hand knows of itself: the fingers' opening and the motor's current.
+//! The hand's own sensors: the fingers' opening and the motor's current.
 
 use tenax_hal_shim::channel::{CHANNELS, MOTOR_CURRENT, OPENING};
 use tenax_hal_shim::front_end::MOTOR_MV_PER_A;

@@ -1,4 +1,4 @@
-//! Where in the contact a film lies, and so what of a patch's micro slip it hears.
+//! The place of a film in the contact, and its part of a patch's micro slip.
 
 use crate::random::Noise;
 

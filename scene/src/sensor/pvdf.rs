@@ -18,15 +18,10 @@ const KNOCK_DECAYS: f64 = 12.0;
 
 /// Twelve films, each with its own gain, sign, depth and place, and if asked for its direction.
 ///
-/// What deforms the skin (load, shear, and the shear let go as places of it slip) reaches a film through the skin, two
-/// poles, and the charge amplifier's high-pass: a step becomes the bump of about 25 ms that the recordings show. What the
-/// film hears directly (texture, settling, gear, knocks, hum, noise) is added at the film.
-///
-/// Load and shear are those of the whole patch. What lets go and what slides is a film's own place first, and the rest of
-/// the patch as far as its depth spreads it: so a patch that lets go from its edge inwards is heard by one film after the
-/// other, before any of it is macro slip.
-///
-/// A film with a direction of its own is stretched by pressure or by shear, as it lies: what is let go and the texture are shear.
+/// Load, shear and the shear let go reach a film through the skin, two poles, and the charge amplifier's high-pass: a step becomes the
+/// bump of about 25 ms that the recordings show. Texture, settling, gear, knocks, hum and noise are added at the film. A film hears
+/// slip of its own place first, and the rest of the patch as far as its depth spreads it: a patch that lets go from its edge inwards
+/// is heard by one film after the other. A film with a direction hears pressure or shear, as it lies.
 #[derive(Debug)]
 pub(crate) struct Films {
     parameters: Pvdf,
