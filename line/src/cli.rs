@@ -4,7 +4,6 @@ pub mod calibrate;
 pub mod config;
 pub mod flash;
 pub mod monitor;
-pub mod palm;
 pub mod play;
 pub mod port;
 pub mod record;
@@ -42,8 +41,6 @@ enum Command {
     Config(config::Args),
     /// Calibrate a sensor or the wearer's muscles, step by step
     Calibrate(calibrate::Args),
-    /// Show which fingers a palm's hand has, and what happens on its bus
-    Palm(palm::Args),
     /// Print the channel map as a Markdown table
     Wiring,
     /// Print every setting with unit, range, default and meaning as a Markdown table
@@ -60,7 +57,6 @@ pub fn main() -> ExitCode {
         Command::Play(args) => play::main(&args),
         Command::Config(args) => config::main(&args),
         Command::Calibrate(args) => calibrate::main(&args),
-        Command::Palm(args) => palm::main(&args),
         Command::Wiring => page(&wiring::markdown()),
         Command::Settings => page(&settings::markdown()),
     })

@@ -6,6 +6,5 @@
 pub mod cli;
 pub mod guide;
 pub mod monitor;
-pub mod palm;
 pub mod web;
 pub mod wiring;

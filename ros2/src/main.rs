@@ -10,10 +10,10 @@ use std::thread;
 use anyhow::{Context, bail, ensure};
 use clap::Parser;
 use signal_hook::consts::{SIGINT, SIGTERM};
+use tenax_frames::link::Target;
 use tenax_ros2::bridge::hand::{Hand, bridge};
 use tenax_ros2::bridge::network::{Place, open};
 use tenax_ros2::key::is_name;
-use tenax_frames::link::Target;
 use zenoh::Wait;
 
 const EXAMPLES: &str = "\

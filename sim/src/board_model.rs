@@ -7,8 +7,6 @@
 //! Each stand-in has a test beside `rigless`'s own model, event for event; [`Models::Rigless`] runs without them.
 
 mod bridge_timer;
-pub mod can;
-mod dma2;
 pub mod flash;
 pub mod line;
 pub mod nucleo;

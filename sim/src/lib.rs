@@ -12,7 +12,6 @@ pub mod budgets;
 pub mod cli;
 pub mod disturbances;
 pub mod figure;
-pub mod hand;
 pub mod image;
 pub mod input;
 pub mod jobs;

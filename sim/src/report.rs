@@ -11,11 +11,11 @@ pub mod text;
 pub mod wearer;
 
 use serde::Serialize;
+use tenax_frames::words::in_words;
 use tenax_hal_shim::channel::{FRAME_HZ, MYO_EXTENSOR, MYO_FLEXOR};
 use tenax_hal_shim::motor::Duty;
 use tenax_hal_shim::wire::{Event, EventKind};
 use tenax_hal_shim::words::Fault;
-use tenax_frames::words::in_words;
 
 use crate::board::Summary;
 use crate::timeline::Timeline;

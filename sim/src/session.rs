@@ -123,9 +123,7 @@ pub struct Outcome {
 
 /// A scene by its name in the repository, or by its file.
 pub fn load_scene(asked: &str) -> anyhow::Result<SceneFile> {
-    if let Some((name, text)) =
-        builtin().iter().chain(builtin::parts()).chain(builtin::hands()).find(|(name, _)| *name == asked)
-    {
+    if let Some((name, text)) = builtin().iter().chain(builtin::parts()).find(|(name, _)| *name == asked) {
         return Ok(SceneFile::parse(text, &format!("scenes/{name}.toml"))?);
     }
     let path = Path::new(asked);

@@ -8,13 +8,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use crate::jobs::{Jobs, Told};
+use crate::session::{self, Board};
 use anyhow::{Context, bail, ensure};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use sha2::{Digest, Sha256};
-use crate::jobs::{Jobs, Told};
-use crate::session::{self, Board};
 use tenax_scene::{SceneFile, builtin};
 
 use tenax_frames::quantile::middle;

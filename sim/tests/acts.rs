@@ -1,12 +1,12 @@
 //! Whoever sits at the bench that serves: the glass is gripped, pulled, wetted and put down by keys.
 
-use tenax_sim::board::Run;
-use tenax_sim::session::{Board, load_scene};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::EventKind;
 use tenax_hal_shim::words::GripMode;
 use tenax_scene::World;
 use tenax_scene::plant::{Pins, Plant};
+use tenax_sim::board::Run;
+use tenax_sim::session::{Board, load_scene};
 
 /// The bench on which these keys are typed at these instants, s.
 struct Typed {

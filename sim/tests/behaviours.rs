@@ -2,9 +2,9 @@
 //! with one of whose pictures 5 % are wrong, three in a row. Eight seeds each; `TENAX_SEEDS=100 cargo test ... --test all behaviours` runs more.
 
 use crate::common::{asked, parsed, ran, text};
+use tenax_scene::{Truth, World};
 use tenax_sim::report::text::Text;
 use tenax_sim::session::Board;
-use tenax_scene::{Truth, World};
 
 fn seeds() -> std::ops::RangeInclusive<u64> {
     1..=asked("TENAX_SEEDS").unwrap_or(8)

@@ -2,13 +2,13 @@
 //! input keeps its neighbour's charge, and hardly any is. A film's is noticed for its bias is gone.
 
 use rayon::prelude::*;
-use tenax_sim::board::Run;
-use tenax_sim::session::Board;
 use tenax_hal_shim::channel::{CHANNELS, COUNT, FRAME_HZ, PVDF, PVDF_COUNT, STRAIN};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::EventKind;
 use tenax_hal_shim::words::{Fault, Reason};
 use tenax_scene::{SceneFile, World};
+use tenax_sim::board::Run;
+use tenax_sim::session::Board;
 
 const BENCH: &str = include_str!("../../scenes/parts/bench.toml");
 

@@ -4,12 +4,12 @@
 use std::sync::OnceLock;
 
 use crate::common::{asked, parsed, text};
-use tenax_sim::disturbances;
-use tenax_sim::report::Report;
-use tenax_sim::report::bound::SAME_MM;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_scene::World;
 use tenax_scene::plant::Plant;
+use tenax_sim::disturbances;
+use tenax_sim::report::Report;
+use tenax_sim::report::bound::SAME_MM;
 
 /// Each with the seconds in which its object slips, if it does, and the force that it bears, N.
 const SCENES: [(&str, bool, f64); 10] = [

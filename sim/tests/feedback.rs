@@ -1,12 +1,12 @@
 //! The vibration motor that tells the wearer, and films that hear it.
 
 use crate::common::{asked, loaded, parsed};
-use tenax_sim::board::{Run, simulated};
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{Event, EventKind, Slow};
 use tenax_hal_shim::words::GripMode;
 use tenax_scene::plant::{Pins, Plant};
 use tenax_scene::{SceneFile, World};
+use tenax_sim::board::{Run, simulated};
 
 /// Where a wearer closes the hand, or a line does while a camera teaches, and things slip.
 const SCENES: [&str; 5] = ["glass", "wearer-control", "knocks", "pick-up-reflex", "gripper"];

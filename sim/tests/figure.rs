@@ -1,7 +1,7 @@
-//! The figure: both files are drawn, whatever the run, and hold what they should.
+//! The figure is drawn, whatever the run.
 
+use tenax_sim::plot::draw;
 use tenax_sim::session::{self, Board};
-use tenax_sim::plot::{draw, png};
 
 fn recording(csv: &str) -> tempfile::NamedTempFile {
     let file = tempfile::Builder::new().suffix(".csv").tempfile().unwrap();
@@ -10,18 +10,13 @@ fn recording(csv: &str) -> tempfile::NamedTempFile {
 }
 
 #[test]
-fn a_run_is_drawn_as_svg_and_png() {
+fn a_run_is_drawn() {
     let file = recording("t,pvdf_1,fsr_a\n0,1.65,0.2\n0.5,1.8,0.9\n");
     let outcome = session::replay(file.path(), None, 1, &Board::Host, &mut |_| {}).unwrap();
     let svg = draw::svg(&outcome.figure).unwrap();
     for word in ["force, N", "Ft/Fn", "S1", "S2", "gate", "by the reflex", "time, s"] {
         assert!(svg.contains(word), "{word} is missing");
     }
-    let png = png::png(&svg).unwrap();
-    assert_eq!(&png[1..4], b"PNG");
-    // Words are drawn from the font that comes along: without them the picture differs.
-    let wordless = png::png(&svg.replace("force, N", "")).unwrap();
-    assert_ne!(png, wordless);
 }
 
 #[test]

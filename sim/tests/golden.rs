@@ -6,11 +6,11 @@ use std::fs;
 use std::path::Path;
 
 use rayon::prelude::*;
+use tenax_scene::{SceneFile, World, builtin};
 use tenax_sim::board::{Recorder, Run, simulated};
 use tenax_sim::recipe::Kind;
 use tenax_sim::replay::Recipe;
 use tenax_sim::session::{self, Board, ReplayOptions};
-use tenax_scene::{SceneFile, World, builtin};
 
 use crate::common::hash::{Hash, compare, of_run};
 use crate::common::shared;

@@ -7,12 +7,12 @@ use std::sync::OnceLock;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
+use tenax_logic::setting::SettingId;
+use tenax_scene::SceneFile;
 use tenax_sim::live::Use;
 use tenax_sim::report::Report;
 use tenax_sim::report::fate::Fate;
 use tenax_sim::session::{self, Board, controls};
-use tenax_logic::setting::SettingId;
-use tenax_scene::SceneFile;
 
 /// A pour with knocks and a wet wall that ends with an opening; knocks alone; a pick-up; a gripper that nobody wears; an egg; a slip
 /// between contractions, the last of which opens.

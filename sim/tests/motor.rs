@@ -1,12 +1,12 @@
 //! A motor that is blocked in a scene: it stops within half a second, says so, keeps what is held and opens when it is asked again.
 
 use crate::common::{parsed, text};
-use tenax_sim::board::{Run, simulated};
 use tenax_hal_shim::channel::{SCAN_HZ, SCANS_PER_FRAME};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::EventKind;
 use tenax_hal_shim::words::MotorStop;
 use tenax_scene::World;
+use tenax_sim::board::{Run, simulated};
 
 /// When the motor was stopped or freed, s.
 fn stops(run: &Run) -> Vec<(f64, Option<MotorStop>)> {

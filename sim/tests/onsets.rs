@@ -1,11 +1,11 @@
 //! What a run reports of a detector's onset is the frame in which its evidence says that it decided.
 
 use crate::common::onsets::held_against_evidence;
+use tenax_hal_shim::detector::DetectorId;
 use tenax_sim::board::{Recorder, Run};
 use tenax_sim::live::Use;
 use tenax_sim::session::{self, Board};
 use tenax_sim::timeline::Timeline;
-use tenax_hal_shim::detector::DetectorId;
 
 #[test]
 fn every_onset_of_a_scene_is_where_its_evidence_says() {

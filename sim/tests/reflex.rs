@@ -6,13 +6,13 @@
 use crate::common::{asked, parsed, text};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use tenax_sim::board::Run;
-use tenax_sim::live::Use;
-use tenax_sim::session::{self, Board, Outcome};
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::wire::{EventKind, Slow};
 use tenax_hal_shim::words::{Cause, GripMode};
+use tenax_sim::board::Run;
+use tenax_sim::live::Use;
+use tenax_sim::session::{self, Board, Outcome};
 
 fn seeds(default: u64) -> std::ops::RangeInclusive<u64> {
     1..=asked("TENAX_SEEDS").unwrap_or(default)

@@ -2,12 +2,12 @@
 //! recordings through their recipes and the host's logic.
 
 use crate::common::{played, recipe, recording};
-use tenax_sim::replay::ReplayPlant;
 use tenax_hal_shim::channel::{self, COUNT, SCAN_HZ};
 use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::front_end::fsr_mv;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_scene::plant::Plant;
+use tenax_sim::replay::ReplayPlant;
 
 /// The converter's noise never reaches so far, V.
 const NOISE_V: f64 = 0.003;

@@ -2,10 +2,10 @@
 
 use crate::common::{parsed, ran, text};
 use serde_json::Value;
+use tenax_hal_shim::detector::DetectorId;
 use tenax_sim::report::bound::{Bound, SAME_MM};
 use tenax_sim::report::fate::Fate;
 use tenax_sim::session::{self, Board, controls};
-use tenax_hal_shim::detector::DetectorId;
 
 /// The keys of a scene's report before those of its detectors, in order, as paths. None may go; new ones are added here.
 const KEYS: &str = "

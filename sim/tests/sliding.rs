@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use tenax_sim::board::Recorder;
-use tenax_sim::session::{self, Board, ReplayOptions};
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::wire::Slow;
+use tenax_sim::board::Recorder;
+use tenax_sim::session::{self, Board, ReplayOptions};
 
 /// The recording begins after a second of rest; it slides from 1.57 to 4.4 s.
 const SLIDES_S: (f64, f64) = (2.60, 5.40);

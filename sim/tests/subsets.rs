@@ -6,10 +6,10 @@ use std::fmt::Write as _;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
-use tenax_sim::board::simulated::Grips;
-use tenax_sim::session::controls::gripped;
 use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_scene::SceneFile;
+use tenax_sim::board::simulated::Grips;
+use tenax_sim::session::controls::gripped;
 
 use crate::common::{asked, parsed, text};
 

@@ -63,8 +63,7 @@ const PROGRAMS: [Program; 4] = [
     },
 ];
 
-const IMAGE: [&str; 6] =
-    ["--package", "tenax-firmware", "--bin", "tenax-firmware", "--profile", "firmware"];
+const IMAGE: [&str; 6] = ["--package", "tenax-firmware", "--bin", "tenax-firmware", "--profile", "firmware"];
 const TARGET: &str = "thumbv7em-none-eabihf";
 
 fn main() -> ExitCode {
@@ -89,9 +88,10 @@ fn start(command: &str, rest: &[OsString]) -> Result<ExitCode, String> {
         return test(rest);
     }
     let has = |program: &&Program| program.commands.iter().any(|(name, _)| *name == command);
-    let program = PROGRAMS.iter().find(has).ok_or_else(|| {
-        format!("there is no command `{command}`; `cargo tenax` lists them")
-    })?;
+    let program = PROGRAMS
+        .iter()
+        .find(has)
+        .ok_or_else(|| format!("there is no command `{command}`; `cargo tenax` lists them"))?;
     let mut run = cargo("run");
     run.args(["--quiet", "--release", "--package", program.package, "--bin", program.binary]);
     run.args(program.features.iter().flat_map(|feature| ["--features", feature]));
@@ -115,7 +115,9 @@ fn test(rest: &[OsString]) -> Result<ExitCode, String> {
     // Tests of the line wait for real time to pass: twice as many at once take half as long.
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     test.env("RUST_TEST_THREADS", (2 * cores).to_string());
-    status(test.args(["--release", "--no-fail-fast", "--workspace", "--exclude", "tenax-firmware"]).args(rest))
+    status(
+        test.args(["--release", "--no-fail-fast", "--workspace", "--exclude", "tenax-firmware"]).args(rest),
+    )
 }
 
 /// In the workspace's folder. rigless asks for rustc 1.98 and builds on 1.95.

@@ -3,9 +3,9 @@
 use std::process::ExitCode;
 
 use super::port;
-use tenax_frames::tool::out;
 use crate::guide;
 use tenax_frames::link::{Client, Target};
+use tenax_frames::tool::out;
 
 const EXAMPLES: &str = "\
 Examples:

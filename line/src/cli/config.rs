@@ -9,9 +9,9 @@ use tenax_hal_shim::wire::{Answer, Down, Refusal, SETTINGS_PER_ANSWER, Setting};
 use tenax_logic::setting::SettingId;
 
 use super::port;
-use tenax_frames::tool::out;
 use tenax_frames::link::{ANSWER_WITHIN, Client, Target};
 use tenax_frames::settings;
+use tenax_frames::tool::out;
 
 /// Show and change a board's settings.
 #[derive(Debug, clap::Args)]

@@ -9,13 +9,13 @@ use tenax_hal_shim::wire::{Answer, Down, SETTINGS_PER_ANSWER, Setting};
 use tenax_logic::setting::SettingId;
 
 use super::port;
-use tenax_frames::tool::out;
-use tenax_frames::link::{ANSWER_WITHIN, Client, Target};
+use crate::monitor;
 use crate::monitor::source::Places;
 use crate::web::Web;
+use tenax_frames::link::{ANSWER_WITHIN, Client, Target};
 use tenax_frames::settings;
+use tenax_frames::tool::out;
 use tenax_frames::words::AnswerWords;
-use crate::monitor;
 
 /// Watch a board's serial line.
 #[derive(Debug, clap::Args)]

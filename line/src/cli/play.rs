@@ -11,12 +11,12 @@ use anyhow::bail;
 use tenax_hal_shim::channel::FRAME_HZ;
 use tenax_hal_shim::wire::Up;
 
-use tenax_frames::tool::out;
 use tenax_frames::link::Encoder;
 use tenax_frames::link::captured::line_of;
 use tenax_frames::play::{Playing, Reel, SPEEDS, Told, play};
 use tenax_frames::record::csv;
 use tenax_frames::serve::{Options, Server};
+use tenax_frames::tool::out;
 
 const EXAMPLES: &str = "\
 Examples:

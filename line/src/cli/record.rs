@@ -12,9 +12,9 @@ use tenax_hal_shim::wire::{Answer, Down, Setting, Up};
 use tenax_logic::setting::SettingId;
 
 use super::port;
-use tenax_frames::tool::out;
 use tenax_frames::link::{ANSWER_WITHIN, Client, LastSeconds, Target};
 use tenax_frames::record::{self, Recording};
+use tenax_frames::tool::out;
 use tenax_frames::words::in_words;
 
 /// The board streams for as long after each time that it is asked.

@@ -3,8 +3,8 @@
 use std::process::ExitCode;
 
 use super::calibrate::Line;
-use tenax_frames::tool::out;
 use crate::guide::selftest;
+use tenax_frames::tool::out;
 
 const EXAMPLES: &str = "\
 `tenax monitor --web` has the same test in its page.

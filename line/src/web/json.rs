@@ -9,8 +9,8 @@ use super::Seen;
 use super::wizard::Wizard;
 use crate::guide::selftest::Verdict;
 use crate::monitor::view::{Point, View};
-use tenax_frames::settings::Trace;
 use crate::wiring::input;
+use tenax_frames::settings::Trace;
 
 /// Lines of the log in one event at most.
 const LINES_MAX: usize = 50;

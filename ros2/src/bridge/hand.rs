@@ -5,10 +5,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use tenax_hal_shim::wire::{Answer, Down, Refusal, Senses, Slow, Up};
 use crate::hand::{self, Grasp, Health, Step, ceiling_mn, header};
 use crate::message::{DiagnosticArray, GripperCommand, JointState, Margin, Slip, Tactile};
 use tenax_frames::link::{Client, Target};
+use tenax_hal_shim::wire::{Answer, Down, Refusal, Senses, Slow, Up};
 use zenoh::Session;
 
 use super::network::{Graph, Publisher, now_ns};

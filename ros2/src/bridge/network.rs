@@ -2,10 +2,10 @@
 
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use anyhow::{Context, anyhow, bail};
 use crate::cdr;
 use crate::key::{self, Attachment, GID, Node, Role, gid};
 use crate::message::Message;
+use anyhow::{Context, anyhow, bail};
 use zenoh::liveliness::LivelinessToken;
 use zenoh::pubsub::Subscriber;
 use zenoh::qos::CongestionControl;

@@ -14,14 +14,14 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
 use std::time::Instant;
 
+use crate::board_model::flash::FlashArray;
+use crate::board_model::line::Line;
+use crate::board_model::nucleo::Nucleo;
 use anyhow::{Context, Result, anyhow};
 use rigless::emulator::{self, Finished, Start, Watch};
 use rigless::image::Image;
 use rigless::session::Session;
 use rigless::time::VirtualNanos;
-use crate::board_model::flash::FlashArray;
-use crate::board_model::line::Line;
-use crate::board_model::nucleo::Nucleo;
 use tenax_hal_shim::channel::{SCAN_HZ, SCANS_PER_FRAME};
 use tenax_scene::plant::Plant;
 
@@ -50,8 +50,6 @@ pub struct Options {
     pub word_us: u64,
     /// What the bridge's edges leave in the films' codes. None: nothing.
     pub coupling: Option<Coupling>,
-    /// Nobody is on the board's CAN bus to acknowledge a frame.
-    pub can_is_alone: bool,
     /// Which models the chip is made of.
     pub models: Models,
     /// Who is told when each tick of the logic begins.
@@ -66,7 +64,6 @@ impl Default for Options {
             flash: None,
             word_us: 16,
             coupling: None,
-            can_is_alone: false,
             models: Models::Quick,
             ticks: None,
         }
@@ -178,7 +175,6 @@ fn closed_loop(
     let watched = [tick, after_tick, symbols.command];
     let mut world = World::new(plant, frames, mishaps, cost, flash, &symbols, sender);
     world.coupling = options.coupling;
-    world.can_is_alone = options.can_is_alone;
     let mut images =
         vec![Image::read(image, None).context("reading the image")?, cost::paint(&symbols.stack)?];
     let kept = Sectors::provisioned(&provision).image();
@@ -218,8 +214,6 @@ fn closed_loop(
         trusts_line: provision.trusts_line,
         taken,
         feedback,
-        can: world.can,
-        can_given_up: world.can_given_up,
         tick_cost: world.tick_cost,
         stack_bytes: world.stack_bytes,
         flash: FlashUse { words: world.flash.words, erases: world.flash.erases },
@@ -235,10 +229,7 @@ fn execute(
     watched: [u64; 3],
     world: World,
 ) -> Result<Finished<Nucleo, World>> {
-    let mut board = Nucleo::new(models, rate, Line::default())?;
-    if let Some(can) = board.mcu.can() {
-        can.is_alone = world.can_is_alone;
-    }
+    let board = Nucleo::new(models, rate, Line::default())?;
     let mut session = Session::new(Box::new(board), 0, VirtualNanos(1))?;
     for address in watched {
         session.watch(Watch::Instruction(address));

@@ -5,10 +5,10 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 
-use tenax_frames::tool::out;
-use crate::session;
 use crate::plot::draw;
+use crate::session;
 use tenax_frames::link::captured::line_of;
+use tenax_frames::tool::out;
 
 /// Draw a recording.
 #[derive(Debug, clap::Args)]

@@ -12,21 +12,21 @@ use clap::ArgGroup;
 use tenax_scene::SceneFile;
 use tenax_scene::act::KEYS;
 
-use tenax_frames::tool::folder;
-use tenax_frames::tool::format::Format;
 use super::line_file::LineFile;
-use tenax_frames::tool::out;
-use tenax_frames::tool::progress::Progress;
-use tenax_frames::tool::workspace;
 use crate::again;
 use crate::live::{Live, Person, Use};
+use crate::plot::draw;
 use crate::replay::{self, calibrate};
 use crate::report::text::Text;
 use crate::session::{self, Board, Outcome};
-use crate::plot::draw;
 use tenax_frames::link::captured::is_recording;
 use tenax_frames::record::Recording;
 use tenax_frames::serve::{self, Down, Server};
+use tenax_frames::tool::folder;
+use tenax_frames::tool::format::Format;
+use tenax_frames::tool::out;
+use tenax_frames::tool::progress::Progress;
+use tenax_frames::tool::workspace;
 
 /// Run a scene or a recording on a board; report and draw it.
 #[derive(Debug, clap::Args)]
@@ -146,9 +146,6 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     }
     files.extend(line.close()?);
     args.report.print(&Text(&outcome.report), &outcome.report)?;
-    if !outcome.run.can.is_empty() {
-        out::note!("  {:<14}{} frames of evidence and margin", "CAN", outcome.run.can.len());
-    }
     // On stderr, so that a program that reads the report reads nothing else.
     for file in files {
         out::note!("  {:<14}{}", "written", file.display());
@@ -271,10 +268,7 @@ enum Subject<'a> {
 /// Writes figure and report, and says where.
 fn write(outcome: &Outcome, path: &dyn Fn(&str) -> PathBuf) -> anyhow::Result<Vec<PathBuf>> {
     let svg = draw::svg(&outcome.figure)?;
-    let contents = [
-        ("svg", svg.into_bytes()),
-        ("json", serde_json::to_vec_pretty(&outcome.report)?),
-    ];
+    let contents = [("svg", svg.into_bytes()), ("json", serde_json::to_vec_pretty(&outcome.report)?)];
     let mut files = Vec::new();
     for (extension, bytes) in contents {
         let path = path(extension);

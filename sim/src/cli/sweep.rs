@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use crate::sweep::{self, Seeds, Shard};
 use tenax_frames::tool::folder;
 use tenax_frames::tool::format::Format;
 use tenax_frames::tool::out;
 use tenax_frames::tool::progress::with_bar;
-use crate::sweep::{self, Seeds, Shard};
 
 const EXAMPLES: &str = "\
 Examples:

@@ -9,9 +9,9 @@ use tenax_logic::config::Config;
 use tenax_logic::setting::SettingId;
 
 use super::sketch::{Drives, Needs, Sketch};
-use crate::report::Subject;
 use crate::plot::figure::{Curve, Figure, Level, Panel, Stretch, colour};
 use crate::plot::thin::{Thin, thin};
+use crate::report::Subject;
 
 /// The figure of a run: what was drawn of it while it went.
 pub fn figure(subject: &Subject, sketch: Sketch) -> Figure {

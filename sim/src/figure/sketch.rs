@@ -7,8 +7,8 @@ use tenax_hal_shim::words::{DriveSource, GripMode};
 use tenax_scene::truth::Row;
 
 use crate::board::Recorder;
-use crate::timeline::{frame_end_s, ticks};
 use crate::plot::thin::Thin;
+use crate::timeline::{frame_end_s, ticks};
 
 /// Everything that the panels of a run show, in a few thousand points however long the run is.
 #[derive(Clone, Debug)]

@@ -1,8 +1,8 @@
 //! What a recording itself tells of what was recorded, to hold a replay's detections against.
 
 use serde::Serialize;
-use tenax_logic::config::Config;
 use tenax_frames::quantile::middle;
+use tenax_logic::config::Config;
 
 use super::filter::{Pass, pass};
 use super::resample::Grid;

@@ -8,10 +8,10 @@ pub mod hash;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use tenax_scene::{SceneFile, builtin};
 use tenax_sim::recipe::Kind;
 use tenax_sim::replay::{Recipe, Recording};
 use tenax_sim::session::{self, Board, Outcome};
-use tenax_scene::{SceneFile, builtin};
 
 /// A number that is asked for by an environment variable.
 pub fn asked<N: FromStr>(name: &str) -> Option<N> {

@@ -3,16 +3,16 @@
 use std::collections::BTreeMap;
 use std::num::NonZeroU64;
 
-use tenax_sim::board::agreement::Agreement;
-use tenax_sim::board::emulated::Options;
-use tenax_sim::board::simulated;
-use tenax_sim::session;
 use tenax_hal_shim::channel::SCAN_HZ;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{Answer, Down, Setting};
 use tenax_hal_shim::words::Code;
 use tenax_logic::setting::SettingId;
 use tenax_scene::World;
+use tenax_sim::board::agreement::Agreement;
+use tenax_sim::board::emulated::Options;
+use tenax_sim::board::simulated;
+use tenax_sim::session;
 
 use crate::hash::{compare, of_run};
 use crate::onsets::held_against_evidence;

@@ -1,11 +1,11 @@
 //! The behaviours of the real image, in closed loop with their scenes.
 
-use tenax_sim::board::agreement::Agreement;
-use tenax_sim::board::emulated::{self, Options};
-use tenax_sim::session;
 use tenax_hal_shim::behaviour::Ending;
 use tenax_hal_shim::wire::EventKind;
 use tenax_scene::{SceneFile, World, builtin};
+use tenax_sim::board::agreement::Agreement;
+use tenax_sim::board::emulated::{self, Options};
+use tenax_sim::session;
 
 use crate::image;
 

@@ -2,11 +2,11 @@
 
 use std::sync::mpsc;
 
-use tenax_sim::board::Run;
-use tenax_sim::board::emulated::{Mishap, Models, Options, Tick};
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::Down;
 use tenax_hal_shim::words::{Code, Fault};
+use tenax_sim::board::Run;
+use tenax_sim::board::emulated::{Mishap, Models, Options, Tick};
 
 use crate::{Swing, run};
 

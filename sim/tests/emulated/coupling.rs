@@ -1,10 +1,10 @@
 //! The bridge's edges in the films' samples: with the places that the image gives them none is in any, at whatever duty.
 
-use tenax_sim::board::emulated::Options;
-use tenax_sim::board::emulated::coupling::Coupling;
 use tenax_hal_shim::channel::{PVDF_COUNT, SCAN_LEN, SCANS_PER_FRAME};
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::Down;
+use tenax_sim::board::emulated::Options;
+use tenax_sim::board::emulated::coupling::Coupling;
 
 use crate::{Rest, Swing, run};
 

@@ -1,12 +1,12 @@
 //! What the image survives, and that it says so.
 
-use tenax_sim::board::agreement::host_says;
-use tenax_sim::board::emulated::{Mishap, Options};
-use tenax_sim::board::kept::device;
 use tenax_hal_shim::channel::SCAN_HZ;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{Answer, Down, EventKind};
 use tenax_hal_shim::words::Fault;
+use tenax_sim::board::agreement::host_says;
+use tenax_sim::board::emulated::{Mishap, Options};
+use tenax_sim::board::kept::device;
 
 use crate::{Rest, Swing, drives, run};
 

@@ -1,10 +1,10 @@
 //! The vibration motor's pin on the real image: `bench/tests/feedback.rs` says when it is driven, and that the films do not mind.
 
+use tenax_hal_shim::motor::Duty;
+use tenax_scene::{SceneFile, World};
 use tenax_sim::board::agreement::Agreement;
 use tenax_sim::board::emulated::{self, Mishap, Options};
 use tenax_sim::board::{Run, simulated};
-use tenax_hal_shim::motor::Duty;
-use tenax_scene::{SceneFile, World};
 
 use crate::image;
 

@@ -1,11 +1,11 @@
 //! A board that feels with a photoelastic head alone.
 
-use tenax_sim::board::agreement::Agreement;
-use tenax_sim::board::emulated::Options;
-use tenax_sim::session;
 use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::wire::Slow;
 use tenax_scene::World;
+use tenax_sim::board::agreement::Agreement;
+use tenax_sim::board::emulated::Options;
+use tenax_sim::session;
 
 use crate::run;
 

@@ -1,11 +1,11 @@
 //! The seconds before a fault outlive the reset, and are there at the next start.
 
-use tenax_sim::board::Run;
-use tenax_sim::board::emulated::{Mishap, Options};
+use tenax_frames::link::Inbox;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{Answer, Down, Last, PIECE_MAX, Received, Up};
 use tenax_hal_shim::words::Fault;
-use tenax_frames::link::Inbox;
+use tenax_sim::board::Run;
+use tenax_sim::board::emulated::{Mishap, Options};
 
 use crate::{Rest, Swing, drives, run};
 

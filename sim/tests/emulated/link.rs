@@ -1,14 +1,14 @@
 //! Commands come down the line and answers go up.
 
-use tenax_sim::board::agreement::Agreement;
-use tenax_sim::board::emulated::Options;
-use tenax_sim::board::simulated;
+use tenax_frames::link::{Encoder, Inbox};
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{About, Answer, Down, Identity, Refusal, Setting, Up};
 use tenax_hal_shim::words::Code;
 use tenax_logic::setting::SettingId;
 use tenax_scene::plant::{Pins, Plant};
-use tenax_frames::link::{Encoder, Inbox};
+use tenax_sim::board::agreement::Agreement;
+use tenax_sim::board::emulated::Options;
+use tenax_sim::board::simulated;
 
 use crate::{Loaded, Rest, Run, Swing, drives, run};
 

@@ -3,13 +3,10 @@
 
 mod agreement;
 mod behaviours;
-mod bringup;
 mod converter;
 mod coupling;
-mod f446;
 mod faults;
 mod feedback;
-mod hand;
 #[path = "../common/hash.rs"]
 mod hash;
 mod head;
@@ -19,20 +16,18 @@ mod motor;
 #[path = "../../../host-tests/src/onsets.rs"]
 mod onsets;
 mod resets;
-#[path = "../common/served.rs"]
-mod served;
 mod store;
 mod streams;
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use tenax_sim::board::Run;
-use tenax_sim::board::emulated::{self, Options};
 use tenax_hal_shim::channel::{FSR, FSR_COUNT, SCAN_HZ};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::Down;
 use tenax_scene::plant::{Pins, Plant};
+use tenax_sim::board::Run;
+use tenax_sim::board::emulated::{self, Options};
 
 /// The image of this checkout.
 fn image() -> &'static Path {

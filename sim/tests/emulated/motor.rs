@@ -1,12 +1,12 @@
 //! The real image stops a blocked motor as the host's logic does: `bench/tests/motor.rs` says when.
 
+use tenax_hal_shim::wire::{Event, EventKind};
+use tenax_hal_shim::words::MotorStop;
+use tenax_scene::World;
 use tenax_sim::board::agreement::Agreement;
 use tenax_sim::board::emulated::{self, Mishap, Options};
 use tenax_sim::board::simulated;
 use tenax_sim::session;
-use tenax_hal_shim::wire::{Event, EventKind};
-use tenax_hal_shim::words::MotorStop;
-use tenax_scene::World;
 
 use crate::{Rest, Swing, image, run};
 

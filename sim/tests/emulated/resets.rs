@@ -7,11 +7,11 @@ use std::env;
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use tenax_sim::board::emulated::{Mishap, Options};
+use tenax_frames::link::Inbox;
 use tenax_hal_shim::wire::{Answer, Down, EventKind, Last, ResetCause, Up};
 use tenax_hal_shim::words::Fault;
 use tenax_logic::restart::RESTARTS_MAX;
-use tenax_frames::link::Inbox;
+use tenax_sim::board::emulated::{Mishap, Options};
 
 use crate::{Rest, Swing, run};
 

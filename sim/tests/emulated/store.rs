@@ -1,8 +1,5 @@
 //! What the image keeps through resets and power cuts, and that keeping it costs no frame.
 
-use tenax_sim::board::agreement::Agreement;
-use tenax_sim::board::emulated::{Mishap, Options};
-use tenax_sim::board::kept::Sectors;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Down, Event, EventKind, Setting};
 use tenax_hal_shim::words::{Code, Fault, Kept};
@@ -10,6 +7,9 @@ use tenax_logic::config::Config;
 use tenax_logic::hebbian::{Activation, Activations, FingertipNetwork, Normaliser, Rule, snapshot};
 use tenax_logic::setting::SettingId;
 use tenax_logic::store::payload;
+use tenax_sim::board::agreement::Agreement;
+use tenax_sim::board::emulated::{Mishap, Options};
+use tenax_sim::board::kept::Sectors;
 
 use crate::{Rest, Run, Swing, run};
 

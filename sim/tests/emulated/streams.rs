@@ -2,16 +2,16 @@
 
 use std::collections::BTreeSet;
 
-use tenax_sim::board::Run;
-use tenax_sim::board::emulated::Options;
-use tenax_sim::session::load_scene;
+use tenax_frames::link::Inbox;
 use tenax_hal_shim::channel::SCAN_HZ;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{BAUD, Down, FRAMES_PER_RAW, Up};
 use tenax_logic::setting::SettingId;
 use tenax_scene::World;
 use tenax_scene::plant::{Pins, Plant};
-use tenax_frames::link::Inbox;
+use tenax_sim::board::Run;
+use tenax_sim::board::emulated::Options;
+use tenax_sim::session::load_scene;
 
 use crate::{Swing, run};
 

@@ -12,7 +12,6 @@ use super::heard::{CONTROLS, Felt, Judge};
 use crate::equations::Equations;
 use crate::learn::control::Control;
 
-#[path = "../../../../firmware/src/bin/frames/rivals.rs"]
 mod plain;
 
 /// Features of the paper (Bamshad 2023): covariances and spectrum.

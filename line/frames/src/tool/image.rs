@@ -10,8 +10,13 @@ pub const TARGET: &str = "thumbv7em-none-eabihf";
 const PACKAGE: &str = "tenax-firmware";
 const PROFILE: &str = "firmware";
 /// What Cargo sets for the processes that it runs; none of it is meant for the image.
-const NOT_FOR_THE_IMAGE: [&str; 5] =
-    ["CARGO_BUILD_TARGET", "CARGO_ENCODED_RUSTFLAGS", "RUSTC_WORKSPACE_WRAPPER", "RUSTFLAGS", "CARGO_MANIFEST_DIR"];
+const NOT_FOR_THE_IMAGE: [&str; 5] = [
+    "CARGO_BUILD_TARGET",
+    "CARGO_ENCODED_RUSTFLAGS",
+    "RUSTC_WORKSPACE_WRAPPER",
+    "RUSTFLAGS",
+    "CARGO_MANIFEST_DIR",
+];
 
 /// Builds the image of the workspace at `root`; its ELF file.
 ///
