@@ -9,9 +9,7 @@ include!("../recordings.rs");
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     recordings();
     let mut text = String::new();
-    for (constant, folder) in
-        [("SCENES", "../scenes"), ("PARTS", "../scenes/parts"), ("HANDS", "../scenes/hand")]
-    {
+    for (constant, folder) in [("SCENES", "../scenes"), ("PARTS", "../scenes/parts")] {
         println!("cargo::rerun-if-changed={folder}");
         let mut names: Vec<String> = fs::read_dir(folder)?
             .filter_map(|entry| entry.ok()?.file_name().to_str()?.strip_suffix(".toml").map(str::to_owned))

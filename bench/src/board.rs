@@ -18,7 +18,6 @@ use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{Answer, Counters, Down, Event, NetworkState, Received, Slow, Up};
 use tenax_hal_shim::words::{Fault, Kept};
 use tenax_logic::emg::model::EmgModel;
-use tenax_palm::can;
 
 pub use recorder::Recorder;
 
@@ -51,10 +50,6 @@ pub struct Summary {
     pub saved: Vec<(u32, Kept)>,
     /// How the vibration motor was driven from which frame on, whenever that changed.
     pub feedback: Vec<(u32, Duty)>,
-    /// What the board said on CAN, where it has that.
-    pub can: Vec<can::Frame>,
-    /// Frames on CAN that it gave up: nobody acknowledged them.
-    pub can_given_up: u64,
     /// Why the board started, each time it did.
     pub starts: Vec<Option<Fault>>,
     pub counters: Counters,

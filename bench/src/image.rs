@@ -21,16 +21,6 @@ pub fn build(root: &Path) -> Result<PathBuf> {
     tenax_launch::image::build(root, Binary::Image)
 }
 
-/// Builds the image of a palm. Fails as [`build`] does.
-pub fn build_palm(root: &Path) -> Result<PathBuf> {
-    tenax_launch::image::build(root, Binary::Palm)
-}
-
-/// Builds the image for the STM32F446RE: the same logic, with CAN in place of the palm's bus. Fails as [`build`] does.
-pub fn build_f446(root: &Path) -> Result<PathBuf> {
-    tenax_launch::image::build(root, Binary::F446)
-}
-
 /// Builds the image of every detector's kernels, for [`run_frames`](crate::board::emulated::kernels::run_frames). Fails as [`build`] does.
 pub fn build_frames(root: &Path) -> Result<PathBuf> {
     tenax_launch::image::build(root, Binary::Frames)

@@ -14,7 +14,6 @@ pub mod board;
 pub mod budgets;
 pub mod disturbances;
 pub mod figure;
-pub mod hand;
 pub mod hil;
 pub mod image;
 pub mod input;

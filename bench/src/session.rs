@@ -68,18 +68,6 @@ impl Board {
         Ok(Self::Emulated { image: crate::image::build(root)?, options: emulated::Options::default() })
     }
 
-    /// The same with the image for the STM32F446RE.
-    #[cfg(feature = "emulator")]
-    pub fn emulated_f446(root: &Path) -> anyhow::Result<Self> {
-        Ok(Self::Emulated { image: crate::image::build_f446(root)?, options: emulated::Options::default() })
-    }
-
-    /// Says how to get an emulated board.
-    #[cfg(not(feature = "emulator"))]
-    pub fn emulated_f446(root: &Path) -> anyhow::Result<Self> {
-        Self::emulated(root)
-    }
-
     /// Says how to get an emulated board.
     #[cfg(not(feature = "emulator"))]
     pub fn emulated(_root: &Path) -> anyhow::Result<Self> {
@@ -135,9 +123,7 @@ pub struct Outcome {
 
 /// A scene by its name in the repository, or by its file.
 pub fn load_scene(asked: &str) -> anyhow::Result<SceneFile> {
-    if let Some((name, text)) =
-        builtin().iter().chain(builtin::parts()).chain(builtin::hands()).find(|(name, _)| *name == asked)
-    {
+    if let Some((name, text)) = builtin().iter().chain(builtin::parts()).find(|(name, _)| *name == asked) {
         return Ok(SceneFile::parse(text, &format!("scenes/{name}.toml"))?);
     }
     let path = Path::new(asked);

@@ -12,7 +12,6 @@ mod feedback;
 mod figure;
 mod golden;
 mod gripper;
-mod hand;
 mod mixes;
 mod motor;
 mod onsets;

@@ -8,8 +8,6 @@
 #![forbid(unsafe_code)]
 
 mod bridge_timer;
-pub mod can;
-mod dma2;
 pub mod flash;
 pub mod line;
 pub mod nucleo;

@@ -2,9 +2,6 @@
 //!
 //! `rigless` has no STM32F411, but its STM32F427 has every peripheral that this chip has, at the same addresses, and runs
 //! the unmodified image. What differs is not used: more timers, a faster clock. The memories are the F411's.
-//!
-//! The image for the STM32F446RE runs on the same board: of what that chip has, the F427 lacks nothing that is in use (RM0390 beside
-//! RM0090). Not held by it: that its buses and its flash bear their clocks, which pin carries which port, and time on the wires of CAN.
 
 use std::num::{NonZeroU32, NonZeroU64};
 

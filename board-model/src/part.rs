@@ -10,11 +10,9 @@ use rigless::time::VirtualNanos;
 
 use super::Models;
 use super::bridge_timer::BridgeTimer;
-use super::can::Can;
-use super::dma2::Shared;
-use super::line::{BusEnd, Line};
-use super::scan_path;
-use super::serial_path::{self, STLINK, SerialPath};
+use super::line::Line;
+use super::scan_path::{self, ScanPath};
+use super::serial_path::{self, SerialPath};
 use super::unwatched::UnwatchedTimer;
 
 const ADC1_CR2: u64 = 0x4001_2008;
@@ -22,12 +20,10 @@ const CR2_SWSTART: u64 = 1 << 30;
 const TIM3_CNT: u64 = 0x4000_0424;
 /// The serial port of the ST-LINK, USART2, in the order of the chip's ports.
 const USART2: usize = 1;
-/// The port of the palm's bus, in the same order.
-const USART1: usize = 0;
 /// TIM3, in the order of the chip's general timers.
 const TIM3: usize = 1;
 
-/// An STM32F427, whose peripherals contain the F411's and those of the F446 that are in use.
+/// An STM32F427, whose peripherals contain the F411's.
 #[derive(Debug)]
 pub struct Part {
     /// `rigless`'s own models.
@@ -38,14 +34,12 @@ pub struct Part {
 /// What takes the place of some of them.
 #[derive(Debug)]
 struct Own {
-    shared: Shared,
+    scan: ScanPath,
     timer: UnwatchedTimer,
     bridge: BridgeTimer,
-    can: Can,
-    serial: SerialPath<Line>,
+    serial: SerialPath,
     scan_controller: usize,
     port: usize,
-    bus_port: usize,
     answers: Box<[Answers]>,
 }
 
@@ -53,14 +47,9 @@ struct Own {
 #[derive(Clone, Copy, Debug)]
 enum Answers {
     Chip,
-    Converter,
-    /// DMA2: of the scan and of the palm's bus.
-    Shared,
-    BusPort,
+    Scan(scan_path::Asked),
     ScanTimer,
     BridgeTimer,
-    /// Which the F411 has not.
-    Can,
     Serial(serial_path::Asked),
     /// The vibration motor's timer: the registers hold what is written to them, and nothing happens.
     RegistersAlone,
@@ -69,25 +58,21 @@ enum Answers {
 impl Own {
     fn new(bus: &Bus, line: Line) -> Result<Self, Error> {
         let mut answers = vec![Answers::Chip; bus.slots().len()].into_boxed_slice();
-        let [scan_controller, port, bus_port] = [bus.slot("DMA2")?, bus.slot("USART2")?, bus.slot("USART1")?];
-        answers[scan_controller] = Answers::Shared;
-        answers[bus.slot("ADC1")?] = Answers::Converter;
-        answers[bus_port] = Answers::BusPort;
+        let [scan_controller, port] = [bus.slot("DMA2")?, bus.slot("USART2")?];
+        answers[scan_controller] = Answers::Scan(scan_path::Asked::Controller);
+        answers[bus.slot("ADC1")?] = Answers::Scan(scan_path::Asked::Converter);
         answers[bus.slot("TIM3")?] = Answers::ScanTimer;
         answers[port] = Answers::Serial(serial_path::Asked::Port);
         answers[bus.slot("DMA1")?] = Answers::Serial(serial_path::Asked::Controller);
         answers[bus.slot("TIM1")?] = Answers::BridgeTimer;
-        answers[bus.slot("CAN1")?] = Answers::Can;
         answers[bus.slot("TIM4")?] = Answers::RegistersAlone;
         Ok(Self {
-            shared: Shared::new()?,
+            scan: ScanPath::new(),
             timer: UnwatchedTimer::new(TIM3)?,
             bridge: BridgeTimer::default(),
-            can: Can::default(),
-            serial: SerialPath::new(&STLINK, Some(line))?,
+            serial: SerialPath::new(Some(line))?,
             scan_controller,
             port,
-            bus_port,
             answers,
         })
     }
@@ -101,7 +86,6 @@ impl Part {
             Models::Quick => Some(Own::new(chip.bus(), line)?),
             Models::Rigless => {
                 chip.usart[USART2].attach(line);
-                chip.usart[USART1].attach(BusEnd::default());
                 None
             }
         };
@@ -114,7 +98,7 @@ impl Part {
         match own {
             Some(own) => {
                 let (_, mut context) = chip.bus_mut().drive(now, own.scan_controller);
-                own.shared.scan.put(codes, &mut context);
+                own.scan.put(codes, &mut context);
             }
             None => {
                 for (channel, code) in codes {
@@ -135,23 +119,6 @@ impl Part {
             }
             None => chip.usart[USART2].chip_mut::<Line>(),
         }
-    }
-
-    /// The wires of the palm's bus, as they are now.
-    pub fn bus_end(&mut self, now: VirtualNanos) -> Option<&mut BusEnd> {
-        let Self { chip, own } = self;
-        match own {
-            Some(own) => {
-                let (_, mut context) = chip.bus_mut().drive(now, own.bus_port);
-                own.shared.bus.of(serial_path::Asked::Port).line(&mut context)
-            }
-            None => chip.usart[USART1].chip_mut::<BusEnd>(),
-        }
-    }
-
-    /// The CAN port, where a model draws it.
-    pub fn can(&mut self) -> Option<&mut Can> {
-        self.own.as_mut().map(|own| &mut own.can)
     }
 
     /// How many pulses the scan's timer, TIM3, has sent on its TRGO.
@@ -188,7 +155,7 @@ impl Part {
         match own {
             Some(own) => {
                 let (registers, mut context) = chip.bus_mut().drive(now, own.scan_controller);
-                own.shared.scan.trigger(registers, &mut context);
+                own.scan.trigger(registers, &mut context);
             }
             None => {
                 let started = chip
@@ -212,24 +179,20 @@ impl Mcu for Part {
     fn reset(&mut self, at: VirtualNanos, cause: ResetCause) {
         self.chip.reset(at, cause);
         if let Some(own) = &mut self.own {
-            own.shared.scan.restarted();
+            own.scan.restarted();
             own.timer.restarted();
             own.bridge = BridgeTimer::default();
-            own.can.restarted();
             own.serial.restarted(at);
-            own.shared.bus.restarted(at);
         }
     }
 
-    /// Only the serial ports have a far end.
+    /// Only the serial port has a far end.
     fn poll(&mut self, now: VirtualNanos) {
         let Self { chip, own } = self;
         match own {
             Some(own) => {
                 let (_, mut context) = chip.bus_mut().drive(now, own.port);
                 own.serial.look(&mut context);
-                let (_, mut context) = chip.bus_mut().drive(now, own.bus_port);
-                own.shared.bus.of(serial_path::Asked::Port).look(&mut context);
             }
             None => chip.poll(now),
         }
@@ -243,13 +206,10 @@ impl Mcu for Part {
         // A window that is added has a slot past the chip's own.
         match own.answers.get(slot).copied().unwrap_or(Answers::Chip) {
             Answers::Chip => chip.split(slot),
-            Answers::Converter => (chip.bus_mut(), Some(own.shared.scan.of(scan_path::Asked::Converter))),
-            Answers::Shared => (chip.bus_mut(), Some(&mut own.shared)),
-            Answers::BusPort => (chip.bus_mut(), Some(own.shared.bus.of(serial_path::Asked::Port))),
+            Answers::Scan(asked) => (chip.bus_mut(), Some(own.scan.of(asked))),
             Answers::Serial(asked) => (chip.bus_mut(), Some(own.serial.of(asked))),
             Answers::ScanTimer => (chip.bus_mut(), Some(&mut own.timer)),
             Answers::BridgeTimer => (chip.bus_mut(), Some(&mut own.bridge)),
-            Answers::Can => (chip.bus_mut(), Some(&mut own.can)),
             Answers::RegistersAlone => (chip.bus_mut(), None),
         }
     }

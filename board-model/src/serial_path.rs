@@ -7,36 +7,21 @@
 
 mod pair;
 
-use std::marker::PhantomData;
-
 use rigless::device::{DeviceContext, ErasedDevice, RegisterFile, RequestChange};
 use rigless::emulator::InterruptLine;
 use rigless::mcu::Operate;
 use rigless::soc::stm32f427::generated::usart6::Register;
-use rigless::soc::stm32f427::generated::{DMA1, DMA2, USART1, USART2, dma2};
-use rigless::soc::{Error, Layout, Peripheral, RegisterSpec, Width};
+use rigless::soc::stm32f427::generated::{DMA1, USART2, dma2};
+use rigless::soc::{Error, Layout, RegisterSpec, Width};
 use rigless::time::{EventId, VirtualNanos};
 
 use self::pair::Pair;
-use super::line::FarEnd;
+use super::line::Line;
 
-/// Which port, and which streams serve it.
-#[derive(Clone, Copy, Debug)]
-pub struct Lane {
-    port: &'static Peripheral,
-    dma: &'static Peripheral,
-    /// The controller, in the order of the chip's.
-    controller: usize,
-    /// Of the transmitter (RM0383, tables 27 and 28).
-    up: usize,
-    /// Of the receiver.
-    down: usize,
-}
-
-/// The ST-LINK's.
-pub static STLINK: Lane = Lane { port: &USART2, dma: &DMA1, controller: 0, up: 6, down: 5 };
-/// The palm's bus.
-pub static PALM: Lane = Lane { port: &USART1, dma: &DMA2, controller: 1, up: 7, down: 5 };
+/// The stream of DMA1 that serves the transmitter of USART2, the ST-LINK's port (RM0383, table 27).
+const UP: usize = 6;
+/// The receiver's.
+const DOWN: usize = 5;
 
 /// Of a stream's registers, the first of which is the first stream's control: six in a row.
 #[derive(Clone, Copy)]
@@ -46,18 +31,8 @@ enum Row {
     Memory = 3,
 }
 
-impl Lane {
-    const fn row(stream: usize, row: Row) -> usize {
-        dma2::Register::S0cr as usize + 6 * stream + row as usize
-    }
-
-    /// Whether a register of the controller is this lane's.
-    pub fn has(&self, row: usize) -> bool {
-        let is_of = |stream: usize| {
-            row >= Self::row(stream, Row::Control) && row < Self::row(stream + 1, Row::Control)
-        };
-        is_of(self.up) || is_of(self.down)
-    }
+const fn row_of(stream: usize, row: Row) -> usize {
+    dma2::Register::S0cr as usize + 6 * stream + row as usize
 }
 
 const CR1_OVER8: u64 = 1 << 15;
@@ -88,9 +63,7 @@ pub enum Asked {
 
 /// The port and its DMA.
 #[derive(Debug)]
-pub struct SerialPath<F> {
-    lane: &'static Lane,
-    far_end: PhantomData<F>,
+pub struct SerialPath {
     pair: Pair,
     clock_hz: u64,
     asked: Asked,
@@ -107,15 +80,14 @@ struct Starting {
     missing: usize,
 }
 
-impl<F: FarEnd> SerialPath<F> {
+impl SerialPath {
     /// The two out of reset, `far_end` at the far end.
-    pub fn new(lane: &'static Lane, far_end: Option<F>) -> Result<Self, Error> {
-        let mut pair = Pair::new(lane)?;
+    pub fn new(far_end: Option<Line>) -> Result<Self, Error> {
+        let mut pair = Pair::new()?;
         if let Some(far_end) = far_end {
             pair.port.attach(far_end);
         }
-        let far_end = PhantomData;
-        Ok(Self { lane, far_end, pair, clock_hz: 0, asked: Asked::Port, wakes: None, starting: None })
+        Ok(Self { pair, clock_hz: 0, asked: Asked::Port, wakes: None, starting: None })
     }
 
     /// The model of one of the two.
@@ -127,21 +99,21 @@ impl<F: FarEnd> SerialPath<F> {
     /// As a reset of the chip leaves it. The far end has heard what was sent before.
     pub fn restarted(&mut self, at: VirtualNanos) {
         self.pair.run_to(at);
-        let mut fresh = Self::new(self.lane, None).expect("what was built once is built again");
+        let mut fresh = Self::new(None).expect("what was built once is built again");
         fresh.pair.port.inherit(&mut self.pair.port);
         *self = fresh;
     }
 
     /// The far end as it is now. What is handed over is the port's.
-    pub fn line(&mut self, context: &mut DeviceContext<'_>) -> Option<&mut F> {
+    pub fn line(&mut self, context: &mut DeviceContext<'_>) -> Option<&mut Line> {
         self.catch_up(context);
-        self.pair.port.chip_mut::<F>()
+        self.pair.port.chip_mut::<Line>()
     }
 
     /// The far end is looked at, as it is at every stop.
     pub fn look(&mut self, context: &mut DeviceContext<'_>) {
         let now = context.now();
-        if self.pair.port.chip_mut::<F>().is_some_and(|line| line.ready(now, 0) > 0) {
+        if self.pair.port.chip_mut::<Line>().is_some_and(|line| !line.down.is_empty()) {
             self.pair.run_to(now);
             self.pair.ask_far_end(now);
             self.settle(context);
@@ -181,15 +153,15 @@ impl<F: FarEnd> SerialPath<F> {
         let [cr1, cr2, cr3, brr] =
             [Register::Cr1, Register::Cr2, Register::Cr3, Register::Brr].map(|row| self.pair.port_holds(row));
         let frame_ns = (FRAME_BITS * brr * NS_PER_S).checked_div(self.clock_hz).unwrap_or(0);
-        let [up, down] = [self.lane.up, self.lane.down].map(|stream| self.control(stream));
-        let [ready, heard_at] = match self.pair.port.chip_mut::<F>() {
-            Some(line) => [line.ready(now, frame_ns), line.last_down().map_or(0, |at| at.0)],
+        let [up, down] = [UP, DOWN].map(|stream| self.control(stream));
+        let [ready, heard_at] = match self.pair.port.chip_mut::<Line>() {
+            Some(line) => [line.down.len() as u64, line.last_down.map_or(0, |at| at.0)],
             None => [1, now.0],
         };
         let hears = ready > 0 || heard_at + IDLE_FRAMES * frame_ns > now.0 && heard_at > 0;
         let unusual = cr1 & (CR1_TXEIE | CR1_OVER8) | cr2 & CR2_STOP | up & CR_HTIE;
         let by_itself = cr1 & CR1_RXNEIE | down & (CR_HTIE | CR_TCIE) == 0 && cr3 & CR3_DMAR != 0;
-        let left = self.pair.left(self.lane.up);
+        let left = self.pair.left(UP);
         if unusual != 0 || hears && !(by_itself && left == 0 && ready > 0) {
             return Some(next);
         }
@@ -207,13 +179,13 @@ impl<F: FarEnd> SerialPath<F> {
 
     /// The control register of a stream.
     fn control(&self, stream: usize) -> u64 {
-        self.pair.dma_holds(dma2::Register::ALL[Lane::row(stream, Row::Control)])
+        self.pair.dma_holds(dma2::Register::ALL[row_of(stream, Row::Control)])
     }
 
     fn address(&self, row: usize) -> u64 {
         match self.asked {
-            Asked::Port => self.lane.port.base + u64::from(Register::REGISTERS[row].offset),
-            Asked::Controller => self.lane.dma.base + u64::from(dma2::Register::REGISTERS[row].offset),
+            Asked::Port => USART2.base + u64::from(Register::REGISTERS[row].offset),
+            Asked::Controller => DMA1.base + u64::from(dma2::Register::REGISTERS[row].offset),
         }
     }
 
@@ -227,8 +199,8 @@ impl<F: FarEnd> SerialPath<F> {
     /// Asks for the message that the stream is to carry.
     fn start(&mut self, control: u64, context: &mut DeviceContext<'_>) {
         assert!(control & CR_SIZES == 0, "messages go up byte by byte: {control:#x}");
-        let [begins, length] = [Row::Memory, Row::Left]
-            .map(|row| self.pair.dma_holds(dma2::Register::ALL[Lane::row(self.lane.up, row)]));
+        let [begins, length] =
+            [Row::Memory, Row::Left].map(|row| self.pair.dma_holds(dma2::Register::ALL[row_of(UP, row)]));
         for offset in 0..length {
             context.read_from(begins + offset, Width::W8, offset);
         }
@@ -243,12 +215,12 @@ impl<F: FarEnd> SerialPath<F> {
         if let Some(starting) = self.starting.take() {
             self.pair.carry(starting.begins, starting.message);
             self.asked = Asked::Controller;
-            self.write_own(Lane::row(self.lane.up, Row::Control), starting.control, context);
+            self.write_own(row_of(UP, Row::Control), starting.control, context);
         }
     }
 }
 
-impl<F: FarEnd> ErasedDevice for SerialPath<F> {
+impl ErasedDevice for SerialPath {
     fn layout(&self) -> &'static [RegisterSpec] {
         match self.asked {
             Asked::Port => Register::REGISTERS,
@@ -277,8 +249,8 @@ impl<F: FarEnd> ErasedDevice for SerialPath<F> {
         context: &mut DeviceContext<'_>,
     ) {
         self.pair.run_to(context.now());
-        let on = self.control(self.lane.up) & CR_EN != 0;
-        let is_control = self.asked == Asked::Controller && row == Lane::row(self.lane.up, Row::Control);
+        let on = self.control(UP) & CR_EN != 0;
+        let is_control = self.asked == Asked::Controller && row == row_of(UP, Row::Control);
         let switched_on = is_control && value & CR_EN != 0 && !on;
         if switched_on && value & CR_DIR == CR_DIR_UP {
             self.start(value, context);

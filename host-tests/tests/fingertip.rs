@@ -14,7 +14,6 @@ mod hebbian;
 mod motor;
 mod myosensor_faults;
 mod no_wearer;
-mod palm;
 mod random_steps;
 mod ranges;
 mod reflex;

@@ -9,7 +9,6 @@ mod dataset;
 mod evaluate;
 mod folder;
 mod format;
-mod hand;
 mod hil;
 mod learn;
 mod line_file;
@@ -64,8 +63,6 @@ enum Command {
     Run(run::Args),
     /// Teach the Hebbian network slip with a camera, and score it
     Learn(learn::Args),
-    /// Run a hand of several fingertips
-    Hand(hand::Args),
     /// Measure a real board in the loop
     Hil(hil::Args),
     /// List the scenes
@@ -112,7 +109,6 @@ pub fn main() -> ExitCode {
     exit(match Cli::parse().command {
         Command::Run(args) => run::main(&args),
         Command::Learn(args) => learn::main(&args),
-        Command::Hand(args) => hand::main(&args),
         Command::Hil(args) => hil::main(&args),
         Command::Scenes => scenes::main(),
         Command::Sweep(args) => sweep::main(&args),

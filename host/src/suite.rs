@@ -6,10 +6,9 @@ use tenax_launch::tool;
 
 /// All that is tested with the tool itself, in one command, so that everything is compiled once: in release, with the checks of a debug
 /// build (the workspace's Cargo.toml), for in the logic's arithmetic an overflow is an error.
-const PACKAGES: [&str; 14] = [
+const PACKAGES: [&str; 13] = [
     "logic",
     "hal-shim",
-    "palm",
     "scene",
     "vision",
     "launch",

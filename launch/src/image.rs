@@ -31,21 +31,16 @@ pub enum Binary {
     Frames,
     /// A small camera's, picture by picture.
     Pictures,
-    /// What a palm's board is flashed with.
-    Palm,
-    /// The same as the first for an STM32F446RE, which says its evidence on CAN.
-    F446,
 }
 
 impl Binary {
     /// Its file's name.
     const fn name(self) -> &'static str {
         match self {
-            Self::Image | Self::F446 => PACKAGE,
+            Self::Image => PACKAGE,
             Self::Kernels => "tenax-kernels",
             Self::Frames => "tenax-frames",
             Self::Pictures => "tenax-pictures",
-            Self::Palm => "tenax-palm-image",
         }
     }
 
@@ -53,19 +48,10 @@ impl Binary {
     const fn features(self) -> &'static [&'static str] {
         match self {
             Self::Pictures => &["--features", "pictures"],
-            Self::F446 => PORT,
             _ => &[],
         }
     }
-
-    /// Where it is built, in the image's folder: one of the same name does not overwrite the other.
-    const fn folder(self) -> &'static str {
-        if matches!(self, Self::F446) { "f446" } else { "" }
-    }
 }
-
-/// What the package is built with for the other chip.
-const PORT: &[&str] = &["--no-default-features", "--features", "stm32f446re"];
 
 /// Builds what is asked for of the workspace at `root`, fetching what it takes, and gives its ELF file.
 /// An error says what to install, or what the compiler said.
@@ -78,7 +64,7 @@ pub fn build(root: &Path, binary: Binary) -> Result<PathBuf> {
 
 /// Its program. How it is built is in the sources, but for what [`Toolchain`] finds.
 fn program(root: &Path, binary: Binary) -> Program<'_> {
-    let file = target_dir(root).join(binary.folder()).join(TARGET).join(PROFILE).join(binary.name());
+    let file = target_dir(root).join(TARGET).join(PROFILE).join(binary.name());
     Program { root, file, how: binary.name().to_owned() }
 }
 
@@ -87,11 +73,11 @@ pub fn job<'a>(root: &'a Path, binaries: &[Binary]) -> Job<'a> {
     // What has features of its own is built by itself: what is flashed has none of them.
     let (own, others): (Vec<Binary>, _) = binaries.iter().partition(|binary| !binary.features().is_empty());
     let groups = [others].into_iter().chain(own.into_iter().map(|binary| vec![binary]));
-    let builds: Vec<(&str, Vec<&str>)> = groups
+    let builds: Vec<Vec<&str>> = groups
         .filter_map(|group| {
             let first = group.first()?;
             let bins = group.iter().flat_map(|binary| ["--bin", binary.name()]);
-            Some((first.folder(), bins.chain(first.features().iter().copied()).collect()))
+            Some(bins.chain(first.features().iter().copied()).collect())
         })
         .collect();
     let programs: Vec<_> = binaries.iter().map(|&binary| program(root, binary)).collect();
@@ -100,39 +86,32 @@ pub fn job<'a>(root: &'a Path, binaries: &[Binary]) -> Job<'a> {
             return Ok(());
         }
         let begun = SystemTime::now();
-        builds.iter().try_for_each(|(folder, build)| run(root, folder, "build", build, desk))?;
+        builds.iter().try_for_each(|build| run(root, "build", build, desk))?;
         programs.iter().try_for_each(|program| program.built(begun))
     };
     Job { name: "image", done: "built", run: Box::new(run) }
 }
 
-/// Lints the image's package with the toolchain that builds it, for both chips; a warning is an error. An error says what to install, or
-/// what Clippy said.
+/// Lints the image's package with the toolchain that builds it; a warning is an error. An error says what to install, or what Clippy
+/// said.
 pub fn clippy(root: &Path) -> Result<()> {
-    let run = move |desk: &Desk| {
-        let deny = ["--", "--deny", "warnings"];
-        run(root, "", "clippy", &[["--features", "pictures"].as_slice(), &deny].concat(), desk)?;
-        let port = [["--bin", PACKAGE].as_slice(), PORT, &deny].concat();
-        run(root, Binary::F446.folder(), "clippy", &port, desk)
-    };
+    let run = move |desk: &Desk| run(root, "clippy", &["--", "--deny", "warnings"], desk);
     jobs::run(vec![Job { name: "image", done: "linted", run: Box::new(run) }])
 }
 
-fn run(root: &Path, folder: &str, verb: &str, more: &[&str], desk: &Desk) -> Result<()> {
+fn run(root: &Path, verb: &str, more: &[&str], desk: &Desk) -> Result<()> {
     desk.state("looking for its compiler");
     let toolchain = Toolchain::find(root, desk)?;
     if verb == "clippy" {
         toolchain.fetch_clippy(desk)?;
     }
     let mut command = toolchain.cargo(verb);
-    // What both chips' images are made of is compiled once, whichever folder each then stands in.
     command
-        .env("CARGO_BUILD_BUILD_DIR", target_dir(root))
         .current_dir(root)
         .args(["--profile", PROFILE, "--package", PACKAGE, "--target", TARGET])
         .args(toolchain.build_std())
         .arg("--target-dir")
-        .arg(target_dir(root).join(folder))
+        .arg(target_dir(root))
         .args(more);
     cargo::run(&mut command, desk).with_context(|| format!("cargo {verb} of the image with {toolchain}"))
 }

@@ -112,9 +112,7 @@ fn is_serial(arguments: &[OsString]) -> bool {
     let mut words = arguments.iter().map(|argument| argument.to_str());
     match words.next().flatten() {
         Some("calibrate") => matches!(words.next().flatten(), Some("emg" | "force" | "friction")),
-        Some(
-            "config" | "flash" | "monitor" | "palm" | "play" | "record" | "selftest" | "settings" | "wiring",
-        ) => true,
+        Some("config" | "flash" | "monitor" | "play" | "record" | "selftest" | "settings" | "wiring") => true,
         _ => false,
     }
 }
@@ -126,12 +124,7 @@ pub fn image_of(arguments: &[OsString]) -> &'static [Binary] {
     match command {
         _ if has(&["--host", "--help", "-h"]) => &[],
         Some("check" | "size") => &[Binary::Image, Binary::Kernels],
-        Some("test") => {
-            &[Binary::Image, Binary::Palm, Binary::Kernels, Binary::Frames, Binary::Pictures, Binary::F446]
-        }
-        Some("hand") if has(&["--emulated"]) => &[Binary::Image, Binary::Palm],
-        Some("flash") if has(&["--palm"]) => &[Binary::Palm],
-        Some("run") if has(&["f446", "--chip=f446"]) => &[Binary::F446],
+        Some("test") => &[Binary::Image, Binary::Kernels, Binary::Frames, Binary::Pictures],
         Some("flash" | "learn" | "run") => &[Binary::Image],
         _ => &[],
     }
@@ -178,7 +171,6 @@ mod tests {
     #[test]
     fn only_what_runs_the_image_waits_for_it() {
         assert_eq!(image("run --seed 2"), [Binary::Image]);
-        assert_eq!(image("run --chip f446"), [Binary::F446]);
         assert_eq!(image("size --check"), [Binary::Image, Binary::Kernels]);
         for none in ["run --host", "run --help", "scenes", "chart emg", ""] {
             assert_eq!(image(none), [], "{none}");

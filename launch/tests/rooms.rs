@@ -5,22 +5,21 @@ use std::fs;
 use std::path::Path;
 
 /// Each member, and those that it may take from. Its head says what may live in it.
-const STANDS_ON: [(&str, &[&str]); 18] = [
+const STANDS_ON: [(&str, &[&str]); 17] = [
     ("hal-shim", &[]),
     ("logic", &["hal-shim"]),
-    ("palm", &["hal-shim", "logic"]),
     ("scene", &["hal-shim", "logic"]),
     ("vision", &[]),
     ("vision/quarter", &[]),
-    ("firmware", &["hal-shim", "logic", "palm", "vision/quarter"]),
+    ("firmware", &["hal-shim", "logic"]),
     ("launch", &[]),
-    ("serial", &["hal-shim", "launch", "logic", "palm"]),
+    ("serial", &["hal-shim", "launch", "logic"]),
     ("plot", &[]),
     ("board-model", &["hal-shim"]),
-    ("bench", &["board-model", "hal-shim", "launch", "logic", "palm", "plot", "scene", "serial"]),
+    ("bench", &["board-model", "hal-shim", "launch", "logic", "plot", "scene", "serial"]),
     ("studies", &["bench", "hal-shim", "logic", "plot", "scene", "serial", "vision", "vision/quarter"]),
     ("host", &["bench", "hal-shim", "launch", "logic", "plot", "scene", "serial", "studies", "vision"]),
-    ("host-tests", &["hal-shim", "logic", "palm", "scene"]),
+    ("host-tests", &["hal-shim", "logic", "scene"]),
     ("train", &["bench", "logic"]),
     ("ros2", &["hal-shim"]),
     ("bridge", &["hal-shim", "ros2", "serial"]),

@@ -6,7 +6,6 @@ pub mod config;
 pub mod flash;
 pub mod monitor;
 pub mod out;
-pub mod palm;
 pub mod play;
 pub mod port;
 pub mod record;
@@ -52,8 +51,6 @@ pub enum Shared {
     Play(play::Args),
     /// Show and change a board's settings
     Config(config::Args),
-    /// Show which fingers a palm's hand has, and what happens on its bus
-    Palm(palm::Args),
     /// Print the channel map as a Markdown table
     Wiring,
     /// Print every setting with unit, range, default and meaning as a Markdown table
@@ -78,7 +75,6 @@ impl Shared {
             Self::Record(args) => record::main(args),
             Self::Play(args) => play::main(args),
             Self::Config(args) => config::main(args),
-            Self::Palm(args) => palm::main(args),
             Self::Wiring => page(&wiring::markdown()),
             Self::Settings => page(&settings::markdown()),
         }

@@ -12,7 +12,6 @@ pub mod guide;
 pub mod link;
 pub mod mcap;
 pub mod monitor;
-pub mod palm;
 pub mod play;
 pub mod protobuf;
 pub mod quantile;

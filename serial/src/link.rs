@@ -1,8 +1,7 @@
 //! A board's line, seen from the PC: what comes up it, and what is sent down.
 //!
-//! [`Target`] opens it, whatever it is, a palm's finger too ([`behind`]); [`Inbox`] takes what comes up, [`Outbox`] sends commands, and [`Client`] does both.
+//! [`Target`] opens it; [`Inbox`] takes what comes up, [`Outbox`] sends commands, and [`Client`] does both.
 
-pub mod behind;
 pub mod captured;
 mod client;
 mod encoder;

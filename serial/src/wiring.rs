@@ -23,7 +23,6 @@ This page lists the pin of each channel and its valid voltages, for builders who
 | button to ground | PC13 |
 | light: series resistor and LED to ground | PC6 |
 | nFAULT of the motor bridge | PC8 |
-| [palm's bus](hand.md#the-bus), USART1: to the transceiver, from it, DE with /RE | PA15, PA10, PA12 |
 | serial line USART2 through the ST-LINK: to the PC, from it | PA2, PA3 |
 | known voltages, against broken select lines | switch B: 14 at 3.3 V, 15 at ground |
 

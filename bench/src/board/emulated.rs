@@ -52,8 +52,6 @@ pub struct Options {
     pub word_us: u64,
     /// What the bridge's edges leave in the films' codes. None: nothing.
     pub coupling: Option<Coupling>,
-    /// Nobody is on the board's CAN bus to acknowledge a frame.
-    pub can_is_alone: bool,
     /// Which models the chip is made of.
     pub models: Models,
     /// Who is told when each tick of the logic begins.
@@ -70,7 +68,6 @@ impl Default for Options {
             flash: None,
             word_us: 16,
             coupling: None,
-            can_is_alone: false,
             models: Models::Quick,
             ticks: None,
             followed_from: None,
@@ -183,7 +180,6 @@ fn closed_loop(
     let watched = [tick, after_tick, symbols.command];
     let mut world = World::new(plant, frames, mishaps, cost, flash, &symbols, sender);
     world.coupling = options.coupling;
-    world.can_is_alone = options.can_is_alone;
     world.followed = options.followed_from.map(|from| Followed::new(image, &symbols, from)).transpose()?;
     let mut images =
         vec![Image::read(image, None).context("reading the image")?, cost::paint(&symbols.stack)?];
@@ -224,8 +220,6 @@ fn closed_loop(
         trusts_line: provision.trusts_line,
         taken,
         feedback,
-        can: world.can,
-        can_given_up: world.can_given_up,
         tick_cost: world.tick_cost,
         tick_cycles: world.followed.and_then(|followed| followed.mean()),
         stack_bytes: world.stack_bytes,
@@ -242,10 +236,7 @@ fn execute(
     watched: [u64; 3],
     world: World,
 ) -> Result<Finished<Nucleo, World>> {
-    let mut board = Nucleo::new(models, rate, Line::default())?;
-    if let Some(can) = board.mcu.can() {
-        can.is_alone = world.can_is_alone;
-    }
+    let board = Nucleo::new(models, rate, Line::default())?;
     let mut session = Session::new(Box::new(board), 0, VirtualNanos(1))?;
     for address in watched {
         session.watch(Watch::Instruction(address));

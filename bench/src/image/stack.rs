@@ -18,15 +18,13 @@ const FRAME_BYTES: u64 = 104 + 4;
 /// The guard of `firmware/src/stack.rs`, and the multiple that it begins at.
 const GUARD_BYTES: u64 = 2048;
 /// What each interrupt's priority is in the image; a reset sets all others to 0.
-const PRIORITIES: [(&str, i8); 11] = [
+const PRIORITIES: [(&str, i8); 9] = [
     ("NonMaskableInt", -2),
     ("HardFault", -1),
     ("PVD", 0),
-    ("USART1", 1),
     ("DMA2_STREAM0", 1),
     ("TIM2", 1),
     ("I2C3_ER", 2),
-    ("I2C3_EV", 4),
     ("USART2", 6),
     ("DMA1_STREAM5", 6),
     ("DMA1_STREAM6", 6),

@@ -12,13 +12,6 @@ use super::calls::{Step, step_wide};
 pub(crate) const TICK: &str = "tenax_control_tick";
 /// The name of what gives the logic a command.
 const COMMAND: &str = "tenax_control_command";
-/// The names of what its end of the bus does.
-const BUS: [&str; 3] = ["tenax_bus_hear", "tenax_bus_tick", "tenax_bus_said"];
-const BUS_DOES: &str = "TENAX_BUS_DOES";
-/// The names of what a palm's image does.
-const PALM: [&str; 3] = ["tenax_palm_hear", "tenax_palm_step", "tenax_palm_take"];
-const PALM_DOES: &str = "TENAX_PALM_DOES";
-
 /// Addresses in an image.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Symbols {
@@ -28,33 +21,8 @@ pub struct Symbols {
     pub after_tick: u64,
     /// The first instruction of taking a command.
     pub command: u64,
-    /// What its end of the bus does: reads what came, takes a tick, takes a message.
-    pub bus: [u64; 3],
-    /// The words that say with what.
-    pub bus_does: u64,
     /// RAM above the image's variables: the stack grows down into it.
     pub stack: Range<u64>,
-}
-
-/// Addresses in a palm's image.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct PalmSymbols {
-    /// What it does: hears the bus, says something on it, takes what came down its line.
-    pub does: [u64; 3],
-    /// The words that say with what.
-    pub with: u64,
-    /// RAM above the image's variables.
-    pub stack: Range<u64>,
-}
-
-impl PalmSymbols {
-    /// Reads them from an ELF file.
-    pub fn read(elf: &Path) -> Result<Self> {
-        read(elf, |file| {
-            let [hear, step, take] = PALM.map(|name| entry(file, name));
-            Ok(Self { does: [hear?, step?, take?], with: address_of(file, PALM_DOES)?, stack: stack(file)? })
-        })
-    }
 }
 
 fn read<T>(elf: &Path, of: impl FnOnce(&File<'_>) -> Result<T>) -> Result<T> {
@@ -79,10 +47,7 @@ impl Symbols {
     fn of(file: &File<'_>) -> Result<Self> {
         let (tick, after_tick) = entry_and_return(file, TICK)?;
         let command = entry(file, COMMAND)?;
-        // An image without the bus has none of these, and nothing is ever executed at 0.
-        let bus = BUS.map(|name| entry(file, name).unwrap_or(0));
-        let bus_does = address_of(file, BUS_DOES).unwrap_or(0);
-        Ok(Self { tick, after_tick, command, bus, bus_does, stack: stack(file)? })
+        Ok(Self { tick, after_tick, command, stack: stack(file)? })
     }
 }
 

@@ -6,10 +6,8 @@ mod behaviours;
 mod bringup;
 mod converter;
 mod coupling;
-mod f446;
 mod faults;
 mod feedback;
-mod hand;
 #[path = "../common/hash.rs"]
 mod hash;
 mod head;

@@ -6,7 +6,7 @@ use rigless::device::{ErasedDevice, InterruptChange, ResetCause};
 use rigless::emulator::{Error as MemoryError, Memory};
 use rigless::mcu::{Mcu, Operate};
 use rigless::soc::stm32f427::CPU;
-use rigless::soc::stm32f427::generated::{dma2, usart6};
+use rigless::soc::stm32f427::generated::{DMA1, USART2, dma2, usart6};
 use rigless::soc::stm32f427::peripherals::CONTROLLERS;
 use rigless::soc::stm32f427::peripherals::dma::Dma;
 use rigless::soc::stm32f427::peripherals::usart::{Kind, Usart};
@@ -21,8 +21,6 @@ const RESET_SR: u64 = 0xC0;
 /// Where DMA may read and write.
 static MEMORY: [Region; 2] =
     [Region::ram("sram", 0x2000_0000, 128 << 10), Region::system("flash", 0x0800_0000, 512 << 10)];
-
-use super::Lane;
 
 /// The two models.
 #[derive(Debug)]
@@ -67,18 +65,17 @@ impl Memory for Carried {
 
 impl Pair {
     /// The two out of reset, nothing at the line's far end.
-    pub fn new(lane: &Lane) -> Result<Self, Error> {
-        let Lane { port, dma, controller, .. } = *lane;
-        let bus = Bus::builder(CPU, &MEMORY, [*dma, *port])
-            .reset(port.name, "SR", RESET_SR)
-            .reads_requests(dma.name)
+    pub fn new() -> Result<Self, Error> {
+        let bus = Bus::builder(CPU, &MEMORY, [DMA1, USART2])
+            .reset(USART2.name, "SR", RESET_SR)
+            .reads_requests(DMA1.name)
             .build()?;
-        let controller = &CONTROLLERS[controller];
+        let controller = &CONTROLLERS[0];
         let mut pair = Self {
             port: Usart::with_clock(Kind::Usart, RESET_CLOCK_HZ),
             dma: Dma::new(controller.wiring, controller.last_data, controller.reaches_memory),
-            port_slot: bus.slot(port.name)?,
-            dma_slot: bus.slot(dma.name)?,
+            port_slot: bus.slot(USART2.name)?,
+            dma_slot: bus.slot(DMA1.name)?,
             bus,
             memory: Carried::default(),
         };

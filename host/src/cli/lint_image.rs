@@ -1,37 +1,18 @@
-//! `tenax lint-image`: Clippy on the image's package for both chips, no way to panic in its control, and how deep its stack may get.
+//! `tenax lint-image`: Clippy on the image's package, no way to panic in its control, and how deep its stack may get.
 
 use std::process::ExitCode;
-
-use anyhow::ensure;
 
 use super::out;
 use super::workspace;
 use tenax_bench::budgets::Budgets;
 use tenax_bench::image;
 use tenax_bench::image::panics;
-use tenax_bench::image::size::{FLASH_BYTES, Size};
 use tenax_bench::image::stack::Bound;
 
 pub fn main() -> anyhow::Result<ExitCode> {
     let root = workspace::root()?;
     image::clippy(&root)?;
     out::say!("image: no warnings")?;
-    let port = image::build_f446(&root)?;
-    let size = Size::read(&port)?;
-    let functions = panics::check(&port)?.functions;
-    let bound = Bound::of(&port)?;
-    ensure!(
-        size.flash <= FLASH_BYTES && bound.bytes <= bound.free,
-        "the image for the F446 takes {size:?}, {bound:?}"
-    );
-    out::say!(
-        "image: for the F446 it takes {} bytes of flash and {} of RAM, none of {functions} functions can panic, and the stack takes at \
-         most {} of {} bytes",
-        size.flash,
-        size.ram,
-        bound.bytes,
-        bound.free
-    )?;
     let elf = image::build(&root)?;
     let control = panics::check(&elf)?;
     out::say!(
@@ -49,17 +30,15 @@ pub fn main() -> anyhow::Result<ExitCode> {
 
     let budgets = Budgets::of_checkout()?;
     let mut kept = true;
-    for (name, elf) in [("image", elf), ("palm", image::build_palm(&root)?)] {
-        let sites = panics::sites(&elf)?;
-        if sites.is_empty() {
-            out::say!("{name}: no place may panic")?;
-        }
-        for (source, &count) in &sites {
-            let most = budgets.panic_sites.get(source).copied().unwrap_or(0);
-            kept &= count <= most;
-            let passed = if count > most { "  PASSED" } else { "" };
-            out::say!("{name}: {source:<16} {count:>4} places that may panic, at most {most}{passed}")?;
-        }
+    let sites = panics::sites(&elf)?;
+    if sites.is_empty() {
+        out::say!("image: no place may panic")?;
+    }
+    for (source, &count) in &sites {
+        let most = budgets.panic_sites.get(source).copied().unwrap_or(0);
+        kept &= count <= most;
+        let passed = if count > most { "  PASSED" } else { "" };
+        out::say!("image: {source:<16} {count:>4} places that may panic, at most {most}{passed}")?;
     }
     Ok(if kept { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

@@ -35,9 +35,6 @@ pub struct Args {
     /// Run the PC's own build of the logic: no image, no emulator
     #[arg(long)]
     host: bool,
-    /// The chip that is emulated
-    #[arg(long, value_enum, default_value_t = Chip::F411, conflicts_with = "host")]
-    chip: Chip,
     /// A scene file, or the name of one that `tenax scenes` lists
     #[arg(long, value_name = "FILE.toml|NAME", default_value = session::DEFAULT_SCENE, conflicts_with = "replay")]
     scene: String,
@@ -84,25 +81,6 @@ pub struct Args {
     record: Option<PathBuf>,
 }
 
-/// Whose image is run: the logic is the same.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum Chip {
-    /// The board's STM32F411RE
-    F411,
-    /// An STM32F446RE, which has CAN in place of the palm's bus
-    F446,
-}
-
-impl Chip {
-    fn board(self) -> anyhow::Result<Board> {
-        let root = workspace::root()?;
-        match self {
-            Self::F411 => Board::emulated(&root),
-            Self::F446 => Board::emulated_f446(&root),
-        }
-    }
-}
-
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some(recording) = args.replay.as_deref().filter(|path| is_recording(path)) {
         let outcome = again::replay(recording)?;
@@ -125,7 +103,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     };
     let stem = Path::new(&name).file_stem().map_or("run".into(), |stem| stem.to_string_lossy());
     let path = |extension: &str| folder.join(format!("{stem}.{extension}"));
-    let board = if args.host { Board::Host } else { args.chip.board()? };
+    let board = if args.host { Board::Host } else { Board::emulated(&workspace::root()?)? };
     let mut line = LineFile::new(path("line.bin"));
     let (mut server, down) = served(args)?.unzip();
     let person = Person::default();
@@ -168,9 +146,6 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     }
     files.extend(line.close()?);
     args.report.print(&Text(&outcome.report), &outcome.report)?;
-    if !outcome.run.can.is_empty() {
-        out::note!("  {:<14}{} frames of evidence and margin", "CAN", outcome.run.can.len());
-    }
     // On stderr, so that a program that reads the report reads nothing else.
     for file in files {
         out::note!("  {:<14}{}", "written", file.display());

@@ -26,7 +26,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     // Before the tests, so that its messages are seen and what is to be installed is said once.
     jobs::run(vec![job(
         &workspace::root()?,
-        &[Binary::Image, Binary::Palm, Binary::Kernels, Binary::Frames, Binary::Pictures, Binary::F446],
+        &[Binary::Image, Binary::Kernels, Binary::Frames, Binary::Pictures],
     )])?;
     let mut sum = Sum::default();
     // All are run even if one fails: a person wants to know of all that is broken.

@@ -22,9 +22,6 @@ pub struct Args {
     /// Flash this file (ELF) instead of building the image
     #[arg(long, value_name = "FILE")]
     image: Option<PathBuf>,
-    /// Flash the image of a palm
-    #[arg(long, conflicts_with = "image")]
-    palm: bool,
     /// The chip's name in probe-rs. The image is linked for the default; another chip needs another image
     #[arg(long, default_value = "STM32F411RETx")]
     chip: String,
@@ -43,7 +40,6 @@ const EXAMPLES: &str = "\
 Examples:
   tenax flash                       build the image and flash the only probe's board
   tenax flash --verify --log        compare the flash, then print the image's log
-  tenax flash --palm                the palm of a hand of several fingertips
   tenax flash --image FILE          flash this ELF
 The ELF's path is printed: other programmers take it, too, such as
   openocd -f board/st_nucleo_f4.cfg -c 'program FILE verify reset exit'";
@@ -57,7 +53,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let image = match &args.image {
         Some(image) => image.clone(),
-        None => image::build(&workspace::root()?, if args.palm { Binary::Palm } else { Binary::Image })?,
+        None => image::build(&workspace::root()?, Binary::Image)?,
     };
     out::note!("the image is {}", image.display());
     let probe_rs = |what: &str| {
@@ -79,8 +75,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             );
         }
     }
-    let watch = if args.palm { "palm" } else { "monitor" };
-    out::say!("flashed {}; watch it with   tenax {watch}", image.display())?;
+    out::say!("flashed {}; watch it with   tenax monitor", image.display())?;
     if args.log {
         let status = probe_rs("attach").arg(&image).status().context("cannot start probe-rs")?;
         return Ok(ExitCode::from(u8::from(!status.success())));

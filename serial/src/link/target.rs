@@ -1,5 +1,4 @@
-//! Where a board's line is: a serial port, a pseudo-terminal, a TCP address or a captured file, or a finger behind a palm at one of them;
-//! and how it is opened.
+//! Where a board's line is: a serial port, a pseudo-terminal, a TCP address or a captured file; and how it is opened.
 
 use std::fmt::{self, Display};
 use std::io::{self, Read, Write};
@@ -11,12 +10,11 @@ use std::time::Duration;
 use anyhow::{Context, anyhow, bail};
 use tenax_hal_shim::wire::BAUD;
 
-use super::{behind, holder};
+use super::holder;
 use crate::link::captured::line_of;
 
 /// How long a read waits for bytes before it returns, so that whoever reads can look at something else meanwhile.
 const READ_TIMEOUT: Duration = Duration::from_millis(100);
-const FINGERS_MAX: u8 = tenax_palm::bus::FINGERS_MAX as u8;
 /// How long a TCP address may take to answer.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
 
@@ -32,8 +30,6 @@ pub enum Target {
     },
     /// A line that was captured.
     File(PathBuf),
-    /// `PORT#2`: the second finger of the palm at a line.
-    Finger(Box<Self>, u8),
 }
 
 pub struct Line {
@@ -46,14 +42,8 @@ pub struct Line {
 impl FromStr for Target {
     type Err = String;
 
-    /// A regular file is a captured line; anything else that is no `tcp:` is a port. A number behind `#` is a finger's.
+    /// A regular file is a captured line; anything else that is no `tcp:` is a port.
     fn from_str(text: &str) -> Result<Self, String> {
-        if let Some((palm, finger)) = text.rsplit_once('#').filter(|_| !Path::new(text).is_file()) {
-            return match finger.parse() {
-                Ok(finger @ 1..=FINGERS_MAX) => Ok(Self::Finger(Box::new(palm.parse()?), finger)),
-                _ => Err(format!("`{finger}` is no finger of a palm: write PORT#1 to PORT#{FINGERS_MAX}")),
-            };
-        }
         if let Some(address) = text.strip_prefix("tcp:") {
             return address
                 .rsplit_once(':')
@@ -74,7 +64,6 @@ impl Display for Target {
             Self::Tcp { host, port } if host.contains(':') => write!(f, "tcp:[{host}]:{port}"),
             Self::Tcp { host, port } => write!(f, "tcp:{host}:{port}"),
             Self::File(path) => path.display().fmt(f),
-            Self::Finger(palm, finger) => write!(f, "{palm}#{finger}"),
         }
     }
 }
@@ -83,18 +72,12 @@ impl Target {
     /// Opens the line. An error says what is wrong, and what to do about it.
     pub fn open(&self) -> anyhow::Result<Line> {
         match self {
-            Self::Port(name) => open_port(name, BAUD),
+            Self::Port(name) => open_port(name),
             Self::Tcp { host, port } => connect(host, *port).with_context(|| {
                 format!("cannot connect to {self}: is `tenax run --serve-tcp {port}` running there?")
             }),
             Self::File(path) => Ok(Line { up: Box::new(io::Cursor::new(line_of(path)?)), down: None }),
-            Self::Finger(palm, finger) => Ok(behind::finger(palm.open_palm()?, *finger)),
         }
-    }
-
-    /// Opens a palm's line, which is faster than a fingertip's. Fails as [`open`](Self::open) does.
-    pub fn open_palm(&self) -> anyhow::Result<Line> {
-        if let Self::Port(name) = self { open_port(name, tenax_palm::line::BAUD) } else { self.open() }
     }
 
     /// Why the line can have ended, and what to do about it.
@@ -108,12 +91,11 @@ impl Target {
             Self::Tcp { .. } | Self::File(_) => {
                 format!("{self} was closed at its other end{why}: the served run is over; start it again")
             }
-            Self::Finger(palm, _) => palm.after_end(error),
         }
     }
 }
 
-fn open_port(name: &str, baud: u32) -> anyhow::Result<Line> {
+fn open_port(name: &str) -> anyhow::Result<Line> {
     // Whoever is killed would leave a pseudo-terminal locked for everybody after him. A real port is for one alone: two
     // would each get half of the bytes.
     let pseudo = is_pseudo(name);
@@ -127,7 +109,7 @@ fn open_port(name: &str, baud: u32) -> anyhow::Result<Line> {
              TCP (--serve-tcp), where each client hears everything"
         );
     }
-    let baud = if pseudo && cfg!(target_os = "macos") { 0 } else { baud };
+    let baud = if pseudo && cfg!(target_os = "macos") { 0 } else { BAUD };
     let open = || {
         let up = serialport::new(name, baud).timeout(READ_TIMEOUT).exclusive(!pseudo).open()?;
         let down = up.try_clone()?;
@@ -184,11 +166,6 @@ mod tests {
             assert!(wrong.parse::<Target>().unwrap_err().contains("tcp:HOST:PORT"), "{wrong}");
         }
         assert_eq!("COM3".parse(), Ok(Target::Port("COM3".to_owned())));
-        assert_eq!("COM3#2".parse(), Ok(Target::Finger(Box::new(Target::Port("COM3".to_owned())), 2)));
-        assert_eq!("tcp:[::1]:7777#5".parse(), Ok(Target::Finger(Box::new(tcp("::1")), 5)));
-        for wrong in ["COM3#0", "COM3#6", "COM3#thumb"] {
-            assert!(wrong.parse::<Target>().unwrap_err().contains("write PORT#1 to PORT#5"), "{wrong}");
-        }
         let file = tempfile::NamedTempFile::new().unwrap();
         assert_eq!(file.path().to_str().unwrap().parse(), Ok(Target::File(file.path().to_owned())));
     }

@@ -20,10 +20,6 @@ const TIM1_CCR2: u64 = 0x4001_0038;
 const TIM1_BDTR: u64 = 0x4001_0044;
 const GPIOB_MODER: u64 = 0x4002_0400;
 const GPIOB_AFRL: u64 = 0x4002_0420;
-const GPIOB_AFRH: u64 = 0x4002_0424;
-const RCC_CFGR: u64 = 0x4002_3808;
-const RCC_APB1ENR: u64 = 0x4002_3840;
-const CAN1_BTR: u64 = 0x4000_641C;
 const TIM4_CR1: u64 = 0x4000_0800;
 const TIM4_CCER: u64 = 0x4000_0820;
 const TIM4_ARR: u64 = 0x4000_082C;
@@ -42,12 +38,6 @@ const PULL_UP: u32 = 0b01;
 const PULL_DOWN: u32 = 0b10;
 const MODER_ALTERNATE: u32 = 0b10;
 const AF_TIM4: u32 = 2;
-const AF_CAN1: u32 = 9;
-const APB1ENR_CAN1EN: u32 = 1 << 25;
-/// PPRE1 where APB1 has a quarter of the core's clock, 25 MHz.
-const CFGR_PPRE1_QUARTER: u32 = 0b101;
-/// Quanta of a bit then, at 1 Mbit/s.
-const CAN1_QUANTA: u32 = 25;
 
 /// The chip at one instant.
 pub struct Wires<'a> {
@@ -108,18 +98,6 @@ impl<'a> Wires<'a> {
             && self.peek(TIM4_CCER) & CCER_CC1E != 0;
         let per_mille = (compare * 1_000).div_ceil(self.peek(TIM4_ARR) + 1);
         if wired { Duty::per_mille(per_mille as u16) } else { Duty::default() }
-    }
-
-    /// Whether others at 1 Mbit/s would understand what the CAN port says: its clock is on, PB8 and PB9 are its pins, and a bit has as
-    /// many quanta as a microsecond.
-    pub fn can_is_wired(&mut self) -> bool {
-        let btr = self.peek(CAN1_BTR);
-        let quanta = (btr >> 16 & 0xF) + 1 + (btr >> 20 & 0x7) + 1 + 1;
-        let pins = self.peek(GPIOB_MODER) >> 16 & 0xF == MODER_ALTERNATE << 2 | MODER_ALTERNATE
-            && self.peek(GPIOB_AFRH) & 0xFF == AF_CAN1 << 4 | AF_CAN1;
-        let clocked = self.peek(RCC_APB1ENR) & APB1ENR_CAN1EN != 0
-            && self.peek(RCC_CFGR) >> 10 & 0b111 == CFGR_PPRE1_QUARTER;
-        pins && clocked && btr & 0x3FF == 0 && quanta == CAN1_QUANTA
     }
 
     /// Puts codes on the converter's pins.

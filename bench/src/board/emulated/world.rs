@@ -25,7 +25,6 @@ use crate::board::TickCost;
 use crate::image::symbols::Symbols;
 use tenax_board_model::flash::FlashArray;
 use tenax_board_model::nucleo::Nucleo;
-use tenax_palm::can;
 use tenax_serial::link::Encoder;
 
 const SCAN_NS: u64 = 1_000_000_000 / SCAN_HZ as u64;
@@ -77,11 +76,6 @@ pub struct World {
     sent: Receiver,
     /// How the vibration motor was driven in each scan in which that had changed.
     pub feedback: Vec<(usize, Duty)>,
-    /// Nobody is on the CAN bus.
-    pub can_is_alone: bool,
-    /// What was said there, and what was given up.
-    pub can: Vec<can::Frame>,
-    pub can_given_up: u64,
     mishaps: Mishaps,
     resets: usize,
     executed: Option<(VirtualNanos, u64)>,
@@ -122,9 +116,6 @@ impl World {
             encoder: Encoder::default(),
             sent: Receiver::new(),
             feedback: Vec::new(),
-            can_is_alone: false,
-            can: Vec::new(),
-            can_given_up: 0,
             mishaps,
             resets: 0,
             executed: None,
@@ -200,12 +191,6 @@ impl World {
     fn report(&mut self, session: &mut Session<Nucleo>, at: VirtualNanos) {
         if let Some(line) = session.board_mut().mcu.line(at) {
             self.stretch.line = std::mem::take(&mut line.up);
-        }
-        let is_wired = Wires::new(&mut session.board_mut().mcu, at).can_is_wired();
-        if let Some(can) = session.board_mut().mcu.can() {
-            self.can_given_up = can.given_up;
-            let sent = std::mem::take(&mut can.sent).into_iter().filter(|_| is_wired);
-            self.can.extend(sent.map(|sent| can::Frame { identifier: sent.identifier, bytes: sent.bytes }));
         }
         if let Some(reports) = &self.reports {
             // Nobody listening is no reason to stop.
