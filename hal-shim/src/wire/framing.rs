@@ -11,12 +11,9 @@ use super::{FRAME_MAX, VERSION};
 
 static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
-/// A frame's contents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Received<T> {
-    /// The sender's sequence number.
     pub sequence: u16,
-    /// The message.
     pub message: T,
 }
 
