@@ -4,14 +4,12 @@ use std::fmt::Write;
 use std::path::Path;
 use std::{env, fs};
 
-include!("../recordings.rs");
+include!("../sim/recordings.rs");
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     recordings();
     let mut text = String::new();
-    for (constant, folder) in
-        [("SCENES", "../scenes"), ("PARTS", "../scenes/parts"), ("HANDS", "../scenes/hand")]
-    {
+    for (constant, folder) in [("SCENES", "../scenes"), ("PARTS", "../scenes/parts")] {
         println!("cargo::rerun-if-changed={folder}");
         let mut names: Vec<String> = fs::read_dir(folder)?
             .filter_map(|entry| entry.ok()?.file_name().to_str()?.strip_suffix(".toml").map(str::to_owned))

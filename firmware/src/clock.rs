@@ -3,15 +3,13 @@
 use cortex_m::asm::delay;
 use embassy_stm32::pac::flash::vals::Latency;
 use embassy_stm32::pac::pwr::vals::Vos;
-use embassy_stm32::pac::rcc::vals::{Hpre, Pllm, Plln, Pllp, Pllsrc, Sw};
+use embassy_stm32::pac::rcc::vals::{Hpre, Pllm, Plln, Pllp, Pllsrc, Ppre, Sw};
 use embassy_stm32::pac::{DBGMCU, FLASH, PWR, RCC};
-
-use crate::chip;
 
 /// Of AHB and all timers (RM0383, figure 12), so a scan period is a whole number of their ticks and of microseconds.
 pub const CORE_HZ: u32 = 100_000_000;
 /// Of APB1.
-pub const APB1_HZ: u32 = CORE_HZ / chip::APB1_DIVIDER;
+pub const APB1_HZ: u32 = CORE_HZ / 2;
 
 /// Lets the flash fetch ahead and cache instructions: at 100 MHz it has three wait states, which the chip otherwise pays
 /// at every jump (RM0383, section 3.4). Its data cache stays off, so that what was programmed is what is read.
@@ -50,7 +48,7 @@ pub fn watch_crystal() {
     RCC.cr().modify(|w| w.set_csson(true));
 }
 
-/// Starts the clocks, out of a reset: HSE bypassed at 8 MHz, PLL to 100 MHz, AHB at 100 MHz, APB1 and APB2 as the chip bears; and those
+/// Starts the clocks, out of a reset: HSE bypassed at 8 MHz, PLL to 100 MHz, AHB at 100 MHz, APB1 at 50, APB2 at 100; and those
 /// of the pins, the DMA controllers and the supply's guard.
 ///
 /// HSI only where there is no crystal: its tolerance overruns the serial line at 921 600 baud, but a hand that nobody hears is
@@ -85,12 +83,11 @@ pub fn start(crystal: bool) {
     while !RCC.cr().read().pllrdy() {}
     FLASH.acr().write(|w| w.set_latency(Latency::WS3));
     while FLASH.acr().read().latency() != Latency::WS3 {}
-    chip::speed_timers_up();
     RCC.cfgr().modify(|w| {
         w.set_sw(Sw::PLL1_P);
         w.set_hpre(Hpre::DIV1);
-        w.set_ppre1(chip::APB[0]);
-        w.set_ppre2(chip::APB[1]);
+        w.set_ppre1(Ppre::DIV2);
+        w.set_ppre2(Ppre::DIV1);
     });
     while RCC.cfgr().read().sws() != Sw::PLL1_P {}
     if crystal {

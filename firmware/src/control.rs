@@ -11,7 +11,6 @@ use tenax_logic::stream::SENSES_SLOT;
 
 use crate::black_box;
 use crate::bridge::Bridge;
-use crate::bus;
 use crate::button::Button;
 use crate::counts;
 use crate::last_words;
@@ -61,7 +60,6 @@ impl Control {
         if has_room_for_command(frame) {
             self.take_command();
         }
-        bus::before_tick(self.device.fingertip_mut());
         let drive = tenax_control_tick(self.device.fingertip_mut(), frame);
         self.bridge.drive(drive);
         self.watchdog.feed();
@@ -74,7 +72,6 @@ impl Control {
         if frame.slot() == slot_of(Job::Save) {
             self.save();
         }
-        bus::after_tick(self.device.fingertip_mut());
         mail::end_tick();
     }
 

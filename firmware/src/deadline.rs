@@ -13,7 +13,7 @@ use embassy_stm32::peripherals::TIM2;
 use embassy_stm32::{Peri, interrupt::Priority};
 use embassy_sync::waitqueue::AtomicWaker;
 
-use crate::{bus, mail, micros};
+use crate::{mail, micros};
 
 /// Who waits: control alone, for one thing at a time.
 pub static WAITING: AtomicWaker = AtomicWaker::new();
@@ -36,11 +36,6 @@ impl Micros {
     /// Time since an earlier instant, us.
     pub const fn since(self, earlier: Self) -> u32 {
         self.0.wrapping_sub(earlier.0)
-    }
-
-    /// What the clock showed.
-    pub const fn us(self) -> u32 {
-        self.0
     }
 
     /// Whether this instant is later than the other.
@@ -107,10 +102,6 @@ impl Handler<typelevel::TIM2> for OnDeadline {
         // Those that were seen are cleared, by writing 0.
         pac::TIM2.sr().write(|w| w.0 = !seen.0);
         WAITING.wake();
-        if seen.ccif(SLOT) && pac::TIM2.dier().read().ccie(SLOT) {
-            pac::TIM2.dier().modify(|w| w.set_ccie(SLOT, false));
-            bus::begin();
-        }
         if seen.ccif(BEAT) {
             pac::TIM2.ccr(BEAT).write_value(pac::TIM2.ccr(BEAT).read().wrapping_add(BEAT_US));
             mail::counters_due();
@@ -121,28 +112,3 @@ impl Handler<typelevel::TIM2> for OnDeadline {
 /// The compare register of what telemetry does ten times a second, and from one to the next.
 const BEAT: usize = 2;
 const BEAT_US: u32 = 100_000;
-/// The compare register of the bus's slots.
-const SLOT: usize = 1;
-
-/// When an answer on the bus may begin. The bus alone asks for one.
-#[cfg(feature = "stm32f411re")]
-pub struct Slot;
-
-#[cfg(feature = "stm32f411re")]
-impl Slot {
-    /// Lets it begin at this instant, some us from now.
-    pub fn at(us: u32) {
-        pac::TIM2.ccr(SLOT).write_value(us);
-        // Only this flag: a written one leaves the deadline's.
-        pac::TIM2.sr().write(|w| {
-            w.0 = u32::MAX;
-            w.set_ccif(SLOT, false);
-        });
-        pac::TIM2.dier().modify(|w| w.set_ccie(SLOT, true));
-    }
-
-    /// It does not begin any more.
-    pub fn cancel() {
-        pac::TIM2.dier().modify(|w| w.set_ccie(SLOT, false));
-    }
-}

@@ -1,13 +1,12 @@
-//! The image of the fingertip's microcontroller (STM32F411RE; [`chip`] has another).
+//! The image of the fingertip's microcontroller (STM32F411RE).
 //!
 //! Tasks move data; what it means is decided in `tenax-logic`. Who runs where, the most urgent first:
 //!
 //! | who | runs in | priority | worst if it were wrong |
 //! |---|---|---|---|
 //! | `bridge::off` in a panic or fault | the faulting context | all interrupts off | the motor stays driven |
-//! | scan's DMA, its deadline, the bus's pauses and ends | their interrupts | 1 | a deadline is noticed late: a lost frame stays unnoticed |
+//! | scan's DMA, its deadline | their interrupts | 1 | a deadline is noticed late: a lost frame stays unnoticed |
 //! | [`control`]: frame, logic, bridge, watchdog | executor in interrupt I2C3_ER | 2 | switches step late, ticks run late |
-//! | the bus, what came | I2C3_EV | 4 | an answer to the palm is late and left out |
 //! | the serial line's interrupts | USART2, DMA1 | 6 | below control or control jitters by them |
 //! | [`telemetry`], [`commands`] | thread executor | none | messages are dropped and counted, control goes on |
 //! | [`store`]: a word of flash after every fourth tick | thread executor | none | the core stalls in a tick |
@@ -20,10 +19,7 @@
 
 mod black_box;
 mod bridge;
-#[cfg_attr(feature = "stm32f446re", path = "can.rs")]
-mod bus;
 mod button;
-mod chip;
 mod clock;
 mod commands;
 mod control;
@@ -36,8 +32,6 @@ mod last_words;
 mod line;
 mod mail;
 mod micros;
-#[cfg(feature = "stm32f411re")]
-mod port;
 mod scan;
 mod stack;
 mod store;
@@ -72,7 +66,7 @@ bind_interrupts!(struct Irqs {
     TIM2 => deadline::OnDeadline;
 });
 
-/// Runs control, above the thread executor. I2C3 itself is not used; every chip of the family has its interrupt.
+/// Runs control, above the thread executor. I2C3 itself is not used.
 static URGENT: InterruptExecutor = InterruptExecutor::new();
 
 #[interrupt]
@@ -187,11 +181,6 @@ async fn main(spawner: Spawner) {
         }
     });
     spawner.spawn(once(store::store(flash, log)));
-    // A fingertip whose control does not run says nothing on the bus.
-    #[cfg(feature = "stm32f446re")]
-    bus::start(crystal, p.CAN1, (p.PB8, p.PB9), identity::of(cause).chip);
-    #[cfg(feature = "stm32f411re")]
-    bus::start(p.USART1, (p.DMA2_CH5, p.DMA2_CH7), (p.PA15, p.PA10), p.PA12, identity::of(cause).chip);
     let urgent = URGENT.start(interrupt::I2C3_ER);
     urgent.spawn(once(control::control(scan, control)));
 }

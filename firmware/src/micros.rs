@@ -1,4 +1,4 @@
-//! TIM2 counts microseconds in 32 bits: the clock of the scan, of every deadline and of the palm's bus.
+//! TIM2 counts microseconds in 32 bits: the clock of the scan and of every deadline.
 
 use embassy_stm32::pac::{RCC, TIM2};
 

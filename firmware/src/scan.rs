@@ -10,16 +10,15 @@
 
 use embassy_stm32::Peri;
 use embassy_stm32::gpio::AnyPin;
-use embassy_stm32::pac;
 use embassy_stm32::pac::adc::regs::{Smpr1, Smpr2, Sqr1, Sqr2, Sqr3};
 use embassy_stm32::pac::adc::vals::{Dds, Exten, SampleTime};
+use embassy_stm32::pac::adccommon::vals::Adcpre;
 use embassy_stm32::pac::timer::vals::Mms;
+use embassy_stm32::pac::{self, ADC1_COMMON};
 use embassy_stm32::peripherals::{ADC1, DMA2_CH0, TIM3};
 use tenax_hal_shim::channel::{FRAME_HZ, SCAN, SCAN_HZ, SCAN_LEN};
 use tenax_hal_shim::frame::Frame;
 
-use crate::bus;
-use crate::chip::{ADC, ADC_COMMON};
 use crate::clock::CORE_HZ;
 use crate::counts;
 use crate::deadline::{Deadline, Micros};
@@ -111,7 +110,6 @@ impl Scan {
                 // Then the switches do not show yet what the following frame is reading.
                 let began = self.deadline.now();
                 let behind = began.is_after(following_begins);
-                bus::frame_ended(began.us());
                 on_frame(&frame);
                 counts::FRAMES.add_one();
                 let ended = self.deadline.now();
@@ -150,7 +148,8 @@ impl Scan {
 fn reset() {
     pac::RCC.apb2rstr().modify(|w| w.set_adcrst(true));
     pac::RCC.apb2rstr().modify(|w| w.set_adcrst(false));
-    ADC_COMMON.ccr().modify(|w| w.set_adcpre(ADC));
+    // 25 MHz, of APB2's 100.
+    ADC1_COMMON.ccr().modify(|w| w.set_adcpre(Adcpre::DIV4));
     pac::ADC1.cr2().modify(|w| w.set_adon(true));
 }
 

@@ -6,7 +6,7 @@ use static_cell::ConstStaticCell;
 use tenax_hal_shim::wire::{FRAME_MAX, Received, Up, encode};
 
 use crate::micros::clock_us;
-use crate::{black_box, bus, counts, line, mail};
+use crate::{black_box, counts, line, mail};
 
 /// The message that is being sent.
 static NEXT: ConstStaticCell<MaybeUninit<Received<Up>>> = ConstStaticCell::new(MaybeUninit::uninit());
@@ -29,7 +29,6 @@ pub async fn telemetry(mut line: line::Up) -> ! {
         match encode(posted.sequence, &posted.message, &mut buffer) {
             Some(frame) => {
                 black_box::write(&posted.message, frame);
-                bus::said(posted, frame);
                 line.send(frame).await;
             }
             None => counts::TELEMETRY_DROPPED.add_one(),

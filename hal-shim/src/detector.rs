@@ -18,7 +18,7 @@ pub enum DetectorId {
     Hebbian,
     /// The multilayer perceptron on normal forces (Bamshad 2023).
     Mlp,
-    /// Reports from outside: of a scene that knows whether it slips, or of the palm.
+    /// Reports from outside: of a scene that knows whether it slips.
     Injected,
     /// The flicker of a photoelastic head (Dubey 2006).
     Photoelastic,

@@ -78,8 +78,6 @@ pub struct Fingertip {
     /// Drive that the arbiter chose in the last tick, and the drive after the motor's limit.
     asked: MotorDrive,
     drive: MotorDrive,
-    /// Load limit of an injected warning, mN: see [`wish`](Self::wish).
-    wish_mn: Option<i32>,
     /// Whether the reflex has released force since the drive was last read.
     took_back: bool,
 }
@@ -173,15 +171,8 @@ impl Fingertip {
     fn feel(&mut self) {
         let held = self.senses.forces.filter(|_| matches!(self.senses.grip, Grip::Holds(_)));
         let slides = self.reflex.slides(self.mode);
-        // A warning of the finger's own detectors is answered without the limit of a wish.
-        let own = self.detectors.incipient().without(DetectorSet::only(DetectorId::Injected));
         let s2 = &mut self.detectors.s2;
-        let lacks = held.map(|forces| s2.lacks(&self.config.friction, &forces, slides));
-        let mut lacks = lacks.unwrap_or_default();
-        if let (Some(wish_mn), Some(forces), true) = (self.wish_mn, held, own.is_empty()) {
-            let wished_mn = wish_mn - forces.load_mn;
-            lacks.warning_mn = Some(lacks.warning_mn.map_or(wished_mn, |mn| mn.min(wished_mn)));
-        }
+        let lacks = held.map(|forces| s2.lacks(&self.config.friction, &forces, slides)).unwrap_or_default();
         self.reflex.feel(self.mode, held.map(|forces| forces.load_mn), lacks);
         let slid_permille = s2.slid_permille();
         let reading = held.map(|Forces { load_mn, ft_mn, .. }| Reading { load_mn, ft_mn, slid_permille });
@@ -200,11 +191,6 @@ impl Fingertip {
     /// Sets the report of the detector `injected`, from the next frame on.
     pub const fn inject(&mut self, said: Said) {
         self.detectors.injected.inject(said);
-    }
-
-    /// Sets the load at which the pulse of an injected warning ends, mN. None: no limit of its own.
-    pub const fn wish(&mut self, load_mn: Option<i32>) {
-        self.wish_mn = load_mn;
     }
 
     /// Restricts the reflex to these detectors from now on: for a scene's controls and its bound.

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-// `SCENES`, `PARTS` and `HANDS`, listed by `build.rs`.
+// `SCENES` and `PARTS`, listed by `build.rs`.
 include!(concat!(env!("OUT_DIR"), "/scenes.rs"));
 
 /// Name and text of every scene in the repository, the default one first.
@@ -15,16 +15,11 @@ pub const fn parts() -> &'static [(&'static str, &'static str)] {
     PARTS
 }
 
-/// Name and text of the scenes of a hand of several fingertips: `scenes/hand/`.
-pub const fn hands() -> &'static [(&'static str, &'static str)] {
-    HANDS
-}
-
 /// File and text of the scene or part that is called so.
 pub fn find(name: &str) -> Option<(String, Cow<'static, str>)> {
     let among = |all: &[(&str, &'static str)], folder| {
         let (_, text) = all.iter().find(|(known, _)| *known == name)?;
         Some((format!("{folder}/{name}.toml"), Cow::Borrowed(*text)))
     };
-    among(SCENES, "scenes").or_else(|| among(PARTS, "scenes/parts")).or_else(|| among(HANDS, "scenes/hand"))
+    among(SCENES, "scenes").or_else(|| among(PARTS, "scenes/parts"))
 }

@@ -38,7 +38,6 @@ pub mod bounds;
 pub mod builtin;
 mod commands;
 pub mod file;
-pub mod fingers;
 pub mod physics;
 pub mod picture;
 pub mod plant;

@@ -11,7 +11,7 @@ fn truth(name: &str, reflex: Reflex) -> Truth {
 
 #[test]
 fn every_scene_parses_and_is_called_as_its_file() {
-    for (name, text) in builtin().iter().chain(builtin::hands()) {
+    for (name, text) in builtin() {
         let scene = SceneFile::parse(text, name).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(scene.name, *name);
         assert!(!scene.title.is_empty() && !scene.from.is_empty());
@@ -24,7 +24,7 @@ fn every_number_in_every_scene_says_where_it_is_from_at_least_once() {
     // A key that is only ever an instant, a duration or a name explains itself; every other has a comment in its file.
     let explains_itself =
         "at_s for_s until_s name base without title from channel kind intent reason duration_s";
-    for (name, text) in builtin().iter().chain(builtin::parts()).chain(builtin::hands()) {
+    for (name, text) in builtin().iter().chain(builtin::parts()) {
         let lines: Vec<&str> = text.lines().filter(|line| !line.trim_start().starts_with('#')).collect();
         // `key = value`, or several of them in braces; or the key of a list of such lines, which has none of its own.
         let keys = |line: &str| {

@@ -1,4 +1,4 @@
-//! Reports from outside: of a scene that knows whether the object slips, or of the palm.
+//! Reports from outside: of a scene that knows whether the object slips.
 
 use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
 

@@ -23,9 +23,9 @@ pub use error::SceneError;
 pub use happening::Happening;
 use quantity::{Duration, Speed};
 use sections::{
-    Arm, Array, Camera, Command, CommandKind, Contact, ElectrodeLift, Fill, Fingers, Fsr, Gripper, Hum, Jam,
-    Knock, Move, Muscle, Myo, Object, Photoelastic, Pitch, Press, Pull, Pvdf, Robot, SensorFault, Skin,
-    Strain, Sweep, Swing, Table, Vibrator, Wet,
+    Arm, Array, Camera, Command, CommandKind, Contact, ElectrodeLift, Fill, Fsr, Gripper, Hum, Jam, Knock,
+    Move, Muscle, Myo, Object, Photoelastic, Pitch, Press, Pull, Pvdf, Robot, SensorFault, Skin, Strain,
+    Sweep, Swing, Table, Vibrator, Wet,
 };
 
 /// A whole scene, every number in it checked.
@@ -95,7 +95,6 @@ pub struct SceneFile {
     #[serde(default)]
     pub(crate) command: Vec<Command>,
     pub(crate) line_trusted: Option<bool>,
-    pub(crate) fingers: Option<Fingers>,
 }
 
 impl SceneFile {
@@ -144,11 +143,6 @@ impl SceneFile {
             let at_s = lift.at_s.get_ref().get();
             (lift.channel.get_ref().index() - MYO_FLEXOR, at_s..at_s + lift.for_s.get())
         })
-    }
-
-    /// How many fingertips it has; 0 where it is of one, between whose pads everything happens.
-    pub fn finger_count(&self) -> usize {
-        self.fingers.as_ref().map_or(0, |fingers| fingers.finger.len())
     }
 
     pub const fn duration_s(&self) -> f64 {

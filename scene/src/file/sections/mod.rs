@@ -5,7 +5,6 @@
 
 mod arm;
 mod contact;
-mod fingers;
 mod gripper;
 mod head;
 mod mishap;
@@ -16,7 +15,6 @@ mod sensor;
 
 pub use arm::{Arm, Move, Press, Robot, Sweep, Swing};
 pub use contact::{Contact, Level, Wet};
-pub use fingers::{Drag, Finger, Fingers, Tilt};
 pub use gripper::Gripper;
 pub use head::Photoelastic;
 pub use mishap::{ElectrodeLift, FaultKind, Hum, Jam, Knock, SensorFault, Vibrator};

@@ -1,0 +1,180 @@
+//! Where a board's line is: a serial port, a pseudo-terminal, a TCP address or a captured file; and how it is opened.
+
+use std::fmt::{self, Display};
+use std::io::{self, Read, Write};
+use std::net::{TcpStream, ToSocketAddrs};
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use std::time::Duration;
+
+use anyhow::{Context, anyhow, bail};
+use tenax_hal_shim::wire::BAUD;
+
+use super::holder;
+use crate::link::captured::line_of;
+
+/// How long a read waits for bytes before it returns, so that whoever reads can look at something else meanwhile.
+const READ_TIMEOUT: Duration = Duration::from_millis(100);
+/// How long a TCP address may take to answer.
+const CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// A serial port or a pseudo-terminal: `/dev/ttyACM0`, `COM3`, `/dev/pts/5`.
+    Port(String),
+    /// `tcp:HOST:PORT`.
+    Tcp {
+        /// Name or address.
+        host: String,
+        port: u16,
+    },
+    /// A line that was captured.
+    File(PathBuf),
+}
+
+pub struct Line {
+    /// What comes up. A read that finds nothing for 0.1 s fails with `TimedOut` or `WouldBlock`; a file ends.
+    pub up: Box<dyn Read + Send>,
+    /// Where commands go. None for a captured line.
+    pub down: Option<Box<dyn Write + Send>>,
+}
+
+impl FromStr for Target {
+    type Err = String;
+
+    /// A regular file is a captured line; anything else that is no `tcp:` is a port.
+    fn from_str(text: &str) -> Result<Self, String> {
+        if let Some(address) = text.strip_prefix("tcp:") {
+            return address
+                .rsplit_once(':')
+                .and_then(|(host, port)| Some((host, port.parse().ok()?)))
+                .filter(|(host, _)| !host.is_empty())
+                .map(|(host, port)| Self::Tcp { host: host.trim_matches(['[', ']']).to_owned(), port })
+                .ok_or_else(|| "write tcp:HOST:PORT, such as tcp:127.0.0.1:7777".to_owned());
+        }
+        let path = Path::new(text);
+        Ok(if path.is_file() { Self::File(path.to_owned()) } else { Self::Port(text.to_owned()) })
+    }
+}
+
+impl Display for Target {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Port(name) => f.write_str(name),
+            Self::Tcp { host, port } if host.contains(':') => write!(f, "tcp:[{host}]:{port}"),
+            Self::Tcp { host, port } => write!(f, "tcp:{host}:{port}"),
+            Self::File(path) => path.display().fmt(f),
+        }
+    }
+}
+
+impl Target {
+    /// Opens the line. An error says what is wrong, and what to do about it.
+    pub fn open(&self) -> anyhow::Result<Line> {
+        match self {
+            Self::Port(name) => open_port(name),
+            Self::Tcp { host, port } => connect(host, *port).with_context(|| {
+                format!("cannot connect to {self}: is `tenax run --serve-tcp {port}` running there?")
+            }),
+            Self::File(path) => Ok(Line { up: Box::new(io::Cursor::new(line_of(path)?)), down: None }),
+        }
+    }
+
+    /// Why the line can have ended, and what to do about it.
+    pub fn after_end(&self, error: Option<&io::Error>) -> String {
+        let why = error.map_or_else(String::new, |error| format!(" ({error})"));
+        match self {
+            Self::Port(name) => format!(
+                "{name} went away{why}: was the board unplugged, or is the served run over? Plug it in or start it \
+                 again, and then this"
+            ),
+            Self::Tcp { .. } | Self::File(_) => {
+                format!("{self} was closed at its other end{why}: the served run is over; start it again")
+            }
+        }
+    }
+}
+
+fn open_port(name: &str) -> anyhow::Result<Line> {
+    // Whoever is killed would leave a pseudo-terminal locked for everybody after him. A real port is for one alone: two
+    // would each get half of the bytes.
+    let pseudo = is_pseudo(name);
+    if holder::of(Path::new(name)).is_some() {
+        // A served run opens it for an instant, to drop what its last client has not read.
+        std::thread::sleep(READ_TIMEOUT);
+    }
+    if let Some(holder) = holder::of(Path::new(name)) {
+        bail!(
+            "another program reads {name}: {holder}. Two would each get half of the bytes: end it first, or serve on \
+             TCP (--serve-tcp), where each client hears everything"
+        );
+    }
+    let baud = if pseudo && cfg!(target_os = "macos") { 0 } else { BAUD };
+    let open = || {
+        let up = serialport::new(name, baud).timeout(READ_TIMEOUT).exclusive(!pseudo).open()?;
+        let down = up.try_clone()?;
+        Ok(Line { up: Box::new(up), down: Some(Box::new(down)) })
+    };
+    open().map_err(|error: serialport::Error| {
+        let ports = serialport::available_ports().unwrap_or_default();
+        let names: Vec<String> = ports.into_iter().map(|port| port.port_name).collect();
+        let seen = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+        anyhow!(
+            "cannot open {name}: {error}; ports on this machine: {seen}. A scene's line is where `tenax run --serve` \
+             says, or tcp:HOST:PORT"
+        )
+    })
+}
+
+/// Whether a path leads to a pseudo-terminal.
+fn is_pseudo(name: &str) -> bool {
+    let path = std::fs::canonicalize(name).unwrap_or_default();
+    path.starts_with("/dev/pts")
+        || (cfg!(target_os = "macos") && path.to_string_lossy().starts_with("/dev/ttys"))
+}
+
+fn connect(host: &str, port: u16) -> anyhow::Result<Line> {
+    let mut failed = None;
+    for address in (host, port).to_socket_addrs()? {
+        match TcpStream::connect_timeout(&address, CONNECT_TIMEOUT) {
+            Ok(up) => {
+                up.set_nodelay(true)?;
+                up.set_read_timeout(Some(READ_TIMEOUT))?;
+                let down = up.try_clone()?;
+                return Ok(Line { up: Box::new(up), down: Some(Box::new(down)) });
+            }
+            Err(error) => failed = Some(error),
+        }
+    }
+    match failed {
+        Some(error) => Err(error.into()),
+        None => bail!("{host} has no address"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_meant_is_told_by_how_it_is_written() {
+        let tcp = |host: &str| Target::Tcp { host: host.to_owned(), port: 7_777 };
+        assert_eq!("tcp:127.0.0.1:7777".parse(), Ok(tcp("127.0.0.1")));
+        assert_eq!("tcp:[::1]:7777".parse(), Ok(tcp("::1")));
+        assert_eq!(tcp("::1").to_string(), "tcp:[::1]:7777");
+        for wrong in ["tcp:", "tcp:7777", "tcp::7777", "tcp:host:", "tcp:host:70000"] {
+            assert!(wrong.parse::<Target>().unwrap_err().contains("tcp:HOST:PORT"), "{wrong}");
+        }
+        assert_eq!("COM3".parse(), Ok(Target::Port("COM3".to_owned())));
+        let file = tempfile::NamedTempFile::new().unwrap();
+        assert_eq!(file.path().to_str().unwrap().parse(), Ok(Target::File(file.path().to_owned())));
+    }
+
+    #[test]
+    fn what_cannot_be_opened_says_what_to_do() {
+        let error = |text: &str| format!("{:#}", text.parse::<Target>().unwrap().open().err().unwrap());
+        assert!(error("/dev/no-such-port").contains("ports on this machine: "));
+        // Nobody listens on port 1.
+        assert!(error("tcp:127.0.0.1:1").contains("is `tenax run --serve-tcp 1` running there?"));
+    }
+}
