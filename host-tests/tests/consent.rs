@@ -105,7 +105,7 @@ fn an_empty_hand_just_switched_on_consents_but_not_to_trust_for_ever() {
     assert_eq!(bench.fingertip.command(&set(SettingId::S1, 1_500)), Ok(()), "trusted");
     assert_eq!(bench.fingertip.command(&set(SettingId::LineTrusted, 0)), Ok(()));
     assert_eq!(bench.fingertip.command(&set(SettingId::S1, 120)), Err(Refusal::NotArmed));
-    assert_eq!(bench.fingertip.config().get(SettingId::S1), 150, "back in the range of a wearer's hand");
+    assert_eq!(bench.fingertip.config().get(SettingId::S1), 1_500, "what was set stays");
 }
 
 // Shows L2.

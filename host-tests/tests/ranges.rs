@@ -1,5 +1,5 @@
-//! No legal combination of settings crushes, opens or deafens: every pair at its ends, on a hand whose line is not
-//! trusted (the ranges of the rows in `logic/src/*/settings.rs`).
+//! No legal combination of settings crushes, opens or deafens the hand to its wearer: every pair at its ends (the ranges of the
+//! rows in `logic/src/*/settings.rs`). Only a mask of all detectors or an S1 above every vibration leaves slip unanswered.
 
 use std::num::NonZero;
 
@@ -35,8 +35,7 @@ fn pairs() -> Vec<[(SettingId, i32); 2]> {
 
 /// A hand with these settings that holds 2.5 N at a ratio of 0.1.
 fn holding(settings: &[(SettingId, i32)]) -> Bench {
-    // The ends are those of a hand whose line is not trusted; a low ceiling can be set only where it is.
-    let mut config = Config { line_trusted: true, ..Config::default() };
+    let mut config = Config::default();
     for &(id, value) in settings {
         config.set(id, value).expect("its own end is in its range");
     }
@@ -56,11 +55,16 @@ fn moves(drives: &[MotorDrive]) -> bool {
     drives.iter().any(|drive| *drive != MotorDrive::Coast)
 }
 
+/// Slip detection is switched off on purpose: by the mask, or by an S1 above every vibration.
+fn is_off(settings: &[(SettingId, i32)]) -> bool {
+    [SettingId::DetectorsOff, SettingId::S1].iter().any(|id| settings.contains(&(*id, id.row().max)))
+}
+
 fn check(settings: &[(SettingId, i32)]) {
     let mut bench = holding(settings);
     assert!(!moves(&bench.run(1_000)), "{settings:?}: a hand at rest moves");
 
-    // It slips: vibration with twice the amplitude of the highest S1, and shear that grows.
+    // It slips: vibration of 0.5 V, and shear that grows.
     let mut slipping = bench;
     let mut before = slipping.fingertip.clone();
     let seen = (slipping.pins_mv, slipping.frames);
@@ -68,7 +72,7 @@ fn check(settings: &[(SettingId, i32)]) {
     slipping.load(2.5, 0.7);
     let drives = slipping.run(ANSWER_FRAMES);
     let answered = drives.iter().position(|drive| drive.closes());
-    assert!(answered.is_some(), "{settings:?}: slip is not answered");
+    assert!(answered.is_some() || is_off(settings), "{settings:?}: slip is not answered");
     assert!(drives.iter().all(|drive| !drive.opens()), "{settings:?}: slip opens");
 
     // The wearer opens.
