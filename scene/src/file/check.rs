@@ -43,7 +43,7 @@ pub(super) fn check(scene: &SceneFile) -> Checked {
         })?;
     }
     scene.fault.iter().try_for_each(fault)?;
-    scene.command.iter().try_for_each(|one| command(scene, one))
+    scene.command.iter().try_for_each(command)
 }
 
 fn friction(scene: &SceneFile) -> Checked {
@@ -188,7 +188,7 @@ fn only(is_it: bool, key: Option<Range<usize>>, fault: &SensorFault, kind: &str,
     }
 }
 
-fn command(scene: &SceneFile, command: &Command) -> Checked {
+fn command(command: &Command) -> Checked {
     let kind = *command.kind.get_ref();
     let wrong = |span, what: String| Err(Wrong { span, what });
     match kind {
@@ -215,7 +215,7 @@ fn command(scene: &SceneFile, command: &Command) -> Checked {
                 return wrong(command.kind.span(), "a setting needs value".to_owned());
             };
             let row = id.row();
-            let range = row.range_in_force(scene.trusts_line());
+            let range = row.range();
             demand(range.contains(value.get_ref()), value.span(), || {
                 format!(
                     "value = {} {} is outside {}..={} of {}",
