@@ -3,7 +3,7 @@
 mod grow;
 mod pieces;
 
-use core::ops::Range;
+use std::ops::Range;
 
 use crate::frame::{Frame, HEIGHT, PIXELS, Point, WIDTH};
 
@@ -53,7 +53,7 @@ impl Mask {
     }
 
     pub fn insert_block(&mut self, columns: Range<usize>, rows: Range<usize>) {
-        let row: [Word; WORDS] = core::array::from_fn(|word| {
+        let row: [Word; WORDS] = std::array::from_fn(|word| {
             // Those of its pixels that are in no column from here on.
             let below = |end: usize| match end.saturating_sub(BITS * word) {
                 all if all >= BITS => Word::MAX,
@@ -176,7 +176,7 @@ impl Mask {
             let is_kept = |bit: usize| kept(red[bit], green[bit], blue[bit]);
             if word.count_ones() > Word::BITS / 4 {
                 // All of them at once is faster than one after the other.
-                let bytes: [u8; BITS] = core::array::from_fn(|bit| u8::from(is_kept(bit)));
+                let bytes: [u8; BITS] = std::array::from_fn(|bit| u8::from(is_kept(bit)));
                 *word &= packed(&bytes);
             } else {
                 let mut left = *word;
@@ -294,7 +294,7 @@ fn flood(seed: &[Word; WORDS], free: &[Word; WORDS]) -> [Word; WORDS] {
     };
     let right = up(seed, free);
     let left = mirrored(&up(&mirrored(seed), &mirrored(free)));
-    core::array::from_fn(|word| right[word] | left[word])
+    std::array::from_fn(|word| right[word] | left[word])
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -70,7 +70,7 @@ pub fn find(object: &Mask, moments: &Moments, lens: Option<&Rectifier>) -> Rims 
     if best.share == 0.0 || (best.angle - coarse).abs() > OFF_MAX {
         return none;
     }
-    let half = core::f32::consts::FRAC_PI_2;
+    let half = std::f32::consts::FRAC_PI_2;
     let angle = match best.angle {
         angle if angle > half => angle - 2.0 * half,
         angle if angle < -half => angle + 2.0 * half,
@@ -80,8 +80,7 @@ pub fn find(object: &Mask, moments: &Moments, lens: Option<&Rectifier>) -> Rims 
 }
 
 struct Outline {
-    places: [(f32, f32); PLACES_MAX],
-    count: usize,
+    places: Vec<(f32, f32)>,
 }
 
 /// The direction of both long rims, radians, and the share of the outline that lies on them.
@@ -97,11 +96,11 @@ impl Outline {
         let (mut inside, mut rim) = (object.clone(), object.clone());
         inside.erode(1);
         rim.subtract(&inside);
-        let mut outline = Self { places: [(0.0, 0.0); PLACES_MAX], count: 0 };
+        let mut outline = Self { places: Vec::new() };
         rim.for_each(|at| {
             let place = lens.map_or_else(|| place(at), |lens| lens.place(at));
-            if let Some(slot) = outline.places.get_mut(outline.count) {
-                (*slot, outline.count) = ((place.x - middle.x, place.y - middle.y), outline.count + 1);
+            if outline.places.len() < PLACES_MAX {
+                outline.places.push((place.x - middle.x, place.y - middle.y));
             }
         });
         outline
@@ -120,7 +119,7 @@ impl Outline {
     fn slope(&self, angle: f32) -> Option<(f32, f32)> {
         let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));
         let (mut low, mut high) = ([f32::INFINITY; SLICES], [f32::NEG_INFINITY; SLICES]);
-        for (dx, dy) in &self.places[..self.count] {
+        for (dx, dy) in &self.places {
             let (along, across) = (dx * cos + dy * sin, dy * cos - dx * sin);
             let slice = along / SLICE_PX + SLICES as f32 / 2.0;
             if (0.0..SLICES as f32).contains(&slice) {
@@ -242,7 +241,7 @@ mod tests {
 
     fn off(angle: f32, mask: &Mask) -> (f32, f32) {
         let moments = mask.moments().unwrap();
-        let wrapped = |off: f32| off - core::f32::consts::PI * libm::roundf(off / core::f32::consts::PI);
+        let wrapped = |off: f32| off - std::f32::consts::PI * libm::roundf(off / std::f32::consts::PI);
         (
             wrapped(find(mask, &moments, None).angle - angle).to_degrees().abs(),
             wrapped(moments.angle_rad() - angle).to_degrees().abs(),
