@@ -15,10 +15,7 @@ use crate::schedule::STEP_S;
 /// each as fast as it can. At the ends of its range and while the gear is jammed the motor is blocked.
 #[derive(Clone, Debug)]
 pub struct Gripper {
-    speed_max_mm_s: f64,
-    force_max_n: f64,
-    range_mm: f64,
-    step_mm: f64,
+    parameters: sections::Gripper,
     pipeline: VecDeque<MotorDrive>,
     aim_mm: f64,
     /// Distance between the pads when nothing is compressed, mm.
@@ -33,10 +30,7 @@ impl Gripper {
     pub(crate) fn new(parameters: &sections::Gripper) -> Self {
         let dead_steps = (parameters.dead_time_ms.get() / 1e3 / STEP_S).round() as usize;
         Self {
-            speed_max_mm_s: parameters.speed_mm_s.get(),
-            force_max_n: parameters.force_n.get(),
-            range_mm: parameters.range_mm.get(),
-            step_mm: parameters.step_mm.get(),
+            parameters: parameters.clone(),
             pipeline: vec![MotorDrive::Coast; dead_steps].into(),
             aim_mm: parameters.opening_mm.get_ref().get(),
             opening_mm: parameters.opening_mm.get_ref().get(),
@@ -48,7 +42,7 @@ impl Gripper {
 
     pub fn step(&mut self, drive: MotorDrive, grip_n: f64) {
         self.pipeline.push_back(drive);
-        let load = grip_n / self.force_max_n;
+        let load = grip_n / self.parameters.force_n.get();
         let (speed, current_part) = match self.pipeline.pop_front().unwrap_or(drive) {
             MotorDrive::Coast => (0.0, 0.0),
             MotorDrive::Close(duty) => {
@@ -60,12 +54,13 @@ impl Gripper {
             // The load pushes the fingers the way they go; it takes nothing from their speed and adds nothing.
             MotorDrive::Open(duty) => {
                 let duty = f64::from(duty.as_per_mille()) / 1e3;
-                let is_blocked = self.is_jammed || self.aim_mm >= self.range_mm;
+                let is_blocked = self.is_jammed || self.aim_mm >= self.parameters.range_mm.get();
                 if is_blocked { (0.0, duty * duty) } else { (duty, 0.0) }
             }
         };
         let before_mm = self.opening_mm;
-        self.aim_mm = (self.aim_mm + speed * self.speed_max_mm_s * STEP_S).clamp(0.0, self.range_mm);
+        self.aim_mm = (self.aim_mm + speed * self.parameters.speed_mm_s.get() * STEP_S)
+            .clamp(0.0, self.parameters.range_mm.get());
         self.opening_mm = self.reach(load);
         self.speed_mm_s = (self.opening_mm - before_mm) / STEP_S;
         self.current_part = current_part;
@@ -79,7 +74,7 @@ impl Gripper {
         grip_n: f64,
         (width_mm, stiffness_n_per_mm): (f64, f64),
     ) -> Option<MotorDrive> {
-        let load = grip_n / self.force_max_n;
+        let load = grip_n / self.parameters.force_n.get();
         let comes_mm: f64 = self
             .pipeline
             .iter()
@@ -89,12 +84,12 @@ impl Gripper {
                 MotorDrive::Open(duty) => -f64::from(duty.as_per_mille()) / 1e3,
             })
             .sum::<f64>()
-            * self.speed_max_mm_s
+            * self.parameters.speed_mm_s.get()
             * STEP_S;
         let aim_mm = self.aim_mm - comes_mm;
-        let opening_mm = if self.step_mm > 0.0 {
+        let opening_mm = if self.parameters.step_mm.get() > 0.0 {
             // The whole step that it stands on: it needs to aim half a step further for the next one.
-            (aim_mm / self.step_mm).round() * self.step_mm
+            (aim_mm / self.parameters.step_mm.get()).round() * self.parameters.step_mm.get()
         } else {
             aim_mm
         };
@@ -102,31 +97,33 @@ impl Gripper {
         if missing_mm <= 0.0 {
             return None;
         }
-        let frame_mm = self.speed_max_mm_s * STEP_S * SCANS_PER_FRAME as f64;
+        let frame_mm = self.parameters.speed_mm_s.get() * STEP_S * SCANS_PER_FRAME as f64;
         let permille = (1e3 * (load + missing_mm / frame_mm)).ceil().min(1e3);
         Some(MotorDrive::Close(Duty::per_mille(permille as u16)))
     }
 
     fn reach(&self, load: f64) -> f64 {
-        if self.step_mm == 0.0 {
+        if self.parameters.step_mm.get() == 0.0 {
             return self.aim_mm;
         }
         if self.is_jammed {
             return self.opening_mm;
         }
-        let goal_mm = ((self.aim_mm / self.step_mm).round() * self.step_mm).clamp(0.0, self.range_mm);
-        let closing_mm = (1.0 - load).max(0.0) * self.speed_max_mm_s * STEP_S;
-        goal_mm.clamp(self.opening_mm - closing_mm, self.opening_mm + self.speed_max_mm_s * STEP_S)
+        let goal_mm = ((self.aim_mm / self.parameters.step_mm.get()).round() * self.parameters.step_mm.get())
+            .clamp(0.0, self.parameters.range_mm.get());
+        let closing_mm = (1.0 - load).max(0.0) * self.parameters.speed_mm_s.get() * STEP_S;
+        goal_mm
+            .clamp(self.opening_mm - closing_mm, self.opening_mm + self.parameters.speed_mm_s.get() * STEP_S)
     }
 
     /// The opening as a part of the whole range.
     pub fn opening_part(&self) -> f64 {
-        self.opening_mm / self.range_mm
+        self.opening_mm / self.parameters.range_mm.get()
     }
 
     /// The speed as a part of the fastest, 0 to 1.
     pub fn speed_part(&self) -> f64 {
-        (self.speed_mm_s / self.speed_max_mm_s).abs()
+        (self.speed_mm_s / self.parameters.speed_mm_s.get()).abs()
     }
 
     pub fn grip_n(&self, width_mm: f64, stiffness_n_per_mm: f64) -> f64 {
