@@ -56,6 +56,11 @@ pub fn set(id: SettingId, value: i32) -> Down {
     Down::Set(Setting { id: id.number(), value })
 }
 
+/// A sum of twelve uniform numbers: mean 0, variance 1.
+pub fn gauss(rng: &mut ChaCha8Rng) -> f64 {
+    (0..12).map(|_| rng.random_range(-0.5..0.5)).sum()
+}
+
 pub fn opens(drives: &[MotorDrive]) -> bool {
     drives.iter().any(|drive| drive.opens())
 }
@@ -225,8 +230,7 @@ impl Bench {
         const HEARS: f64 = 0.05;
         let own = [MYO_FLEXOR, MYO_EXTENSOR].map(|pin| {
             let wander = &mut self.wander[pin - MYO_FLEXOR];
-            let normal: f64 = (0..12).map(|_| self.muscle_noise.random_range(-0.5..0.5)).sum();
-            wander[0] += PART * (normal - wander[0]);
+            wander[0] += PART * (gauss(&mut self.muscle_noise) - wander[0]);
             wander[1] += PART * (wander[0] - wander[1]);
             let above_mv = self.pins_mv[pin] - f64::from(MYO_REST_MV);
             // Two low-passes leave 0.071 of white noise. A broken pin does not fluctuate.

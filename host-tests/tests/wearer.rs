@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use proptest::prelude::*;
+use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
-use rand::{RngExt, SeedableRng};
 use tenax_hal_shim::behaviour::Behaviour;
 use tenax_hal_shim::channel::{
     ARRAY, ARRAY_COUNT, CHANNELS, COUNT, FSR, MYO_EXTENSOR, MYO_FLEXOR, MYO_SELECT, SAMPLE_MAX,
@@ -16,7 +16,7 @@ use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{Down, EventKind};
 use tenax_hal_shim::words::{Cause, GripMode};
 use tenax_host_tests::teaching::SLIP_MV;
-use tenax_host_tests::{Bench, closes, closing_frames, opens, rests};
+use tenax_host_tests::{Bench, closes, closing_frames, gauss, opens, rests};
 use tenax_logic::config::Config;
 
 /// Two slow frames.
@@ -86,8 +86,7 @@ fn an_array_that_reports_slip_in_an_empty_hand_closes_no_full_one() {
         for n in 0..80 * seconds {
             let noise_mv = if n / 40 % 2 == 0 { 0.3 } else { 3.0 };
             for element in &mut bench.pins_mv[ARRAY..ARRAY + ARRAY_COUNT] {
-                let sum: f64 = (0..12).map(|_| rng.random_range(-0.5..0.5)).sum();
-                *element = f64::from(CHANNELS[ARRAY].rest_mv) + 700.0 + noise_mv * sum;
+                *element = f64::from(CHANNELS[ARRAY].rest_mv) + 700.0 + noise_mv * gauss(rng);
             }
             bench.run(25);
         }

@@ -1,5 +1,4 @@
-//! One more detector, written outside `logic`; and all detectors against the instant at which they say they decided.
+//! A detector written outside `logic`, and the onsets of all detectors beside their evidence.
 
 mod onset;
-mod sensing;
 mod toy;

@@ -2,14 +2,17 @@
 
 use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
 use tenax_host_tests::Bench;
+use tenax_logic::config::Config;
 use tenax_logic::detectors::{Description, Detector, Said, Sensed};
+use tenax_logic::journal::Journal;
+use tenax_logic::senses::Senses;
 
-use super::sensing::Sensing;
-
-/// What can be chosen about it: a normal force that falls by so much in one cycle means that the object leaves the hand.
+/// Fall of the normal force in one slow frame that means slip, mN.
 struct FallConfig {
     fall_mn: i32,
 }
+
+const CONFIG: FallConfig = FallConfig { fall_mn: 500 };
 
 /// Compares each normal force with the one before.
 #[derive(Debug, Default)]
@@ -46,13 +49,15 @@ impl Detector for Fall {
     }
 }
 
-/// Steps it for so many frames of the bench: the frames in which it said slip.
-fn run(bench: &mut Bench, sensing: &mut Sensing, toy: &mut Fall, frames: u32) -> Vec<u32> {
-    let config = FallConfig { fall_mn: 500 };
+/// Frames in which the detector said slip.
+fn run(bench: &mut Bench, senses: &mut Senses, toy: &mut Fall, frames: u32) -> Vec<u32> {
+    let (config, mut journal) = (Config::default(), Journal::default());
     let mut slips = Vec::new();
     for _ in 0..frames {
         let frame = bench.frame();
-        let said = toy.step(&config, &sensing.take(&frame));
+        journal.begin(&frame);
+        senses.process(&config, &frame, &mut journal);
+        let said = toy.step(&CONFIG, &senses.sensed(&config, &frame, 0, false));
         assert_eq!(said.is_some(), frame.slot() == 15, "it decides when the last quadrant has been read");
         slips.extend(said.filter(|said| said.slip).map(|_| frame.sequence));
     }
@@ -61,13 +66,13 @@ fn run(bench: &mut Bench, sensing: &mut Sensing, toy: &mut Fall, frames: u32) ->
 
 #[test]
 fn a_detector_written_outside_the_logic_judges_what_the_logic_senses() {
-    let (mut bench, mut sensing, mut toy) = (Bench::new(1), Sensing::default(), Fall::default());
-    assert_eq!(toy.describe(&FallConfig { fall_mn: 500 }).health, DetectorHealth::Blind);
+    let (mut bench, mut senses, mut toy) = (Bench::new(1), Senses::default(), Fall::default());
+    assert_eq!(toy.describe(&CONFIG).health, DetectorHealth::Blind);
     bench.load(4.0, 0.6);
-    assert!(run(&mut bench, &mut sensing, &mut toy, 2_000).is_empty(), "a steady force falls nowhere");
+    assert!(run(&mut bench, &mut senses, &mut toy, 2_000).is_empty(), "a steady force falls nowhere");
     bench.load(2.0, 0.2);
-    let slips = run(&mut bench, &mut sensing, &mut toy, 500);
-    assert!(slips.first() == Some(&2_015), "in the first cycle of the smaller force: {slips:?}");
-    let Description { confidence_permille, health, .. } = toy.describe(&FallConfig { fall_mn: 500 });
+    let slips = run(&mut bench, &mut senses, &mut toy, 500);
+    assert_eq!(slips.first(), Some(&2_015), "in the first slow frame of the smaller force");
+    let Description { confidence_permille, health, .. } = toy.describe(&CONFIG);
     assert!(confidence_permille < 500 && health == DetectorHealth::Working);
 }

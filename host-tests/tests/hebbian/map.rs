@@ -189,25 +189,6 @@ fn the_documentation_has_this_map() {
     );
 }
 
-/// Half and twice of each default are useful, too.
-#[test]
-fn the_defaults_are_inside_the_useful_region() {
-    let finger = Finger::new(1);
-    let (lesson, trial) = (finger.lesson(), finger.trial(UNSEEN));
-    let d = Config::default();
-    let near = [(1, 2), (2, 1)].into_iter().flat_map(|(times, by)| {
-        [
-            Config { alpha_ppb: d.alpha_ppb * times / by, ..d },
-            Config { beta_ppb: d.beta_ppb * times / by, ..d },
-            Config { delta_ppm: d.delta_ppm * times / by, ..d },
-        ]
-    });
-    for config in near.chain([d]) {
-        let weights = weights_of(&learned(&config, &lesson));
-        assert_eq!(fate(&weights, &trial), Fate::Useful, "{config:?}: {:.2?}", ask(&weights, &trial));
-    }
-}
-
 /// The defaults, four times slower: the order of the phases in a trial matters less, as the theory has it.
 fn slow(delta_ppm: u32) -> Config {
     let Config { alpha_ppb, beta_ppb, .. } = Config::default();
@@ -238,21 +219,17 @@ fn is_close((found, theory): &([f64; RECEPTORS], [f64; RECEPTORS])) {
     assert!(error < 0.05 * largest, "{found:.3?} for {theory:.3?}");
 }
 
+/// From nothing; and from the fixed point where delta is small: there two rivals take 1 / (beta (1 - c2 / c1)) updates to decide, longer
+/// than the lessons.
 #[test]
-fn from_nothing_it_settles_at_the_fixed_point() {
-    for delta_ppm in [300_000, 3_000_000] {
-        let config = slow(delta_ppm);
-        settled(&config, FingertipNetwork::default()).iter().for_each(is_close);
-    }
-}
-
-/// With a small delta two rivals take 1 / (beta (1 - c2 / c1)) updates to decide, longer than the 60 lessons.
-#[test]
-fn it_stays_at_the_fixed_point() {
+fn weights_settle_and_stay_at_the_fixed_point() {
     let c = correlations(&Finger::new(1).lesson());
     for delta_ppm in DELTAS_PPM {
         let config = slow(delta_ppm);
         let weights = c.map(|c| fixed_point(&Rates::from(&config), &c).map(Weight::from_f64));
         settled(&config, FingertipNetwork::from_weights(&weights)).iter().for_each(is_close);
+        if delta_ppm >= Config::default().delta_ppm {
+            settled(&config, FingertipNetwork::default()).iter().for_each(is_close);
+        }
     }
 }
