@@ -115,32 +115,23 @@ fn exchanged_cables_are_learned_again() {
 #[test]
 fn a_wrong_teacher_is_survived_for_a_trial_and_forgotten() {
     let finger = Finger::new(1);
-    let config = Config::default();
     let trial = finger.trial(UNSEEN);
-    let taught_ms = trial.iter().filter(|m| m.lesson().is_some()).count();
-    let inverted = |seed| {
-        let mut moments = finger.trial(seed);
-        for moment in &mut moments {
-            moment.seen = moment.seen.map(|code| Code::from_sign(-code.sign()));
+    let mut network = learned(&Config::default(), &finger.lesson());
+    let mut taught = |seeds: std::ops::Range<u64>, sign: i32| {
+        for seed in seeds.clone() {
+            let mut moments = finger.trial(seed);
+            for moment in &mut moments {
+                moment.seen = moment.seen.map(|code| Code::from_sign(sign * code.sign()));
+            }
+            teach(&mut network, &Config::default(), &moments);
         }
-        moments
+        line(&format!("{} trials of sign {sign}", seeds.count()), ask(&weights_of(&network), &trial));
+        weights_of(&network)
     };
-    let mut network = learned(&config, &finger.lesson());
-    line("taught", ask(&weights_of(&network), &trial));
-    teach(&mut network, &config, &inverted(50));
-    line(&format!("wrong for {taught_ms} ms"), ask(&weights_of(&network), &trial));
-    let said = ask(&weights_of(&network), &trial);
+    let said = ask(&taught(50..51, -1), &trial);
     assert!(said.direction > 0.99 && said.false_slip == 0.0 && said.slip_seen > 0.5, "{said:?}");
-    for seed in 51..71 {
-        teach(&mut network, &config, &inverted(seed));
-    }
-    line("wrong for 21 trials", ask(&weights_of(&network), &trial));
-    assert!(ask(&weights_of(&network), &trial).direction < 0.01, "it does believe its teacher in the end");
-    for seed in 0..30 {
-        teach(&mut network, &config, &finger.trial(seed));
-    }
-    line("taught well again for 30", ask(&weights_of(&network), &trial));
-    assert_eq!(fate(&weights_of(&network), &trial), Fate::Useful);
+    assert!(ask(&taught(51..71, -1), &trial).direction < 0.01, "it does believe its teacher in the end");
+    assert_eq!(fate(&taught(0..30, 1), &trial), Fate::Useful);
 }
 
 #[test]
