@@ -98,7 +98,7 @@ fn an_empty_hand_just_switched_on_consents_but_not_to_lasting_trust_or_to_no_wea
     bench.accepts(set(SettingId::S1, 1_500));
     bench.accepts(set(SettingId::LineTrusted, 0));
     refuses(&mut bench, set(SettingId::S1, 120));
-    assert_eq!(bench.fingertip.config().get(SettingId::S1), 150, "back in the range of a wearer's hand");
+    assert_eq!(bench.fingertip.config().get(SettingId::S1), 1_500, "what was set stays");
 }
 
 // Shows W2.
