@@ -49,18 +49,6 @@ fn a_wearer_is_learned_kept_and_answered() {
 
 // Shows W7.
 #[test]
-fn contractions_that_do_not_separate_are_refused_and_a_hand_that_holds_is_not_calibrated() {
-    let mut bench = uncalibrated(32);
-    let mut keeper = bench.fingertip.keeper();
-    let told = calibrate(&mut bench, [[50.0, 50.0], [600.0, 80.0], [50.0, 50.0]]);
-    assert_eq!(told.last(), Some(&Calibration::Refused(CalibrationRefusal::NoOpening)));
-    assert!(bench.fingertip.next_record(&mut keeper).is_none());
-    let mut bench = Bench::holding(33);
-    assert_eq!(bench.fingertip.command(&Down::CalibrateEmg), Err(Refusal::Loaded));
-}
-
-// Shows W7.
-#[test]
 fn a_calibrating_hand_that_may_hold_something_can_let_it_go() {
     // A load, and a force that is unknown because two quadrants are cut.
     let loads: fn(&mut Bench) = |bench| bench.load(4.0, 0.6);

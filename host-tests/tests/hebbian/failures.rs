@@ -2,7 +2,7 @@
 
 use tenax_logic::hebbian::{Activation, Activations, Code, Config, RECEPTORS};
 
-use super::map::{Fate, Said, UNSEEN, ask, fate, learned, teach};
+use super::map::{Fate, UNSEEN, ask, fate, learned, teach};
 use super::oracle::weights_of;
 use super::task::{Finger, Moment, OFFSET, VIBRATION};
 
@@ -16,16 +16,6 @@ fn felt_through(trial: &[Moment], change: impl Fn(&mut [Activation; RECEPTORS]))
             Moment { felt: Activations::new(felt), ..*moment }
         })
         .collect()
-}
-
-fn line(what: &str, said: Said) {
-    println!(
-        "{what:34} |o1| in slip {:.2}, slip seen {:3.0} %, false {:3.0} %, direction {:3.0} %",
-        said.o1_slip,
-        100.0 * said.slip_seen,
-        100.0 * said.false_slip,
-        100.0 * said.direction
-    );
 }
 
 /// The correlation of a constant receptor is the mean of v. With a balanced teacher r suppresses the offset, the more the smaller
@@ -46,9 +36,8 @@ fn r_suppresses_an_offset_only_if_the_teacher_is_balanced() {
             weights[0][OFFSET].abs() / weights[0].iter().map(|w| w.abs()).sum::<f64>()
         })
     });
-    println!("offset's part of o1 with delta 3, 0.3, 0.01: {balanced:.3?}, one-sided {one_sided:.3?}");
-    assert!(balanced.is_sorted_by(|a, b| a > b) && balanced[2] < 0.6 * balanced[0]);
-    assert!(one_sided.is_sorted() && one_sided[2] > 1.5 * one_sided[0]);
+    assert!(balanced.is_sorted_by(|a, b| a > b) && balanced[2] < 0.6 * balanced[0], "{balanced:?}");
+    assert!(one_sided.is_sorted() && one_sided[2] > 1.5 * one_sided[0], "{one_sided:?}");
 }
 
 /// Films die after learning: each takes its part and no more, nothing is said that is not so, and learning goes on.
@@ -64,7 +53,6 @@ fn a_receptor_that_dies_takes_only_its_part() {
         |moments: &[Moment], films| felt_through(moments, |felt| felt[..films].fill(Activation::default()));
     for films in [0, 1, 3, 6, 9] {
         let said = ask(&weights, &dead(&trial, films));
-        line(&format!("{films} films dead"), said);
         assert!(said.false_slip == 0.0 && said.direction > 0.99);
         assert!(films > 3 || said.slip_seen == 1.0);
     }
@@ -72,7 +60,6 @@ fn a_receptor_that_dies_takes_only_its_part() {
     let before = ask(&weights, &six_dead);
     teach(&mut network, &config, &dead(&lesson, 6));
     let after = ask(&weights_of(&network), &six_dead);
-    line("6 dead, after another lesson", after);
     assert!(after.o1_slip > before.o1_slip && after.slip_seen >= before.slip_seen);
 }
 
@@ -87,13 +74,11 @@ fn exchanged_cables_are_learned_again() {
         from.max_by(|&a, &b| row[a].abs().total_cmp(&row[b].abs())).unwrap()
     };
     let (film, gauge) = (strongest(&weights[0], 0..VIBRATION), strongest(&weights[1], VIBRATION..RECEPTORS));
-    line("straight", ask(&weights, &finger.trial(UNSEEN)));
     type Exchange<'a> = &'a dyn Fn(&mut [Activation; RECEPTORS]);
     let all: [(&str, Exchange<'_>); 2] =
         [("one cable", &|felt| felt.swap(film, gauge)), ("all cables", &|felt| felt.rotate_left(VIBRATION))];
     for (name, exchange) in all {
         let trial = felt_through(&finger.trial(UNSEEN), exchange);
-        line(name, ask(&weights, &trial));
         let mut network = before.clone();
         // The exchanged gauge still has the film's weight, or the network is useless.
         let is_old = |weights: &[[f64; RECEPTORS]; 2]| {
@@ -101,13 +86,11 @@ fn exchanged_cables_are_learned_again() {
                 || fate(weights, &trial) != Fate::Useful
         };
         assert!(is_old(&weights), "{name}: nothing to learn");
-        let mut trials = 0;
-        while is_old(&weights_of(&network)) {
-            teach(&mut network, &config, &felt_through(&finger.trial(100 + trials), exchange));
-            trials += 1;
-            assert!(trials < 30, "{name}: never learned again");
-        }
-        line(&format!("after {trials} trials more"), ask(&weights_of(&network), &trial));
+        let learned = (100..130).any(|seed| {
+            teach(&mut network, &config, &felt_through(&finger.trial(seed), exchange));
+            !is_old(&weights_of(&network))
+        });
+        assert!(learned, "{name}: not within 30 trials");
     }
 }
 
@@ -118,14 +101,13 @@ fn a_wrong_teacher_is_survived_for_a_trial_and_forgotten() {
     let trial = finger.trial(UNSEEN);
     let mut network = learned(&Config::default(), &finger.lesson());
     let mut taught = |seeds: std::ops::Range<u64>, sign: i32| {
-        for seed in seeds.clone() {
+        for seed in seeds {
             let mut moments = finger.trial(seed);
             for moment in &mut moments {
                 moment.seen = moment.seen.map(|code| Code::from_sign(sign * code.sign()));
             }
             teach(&mut network, &Config::default(), &moments);
         }
-        line(&format!("{} trials of sign {sign}", seeds.count()), ask(&weights_of(&network), &trial));
         weights_of(&network)
     };
     let said = ask(&taught(50..51, -1), &trial);
