@@ -285,6 +285,28 @@ fn a_myosensor_that_stands_still_is_no_muscle_and_one_that_moves_may_be() {
     }
 }
 
+// Shows W1, R3.
+#[test]
+fn a_myosensor_that_comes_back_to_where_it_hummed_may_be_a_muscle_again() {
+    for pin in [MYO_FLEXOR, MYO_EXTENSOR] {
+        // A contraction, or no contact, between.
+        for between_mv in [900.0, -f64::from(MYO_REST_MV)] {
+            let mut bench = Bench::holding(7);
+            for (above_mv, frames) in [(400.0, 5_000), (between_mv, 4_000), (400.0, 25)] {
+                bench.lift(pin, above_mv);
+                bench.run(frames);
+            }
+            bench.vibration_mv = 800.0;
+            bench.slows.clear();
+            for n in 0..18 {
+                bench.lift(pin, [390.0, 410.0][n % 2]);
+                bench.run(100);
+            }
+            assert_eq!(bench.by_reflex(), 0);
+        }
+    }
+}
+
 // Shows R3.
 #[test]
 fn a_lost_myosensor_renews_no_budget() {
