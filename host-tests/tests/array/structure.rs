@@ -37,22 +37,6 @@ proptest! {
     }
 
     #[test]
-    fn a_change_of_all_elements_together_is_not_in_them(
-        walk in prop::collection::vec(-100..100i32, READY_AFTER..90),
-        dead in 0..ELEMENTS,
-    ) {
-        let mut at = 4_000;
-        let frames: Vec<Reading> = walk
-            .iter()
-            .map(|step| {
-                at += step;
-                std::array::from_fn(|n| (n != dead).then_some((at + 10 * n as i32) as u16))
-            })
-            .collect();
-        prop_assert_eq!(fed(&frames), [[0; WINDOWS]; LAGS.len()]);
-    }
-
-    #[test]
     fn an_element_that_is_gone_leaves_nothing_of_it(
         frames in readings(60..100),
         after in prop::collection::vec(alive(), FULL_AFTER + 1..90),
