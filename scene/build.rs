@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 use std::{env, fs};
 
-include!("../recordings.rs");
+include!("../sim/recordings.rs");
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     recordings();

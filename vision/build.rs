@@ -1,6 +1,6 @@
 //! Says whether the recordings are here.
 
-include!("../recordings.rs");
+include!("../sim/recordings.rs");
 
 fn main() {
     recordings();

@@ -9,3 +9,6 @@ pub mod describe;
 pub mod hand;
 pub mod key;
 pub mod message;
+
+#[cfg(feature = "bridge")]
+pub mod bridge;

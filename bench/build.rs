@@ -1,7 +1,0 @@
-//! Says whether the recordings are here.
-
-include!("../recordings.rs");
-
-fn main() {
-    recordings();
-}

@@ -1,5 +1,0 @@
-//! Fingertips' lines in ROS 2's graph: [`network`] is zenoh as rmw_zenoh has it set, [`hand`] one line with its topics.
-#![forbid(unsafe_code)]
-
-pub mod hand;
-pub mod network;

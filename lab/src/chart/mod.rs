@@ -1,0 +1,39 @@
+//! The charts of `tenax chart`, one module each; `docs/` has the pages that show them.
+
+pub mod delay;
+pub mod emg;
+pub mod front;
+pub mod loads;
+pub mod photoelastic;
+pub mod table;
+pub mod vision;
+
+use tenax_sim::plot::sheet::{Sheet, draw};
+
+/// A chart and the numbers in it.
+#[derive(Clone, Debug)]
+pub struct Chart {
+    /// Its file name, without extension.
+    pub name: &'static str,
+    pub svg: String,
+    pub csv: String,
+}
+
+impl Chart {
+    fn new(name: &'static str, sheet: &Sheet, csv: String) -> anyhow::Result<Self> {
+        Ok(Self { name, svg: draw::svg(sheet)?, csv })
+    }
+}
+
+/// Told how much is done, from 0 to 1.
+pub type Progress<'a> = tenax_sim::jobs::Told<'a>;
+
+/// The rows of a CSV file, under the names of its columns, `a,b,c`.
+fn csv(header: &str, rows: impl IntoIterator<Item = Vec<String>>) -> anyhow::Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(header.split(','))?;
+    for row in rows {
+        writer.write_record(row)?;
+    }
+    Ok(String::from_utf8(writer.into_inner()?)?)
+}

@@ -1,0 +1,328 @@
+//! The chart of `tenax chart photoelastic`: the head's curve, how well its force is followed, and what slip looks like.
+
+use serde::Serialize;
+use tenax_scene::physics::stribeck::Slider;
+use tenax_scene::sensor::photoelastic::HEAD_STRIP;
+use tenax_scene::sensor::photoelastic::curve::{Day, Making};
+use tenax_scene::sensor::photoelastic::optics::Layer;
+
+use super::{Chart, Progress, csv};
+use crate::photoelastic::balance;
+use crate::photoelastic::force::{self, Point, Score, Session, Story};
+use crate::photoelastic::rate::{self, Material, Rig, Seen};
+use crate::photoelastic::region::{self, Region};
+use tenax_sim::plot::figure::colour;
+use tenax_sim::plot::sheet::{Axis, Mark, Panel, Series, Sheet};
+use tenax_frames::quantile::middle;
+
+/// Heads on whose days the rate is fitted, and their first days.
+const HEADS: [u64; 4] = [1, 2, 3, 4];
+/// Seeds of what is measured: no number of the logic was chosen by them.
+const VALIDATION: std::ops::Range<u64> = 2_001..2_061;
+/// Heads whose slowest visible slip is looked for.
+const FLOORS: usize = 20;
+/// Stories of each session.
+const STORIES: usize = 6;
+/// Slips of each day.
+const SLIPS: usize = 10;
+/// Rates of the curves, mm/s.
+const RATES_MM_S: [f64; 9] = [0.05, 0.1, 0.2, 0.4, 0.6, 1.0, 1.6, 2.3, 3.0];
+
+/// What it measures, for programs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// How well the force is followed where nothing shears.
+    pub force: Score,
+    /// The same with the shear of a lift: none to half of the force.
+    pub force_sheared: Score,
+    /// How well the rate is told.
+    pub rate: Rate,
+    /// How far the boundary of vibration is from theory, %.
+    pub boundary_pct: f64,
+    /// The slowest slip of aluminium that every head sees, mm/s.
+    pub slip_floor_mm_s: f64,
+}
+
+/// Of the slip rate.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Rate {
+    /// Median error on days that were not calibrated on, %.
+    pub median_pct: f64,
+    /// On plastic, with aluminium's calibration.
+    pub other_material_pct: f64,
+}
+
+/// Runs everything and draws it. Fails if the chart cannot be drawn.
+pub fn chart(progress: Progress) -> anyhow::Result<(Chart, Report)> {
+    let [runs, lifts] = [false, true].map(|sheared| force::sessions(VALIDATION, STORIES, sheared));
+    let [force, force_sheared] = [&runs, &lifts].map(|runs| Score::of(runs.iter().map(Vec::as_slice)));
+    progress(0.3);
+    let (median_pct, other_material_pct) = rates(&|part| progress(0.3 + 0.4 * part));
+    let region = region::region(&mut |part| progress(0.7 + 0.1 * part));
+    let slip_floor_mm_s = region::floor_mm_s(VALIDATION.take(FLOORS));
+    progress(0.9);
+    let curves = Material::ALL.map(|material| (material, curve(material)));
+    let report = Report {
+        force,
+        force_sheared,
+        rate: Rate { median_pct, other_material_pct },
+        boundary_pct: region.boundary_pct,
+        slip_floor_mm_s,
+    };
+    let (ramps, lift) = stories();
+    let sheet = Sheet::new(
+        "A photoelastic head: force from its light, slip from its flicker",
+        format!(
+            "Heads, days and stories of seeds {} to {}; curves of the mean head. Friction and strip: assumed.",
+            VALIDATION.start,
+            VALIDATION.end - 1
+        ),
+        2,
+        vec![
+            intensity(),
+            followed("ramps without shear, three of them turning at the peak", &ramps),
+            followed("grips, then lifts with a shear of 0.3 and 0.5 of the force", &lift),
+            by_shear(&lifts),
+            against_rate("ac part, mean size", Axis::log("mV", 0.5, 100.0), &curves, |seen| {
+                seen.amplitude_mv
+            }),
+            against_rate("ac part, frequency", Axis::even("Hz", 0.0, 200.0), &curves, |seen| seen.hz),
+            map(&region),
+        ],
+    );
+    let csv = table(&runs, &curves, &region)?;
+    progress(1.0);
+    Ok((Chart::new("photoelastic", &sheet, csv)?, report))
+}
+
+/// Each head is calibrated on four days, and asked on four others; then on plastic.
+fn rates(progress: Progress) -> (f64, f64) {
+    let (mut errors, mut others) = (Vec::new(), Vec::new());
+    for (n, head) in HEADS.into_iter().enumerate() {
+        let days = |from: u64, material| -> Vec<Seen> {
+            (from..from + 4).flat_map(|day| rate::slips(head, 100 * head + day, material, SLIPS)).collect()
+        };
+        let fit = rate::fit(&days(1, Material::Aluminium));
+        errors.extend(rate::errors_percent(&fit, &days(2_000, Material::Aluminium)));
+        others.extend(rate::errors_percent(&fit, &days(3_000, Material::Plastic)[..SLIPS]));
+        progress((n + 1) as f64 / HEADS.len() as f64);
+    }
+    [errors, others].map(|errors| middle(errors).unwrap_or(f64::NAN)).into()
+}
+
+/// What the mean head sees of each rate.
+fn curve(material: Material) -> Vec<Seen> {
+    let slider = Slider { friction: material.friction(), ..HEAD_STRIP };
+    RATES_MM_S.map(|rate| Rig::mean(slider, 1).slide(region::LOAD_N, rate, 0.8 + 0.1 / rate)).to_vec()
+}
+
+/// Two stories on one head: ramps that turn at the peak, and lifts.
+fn stories() -> (Vec<Point>, Vec<Point>) {
+    let mut session = Session::new(VALIDATION.start);
+    let peak_n = session.peak_n();
+    let targets = [
+        (5.5, 3.0),
+        (peak_n, 3.0),
+        (4.0, 2.0),
+        (0.6, 4.0),
+        (peak_n, 1.5),
+        (0.3, 3.0),
+        (3.0, 6.0),
+        (0.0, 6.0),
+    ];
+    let ramps = session.run(&Story { steps: targets.to_vec(), shears: Vec::new() });
+    session.rest();
+    let grips = [
+        (0.5, 2.0),
+        (0.5, 2.0),
+        (0.0, 2.0),
+        (2.3, 4.0),
+        (2.3, 4.0),
+        (0.3, 4.0),
+        (4.0, 4.0),
+        (4.0, 4.0),
+        (0.0, 4.0),
+    ];
+    let shears = vec![0.0, 0.5, 0.0, 0.0, 0.3, 0.3, 0.0, 0.5, 0.0];
+    (ramps, session.run(&Story { steps: grips.to_vec(), shears }))
+}
+
+/// Where the head says that it is certain: what it says, and by how much it is off, against the shear.
+fn by_shear(runs: &[Vec<Point>]) -> Panel {
+    let certain = || runs.iter().flatten().filter(|point| point.is_certain);
+    let some = || certain().step_by((certain().count() / 1_500).max(1));
+    let off = some().filter_map(|point| Some((point.shear, point.read_n? - point.true_n)));
+    let says = |sign: f64| some().map(move |point| (point.shear, sign * point.uncertainty_n));
+    Panel::new(
+        "certain: off by, and may be off by, against shear",
+        Axis::even("shear, of the force", 0.0, 0.5),
+        Axis::even("N", -0.3, 0.3),
+        vec![
+            Series::new("may be off by", colour::GREY, Mark::Dots, says(1.0)),
+            Series::new("or so", colour::GREY, Mark::Dots, says(-1.0)),
+            Series::new("off by", colour::BLUE, Mark::Dots, off),
+        ],
+    )
+}
+
+fn intensity() -> Panel {
+    let calibration = balance::weigh(&Making::MEAN, &Day::FIRST, 1.into());
+    let Making { dark_mv, span_mv, .. } = Making::MEAN;
+    let printed = (0..=600)
+        .map(|n| f64::from(n) / 100.0)
+        .map(|force_n| (force_n, dark_mv + span_mv * Layer::DUBEY.intensity(force_n, 0.0)));
+    let weighed = calibration.weighed.iter().map(|w| (w.force_n, w.level_mv));
+    let read = calibration.weighed.iter().map(|w| (w.read_n, w.level_mv));
+    Panel::new(
+        "light against force",
+        Axis::even("force, N", 0.0, 6.0),
+        Axis::even("mV", 0.0, 3_000.0),
+        vec![
+            Series::new("equation 9 as printed", colour::GREY, Mark::Dashes, printed),
+            Series::new("known weights", colour::VERMILLION, Mark::Crosses, weighed),
+            Series::new("calibrated curve", colour::BLUE, Mark::Line, read),
+        ],
+    )
+}
+
+fn followed(title: &str, run: &[Point]) -> Panel {
+    let begin_s = run.first().map_or(0.0, |point| point.t_s);
+    let end_s = run.last().map_or(1.0, |point| point.t_s - begin_s);
+    let at = |point: &Point| point.t_s - begin_s;
+    let ends = |end: fn(&Point) -> f64, certain: bool| -> Vec<(f64, f64)> {
+        run.iter()
+            .filter(|point| point.is_certain == certain)
+            .map(|point| (at(point), end(point).min(6.5)))
+            .collect()
+    };
+    let both =
+        |certain| [ends(|point| point.range_n.0, certain), ends(|point| point.range_n.1, certain)].concat();
+    Panel::new(
+        title,
+        Axis::even("time, s", 0.0, end_s),
+        Axis::even("force, N", 0.0, 6.5),
+        vec![
+            Series::new("true force", colour::ORANGE, Mark::Line, run.iter().map(|p| (at(p), p.true_n))),
+            Series::new("least and most, certain", colour::BLUE, Mark::Dots, both(true)),
+            Series::new("least and most, either branch", colour::GREY, Mark::Dots, both(false)),
+        ],
+    )
+}
+
+fn against_rate(title: &str, y: Axis, curves: &[(Material, Vec<Seen>)], of: impl Fn(&Seen) -> f64) -> Panel {
+    let all = curves.iter().zip([colour::BLUE, colour::GREEN]).flat_map(|((material, seen), colour)| {
+        let points: Vec<_> = seen.iter().map(|seen| (seen.rate_mm_s, of(seen))).collect();
+        [Mark::Line, Mark::Dots].map(|mark| Series::new(material.name(), colour, mark, points.clone()))
+    });
+    Panel::new(title, Axis::log("slip rate, mm/s", 0.04, 4.0), y, all.collect())
+}
+
+fn map(region: &Region) -> Panel {
+    let points = |seen: bool| {
+        let points = region.points.iter().filter(move |point| point.seen == seen);
+        points.map(|point| (point.rate_mm_s, point.steepness_s_m))
+    };
+    let theory = (8..=200).filter_map(|n| {
+        let drop = f64::from(n) / 2_000.0;
+        Some((region::theory_mm_s(drop)?, region::steepness_s_m(drop)))
+    });
+    let measured = region.boundary.iter().map(|(steepness, _, measured)| (*measured, *steepness));
+    Panel::new(
+        "where slip is seen; vibrates by itself to the left of the line",
+        Axis::log("slip rate, mm/s", 0.04, 12.0),
+        Axis::even("fall of friction at rest, s/m", 0.0, 36.0),
+        vec![
+            Series::new("slip said", colour::BLUE, Mark::Dots, points(true)),
+            Series::new("not said", colour::GREY, Mark::Crosses, points(false)),
+            Series::new("c + P dmu/dv = 0", colour::VERMILLION, Mark::Line, theory),
+            Series::new("boundary as measured", colour::VERMILLION, Mark::Rings, measured),
+        ],
+    )
+}
+
+/// Everything that was drawn and measured, one row each.
+fn table(runs: &[Vec<Point>], curves: &[(Material, Vec<Seen>)], region: &Region) -> anyhow::Result<String> {
+    let mut rows: Vec<[String; 4]> = Vec::new();
+    let row = |what: &str, which: String, x: f64, y: f64| {
+        [what.to_owned(), which, format!("{x:.5}"), format!("{y:.5}")]
+    };
+    for seed in VALIDATION {
+        let session = Session::new(seed);
+        let drawn = serde_json::to_value((session.making(), session.day()))?;
+        for part in drawn.as_array().into_iter().flatten().filter_map(|part| part.as_object()) {
+            let numbers = part.iter().filter_map(|(key, value)| Some((key, value.as_f64()?)));
+            rows.extend(numbers.map(|(key, value)| row("drawn", key.clone(), seed as f64, value)));
+        }
+    }
+    for (n, run) in runs.iter().enumerate() {
+        let score = Score::of([run.as_slice()]);
+        rows.push(row("story_rms_pct_fs", n.to_string(), score.cycles as f64, score.rms_pct_fs));
+        rows.push(row("story_certain_part", n.to_string(), score.cycles as f64, score.certain_part));
+    }
+    for (material, seen) in curves {
+        for seen in seen {
+            rows.push(row("ac_mv", material.name().to_owned(), seen.rate_mm_s, seen.amplitude_mv));
+            rows.push(row("ac_hz", material.name().to_owned(), seen.rate_mm_s, seen.hz));
+        }
+    }
+    for (steepness, theory, measured) in &region.boundary {
+        rows.push(row("boundary_mm_s", format!("{steepness:.3} s/m"), *theory, *measured));
+    }
+    for point in &region.points {
+        let seen = f64::from(u8::from(point.seen));
+        rows.push(row("seen", format!("{:.3} s/m", point.steepness_s_m), point.rate_mm_s, seen));
+    }
+    csv("what,which,x,y", rows.into_iter().map(Vec::from))
+}
+
+/// A calibration: its weights and curve, and what is left between them. Fails if it cannot be drawn.
+pub fn residuals(calibration: &balance::Calibration) -> anyhow::Result<Chart> {
+    let weighed = &calibration.weighed;
+    let end_n = weighed.last().map_or(6.0, |last| last.force_n.ceil());
+    let high_mv = weighed.iter().map(|w| w.level_mv).fold(0.0, f64::max);
+    let most_mn = weighed.iter().map(|w| 1e3 * (w.read_n - w.force_n).abs()).fold(10.0, f64::max).ceil();
+    let force = || Axis::even("force, N", 0.0, end_n);
+    let off = |w: &balance::Weighed| 1e3 * (w.read_n - w.force_n);
+    let sheet = Sheet::new(
+        "Calibration of a photoelastic head from known weights",
+        format!("Residuals {:.2} % of full scale at most.", calibration.worst_percent()),
+        2,
+        vec![
+            Panel::new(
+                "light against force",
+                force(),
+                Axis::even("mV", 0.0, (high_mv / 500.0).ceil() * 500.0),
+                vec![
+                    Series::new(
+                        "known weights",
+                        colour::VERMILLION,
+                        Mark::Crosses,
+                        weighed.iter().map(|w| (w.force_n, w.level_mv)),
+                    ),
+                    Series::new(
+                        "calibrated curve",
+                        colour::BLUE,
+                        Mark::Line,
+                        weighed.iter().map(|w| (w.read_n, w.level_mv)),
+                    ),
+                ],
+            ),
+            Panel::new(
+                "residuals",
+                force(),
+                Axis::even("read less true, mN", -most_mn, most_mn),
+                vec![Series::new(
+                    "known weights",
+                    colour::VERMILLION,
+                    Mark::Crosses,
+                    weighed.iter().map(|w| (w.force_n, off(w))),
+                )],
+            ),
+        ],
+    );
+    let rows = weighed
+        .iter()
+        .map(|w| [w.force_n, w.level_mv, w.read_n].map(|number| format!("{number:.4}")).to_vec());
+    let csv = csv("force_n,level_mv,read_n", rows)?;
+    Chart::new("photoelastic-calibration", &sheet, csv)
+}

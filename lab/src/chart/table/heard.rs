@@ -1,0 +1,350 @@
+//! What every row of the table hears: the same fingertips, scenes and noise, sample by sample, while nobody's reflex moves the hand.
+
+use anyhow::Context;
+use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
+use tenax_hal_shim::channel::{ARRAY_COUNT, FRAMES_PER_SLOW_FRAME, frames};
+use tenax_hal_shim::detector::{DetectorId, DetectorSet};
+use tenax_hal_shim::frame::Frame;
+use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::wire::Down;
+use tenax_logic::array::{Features, Preprocessor, Reading};
+use tenax_logic::config::Config;
+use tenax_logic::detectors::{Detector, Detectors, Sensed};
+use tenax_logic::hebbian::HebbianDetector;
+use tenax_logic::journal::Journal;
+use tenax_logic::samples::LastSamples;
+use tenax_logic::senses::Senses;
+use tenax_scene::plant::Plant;
+use tenax_scene::{SceneFile, Seeds, World};
+
+use crate::dataset::operator::Operator;
+use crate::dataset::session::{self, Session, Sizes};
+use crate::dataset::story::Story;
+use crate::learn::bench::Bench;
+use crate::learn::control::Control;
+use crate::learn::finger::Finger;
+use crate::learn::trial::Setup;
+use crate::learn::{LESSONS, holding};
+use tenax_sim::report::fate;
+use tenax_sim::scorer::{SlipSpan, Verdict};
+
+/// When the operator of a pick lets go, s: what slides after that is meant.
+const LETS_GO_S: f64 = 7.3;
+/// The empty hand's forces are zeroed at this frame.
+const ZEROED_AT: u32 = frames(100);
+
+/// What of the network's learning is changed, for rows that say what it is worth.
+pub const CONTROLS: [Control; 4] =
+    [Control::EqualWeights, Control::ShuffledWeights, Control::ShearAlone, Control::Untaught];
+
+/// What a row judges by, in one frame (0.5 ms).
+pub struct Felt<'a> {
+    /// As it was sampled.
+    pub frame: &'a Frame,
+    /// As the image conditions it.
+    pub sensed: &'a Sensed<'a>,
+    /// The detectors of the image that say slip or warn of it, and are believed.
+    pub believed: DetectorSet,
+    /// What the network with something of its learning changed says, in the order of [`CONTROLS`].
+    pub controls: [bool; CONTROLS.len()],
+    /// The array's features, in the frames that bring new ones.
+    pub features: Option<&'a Features>,
+}
+
+/// Something that says slip, a row of the table. Its state is of one recording.
+pub trait Judge {
+    /// Takes a frame: whether it says slip now.
+    fn hear(&mut self, felt: &Felt<'_>) -> bool;
+}
+
+/// What a recording is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Balls are poured into a box until it slips, again and again; a box is picked up, too loosely as often as not.
+    Slips,
+    /// A minute of firm holding.
+    Quiet,
+    /// The same minute with knocks, swings and runs of the motor.
+    Disturbed,
+}
+
+/// What was heard of one recording.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Heard {
+    /// Whose: recordings of one fingertip are not independent of each other.
+    pub finger: u64,
+    pub kind: Kind,
+    /// What is scored: from when to when, s.
+    pub span_s: (f64, f64),
+    pub slips: Vec<SlipSpan>,
+    pub said: Vec<Vec<Verdict>>,
+}
+
+/// How much is recorded of each fingertip.
+#[derive(Clone, Copy, Debug)]
+pub struct Plan {
+    /// Of everything that is drawn.
+    pub seed: u64,
+    /// Fingertips with each of four kinds of surface.
+    pub fingers: usize,
+    pub pours: u64,
+    pub picks: u64,
+    /// Minutes of quiet, and as many with disturbances.
+    pub minutes: u64,
+}
+
+/// A fingertip: its films, gauges and array, what it holds, and what a camera has taught its network.
+pub struct Fingertip {
+    number: u64,
+    finger: Finger,
+    session: Session,
+    /// What was learned, and then each control of it. Empty if nothing was asked of the network.
+    taught: Vec<Vec<u8>>,
+}
+
+impl Plan {
+    /// The fingertips, each taught in its own lessons if the network is asked. Friction, films, gauges and array are drawn over about a
+    /// decade each. Fails if a lesson cannot be made.
+    pub fn fingertip(&self, n: usize, taught: bool) -> anyhow::Result<Fingertip> {
+        let sizes = Sizes { train: self.fingers, validation: 0, test: 0 };
+        let mut session = session::sessions(self.seed, sizes).swap_remove(n);
+        let number = self.seed.wrapping_mul(1_000).wrapping_add(n as u64);
+        let finger = Finger::random(number);
+        [session.mu_s, session.mu_d] = finger.friction();
+        let mut bench = Bench::default();
+        for lesson in 0..LESSONS * u64::from(taught) {
+            bench.trial(Setup::new(&finger, number.wrapping_mul(100) + lesson, true)?);
+        }
+        let mut kept = Vec::new();
+        if taught {
+            kept.push(bench.snapshot()?);
+            for control in CONTROLS {
+                kept.push(bench.controlled(Some(control))?.snapshot()?);
+            }
+        }
+        Ok(Fingertip { number, finger, session, taught: kept })
+    }
+
+    pub const fn count(&self) -> usize {
+        4 * self.fingers
+    }
+
+    /// How long all of it lasts, lessons included, virtual s.
+    pub fn recordings(&self) -> u64 {
+        self.pours + self.picks + 2 * self.minutes
+    }
+}
+
+impl Fingertip {
+    /// Its recordings, one after the other; `rows` gives fresh judges for each. `steps` hears of each step of the array: its features,
+    /// and whether the object slides. Fails if a scene cannot be made.
+    pub fn record(
+        &self,
+        plan: &Plan,
+        rows: &dyn Fn() -> Vec<Box<dyn Judge>>,
+        steps: &mut dyn FnMut(&Features, bool),
+        done: &mut dyn FnMut(),
+    ) -> anyhow::Result<Vec<Heard>> {
+        let mut all = Vec::new();
+        let stories = [(Story::Pour, plan.pours), (Story::Pick, plan.picks)];
+        for (story, n) in stories.into_iter().flat_map(|(story, count)| (0..count).map(move |n| (story, n))) {
+            let seed = self.number.wrapping_mul(1_000) + 100 * story as u64 + n;
+            let session = Session { seed, ..self.session.clone() };
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let scene = story.edited_in(&session, &mut rng, |scene| self.finger.put_on(scene))?;
+            let mut operator = Operator::new(story, &session, ChaCha8Rng::seed_from_u64(rng.random()));
+            let mut drive = |world: &World, slips: bool, _: Vec<Down>| operator.drive(world, slips);
+            let end_s = if story == Story::Pick { LETS_GO_S } else { scene.duration_s() };
+            all.push(self.hear(&scene, seed, Kind::Slips, (0.0, end_s), &mut drive, rows(), steps)?);
+            done();
+        }
+        let kinds = [Kind::Quiet, Kind::Disturbed];
+        for (n, kind) in (0..plan.minutes).flat_map(|n| kinds.map(|kind| (n, kind))) {
+            let seed = self.number.wrapping_mul(1_000) + 900 + n;
+            let scene = holding::minute(&self.with_array(), seed, kind == Kind::Disturbed)?;
+            let mut line = Line::default();
+            let mut drive = |_: &World, _: bool, commands: Vec<Down>| line.drive(&commands);
+            let span_s = (holding::FROM_S, scene.duration_s());
+            all.push(self.hear(&scene, seed, kind, span_s, &mut drive, rows(), steps)?);
+            done();
+        }
+        Ok(all)
+    }
+
+    /// The finger, with the session's array in its scenes.
+    fn with_array(&self) -> Finger {
+        let own = &self.session;
+        let array = [
+            ("array.mv_per_n", own.mv_per_n),
+            ("array.spread", own.spread),
+            ("array.noise_mv", own.noise_mv),
+            ("array.uneven", own.uneven),
+            ("array.renews_um", own.renews_um),
+            ("array.slip_part", own.slip_part),
+            ("array.rim_part", own.rim_part),
+            ("array.knock_mn_per_mv", own.knock_mn_per_mv),
+            ("array.motor_part", own.motor_part),
+            ("array.tilt", own.tilt),
+        ];
+        array.into_iter().fold(self.finger.clone(), Finger::with)
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "one recording: its world, its hand, its listeners")]
+    fn hear(
+        &self,
+        scene: &SceneFile,
+        seed: u64,
+        kind: Kind,
+        span_s: (f64, f64),
+        hand: &mut dyn FnMut(&World, bool, Vec<Down>) -> MotorDrive,
+        mut judges: Vec<Box<dyn Judge>>,
+        steps: &mut dyn FnMut(&Features, bool),
+    ) -> anyhow::Result<Heard> {
+        let mut world = World::seeded(scene, Seeds { making: self.finger.making, noise: seed });
+        let mut ears = Ears::new(&self.taught)?;
+        let mut said: Vec<Vec<Verdict>> = vec![Vec::new(); judges.len()];
+        let (mut drive, mut slid) = (MotorDrive::Coast, 0);
+        for sequence in 0.. {
+            if world.now_s() >= span_s.1 || world.truth().dropped {
+                break;
+            }
+            let (frame, commands) = world.frame(sequence, drive);
+            slid += u32::from(world.slipping());
+            let t_s = world.now_s();
+            ears.take(&frame, drive, &mut |felt| {
+                for (judge, said) in judges.iter_mut().zip(&mut said) {
+                    Verdict::go_on(said, t_s, judge.hear(felt));
+                }
+                if let Some(features) = felt.features {
+                    steps(features, 2 * slid > u32::from(FRAMES_PER_SLOW_FRAME));
+                    slid = 0;
+                }
+            });
+            drive = hand(&world, world.slipping(), commands);
+            // An operator looks at the trace; of a minute without one it would only fill the memory.
+            if kind != Kind::Slips {
+                drop(world.take_trace());
+            }
+        }
+        let span_s = (span_s.0, world.now_s());
+        Ok(Heard { finger: self.number, kind, span_s, slips: fate::spans(world.truth()), said })
+    }
+}
+
+/// Drives as the scene's commands on the line ask.
+#[derive(Default)]
+struct Line {
+    drive: Option<MotorDrive>,
+    left: u32,
+}
+
+impl Line {
+    fn drive(&mut self, commands: &[Down]) -> MotorDrive {
+        for command in commands {
+            if let Down::Drive { drive, hold_ms } = command {
+                (self.drive, self.left) = (Some(*drive), frames(u32::from(*hold_ms)));
+            }
+        }
+        self.left = self.left.saturating_sub(1);
+        self.drive.filter(|_| self.left > 0).unwrap_or(MotorDrive::Coast)
+    }
+}
+
+/// The image's senses and detectors, without its reflex: it would change what the others hear.
+struct Ears {
+    config: Config,
+    senses: Senses,
+    samples: LastSamples,
+    detectors: Detectors,
+    controls: Vec<(HebbianDetector, bool)>,
+    journal: Journal,
+    taxels: Reading,
+    features: Preprocessor,
+}
+
+impl Ears {
+    fn new(taught: &[Vec<u8>]) -> anyhow::Result<Self> {
+        let mut detectors = Detectors::default();
+        let damaged = "a snapshot that is damaged";
+        let mut controls = Vec::new();
+        if let [learned, changed @ ..] = taught {
+            detectors.hebbian.restore(learned).ok().context(damaged)?;
+            for own in changed {
+                let mut network = HebbianDetector::default();
+                network.restore(own).ok().context(damaged)?;
+                controls.push((network, false));
+            }
+        }
+        let (config, senses, samples, journal, taxels, features) = Default::default();
+        Ok(Self { config, senses, samples, detectors, controls, journal, taxels, features })
+    }
+
+    fn take(&mut self, frame: &Frame, drive: MotorDrive, hear: &mut dyn FnMut(&Felt<'_>)) {
+        let Self { config, senses, samples, detectors, controls, journal, taxels, features } = self;
+        if frame.sequence == ZEROED_AT {
+            // Refused while something is held, and then it follows by itself.
+            let _is_zeroed = senses.zero();
+        }
+        journal.begin(frame);
+        senses.process(config, frame, journal);
+        samples.record(frame);
+        let duty = match drive {
+            MotorDrive::Close(duty) | MotorDrive::Open(duty) => duty.as_per_mille(),
+            MotorDrive::Coast => 0,
+        };
+        let sensed = senses.sensed(config, frame, duty, false);
+        detectors.step(config, &sensed);
+        for (network, says) in &mut *controls {
+            if let Some(said) = network.step(&config.hebbian, &sensed) {
+                *says = said.slip || said.incipient;
+            }
+        }
+        let slot = usize::from(frame.slot());
+        if let Some(taxel) = taxels.get_mut(slot) {
+            *taxel = Some(frame.switch_b);
+        }
+        let new = if slot == ARRAY_COUNT { features.push(taxels) } else { None };
+        let credible = detectors.credible();
+        let believed = detectors.slip().or(detectors.incipient()).and(credible);
+        let believes = credible.contains(DetectorId::Hebbian);
+        let says = |n: usize| believes && controls.get(n).is_some_and(|(_, says)| *says);
+        let controls = std::array::from_fn(says);
+        hear(&Felt { frame, sensed: &sensed, believed, controls, features: new });
+        senses.driven(drive, false, false, 1);
+        if frame.ends_slow_frame() {
+            senses.think(config, samples, journal);
+            let _told = journal.take_slow();
+        }
+        while journal.next_event().is_some() {}
+    }
+}
+
+/// The last so many frames of a pour of the table's kind.
+#[cfg(feature = "emulator")]
+pub fn sampled(count: usize) -> anyhow::Result<Vec<Frame>> {
+    use std::sync::{Arc, Mutex, PoisonError};
+
+    struct Keeps(Arc<Mutex<Vec<Frame>>>);
+    impl Judge for Keeps {
+        fn hear(&mut self, felt: &Felt<'_>) -> bool {
+            self.0.lock().unwrap_or_else(PoisonError::into_inner).push(*felt.frame);
+            false
+        }
+    }
+    let plan = Plan { seed: 25_001, fingers: 1, pours: 1, picks: 0, minutes: 0 };
+    let kept = Arc::new(Mutex::new(Vec::new()));
+    let rows = || -> Vec<Box<dyn Judge>> { vec![Box::new(Keeps(Arc::clone(&kept)))] };
+    plan.fingertip(0, false)?.record(&plan, &rows, &mut |_, _| (), &mut || ())?;
+    let mut kept = std::mem::take(&mut *kept.lock().unwrap_or_else(PoisonError::into_inner));
+    // From the beginning of a cycle on: the image counts frames from 0.
+    let cycle = usize::from(FRAMES_PER_SLOW_FRAME);
+    let from = kept.len().saturating_sub(count) / cycle * cycle;
+    Ok(kept.split_off(from))
+}
+
+/// The array's readings in frames that begin with a cycle.
+#[cfg(feature = "emulator")]
+pub fn readings(frames: &[Frame]) -> Vec<Reading> {
+    let cycles = frames.chunks_exact(usize::from(FRAMES_PER_SLOW_FRAME));
+    cycles.map(|cycle| std::array::from_fn(|n| Some(cycle[n].switch_b))).collect()
+}

@@ -1,0 +1,58 @@
+//! The wearer comes first: in every scene, and against random hands.
+
+use std::process::Command;
+
+use tenax_scene::builtin;
+
+use super::Bar;
+use tenax_sim::live::Use;
+use tenax_sim::session::{self, Board};
+
+/// Two slow frames, ms.
+const TWO_SLOW_FRAMES_MS: f64 = 25.0;
+
+/// The bars over every scene of the repository, on the host's logic.
+pub fn scenes() -> anyhow::Result<Vec<Bar>> {
+    let (mut while_active, mut elsewhere, mut slowest_ms, mut opened) = (0, 0, 0f64, 0);
+    for (name, _) in builtin() {
+        let outcome =
+            session::scene_alone(&session::load_scene(name)?, 1, &Board::Host, Use::default(), &mut ())?;
+        let wearer = &outcome.report.wearer;
+        while_active += wearer.reflex_while_active;
+        elsewhere += wearer.reflex_ticks - wearer.reflex_while_active;
+        if let Some(latency_ms) = wearer.open_latency_ms {
+            slowest_ms = slowest_ms.max(latency_ms);
+            opened += 1;
+        }
+    }
+    let count = builtin().len();
+    Ok(vec![
+        Bar::new(
+            "no reflex command while a myosensor is active, in every scene",
+            format!("{while_active} in {count} scenes, and {elsewhere} ticks of reflex while none is"),
+            while_active == 0 && elsewhere > 0,
+        ),
+        Bar::new(
+            "an open command takes effect within 2 slow frames (25 ms), in every scene",
+            format!("{slowest_ms:.1} ms at worst in {opened} scenes where the wearer opens"),
+            opened > 0 && slowest_ms <= TWO_SLOW_FRAMES_MS,
+        ),
+    ])
+}
+
+/// The contract against random hands: `host-tests/tests/wearer.rs` and `adversary.rs`, run by cargo.
+pub fn random(test: &mut Command) -> Bar {
+    const PROMISE: &str =
+        "1,000,000 random steps: reflex silent while active, open within 2 slow frames, no fault opens";
+    let output = match test.output() {
+        Ok(output) => output,
+        Err(error) => return Bar::skipped(PROMISE, format!("cargo cannot be started: {error}")),
+    };
+    let text = String::from_utf8_lossy(&output.stdout);
+    let result = text.lines().find_map(|line| line.strip_prefix("test result: "));
+    let figure = match result.and_then(|line| line.split(';').next()) {
+        Some(line) => format!("host-tests/tests/wearer.rs and adversary.rs: {line}"),
+        None => format!("the tests did not run: {}", String::from_utf8_lossy(&output.stderr).trim()),
+    };
+    Bar::new(PROMISE, figure, output.status.success() && result.is_some())
+}

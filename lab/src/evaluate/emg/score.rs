@@ -1,0 +1,162 @@
+//! What a hand said of a recording, counted as `baseline.py` of that data set counts, so that figures compare.
+
+use serde::Serialize;
+use tenax_logic::emg::decide::Wish;
+use tenax_frames::quantile::between_ranks;
+
+use super::recordings::{CLOSE, HZ, OPEN, Recording};
+
+/// What the hand says in a row.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::evaluate) struct Said {
+    pub wish: Wish,
+    /// The wish moves the hand at its speed, not gently and a little.
+    pub proven: bool,
+    pub doubted: bool,
+}
+
+/// Counts of one or more recordings.
+#[derive(Clone, Debug, Default)]
+pub(in crate::evaluate) struct Count {
+    rest_h: f64,
+    false_motions: u32,
+    /// Of closing and of opening: windows, those right, those the wrong way.
+    windows: [[u32; 3]; 2],
+    repetitions: u32,
+    missed: u32,
+    latencies_s: Vec<f64>,
+    /// The same to the wish that is proven.
+    full_s: Vec<f64>,
+    rows: usize,
+    doubted: usize,
+}
+
+impl Count {
+    /// Scores what was said, less the repetitions that were calibrated from.
+    pub fn add(&mut self, recording: &Recording, said: &[Said], skip: usize) {
+        self.rows += said.len();
+        self.doubted += said.iter().filter(|own| own.doubted).count();
+        for rows in recording.rests() {
+            self.rest_h += rows.len() as f64 / HZ / 3_600.0;
+            let mut before = Wish::Rest;
+            for &Said { wish, .. } in &said[rows] {
+                self.false_motions += u32::from(wish != before && wish != Wish::Rest);
+                before = wish;
+            }
+        }
+        let kinds = [(CLOSE, Wish::Close, Wish::Open), (OPEN, Wish::Open, Wish::Close)];
+        for (windows, (label, right, wrong)) in self.windows.iter_mut().zip(kinds) {
+            for rows in recording.contractions(label).into_iter().skip(skip) {
+                let mut from = rows.start + 40;
+                while from + 25 <= rows.end - 10 {
+                    let most =
+                        |wish: Wish| said[from..from + 25].iter().filter(|own| own.wish == wish).count() > 12;
+                    windows[0] += 1;
+                    windows[1] += u32::from(most(right));
+                    windows[2] += u32::from(most(wrong));
+                    from += 25;
+                }
+                self.repetitions += 1;
+                let begun = rows.start.saturating_sub(20);
+                let since = |n: usize| n as f64 / HZ - 0.2;
+                let said = &said[begun..rows.end];
+                match said.iter().position(|own| own.wish == right) {
+                    Some(n) => self.latencies_s.push(since(n)),
+                    None => self.missed += 1,
+                }
+                let full = said.iter().position(|own| own.wish == right && own.proven);
+                // Until the contraction is over, at least, if it never was.
+                self.full_s.push(since(full.unwrap_or(said.len())));
+            }
+        }
+    }
+
+    /// Several together.
+    pub fn sum<'a>(all: impl IntoIterator<Item = &'a Self>) -> Self {
+        let mut sum = Self::default();
+        for own in all {
+            sum.rest_h += own.rest_h;
+            sum.false_motions += own.false_motions;
+            for (windows, own) in sum.windows.as_flattened_mut().iter_mut().zip(own.windows.as_flattened()) {
+                *windows += own;
+            }
+            sum.repetitions += own.repetitions;
+            sum.missed += own.missed;
+            sum.latencies_s.extend(&own.latencies_s);
+            sum.full_s.extend(&own.full_s);
+            sum.rows += own.rows;
+            sum.doubted += own.doubted;
+        }
+        sum
+    }
+
+    pub fn score(&self) -> Option<Score> {
+        let part = |n: u32, of: u32| f64::from(n) / f64::from(of.max(1));
+        let [close, open] = self.windows;
+        (self.rows > 0).then(|| Score {
+            close_right: part(close[1], close[0]),
+            close_wrong_way: part(close[2], close[0]),
+            open_right: part(open[1], open[0]),
+            open_wrong_way: part(open[2], open[0]),
+            missed: part(self.missed, self.repetitions),
+            false_per_hour: f64::from(self.false_motions) / self.rest_h.max(1e-9),
+            latency_s_p50: quantile(&self.latencies_s, 0.5),
+            latency_s_p95: quantile(&self.latencies_s, 0.95),
+            full_s_p50: quantile(&self.full_s, 0.5),
+            full_s_p95: quantile(&self.full_s, 0.95),
+            doubted_part: self.doubted as f64 / self.rows as f64,
+        })
+    }
+}
+
+/// How well the wearer's wish was understood.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Score {
+    /// Windows of 0.25 s of held closing that close.
+    pub close_right: f64,
+    /// And that open.
+    pub close_wrong_way: f64,
+    /// Windows of held opening that open.
+    pub open_right: f64,
+    /// And that close.
+    pub open_wrong_way: f64,
+    /// Repetitions that were never answered.
+    pub missed: f64,
+    /// Motions that began in an hour of rest.
+    pub false_per_hour: f64,
+    /// From the label's start to the wish, s: negative where the wearer was earlier.
+    pub latency_s_p50: f64,
+    /// The same of the slowest 5 %.
+    pub latency_s_p95: f64,
+    /// From the label's start until the wish moves the hand at its speed, s: until then it moves gently and by little.
+    pub full_s_p50: f64,
+    /// The same of the slowest 5 %.
+    pub full_s_p95: f64,
+    /// Part of the time in which a sensor was doubted.
+    pub doubted_part: f64,
+}
+
+impl Score {
+    /// The quantile of each number by itself.
+    pub(super) fn quantile(scores: &[Self], part: f64) -> Option<Self> {
+        let of = |value: fn(&Self) -> f64| between_ranks(scores.iter().map(value), part);
+        Some(Self {
+            close_right: of(|score| score.close_right)?,
+            close_wrong_way: of(|score| score.close_wrong_way)?,
+            open_right: of(|score| score.open_right)?,
+            open_wrong_way: of(|score| score.open_wrong_way)?,
+            missed: of(|score| score.missed)?,
+            false_per_hour: of(|score| score.false_per_hour)?,
+            latency_s_p50: of(|score| score.latency_s_p50)?,
+            latency_s_p95: of(|score| score.latency_s_p95)?,
+            full_s_p50: of(|score| score.full_s_p50)?,
+            full_s_p95: of(|score| score.full_s_p95)?,
+            doubted_part: of(|score| score.doubted_part)?,
+        })
+    }
+}
+
+/// 0 of nothing.
+pub(super) fn quantile(values: &[f64], part: f64) -> f64 {
+    between_ranks(values.iter().copied(), part).unwrap_or_default()
+}

@@ -1,0 +1,283 @@
+//! `tenax learn`: a fingertip teaches itself slip from a camera, and shows what that is worth (Tada 2006, section III).
+//!
+//! One [`finger`] goes through lessons and held-out [`trial`]s: on the host ([`bench`]), or as one [`chain`] on the
+//! emulated board. There most commands are taken a tick later, for the line needs more time than the end of a frame leaves:
+//! the hand moves half a millisecond later, and no code is quite what it would have been. So the two are compared by giving
+//! the host's logic the image's own codes, and each command in the tick in which the image took it ([`Agreement`]).
+//!
+//! What the same lessons teach on the host is then tried there: in an hour of [`holding`], in a lift and a pour with the
+//! [`reflex`], and on fingers made by chance.
+
+pub mod bench;
+pub mod chain;
+pub mod control;
+pub mod figures;
+pub mod finger;
+pub mod holding;
+pub mod reflex;
+pub mod report;
+pub mod trial;
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use rayon::prelude::*;
+
+use bench::Bench;
+use control::Control;
+use finger::Finger;
+use holding::Holding;
+use reflex::Three;
+use report::{Safe, Score};
+use tenax_sim::board::agreement::Agreement;
+use tenax_sim::scorer::Verdict;
+use tenax_sim::session::Board;
+use trial::{Setup, Trial, Word};
+
+/// Trials of a lesson (Tada 2006, section III-C).
+pub const LESSONS: u64 = 7;
+/// How long a trial is that ends with the slip up, s from the lift on.
+const SLIP_UP_S: f64 = 1.5;
+/// Lifts of each finger made by chance with more force than the object needs.
+const SAFE_LIFTS: u64 = 5;
+/// Held-out trials of each finger made by chance.
+const TRIALS_OF_OTHERS: u64 = 10;
+
+/// What is tried.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Seed of everything.
+    pub seed: u64,
+    pub trials: u64,
+    /// Minutes of holding.
+    pub minutes: u64,
+    /// Lifts, and pours, with the reflex.
+    pub lifts: u64,
+    /// Fingers made by chance.
+    pub fingertips: u64,
+    /// Whether their films lie in directions of their own, as the paper's do.
+    pub turned_films: bool,
+    /// Whether their controls are tried, too.
+    pub controls: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            seed: 1,
+            trials: 50,
+            // 3.1 h: at most one false alarm in three hours is asked for.
+            minutes: 200,
+            lifts: 20,
+            fingertips: 20,
+            turned_films: false,
+            controls: true,
+        }
+    }
+}
+
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    pub options: Options,
+    /// Who ran the trials.
+    pub board: &'static str,
+    /// Whether the board said what the host's logic says to the same codes and commands, tick for tick. None if the host
+    /// ran the trials.
+    pub agreement: Option<Agreement>,
+    /// A trial of the finger before it learned: the largest output, 128 would be 1.
+    pub untaught: u8,
+    pub lessons: Vec<Trial>,
+    pub trials: Vec<Trial>,
+    pub score: Score,
+    /// The score of the same trials with equal weights in place of learned ones, on the host.
+    pub equal: Score,
+    pub holding: Holding,
+    /// Lifts with the reflex.
+    pub lifts: Vec<Three>,
+    pub pours: Vec<Three>,
+    /// The other fingers.
+    pub others: Vec<Other>,
+    /// What the receptors felt in the last three lessons.
+    pub felt: Vec<figures::Felt>,
+}
+
+/// Told what is being done, and how much of it is over, 0 to 1.
+pub type Progress<'a> = &'a (dyn Fn(&str, f64) + Sync);
+
+/// Does all of it. Fails if a scene cannot be made or the board cannot be run.
+pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Result<Outcome> {
+    let finger = Finger::plain(options.seed);
+    let mut untaught = Bench::default();
+    let silent = untaught.trial(Setup::new(&finger, held_out(options.seed, 0), false)?);
+    let loudest = silent.outputs.iter().flatten().map(|output| output.unsigned_abs()).max();
+
+    let (learned, lessons, felt) = lessons_on_host(&finger, options, progress)?;
+    let equal = learned.controlled(Some(Control::EqualWeights))?;
+    let equal = Score::of(&trials_on_host(&finger, equal, options, progress)?);
+    let (trials, agreement) = if matches!(board, Board::Host) {
+        (trials_on_host(&finger, learned.clone(), options, progress)?, None)
+    } else {
+        let (trials, agreement) = on_board(&finger, options, board, progress)?;
+        (trials, Some(agreement))
+    };
+
+    let over = AtomicU64::new(0);
+    let holding = holding::hold(&finger, &learned, options.minutes, seed(options.seed, 3, 0), &|| {
+        let over = over.fetch_add(1, Ordering::Relaxed);
+        progress("holding", over as f64 / options.minutes as f64);
+    })?;
+    progress("lifting and pouring", 0.0);
+    let lifts = reflex::lifts(&finger, &learned, options.lifts, seed(options.seed, 4, 0))?;
+    let pours = reflex::pours(&finger, &learned, options.lifts, seed(options.seed, 5, 0))?;
+    let over = AtomicU64::new(0);
+    let others = (1..=options.fingertips).into_par_iter().map(|n| {
+        let score = other(options, n);
+        let over = over.fetch_add(1, Ordering::Relaxed);
+        progress("other fingers", over as f64 / options.fingertips as f64);
+        score
+    });
+    let others = others.collect::<anyhow::Result<Vec<Other>>>()?;
+    Ok(Outcome {
+        options: options.clone(),
+        board: board.name(),
+        agreement,
+        untaught: loudest.unwrap_or(0),
+        score: Score::of(&trials),
+        equal,
+        lessons,
+        trials,
+        holding,
+        lifts,
+        pours,
+        others,
+        felt,
+    })
+}
+
+/// A finger that has learned, on the host; its lessons, and what it felt in the last three.
+type Learned = (Bench, Vec<Trial>, Vec<figures::Felt>);
+
+fn lessons_on_host(finger: &Finger, options: &Options, progress: Progress) -> anyhow::Result<Learned> {
+    let mut bench = Bench::default();
+    let (mut lessons, mut felt) = (Vec::new(), Vec::new());
+    for n in 0..LESSONS {
+        let setup = Setup::new(finger, lesson(options.seed, n), true)?;
+        if n + 3 >= LESSONS {
+            let (trial, receptors) = figures::Felt::record(&mut bench, setup);
+            lessons.push(trial);
+            felt.push(receptors);
+        } else {
+            lessons.push(bench.trial(setup));
+        }
+        progress("learning", n as f64 / LESSONS as f64);
+    }
+    Ok((bench, lessons, felt))
+}
+
+fn trials_on_host(
+    finger: &Finger,
+    mut learned: Bench,
+    options: &Options,
+    progress: Progress,
+) -> anyhow::Result<Vec<Trial>> {
+    let mut trials = Vec::new();
+    for n in 0..options.trials {
+        trials.push(learned.trial(Setup::new(finger, held_out(options.seed, n), false)?));
+        progress("held-out trials", n as f64 / options.trials as f64);
+    }
+    Ok(trials)
+}
+
+/// Lessons and trials as one chain on a board: the trials, and whether the host's logic says the same all the way.
+fn on_board(
+    finger: &Finger,
+    options: &Options,
+    board: &Board,
+    progress: Progress,
+) -> anyhow::Result<(Vec<Trial>, Agreement)> {
+    let mut setups = Vec::new();
+    for n in 0..LESSONS {
+        setups.push(Setup::new(finger, lesson(options.seed, n), true)?);
+    }
+    for n in 0..options.trials {
+        setups.push(Setup::new(finger, held_out(options.seed, n), false)?);
+    }
+    let chain = chain::Chain::new(setups);
+    let all_s = tenax_scene::plant::Plant::duration_s(&chain);
+    let (run, chain) = board.run(chain, &mut |s| progress("on the emulated board", s / all_s))?;
+    let (agreement, host) = Agreement::with_host(&run);
+    Ok((chain.trials(&run, &host).split_off(LESSONS as usize), agreement))
+}
+
+/// A finger made by chance.
+#[derive(Clone, Debug, Default)]
+pub struct Other {
+    /// What sliding keeps of its static friction.
+    pub ratio: f64,
+    /// Its held-out trials.
+    pub score: Score,
+    /// The same, each from what the lessons left and until the slip up: as the controls are tried.
+    pub apart: Score,
+    /// The same of each control, in the order of [`Control::ALL`].
+    pub controls: [Score; Control::ALL.len()],
+    /// Lifts with more force than the object needs.
+    pub safe: Safe,
+}
+
+/// The same lessons, and some held-out trials.
+fn other(options: &Options, n: u64) -> anyhow::Result<Other> {
+    let own = seed(options.seed, 6, n);
+    let mut finger = Finger::random(own);
+    if options.turned_films {
+        finger = finger.with(("pvdf.film_directions", 1.0));
+    }
+    let mut bench = Bench::default();
+    for n in 0..LESSONS {
+        bench.trial(Setup::new(&finger, lesson(own, n), true)?);
+    }
+    let apart = |bench: &Bench| -> anyhow::Result<Score> {
+        let mut trials = Vec::new();
+        for n in 0..TRIALS_OF_OTHERS {
+            // Each from the end of the lessons: a trial that is cut short is no beginning for the next.
+            let setup = Setup::new(&finger, held_out(own, n), false)?;
+            trials.push(bench.clone().trial_for(SLIP_UP_S, setup));
+        }
+        Ok(Score::of(&trials))
+    };
+    let mut controls: [Score; Control::ALL.len()] = Default::default();
+    for (score, control) in controls.iter_mut().zip(Control::ALL).filter(|_| options.controls) {
+        *score = apart(&bench.controlled(Some(control))?)?;
+    }
+    let learned_apart = if options.controls { apart(&bench.controlled(None)?)? } else { Score::default() };
+    let mut safe = Safe::default();
+    for n in 0..SAFE_LIFTS {
+        let setup = Setup::held(&finger, seed(own, 7, n))?;
+        let trial = bench.clone().trial_for(SLIP_UP_S, setup);
+        // One that slips all the same is none of these.
+        if trial.slip_up().is_none() {
+            safe.lifts += 1;
+            let said =
+                |word| trial.verdicts(word).iter().any(|verdict: &Verdict| verdict.from_s > trial.lift_s);
+            safe.said += u64::from(said(Word::Any));
+            safe.slip += u64::from(said(Word::Slip));
+        }
+    }
+    let mut trials = Vec::new();
+    for n in 0..TRIALS_OF_OTHERS {
+        trials.push(bench.trial(Setup::new(&finger, held_out(own, n), false)?));
+    }
+    let score = Score::of(&trials);
+    Ok(Other { ratio: finger.ratio(), score, apart: learned_apart, controls, safe })
+}
+
+fn lesson(all: u64, n: u64) -> u64 {
+    seed(all, 1, n)
+}
+
+fn held_out(all: u64, n: u64) -> u64 {
+    seed(all, 2, n)
+}
+
+/// Room for a million of each.
+const fn seed(all: u64, what: u64, n: u64) -> u64 {
+    all.wrapping_mul(100).wrapping_add(what).wrapping_mul(1_000_000).wrapping_add(n)
+}

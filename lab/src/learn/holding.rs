@@ -1,0 +1,166 @@
+//! Holding: minutes in which nothing slips, and much else happens.
+
+use std::ops::Add;
+
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+use rayon::prelude::*;
+use tenax_scene::{SceneFile, Seeds, World};
+
+use super::bench::{Bench, Judge};
+use super::finger::{Finger, edited};
+use super::trial::{Trial, Word};
+use tenax_sim::report::fate;
+use tenax_sim::scorer::{Card, Doing, Stretch};
+
+const SCENE: &str = "hold";
+/// The block is in the air and the hand still, s.
+pub const FROM_S: f64 = 4.0;
+/// What happens in a minute, and how often.
+const KNOCKS: u32 = 6;
+const SWINGS: u32 = 2;
+const RUNS: u32 = 2;
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Holding {
+    /// How long nothing slipped, h.
+    pub hours: f64,
+    /// False alarms of slip, or of a warning.
+    pub any: False,
+    pub slip: False,
+    pub warning: False,
+    /// Slips that were true: none is meant here.
+    pub slips: u32,
+}
+
+/// False alarms of one kind of word.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct False {
+    pub count: u32,
+    /// Those of them in micro slip that came to nothing: right about the contact, wrong about the object.
+    pub in_micro_slip: u32,
+}
+
+impl False {
+    fn of(word: Word, trial: &Trial, held: Stretch) -> Self {
+        let alarms = Card::of(&fate::spans(&trial.truth), &trial.verdicts(word), &[held]).false_alarms;
+        Self { count: alarms.count as u32, in_micro_slip: alarms.in_micro_slip as u32 }
+    }
+}
+
+impl Add for False {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { count: self.count + other.count, in_micro_slip: self.in_micro_slip + other.in_micro_slip }
+    }
+}
+
+impl Holding {
+    pub fn per_hour(&self, alarms: False) -> f64 {
+        if self.hours > 0.0 { f64::from(alarms.count) / self.hours } else { 0.0 }
+    }
+}
+
+/// So many minutes with this fingertip, each by itself. `done` is told when one is over. Fails if a scene cannot be made.
+pub fn hold(
+    finger: &Finger,
+    learned: &Bench,
+    minutes: u64,
+    seed: u64,
+    done: &(dyn Fn() + Sync),
+) -> anyhow::Result<Holding> {
+    let all = (0..minutes).into_par_iter().map(|n| {
+        let minute = one(finger, learned, seed + n);
+        done();
+        minute
+    });
+    all.try_reduce(Holding::default, |a, b| {
+        Ok(Holding {
+            hours: a.hours + b.hours,
+            any: a.any + b.any,
+            slip: a.slip + b.slip,
+            warning: a.warning + b.warning,
+            slips: a.slips + b.slips,
+        })
+    })
+}
+
+fn one(finger: &Finger, learned: &Bench, seed: u64) -> anyhow::Result<Holding> {
+    let scene = minute(finger, seed, true)?;
+    let mut bench = learned.clone();
+    let mut trial = Trial::default();
+    let world = World::seeded(&scene, Seeds { making: finger.making, noise: seed });
+    let world = bench.run(world, Judge::Touch, &mut |n, slow, bench| trial.hear(n, slow, bench.said()));
+    trial.end(world.truth().clone());
+    let held = Stretch { from_s: FROM_S, to_s: scene.duration_s(), doing: Doing::Hold };
+    let false_of = |word| False::of(word, &trial, held);
+    let slips = &trial.truth.slips;
+    Ok(Holding {
+        hours: (scene.duration_s() - FROM_S) / 3_600.0,
+        any: false_of(Word::Any),
+        slip: false_of(Word::Slip),
+        warning: false_of(Word::Warning),
+        slips: slips.iter().filter(|slip| slip.macro_onset_s > FROM_S).count() as u32,
+    })
+}
+
+/// A minute by chance; without disturbances nothing happens in it. Fails if the scene cannot be made.
+pub fn minute(finger: &Finger, seed: u64, disturbed: bool) -> anyhow::Result<SceneFile> {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let mut between = |low: f64, high: f64| rng.random_range(low..high);
+    // One after the other, so that no two are on top of each other.
+    let count = KNOCKS + SWINGS + RUNS;
+    let mut places: Vec<u32> = (0..count).collect();
+    for n in (1..places.len()).rev() {
+        places.swap(n, (between(0.0, 1.0) * (n + 1) as f64) as usize);
+    }
+    let slot_s = (59.0 - FROM_S - 1.0) / f64::from(count);
+    let at_s = |n: u32, within: f64| FROM_S + 1.0 + slot_s * (f64::from(places[n as usize]) + within);
+    let mut knocks = Vec::new();
+    for n in 0..KNOCKS {
+        knocks.push(table(&[
+            ("at_s", at_s(n, between(0.0, 0.5))),
+            ("peak_mv", 2.0 * (between(0.0, 40.0_f64.ln())).exp()),
+            // Frames and tools ring from 50 Hz to 2 kHz for 1 to 30 ms; where it comes from decides which films hear it.
+            ("ring_hz", between(50.0_f64.ln(), 2_000.0_f64.ln()).exp()),
+            ("decay_ms", between(0.0, 30.0_f64.ln()).exp()),
+            ("uneven", between(0.0, 1.0)),
+        ]));
+    }
+    let mut swings = Vec::new();
+    for n in KNOCKS..KNOCKS + SWINGS {
+        let mut swing = table(&[
+            ("at_s", at_s(n, 0.0)),
+            ("rate_hz", between(0.8, 1.5)),
+            ("peak_m_s2", between(1.0, 3.0)),
+        ]);
+        swing.insert("cycles".to_owned(), (between(1.0, 4.0) as i64).into());
+        swings.push(swing);
+    }
+    let mut runs = Vec::new();
+    for n in KNOCKS + SWINGS..count {
+        let mut run = table(&[("at_s", at_s(n, between(0.0, 0.5))), ("for_s", between(0.02, 0.1))]);
+        run.insert("kind".to_owned(), "close".into());
+        run.insert("duty_permille".to_owned(), (between(100.0, 300.0) as i64).into());
+        runs.push(run);
+    }
+    finger.edited_scene(
+        SCENE,
+        seed,
+        &[("command.grip.for_s", (2.0 + 16.7 * finger.force()) / 24.0)],
+        |scene| {
+            edited(scene, "knock", if disturbed { knocks } else { Vec::new() });
+            edited(scene, "swing", if disturbed { swings } else { Vec::new() });
+            let commands = scene.get_mut("command").and_then(toml::Value::as_array_mut);
+            if let Some(commands) = commands {
+                commands.truncate(2);
+                commands.extend(runs.into_iter().filter(|_| disturbed).map(Into::into));
+            }
+        },
+    )
+}
+
+fn table(numbers: &[(&str, f64)]) -> toml::Table {
+    numbers.iter().map(|(key, value)| ((*key).to_owned(), (*value).into())).collect()
+}

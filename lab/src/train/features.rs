@@ -1,0 +1,190 @@
+//! What the network sees of a recording: the firmware's own integers.
+
+use tenax_sim::labelled::{Part, Recording};
+use tenax_sim::scorer::Doing;
+use tenax_logic::array::logarithm::Knee;
+use tenax_logic::array::past::Past;
+use tenax_logic::array::spectrum::SlidingSpectrum;
+use tenax_logic::array::structure::{self, Structure};
+use tenax_logic::array::{
+    BINS, COVARIANCES, ELEMENTS, FEATURES, PAPER_FEATURES, PreprocessorConfig, SPECTRUM_WINDOW,
+};
+
+/// What features are made with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Recipe {
+    /// A difference is to the reading so many slow frames before (equation 1: 1).
+    pub lag: usize,
+    /// Differences in the covariance (section 4.2: 10).
+    pub window: usize,
+    /// Sums in the spectrum (section 4.3: 40), or 20 or 10, which leave the upper bins 0.
+    pub spectrum: usize,
+    /// Covariance below which a feature is straight, samples^2.
+    pub covariance_knee: u32,
+    /// The same for a bin's power.
+    pub spectrum_knee: u32,
+    /// The same for a frame of a structure function.
+    pub structure_knee: u32,
+    /// Whether only the paper's 76 are made: the structure functions are 0.
+    pub paper_only: bool,
+}
+
+impl Recipe {
+    /// The firmware's.
+    pub const FIRMWARE: Self = Self {
+        lag: 1,
+        window: 10,
+        spectrum: SPECTRUM_WINDOW,
+        covariance_knee: PreprocessorConfig::DEFAULT.covariance_knee,
+        spectrum_knee: PreprocessorConfig::DEFAULT.spectrum_knee,
+        structure_knee: PreprocessorConfig::DEFAULT.structure_knee,
+        paper_only: false,
+    };
+
+    /// Readings before the first features.
+    pub fn ready_after(&self) -> usize {
+        (self.lag + self.window).max(self.spectrum).max(structure::READY_AFTER)
+    }
+
+    /// Differences are cut at this, so that the window's sum of products fits in an `i32`: a power of two.
+    fn d_max(&self) -> i32 {
+        let most = (f64::from(i32::MAX) / self.window as f64).sqrt();
+        1 << (most as u32).ilog2()
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sequence {
+    pub name: String,
+    pub session: String,
+    pub material: String,
+    /// What it is for, if its file says so.
+    pub part: Option<Part>,
+    /// What was done in it.
+    pub doing: Doing,
+    /// Features of each step from the one on with which the windows are full.
+    pub features: Vec<[i16; FEATURES]>,
+    /// Whether it slipped in that step.
+    pub slips: Vec<bool>,
+}
+
+/// Equations 1 to 4, the transform and the structure functions, as the firmware computes them, over a whole recording.
+///
+/// With a lag of 1 and a window of 10 it is what [`Preprocessor`](tenax_logic::array::Preprocessor) gives, bit for bit.
+pub fn sequence(recording: &Recording, recipe: &Recipe) -> Sequence {
+    let knees = (Knee::at(recipe.covariance_knee), Knee::at(recipe.spectrum_knee));
+    let structure_knees = structure::knees(recipe.structure_knee);
+    let (mut past, mut structure) = (Past::default(), Structure::default());
+    let mut spectrum = Spectrum::of(recipe.spectrum);
+    let mut sum = 0;
+    let d_max = recipe.d_max();
+    let mut differences = Vec::new();
+    let mut covariance = [0i32; COVARIANCES];
+    let (mut features, mut slips) = (Vec::new(), Vec::new());
+    for (n, step) in recording.steps.iter().enumerate() {
+        sum += past.push(&step.samples.map(Some)).change;
+        spectrum.push(sum);
+        structure.push(&past);
+        differences.push(past.changes(recipe.lag).of.map(|change| change.clamp(-d_max, d_max - 1)));
+        let new = differences[n];
+        let old = n.checked_sub(recipe.window).map_or([0; ELEMENTS], |n| differences[n]);
+        let mut entries = covariance.iter_mut();
+        for row in 0..ELEMENTS {
+            for other in row..ELEMENTS {
+                if let Some(entry) = entries.next() {
+                    *entry += new[row] * new[other] - old[row] * old[other];
+                }
+            }
+        }
+        if n + 1 < recipe.ready_after() {
+            continue;
+        }
+        let mut row = [0; FEATURES];
+        let (paper, structures) = row.split_at_mut(PAPER_FEATURES);
+        let (covariances, bins) = paper.split_at_mut(COVARIANCES);
+        for (feature, &entry) in covariances.iter_mut().zip(&covariance) {
+            *feature = knees.0.signed(entry);
+        }
+        for (feature, power) in bins.iter_mut().zip(spectrum.powers()) {
+            *feature = knees.1.of(power);
+        }
+        if !recipe.paper_only {
+            structure.compress(&structure_knees, structures);
+        }
+        features.push(row);
+        slips.push(step.slip);
+    }
+    Sequence {
+        name: recording.name.clone(),
+        session: recording.session.clone(),
+        material: recording.material.clone(),
+        part: recording.part,
+        doing: recording.doing,
+        features,
+        slips,
+    }
+}
+
+/// A transform of one of the firmware's lengths.
+enum Spectrum {
+    Ten(SlidingSpectrum<10>),
+    Twenty(SlidingSpectrum<20>),
+    Forty(SlidingSpectrum<SPECTRUM_WINDOW>),
+}
+
+impl Spectrum {
+    fn of(sums: usize) -> Self {
+        match sums {
+            10 => Self::Ten(SlidingSpectrum::default()),
+            20 => Self::Twenty(SlidingSpectrum::default()),
+            _ => Self::Forty(SlidingSpectrum::default()),
+        }
+    }
+
+    fn push(&mut self, sum: i32) {
+        match self {
+            Self::Ten(spectrum) => spectrum.push(sum),
+            Self::Twenty(spectrum) => spectrum.push(sum),
+            Self::Forty(spectrum) => spectrum.push(sum),
+        }
+    }
+
+    fn powers(&self) -> [f32; BINS] {
+        match self {
+            Self::Ten(spectrum) => spectrum.powers(),
+            Self::Twenty(spectrum) => spectrum.powers(),
+            Self::Forty(spectrum) => spectrum.powers(),
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// The diagonal of the covariance.
+    Variance,
+    /// The rest of it.
+    Covariance,
+    /// The spectrum of the sum.
+    Bin,
+    /// The structure functions.
+    Structure,
+}
+
+impl Kind {
+    /// Of a feature by its place.
+    pub fn of(feature: usize) -> Self {
+        // Row by row of the upper triangle.
+        let is_diagonal = || (0..ELEMENTS).any(|row| row * ELEMENTS + row - row * (row + 1) / 2 == feature);
+        match feature {
+            PAPER_FEATURES.. => Self::Structure,
+            COVARIANCES.. => Self::Bin,
+            _ if is_diagonal() => Self::Variance,
+            _ => Self::Covariance,
+        }
+    }
+
+    /// Whether it says how much the elements move, rather than how they move together: what holds for other objects, too.
+    pub fn is_believed_first(self) -> bool {
+        matches!(self, Self::Variance | Self::Structure)
+    }
+}

@@ -1,0 +1,234 @@
+//! From sequences to a network that was chosen on sessions it had not seen.
+
+use anyhow::{bail, ensure};
+use serde::Serialize;
+use tenax_sim::labelled::Part;
+use tenax_sim::scorer::Doing;
+
+use crate::train::features::Sequence;
+use crate::train::linear::{Linear, logistic};
+use crate::train::network::{Learner, Network, Settings};
+use crate::train::score::{Aim, Judged, platt, score, threshold};
+use crate::train::table::{Standard, Table};
+
+/// Most folds that sessions are left out in.
+const FOLDS_MAX: usize = 5;
+
+/// A way to learn.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Candidate {
+    /// See [`Standard::of`].
+    pub shyness: f32,
+    /// Penalty of a squared weight of the logistic regression, a row.
+    pub ridge: f64,
+    /// Whether the network begins as the logistic regression.
+    pub warm: bool,
+    /// Passes over the data that the learning rate is spread over.
+    pub epochs: usize,
+    pub learning_rate: f64,
+    pub decay: f64,
+    /// Frames seen.
+    pub look_back: usize,
+}
+
+/// What was chosen and why.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Choice {
+    pub candidate: Candidate,
+    /// Passes done of the candidate's; 0 is the logistic regression itself.
+    pub passes: usize,
+    /// Its score on sessions it had not seen: accuracy or balanced accuracy.
+    pub unseen: f64,
+    /// The threshold that score is for.
+    pub threshold: f64,
+    /// Slope and intercept that turn its logit into log-odds.
+    pub calibration: (f64, f64),
+}
+
+/// A trained detector in single precision.
+#[derive(Clone, Debug)]
+pub struct Trained {
+    pub network: Network,
+    pub choice: Choice,
+    /// Every candidate's best score on sessions it had not seen.
+    pub tried: Vec<(Candidate, usize, f64)>,
+}
+
+/// To learn from, and to judge by, as indices into the sequences.
+struct Fold {
+    learn: Vec<usize>,
+    judge: Vec<usize>,
+}
+
+/// Trains every candidate on some sessions, judges it on others, and trains the best one on all of them.
+///
+/// If the file says what is for training and what for validation, that is kept to. If not, sessions are left out in turn.
+/// Nothing of the test part is looked at. `progress` is told which part of the work is done.
+/// Fails if there is too little to choose by, or the optimiser fails.
+pub fn fit(
+    sequences: &[Sequence],
+    candidates: &[Candidate],
+    aim: Aim,
+    seed: u64,
+    progress: &mut dyn FnMut(f64),
+) -> anyhow::Result<Trained> {
+    let folds = folds(sequences)?;
+    let learn: Vec<usize> = (0..sequences.len()).filter(|&n| may_learn(&sequences[n])).collect();
+    // With parts given, what is judged has learned all that there is to learn from: it need not learn it again.
+    let whole = folds.len() == 1 && folds[0].learn == learn;
+    let mut best: Option<(Choice, Option<Network>)> = None;
+    let mut tried = Vec::new();
+    let pieces = (candidates.len() * folds.len() + 1) as f64;
+    for (place, &candidate) in candidates.iter().enumerate() {
+        // Of each number of passes, what every fold's network says of the sessions it has not seen.
+        let mut judged = vec![Vec::<Judged>::new(); candidate.epochs + 1];
+        let mut networks = vec![None; candidate.epochs + 1];
+        for (n, fold) in folds.iter().enumerate() {
+            let unseen = Table::of(judged_by(sequences, &fold.judge, aim));
+            run(sequences, &fold.learn, candidate, candidate.epochs, aim, seed, &mut |passes, network| {
+                judged[passes].push(judge(network, &unseen));
+                networks[passes] = whole.then(|| network.clone());
+                let done = (place * folds.len() + n) as f64 + passes as f64 / candidate.epochs.max(1) as f64;
+                progress(done / pieces);
+            })?;
+        }
+        let mut own: Option<Choice> = None;
+        for (passes, judged) in judged.iter().enumerate().filter(|(_, judged)| !judged.is_empty()) {
+            let choice = choice(candidate, passes, judged, aim);
+            if own.is_none_or(|own| choice.unseen > own.unseen) {
+                own = Some(choice);
+            }
+        }
+        let Some(own) = own else { continue };
+        tried.push((candidate, own.passes, own.unseen));
+        if best.as_ref().is_none_or(|(best, _)| own.unseen > best.unseen) {
+            best = Some((own, networks.swap_remove(own.passes)));
+        }
+    }
+    let Some((choice, mut network)) = best else { bail!("no candidate to choose from") };
+    if network.is_none() {
+        run(sequences, &learn, choice.candidate, choice.passes, aim, seed, &mut |_, now| {
+            network = Some(now.clone())
+        })?;
+    }
+    progress(1.0);
+    let Some(network) = network else { bail!("nothing was learned") };
+    Ok(Trained { network, choice, tried })
+}
+
+/// What it is chosen by: where the aim is pours, those of them that are.
+fn judged_by<'a>(sequences: &'a [Sequence], judge: &[usize], aim: Aim) -> Vec<&'a Sequence> {
+    let all = || judge.iter().map(|&n| &sequences[n]);
+    let pours: Vec<&Sequence> = all().filter(|sequence| sequence.doing == Doing::Pour).collect();
+    if aim == Aim::Pours && !pours.is_empty() { pours } else { all().collect() }
+}
+
+/// Sequences that the final network learns: of the training part, or all that are for nothing in particular.
+fn may_learn(sequence: &Sequence) -> bool {
+    matches!(sequence.part, None | Some(Part::Train))
+}
+
+fn folds(sequences: &[Sequence]) -> anyhow::Result<Vec<Fold>> {
+    let of = |part: Part| -> Vec<usize> {
+        (0..sequences.len()).filter(|&n| sequences[n].part == Some(part)).collect()
+    };
+    let (learn, judge) = (of(Part::Train), of(Part::Validation));
+    if !learn.is_empty() {
+        ensure!(!judge.is_empty(), "the data set has a training part but no validation part to choose by");
+        return Ok(vec![Fold { learn, judge }]);
+    }
+    let mut sessions: Vec<&str> = Vec::new();
+    for sequence in sequences.iter().filter(|sequence| may_learn(sequence)) {
+        if !sessions.contains(&sequence.session.as_str()) {
+            sessions.push(&sequence.session);
+        }
+    }
+    ensure!(
+        sessions.len() >= 2,
+        "all recordings are of one session or object ({}): at least two are needed, to choose on one what was learned on \
+         the other; name the column that tells them apart as [recordings] session in the recipe",
+        sessions.first().unwrap_or(&"none")
+    );
+    let count = sessions.len().min(FOLDS_MAX);
+    let fold_of = |sequence: &Sequence| {
+        sessions.iter().position(|session| **session == sequence.session).unwrap_or_default() % count
+    };
+    Ok((0..count)
+        .map(|fold| {
+            let (judge, learn) = (0..sequences.len())
+                .filter(|&n| may_learn(&sequences[n]))
+                .partition(|&n| fold_of(&sequences[n]) == fold);
+            Fold { learn, judge }
+        })
+        .collect())
+}
+
+/// Trains on some sequences, and shows the network after each pass; pass 0 is the one it begins as.
+fn run(
+    sequences: &[Sequence],
+    learn: &[usize],
+    candidate: Candidate,
+    passes: usize,
+    aim: Aim,
+    seed: u64,
+    seen: &mut dyn FnMut(usize, &Network),
+) -> anyhow::Result<()> {
+    let table = Table::of(learn.iter().map(|&n| &sequences[n]));
+    let slips = table.labels.iter().filter(|&&label| label > 0.5).count();
+    ensure!(
+        slips > 0 && slips < table.len(),
+        "of {} steps to learn from {slips} slip: both kinds are needed",
+        table.len()
+    );
+    let standard = Standard::of(&table, candidate.shyness);
+    let begin: Option<Linear> = candidate
+        .warm
+        .then(|| logistic(&table, &standard, candidate.ridge, aim == Aim::Balanced))
+        .transpose()?;
+    let settings = Settings {
+        look_back: candidate.look_back,
+        epochs: candidate.epochs,
+        learning_rate: candidate.learning_rate,
+        decay: candidate.decay,
+        balanced: aim == Aim::Balanced,
+        seed,
+    };
+    let mut learner = Learner::new(&standard, settings, begin.as_ref())?;
+    if begin.is_some() {
+        seen(0, &learner.network()?);
+    }
+    if passes > 0 {
+        learner.learn(&table, &mut |epoch, network| {
+            seen(epoch + 1, network);
+            epoch + 1 < passes
+        })?;
+    }
+    Ok(())
+}
+
+/// What a network says of a table.
+pub fn judge(network: &Network, table: &Table) -> Judged {
+    let ready = table.ready(network.look_back());
+    Judged {
+        logits: network.logits(table),
+        slips: ready.into_iter().map(|row| table.labels[row] > 0.5).collect(),
+    }
+}
+
+/// One threshold for all folds together; the score is the mean of the folds', so that a large one is not all that counts.
+fn choice(candidate: Candidate, passes: usize, judged: &[Judged], aim: Aim) -> Choice {
+    let mut all = Judged::default();
+    for fold in judged {
+        all.extend(fold);
+    }
+    let threshold = threshold(&all, aim);
+    let of = |fold: &Judged| {
+        let score = score(fold, threshold);
+        match aim {
+            Aim::Accuracy => score.accuracy,
+            Aim::Balanced | Aim::Pours => score.balanced,
+        }
+    };
+    let unseen = judged.iter().map(of).sum::<f64>() / judged.len().max(1) as f64;
+    Choice { candidate, passes, unseen, threshold, calibration: platt(&all) }
+}

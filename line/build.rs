@@ -1,0 +1,26 @@
+//! Says whether the recordings are here, and which programs tests ask for: who lacks one has its tests counted as ignored.
+
+use std::process::Command;
+
+include!("../sim/recordings.rs");
+
+fn main() {
+    recordings();
+    programs();
+}
+
+/// Sets `python` and, with its name in CHROMIUM, `chromium`: `TENAX_CHROMIUM`, or what Debian and others call it.
+fn programs() {
+    println!("cargo::rustc-check-cfg=cfg(chromium, python)");
+    println!("cargo::rerun-if-env-changed=TENAX_CHROMIUM");
+    let is_there =
+        |name: &String| Command::new(name).arg("--version").output().is_ok_and(|ran| ran.status.success());
+    let names = ["chromium", "chromium-browser", "google-chrome"].map(str::to_owned);
+    if let Some(name) = std::env::var("TENAX_CHROMIUM").into_iter().chain(names).find(is_there) {
+        println!("cargo::rustc-cfg=chromium");
+        println!("cargo::rustc-env=CHROMIUM={name}");
+    }
+    if is_there(&"python3".to_owned()) {
+        println!("cargo::rustc-cfg=python");
+    }
+}

@@ -1,0 +1,37 @@
+//! Building the image for the microcontroller.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, Result, ensure};
+
+/// What the image is compiled for: Cortex-M4F, hard float.
+pub const TARGET: &str = "thumbv7em-none-eabihf";
+const PACKAGE: &str = "tenax-firmware";
+const PROFILE: &str = "firmware";
+/// What Cargo sets for the processes that it runs; none of it is meant for the image.
+const NOT_FOR_THE_IMAGE: [&str; 5] = [
+    "CARGO_BUILD_TARGET",
+    "CARGO_ENCODED_RUSTFLAGS",
+    "RUSTC_WORKSPACE_WRAPPER",
+    "RUSTFLAGS",
+    "CARGO_MANIFEST_DIR",
+];
+
+/// Builds the image of the workspace at `root`; its ELF file.
+///
+/// # Errors
+/// The compiler failed; its messages are on standard error.
+pub fn build(root: &Path) -> Result<PathBuf> {
+    let mut cargo = Command::new("cargo");
+    NOT_FOR_THE_IMAGE.iter().for_each(|name| _ = cargo.env_remove(name));
+    cargo.current_dir(root).args(["build", "--quiet", "--package", PACKAGE, "--bin", PACKAGE]);
+    cargo.args(["--profile", PROFILE, "--target", TARGET]).arg("--target-dir").arg(target_dir(root));
+    let status = cargo.status().context("cannot start cargo")?;
+    ensure!(status.success(), "the image was not built; for its target: rustup target add {TARGET}");
+    Ok(target_dir(root).join(TARGET).join(PROFILE).join(PACKAGE))
+}
+
+fn target_dir(root: &Path) -> PathBuf {
+    root.join(std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| "target".into(), PathBuf::from))
+}

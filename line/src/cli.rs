@@ -1,0 +1,79 @@
+//! The command line, a file a subcommand.
+
+pub mod calibrate;
+pub mod config;
+pub mod flash;
+pub mod monitor;
+pub mod play;
+pub mod port;
+pub mod record;
+pub mod selftest;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use tenax_frames::settings;
+use tenax_frames::tool::{exit, out};
+
+use crate::wiring;
+
+/// Watches, records, plays and sets up a Tenax fingertip over its serial line.
+#[derive(Debug, Parser)]
+#[command(name = "tenax", version)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Flash a NUCLEO-F411RE through probe-rs
+    Flash(flash::Args),
+    /// Touch every sensor in turn; say which wire is wrong
+    Selftest(selftest::Args),
+    /// Watch a board: a page in the browser, or one line a message
+    Monitor(monitor::Args),
+    /// Record a board's line
+    Record(record::Args),
+    /// Play a recording: serve its line, or write it as CSV
+    Play(play::Args),
+    /// Show and change a board's settings
+    Config(config::Args),
+    /// Calibrate a sensor or the wearer's muscles, step by step
+    Calibrate(calibrate::Args),
+    /// Print the channel map as a Markdown table
+    Wiring,
+    /// Print every setting with unit, range, default and meaning as a Markdown table
+    Settings,
+}
+
+/// Runs the command line. 0: done. 2: it could not be run.
+pub fn main() -> ExitCode {
+    exit(match Cli::parse().command {
+        Command::Flash(args) => flash::main(&args),
+        Command::Selftest(args) => selftest::main(&args),
+        Command::Monitor(args) => monitor::main(&args),
+        Command::Record(args) => record::main(&args),
+        Command::Play(args) => play::main(&args),
+        Command::Config(args) => config::main(&args),
+        Command::Calibrate(args) => calibrate::main(&args),
+        Command::Wiring => page(&wiring::markdown()),
+        Command::Settings => page(&settings::markdown()),
+    })
+}
+
+fn page(text: &str) -> anyhow::Result<ExitCode> {
+    out::print(format_args!("{text}"))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        Cli::command().debug_assert();
+    }
+}

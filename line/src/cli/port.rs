@@ -1,0 +1,32 @@
+//! Which line is meant when none is named: the only board that is plugged in.
+
+use anyhow::bail;
+use serialport::SerialPortType;
+
+use tenax_frames::link::Target;
+
+/// The maker of the ST-LINK on the board.
+const ST: u16 = 0x0483;
+
+/// The line that was named, or that of the only board. Fails if there is none or there are several: says what is seen.
+pub fn or_found(named: Option<&Target>) -> anyhow::Result<Target> {
+    if let Some(target) = named {
+        return Ok(target.clone());
+    }
+    let ports = serialport::available_ports().unwrap_or_default();
+    let is_board = |kind: &SerialPortType| matches!(kind, SerialPortType::UsbPort(usb) if usb.vid == ST);
+    let boards: Vec<&str> =
+        ports.iter().filter(|port| is_board(&port.port_type)).map(|port| port.port_name.as_str()).collect();
+    match boards[..] {
+        [only] => Ok(Target::Port(only.to_owned())),
+        [] => {
+            let seen: Vec<&str> = ports.iter().map(|port| port.port_name.as_str()).collect();
+            let seen = if seen.is_empty() { "none at all".to_owned() } else { seen.join(", ") };
+            bail!(
+                "no board is plugged in; serial ports on this machine: {seen}. Name one with --port, or a scene's line, \
+                 which `tenax run --serve` prints"
+            )
+        }
+        _ => bail!("several boards are plugged in: name one with --port: {}", boards.join(", ")),
+    }
+}

@@ -1,0 +1,10 @@
+//! The tools for a Tenax fingertip's serial line: watched, recorded, played, set up.
+//!
+//! One file a command in [`cli`]; the page of `tenax monitor` is [`web`]. `cargo install --locked --path line` installs them alone.
+#![forbid(unsafe_code)]
+
+pub mod cli;
+pub mod guide;
+pub mod monitor;
+pub mod web;
+pub mod wiring;

@@ -1,0 +1,207 @@
+//! A line and its topics: what comes up is published, a gripper command goes down.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use crate::hand::{self, Grasp, Health, Step, ceiling_mn, header};
+use crate::message::{DiagnosticArray, GripperCommand, JointState, Margin, Slip, Tactile};
+use tenax_frames::link::{Client, Target};
+use tenax_hal_shim::wire::{Answer, Down, Refusal, Senses, Slow, Up};
+use zenoh::Session;
+
+use super::network::{Graph, Publisher, now_ns};
+
+/// How long a board may take to answer the opening of a session.
+const ANSWER_WITHIN: Duration = Duration::from_millis(500);
+/// Pause before a line is opened again.
+const AGAIN_AFTER: Duration = Duration::from_millis(500);
+/// Readings are asked for this often, for twice as long.
+const STREAM_EVERY: Duration = Duration::from_secs(2);
+/// Diagnostics are published once a second.
+const DIAGNOSE_EVERY: Duration = Duration::from_secs(1);
+/// How often a command asks for a session, if somebody else on the line opens one too.
+const SESSIONS_MAX: u32 = 3;
+
+/// A hand: its name and where its line is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Hand {
+    pub name: String,
+    pub line: Target,
+}
+
+/// The newest command of the network, until the line's thread takes it.
+type Desk = Arc<Mutex<Option<GripperCommand>>>;
+
+/// Everything a hand publishes.
+struct Topics<'a> {
+    joints: Publisher<'a>,
+    slip: Publisher<'a>,
+    margin: Publisher<'a>,
+    tactile: Publisher<'a>,
+    diagnostics: Publisher<'a>,
+}
+
+/// Bridges a hand until `stop`, or the session is closed. A line that ends is opened again.
+pub fn bridge(session: &Session, domain: u32, id: u32, hand: &Hand, stop: &AtomicBool) -> anyhow::Result<()> {
+    let name = &hand.name;
+    let mut graph = Graph::new(session, domain, id, &format!("tenax_{name}"))?;
+    let mut topics = Topics {
+        joints: graph.publisher::<JointState>(&format!("/{name}/joint_states"))?,
+        slip: graph.publisher::<Slip>(&format!("/{name}/slip"))?,
+        margin: graph.publisher::<Margin>(&format!("/{name}/margin"))?,
+        tactile: graph.publisher::<Tactile>(&format!("/{name}/tactile"))?,
+        diagnostics: graph.publisher::<DiagnosticArray>("/diagnostics")?,
+    };
+    let desk = Desk::default();
+    let heard = Arc::clone(&desk);
+    let _subscription =
+        graph.subscription::<GripperCommand>(&format!("/{name}/gripper_command"), move |command| {
+            *heard.lock().unwrap_or_else(PoisonError::into_inner) = Some(command);
+        })?;
+    let mut health = Health::default();
+    while !stop.load(Ordering::Relaxed) {
+        match Client::open(&hand.line) {
+            Ok(client) => {
+                health.gone = None;
+                let mut attendant = Attendant {
+                    client,
+                    name,
+                    topics: &mut topics,
+                    desk: &desk,
+                    health: &mut health,
+                    senses: None,
+                    grasp: None,
+                    sent: None,
+                    sessions: 0,
+                };
+                let why = attendant.attend(stop)?;
+                health.gone = Some(why);
+            }
+            Err(error) => health.gone = Some(format!("{error:#}")),
+        }
+        // No command waits for a line that comes back.
+        *desk.lock().unwrap_or_else(PoisonError::into_inner) = None;
+        topics.diagnostics.publish(&health.diagnostics(name, now_ns()))?;
+        thread::sleep(AGAIN_AFTER);
+    }
+    Ok(())
+}
+
+/// One line while it is open.
+struct Attendant<'a, 'b> {
+    client: Client,
+    name: &'a str,
+    topics: &'a mut Topics<'b>,
+    desk: &'a Desk,
+    health: &'a mut Health,
+    senses: Option<Senses>,
+    grasp: Option<Grasp>,
+    /// Its last step, and the number that its answer names.
+    sent: Option<(u16, Down)>,
+    /// Sessions that were asked for since the last command came.
+    sessions: u32,
+}
+
+impl Attendant<'_, '_> {
+    /// Until the line ends: why it did. Fails if nothing can be published any more.
+    fn attend(&mut self, stop: &AtomicBool) -> anyhow::Result<String> {
+        if self.client.can_send() {
+            // It only reads.
+            let _asked = self.client.send(&Down::About);
+        }
+        let (mut streamed, mut diagnosed) = (None::<Instant>, Instant::now());
+        while !stop.load(Ordering::Relaxed) {
+            if self.client.can_send() && streamed.is_none_or(|at| at.elapsed() >= STREAM_EVERY) {
+                let hold_s = 2 * STREAM_EVERY.as_secs() as u16;
+                let _asked = self.client.send(&Down::Stream { raw: false, senses: true, hold_s });
+                streamed = Some(Instant::now());
+            }
+            match self.client.next_message() {
+                Ok(Some(heard)) => self.hear(heard.received.message)?,
+                Ok(None) => {}
+                Err(error) => return Ok(format!("the line ended ({error})")),
+            }
+            if diagnosed.elapsed() >= DIAGNOSE_EVERY {
+                diagnosed = Instant::now();
+                let counts = self.client.counts();
+                (self.health.missed, self.health.bad_frames) = (counts.missed, counts.bad_frames);
+                self.topics.diagnostics.publish(&self.health.diagnostics(self.name, now_ns()))?;
+            }
+        }
+        Ok("the bridge was ended".to_owned())
+    }
+
+    fn hear(&mut self, message: Up) -> anyhow::Result<()> {
+        match message {
+            Up::Slow(slow) => {
+                // The motor first.
+                self.command(&slow);
+                self.publish(&slow)?;
+            }
+            Up::Senses(senses) => self.senses = Some(senses),
+            Up::Counters(counters) => self.health.counters = Some(counters),
+            Up::About(about) | Up::Answer { answer: Answer::About(about), .. } => {
+                self.health.about = Some(about)
+            }
+            Up::Answer { of, answer: Answer::Refused(refusal), .. } => self.refused(of, refusal),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn publish(&mut self, slow: &Slow) -> anyhow::Result<()> {
+        let head = || header(self.name, now_ns());
+        self.topics.joints.publish(&hand::joint_state(head(), slow))?;
+        self.topics.slip.publish(&hand::slip(head(), slow))?;
+        self.topics.margin.publish(&hand::margin(head(), slow))?;
+        self.topics.tactile.publish(&hand::tactile(head(), slow, self.senses.as_ref()))
+    }
+
+    fn command(&mut self, slow: &Slow) {
+        let command = self.desk.lock().unwrap_or_else(PoisonError::into_inner).take();
+        if let Some(command) = command {
+            let ceiling = self.health.about.as_ref().and_then(ceiling_mn);
+            self.sessions = 0;
+            match Grasp::of(&command, ceiling) {
+                Ok(grasp) => {
+                    self.grasp = Some(grasp);
+                    self.health.command = "goes on".to_owned();
+                }
+                // The one that goes on is not what is wanted any more.
+                Err(why) => self.over(why),
+            }
+        }
+        let load_mn = slow.forces.map(|forces| forces.load_mn);
+        match self.grasp.as_mut().map(|grasp| grasp.step(load_mn)) {
+            None => {}
+            Some(Step::Over(why)) => self.over(why),
+            Some(Step::Send(down)) => self.send(down),
+        }
+    }
+
+    fn send(&mut self, down: Down) {
+        match self.client.send(&down) {
+            Ok(number) => self.sent = Some((number, down)),
+            Err(error) => self.over(&format!("{error:#}")),
+        }
+    }
+
+    /// The board has the last word. Without a session one is opened, and the step is sent once more.
+    fn refused(&mut self, of: u16, refusal: Refusal) {
+        let Some((_, down)) = self.sent.take_if(|(number, _)| *number == of) else { return };
+        if matches!(refusal, Refusal::NoSession | Refusal::Replayed) && self.sessions < SESSIONS_MAX {
+            self.sessions += 1;
+            if let Ok(true) = self.client.open_session(ANSWER_WITHIN) {
+                return self.send(down);
+            }
+        }
+        self.over(&format!("refused by the board: {refusal:?}"));
+    }
+
+    fn over(&mut self, why: &str) {
+        self.grasp = None;
+        self.health.command = why.to_owned();
+    }
+}

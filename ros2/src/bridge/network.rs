@@ -1,0 +1,153 @@
+//! A zenoh session with rmw_zenoh's defaults, and the topics of a node in it.
+
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+use crate::cdr;
+use crate::key::{self, Attachment, GID, Node, Role, gid};
+use crate::message::Message;
+use anyhow::{Context, anyhow, bail};
+use zenoh::liveliness::LivelinessToken;
+use zenoh::pubsub::Subscriber;
+use zenoh::qos::CongestionControl;
+use zenoh::{Config, Session, Wait};
+
+/// Messages that a subscription keeps.
+const DEPTH: u32 = 10;
+/// How long a router may take to answer.
+const ROUTER_WITHIN: Duration = Duration::from_secs(3);
+/// How often it is looked whether it has.
+const LOOK_EVERY: Duration = Duration::from_millis(20);
+
+/// What this process is to the others.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// A peer, as ROS 2's nodes are: it finds them through this router.
+    At(String),
+    /// The router itself, which listens here.
+    RouterHere(String),
+}
+
+/// Opens a session. Fails, and says what to do, if there is no router, or the place to listen at is taken.
+pub fn open(place: &Place) -> anyhow::Result<Session> {
+    let mut config = Config::default();
+    let mut set = |key: &str, value: &str| {
+        config.insert_json5(key, value).map_err(|error| anyhow!("{key} = {value}: {error}"))
+    };
+    set("scouting/multicast/enabled", "false")?;
+    set("timestamping/enabled", "true")?;
+    match place {
+        Place::At(router) => {
+            set("mode", "\"peer\"")?;
+            set("connect/endpoints", &format!("[{router:?}]"))?;
+            set("connect/timeout_ms", "-1")?;
+            set("connect/exit_on_failure", "false")?;
+            // Other nodes of this machine come directly; those of others through the router.
+            set("listen/endpoints", "[\"tcp/127.0.0.1:0\"]")?;
+        }
+        Place::RouterHere(at) => {
+            set("mode", "\"router\"")?;
+            set("listen/endpoints", &format!("[{at:?}]"))?;
+        }
+    }
+    let session = zenoh::open(config).wait().map_err(|error| match place {
+        Place::At(router) => anyhow!("cannot connect to the router at {router}: {error}"),
+        Place::RouterHere(at) => anyhow!(
+            "cannot be the router at {at}: {error}. If another router runs there, leave --router-here out"
+        ),
+    })?;
+    if let Place::At(router) = place {
+        let until = SystemTime::now() + ROUTER_WITHIN;
+        while session.info().routers_zid().wait().next().is_none() {
+            if SystemTime::now() > until {
+                let _closed = session.close().wait();
+                bail!(
+                    "no zenoh router answers at {router}: start one with `ros2 run rmw_zenoh_cpp rmw_zenohd`, or be it, \
+                     with --router-here"
+                );
+            }
+            std::thread::sleep(LOOK_EVERY);
+        }
+    }
+    Ok(session)
+}
+
+/// Nanoseconds since 1970.
+pub fn now_ns() -> u64 {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    u64::try_from(since.as_nanos()).unwrap_or(u64::MAX)
+}
+
+/// A node of a session, and the tokens that it lives.
+pub struct Graph<'a> {
+    session: &'a Session,
+    node: Node,
+    entities: u32,
+    tokens: Vec<LivelinessToken>,
+}
+
+impl<'a> Graph<'a> {
+    /// A node that the others see from now on. `id` is its own in the session.
+    pub fn new(session: &'a Session, domain: u32, id: u32, name: &str) -> anyhow::Result<Self> {
+        let node = Node { domain, session: session.zid().to_string(), id, name: name.to_owned() };
+        let mut graph = Self { session, node, entities: 0, tokens: Vec::new() };
+        graph.live(&graph.node.token())?;
+        Ok(graph)
+    }
+
+    fn live(&mut self, token: &str) -> anyhow::Result<()> {
+        let token = self.session.liveliness().declare_token(token.to_owned()).wait();
+        self.tokens.push(token.map_err(|error| anyhow!("{error}"))?);
+        Ok(())
+    }
+
+    pub fn publisher<M: Message>(&mut self, topic: &str) -> anyhow::Result<Publisher<'a>> {
+        let token = self.endpoint::<M>(Role::Publisher, topic)?;
+        let key = key::topic::<M>(self.node.domain, topic);
+        let declared = self.session.declare_publisher(key).congestion_control(CongestionControl::Drop);
+        let publisher = declared.wait().map_err(|error| anyhow!("{topic}: {error}"))?;
+        Ok(Publisher { publisher, gid: gid(&token), sequence: 0 })
+    }
+
+    /// A topic to listen to: each message that is one goes to `hear`, on a thread of zenoh's. What is none is skipped.
+    pub fn subscription<M: Message>(
+        &mut self,
+        topic: &str,
+        hear: impl Fn(M) + Send + Sync + 'static,
+    ) -> anyhow::Result<Subscriber<()>> {
+        self.endpoint::<M>(Role::Subscription, topic)?;
+        let declared = self.session.declare_subscriber(key::topic::<M>(self.node.domain, topic));
+        let declared = declared.callback(move |sample| {
+            if let Some(message) = cdr::message(&sample.payload().to_bytes()) {
+                hear(message);
+            }
+        });
+        declared.wait().map_err(|error| anyhow!("{topic}: {error}")).context("cannot listen")
+    }
+
+    fn endpoint<M: Message>(&mut self, role: Role, topic: &str) -> anyhow::Result<String> {
+        self.entities += 1;
+        // Numbers are the session's: a node has room for a hundred.
+        let entity = self.node.id * 100 + self.entities;
+        let token = self.node.endpoint::<M>(role, entity, topic, DEPTH);
+        self.live(&token)?;
+        Ok(token)
+    }
+}
+
+/// A topic that is published on.
+pub struct Publisher<'a> {
+    publisher: zenoh::pubsub::Publisher<'a>,
+    gid: [u8; GID],
+    sequence: i64,
+}
+
+impl Publisher<'_> {
+    /// Publishes a message. Fails if the session is closed.
+    pub fn publish(&mut self, message: &impl Message) -> anyhow::Result<()> {
+        let payload = cdr::payload(message).context("no CDR")?;
+        self.sequence += 1;
+        let attachment =
+            Attachment { sequence: self.sequence, time_ns: now_ns().cast_signed(), gid: self.gid };
+        self.publisher.put(payload).attachment(attachment.bytes()).wait().map_err(|error| anyhow!("{error}"))
+    }
+}

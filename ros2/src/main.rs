@@ -1,0 +1,131 @@
+//! `cargo tenax bridge`.
+#![forbid(unsafe_code)]
+
+use std::collections::BTreeSet;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+
+use anyhow::{Context, bail, ensure};
+use clap::Parser;
+use signal_hook::consts::{SIGINT, SIGTERM};
+use tenax_frames::link::Target;
+use tenax_ros2::bridge::hand::{Hand, bridge};
+use tenax_ros2::bridge::network::{Place, open};
+use tenax_ros2::key::is_name;
+use zenoh::Wait;
+
+const EXAMPLES: &str = "\
+ROS 2 Jazzy or newer with rmw_zenoh (RMW_IMPLEMENTATION=rmw_zenoh_cpp), whose nodes meet at a router: start it with \
+`ros2 run rmw_zenoh_cpp rmw_zenohd`, or let the bridge be the router (--router-here).
+
+Publishes, 80 times a second: /NAME/joint_states (effort: grip force, N), /NAME/slip, /NAME/margin, /NAME/tactile; each \
+second /diagnostics. Subscribes to /NAME/gripper_command (control_msgs/msg/GripperCommand): position 0 closes to \
+max_effort, N (0: until the object is felt), above 0 opens. The board obeys only with consent at the hand, and below its \
+force ceiling.
+
+Examples:
+  cargo tenax bridge                                            the board that is plugged in, as /hand
+  cargo tenax bridge --port tcp:127.0.0.1:7777 --router-here    a served scene, and no ROS 2 router
+  cargo tenax bridge --port /dev/ttyACM0 --name left --port /dev/ttyACM1 --name right
+  ros2 topic echo /hand/joint_states
+  ros2 topic pub --once /hand/gripper_command control_msgs/msg/GripperCommand '{position: 0.0, max_effort: 5.0}'";
+
+/// Bring fingertips into ROS 2 over zenoh, without a ROS install.
+#[derive(Debug, Parser)]
+#[command(name = "tenax bridge", version, after_help = EXAMPLES)]
+struct Args {
+    /// A hand's serial line: /dev/ttyACM0, /dev/pts/5 or tcp:127.0.0.1:7777; may be given more than once [default: the only
+    /// board that is plugged in]
+    #[arg(long, value_name = "PORT")]
+    port: Vec<Target>,
+    /// Name of each port's hand in ROS 2, in order [default: hand, or hand_1, hand_2 and so on]
+    #[arg(long)]
+    name: Vec<String>,
+    /// Address of ROS 2's zenoh router
+    #[arg(long, value_name = "tcp/HOST:PORT", default_value = "tcp/127.0.0.1:7447")]
+    router: String,
+    /// Be the router at --router: no rmw_zenohd needed
+    #[arg(long)]
+    router_here: bool,
+    /// ROS 2's domain, 0 to 232 [default: ROS_DOMAIN_ID, or 0]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(0..=232))]
+    domain: Option<u32>,
+}
+
+fn main() -> ExitCode {
+    match run(&Args::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// The hands that are meant. Fails if two are called the same, or one as ROS allows no name.
+fn hands(args: &Args) -> anyhow::Result<Vec<Hand>> {
+    let lines =
+        if args.port.is_empty() { vec![tenax_line::cli::port::or_found(None)?] } else { args.port.clone() };
+    ensure!(
+        args.name.is_empty() || args.name.len() == lines.len(),
+        "{} hands and {} names: give each hand one, or none",
+        lines.len(),
+        args.name.len()
+    );
+    let several = lines.len() > 1;
+    let own = |n: usize| if several { format!("hand_{}", n + 1) } else { "hand".to_owned() };
+    let mut taken = BTreeSet::new();
+    let mut hands = Vec::new();
+    for (n, line) in lines.into_iter().enumerate() {
+        let name = args.name.get(n).cloned().unwrap_or_else(|| own(n));
+        ensure!(is_name(&name), "`{name}` is no name for ROS 2: letters, digits and _, a letter first");
+        ensure!(taken.insert(name.clone()), "two hands are called {name}");
+        hands.push(Hand { name, line });
+    }
+    Ok(hands)
+}
+
+fn run(args: &Args) -> anyhow::Result<()> {
+    let hands = hands(args)?;
+    // A line that cannot be opened is said now; one that goes away later is waited for.
+    for hand in &hands {
+        drop(hand.line.open()?);
+    }
+    let set = || std::env::var("ROS_DOMAIN_ID").ok()?.parse().ok();
+    let domain = args.domain.or_else(set).unwrap_or(0);
+    let place = if args.router_here {
+        Place::RouterHere(args.router.clone())
+    } else {
+        Place::At(args.router.clone())
+    };
+    let session = open(&place)?;
+    let stop = Arc::new(AtomicBool::new(false));
+    for signal in [SIGINT, SIGTERM] {
+        signal_hook::flag::register(signal, Arc::clone(&stop)).context("cannot listen to Ctrl-C")?;
+    }
+    for Hand { name, line } in &hands {
+        eprintln!("/{name}: {line}");
+    }
+    eprintln!("in ROS 2's domain {} at {}; Ctrl-C ends it", domain, args.router);
+    let (session_of_all, stop_of_all) = (&session, &stop);
+    let ended: anyhow::Result<()> = thread::scope(|scope| {
+        let threads: Vec<_> = (0..)
+            .zip(&hands)
+            .map(|(id, hand)| {
+                scope.spawn(move || {
+                    let ended = bridge(session_of_all, domain, id, hand, stop_of_all);
+                    // The session is all hands': none goes on without it.
+                    stop_of_all.store(true, Ordering::Relaxed);
+                    ended
+                })
+            })
+            .collect();
+        threads
+            .into_iter()
+            .try_for_each(|thread| thread.join().unwrap_or_else(|_| bail!("a hand's thread panicked")))
+    });
+    let _closed = session.close().wait();
+    ended
+}

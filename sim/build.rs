@@ -1,0 +1,7 @@
+//! Says whether the recordings are here.
+
+include!("../sim/recordings.rs");
+
+fn main() {
+    recordings();
+}

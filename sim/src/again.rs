@@ -1,0 +1,141 @@
+//! A recording that begins at the board's start and has every frame, decided once more by the host's build of the logic:
+//! a fault in the field, at the desk.
+
+use std::fmt;
+
+use anyhow::{Context, bail, ensure};
+use tenax_hal_shim::frame::Frame;
+use tenax_hal_shim::wire::{Down, Event, Identity, Received, ResetCause, Restored, Slow, Up};
+use tenax_logic::device::Device;
+
+use crate::board::agreement::{host_decides, presses, slow_difference};
+use tenax_frames::link::Inbox;
+use tenax_frames::link::captured::line_of;
+
+/// What a recording holds.
+#[derive(Debug, Default)]
+pub struct Recorded {
+    identity: Identity,
+    restored: Vec<Restored>,
+    frames: Vec<Frame>,
+    commands: Vec<(u32, Received<Down>)>,
+    slows: Vec<Slow>,
+    events: Vec<Event>,
+}
+
+impl Recorded {
+    /// From a line's bytes. Fails if something that decides is not in them: says what, and how it is recorded.
+    pub fn of(line: &[u8]) -> anyhow::Result<Self> {
+        let (mut inbox, mut recorded, mut starts) = (Inbox::default(), Self::default(), 0);
+        for heard in line.iter().filter_map(|&byte| inbox.push(byte)).flatten() {
+            match heard.received.message {
+                Up::Hello { .. } => {
+                    // Of several starts, the last.
+                    recorded = Self::default();
+                    starts += 1;
+                }
+                Up::About(about) => recorded.identity = about.identity,
+                Up::Restored(restored) => recorded.restored.push(restored),
+                Up::Raw(raw) => recorded.frames.extend(raw.frames()),
+                Up::Taken { before, of, command } => {
+                    recorded.commands.push((before, Received { sequence: of, message: command }));
+                }
+                Up::Slow(slow) => recorded.slows.push(slow),
+                Up::Event(event) => recorded.events.push(event),
+                _ => {}
+            }
+        }
+        let how = "set stream-at-start-flag to 1, switch the board off and on, and record from before that; of a scene, \
+                   `tenax run --record FILE.mcap`";
+        ensure!(
+            starts > 0,
+            "the recording does not begin before the board's start, so its state is not known: {how}"
+        );
+        ensure!(!recorded.frames.is_empty(), "the recording has no frames: {how}");
+        let gap = (0..).zip(&recorded.frames).find(|(n, frame)| frame.sequence != *n);
+        if let Some((n, frame)) = gap {
+            bail!(
+                "frame {n} is missing, and after it comes {}: what was decided after it cannot be repeated",
+                frame.sequence
+            );
+        }
+        Ok(recorded)
+    }
+
+    /// Decides everything once more.
+    pub fn replay(&self) -> Outcome {
+        let mut device = Device::default();
+        for Restored { kept, payload } in &self.restored {
+            device.restore(*kept, payload);
+        }
+        if self.identity.reset != ResetCause::PowerOn {
+            device.was_reset();
+        }
+        device.start(self.identity);
+        let frames = self.frames.iter().copied();
+        let said = host_decides(frames, device, &presses(&self.events), &self.commands);
+        Outcome {
+            frames: self.frames.len(),
+            commands: self.commands.len(),
+            slows: self.slows.len(),
+            events: self.events.len(),
+            difference: self.difference(&said.slows, &said.events),
+        }
+    }
+
+    /// Where the board and the host differ first. What the recording holds no more, because it ended, is not compared.
+    fn difference(&self, slows: &[Slow], events: &[Event]) -> Option<String> {
+        let mut host = slows.iter();
+        for board in self.slows.iter().filter(|slow| (slow.frame as usize) < self.frames.len()) {
+            match host.find(|slow| slow.frame == board.frame) {
+                None => return Some(format!("the host has no slow frame {}", board.frame)),
+                Some(host) if host != board => return Some(slow_difference(board, host)),
+                Some(_) => {}
+            }
+        }
+        let end = self.slows.last().map_or(0, |slow| slow.frame);
+        let until = |events: &[Event]| -> Vec<Event> {
+            events.iter().filter(|event| event.frame < end).copied().collect()
+        };
+        let (board, host) = (until(&self.events), until(events));
+        if board == host {
+            return None;
+        }
+        let n = board.iter().zip(&host).take_while(|(board, host)| board == host).count();
+        Some(format!("event {n}: the board {:?}, the host {:?}", board.get(n), host.get(n)))
+    }
+}
+
+/// What a replay found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Outcome {
+    /// Frames that were decided.
+    pub frames: usize,
+    /// Commands that were given in their ticks.
+    pub commands: usize,
+    /// Slow frames that were compared.
+    pub slows: usize,
+    /// Events that were compared.
+    pub events: usize,
+    /// Where the board and the host differ first.
+    pub difference: Option<String>,
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(difference) = &self.difference {
+            return write!(f, "DIFFERS: {difference}");
+        }
+        let Self { frames, commands, slows, events, .. } = self;
+        write!(
+            f,
+            "{frames} frames, {commands} commands: {slows} slow frames and {events} events equal, bit for bit"
+        )
+    }
+}
+
+/// Replays the recording at `path`. Fails as [`Recorded::of`] does.
+pub fn replay(path: &std::path::Path) -> anyhow::Result<Outcome> {
+    let line = line_of(path)?;
+    Ok(Recorded::of(&line).with_context(|| path.display().to_string())?.replay())
+}

@@ -1,0 +1,154 @@
+//! What can go wrong with a board, done to the emulated one.
+
+use rigless::device::Level;
+use rigless::emulator::{Access, AccessKind, Host, InterruptLine, Stop};
+use rigless::mcu::Operate;
+use rigless::session::Session;
+use rigless::soc::Width;
+use rigless::time::VirtualNanos;
+use tenax_hal_shim::channel::SCAN_HZ;
+
+use super::Mishap;
+use super::wires::Wires;
+use crate::board_model::flash::FlashArray;
+use crate::board_model::nucleo::Nucleo;
+use crate::board_model::part::Part;
+
+/// DMA2's flags of its streams 0 to 3, and where a written one clears them.
+const DMA2_LISR: u64 = 0x4002_6400;
+const DMA2_LIFCR: u64 = 0x4002_6408;
+/// The flag that stream 0 has come to its end.
+const TCIF0: u64 = 1 << 5;
+/// DMA2 stream 0's configuration: bit 0 switches it on.
+const DMA2_S0CR: u64 = 0x4002_6410;
+/// DMA2 stream 0's address in memory.
+const DMA2_S0M0AR: u64 = 0x4002_641C;
+/// The voltage detector's interrupt (RM0383, table 37).
+const PVD: InterruptLine = InterruptLine::new(1).expect("every core has it");
+/// The voltage detector's output (RM0383, section 5.4.2).
+const PWR_CSR: u64 = 0x4000_7004;
+const PVDO: u64 = 1 << 2;
+/// RCC's control, and its bits for the clock security system and the crystal (RM0383, section 6.3.1).
+const RCC_CR: u64 = 0x4002_3800;
+const CSSON: u64 = 1 << 19;
+const HSEON: u64 = 1 << 16;
+/// Where the image has the addresses of the handlers of its non-maskable interrupt and of the voltage detector's.
+const NMI_VECTOR: u64 = 0x0800_0008;
+const PVD_VECTOR: u64 = 0x0800_0044;
+/// No chip of the family has anything there.
+const NOWHERE: u64 = 0x6000_0000;
+
+/// What is still to happen, each with the scan at which it does.
+pub struct Mishaps {
+    due: Vec<(usize, Mishap)>,
+    /// The voltage detector's own handler, while its vector leads to another.
+    lent: Option<u64>,
+    has_no_crystal: bool,
+}
+
+impl Mishaps {
+    /// Those of `mishaps`, each at its time, s.
+    pub fn new(mishaps: &[(f64, Mishap)]) -> Self {
+        let scan = |at_s: f64| (at_s * f64::from(SCAN_HZ)) as usize;
+        let due = mishaps.iter().map(|(at_s, mishap)| (scan(*at_s), mishap.clone())).collect();
+        Self { due, lent: None, has_no_crystal: false }
+    }
+
+    /// The core made an access. `rigless` finds a crystal's empty pin ready after its start-up time, at 0 Hz: it never gets so far.
+    pub fn accessed(&mut self, access: &Access, session: &mut Session<Nucleo>) {
+        if self.has_no_crystal && access.kind == AccessKind::Write && access.address == RCC_CR {
+            let (mcu, now) = (&mut session.board_mut().mcu, access.virtual_time);
+            let control = mcu.peek(now, RCC_CR, Width::W32).unwrap_or(0);
+            if control & HSEON != 0 {
+                set(mcu, now, RCC_CR, control & !HSEON);
+            }
+        }
+    }
+
+    /// Does what is due at `scan`.
+    pub fn happen(
+        &mut self,
+        scan: usize,
+        session: &mut Session<Nucleo>,
+        stop: Stop,
+        flash: &mut FlashArray,
+        host: &mut dyn Host,
+    ) {
+        if let Some(own) = self.lent.take() {
+            let placed = host.program(PVD_VECTOR, Width::W32, own);
+            debug_assert!(placed.is_ok(), "{PVD_VECTOR:#x} is in the flash");
+        }
+        let due: Vec<_> = self.due.extract_if(.., |(at, _)| *at <= scan).collect();
+        let now = stop.at;
+        for (_, mishap) in due {
+            if matches!(mishap, Mishap::BrownsOut | Mishap::ResetByPin) {
+                session.reset_by_pin(now, stop.instruction_count, host);
+                if mishap == Mishap::BrownsOut {
+                    session.board_mut().mcu.browned_out(now);
+                }
+                continue;
+            }
+            let mcu = &mut session.board_mut().mcu;
+            match mishap {
+                Mishap::BrownsOut | Mishap::ResetByPin => {}
+                Mishap::SupplyIs(mv) => {
+                    mcu.chip.set_supply(mv);
+                    // `rigless` leads the detector's output nowhere.
+                    if mcu.peek(now, PWR_CSR, Width::W32).unwrap_or(0) & PVDO != 0 {
+                        host.set_interrupt(PVD, Level::High);
+                        host.set_interrupt(PVD, Level::Low);
+                    }
+                }
+                Mishap::CrystalStops(comes_back) => {
+                    self.has_no_crystal = !comes_back;
+                    if mcu.peek(now, RCC_CR, Width::W32).unwrap_or(0) & CSSON != 0 {
+                        // `rigless` lets nobody raise the core's own exception: another's vector leads to its handler for an instant.
+                        let [handler, own] =
+                            [NMI_VECTOR, PVD_VECTOR].map(|at| host.read(at, Width::W32).unwrap_or(0));
+                        let placed = host.program(PVD_VECTOR, Width::W32, handler);
+                        debug_assert!(placed.is_ok(), "{PVD_VECTOR:#x} is in the flash");
+                        self.lent = Some(own);
+                        host.set_interrupt(PVD, Level::High);
+                        host.set_interrupt(PVD, Level::Low);
+                    }
+                }
+                Mishap::DmaStalls => {
+                    stop_stream(mcu, now);
+                }
+                Mishap::DmaFails => {
+                    let ended = flags(mcu, now) & TCIF0;
+                    let control = stop_stream(mcu, now);
+                    // That it was stopped for this is no end: the driver would read a frame that is not whole, and send the stream
+                    // back to its ring before it has stumbled.
+                    set(mcu, now, DMA2_LIFCR, TCIF0 & !ended);
+                    set(mcu, now, DMA2_S0M0AR, NOWHERE);
+                    set(mcu, now, DMA2_S0CR, control);
+                }
+                Mishap::Garbage(bytes) => {
+                    if let Some(line) = mcu.line(now) {
+                        line.down.extend(bytes);
+                    }
+                }
+                Mishap::CoreHangs => host.hold(true),
+                Mishap::PowerFails { words } => flash.cut_power_after(words),
+                Mishap::BridgeIsOff(is_off) => Wires::new(mcu, now).bridge_fault(is_off),
+            }
+        }
+    }
+}
+
+/// Switches the converter's stream off; gives its configuration before.
+fn stop_stream(mcu: &mut Part, now: VirtualNanos) -> u64 {
+    let control = mcu.peek(now, DMA2_S0CR, Width::W32).unwrap_or(0);
+    set(mcu, now, DMA2_S0CR, control & !1);
+    control
+}
+
+fn flags(mcu: &mut Part, now: VirtualNanos) -> u64 {
+    mcu.peek(now, DMA2_LISR, Width::W32).unwrap_or(0)
+}
+
+fn set(mcu: &mut Part, now: VirtualNanos, address: u64, value: u64) {
+    let written = mcu.write(now, address, Width::W32, value);
+    debug_assert!(written.is_ok(), "{address:#x} is a register of the chip");
+}

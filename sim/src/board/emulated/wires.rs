@@ -1,0 +1,142 @@
+//! The wires between the chip's pins and the world: what a plant puts in, what it takes out.
+
+use rigless::mcu::Operate;
+use rigless::soc::Width;
+use rigless::time::VirtualNanos;
+use tenax_hal_shim::channel::SCAN;
+use tenax_hal_shim::frame::Scan;
+use tenax_hal_shim::motor::{Duty, MotorDrive};
+
+use crate::board_model::part::Part;
+
+const GPIOA_MODER: u64 = 0x4002_0000;
+const GPIOC_PUPDR: u64 = 0x4002_080C;
+const GPIOB_ODR: u64 = 0x4002_0414;
+const TIM1_CCER: u64 = 0x4001_0020;
+const TIM1_CNT: u64 = 0x4001_0024;
+const TIM1_ARR: u64 = 0x4001_002C;
+const TIM1_CCR1: u64 = 0x4001_0034;
+const TIM1_CCR2: u64 = 0x4001_0038;
+const TIM1_BDTR: u64 = 0x4001_0044;
+const GPIOB_MODER: u64 = 0x4002_0400;
+const GPIOB_AFRL: u64 = 0x4002_0420;
+const TIM4_CR1: u64 = 0x4000_0800;
+const TIM4_CCER: u64 = 0x4000_0820;
+const TIM4_ARR: u64 = 0x4000_082C;
+const TIM4_CCR1: u64 = 0x4000_0834;
+const ADC1_CR2: u64 = 0x4001_2008;
+
+const BDTR_MOE: u32 = 1 << 15;
+const CCER_CC1E: u32 = 1;
+const CCER_CC2E: u32 = 1 << 4;
+const CR1_CEN: u32 = 1;
+const CR2_ADON: u32 = 1;
+const CR2_EXTSEL: u32 = 0xF << 24;
+const CR2_EXTSEL_TIM3_TRGO: u32 = 0x8 << 24;
+const CR2_EXTEN: u32 = 0x3 << 28;
+const PULL_UP: u32 = 0b01;
+const PULL_DOWN: u32 = 0b10;
+const MODER_ALTERNATE: u32 = 0b10;
+const AF_TIM4: u32 = 2;
+
+/// The chip at one instant.
+pub struct Wires<'a> {
+    mcu: &'a mut Part,
+    now: VirtualNanos,
+}
+
+impl<'a> Wires<'a> {
+    /// The wires as they are at `now`, to which the chip has advanced.
+    pub fn new(mcu: &'a mut Part, now: VirtualNanos) -> Self {
+        Self { mcu, now }
+    }
+
+    /// Reads a register as a debugger does. An unmapped address is a mistake in this file; it reads as reset.
+    fn peek(&mut self, address: u64) -> u32 {
+        self.mcu.peek(self.now, address, Width::W32).unwrap_or(0) as u32
+    }
+
+    /// What the select lines S0 to S3 show.
+    pub fn select(&mut self) -> u8 {
+        (self.peek(GPIOB_ODR) >> 12 & 0xF) as u8
+    }
+
+    /// How the bridge drives the motor. Both sides at once is a short of the supply, so it is an answer of its own.
+    pub fn motor(&mut self) -> Result<MotorDrive, BothSides> {
+        let (close, open) = (self.side(8, TIM1_CCR1, CCER_CC1E), self.side(9, TIM1_CCR2, CCER_CC2E));
+        match (close, open) {
+            (None, None) => Ok(MotorDrive::Coast),
+            (Some(duty), None) => Ok(MotorDrive::Close(duty)),
+            (None, Some(duty)) => Ok(MotorDrive::Open(duty)),
+            (Some(_), Some(_)) => Err(BothSides),
+        }
+    }
+
+    /// When a period of the bridge's timer begins after the pulse that started the last scan, us.
+    pub fn bridge_begins_us(&mut self) -> f64 {
+        let since_us = self.mcu.since_pulse_ns(self.now) as f64 / 1e3;
+        since_us - f64::from(self.peek(TIM1_CNT)) / 100.0
+    }
+
+    /// How one side is driven: its pin belongs to the timer, the timer's outputs are on, and its pulse is not empty.
+    fn side(&mut self, pin: u32, compare: u64, enable: u32) -> Option<Duty> {
+        // Most of the time the pulse is empty, and one look is enough.
+        let compare = Some(self.peek(compare)).filter(|&compare| compare > 0)?;
+        let alternate = self.peek(GPIOA_MODER) >> (2 * pin) & 0b11 == MODER_ALTERNATE;
+        let on = self.peek(TIM1_BDTR) & BDTR_MOE != 0 && self.peek(TIM1_CCER) & enable != 0;
+        let per_mille = (compare * 1_000).div_ceil(self.peek(TIM1_ARR) + 1);
+        (alternate && on).then_some(Duty::per_mille(per_mille as u16))
+    }
+
+    /// How the vibration motor on PB6 is driven: the pin is the timer's, the timer counts, and its output is on.
+    pub fn vibration(&mut self) -> Duty {
+        let compare = self.peek(TIM4_CCR1);
+        let wired = compare > 0
+            && self.peek(GPIOB_MODER) >> 12 & 0b11 == MODER_ALTERNATE
+            && self.peek(GPIOB_AFRL) >> 24 & 0xF == AF_TIM4
+            && self.peek(TIM4_CR1) & CR1_CEN != 0
+            && self.peek(TIM4_CCER) & CCER_CC1E != 0;
+        let per_mille = (compare * 1_000).div_ceil(self.peek(TIM4_ARR) + 1);
+        if wired { Duty::per_mille(per_mille as u16) } else { Duty::default() }
+    }
+
+    /// Puts codes on the converter's pins.
+    pub fn put(&mut self, scan: &Scan) {
+        self.mcu.put(self.now, SCAN.iter().zip(scan).map(|(rank, &code)| (rank.adc, code)));
+    }
+
+    /// Presses or releases the button on PC13. The model lets a peripheral's owner drive a pin and nobody else, but a pin
+    /// that nothing drives reads its pull: the button is one.
+    pub fn button(&mut self, is_down: bool) {
+        self.pull(13, is_down);
+    }
+
+    /// The bridge pulls its nFAULT on PC8 low, or lets it go.
+    pub fn bridge_fault(&mut self, is_low: bool) {
+        self.pull(8, is_low);
+    }
+
+    fn pull(&mut self, pin: u32, is_low: bool) {
+        let at = 2 * pin;
+        let pulls = self.peek(GPIOC_PUPDR) & !(0b11 << at) | if is_low { PULL_DOWN } else { PULL_UP } << at;
+        if pulls != self.peek(GPIOC_PUPDR) {
+            // Before the image has clocked the port nothing reads it either.
+            let _ = self.mcu.write(self.now, GPIOC_PUPDR, Width::W32, u64::from(pulls));
+        }
+    }
+
+    /// Draws the one wire that the emulator leaves out: a pulse of TIM3's TRGO starts the converter's sequence if the
+    /// converter listens to it. Says whether it did.
+    pub fn trigger(&mut self) -> bool {
+        let cr2 = self.peek(ADC1_CR2);
+        let listens = cr2 & CR2_ADON != 0 && cr2 & CR2_EXTEN != 0 && cr2 & CR2_EXTSEL == CR2_EXTSEL_TIM3_TRGO;
+        if listens {
+            self.mcu.trigger(self.now);
+        }
+        listens
+    }
+}
+
+/// Both sides of the bridge are driven.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BothSides;

@@ -1,0 +1,262 @@
+//! What goes on around the chip while the emulator runs it: every 125 us a plant's scan goes in, and what the chip does
+//! comes out.
+
+use std::ops::Range;
+use std::sync::mpsc::Sender;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use rigless::emulator::{Driver, Host, Settled, Stop};
+use rigless::session::Session;
+use rigless::time::VirtualNanos;
+use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, SCAN_HZ, SCANS_PER_FRAME};
+use tenax_hal_shim::frame::{Scan, scan_of_pins};
+use tenax_hal_shim::motor::{Duty, MotorDrive};
+use tenax_hal_shim::wire::{Down, Received, Receiver};
+use tenax_scene::plant::Plant;
+
+use super::Broken;
+use super::commands::Commands;
+use super::cost::{CostMeter, stack_used};
+use super::coupling::Coupling;
+use super::mishaps::Mishaps;
+use super::wires::Wires;
+use crate::board::TickCost;
+use crate::board_model::flash::FlashArray;
+use crate::board_model::nucleo::Nucleo;
+use crate::image::symbols::Symbols;
+use tenax_frames::link::Encoder;
+
+const SCAN_NS: u64 = 1_000_000_000 / SCAN_HZ as u64;
+/// While the timer's phase is not known, every this often it is looked for.
+const SEEK_NS: u64 = 5_000;
+/// An image that has not begun to scan by now never will. It may erase a sector first, which takes a second or two.
+const BOOT_NS: u64 = 3_000_000_000;
+/// Scans after the plant's last, so that what they led to comes up the line.
+const DRAIN_SCANS: u32 = 64;
+/// Scans between two reports, so that a line that is served live is late by no more than a slow frame.
+const REPORT_SCANS: usize = SCANS_PER_FRAME * FRAMES_PER_SLOW_FRAME as usize;
+
+/// What happened since the last report.
+#[derive(Debug, Default)]
+pub struct Stretch {
+    /// Of each scan: its codes, how the motor was driven, and whether the object moved relative to the finger.
+    pub scans: Vec<(Scan, MotorDrive, bool)>,
+    /// What came up the line.
+    pub line: Vec<u8>,
+}
+
+/// The world, and what goes out of it.
+pub struct World {
+    /// The plant. Nobody else looks at it while the run lasts.
+    plant: Arc<Mutex<dyn Plant>>,
+    /// What the ticks took, once the run is over.
+    pub tick_cost: Option<TickCost>,
+    /// How deep the stack was, once the run is over, bytes.
+    pub stack_bytes: Option<u64>,
+    /// Why the run ended early, if it did.
+    pub broken: Option<Broken>,
+    pub cost: CostMeter,
+    /// What the bridge's edges leave in the films' codes.
+    pub coupling: Option<Coupling>,
+    /// What was sent, and when it was taken.
+    pub commands: Commands,
+    pub flash: FlashArray,
+    /// Whole scans that the plant lasts.
+    scans: usize,
+    scanned: usize,
+    drained: u32,
+    pulses: u64,
+    stepped_at: Option<VirtualNanos>,
+    codes: Scan,
+    encoder: Encoder,
+    /// Finds the commands among the bytes that are sent down as they are.
+    sent: Receiver,
+    /// How the vibration motor was driven in each scan in which that had changed.
+    pub feedback: Vec<(usize, Duty)>,
+    mishaps: Mishaps,
+    resets: usize,
+    executed: Option<(VirtualNanos, u64)>,
+    stack: Range<u64>,
+    command_entry: u64,
+    stretch: Stretch,
+    /// Who is told what happened. Given up when the run is over.
+    pub reports: Option<Sender<Stretch>>,
+}
+
+impl World {
+    /// A world that has not begun.
+    pub fn new(
+        plant: Arc<Mutex<dyn Plant>>,
+        frames: u32,
+        mishaps: Mishaps,
+        cost: CostMeter,
+        flash: FlashArray,
+        symbols: &Symbols,
+        reports: Sender<Stretch>,
+    ) -> Self {
+        Self {
+            plant,
+            tick_cost: None,
+            stack_bytes: None,
+            broken: None,
+            cost,
+            coupling: None,
+            commands: Commands::default(),
+            flash,
+            scans: frames as usize * SCANS_PER_FRAME,
+            scanned: 0,
+            drained: 0,
+            pulses: 0,
+            stepped_at: None,
+            codes: Scan::default(),
+            encoder: Encoder::default(),
+            sent: Receiver::new(),
+            feedback: Vec::new(),
+            mishaps,
+            resets: 0,
+            executed: None,
+            stack: symbols.stack.clone(),
+            command_entry: symbols.command,
+            stretch: Stretch::default(),
+            reports: Some(reports),
+        }
+    }
+
+    /// One scan period of the world. None when it is over.
+    fn step(
+        &mut self,
+        session: &mut Session<Nucleo>,
+        stop: Stop,
+        host: &mut dyn Host,
+        pulse: bool,
+    ) -> Option<()> {
+        let mut plant = self.plant.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut wires = Wires::new(&mut session.board_mut().mcu, stop.at);
+        if self.scanned < self.scans {
+            let Ok(drive) = wires.motor() else {
+                self.broken = Some(Broken::BothSides { at_s: seconds(stop.at) });
+                return None;
+            };
+            let vibration = wires.vibration();
+            if self.feedback.last().map_or(Duty::default(), |last| last.1) != vibration {
+                self.feedback.push((self.scanned, vibration));
+                plant.vibrate(vibration);
+            }
+            let pins = plant.scan(drive).codes();
+            self.codes = scan_of_pins(&pins, wires.select());
+            if let Some(coupling) = self.coupling {
+                coupling.add(&mut self.codes, drive, wires.bridge_begins_us());
+            }
+            self.stretch.scans.push((self.codes, drive, plant.slipping()));
+            self.scanned += 1;
+        } else {
+            self.drained += 1;
+        }
+        wires.put(&self.codes);
+        wires.button(plant.button());
+        if pulse {
+            wires.trigger();
+        }
+        let scan = self.scanned;
+        if let Some(line) = session.board_mut().mcu.line(stop.at) {
+            let opening = line.offered.take().map(|nonce| Down::Open { nonce });
+            for command in opening.into_iter().chain(plant.commands()) {
+                if command == Down::Hello {
+                    line.listener = Some(Receiver::default());
+                }
+                let (number, frame) = self.encoder.frame(&command);
+                line.down.extend(frame);
+                self.commands.send(Received { sequence: number, message: command });
+            }
+            for byte in plant.line_bytes() {
+                line.down.push_back(byte);
+                if let Some(Ok(command)) = self.sent.push::<Down>(byte) {
+                    self.commands.send(command);
+                }
+            }
+        }
+        drop(plant);
+        self.mishaps.happen(scan, session, stop, &mut self.flash, host);
+        if scan.is_multiple_of(REPORT_SCANS) {
+            self.report(session, stop.at);
+        }
+        (self.drained < DRAIN_SCANS).then_some(())
+    }
+
+    /// Hands on what happened since the last report.
+    fn report(&mut self, session: &mut Session<Nucleo>, at: VirtualNanos) {
+        if let Some(line) = session.board_mut().mcu.line(at) {
+            self.stretch.line = std::mem::take(&mut line.up);
+        }
+        if let Some(reports) = &self.reports {
+            // Nobody listening is no reason to stop.
+            let _ = reports.send(std::mem::take(&mut self.stretch));
+        }
+    }
+
+    fn end(&mut self, session: &mut Session<Nucleo>, stop: Stop, host: &mut dyn Host) {
+        let (began, executed) = self.executed.unwrap_or((stop.at, stop.instruction_count));
+        let lasted_s = seconds(stop.at) - seconds(began);
+        self.tick_cost = self.cost.cost((stop.instruction_count - executed) as f64 / lasted_s);
+        self.stack_bytes = Some(stack_used(&self.stack, host));
+        self.report(session, stop.at);
+    }
+}
+
+impl Driver<Nucleo> for World {
+    fn on_settled(&mut self, session: &mut Session<Nucleo>, host: &mut dyn Host, settled: Settled) {
+        match settled {
+            Settled::Hit(hit) if hit.address == self.command_entry => {
+                self.commands.take(self.cost.ticks() as u32)
+            }
+            Settled::Hit(hit) => {
+                if self.cost.watched().contains(&hit.address) {
+                    self.cost.hit(hit);
+                }
+            }
+            Settled::Access { access, .. } => {
+                self.flash.accessed(&access, session, host);
+                self.mishaps.accessed(&access, session);
+            }
+            Settled::Stop(stop) => self.flash.stopped(stop, session, host),
+            _ => {}
+        }
+    }
+
+    fn on_stop(
+        &mut self,
+        session: &mut Session<Nucleo>,
+        stop: Stop,
+        host: &mut dyn Host,
+    ) -> Option<VirtualNanos> {
+        if session.resets().len() > self.resets {
+            self.resets = session.resets().len();
+            self.pulses = 0;
+            self.flash.reset();
+            // A reset ends a hang.
+            host.hold(false);
+        }
+        let pulses = session.board_mut().mcu.trigger_pulses(stop.at);
+        let pulse = pulses > self.pulses;
+        self.pulses = pulses;
+        let due = self.stepped_at.is_some_and(|at| stop.at.0 >= at.0 + SCAN_NS);
+        if self.stepped_at.is_none() && pulse {
+            self.executed = Some((stop.at, stop.instruction_count));
+        }
+        if pulse || due {
+            self.stepped_at = Some(stop.at);
+            if self.step(session, stop, host, pulse).is_none() {
+                self.end(session, stop, host);
+                return None;
+            }
+        } else if self.stepped_at.is_none() && stop.at.0 > BOOT_NS {
+            self.broken = Some(Broken::NeverScanned);
+            return None;
+        }
+        Some(VirtualNanos(stop.at.0 + if pulse { SCAN_NS } else { SEEK_NS }))
+    }
+}
+
+fn seconds(at: VirtualNanos) -> f64 {
+    at.0 as f64 / 1e9
+}

@@ -1,0 +1,92 @@
+//! Who is told of a run while it goes.
+
+use tenax_hal_shim::frame::Scan;
+use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::wire::Slow;
+
+use tenax_frames::record::Recording;
+use tenax_frames::serve::Server;
+
+use super::Run;
+
+/// Takes in what a board does, in order. A frame's scans come before the slow frame that tells of its tick.
+pub trait Recorder {
+    /// One scan: the codes at the converter's inputs, how the motor was driven meanwhile, and whether the object moved
+    /// relative to the finger.
+    fn scan(&mut self, _codes: &Scan, _drive: MotorDrive, _slipping: bool) {}
+
+    /// A slow frame, as it came up the line.
+    fn slow(&mut self, _slow: &Slow) {}
+
+    /// Bytes that came up the line.
+    fn line(&mut self, _bytes: &[u8]) {}
+}
+
+impl Recorder for () {}
+
+impl<R: Recorder> Recorder for Option<R> {
+    fn scan(&mut self, codes: &Scan, drive: MotorDrive, slipping: bool) {
+        if let Some(recorder) = self {
+            recorder.scan(codes, drive, slipping);
+        }
+    }
+
+    fn slow(&mut self, slow: &Slow) {
+        if let Some(recorder) = self {
+            recorder.slow(slow);
+        }
+    }
+
+    fn line(&mut self, bytes: &[u8]) {
+        if let Some(recorder) = self {
+            recorder.line(bytes);
+        }
+    }
+}
+
+impl<A: Recorder + ?Sized, B: Recorder + ?Sized> Recorder for (&mut A, &mut B) {
+    fn scan(&mut self, codes: &Scan, drive: MotorDrive, slipping: bool) {
+        self.0.scan(codes, drive, slipping);
+        self.1.scan(codes, drive, slipping);
+    }
+
+    fn slow(&mut self, slow: &Slow) {
+        self.0.slow(slow);
+        self.1.slow(slow);
+    }
+
+    fn line(&mut self, bytes: &[u8]) {
+        self.0.line(bytes);
+        self.1.line(bytes);
+    }
+}
+
+impl Recorder for Run {
+    fn scan(&mut self, codes: &Scan, drive: MotorDrive, slipping: bool) {
+        self.scans.push(*codes);
+        self.drives.push(drive);
+        self.slipping.push(slipping);
+    }
+
+    fn slow(&mut self, slow: &Slow) {
+        self.slows.push(slow.clone());
+    }
+
+    fn line(&mut self, bytes: &[u8]) {
+        self.line.extend_from_slice(bytes);
+    }
+}
+
+/// Takes what comes up a run's line.
+impl Recorder for Recording {
+    fn line(&mut self, bytes: &[u8]) {
+        Self::line(self, bytes);
+    }
+}
+
+/// Serves what comes up a run's line.
+impl Recorder for Server {
+    fn line(&mut self, bytes: &[u8]) {
+        Self::line(self, bytes);
+    }
+}

@@ -1,0 +1,116 @@
+//! The host board's line down: the plant's own commands, and bytes that become commands through the same receiver and the
+//! same allowance as in the image.
+
+use std::collections::VecDeque;
+
+use tenax_hal_shim::wire::{BadFrame, Counters, Down, Received, Receiver};
+use tenax_logic::allowance::{Allowance, BURST};
+
+#[derive(Debug, Default)]
+pub struct Downlink {
+    receiver: Receiver,
+    allowance: Allowance,
+    frame: u32,
+    waiting: VecDeque<Received<Down>>,
+    bad_frames: u32,
+    skipped: u32,
+    /// Number of the plant's next command.
+    number: u16,
+    /// The plant asked for a session with the command of this number.
+    hello: Option<u16>,
+    opening: Option<u32>,
+}
+
+impl Downlink {
+    /// A command of the plant's, numbered.
+    pub fn number(&mut self, message: Down) -> Received<Down> {
+        let sequence = self.number;
+        self.number = sequence.wrapping_add(1);
+        if message == Down::Hello {
+            self.hello = Some(sequence);
+        }
+        Received { sequence, message }
+    }
+
+    /// The board answered a command with this number. If the plant had asked for it, it gives it back in the next frame.
+    pub fn offered(&mut self, of: u16, nonce: u32) {
+        if self.hello == Some(of) {
+            self.hello = None;
+            self.opening = Some(nonce);
+        }
+    }
+
+    /// What the plant gives back at once.
+    pub fn opening(&mut self) -> Vec<Received<Down>> {
+        self.opening.take().map(|nonce| self.number(Down::Open { nonce })).into_iter().collect()
+    }
+
+    pub fn take(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
+            let frame = self.frame;
+            match self.receiver.push_if::<Down>(byte, || self.allowance.admits(frame)) {
+                None => {}
+                Some(Ok(command))
+                    if self.allowance.affords(&command.message) && self.waiting.len() < BURST as usize =>
+                {
+                    self.waiting.push_back(command);
+                }
+                Some(Ok(_) | Err(BadFrame::Skipped)) => self.skipped += 1,
+                Some(Err(_)) => self.bad_frames += 1,
+            }
+        }
+    }
+
+    /// The command that is taken before the tick of this frame: one at most.
+    pub fn command(&mut self, frame: u32) -> Option<Received<Down>> {
+        self.frame = frame;
+        self.waiting.pop_front()
+    }
+
+    /// What a board that loses nothing has counted after so many frames.
+    pub fn counters(&self, frames: u32) -> Counters {
+        Counters {
+            frames,
+            ticks: frames,
+            bad_frames: self.bad_frames,
+            commands_skipped: self.skipped,
+            ..Counters::default()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tenax_frames::link::Encoder;
+
+    #[test]
+    fn a_flood_is_taken_one_command_a_tick_and_no_more_than_is_earned() {
+        let (mut encoder, mut down) = (Encoder::default(), Downlink::default());
+        (0..100).for_each(|_| down.take(encoder.frame(&Down::Ping).1));
+        let taken = (0..200).filter_map(|frame| down.command(frame));
+        let numbers: Vec<u16> = taken.map(|command| command.sequence).collect();
+        assert_eq!(numbers, (0..BURST as u16).collect::<Vec<_>>());
+        assert_eq!(down.counters(200).commands_skipped, 100 - BURST);
+    }
+
+    #[test]
+    fn what_is_no_command_is_counted() {
+        let mut down = Downlink::default();
+        down.take(&[1, 2, 3, 0]);
+        down.take(&[7; 100_000]);
+        down.take(&[0]);
+        assert_eq!((down.command(0), down.counters(1).bad_frames), (None, 2));
+    }
+
+    #[test]
+    fn only_who_asked_for_a_session_gives_its_number_back() {
+        let mut down = Downlink::default();
+        down.offered(0, 7);
+        assert_eq!(down.opening(), []);
+        let hello = down.number(Down::Hello);
+        down.offered(hello.sequence, 8);
+        assert_eq!(down.opening(), [Received { sequence: 1, message: Down::Open { nonce: 8 } }]);
+        assert_eq!(down.opening(), []);
+    }
+}

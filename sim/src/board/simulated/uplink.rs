@@ -1,0 +1,61 @@
+//! The host board's line up: what it posts, numbered and encoded as the image does it.
+//!
+//! What differs from the image's line: of the counters it has frames, ticks and what came down, since nothing is ever
+//! lost, late or dropped here; and within a slow frame the counters come at other instants, for the image's clock starts
+//! before its first scan.
+
+use tenax_hal_shim::channel::FRAME_HZ;
+use tenax_hal_shim::wire::{Counters, Up};
+
+use crate::board::{Recorder, Summary};
+use tenax_frames::link::Encoder;
+
+/// Frames between two messages with the counters: ten a second.
+const COUNTERS_FRAMES: u32 = FRAME_HZ / 10;
+
+pub struct Uplink<'a> {
+    encoder: Encoder,
+    summary: &'a mut Summary,
+    recorder: &'a mut dyn Recorder,
+}
+
+impl<'a> Uplink<'a> {
+    /// A line on which the board says hello.
+    pub fn new(summary: &'a mut Summary, recorder: &'a mut dyn Recorder) -> Self {
+        let mut uplink = Self { encoder: Encoder::default(), summary, recorder };
+        // The image ends whatever frame a reset may have cut short.
+        uplink.write(&[0]);
+        uplink.post(Up::Hello { frame_hz: FRAME_HZ as u16, after: None });
+        uplink
+    }
+
+    /// Posts a message: its bytes first, as they come first on a real line.
+    pub fn post(&mut self, message: Up) {
+        let (_, frame) = self.encoder.frame(&message);
+        self.summary.line_bytes += frame.len();
+        self.recorder.line(frame);
+        self.summary.take(message, self.recorder);
+    }
+
+    /// Posts the counters when they are due. Call it before each frame.
+    pub fn count(&mut self, counters: Counters) {
+        if counters.frames > 0 && counters.frames.is_multiple_of(COUNTERS_FRAMES) {
+            self.post(Up::Counters(counters));
+        }
+    }
+
+    /// What is told of the run.
+    pub fn recorder(&mut self) -> &mut dyn Recorder {
+        self.recorder
+    }
+
+    /// What is rare in the run.
+    pub fn summary(&mut self) -> &mut Summary {
+        self.summary
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        self.summary.line_bytes += bytes.len();
+        self.recorder.line(bytes);
+    }
+}

@@ -1,0 +1,49 @@
+//! The command line, a file a subcommand.
+
+mod line_file;
+mod plot;
+mod run;
+mod sweep;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use tenax_frames::tool::exit;
+
+/// Runs scenes and recordings on boards, and draws them.
+#[derive(Debug, Parser)]
+#[command(name = "tenax", bin_name = "tenax", version)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a scene or a recording on a board; report and draw it
+    Run(run::Args),
+    /// Run scenes with many seeds, in shards
+    Sweep(sweep::Args),
+    /// Draw a recording
+    Plot(plot::Args),
+}
+
+/// Runs the command line. 0: done. 1: something measured is not as promised. 2: it could not be run.
+pub fn main() -> ExitCode {
+    exit(match Cli::parse().command {
+        Command::Run(args) => run::main(&args),
+        Command::Sweep(args) => sweep::main(&args),
+        Command::Plot(args) => plot::main(&args),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        Cli::command().debug_assert();
+    }
+}

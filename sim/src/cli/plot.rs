@@ -1,0 +1,31 @@
+//! `tenax plot`: a recording as a figure.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Context;
+
+use crate::plot::draw;
+use crate::session;
+use tenax_frames::link::captured::line_of;
+use tenax_frames::tool::out;
+
+/// Draw a recording.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// A recording (MCAP) or a captured line
+    file: PathBuf,
+    /// The figure, an SVG [default: beside the recording]
+    #[arg(long, value_name = "PATH")]
+    out: Option<PathBuf>,
+}
+
+pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
+    let name = session::name_of(&args.file);
+    let outcome = session::recorded(&name, &line_of(&args.file)?)?;
+    let path = args.out.clone().unwrap_or_else(|| args.file.with_extension("svg"));
+    std::fs::write(&path, draw::svg(&outcome.figure)?)
+        .with_context(|| format!("cannot write {}", path.display()))?;
+    out::note!("  {:<14}{}", "written", path.display());
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,279 @@
+//! `tenax run`: a scene or a recording on a board; report and figure.
+
+use std::fs;
+use std::io::{self, IsTerminal};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::mpsc::Receiver;
+use std::thread;
+
+use anyhow::Context;
+use clap::ArgGroup;
+use tenax_scene::SceneFile;
+use tenax_scene::act::KEYS;
+
+use super::line_file::LineFile;
+use crate::again;
+use crate::live::{Live, Person, Use};
+use crate::plot::draw;
+use crate::replay::{self, calibrate};
+use crate::report::text::Text;
+use crate::session::{self, Board, Outcome};
+use tenax_frames::link::captured::is_recording;
+use tenax_frames::record::Recording;
+use tenax_frames::serve::{self, Down, Server};
+use tenax_frames::tool::folder;
+use tenax_frames::tool::format::Format;
+use tenax_frames::tool::out;
+use tenax_frames::tool::progress::Progress;
+use tenax_frames::tool::workspace;
+
+/// Run a scene or a recording on a board; report and draw it.
+#[derive(Debug, clap::Args)]
+#[command(group(ArgGroup::new("served").args(["serve", "serve_tcp"]).multiple(true)))]
+pub struct Args {
+    /// Run the PC's own build of the logic: no image, no emulator
+    #[arg(long)]
+    host: bool,
+    /// A scene file, or the name of one that `tenax scenes` lists
+    #[arg(long, value_name = "FILE.toml|NAME", default_value = session::DEFAULT_SCENE, conflicts_with = "replay")]
+    scene: String,
+    /// Play a recording instead of a scene: voltages at the pins (CSV), or a recorded line (MCAP) into the PC's logic
+    #[arg(long, value_name = "RECORDING.csv|FILE.mcap")]
+    replay: Option<PathBuf>,
+    /// Recipe that maps the recording's columns to pins: a file, or a name in recipes/ [default: by the recording's name]
+    #[arg(long, value_name = "FILE.toml|NAME", requires = "replay")]
+    recipe: Option<String>,
+    /// First calibrate the myosensors with these three recordings [default: not calibrated]
+    #[arg(long, value_name = "REST.csv,CLOSE.csv,OPEN.csv", value_delimiter = ',', requires = "replay")]
+    calibrate_emg: Option<Vec<PathBuf>>,
+    /// Also run the scene's controls on the PC: no reflex, a constant grip of the same mean force, each detector alone, all but
+    /// one
+    #[arg(long, conflicts_with = "replay")]
+    controls: bool,
+    /// Seed of every noise
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// How to print the report
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    report: Format,
+    /// Folder for the figure, the report (JSON) and the serial line's bytes
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    out: PathBuf,
+    /// Run at real time and serve the line on a pseudo-terminal, for `tenax monitor --port` and any other program
+    #[arg(long)]
+    serve: bool,
+    /// Make a symlink to the pseudo-terminal
+    #[arg(long, value_name = "PATH", requires = "serve")]
+    serve_at: Option<PathBuf>,
+    /// Run at real time and serve the line on this TCP port of 127.0.0.1; 0: any free port
+    #[arg(long, value_name = "PORT")]
+    serve_tcp: Option<u16>,
+    /// Also serve the scene's true state on this TCP port of 127.0.0.1, for `tenax monitor --truth`: a line of JSON 50 times a
+    /// second; 0: any free port. Keys of the monitor's page act on the scene
+    #[arg(long, value_name = "PORT", conflicts_with = "replay")]
+    serve_truth: Option<u16>,
+    /// Repeat the scene, each time with the next seed, until Ctrl-C
+    #[arg(long = "loop", conflicts_with_all = ["replay", "record", "controls"], requires = "served")]
+    repeat: bool,
+    /// Record the line with every frame, for `run --replay FILE.mcap`
+    #[arg(long, value_name = "FILE.mcap")]
+    record: Option<PathBuf>,
+}
+
+pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
+    if let Some(recording) = args.replay.as_deref().filter(|path| is_recording(path)) {
+        let outcome = again::replay(recording)?;
+        out::say!("{outcome}")?;
+        return Ok(ExitCode::from(u8::from(outcome.difference.is_some())));
+    }
+    let folder = folder::made(&args.out)?;
+    // What is to be run is looked at before the image is built, which can take minutes.
+    let subject = match &args.replay {
+        Some(path) => Subject::Recording(path, replay::library::read(path, args.recipe.as_deref())?.0),
+        None => Subject::Scene(Box::new(session::load_scene(&args.scene)?)),
+    };
+    let recordings = args.calibrate_emg.as_deref();
+    let calibrated = recordings
+        .map(|recordings| calibrate::calibrate(recordings, args.recipe.as_deref(), args.seed))
+        .transpose()?;
+    let name = match &subject {
+        Subject::Recording(path, _) => session::name_of(path),
+        Subject::Scene(file) => file.name.clone(),
+    };
+    let stem = Path::new(&name).file_stem().map_or("run".into(), |stem| stem.to_string_lossy());
+    let path = |extension: &str| folder.join(format!("{stem}.{extension}"));
+    let board = if args.host { Board::Host } else { Board::emulated(&workspace::root()?)? };
+    let mut line = LineFile::new(path("line.bin"));
+    let (mut server, down) = served(args)?.unzip();
+    let person = Person::default();
+    if let Some(server) = &mut server {
+        listen(&person, server.take_acts(), resets(args));
+    }
+    let live = down.as_ref().map(|down| live_of(down, &person));
+    if let (true, Subject::Scene(file), Some(server), Some(down)) =
+        (args.repeat, &subject, &mut server, &down)
+    {
+        return again_and_again(file, args.seed, &board, server, &person, &|| live_of(down, &person));
+    }
+    let mut recording = args.record.as_deref().map(Recording::create).transpose()?;
+    let line_use = Use { live, streams_at_start: recording.is_some() };
+    let recorder = &mut (&mut (&mut line, &mut server), &mut recording);
+    let outcome = match &subject {
+        Subject::Recording(file, recording) => {
+            let progress = Progress::new("replay", recording.duration_s());
+            let options =
+                session::ReplayOptions { recipe: args.recipe.as_deref(), calibrated, line: line_use };
+            session::replay_served(file, options, args.seed, &board, recorder, &mut |s| progress.at(s))?
+        }
+        Subject::Scene(file) => {
+            let progress = Progress::new(&format!("scene {}", file.name), file.duration_s());
+            let mut outcome =
+                session::scene_served(file, args.seed, &board, line_use, recorder, &mut |s| progress.at(s))?;
+            if args.controls {
+                outcome.report.controls = session::controls::controls(file, args.seed, &outcome.truth);
+            }
+            outcome
+        }
+    };
+    if let Some(server) = server {
+        out::note!("  {:<14}{}", "served", server.close());
+    }
+    let mut files = write(&outcome, &path)?;
+    if let (Some(recording), Some(path)) = (recording, &args.record) {
+        recording.finish().with_context(|| format!("cannot write {}", path.display()))?;
+        files.push(path.clone());
+    }
+    files.extend(line.close()?);
+    args.report.print(&Text(&outcome.report), &outcome.report)?;
+    // On stderr, so that a program that reads the report reads nothing else.
+    for file in files {
+        out::note!("  {:<14}{}", "written", file.display());
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Begins to serve, if that is asked for, and says where.
+fn served(args: &Args) -> anyhow::Result<Option<(Server, Down)>> {
+    if !args.serve && args.serve_tcp.is_none() && args.serve_truth.is_none() {
+        return Ok(None);
+    }
+    let options = serve::Options {
+        pty: args.serve,
+        at: args.serve_at.clone(),
+        tcp: args.serve_tcp,
+        truth: args.serve_truth,
+        keys: [(BUTTON, CONSENTS)]
+            .into_iter()
+            .chain(resets(args).then_some((RESET, RESTARTS)))
+            .chain(KEYS.map(|(key, what, _)| (key, what)))
+            .chain([("weight 5", "lay 5 N on the finger")])
+            .map(|(key, what)| (key.to_owned(), what.to_owned()))
+            .collect(),
+    };
+    let (server, down) = Server::start(&options)?;
+    for place in server.places() {
+        out::note!("serving on {place}");
+    }
+    if let Some(place) = server.truth_place() {
+        out::note!("telling what really happens on {place}");
+    }
+    Ok(Some((server, down)))
+}
+
+fn live_of(down: &Down, person: &Person) -> Live {
+    let slow =
+        |part| out::note!("the board is slower than real time: it runs, and is served, at {part:.2} of it");
+    Live::new(down.clone(), slow).with_person(person.clone())
+}
+
+/// The line that presses the button, and what that is for a person.
+const BUTTON: &str = "button";
+const CONSENTS: &str = "press the blue button (consent for a minute)";
+/// The same of the black one. What the board's flash keeps it has again afterwards.
+const RESET: &str = "reset";
+const RESTARTS: &str = "press the board's reset button";
+
+/// Whether the board can be reset: another run follows, and the host's board keeps its flash.
+const fn resets(args: &Args) -> bool {
+    args.repeat && args.host
+}
+
+/// Does what a person at the keyboard types, or what a program pipes, such as the prompts of `tenax selftest`; and what comes from
+/// the page where the truth is told.
+fn listen(person: &Person, acts: Option<Receiver<Vec<u8>>>, resets: bool) {
+    let is_typed = io::stdin().is_terminal();
+    if is_typed {
+        out::note!("Enter alone: {CONSENTS}");
+        let keys = KEYS.map(|(key, what, _)| format!("{key} {what}"));
+        out::note!("with Enter: {},\n{}", keys[..4].join(", "), keys[4..].join(", "));
+        out::note!("`weight 5` lays 5 N on the finger, `tap pvdf_3` taps a film");
+        if resets {
+            out::note!("`{RESET}`: {RESTARTS}");
+        }
+    }
+    let own = person.clone();
+    let does = move |line: String| match line.as_str() {
+        "" if is_typed => own.press(),
+        line if !act(&own, line, resets) && is_typed => out::note!("no key: {line}"),
+        // A program says other things, too.
+        _ => {}
+    };
+    // They end with the process.
+    thread::spawn(move || io::stdin().lines().map_while(Result::ok).for_each(does));
+    let own = person.clone();
+    thread::spawn(move || {
+        for line in acts.into_iter().flatten() {
+            _ = act(&own, String::from_utf8_lossy(&line).trim_end(), resets);
+        }
+    });
+}
+
+/// Does at the bench what a line says. False: it says nothing that can be done.
+fn act(person: &Person, line: &str, resets: bool) -> bool {
+    match line.parse() {
+        Ok(act) => person.act(act),
+        Err(()) if line == BUTTON => person.press(),
+        Err(()) if line == RESET && resets => person.reset(),
+        Err(()) => return false,
+    }
+    true
+}
+
+/// One run after the other on the same served line, until somebody ends the process.
+fn again_and_again(
+    file: &SceneFile,
+    seed: u64,
+    board: &Board,
+    server: &mut Server,
+    person: &Person,
+    live: &dyn Fn() -> Live,
+) -> anyhow::Result<ExitCode> {
+    for seed in seed.. {
+        let line = Use { live: Some(live()), streams_at_start: false };
+        let outcome = session::scene_alone(file, seed, board, line, server)?;
+        let fate = if outcome.truth.dropped { "DROPPED" } else { "kept" };
+        let how = if person.lets_go() { "is reset" } else { "is switched on anew" };
+        out::note!("{}, seed {seed}: {fate}; the board {how}", file.name);
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// What is run.
+enum Subject<'a> {
+    Recording(&'a Path, replay::Recording),
+    Scene(Box<SceneFile>),
+}
+
+/// Writes figure and report, and says where.
+fn write(outcome: &Outcome, path: &dyn Fn(&str) -> PathBuf) -> anyhow::Result<Vec<PathBuf>> {
+    let svg = draw::svg(&outcome.figure)?;
+    let contents = [("svg", svg.into_bytes()), ("json", serde_json::to_vec_pretty(&outcome.report)?)];
+    let mut files = Vec::new();
+    for (extension, bytes) in contents {
+        let path = path(extension);
+        fs::write(&path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
+        files.push(path);
+    }
+    Ok(files)
+}

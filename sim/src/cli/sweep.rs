@@ -1,0 +1,71 @@
+//! `tenax sweep`: many scenes with many seeds, on one machine or many.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use crate::sweep::{self, Seeds, Shard};
+use tenax_frames::tool::folder;
+use tenax_frames::tool::format::Format;
+use tenax_frames::tool::out;
+use tenax_frames::tool::progress::with_bar;
+
+const EXAMPLES: &str = "\
+Examples:
+  tenax sweep --seeds 1..5                 every scene with five seeds on all cores, then the summary
+  tenax sweep --seeds 1..5 --scenes glass,my.toml
+  tenax sweep --seeds 1..5 --shard 3/16 --out DIR
+                                           the third of sixteen shards; a second start continues it
+  tenax sweep --seeds 1..5 --shard $SLURM_ARRAY_TASK_ID/16 --out DIR
+                                           as a job of an array; in Kubernetes
+                                           $((JOB_COMPLETION_INDEX + 1))/16
+  tenax sweep merge DIR                    runs.jsonl, summary.json and the summary of all shards:
+                                           the same bytes, however many there were";
+
+/// Run scenes with many seeds on the host's build of the logic: bound, force and fate of each.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES, args_conflicts_with_subcommands = true)]
+pub struct Args {
+    #[command(subcommand)]
+    what: Option<What>,
+    /// Scenes by name or file, or all of `tenax scenes`
+    #[arg(long, value_name = "all|NAME|FILE.toml,...", value_delimiter = ',', default_value = "all")]
+    scenes: Vec<String>,
+    /// Seeds of every noise: one, several, or the first and the last
+    #[arg(long, value_name = "N|FIRST..LAST,...", value_delimiter = ',', default_value = "1..5")]
+    seeds: Vec<Seeds>,
+    /// Run only this shard, such as 3/16, without a merge [default: all shards, then a merge]
+    #[arg(long, value_name = "N/OF")]
+    shard: Option<Shard>,
+    /// Folder with one file a run; existing runs are not repeated
+    #[arg(long, value_name = "DIR", default_value = "out/sweep")]
+    out: PathBuf,
+    /// How to print the summary
+    #[arg(long, value_enum, default_value_t = Format::Text, global = true)]
+    report: Format,
+}
+
+#[derive(Debug, clap::Subcommand)]
+enum What {
+    /// Merge shards into the first of these folders
+    Merge {
+        #[arg(value_name = "DIR", required = true)]
+        folders: Vec<PathBuf>,
+    },
+}
+
+pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
+    let summary = if let Some(What::Merge { folders }) = &args.what {
+        sweep::merge(folders)?
+    } else {
+        let folder = folder::made(&args.out)?;
+        let seeds: Vec<u64> = args.seeds.iter().flat_map(|seeds| seeds.0.iter().copied()).collect();
+        let ran = with_bar("sweep", |told| sweep::run(&args.scenes, &seeds, args.shard, &folder, told))?;
+        out::note!("  {ran} runs done now");
+        if args.shard.is_some() {
+            return Ok(ExitCode::SUCCESS);
+        }
+        sweep::merge(&[folder])?
+    };
+    out::unless_closed(args.report.show(&summary))?;
+    Ok(ExitCode::SUCCESS)
+}

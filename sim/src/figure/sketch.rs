@@ -1,0 +1,195 @@
+//! The curves of a run, drawn and thinned while it goes.
+
+use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, REFERENCE_MV, SAMPLE_MAX};
+use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::wire::{Slow, TickRecord};
+use tenax_hal_shim::words::{DriveSource, GripMode};
+use tenax_scene::truth::Row;
+
+use crate::board::Recorder;
+use crate::plot::thin::Thin;
+use crate::timeline::{frame_end_s, ticks};
+
+/// Everything that the panels of a run show, in a few thousand points however long the run is.
+#[derive(Clone, Debug)]
+pub struct Sketch {
+    span_s: (f64, f64),
+    zero_s: f64,
+    end_s: Option<f64>,
+    /// The mode when it was first told: a recording may begin in the middle.
+    pub first_mode: Option<GripMode>,
+    /// Fn and Ft as measured, N.
+    pub forces: [Thin; 2],
+    /// What is true of the grip, where it is known.
+    pub needs: Option<Needs>,
+    /// Ft/Fn.
+    pub ratio: Thin,
+    /// S2. A stroke changes it.
+    pub s2: Steps,
+    /// The PVDF envelope, mV.
+    pub vibration: Thin,
+    /// Flexor and extensor, mV.
+    pub muscles: [Thin; 2],
+    pub motor: Drives,
+}
+
+/// The true grip force and the least that holds the object.
+#[derive(Clone, Debug)]
+pub struct Needs {
+    /// Grip force, N.
+    pub grip: Thin,
+    /// The least force that holds the object, N.
+    pub needed: Thin,
+}
+
+/// The motor's drive, %, by who drove it.
+#[derive(Clone, Debug)]
+pub struct Drives {
+    pub wearer: Thin,
+    pub reflex: Thin,
+    /// Somebody over the serial line.
+    pub link: Thin,
+    /// Whether they ever did.
+    pub by_link: bool,
+    pub behaviour: Thin,
+    /// Whether one ever did.
+    pub by_behaviour: bool,
+}
+
+impl Sketch {
+    /// Of a run that has not begun, between two instants, s; `zero_s` is added to virtual time.
+    pub fn new(zero_s: f64, span_s: (f64, f64)) -> Self {
+        let thin = || Thin::new(span_s);
+        Self {
+            span_s,
+            zero_s,
+            end_s: None,
+            first_mode: None,
+            forces: [thin(), thin()],
+            needs: None,
+            ratio: thin(),
+            s2: Steps::new(span_s),
+            vibration: thin(),
+            muscles: [thin(), thin()],
+            motor: Drives {
+                wearer: thin(),
+                reflex: thin(),
+                link: thin(),
+                by_link: false,
+                behaviour: thin(),
+                by_behaviour: false,
+            },
+        }
+    }
+
+    pub const fn span_s(&self) -> (f64, f64) {
+        self.span_s
+    }
+
+    /// When the last slow frame that was heard of ended, and as much again, s.
+    pub const fn end_s(&self) -> Option<f64> {
+        self.end_s
+    }
+
+    fn tick(&mut self, t_s: f64, tick: &TickRecord) {
+        self.vibration.push((t_s, mv(tick.vibration)));
+        let by = |source| if tick.source == source { duty_percent(tick.drive) } else { 0.0 };
+        self.motor.wearer.push((t_s, by(DriveSource::Wearer)));
+        self.motor.reflex.push((t_s, by(DriveSource::Reflex)));
+        self.motor.link.push((t_s, by(DriveSource::Link)));
+        self.motor.by_link |= tick.source == DriveSource::Link;
+        self.motor.behaviour.push((t_s, by(DriveSource::Behaviour)));
+        self.motor.by_behaviour |= tick.source == DriveSource::Behaviour;
+    }
+}
+
+impl Recorder for Sketch {
+    fn slow(&mut self, slow: &Slow) {
+        for (frame, tick) in ticks(slow) {
+            self.tick(self.zero_s + frame_end_s(frame), tick);
+        }
+        let t_s = self.zero_s + frame_end_s(slow.frame);
+        self.first_mode.get_or_insert(slow.mode);
+        // A gap where there is no number.
+        let point = |value: Option<f64>| (t_s, value.unwrap_or(f64::NAN));
+        let newtons = |mn: i32| f64::from(mn) / 1e3;
+        let [normal, shear] = &mut self.forces;
+        normal.push(point(slow.forces.map(|forces| newtons(forces.fn_mn))));
+        shear.push(point(slow.forces.map(|forces| newtons(forces.ft_mn))));
+        let ratio = slow.forces.and_then(|forces| forces.ratio_permille);
+        self.ratio.push(point(ratio.map(per_mille)));
+        self.s2.push((t_s, per_mille(slow.s2_permille)));
+        let [flexor, extensor] = &mut self.muscles;
+        flexor.push(point(slow.flexor_mv.map(f64::from)));
+        extensor.push(point(slow.extensor_mv.map(f64::from)));
+        self.end_s = Some(t_s + f64::from(FRAMES_PER_SLOW_FRAME) * 0.5e-3);
+    }
+}
+
+impl Needs {
+    /// Of a world that has not begun, between two instants, s.
+    pub fn new(span_s: (f64, f64)) -> Self {
+        Self { grip: Thin::new(span_s), needed: Thin::new(span_s) }
+    }
+
+    /// The next row of a world's trace.
+    pub fn push(&mut self, row: &Row) {
+        self.grip.push((row.t_s, row.grip_n));
+        // While the hand carries nothing, nothing is needed: a gap in the curve.
+        self.needed.push((row.t_s, if row.needed_n > 0.0 { row.needed_n } else { f64::NAN }));
+    }
+}
+
+/// A value that changes rarely: only the points where it does, from one end of the span to the other.
+#[derive(Clone, Debug)]
+pub struct Steps {
+    span_s: (f64, f64),
+    last: Option<f64>,
+    corners: Thin,
+}
+
+impl Steps {
+    fn new(span_s: (f64, f64)) -> Self {
+        Self { span_s, last: None, corners: Thin::new(span_s) }
+    }
+
+    fn push(&mut self, (t_s, value): (f64, f64)) {
+        let (from_s, to_s) = self.span_s;
+        if t_s > to_s {
+            return;
+        }
+        match self.last.replace(value) {
+            Some(before) if before == value => {}
+            Some(before) => {
+                self.corners.push((t_s.max(from_s), before));
+                self.corners.push((t_s.max(from_s), value));
+            }
+            None => self.corners.push((from_s, value)),
+        }
+    }
+
+    /// The corners, in order of time.
+    pub fn points(self) -> Vec<(f64, f64)> {
+        let (_, to_s) = self.span_s;
+        let mut points = self.corners.points();
+        points.extend(self.last.map(|value| (to_s, value)));
+        points
+    }
+}
+
+/// A PVDF sample as a voltage at the pin, mV.
+pub(super) fn mv(sample: u16) -> f64 {
+    f64::from(sample) * f64::from(REFERENCE_MV) / f64::from(SAMPLE_MAX)
+}
+
+fn per_mille(value: u16) -> f64 {
+    f64::from(value) / 1e3
+}
+
+fn duty_percent(drive: MotorDrive) -> f64 {
+    match drive {
+        MotorDrive::Coast => 0.0,
+        MotorDrive::Close(duty) => f64::from(duty.as_per_mille()) / 10.0,
+        MotorDrive::Open(duty) => -f64::from(duty.as_per_mille()) / 10.0,
+    }
+}

@@ -1,0 +1,118 @@
+//! What an image's symbol table says: where its tick and its commands are, and which memory is nobody's but the stack's.
+
+use std::ops::Range;
+use std::path::Path;
+
+use anyhow::{Context, Result, bail, ensure};
+use object::{File, Object, ObjectSection, ObjectSymbol};
+
+/// The name of the tick of the logic in the image.
+pub(crate) const TICK: &str = "tenax_control_tick";
+/// The name of what gives the logic a command.
+const COMMAND: &str = "tenax_control_command";
+/// Addresses in an image.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Symbols {
+    /// The first instruction of a tick.
+    pub tick: u64,
+    /// The instruction that the tick returns to.
+    pub after_tick: u64,
+    /// The first instruction of taking a command.
+    pub command: u64,
+    /// RAM above the image's variables: the stack grows down into it.
+    pub stack: Range<u64>,
+}
+
+fn read<T>(elf: &Path, of: impl FnOnce(&File<'_>) -> Result<T>) -> Result<T> {
+    let bytes = std::fs::read(elf).with_context(|| format!("reading the image {}", elf.display()))?;
+    let symbols = File::parse(&*bytes).context("not an ELF file").and_then(|file| of(&file));
+    symbols.with_context(|| format!("the image {}", elf.display()))
+}
+
+/// RAM above an image's variables.
+fn stack(file: &File<'_>) -> Result<Range<u64>> {
+    let stack = address_of(file, "__sheap")?..address_of(file, "_stack_start")?;
+    ensure!(stack.start < stack.end, "leaves no RAM for the stack");
+    Ok(stack)
+}
+
+impl Symbols {
+    /// Reads them from an ELF file.
+    pub fn read(elf: &Path) -> Result<Self> {
+        read(elf, Self::of)
+    }
+
+    fn of(file: &File<'_>) -> Result<Self> {
+        let (tick, after_tick) = entry_and_return(file, TICK)?;
+        let command = entry(file, COMMAND)?;
+        Ok(Self { tick, after_tick, command, stack: stack(file)? })
+    }
+}
+
+/// Where a function begins, and the instruction that it returns to. It must be called from one place only.
+pub(super) fn entry_and_return(file: &File<'_>, name: &str) -> Result<(u64, u64)> {
+    let (entry, after) = entry_and_returns(file, name)?;
+    match after[..] {
+        [after] => Ok((entry, after)),
+        [] => bail!("{name} is never called"),
+        _ => bail!("{name} is called from more than one place: its cost cannot be told"),
+    }
+}
+
+/// Where a function begins, and every instruction that it returns to.
+pub(super) fn entry_and_returns(file: &File<'_>, name: &str) -> Result<(u64, Vec<u64>)> {
+    let entry = entry(file, name)?;
+    let text = file.section_by_name(".text").context("has no .text section")?;
+    Ok((entry, return_addresses(text.data()?, text.address(), entry)))
+}
+
+/// Where a function begins.
+fn entry(file: &File<'_>, name: &str) -> Result<u64> {
+    // Bit 0 of a function's address says that it is Thumb code.
+    Ok(address_of(file, name)? & !1)
+}
+
+pub(super) fn address_of(file: &File<'_>, name: &str) -> Result<u64> {
+    file.symbols()
+        .find(|symbol| symbol.name() == Ok(name))
+        .map(|symbol| symbol.address())
+        .with_context(|| format!("has no symbol `{name}`"))
+}
+
+/// The addresses behind the calls of `target` in `text`, which begins at `base`: BL, immediate, in encoding T1 (ARMv7-M manual,
+/// A7.7.18).
+fn return_addresses(text: &[u8], base: u64, target: u64) -> Vec<u64> {
+    let found = text.windows(4).enumerate().step_by(2).filter_map(|(offset, bytes)| {
+        let after = base + offset as u64 + 4;
+        let first = u16::from_le_bytes([bytes[0], bytes[1]]);
+        let second = u16::from_le_bytes([bytes[2], bytes[3]]);
+        let is_call = first >> 11 == 0b11110 && second & 0xD000 == 0xD000;
+        (is_call && after.wrapping_add_signed(call_offset(first, second)) == target).then_some(after)
+    });
+    found.collect()
+}
+
+/// Offset of a BL's target from the instruction behind it: S:I1:I2:imm10:imm11:0, where I1 and I2 are NOT(J1 ^ S), NOT(J2 ^ S).
+fn call_offset(first: u16, second: u16) -> i64 {
+    let bit = |word: u16, n: u16| i64::from(word >> n & 1);
+    let sign = bit(first, 10);
+    let high = (1 ^ bit(second, 13) ^ sign) << 23 | (1 ^ bit(second, 11) ^ sign) << 22;
+    let low = i64::from(first & 0x3FF) << 12 | i64::from(second & 0x7FF) << 1;
+    high | low | -(sign << 24)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_call_is_found() {
+        let call_next = [0x00, 0xF0, 0x00, 0xF8];
+        let mut text = call_next.to_vec();
+        text.extend([0x70, 0x47]);
+        // `b.w` to the same place is no call.
+        text.extend([0xFF, 0xF7, 0xFD, 0xBF]);
+        assert_eq!(return_addresses(&text, 0x100, 0x104), [0x104]);
+        assert!(return_addresses(&text, 0x100, 0x200).is_empty());
+    }
+}

@@ -1,0 +1,216 @@
+//! How a CSV file becomes labelled recordings of the array.
+//!
+//! `docs/training.md` is the page for people who write one.
+
+use serde::Deserialize;
+use tenax_hal_shim::channel::ARRAY_COUNT;
+use toml::Spanned;
+
+use crate::recipe::{self, Checked, Kind};
+
+/// A recipe, checked.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ArrayRecipe {
+    /// One line about it.
+    pub title: String,
+    /// What the recordings are, and why these columns.
+    pub description: String,
+    /// Names of the files that it is taken for when no recipe is given; `*` and `?` match as in a shell.
+    #[serde(default)]
+    pub applies_to: Vec<Spanned<String>>,
+    pub array: Array,
+    #[serde(default)]
+    pub recordings: Recordings,
+    pub labels: Labels,
+    /// What the network is to be shown.
+    #[serde(default)]
+    pub features: Features,
+}
+
+/// The array's columns and how their numbers become 14-bit samples.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Array {
+    /// Ten columns, one an element.
+    pub columns: Spanned<Vec<String>>,
+    /// 14-bit samples for one unit of the columns.
+    #[serde(default = "one")]
+    pub scale: Spanned<f64>,
+    /// Samples for zero.
+    #[serde(default)]
+    pub offset: f64,
+    /// Rows a second, where no column holds the time.
+    pub rate_hz: Option<Spanned<f64>>,
+    /// The column that holds the time in seconds. Either this or `rate_hz`.
+    pub time: Option<Spanned<String>>,
+}
+
+/// Columns that tell recordings apart.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Recordings {
+    /// Its name. Without this column the file is one recording.
+    pub name: Option<String>,
+    /// What must never be both learned from and scored on: a session, an object. Default: the name.
+    pub session: Option<String>,
+    /// What scores are reported by, too. Default: the session.
+    pub material: Option<String>,
+    /// What was done in it: `pour`, `pick`, `disturb`, `hold`. False alarms are counted by it. A file may lack the column.
+    pub task: Option<String>,
+    /// `train`, `validation` or `test`. Default: sessions are left out in turn.
+    pub part: Option<String>,
+}
+
+/// The label's column and its values.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Labels {
+    pub column: String,
+    /// Values that mean slip.
+    pub slip: Spanned<Vec<String>>,
+    /// The column with exact onsets (`docs/training.md`). A file may lack it: then slips are made of the labels.
+    pub onsets: Option<String>,
+    /// Values that mean none. A value that is in neither list is an error in that row.
+    pub no_slip: Spanned<Vec<String>>,
+}
+
+/// What the features are made with; what is not given is the shipped detector's.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Features {
+    /// A difference is to the reading so many slow frames before (the paper: 1).
+    pub lag: Option<Spanned<u8>>,
+    /// Differences in the covariance (the paper: 10).
+    pub window: Option<Spanned<u8>>,
+    /// Covariance below which a feature is straight, samples^2.
+    pub covariance_knee: Option<u32>,
+    /// Power of a spectral bin below which a feature is straight, samples^2.
+    pub spectrum_knee: Option<u32>,
+    /// A frame of a structure function below which a feature is straight, samples^2 times ten.
+    pub structure_knee: Option<u32>,
+}
+
+fn one() -> Spanned<f64> {
+    // A default has no place in the file; nothing that is wrong can come from one.
+    Spanned::new(0..0, 1.0)
+}
+
+impl Kind for ArrayRecipe {
+    const BUILTIN: &'static [(&'static str, &'static str)] = &[
+        ("array", include_str!("../../recipes/array.toml")),
+        ("biotac", include_str!("../../recipes/biotac.toml")),
+    ];
+
+    fn applies_to(&self) -> &[Spanned<String>] {
+        &self.applies_to
+    }
+
+    fn check(&self) -> Checked {
+        recipe::check_patterns(&self.applies_to)?;
+        self.array.check()?;
+        self.labels.check()?;
+        for (name, frames) in [("lag", &self.features.lag), ("window", &self.features.window)] {
+            if let Some(frames) = frames
+                && !(1..=40).contains(frames.get_ref())
+            {
+                let what = format!("{name} is {}; 1 to 40 slow frames are allowed", frames.get_ref());
+                return Err((frames.span(), what));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Array {
+    fn check(&self) -> Checked {
+        let columns = self.columns.get_ref();
+        if columns.len() != ARRAY_COUNT {
+            let what = format!("{} columns; the array has {ARRAY_COUNT} elements", columns.len());
+            return Err((self.columns.span(), what));
+        }
+        if let Some(twice) =
+            columns.iter().enumerate().find_map(|(n, c)| columns[..n].contains(c).then_some(c))
+        {
+            return Err((self.columns.span(), format!("column `{twice}` is given twice")));
+        }
+        let scale = *self.scale.get_ref();
+        if !scale.is_finite() || scale == 0.0 {
+            return Err((self.scale.span(), "scale must be a number other than 0".into()));
+        }
+        match (&self.rate_hz, &self.time) {
+            (Some(rate), None) if !(1.0..=100_000.0).contains(rate.get_ref()) => {
+                Err((rate.span(), format!("rate_hz is {}; 1 to 100000 is allowed", rate.get_ref())))
+            }
+            (Some(_), None) | (None, Some(_)) => Ok(()),
+            (Some(rate), Some(_)) => Err((rate.span(), "give either rate_hz or time, not both".into())),
+            (None, None) => Err((
+                self.columns.span(),
+                "either rate_hz (rows a second) or time (a column in seconds) is needed".into(),
+            )),
+        }
+    }
+}
+
+impl Labels {
+    fn check(&self) -> Checked {
+        for (name, values) in [("slip", &self.slip), ("no_slip", &self.no_slip)] {
+            if values.get_ref().is_empty() {
+                return Err((
+                    values.span(),
+                    format!("{name} needs at least one value of the label's column"),
+                ));
+            }
+        }
+        match self.slip.get_ref().iter().find(|value| self.no_slip.get_ref().contains(value)) {
+            Some(both) => Err((self.no_slip.span(), format!("`{both}` is in slip and in no_slip"))),
+            None => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GOOD: &str = "\
+title = 't'
+description = 'd'
+[array]
+columns = ['a', 'b', 'c', 'd', 'e', 'f', 'g', 'h', 'i', 'j']
+rate_hz = 80
+[labels]
+column = 'label'
+slip = ['1']
+no_slip = ['0']
+";
+
+    fn mistake(from: &str, to: &str) -> String {
+        assert!(GOOD.contains(from));
+        ArrayRecipe::parse(&GOOD.replace(from, to), "r.toml").unwrap_err().to_string()
+    }
+
+    #[test]
+    fn a_good_one_is_good() {
+        assert_eq!(ArrayRecipe::parse(GOOD, "r.toml").unwrap().array.columns.get_ref().len(), 10);
+    }
+
+    #[test]
+    fn mistakes_are_answered_with_their_line() {
+        for (from, to, line, says) in [
+            ("'j']", "]", 4, "9 columns"),
+            ("'j']", "'a']", 4, "`a` is given twice"),
+            ("rate_hz = 80", "rate_hz = 0.1", 5, "1 to 100000"),
+            ("rate_hz = 80", "rate_hz = 80\ntime = 't'", 5, "not both"),
+            ("rate_hz = 80\n", "", 4, "rate_hz"),
+            ("rate_hz = 80", "rate = 80", 5, "unknown field"),
+            ("slip = ['1']", "slip = []", 8, "at least one"),
+            ("no_slip = ['0']", "no_slip = ['1']", 9, "in slip and in no_slip"),
+            ("no_slip = ['0']", "no_slip = ['0']\n[features]\nlag = 41", 11, "1 to 40"),
+            ("rate_hz = 80", "rate_hz = 80\nscale = 0", 6, "other than 0"),
+        ] {
+            let said = mistake(from, to);
+            assert!(said.starts_with(&format!("r.toml:{line}: ")) && said.contains(says), "{to}: {said}");
+        }
+    }
+}

@@ -1,0 +1,286 @@
+//! What a plant is put into while its board's line is served: real time goes by, and clients' bytes come down.
+
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use tenax_hal_shim::channel::SCAN_HZ;
+use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::wire::BAUD;
+use tenax_hal_shim::words::Kept;
+use tenax_scene::Act;
+use tenax_scene::plant::{Pins, Plant};
+
+use tenax_frames::serve::{Down, Teller};
+
+/// A lag that is made up for; a greater one is not, or a board that was stopped would run fast afterwards.
+const LAG_MAX: Duration = Duration::from_millis(100);
+/// How long a board is watched before it is said that it is slow. The first time does not count: the emulated one
+/// translates its image meanwhile.
+const WATCHED: Duration = Duration::from_secs(2);
+/// The part of real time below which it is said.
+const SLOW: f64 = 0.95;
+/// Scans between two looks at the clock: 1 ms.
+const LOOK_SCANS: u64 = 8;
+/// Bits that a byte takes on the line.
+const BITS_PER_BYTE: u32 = 10;
+/// How long a press of the button lasts.
+const PRESSED: Duration = Duration::from_millis(300);
+
+/// Real time, and the clients' bytes.
+pub struct Live {
+    down: Down,
+    /// What the real line could have carried by now and did not, in bytes times [`SCAN_HZ`]: below 0 it is busy.
+    room: i64,
+    pace: Pace,
+    person: Person,
+}
+
+/// Who sits at the bench: what they type is done there.
+#[derive(Clone, Default)]
+pub struct Person(Arc<Mutex<Hands>>);
+
+#[derive(Default)]
+struct Hands {
+    pressed: Option<Instant>,
+    acts: VecDeque<Act>,
+    /// The board's flash, whose run may be followed by another.
+    flash: Vec<(Kept, Vec<u8>)>,
+    resets: bool,
+}
+
+impl Person {
+    /// Presses the board's button, as long as a finger does.
+    pub fn press(&self) {
+        self.hands().pressed = Some(Instant::now());
+    }
+
+    /// Does it at the next instant of the scene.
+    pub fn act(&self, act: Act) {
+        self.hands().acts.push_back(act);
+    }
+
+    /// Presses the board's reset button: its run ends.
+    pub fn reset(&self) {
+        self.hands().resets = true;
+    }
+
+    /// Lets go of it. False: it was not pressed.
+    pub fn lets_go(&self) -> bool {
+        std::mem::take(&mut self.hands().resets)
+    }
+
+    fn hands(&self) -> MutexGuard<'_, Hands> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn is_pressing(&self) -> bool {
+        self.hands().pressed.is_some_and(|at| at.elapsed() < PRESSED)
+    }
+}
+
+impl Live {
+    /// What clients send comes down; `behind` is told once, if at all, that the board is slower than real time, and at which
+    /// part of it it runs.
+    pub fn new(down: Down, behind: fn(f64)) -> Self {
+        Self { down, room: 0, pace: Pace::new(behind), person: Person::default() }
+    }
+
+    /// The same with this person at the bench.
+    #[must_use]
+    pub fn with_person(self, person: Person) -> Self {
+        Self { person, ..self }
+    }
+
+    /// Tells what really happens.
+    pub const fn teller(&self) -> &Teller {
+        &self.down.teller
+    }
+
+    /// One scan's worth of bytes, a whole frame at a time, at the real line's rate on average.
+    fn bytes(&mut self) -> Vec<u8> {
+        let scan = i64::from(BAUD / BITS_PER_BYTE);
+        self.room = (self.room + scan).min(scan);
+        if self.room < 0 {
+            return Vec::new();
+        }
+        let sent = self.down.bytes.lock().unwrap_or_else(PoisonError::into_inner).try_recv();
+        let bytes = sent.unwrap_or_default();
+        self.room -= bytes.len() as i64 * i64::from(SCAN_HZ);
+        bytes
+    }
+}
+
+/// Virtual time held back to real time.
+struct Pace {
+    began: Option<Instant>,
+    scans: u64,
+    /// Real time that was not kept up with.
+    lost: Duration,
+    /// The instant from which on the board is watched, and what it had lost by then.
+    watched: Option<(Duration, Duration)>,
+    behind: Option<fn(f64)>,
+}
+
+impl Pace {
+    fn new(behind: fn(f64)) -> Self {
+        Self { began: None, scans: 0, lost: Duration::ZERO, watched: None, behind: Some(behind) }
+    }
+
+    /// Waits until the scan is due.
+    fn wait(&mut self) {
+        let began = *self.began.get_or_insert_with(Instant::now);
+        self.scans += 1;
+        if !self.scans.is_multiple_of(LOOK_SCANS) {
+            return;
+        }
+        let due = Duration::from_secs_f64(self.scans as f64 / f64::from(SCAN_HZ)) + self.lost;
+        let now = began.elapsed();
+        if let Some(early) = due.checked_sub(now) {
+            thread::sleep(early);
+        } else if now - due > LAG_MAX {
+            self.lost += now - due;
+        }
+        if let Some(part) = self.slowness(now)
+            && let Some(behind) = self.behind.take()
+        {
+            behind(part);
+        }
+    }
+
+    /// At which part of real time the board runs, if that was slow for a while.
+    fn slowness(&mut self, now: Duration) -> Option<f64> {
+        let (since, lost) = self.watched.unwrap_or_default();
+        let lasted = now - since;
+        if lasted < WATCHED {
+            return None;
+        }
+        let warm = self.watched.replace((now, self.lost)).is_some();
+        let part = 1.0 - (self.lost - lost).as_secs_f64() / lasted.as_secs_f64();
+        (warm && part < SLOW).then_some(part)
+    }
+}
+
+/// How a run's line is used.
+#[derive(Default)]
+pub struct Use {
+    /// With it, it is served.
+    pub live: Option<Live>,
+    /// Its board streams its frames from the start: what a recording needs that is to be replayed.
+    pub streams_at_start: bool,
+}
+
+impl Use {
+    /// The plant of such a run.
+    pub fn of<P>(self, plant: P) -> Served<P> {
+        Served { plant, live: self.live, streams_at_start: self.streams_at_start }
+    }
+}
+
+/// A plant whose board's line is served, if it is.
+pub struct Served<P> {
+    pub plant: P,
+    /// None: as fast as it goes, and nobody sends anything.
+    pub live: Option<Live>,
+    /// Its board streams its frames from the start, whatever the plant says.
+    pub streams_at_start: bool,
+}
+
+impl<P: Plant> Plant for Served<P> {
+    fn within(&self) -> Option<&dyn Plant> {
+        Some(&self.plant)
+    }
+
+    fn within_mut(&mut self) -> Option<&mut dyn Plant> {
+        Some(&mut self.plant)
+    }
+
+    fn scan(&mut self, drive: MotorDrive) -> &Pins {
+        if let Some(live) = &mut self.live {
+            live.pace.wait();
+            let act = live.person.hands().acts.pop_front();
+            act.into_iter().for_each(|act| self.plant.act(act));
+        }
+        self.plant.scan(drive)
+    }
+
+    fn line_bytes(&mut self) -> Vec<u8> {
+        let mut bytes = self.plant.line_bytes();
+        if let Some(live) = &mut self.live {
+            bytes.extend(live.bytes());
+        }
+        bytes
+    }
+
+    fn button(&self) -> bool {
+        self.plant.button() || self.live.as_ref().is_some_and(|live| live.person.is_pressing())
+    }
+
+    fn kept(&self) -> Vec<(Kept, Vec<u8>)> {
+        let Some(live) = &self.live else { return Vec::new() };
+        live.person.hands().flash.clone()
+    }
+
+    fn keep(&mut self, kept: Kept, payload: &[u8]) {
+        if let Some(live) = &self.live {
+            let flash = &mut live.person.hands().flash;
+            flash.retain(|(own, _)| *own != kept);
+            flash.push((kept, payload.to_vec()));
+        }
+    }
+
+    fn resets(&self) -> bool {
+        self.live.as_ref().is_some_and(|live| live.person.hands().resets)
+    }
+
+    fn streams_at_start(&self) -> bool {
+        self.streams_at_start || self.plant.streams_at_start()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::mpsc::sync_channel;
+
+    #[test]
+    fn clients_bytes_come_down_no_faster_than_on_the_real_line() {
+        let (down, bytes) = sync_channel(1_000);
+        (0..1_000).for_each(|_| down.send(vec![7; 100]).unwrap());
+        let mut live =
+            Live::new(Down { bytes: Arc::new(Mutex::new(bytes)), teller: Teller::default() }, |_| {});
+        let second: usize = (0..SCAN_HZ).map(|_| live.bytes().len()).sum();
+        assert!((92_000..92_400).contains(&second), "{second}");
+    }
+
+    #[test]
+    fn a_second_takes_a_second_and_a_stop_is_not_made_up_for() {
+        let (_down, bytes) = sync_channel(1);
+        let mut pace =
+            Live::new(Down { bytes: Arc::new(Mutex::new(bytes)), teller: Teller::default() }, |_| {}).pace;
+        let run = |pace: &mut Pace, scans: u32| {
+            let began = Instant::now();
+            (0..scans).for_each(|_| pace.wait());
+            began.elapsed()
+        };
+        assert!(run(&mut pace, SCAN_HZ / 5) >= Duration::from_millis(199));
+        thread::sleep(Duration::from_millis(700));
+        let after = run(&mut pace, SCAN_HZ / 5);
+        assert!(after >= Duration::from_millis(150), "{after:?}");
+    }
+
+    #[test]
+    fn a_board_that_is_slow_is_told_from_one_that_was_slow_to_start() {
+        let slow_at = |lost_ms: [u64; 4]| -> Vec<Option<f64>> {
+            let mut pace = Pace::new(|_| {});
+            let watch = |(n, ms): (u64, u64)| {
+                pace.lost += Duration::from_millis(ms);
+                pace.slowness(Duration::from_secs(2 * n))
+            };
+            (1..).zip(lost_ms).map(watch).collect()
+        };
+        assert_eq!(slow_at([1_500, 0, 50, 0]), [None; 4]);
+        assert_eq!(slow_at([1_500, 1_000, 0, 500]), [None, Some(0.5), None, Some(0.75)]);
+    }
+}

@@ -1,0 +1,248 @@
+//! Draws a sheet as SVG.
+
+use plotters::coord::Shift;
+use plotters::coord::types::RangedCoordf64;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use super::{Axis, Cell, Mark, Panel, Series, Sheet};
+use crate::plot::draw::{FONTS, INK, drawn};
+
+const WIDTH: u32 = 1_200;
+const PANEL_HEIGHT: u32 = 340;
+/// Height of the names that are one panel's alone.
+const OWN_HEIGHT: i32 = 20;
+const TITLE_HEIGHT: u32 = 72;
+const FOOT_HEIGHT: u32 = 74;
+const MARGIN: i32 = 26;
+const FAILED: RGBColor = RGBColor(225, 225, 225);
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
+pub fn svg(sheet: &Sheet) -> anyhow::Result<String> {
+    let rows = (sheet.panels.len() as u32).div_ceil(sheet.columns);
+    let height = TITLE_HEIGHT + rows * PANEL_HEIGHT + FOOT_HEIGHT;
+    let mut svg = String::new();
+    {
+        let root = SVGBackend::with_string(&mut svg, (WIDTH, height)).into_drawing_area();
+        drawn(root.fill(&WHITE))?;
+        words(&root, &sheet.title, (MARGIN, 12), 22, HPos::Left)?;
+        words(&root, &sheet.subtitle, (MARGIN, 44), 14, HPos::Left)?;
+        let (_, below) = root.split_vertically(TITLE_HEIGHT);
+        let (panels, foot) = below.split_vertically(rows * PANEL_HEIGHT);
+        let areas = panels.split_evenly((rows as usize, sheet.columns as usize));
+        let (common, own) = names(sheet);
+        for ((panel, area), own) in sheet.panels.iter().zip(&areas).zip(&own) {
+            draw_panel(area, panel, own, sheet.errors)?;
+        }
+        let mut x = MARGIN;
+        if let Some(errors) = sheet.errors {
+            x = scale(&foot, errors, (x, 14))?;
+        }
+        legend(&foot, &common, (x, 14), (WIDTH as i32, 14, 26))?;
+        drawn(root.present())?;
+    }
+    Ok(svg)
+}
+
+fn draw_panel(area: &Area, panel: &Panel, own: &[&Series], errors: Option<(f64, f64)>) -> anyhow::Result<()> {
+    let wide = area.dim_in_pixel().0 as i32;
+    let rows = legend(area, own, (70, 40), (wide, 12, OWN_HEIGHT))?;
+    let mut chart = drawn(
+        ChartBuilder::on(area)
+            .margin_top(34 + OWN_HEIGHT * rows)
+            .margin_right(22)
+            .margin_bottom(6)
+            .margin_left(8)
+            .set_label_area_size(LabelAreaPosition::Left, 62)
+            .set_label_area_size(LabelAreaPosition::Bottom, 44)
+            .build_cartesian_2d(panel.x.places(), panel.y.places()),
+    )?;
+    words(area, &panel.title, (70, 12), 16, HPos::Left)?;
+    for cell in &panel.cells {
+        draw_cell(&mut chart, panel, cell, errors.unwrap_or((1e-6, 1.0)))?;
+    }
+    drawn(
+        chart
+            .configure_mesh()
+            .light_line_style(TRANSPARENT)
+            .bold_line_style(BLACK.mix(if panel.cells.is_empty() { 0.10 } else { 0.0 }))
+            .axis_style(INK)
+            .x_labels(labels(&panel.x))
+            .y_labels(labels(&panel.y))
+            .x_label_formatter(&|place| name(&panel.x, *place))
+            .y_label_formatter(&|place| name(&panel.y, *place))
+            .x_desc(&panel.x.label)
+            .y_desc(&panel.y.label)
+            .label_style((FONTS, 13).into_font().color(&INK))
+            .axis_desc_style((FONTS, 14).into_font().color(&INK))
+            .draw(),
+    )?;
+    for series in &panel.series {
+        draw_series(&mut chart, panel, series)?;
+    }
+    for (x, y, text) in &panel.words {
+        let style = (FONTS, 13).into_font().color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
+        let at = (panel.x.place(*x), panel.y.place(*y));
+        let word = EmptyElement::at(at) + Text::new(text.clone(), (9, 0), style);
+        drawn(chart.draw_series([word]))?;
+    }
+    Ok(())
+}
+
+fn draw_cell(chart: &mut Chart, panel: &Panel, cell: &Cell, errors: (f64, f64)) -> anyhow::Result<()> {
+    let (right, low) = (panel.x.place(cell.x.1), panel.y.place(cell.y.0));
+    let corners = [(panel.x.place(cell.x.0), low), (right, panel.y.place(cell.y.1))];
+    let colour = cell.error.map_or(FAILED, |error| colour(error, errors));
+    // A little under the next cells to the right and below, which come later: no seams.
+    let (wide, high) = (panel.x.places(), panel.y.places());
+    let under = [
+        (
+            (right + (wide.end - wide.start) / 200.0).min(wide.end),
+            (low - (high.end - high.start) / 200.0).max(high.start),
+        ),
+        (corners[0].0, corners[1].1),
+    ];
+    drawn(chart.draw_series([Rectangle::new(under, colour.filled())]))?;
+    if cell.error.is_none() {
+        let middle = ((corners[0].0 + corners[1].0) / 2.0, (corners[0].1 + corners[1].1) / 2.0);
+        drawn(chart.draw_series([Cross::new(middle, 3, INK.mix(0.7).stroke_width(1))]))?;
+    }
+    Ok(())
+}
+
+fn draw_series(chart: &mut Chart, panel: &Panel, series: &Series) -> anyhow::Result<()> {
+    let shown = series.points.iter().filter(|(x, y)| panel.x.shows(*x) && panel.y.shows(*y));
+    let points: Vec<(f64, f64)> = shown.map(|(x, y)| (panel.x.place(*x), panel.y.place(*y))).collect();
+    let line = series.colour.stroke_width(2);
+    match series.mark {
+        Mark::Line => drawn(chart.draw_series(LineSeries::new(points, line))).map(drop),
+        Mark::Dashes => drawn(chart.draw_series(DashedLineSeries::new(points, 7, 5, line))).map(drop),
+        Mark::Dots => {
+            drawn(chart.draw_series(points.into_iter().map(|at| Circle::new(at, 3, series.colour.filled()))))
+                .map(drop)
+        }
+        Mark::Rings => {
+            drawn(chart.draw_series(points.into_iter().map(|at| Circle::new(at, 7, line)))).map(drop)
+        }
+        Mark::Crosses => {
+            drawn(chart.draw_series(points.into_iter().map(|at| Cross::new(at, 4, line)))).map(drop)
+        }
+    }
+}
+
+/// From the least error, dark, to the greatest, bright.
+fn colour(error: f64, (least, most): (f64, f64)) -> RGBColor {
+    let part = (error.max(least).log10() - least.log10()) / (most.log10() - least.log10());
+    ViridisRGB.get_color(part.clamp(0.0, 1.0))
+}
+
+/// What more than one panel shows, for the foot, and what each alone shows, for the panel. A sheet of one panel, or whose panels
+/// have no look in common, needs no names twice.
+fn names(sheet: &Sheet) -> (Vec<&Series>, Vec<Vec<&Series>>) {
+    let shown = |panel: &Panel, series: &Series| panel.series.iter().any(|other| other.name == series.name);
+    let (mut common, mut own): (Vec<&Series>, Vec<Vec<&Series>>) = (Vec::new(), Vec::new());
+    for panel in &sheet.panels {
+        let mut alone: Vec<&Series> = Vec::new();
+        for series in &panel.series {
+            let panels = sheet.panels.iter().filter(|panel| shown(panel, series)).count();
+            let list = if panels > 1 || sheet.panels.len() == 1 { &mut common } else { &mut alone };
+            // Dots on a line of the same name are one thing.
+            if list.iter().all(|before| before.name != series.name) {
+                list.push(series);
+            }
+        }
+        own.push(alone);
+    }
+    (common, own)
+}
+
+/// Names of what is drawn, in rows from `(x, y)` on, each no wider than a width, in letters and rows of a height; how many rows.
+fn legend(
+    area: &Area,
+    named: &[&Series],
+    (left, top): (i32, i32),
+    (wide, letters, row): (i32, i32, i32),
+) -> anyhow::Result<i32> {
+    let (mut x, mut y) = (left, top);
+    for series in named {
+        let width = 44 + letters * series.name.chars().count() as i32 * 11 / 20 + letters;
+        if x + width > wide && x > left {
+            (x, y) = (left, y + row);
+        }
+        let (line, left) = (series.colour.stroke_width(2), x);
+        let drew = match series.mark {
+            Mark::Line => area.draw(&PathElement::new([(left, y), (left + 26, y)], line)),
+            Mark::Dashes => [0, 10, 20].iter().try_for_each(|dash| {
+                area.draw(&PathElement::new([(left + dash, y), (left + dash + 6, y)], line))
+            }),
+            Mark::Dots => area.draw(&Circle::new((left + 13, y), 3, series.colour.filled())),
+            Mark::Rings => area.draw(&Circle::new((left + 13, y), 7, line)),
+            Mark::Crosses => area.draw(&Cross::new((left + 13, y), 4, line)),
+        };
+        drawn(drew)?;
+        words(area, &series.name, (x + 34, y - letters / 2 + 1), letters, HPos::Left)?;
+        x += width;
+    }
+    Ok(if named.is_empty() { 0 } else { (y - top) / row + 1 })
+}
+
+/// The colours of errors, and failure; how far they reach.
+fn scale(area: &Area, errors: (f64, f64), (left, y): (i32, i32)) -> anyhow::Result<i32> {
+    const LENGTH: i32 = 180;
+    words(area, "error", (left, y - 6), 14, HPos::Left)?;
+    let from = left + 100;
+    for pixel in 0..LENGTH {
+        let share = f64::from(pixel) / f64::from(LENGTH);
+        let error = errors.0 * (errors.1 / errors.0).powf(share);
+        let corners = [(from + pixel, y - 7), ((from + pixel + 2).min(from + LENGTH), y + 8)];
+        drawn(area.draw(&Rectangle::new(corners, colour(error, errors).filled())))?;
+    }
+    words(area, &power(errors.0.log10()), (from - 6, y - 6), 13, HPos::Right)?;
+    words(area, &power(errors.1.log10()), (from + LENGTH + 6, y - 6), 13, HPos::Left)?;
+    let right = from + LENGTH + 46;
+    drawn(area.draw(&Rectangle::new([(right, y - 7), (right + 22, y + 8)], FAILED.filled())))?;
+    drawn(area.draw(&Cross::new((right + 11, y), 3, INK.mix(0.7).stroke_width(1))))?;
+    words(area, "failed", (right + 30, y - 6), 14, HPos::Left)?;
+    Ok(right + 100)
+}
+
+fn words(area: &Area, text: &str, at: (i32, i32), size: i32, side: HPos) -> anyhow::Result<()> {
+    let style = (FONTS, size).into_font().color(&INK).pos(Pos::new(side, VPos::Top));
+    drawn(area.draw(&Text::new(text.to_owned(), at, style)))
+}
+
+/// One label a decade, or about six.
+fn labels(axis: &Axis) -> usize {
+    let places = axis.places();
+    if axis.log { (places.end - places.start).ceil() as usize + 1 } else { 6 }
+}
+
+fn name(axis: &Axis, place: f64) -> String {
+    if axis.log { power(place) } else { format!("{}", (place * 1e6).round() / 1e6 + 0.0) }
+}
+
+/// 10 to the power of `place`, as people write it.
+fn power(place: f64) -> String {
+    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let whole = place.round();
+    if (place - whole).abs() > 1e-6 {
+        return String::new();
+    }
+    match whole as i32 {
+        0 => "1".to_owned(),
+        1 => "10".to_owned(),
+        n => {
+            let sign = if n < 0 { "⁻" } else { "" };
+            format!(
+                "10{sign}{}",
+                n.abs()
+                    .to_string()
+                    .chars()
+                    .filter_map(|c| RAISED.get(c.to_digit(10)? as usize))
+                    .collect::<String>()
+            )
+        }
+    }
+}

@@ -1,0 +1,326 @@
+//! A recipe: the analogue front end that stands between a recording's columns and this board's pins.
+//!
+//! `docs/recipes.md` is the page for people who write one.
+
+use serde::Deserialize;
+use tenax_hal_shim::channel;
+use toml::Spanned;
+
+use super::meaning::Meaning;
+use crate::recipe::{self, Checked, Kind};
+
+/// A recipe, checked.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Recipe {
+    /// One line about it.
+    pub title: String,
+    /// What the recording is, and what the front end assumes.
+    pub description: String,
+    /// Names of the recordings that it is taken for when no recipe is given; `*` and `?` match as in a shell.
+    #[serde(default)]
+    pub applies_to: Vec<Spanned<String>>,
+    #[serde(default)]
+    pub time: Time,
+    /// How long the first row is held before the recording begins, s: the fingertip's filters and baselines settle in it.
+    #[serde(default = "default_lead_in_s")]
+    pub lead_in_s: Spanned<f64>,
+    /// How long the last row is held after the recording ends, s.
+    #[serde(default = "default_lead_out_s")]
+    pub lead_out_s: Spanned<f64>,
+    /// Columns that go to pins.
+    #[serde(default)]
+    pub map: Vec<Map>,
+    /// Columns in newtons that press the force sensor.
+    pub force: Option<ForceMap>,
+    /// What is assumed of signals that the recording lacks.
+    #[serde(default)]
+    pub hold: Hold,
+    /// What recordings mean for the hand.
+    #[serde(default)]
+    pub meaning: Vec<Meaning>,
+}
+
+/// The column that holds the time.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Time {
+    /// Its name. If not given, `t` or `t_s`.
+    pub column: Option<String>,
+    #[serde(default)]
+    pub unit: TimeUnit,
+}
+
+/// What the time column counts.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+pub enum TimeUnit {
+    #[default]
+    #[serde(rename = "s")]
+    Seconds,
+    #[serde(rename = "ms")]
+    Milliseconds,
+    #[serde(rename = "us")]
+    Microseconds,
+}
+
+impl TimeUnit {
+    /// How many of it are a second.
+    pub const fn in_a_second(self) -> f64 {
+        match self {
+            Self::Seconds => 1.0,
+            Self::Milliseconds => 1e3,
+            Self::Microseconds => 1e6,
+        }
+    }
+}
+
+/// A column and the front end that brings it to pins. The stages act in the order of the fields.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Map {
+    pub column: String,
+    /// The channels that hear it.
+    pub channels: Vec<Spanned<String>>,
+    /// What is taken away first.
+    pub remove_offset: Option<RemoveOffset>,
+    /// Corner of a second-order Butterworth high-pass, Hz.
+    pub high_pass_hz: Option<Spanned<f64>>,
+    /// Corner of a second-order Butterworth low-pass, Hz.
+    pub low_pass_hz: Option<Spanned<f64>>,
+    /// Full-wave rectifier.
+    #[serde(default)]
+    pub rectify: bool,
+    /// Corner of a second-order Butterworth low-pass behind the rectifier, Hz.
+    pub envelope_hz: Option<Spanned<f64>>,
+    /// Volts at the pin for one unit of the column.
+    pub gain: Spanned<f64>,
+    /// Volts at the pin for zero. If not given, what the channel has at rest.
+    pub offset_v: Option<Spanned<f64>>,
+    /// Between which voltages the front end can go.
+    #[serde(default = "default_clip_v")]
+    pub clip_v: Spanned<[f64; 2]>,
+}
+
+/// What is taken away from a column first.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[serde(rename_all = "snake_case")]
+pub enum RemoveOffset {
+    /// Its mean over the whole recording.
+    Mean,
+    /// Its mean over the first seconds.
+    MeanOfFirstS(f64),
+    Value(f64),
+}
+
+/// Columns in newtons that press the four quadrants through the tilting element
+/// ([`front_end`](tenax_hal_shim::front_end)).
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ForceMap {
+    /// The normal force's column.
+    pub normal: String,
+    /// The shear's column, along x.
+    pub shear_x: String,
+    /// The shear's column along y, if it was measured.
+    pub shear_y: Option<String>,
+    /// Newtons on the force sensor for one unit of the columns. It changes no ratio.
+    #[serde(default = "default_scale")]
+    pub scale: Spanned<f64>,
+    /// Corner of a second-order Butterworth low-pass, Hz: the rubber of the tilting element.
+    pub low_pass_hz: Option<Spanned<f64>>,
+}
+
+/// What is assumed of signals that the recording lacks. Every assumption says why.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Hold {
+    /// A constant load on the force sensor.
+    pub force: Option<Spanned<HoldForce>>,
+    #[serde(default)]
+    pub pins: Vec<HoldPins>,
+}
+
+/// A constant load on the force sensor.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HoldForce {
+    pub normal_n: f64,
+    /// Shear along x, N.
+    #[serde(default)]
+    pub shear_n: f64,
+    /// The finger is unloaded for so long after the board was switched on, s: its zero is taken then.
+    #[serde(default)]
+    pub after_s: f64,
+    /// How long the load then takes to come on, s.
+    #[serde(default)]
+    pub ramp_s: f64,
+    /// Why this may be assumed.
+    pub why: String,
+}
+
+/// Constant voltages at pins.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HoldPins {
+    pub channels: Vec<Spanned<String>>,
+    pub volts: Spanned<f64>,
+    /// Why this may be assumed.
+    pub why: String,
+}
+
+// A default has no place in the file; nothing that is wrong can come from one.
+fn default_lead_in_s() -> Spanned<f64> {
+    Spanned::new(0..0, 1.0)
+}
+
+fn default_lead_out_s() -> Spanned<f64> {
+    Spanned::new(0..0, 0.2)
+}
+
+fn default_scale() -> Spanned<f64> {
+    Spanned::new(0..0, 1.0)
+}
+
+fn default_clip_v() -> Spanned<[f64; 2]> {
+    Spanned::new(0..0, [0.05, 3.2])
+}
+
+impl Recipe {
+    /// What a recording of this name means for the hand.
+    pub fn meaning_of(&self, file_name: &str) -> Option<&Meaning> {
+        self.meaning.iter().find(|meaning| meaning.is_for(file_name))
+    }
+
+    /// Whether anything listens to this column.
+    pub fn uses(&self, column: &str) -> bool {
+        let mapped = self.map.iter().any(|map| map.column == column);
+        let pressed = self.force.as_ref().is_some_and(|force| {
+            force.normal == column || force.shear_x == column || force.shear_y.as_deref() == Some(column)
+        });
+        mapped || pressed
+    }
+
+    /// Whether a column is a muscle.
+    pub fn maps_a_muscle(&self) -> bool {
+        self.map.iter().any(Map::is_muscle)
+    }
+}
+
+impl Kind for Recipe {
+    const BUILTIN: &'static [(&'static str, &'static str)] = &[
+        ("emg_bursts", include_str!("../../recipes/emg_bursts.toml")),
+        ("emg_two_channel", include_str!("../../recipes/emg_two_channel.toml")),
+        ("friction_rig", include_str!("../../recipes/friction_rig.toml")),
+        ("pvdf", include_str!("../../recipes/pvdf.toml")),
+    ];
+
+    fn applies_to(&self) -> &[Spanned<String>] {
+        &self.applies_to
+    }
+
+    fn check(&self) -> Checked {
+        let named = self.meaning.iter().map(|meaning| &meaning.named);
+        recipe::check_patterns(self.applies_to.iter().chain(named))?;
+        within(&self.lead_in_s, "lead_in_s", 0.0, 60.0)?;
+        within(&self.lead_out_s, "lead_out_s", 0.0, 60.0)?;
+        if self.map.is_empty() && self.force.is_none() {
+            return Err((0..0, "nothing is mapped: at least one [[map]] or a [force] is needed".into()));
+        }
+        let mut taken: Vec<&str> = Vec::new();
+        for map in &self.map {
+            map.check()?;
+            claim(&mut taken, &map.channels)?;
+        }
+        for pins in &self.hold.pins {
+            within(&pins.volts, "volts", 0.0, 3.3)?;
+            claim(&mut taken, &pins.channels)?;
+        }
+        if let Some(force) = &self.force {
+            if *force.scale.get_ref() == 0.0 || !force.scale.get_ref().is_finite() {
+                return Err((force.scale.span(), "scale must be a number other than 0".into()));
+            }
+            corner(&force.low_pass_hz, "low_pass_hz")?;
+        }
+        match (&self.force, &self.hold.force) {
+            (Some(_), Some(hold)) => {
+                Err((hold.span(), "[force] and [hold.force] both press the force sensor; keep one".into()))
+            }
+            (None, Some(hold)) => hold.get_ref().check().map_err(|what| (hold.span(), what)),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Map {
+    /// Whether it brings a column to a myosensor's pin.
+    pub fn is_muscle(&self) -> bool {
+        let muscles = [channel::MYO_FLEXOR, channel::MYO_EXTENSOR];
+        let indices = self.channels.iter().filter_map(|name| channel::by_name(name.get_ref()));
+        indices.into_iter().any(|index| muscles.contains(&index))
+    }
+
+    fn check(&self) -> Checked {
+        corner(&self.high_pass_hz, "high_pass_hz")?;
+        corner(&self.low_pass_hz, "low_pass_hz")?;
+        corner(&self.envelope_hz, "envelope_hz")?;
+        if !self.gain.get_ref().is_finite() {
+            return Err((
+                self.gain.span(),
+                "gain must be a finite number, in volts per unit of the column".into(),
+            ));
+        }
+        if let Some(offset_v) = &self.offset_v {
+            within(offset_v, "offset_v", 0.0, 3.3)?;
+        }
+        let [low, high] = *self.clip_v.get_ref();
+        if !(0.0..=3.3).contains(&low) || !(0.0..=3.3).contains(&high) || low >= high {
+            return Err((
+                self.clip_v.span(),
+                "clip_v is [lowest, highest] voltage at the pin, between 0 and 3.3".into(),
+            ));
+        }
+        Ok(())
+    }
+}
+
+impl HoldForce {
+    fn check(&self) -> Result<(), String> {
+        let allowed = 0.0..=140.0;
+        if !allowed.contains(&self.normal_n) || !allowed.contains(&self.shear_n.abs()) {
+            return Err("normal_n and shear_n are newtons, at most 140".into());
+        }
+        if !(0.0..=60.0).contains(&self.after_s) || !(0.0..=60.0).contains(&self.ramp_s) {
+            return Err("after_s and ramp_s are seconds, 0 to 60".into());
+        }
+        Ok(())
+    }
+}
+
+fn within(value: &Spanned<f64>, name: &str, low: f64, high: f64) -> Checked {
+    if (low..=high).contains(value.get_ref()) {
+        return Ok(());
+    }
+    Err((value.span(), format!("{name} is {}; {low} to {high} is allowed", value.get_ref())))
+}
+
+fn corner(value: &Option<Spanned<f64>>, name: &str) -> Checked {
+    value.as_ref().map_or(Ok(()), |value| within(value, name, 0.01, 3_000.0))
+}
+
+/// Every channel must exist and be claimed once.
+fn claim<'a>(taken: &mut Vec<&'a str>, channels: &'a [Spanned<String>]) -> Checked {
+    for name in channels {
+        let known = channel::by_name(name.get_ref()).is_some();
+        if !known {
+            let names: Vec<&str> = channel::CHANNELS.iter().map(|channel| channel.name).collect();
+            let what =
+                format!("no channel is called `{}`; the channels are {}", name.get_ref(), names.join(", "));
+            return Err((name.span(), what));
+        }
+        if taken.contains(&name.get_ref().as_str()) {
+            return Err((name.span(), format!("channel `{}` is given twice", name.get_ref())));
+        }
+        taken.push(name.get_ref());
+    }
+    Ok(())
+}

@@ -1,0 +1,305 @@
+//! One run: from what is to be run, on which board, to its report and its figure.
+//!
+//! ```
+//! use crate::session::{self, Board};
+//! use tenax_hal_shim::detector::DetectorId;
+//!
+//! let file = session::load_scene("glass")?;
+//! let outcome = session::scene(&file, 1, &Board::Host, &mut |_virtual_s| {})?;
+//! assert_eq!(outcome.report.slip.dropped, Some(false));
+//! let s1 = outcome.report.detectors.of_id(DetectorId::S1);
+//! println!("S1 said slip {} times, was believed {} times", s1.said, s1.detections);
+//! # Ok::<(), anyhow::Error>(())
+//! ```
+
+pub mod controls;
+mod witness;
+
+use std::borrow::Cow;
+use std::path::Path;
+#[cfg(feature = "emulator")]
+use std::path::PathBuf;
+
+use anyhow::{Context, bail};
+use tenax_logic::emg::model::EmgModel;
+use tenax_scene::plant::Plant;
+use tenax_scene::{SceneFile, World, builtin};
+
+use self::witness::{Drawn, Witness};
+#[cfg(feature = "emulator")]
+use crate::board::emulated;
+use crate::board::kept::model_of;
+use crate::board::line_log::LineLog;
+use crate::board::simulated::{frames_in, seconds_of};
+use crate::board::{Recorder, Run, Summary, simulated};
+use crate::disturbances;
+use crate::input;
+use crate::plot::Figure;
+
+use crate::figure::panels;
+use crate::live::{Served, Use};
+use crate::replay::{ReplayPlant, library};
+use crate::report::fate::Fate;
+use crate::report::replay::{ActivePart, Replay};
+use crate::report::{Report, Subject};
+use crate::timeline::Timeline;
+
+/// The scene that is run when none is asked for.
+pub const DEFAULT_SCENE: &str = "glass";
+
+/// Who runs the logic.
+#[derive(Clone, Debug)]
+pub enum Board {
+    /// The host's own build of it.
+    Host,
+    /// The real image, instruction by instruction.
+    #[cfg(feature = "emulator")]
+    Emulated {
+        /// Its ELF file.
+        image: PathBuf,
+        options: emulated::Options,
+    },
+}
+
+impl Board {
+    /// The emulated board with the image of the workspace at `root`, built if it is not yet.
+    #[cfg(feature = "emulator")]
+    pub fn emulated(root: &Path) -> anyhow::Result<Self> {
+        Ok(Self::Emulated { image: crate::image::build(root)?, options: emulated::Options::default() })
+    }
+
+    /// Says how to get an emulated board.
+    #[cfg(not(feature = "emulator"))]
+    pub fn emulated(_root: &Path) -> anyhow::Result<Self> {
+        bail!(
+            "this `tenax` was built without the emulator: use `cargo tenax ...` in a checkout, or add --host"
+        )
+    }
+
+    /// What it is called in reports.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Host => "host",
+            #[cfg(feature = "emulator")]
+            Self::Emulated { .. } => "emulated",
+        }
+    }
+
+    /// Connects a plant, runs it to its end and keeps everything. `progress` hears of the virtual time that has gone by, s.
+    pub fn run<P: Plant + 'static>(
+        &self,
+        plant: P,
+        progress: &mut dyn FnMut(f64),
+    ) -> anyhow::Result<(Run, P)> {
+        let mut run = Run::default();
+        let (summary, plant) = self.record(plant, &mut run, progress)?;
+        run.summary = summary;
+        Ok((run, plant))
+    }
+
+    /// Connects a plant and runs it to its end; `recorder` is told of the run as it goes.
+    pub fn record<P: Plant + 'static>(
+        &self,
+        plant: P,
+        recorder: &mut dyn Recorder,
+        progress: &mut dyn FnMut(f64),
+    ) -> anyhow::Result<(Summary, P)> {
+        match self {
+            Self::Host => Ok(simulated::record(plant, recorder, progress)),
+            #[cfg(feature = "emulator")]
+            Self::Emulated { image, options } => emulated::record(image, plant, options, recorder, progress),
+        }
+    }
+}
+
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    pub run: Summary,
+    pub report: Report,
+    pub figure: Figure,
+    /// What really happened. Nothing is known of a recording.
+    pub truth: Fate,
+}
+
+/// A scene by its name in the repository, or by its file.
+pub fn load_scene(asked: &str) -> anyhow::Result<SceneFile> {
+    if let Some((name, text)) = builtin().iter().chain(builtin::parts()).find(|(name, _)| *name == asked) {
+        return Ok(SceneFile::parse(text, &format!("scenes/{name}.toml"))?);
+    }
+    let path = Path::new(asked);
+    if asked == disturbances::NAME {
+        return Ok(SceneFile::parse(&disturbances::text(1, 60), asked)?);
+    }
+    if !path.exists() {
+        let names: Vec<&str> = builtin().iter().map(|(name, _)| *name).collect();
+        bail!("no scene is called {asked}, and there is no such file; the scenes are {}", names.join(", "));
+    }
+    let text = input::text(path).with_context(|| format!("cannot read {asked}"))?;
+    // What a scene stands on is one of the program's or lies beside it.
+    let beside = |name: &str| {
+        let file = path.with_file_name(format!("{name}.toml"));
+        Some((file.display().to_string(), Cow::Owned(input::text(&file).ok()?)))
+    };
+    Ok(SceneFile::parse_upon(&text, asked, &|name| builtin::find(name).or_else(|| beside(name)))?)
+}
+
+/// Runs a scene, and its bound beside it.
+pub fn scene(
+    file: &SceneFile,
+    seed: u64,
+    board: &Board,
+    progress: &mut dyn FnMut(f64),
+) -> anyhow::Result<Outcome> {
+    scene_served(file, seed, board, Use::default(), &mut (), progress)
+}
+
+/// As [`scene_served`], without the bound, whose search takes up to ten times as long as the run.
+pub fn scene_alone(
+    file: &SceneFile,
+    seed: u64,
+    board: &Board,
+    line: Use,
+    recorder: &mut dyn Recorder,
+) -> anyhow::Result<Outcome> {
+    judged(file, seed, board, line, recorder, &mut |_| {}, &|_| None)
+}
+
+/// As [`scene`], with the board's line used so; `recorder` is told of the scene's run as it goes. `progress` hears of an infinite time
+/// while the bound is searched, which can take longer than the run.
+pub fn scene_served(
+    file: &SceneFile,
+    seed: u64,
+    board: &Board,
+    line: Use,
+    recorder: &mut dyn Recorder,
+    progress: &mut dyn FnMut(f64),
+) -> anyhow::Result<Outcome> {
+    let bound = |truth: &Fate| Some(controls::bound(file, seed, truth));
+    judged(file, seed, board, line, recorder, progress, &bound)
+}
+
+fn judged(
+    file: &SceneFile,
+    seed: u64,
+    board: &Board,
+    line: Use,
+    recorder: &mut dyn Recorder,
+    progress: &mut dyn FnMut(f64),
+    bound: &dyn Fn(&Fate) -> Option<Fate>,
+) -> anyhow::Result<Outcome> {
+    let span_s = (0.0, seconds_of(frames_in(file.duration_s())));
+    let world = World::new(file, seed);
+    let calibrated = world.calibrated().as_ref().map(model_of).transpose()?;
+    let teller = line.live.as_ref().map(|live| live.teller().clone()).unwrap_or_default();
+    let plant = line.of(Drawn::telling(world, span_s, teller));
+    let mut witness = Witness::new(0.0, span_s, calibrated.as_ref());
+    witness.judge.deaf = file.lifts().collect();
+    let (run, Served { mut plant, .. }) = board.record(plant, &mut (&mut witness, recorder), progress)?;
+    plant.draw();
+    let truth = Fate { grips: std::mem::take(&mut plant.grips), ..Fate::of(plant.world.truth(), file) };
+    progress(f64::INFINITY);
+    let bound = bound(&truth);
+    witness.sketch.needs = Some(plant.needs);
+    let (report, mut figure, _) =
+        told(&file.name, board.name(), seed, &run, witness, [Some(&truth), bound.as_ref()]);
+    figure.subtitle = format!("{}; {}", file.title, figure.subtitle);
+    Ok(Outcome { run, report, figure, truth })
+}
+
+/// Plays a recording. Without a recipe, the one that its name calls for.
+pub fn replay(
+    path: &Path,
+    recipe: Option<&str>,
+    seed: u64,
+    board: &Board,
+    progress: &mut dyn FnMut(f64),
+) -> anyhow::Result<Outcome> {
+    let options = ReplayOptions { recipe, ..ReplayOptions::default() };
+    replay_served(path, options, seed, board, &mut (), progress)
+}
+
+#[derive(Default)]
+pub struct ReplayOptions<'a> {
+    /// The recipe's name or file. None: the one that the recording's name calls for.
+    pub recipe: Option<&'a str>,
+    /// The wearer to whom the board is calibrated.
+    pub calibrated: Option<EmgModel>,
+    /// What its board's line is used for.
+    pub line: Use,
+}
+
+/// Plays a recording; `recorder` is told of the run as it goes.
+pub fn replay_served(
+    path: &Path,
+    options: ReplayOptions<'_>,
+    seed: u64,
+    board: &Board,
+    recorder: &mut dyn Recorder,
+    progress: &mut dyn FnMut(f64),
+) -> anyhow::Result<Outcome> {
+    let ReplayOptions { recipe, calibrated, line } = options;
+    let (recording, named) = library::read(path, recipe)?;
+    let mut plant = match &named {
+        Some(named) => ReplayPlant::new(&recording, &named.recipe, seed)
+            .with_context(|| format!("recipe {}", named.name))?,
+        None => ReplayPlant::plain(&recording, seed)?,
+    };
+    plant.calibrated = calibrated;
+    let (zero_s, end_s) = (plant.time_zero_s(), plant.time_zero_s() + plant.duration_s());
+    // Of the rows held before and after, as much as shows where the recording begins and ends.
+    let margin_s = (0.05 * recording.duration_s()).max(0.02);
+    let last_s = recording.first_s() + recording.duration_s();
+    let span_s = (zero_s.max(recording.first_s() - margin_s), end_s.min(last_s + margin_s));
+    let calibrated = plant.calibrated().as_ref().map(model_of).transpose()?;
+    let mut witness = Witness::new(zero_s, span_s, calibrated.as_ref());
+    let mut active = ActivePart::new(&recording, zero_s);
+    let plant = line.of(plant);
+    let (run, _) = board.record(plant, &mut (&mut (&mut witness, &mut active), recorder), progress)?;
+    let scene = name_of(path);
+    let (mut report, mut figure, timeline) = told(&scene, board.name(), seed, &run, witness, [None; 2]);
+    let lead_in_s = recording.first_s() - zero_s;
+    report.replay =
+        Some(Replay::new(&recording, named.as_ref(), lead_in_s, &timeline, &active, &report.wearer)?);
+    if let Some(named) = &named {
+        figure.subtitle = format!("{} ({}), {}", named.recipe.title, named.name, figure.subtitle);
+    }
+    Ok(Outcome { run, report, figure, truth: Fate::default() })
+}
+
+/// What a line says that was captured or recorded: its report and its figure. What the plant did is not known.
+pub fn recorded(name: &str, line: &[u8]) -> anyhow::Result<Outcome> {
+    let mut run = Summary::default();
+    let mut slows = Run::default();
+    LineLog::new(u32::MAX).hear(line, &mut run, &mut slows);
+    let (Some(first), Some(last)) = (slows.slows.first(), slows.slows.last()) else {
+        bail!("{name} has no slow frame: it is no board's line");
+    };
+    let span_s = (seconds_of(first.frame), seconds_of(last.frame + 1));
+    run.virtual_s = span_s.1 - span_s.0;
+    let mut witness = Witness::new(0.0, span_s, None);
+    slows.slows.iter().for_each(|slow| witness.slow(slow));
+    let (report, figure, _) = told(name, "recorded", 0, &run, witness, [None; 2]);
+    Ok(Outcome { run, report, figure, truth: Fate::default() })
+}
+
+/// Report and figure of what was witnessed, beside what truly happened and the bound.
+fn told(
+    scene: &str,
+    board: &'static str,
+    seed: u64,
+    run: &Summary,
+    witness: Witness,
+    [truth, bound]: [Option<&Fate>; 2],
+) -> (Report, Figure, Timeline) {
+    let Witness { timeline, judge, added, sketch } = witness;
+    let subject =
+        Subject { scene, board, seed, run, timeline: &timeline, judge: &judge, added: &added, truth, bound };
+    (Report::new(&subject), panels::figure(&subject, sketch), timeline)
+}
+
+/// What a recording is called: its file's name.
+pub fn name_of(recording: &Path) -> String {
+    recording
+        .file_name()
+        .map_or_else(|| recording.display().to_string(), |name| name.to_string_lossy().into_owned())
+}

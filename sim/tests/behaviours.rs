@@ -1,0 +1,168 @@
+//! The behaviours in their scenes, each of the paper's results beside its control, with a camera that errs as the vision crate does and
+//! with one of whose pictures 5 % are wrong, three in a row. Eight seeds each; `TENAX_SEEDS=100 cargo test ... --test all behaviours` runs more.
+
+use crate::common::{asked, parsed, ran, text};
+use tenax_scene::{Truth, World};
+use tenax_sim::report::text::Text;
+use tenax_sim::session::Board;
+
+fn seeds() -> std::ops::RangeInclusive<u64> {
+    1..=asked("TENAX_SEEDS").unwrap_or(8)
+}
+
+/// What really happened in each seed, with `more` added to the scene's file.
+fn fates(name: &str, more: &str) -> Vec<Truth> {
+    run(&format!("{}\n{more}", text(name)))
+}
+
+fn run(text: &str) -> Vec<Truth> {
+    let scene = parsed(text);
+    let run =
+        |seed| Board::Host.run(World::new(&scene, seed), &mut |_| {}).expect("it runs").1.truth().clone();
+    seeds().map(run).collect()
+}
+
+/// Wrong pictures in bursts, some twenty times as many as the vision crate has.
+const BURSTS: &str = "[skin]\nwrong_part = 0.05\nwrong_pictures = 3";
+
+/// With the camera's own errors nothing is lost or crushed. With bursts nothing is lost, and at most one seed in eight is crushed: of 100
+/// seeds one crane and three cups are, and the goal is none. Wrong pictures come while the object hangs at the limit of its friction.
+fn unharmed(name: &str) -> Vec<Truth> {
+    let harmed = |more: &str| {
+        let fates = fates(name, more);
+        let crushed: Vec<_> = seeds().zip(&fates).filter(|(_, truth)| truth.dent_mm > 0.0).collect();
+        println!(
+            "{name}: slid {:.2} mm, {:.2} mm at worst, pressed by {:.2} N, {} crushed of {}, {more:?}",
+            slid_mm(&fates),
+            fates.iter().map(|truth| truth.slip_distance_mm).fold(0.0, f64::max),
+            pressed_n(&fates),
+            crushed.len(),
+            fates.len()
+        );
+        for (seed, truth) in seeds().zip(&fates) {
+            assert!(!truth.dropped && !truth.left_behind, "{name}, seed {seed}: lost, {more}");
+            assert!(truth.broken_at_s.is_none(), "{name}, seed {seed}: broken, {more}");
+        }
+        let seeds: Vec<u64> = crushed.iter().map(|(seed, _)| *seed).collect();
+        (fates, seeds)
+    };
+    let (fates_of_bursts, crushed) = harmed(BURSTS);
+    assert!(8 * crushed.len() <= fates_of_bursts.len(), "{name}: crushed in bursts, seeds {crushed:?}");
+    let (fates, crushed) = harmed("");
+    assert!(crushed.is_empty(), "{name}: crushed, seeds {crushed:?}");
+    fates
+}
+
+/// A control fails: the object is lost, crushed, or slides by 5 mm, in at least half of the seeds.
+fn fails(name: &str, fates: &[Truth]) {
+    let fail = |truth: &&Truth| truth.dropped || truth.dent_mm > 0.0 || truth.slip_distance_mm > 5.0;
+    let failed = fates.iter().filter(fail).count();
+    println!("{name}, the control: fails in {failed} of {}", fates.len());
+    assert!(2 * failed >= fates.len(), "{name}: the control fails in {failed} of {} only", fates.len());
+}
+
+/// The scene with nobody who holds.
+fn not_held(name: &str, more: &str) -> Vec<Truth> {
+    run(&format!("{}\n{more}", text(name).replace("kind = \"hold\"", "kind = \"end\"")))
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (count, sum) = values.fold((0.0, 0.0), |(count, sum), value| (count + 1.0, sum + value));
+    sum / count
+}
+
+fn slid_mm(fates: &[Truth]) -> f64 {
+    mean(fates.iter().map(|truth| truth.slip_distance_mm))
+}
+
+fn pressed_n(fates: &[Truth]) -> f64 {
+    fates.iter().map(|truth| truth.peak_grip_n).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_can_and_a_card_are_taken_and_none_is_crushed() {
+    // The control: fingers that come as far without feeling anything.
+    let blind = "[[command]]\nat_s = 2.0\nkind = \"close\"\nduty_permille = 100\nfor_s = 0.7\n";
+    for name in ["gentle-can", "gentle-card"] {
+        unharmed(name);
+        fails(name, &fates(name, blind));
+    }
+}
+
+#[test]
+fn a_crane_is_held_against_a_pull_and_a_swing() {
+    let held = unharmed("hold-crane");
+    assert!(slid_mm(&held) < 0.5, "{} mm", slid_mm(&held));
+    fails("hold-crane", &not_held("hold-crane", ""));
+}
+
+#[test]
+fn holding_slips_less_than_a_gentle_grasp() {
+    let (gentle, held) = (fates("push-gentle", ""), unharmed("push-hold"));
+    assert!(slid_mm(&held) < 0.5 * slid_mm(&gentle), "{} mm of {}", slid_mm(&held), slid_mm(&gentle));
+    fails("push-gentle", &gentle);
+}
+
+#[test]
+fn what_is_soft_is_held_against_a_pull_and_a_swing() {
+    for name in ["hold-marshmallow", "hold-toy"] {
+        unharmed(name);
+        fails(name, &not_held(name, ""));
+    }
+}
+
+/// Twenty times what the cup weighs comes in, and the hand follows.
+#[test]
+fn water_is_poured_into_a_cup_that_stays_where_it_is() {
+    // The control: nobody holds it, and the reflex acts on no detector.
+    let nobody = "[[command]]\nat_s = 0.1\nkind = \"set-detectors-off-mask\"\nvalue = 31\n\
+        [[command]]\nat_s = 4.2\nkind = \"end\"\n";
+    let (ours, theirs) = (unharmed("fill-cup"), fates("fill-cup", nobody));
+    println!("slid {:.2} mm, the control {:.2} mm", slid_mm(&ours), slid_mm(&theirs));
+    assert!(slid_mm(&ours) < 0.2 * slid_mm(&theirs), "{} mm of {}", slid_mm(&ours), slid_mm(&theirs));
+    fails("fill-cup", &theirs);
+}
+
+#[test]
+fn a_pull_takes_the_object_and_without_one_it_stays() {
+    for name in ["hand-over-can", "hand-over-card"] {
+        for (seed, truth) in seeds().zip(unharmed(name)) {
+            assert!(truth.handed_over, "{name}, seed {seed}: nobody can take it");
+        }
+    }
+    let nobody = run(&text("hand-over-can").replace("force_n = 2.0", "force_n = 0.0"));
+    for (seed, truth) in seeds().zip(nobody) {
+        assert!(!truth.handed_over && !truth.dropped, "seed {seed}");
+    }
+}
+
+/// FingerVision 2017, figure 19: in most runs the angle was exceeded. With foresight it is not.
+#[test]
+fn a_turn_comes_within_two_degrees_and_foresight_takes_the_overshoot_away() {
+    let paper = "[[command]]\nat_s = 0.2\nkind = \"set-turn-lead-ms\"\nvalue = 0\n";
+    let error_deg = |truth: &Truth| truth.turned_rad.to_degrees() - 20.0;
+    let off_deg = |fates: &[Truth]| mean(fates.iter().map(|truth| error_deg(truth).abs()));
+    let worst_deg = |fates: &[Truth]| fates.iter().map(|truth| error_deg(truth).abs()).fold(0.0, f64::max);
+    let (ours, papers) = (unharmed("turn-pen"), fates("turn-pen", paper));
+    for fates in [&ours, &fates("turn-pen", BURSTS)] {
+        println!("off by {:.2} degrees on average, {:.2} at worst", off_deg(fates), worst_deg(fates));
+        assert!(off_deg(fates) <= 2.0, "{} degrees", off_deg(fates));
+    }
+    let over = |fates: &[Truth]| fates.iter().filter(|truth| error_deg(truth) > 0.0).count();
+    println!("too far in {} of {}, without foresight in {}", over(&ours), ours.len(), over(&papers));
+    assert!(2 * over(&papers) >= papers.len() && over(&ours) < over(&papers));
+    let (ours, papers) = (mean(ours.iter().map(error_deg)), mean(papers.iter().map(error_deg)));
+    assert!(papers > 0.0 && ours < papers, "{ours}, {papers}");
+}
+
+#[test]
+fn a_report_says_what_the_hand_did() {
+    let report = ran(&parsed(&text("hand-over-can")), 1).report;
+    let names: Vec<_> = report.behaviours.iter().map(|ran| (ran.name, ran.ending)).collect();
+    assert_eq!(
+        names,
+        [("gentle grasp", Some("done")), ("hold", Some("stopped by command")), ("hand over", Some("done"))]
+    );
+    assert_eq!((report.object.kept, report.object.handed_over), (Some(true), Some(true)));
+    assert!(Text(&report).to_string().contains("handed over"));
+}

@@ -1,0 +1,65 @@
+//! The golden gate: one hash of every decision, event, drive and force of each shipped scene and recording, on the host's logic.
+//!
+//! A change that is not meant to change a decision leaves `golden.txt` as it is. `TENAX_GOLDEN=write` writes it anew.
+
+use std::fs;
+use std::path::Path;
+
+use rayon::prelude::*;
+use tenax_scene::{SceneFile, World, builtin};
+use tenax_sim::board::{Recorder, Run, simulated};
+use tenax_sim::recipe::Kind;
+use tenax_sim::replay::Recipe;
+use tenax_sim::session::{self, Board, ReplayOptions};
+
+use crate::common::hash::{Hash, compare, of_run};
+use crate::common::shared;
+
+const SEEDS: [u64; 2] = [1, 2];
+
+fn scene(name: &str, text: &str, seed: u64) -> Hash {
+    let file = SceneFile::parse(text, name).expect("a shipped scene is good");
+    let (run, mut world) = simulated::run(World::new(&file, seed), &mut |_| {});
+    let mut hash = of_run(&run);
+    for row in world.take_trace() {
+        // Rounded, so that another libm does not tell.
+        hash.bytes(&((row.grip_n * 1e3).round() as i64).to_le_bytes());
+        hash.bytes(&((row.slide_mm_s * 1e3).round() as i64).to_le_bytes());
+    }
+    hash
+}
+
+fn replayed(path: &Path) -> Hash {
+    let mut run = Run::default();
+    let recorder: &mut dyn Recorder = &mut run;
+    let outcome =
+        session::replay_served(path, ReplayOptions::default(), 1, &Board::Host, recorder, &mut |_| {})
+            .expect("the recording and its recipe are good");
+    run.summary = outcome.run;
+    of_run(&run)
+}
+
+#[test]
+fn scenes_decide_as_held() {
+    let runs: Vec<(&str, &str, u64)> =
+        builtin().iter().flat_map(|&(name, text)| SEEDS.map(|seed| (name, text, seed))).collect();
+    let hashes = runs
+        .par_iter()
+        .map(|&(name, text, seed)| (format!("{name} {seed}"), scene(name, text, seed)))
+        .collect();
+    compare("scene", &hashes);
+}
+
+#[test]
+#[cfg_attr(not(recordings), ignore = "no recordings in ../shared/data")]
+fn recordings_decide_as_held() {
+    let folder = fs::read_dir(shared("")).expect("the recordings");
+    let files: Vec<_> = folder.map(|entry| entry.expect("an entry").path()).collect();
+    let hashes = files
+        .par_iter()
+        .filter(|path| path.extension().is_some_and(|ending| ending == "csv"))
+        .filter(|path| Recipe::for_file(path).expect("the recipes are good").is_some())
+        .map(|path| (session::name_of(path), replayed(path)))
+        .collect();
+    compare("recording", &hashes);
+}

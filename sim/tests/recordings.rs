@@ -1,0 +1,88 @@
+//! A recording with a mistake gets one message that names the file, the row and what is allowed.
+
+use tenax_sim::recipe::Kind;
+use tenax_sim::replay::recipe::Time;
+use tenax_sim::replay::{Recipe, Recording};
+
+fn message(csv: &str) -> String {
+    let recording = Recording::parse(csv.as_bytes(), "r.csv");
+    match recording.and_then(|recording| recording.series("a").map(|_| ())) {
+        Ok(()) => panic!("accepted: {csv:?}"),
+        Err(error) => error.to_string(),
+    }
+}
+
+#[test]
+fn mistakes_are_named_by_file_and_row() {
+    for (csv, expected) in [
+        ("", "r.csv: 0 rows of samples; a recording has a header line and at least two rows"),
+        ("t,a\n", "r.csv: 0 rows"),
+        ("t,a\n0,1\n", "r.csv: 1 rows"),
+        ("time,a\n0,1\n1,1\n", "r.csv:1: no time column: one must be called `t` or `t_s`"),
+        ("t,b\n0,1\n1,1\n", "r.csv:1: no column `a`; the columns are `t`, `b`"),
+        ("t,a,a\n0,1,1\n1,1,1\n", "r.csv:1: two columns are called `a`"),
+        ("t,a\n0,1\n1,one\n", "r.csv:3: column `a` is `one`, which is not a number"),
+        ("t,a\n0,1\n1,\n", "r.csv:3: column `a` is ``, which is not a number"),
+        ("t,a\n0,1\n1,NaN\n", "r.csv:3: column `a` is `NaN`; only finite numbers are allowed"),
+        ("t,a\n0,1\n1,inf\n", "r.csv:3: column `a` is `inf`; only finite numbers"),
+        ("t,a\n0,1\nNaN,1\n", "r.csv:3: column `t` is `NaN`"),
+        ("t,a\n0,1\n2,1\n1,1\n", "r.csv:4: time goes backwards, from 2 s to 1 s"),
+        ("t,a\n0,1\n1,1,1\n", "r.csv:3: 3 cells, but the header has 2"),
+        ("# a comment\nt,a\n0,1\n1,x\n", "r.csv:4: column `a` is `x`"),
+        (
+            "t,a\n0,1\n5500,1\n",
+            "r.csv: lasts 5500 s and 600 s is the longest allowed; is its time in seconds?",
+        ),
+    ] {
+        let message = message(csv);
+        assert!(message.starts_with(expected), "{csv:?}\nsays      {message}\ninstead of {expected}");
+    }
+}
+
+#[test]
+fn a_recipe_names_the_clock_and_its_unit() {
+    let recipe = |time: &str| {
+        let text = format!(
+            "title = ''\ndescription = ''\n[time]\n{time}\n[[map]]\ncolumn = 'a'\nchannels = ['pvdf_1']\ngain = 1.0\n"
+        );
+        Recipe::parse(&text, "r.toml")
+    };
+    let read = |csv: &str, time: &str| Recording::timed(csv.as_bytes(), "r.csv", &recipe(time).unwrap().time);
+    let csv = "stamp,a,t\n1500,1,7\n2500,2,7\n";
+    for (unit, first_s) in [("s", 1_500.0), ("ms", 1.5), ("us", 0.001_5)] {
+        let time = format!("column = 'stamp'\nunit = '{unit}'");
+        let recording = read(&csv.replace("2500", if unit == "s" { "1501" } else { "2500" }), &time).unwrap();
+        assert_eq!((recording.first_s(), recording.signals().collect::<Vec<_>>()), (first_s, vec!["a", "t"]));
+    }
+    let error = read(csv, "column = 'when'").unwrap_err().to_string();
+    assert!(
+        error.starts_with("r.csv:1: no time column `when`, which the recipe names; the columns are `stamp`"),
+        "{error}"
+    );
+    let error = read("t,a\n0,1\n5500,1\n", "unit = 's'").unwrap_err().to_string();
+    assert!(error.contains("[time] unit = \"ms\""), "{error}");
+    let error = recipe("unit = 'h'").unwrap_err().to_string();
+    assert!(error.starts_with("r.toml:4: unknown variant `h`, expected one of `s`, `ms`, `us`"), "{error}");
+}
+
+#[test]
+fn what_is_not_text_is_refused_by_row() {
+    let error = Recording::parse(&b"t,a\n0,1\n1,\xff\xfe\n"[..], "r.csv").unwrap_err().to_string();
+    assert!(error.starts_with("r.csv:3: not text"), "{error}");
+}
+
+#[test]
+fn a_missing_file_is_named() {
+    let error = Recording::read("no/such/file.csv".as_ref(), &Time::default()).unwrap_err().to_string();
+    assert!(error.starts_with("no/such/file.csv: cannot be read"), "{error}");
+}
+
+#[test]
+fn uneven_rows_columns_of_words_and_a_byte_order_mark_are_fine() {
+    let csv = "\u{feff}t_s, a ,label\n0.0,1.5,rest\n0.001,2.5,rest\n0.001,3.5,grasp\n0.1,4.5,grasp\n";
+    let recording = Recording::parse(csv.as_bytes(), "r.csv").unwrap();
+    assert_eq!(recording.series("a").unwrap(), [1.5, 2.5, 3.5, 4.5]);
+    assert_eq!(recording.signals().collect::<Vec<_>>(), ["a", "label"]);
+    assert!((recording.longest_gap_s() - 0.099).abs() < 1e-12);
+    assert!((recording.rate_hz() - 30.0).abs() < 1e-9);
+}

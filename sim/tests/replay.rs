@@ -1,0 +1,153 @@
+//! A recording at the pins: on the right channel, at the right time, through the right front end; and the shared
+//! recordings through their recipes and the host's logic.
+
+use crate::common::{played, recipe, recording};
+use tenax_hal_shim::channel::{self, COUNT, SCAN_HZ};
+use tenax_hal_shim::detector::DetectorId;
+use tenax_hal_shim::front_end::fsr_mv;
+use tenax_hal_shim::motor::MotorDrive;
+use tenax_scene::plant::Plant;
+use tenax_sim::replay::ReplayPlant;
+
+/// The converter's noise never reaches so far, V.
+const NOISE_V: f64 = 0.003;
+
+fn pins(mut plant: ReplayPlant) -> Vec<[f64; COUNT]> {
+    let scans = (plant.duration_s() * f64::from(SCAN_HZ)).round() as usize;
+    (0..scans).map(|_| plant.scan(MotorDrive::Coast).0).collect()
+}
+
+fn channel(name: &str) -> usize {
+    channel::by_name(name).unwrap()
+}
+
+fn near(volts: f64, expected: f64) -> bool {
+    (volts - expected).abs() < NOISE_V
+}
+
+#[test]
+fn columns_that_are_channels_need_no_recipe() {
+    let recording = recording("t,pvdf_2,opening\n0,1.0,0.5\n0.1,2.0,0.5\n");
+    let plant = ReplayPlant::plain(&recording, 1).unwrap();
+    assert!((plant.time_zero_s() + 1.0).abs() < 1e-12, "one second of the first row before");
+    let pins = pins(plant);
+    let at = |t: f64| pins[((t + 1.0) * f64::from(SCAN_HZ)).round() as usize];
+    let pvdf = channel("pvdf_2");
+    for (t, volts) in [(-0.5, 1.0), (0.0, 1.0), (0.025, 1.25), (0.0999, 1.999), (0.15, 2.0)] {
+        assert!(near(at(t)[pvdf], volts), "{} V at {t} s", at(t)[pvdf]);
+    }
+    assert!(near(at(0.05)[channel("opening")], 0.5));
+    assert!(near(at(0.05)[channel("myo_flexor")], 0.3), "missing channels rest");
+}
+
+#[test]
+fn a_column_that_is_no_channel_is_named() {
+    let error = ReplayPlant::plain(&recording("t,pdvf_2\n0,1\n1,1\n"), 1).unwrap_err().to_string();
+    assert!(error.starts_with("r.csv:1: column `pdvf_2` is no channel"), "{error}");
+}
+
+#[test]
+fn a_pin_at_rest_is_never_quite_still() {
+    let pins = pins(ReplayPlant::plain(&recording("t,pvdf_1\n0,1.65\n0.1,1.65\n"), 1).unwrap());
+    let codes: std::collections::BTreeSet<u16> =
+        pins.iter().map(|volts| tenax_scene::plant::Pins(*volts).codes()[channel("fsr_a")]).collect();
+    assert!(codes.len() > 1, "one code for ever would be a broken sensor");
+}
+
+#[test]
+fn the_stages_of_a_front_end_act_in_their_order() {
+    let recording = recording("t,a\n0,11\n0.5,7\n1,11\n");
+    let recipe = recipe(
+        "lead_in_s = 0.0\nlead_out_s = 0.0\n[[map]]\ncolumn = 'a'\nchannels = ['pvdf_1', 'myo_flexor']\n\
+         remove_offset = { value = 10.0 }\nrectify = true\ngain = 0.5\nclip_v = [0.05, 2.0]\n",
+    );
+    let pins = pins(ReplayPlant::new(&recording, &recipe, 1).unwrap());
+    // At 0.5 s the column is 3 below its offset; rectified and amplified that is 1.5 V above rest.
+    assert!(near(pins[4_000][channel("pvdf_1")], 2.0), "1.65 V + 1.5 V, clipped");
+    assert!(near(pins[4_000][channel("myo_flexor")], 0.3 + 1.5));
+    assert!(near(pins[0][channel("myo_flexor")], 0.3 + 0.5));
+}
+
+#[test]
+fn forces_press_the_four_quadrants() {
+    let recording = recording("t,n,s\n0,2,0.5\n1,2,0.5\n");
+    let recipe = recipe("lead_in_s = 0.0\n[force]\nnormal = 'n'\nshear_x = 's'\nscale = 2.0\n");
+    let pins = pins(ReplayPlant::new(&recording, &recipe, 1).unwrap());
+    for (name, force_n) in [("fsr_a", 1.25), ("fsr_b", 1.25), ("fsr_c", 0.75), ("fsr_d", 0.75)] {
+        let expected = fsr_mv(force_n, f64::powf) / 1e3;
+        assert!(
+            near(pins[100][channel(name)], expected),
+            "{name}: {} V, {expected}",
+            pins[100][channel(name)]
+        );
+    }
+}
+
+#[test]
+fn a_held_force_comes_on_after_the_board() {
+    let recording = recording("t,a\n0,0\n1,0\n");
+    let recipe = recipe(
+        "[[map]]\ncolumn = 'a'\nchannels = ['pvdf_1']\ngain = 1.0\n\
+         [hold.force]\nnormal_n = 4.0\nafter_s = 0.25\nramp_s = 0.5\nwhy = 'a test'\n",
+    );
+    let pins = pins(ReplayPlant::new(&recording, &recipe, 1).unwrap());
+    let fsr = channel("fsr_c");
+    assert!(near(pins[1_900][fsr], fsr_mv(0.0, f64::powf) / 1e3));
+    assert!(near(pins[4_000][fsr], fsr_mv(0.5, f64::powf) / 1e3));
+    assert!(near(pins[6_100][fsr], fsr_mv(1.0, f64::powf) / 1e3));
+}
+
+#[test]
+fn the_same_seed_gives_the_same_codes() {
+    let recording = recording("t,pvdf_1\n0,1.65\n0.1,1.65\n");
+    let codes = |seed| pins(ReplayPlant::plain(&recording, seed).unwrap());
+    assert_eq!(codes(7), codes(7));
+    assert_ne!(codes(7), codes(8));
+}
+
+#[test]
+#[cfg_attr(not(recordings), ignore = "no recordings in ../shared/data")]
+fn the_rig_warns_before_the_peak_and_not_before_it_moves() {
+    let outcome = played("friction_rig_10khz.csv");
+    let force = outcome.report.replay.unwrap().force.unwrap();
+    // README of the recordings: the peak is 0.69 at 1.569 s.
+    assert!((force.peak_s.unwrap() - 1.569).abs() < 0.001, "{force:?}");
+    assert!((force.peak_ratio.unwrap() - 0.69).abs() < 0.01, "{force:?}");
+    // From first motion to macro slip there are about 25 ms: a warning much earlier would be luck, not S2.
+    let before_ms = force.s2_before_peak_ms.unwrap();
+    assert!((0.0..25.0).contains(&before_ms), "{before_ms} ms before the peak");
+    assert!(force.s1_first_s.is_none_or(|t| t > 1.5), "{force:?}");
+}
+
+#[test]
+#[cfg_attr(not(recordings), ignore = "no recordings in ../shared/data")]
+fn s1_sees_the_onset_of_slip_and_neither_quiet_nor_contact() {
+    for (name, speaks) in
+        [("pvdf_slip_onset.csv", true), ("pvdf_quiet.csv", false), ("pvdf_contact.csv", false)]
+    {
+        let outcome = played(name);
+        assert_eq!(outcome.report.detectors.of_id(DetectorId::S1).detections > 0, speaks, "{name}");
+    }
+}
+
+#[test]
+#[cfg_attr(not(recordings), ignore = "no recordings in ../shared/data")]
+fn muscles_are_noticed_when_they_work_and_the_reflex_is_silent() {
+    for (name, works) in [
+        ("emg_two_channel_rest0.csv", false),
+        ("emg_two_channel_fist0.csv", true),
+        ("emg_two_channel_fingerextension0.csv", true),
+        ("emg_bursts_1khz.csv", true),
+    ] {
+        let outcome = played(name);
+        let muscle = outcome.report.replay.unwrap().muscle.unwrap();
+        assert_eq!(muscle.noticed_s.is_some(), works, "{name}: {muscle:?}");
+        assert_eq!(muscle.reflex_while_active, 0, "{name}");
+        // The recipes give the hand a grasp that is about to slip: silence is the muscles' doing, not the grasp's.
+        assert!(works || outcome.report.wearer.reflex_ticks > 0, "{name}: nothing to be silent about");
+        // A 4 Hz low-pass takes tens of milliseconds to pass the threshold: none at all would be no low-pass.
+        if let Some(delay_ms) = muscle.onset_delay_ms {
+            assert!((5.0..150.0).contains(&delay_ms), "{name}: {delay_ms} ms");
+        }
+    }
+}
