@@ -302,16 +302,11 @@ pub enum CalibrationRefusal {
     RestNotQuiet,
     NoClosing,
     NoOpening,
-    /// Both contractions drive the electrodes in the same proportion.
     SameDirection,
-    /// The states differ, but by less than they fluctuate.
     Overlap,
-    /// An envelope stood still during a contraction, which no muscle's does.
     NotAMuscle,
-    /// An envelope was at the top of its range.
     Saturated,
     SensorLost,
-    /// The words are not those of a model.
     Damaged,
     /// The hand came to hold something, or its force sensor gave no number: the muscles must be able to open it.
     Loaded,
