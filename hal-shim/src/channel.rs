@@ -261,8 +261,8 @@ mod tests {
             (OPENING, 1, "opening", Role::Hand),
             (MOTOR_CURRENT, 1, "motor_current", Role::Hand),
         ] {
-            for n in first..first + count {
-                let name = CHANNELS[n].name;
+            for (n, channel) in CHANNELS.iter().enumerate().skip(first).take(count) {
+                let name = channel.name;
                 assert!(name.starts_with(prefix) && by_name(name) == Some(n), "{name}");
                 let fitted = if name == "pvdf_12" { Role::Photoelastic } else { role };
                 assert_eq!((Role::of(n, false), Role::of(n, true)), (role, fitted), "{name}");
