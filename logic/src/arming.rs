@@ -130,14 +130,6 @@ mod tests {
     }
 
     #[test]
-    fn nothing_that_nobody_did_arms() {
-        let mut arming = Arming::default();
-        assert_eq!(run(&mut arming, HOLDING, 100_000), []);
-        assert_eq!(arming.line(false), Line::Reading);
-        assert_eq!(arming.line(true), Line::Trusted);
-    }
-
-    #[test]
     fn a_co_contraction_of_two_seconds_consents_once_for_a_minute() {
         let mut arming = Arming::default();
         assert_eq!(run(&mut arming, HOLDING, 100), []);

@@ -35,7 +35,7 @@ pub fn taught_detectors(seed: u64) -> Detectors {
     while let Some(record) = fingertip.next_record(&mut keeper) {
         if let Record::Network(_) = record {
             let mut buffer = [0; PAYLOAD_BYTES];
-            detectors.hebbian.restore(record.payload(&mut buffer)).expect("a network's record");
+            assert!(detectors.hebbian.restore(record.payload(&mut buffer)), "a network's record");
         }
     }
     detectors

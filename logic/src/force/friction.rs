@@ -335,16 +335,6 @@ mod tests {
     }
 
     #[test]
-    fn a_stroke_that_never_slid_measures_nothing() {
-        let mut detector = FrictionDetector::default();
-        detector.begin_stroke();
-        for ratio in [20, 200, 400, 410, 400, 50] {
-            detector.process(&CONFIG, Some(ratio).filter(|&r| r > 100));
-        }
-        assert_eq!(detector.end_stroke(&CONFIG), None);
-    }
-
-    #[test]
     fn a_ratio_has_slid_below_its_part_of_the_peak_and_not_at_it() {
         for (peak, ratio, measured) in
             [(400, 340, None), (400, 339, Some(400)), (99, 50, None), (100, 50, Some(100))]

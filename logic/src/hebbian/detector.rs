@@ -262,14 +262,17 @@ impl HebbianDetector {
         Learned::of(&self.normaliser, &self.network, self.shear.learned())
     }
 
-    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), snapshot::Damaged> {
-        let slips_at;
-        (self.normaliser, self.network, slips_at) = snapshot::restore(&NORMALISER, bytes)?;
+    /// False if the bytes are no snapshot of this network; nothing has changed then.
+    pub fn restore(&mut self, bytes: &[u8]) -> bool {
+        let Some((normaliser, network, slips_at)) = snapshot::restore(&NORMALISER, bytes) else {
+            return false;
+        };
+        (self.normaliser, self.network) = (normaliser, network);
         self.shear.restore(slips_at);
         self.noise = Noise::default();
         self.weights_changed = true;
         self.pvdf_part.outdate();
-        Ok(())
+        true
     }
 
     fn judge(&mut self, config: &HebbianConfig, felt: &Felt<'_>, sum: i64) {
