@@ -8,10 +8,8 @@
 //!
 //! Consent is an act, not a state: a humming electrode or a stuck button consents at most once.
 
-use tenax_hal_shim::channel::FRAME_HZ;
+use tenax_hal_shim::channel::{FRAME_HZ, frames};
 use tenax_hal_shim::words::{Consent, Line};
-
-use tenax_hal_shim::channel::frames;
 
 /// Frames from one step to the next: a fifth of a slow frame.
 pub const STEP_FRAMES: u32 = 5;

@@ -6,8 +6,10 @@
 //! [`UNLIKELY_PERMILLE`] few objects do: there no kind of sensor alone is believed, unless slip was answered
 //! in this grasp.
 
+use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
 use tenax_hal_shim::wire::Forces;
 
+use crate::detectors::{Description, Detector, Said, Sensed, confidence};
 use crate::force::settings::FrictionConfig;
 use crate::grip::lacks::{Lacks, Slides};
 use crate::latest;
@@ -213,6 +215,37 @@ impl FrictionDetector {
         let mu_s_permille = self.stroke.take()?.mu_s?;
         let s2 = u32::from(mu_s_permille) * u32::from(config.s2_of_mu_s_permille) / 1_000;
         Some(Measured { mu_s_permille, s2_permille: s2.min(u32::from(u16::MAX)) as u16 })
+    }
+}
+
+impl Detector for FrictionDetector {
+    const ID: DetectorId = DetectorId::S2;
+    type Config = FrictionConfig;
+
+    fn step(&mut self, config: &FrictionConfig, sensed: &Sensed<'_>) -> Option<Said> {
+        if sensed.wearer {
+            self.renew();
+        }
+        let ratio = match sensed.forces {
+            Some(_) if !sensed.forces_are_new => return None,
+            Some(forces) => forces.ratio_permille,
+            None => None,
+        };
+        self.carry(ratio.and(sensed.forces).map(|forces| forces.ft_mn), sensed.moves);
+        Some(Said { slip: false, incipient: self.process(config, ratio) })
+    }
+
+    fn describe(&self, config: &FrictionConfig) -> Description {
+        let ratio = self.ratio_permille().map_or(0, i32::from);
+        Description {
+            confidence_permille: confidence(ratio, config.s2_permille.into()),
+            direction: Direction::Unknown,
+            health: match self.ratio_permille() {
+                Some(_) => DetectorHealth::Working,
+                None => DetectorHealth::Blind,
+            },
+            raw: ratio,
+        }
     }
 }
 

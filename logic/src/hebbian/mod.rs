@@ -12,7 +12,6 @@
 //! which is every useful one at 1 kHz.
 
 pub mod activations;
-mod adapter;
 mod arithmetic;
 mod balance;
 pub mod detector;

@@ -271,7 +271,7 @@ impl Ears {
             detectors.hebbian.restore(learned).then_some(()).context(damaged)?;
             for own in changed {
                 let mut network = HebbianDetector::default();
-                network.restore(own).ok().context(damaged)?;
+                network.restore(own).then_some(()).context(damaged)?;
                 controls.push((network, false));
             }
         }
