@@ -12,11 +12,13 @@ use super::{ARRAY_READ, COVARIANCE_WINDOW, HIDDEN, Reading, ShippedDetector};
 use crate::detectors::{Description, Detector, Said, Sensed};
 
 /// Shares of a slow frame's work, one a tick, about equally long. 0: covariance, spectrum. 1: features of the
-/// spectrum, short lags. 2: long lags, a quarter of the first layer. 3: half of it. 4: the rest, and the
+/// spectrum, short lags. 2: long lags, units of the first layer. 3: more of them. 4: the rest, and the
 /// verdict.
 pub const SHARES: usize = ARRAY_SHARES as usize;
 /// Units of the first layer.
 const H1: usize = HIDDEN[0];
+/// Units of the first layer that are done after shares 2 and 3.
+const SEEN: [usize; 2] = [10, 24];
 const VERDICT_SHARE: usize = SHARES - 1;
 const _: () = assert!(VERDICT_SHARE == 4);
 
@@ -93,11 +95,11 @@ impl<'m, const N: usize> ArrayDetector<'m, N> {
             1 => self.preprocessor.add_spectrum(),
             2 => {
                 self.felt = self.preprocessor.finish().is_some();
-                self.see(0..H1 / 4);
+                self.see(0..SEEN[0]);
             }
-            3 => self.see(H1 / 4..H1 * 3 / 4),
+            3 => self.see(SEEN[0]..SEEN[1]),
             VERDICT_SHARE => {
-                self.see(H1 * 3 / 4..H1);
+                self.see(SEEN[1]..H1);
                 return Some(self.decide());
             }
             _ => {}
