@@ -44,7 +44,6 @@ impl Muscle {
         Self { noise: Noise(seed), slow: [0.0; 2] }
     }
 
-    /// Its level relative to the mean, a slow frame later.
     fn step(&mut self) -> f64 {
         const PART: f64 = 0.2;
         self.slow[0] += PART * (self.noise.gauss() - self.slow[0]);

@@ -9,7 +9,6 @@ const _: () = assert!((FRAMES_PER_SLOW_FRAME as usize).is_multiple_of(FRAMES_PER
 
 const EVER: u32 = u32::MAX;
 
-/// Nothing long is decided or sent in this slot.
 pub const SENSES_SLOT: u8 = 2;
 
 #[derive(Clone, Debug, Default)]

@@ -7,7 +7,6 @@ use serde::de::DeserializeOwned;
 
 /// Plain CDR, little-endian, no options.
 const LITTLE: [u8; 4] = [0, 1, 0, 0];
-/// The same, big-endian.
 const BIG: [u8; 2] = [0, 0];
 /// A longer payload than this is none that a hand takes.
 const PAYLOAD_MAX: usize = 1 << 16;

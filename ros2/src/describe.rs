@@ -10,7 +10,6 @@ use sha2::{Digest, Sha256};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Definition {
     pub name: &'static str,
-    /// Its .msg text.
     pub text: &'static str,
 }
 

@@ -42,7 +42,6 @@ pub fn joint_state(header: Header, slow: &Slow) -> JointState {
     JointState { header, name, effort, ..JointState::default() }
 }
 
-/// What it concluded.
 pub fn slip(header: Header, slow: &Slow) -> Slip {
     let mut message = Slip {
         header,
@@ -61,7 +60,6 @@ pub fn slip(header: Header, slow: &Slow) -> Slip {
     message
 }
 
-/// How far it is from sliding.
 pub fn margin(header: Header, slow: &Slow) -> Margin {
     let permille = |permille: u16| f64::from(permille) / 1e3;
     let margin = slow.forces.and_then(|forces| forces.margin_mn(slow.s2_permille));
@@ -74,7 +72,6 @@ pub fn margin(header: Header, slow: &Slow) -> Margin {
     }
 }
 
-/// What it reads.
 pub fn tactile(header: Header, slow: &Slow, senses: Option<&Senses>) -> Tactile {
     let forces = slow.forces.as_ref();
     Tactile {
@@ -93,12 +90,10 @@ pub fn ceiling_mn(about: &About) -> Option<i32> {
     about.settings.iter().find(|setting| setting.id == FORCE_CEILING).map(|setting| setting.value)
 }
 
-/// How a hand is.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Health {
     /// Why its line is not open.
     pub gone: Option<String>,
-    /// What became of the last command.
     pub command: String,
     pub about: Option<About>,
     pub counters: Option<Counters>,
@@ -138,7 +133,6 @@ impl Health {
     }
 }
 
-/// What is done about a command next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Step {
     /// This goes down the line.
@@ -166,7 +160,6 @@ pub struct Grasp {
 }
 
 impl Grasp {
-    /// Of a command, for a board with this ceiling. Fails if it is no command, or the ceiling is not known.
     pub fn of(command: &GripperCommand, ceiling_mn: Option<i32>) -> Result<Self, &'static str> {
         let GripperCommand { position, max_effort } = *command;
         if !position.is_finite() || !max_effort.is_finite() {

@@ -16,13 +16,10 @@ pub struct Node {
     pub domain: u32,
     /// The session's zenoh id, as zenoh writes it.
     pub session: String,
-    /// Its number in the session.
     pub id: u32,
-    /// Its name, in the namespace `/`.
     pub name: String,
 }
 
-/// What a topic is to a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// It publishes it.
@@ -64,14 +61,11 @@ pub fn gid(token: &str) -> [u8; GID] {
     xxh3_128(token.as_bytes()).to_le_bytes()
 }
 
-/// What is attached to a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Attachment {
     /// From 1 on.
     pub sequence: i64,
-    /// When it was published, ns since 1970.
     pub time_ns: i64,
-    /// Who published it.
     pub gid: [u8; GID],
 }
 

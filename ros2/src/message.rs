@@ -27,15 +27,12 @@ pub const DEFINITIONS: [Definition; 10] = [
 
 /// A message that is published or heard.
 pub trait Message: Serialize + DeserializeOwned {
-    /// Its type's full name.
     const NAME: &'static str;
 
-    /// Its type's hash. Empty for a type of no definition, which the tests look for.
     fn type_hash() -> String {
         hash(Self::NAME, &DEFINITIONS).unwrap_or_default()
     }
 
-    /// Its type as DDS calls it, which is how keys name it: `sensor_msgs::msg::dds_::JointState_`.
     fn dds_name() -> String {
         let (path, name) = Self::NAME.rsplit_once('/').unwrap_or(("", Self::NAME));
         format!("{}::dds_::{name}_", path.replace('/', "::"))
@@ -61,7 +58,6 @@ impl Time {
 /// `std_msgs/msg/Header`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Header {
-    /// When it came up the line.
     pub stamp: Time,
     /// The hand.
     pub frame_id: String,
@@ -70,7 +66,6 @@ pub struct Header {
 /// `sensor_msgs/msg/JointState`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct JointState {
-    /// When, and of which hand.
     pub header: Header,
     pub name: Vec<String>,
     /// Empty: a fingertip's opening is calibrated to no length.
@@ -110,7 +105,6 @@ pub struct KeyValue {
 pub struct DiagnosticStatus {
     /// 0 well, 1 warning, 2 error, 3 stale.
     pub level: u8,
-    /// Of which part.
     pub name: String,
     /// In words.
     pub message: String,

@@ -29,7 +29,6 @@ pub struct Options {
 pub struct Stress {
     /// Brightness of the object over that of the wall, levels; darker where there is no room.
     pub apart: Option<f64>,
-    /// Its distance from the wall's colour towards cyan, levels.
     pub colour: Option<f64>,
     /// Contrast of its pattern, levels.
     pub texture: Option<f64>,

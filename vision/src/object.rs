@@ -23,7 +23,6 @@ use self::scene::Scene;
 
 /// Pixels that differ from the scene are believed to be the scene in one frame of so many while an object is seen.
 const DOUBT_FRAMES: u32 = 32;
-/// The same while no object is seen.
 const DOUBT_FRAMES_EMPTY: u32 = 4;
 /// Every so many pixels of the scene stand for all of it: a prime, so that no column is taken again and again.
 const SAMPLE: usize = 13;

@@ -6,7 +6,6 @@ use super::map::{Fate, UNSEEN, ask, fate, learned, teach};
 use super::oracle::weights_of;
 use super::task::{Finger, Moment, OFFSET, VIBRATION};
 
-/// The same trial with other receptors.
 fn felt_through(trial: &[Moment], change: impl Fn(&mut [Activation; RECEPTORS])) -> Vec<Moment> {
     trial
         .iter()

@@ -11,7 +11,6 @@ const SAVES: u32 = 60;
 /// Saves from one boot to the next.
 const SESSION: u32 = 4;
 
-/// Of each kind, the last save that was finished, and the save that a cut interrupted.
 #[derive(Clone, Debug, Default)]
 struct Promise {
     finished: Numbers,

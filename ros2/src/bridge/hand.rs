@@ -13,7 +13,6 @@ use zenoh::Session;
 
 use super::network::{Graph, Publisher, now_ns};
 
-/// How long a board may take to answer the opening of a session.
 const ANSWER_WITHIN: Duration = Duration::from_millis(500);
 /// Pause before a line is opened again.
 const AGAIN_AFTER: Duration = Duration::from_millis(500);
@@ -21,7 +20,6 @@ const AGAIN_AFTER: Duration = Duration::from_millis(500);
 const STREAM_EVERY: Duration = Duration::from_secs(2);
 /// Diagnostics are published once a second.
 const DIAGNOSE_EVERY: Duration = Duration::from_secs(1);
-/// How often a command asks for a session, if somebody else on the line opens one too.
 const SESSIONS_MAX: u32 = 3;
 
 /// A hand: its name and where its line is.
@@ -98,7 +96,6 @@ struct Attendant<'a, 'b> {
     health: &'a mut Health,
     senses: Option<Senses>,
     grasp: Option<Grasp>,
-    /// Its last step, and the number that its answer names.
     sent: Option<(u16, Down)>,
     /// Sessions that were asked for since the last command came.
     sessions: u32,

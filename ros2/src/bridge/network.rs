@@ -13,12 +13,9 @@ use zenoh::{Config, Session, Wait};
 
 /// Messages that a subscription keeps.
 const DEPTH: u32 = 10;
-/// How long a router may take to answer.
 const ROUTER_WITHIN: Duration = Duration::from_secs(3);
-/// How often it is looked whether it has.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
 
-/// What this process is to the others.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Place {
     /// A peer, as ROS 2's nodes are: it finds them through this router.

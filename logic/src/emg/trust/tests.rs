@@ -3,7 +3,6 @@ use crate::emg::mains::mains_of;
 use std::f64::consts::TAU;
 
 const ACTIVE_UV: i32 = 120_000;
-/// When the readings of a slow frame are, s.
 const AT_S: [f64; 3] = [0.005, 0.008, 0.011];
 
 /// Trustes an envelope in mV for so long.

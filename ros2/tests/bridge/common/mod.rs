@@ -9,7 +9,6 @@ use tempfile::TempDir;
 /// `tenax run --host --serve-tcp 0`, as `cargo tenax` builds it, ended with this.
 pub struct Served {
     run: Child,
-    /// Where its line is.
     pub line: String,
     _folder: TempDir,
 }
