@@ -2,7 +2,7 @@
 //!
 //! This table is the only place that knows the wiring. The firmware programs its converter from [`SCAN`], the logic
 //! names channels by the index constants, a recording's columns are called [`Channel::name`], and
-//! `docs/wiring.md` is printed from it (`tenax wiring`).
+//! `tenax tables wiring` prints it.
 
 use crate::front_end;
 

@@ -1,5 +1,5 @@
 //! The detectors: one trait, one static list, their last reports and which of them are believed.
-//! `docs/adding-a-detector.md` shows how to add one.
+//! `docs/extending.md` shows how to add one.
 
 mod injected;
 

@@ -1,5 +1,5 @@
 //! Settings: one row each beside its field, in the `settings.rs` of its sense. Number on the wire and in
-//! flash, name, range, default, conversion and the line in `docs/settings.md` come from it.
+//! flash, name, range, default, conversion and the line of `tenax tables settings` come from it.
 
 use core::ops::RangeInclusive;
 

@@ -15,7 +15,7 @@ pub struct Config {
 }
 
 impl Config {
-    /// Middle of the useful region of the map in `docs/hebbian.md`.
+    /// Middle of the useful region of the map in `host-tests/tests/hebbian/map.txt`.
     pub const DEFAULT: Self = Self { alpha_ppb: 50_000, beta_ppb: 10_000, delta_ppm: 300_000 };
     /// Below 1/16, so that a step fits its format.
     pub const ALPHA_PPB: RangeInclusive<u32> = 0..=60_000_000;

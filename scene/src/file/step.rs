@@ -1,4 +1,4 @@
-//! Check that the step of one scan fits twice into each bound (`docs/stepping.md`).
+//! Check that the step of one scan fits twice into each bound (`docs/scenes.md`).
 
 use super::SceneFile;
 use super::check::{Checked, demand};

@@ -89,7 +89,7 @@ pub struct Falling {
 }
 
 /// Longer inner steps than this part of `m v_s / (P (mu_s - mu_d))` would be off in the growth of the vibration by more
-/// than 1 % (`docs/stepping.md`).
+/// than 1 % (`docs/scenes.md`).
 const INNER_STEP_PART: f64 = 0.02;
 /// More inner steps than this are not taken: a mass that wants more is too light for its friction to be resolved.
 const INNER_STEPS_MAX: f64 = 1_000.0;
