@@ -1,36 +1,33 @@
-//! Whatever comes down a line: nothing panics, and only a valid drive command moves the hand.
+//! Noise down the line: nothing panics, and only a valid drive command moves the hand.
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use tenax_sim::session::Board;
+use tenax_frames::link::Encoder;
 use tenax_hal_shim::channel::SCAN_HZ;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{BAUD, DRIVE_HOLD_MAX_MS, Down, Receiver, Setting};
-use tenax_hal_shim::words::Code;
 use tenax_logic::setting::SettingId;
 use tenax_scene::plant::{Pins, Plant};
-use tenax_frames::link::Encoder;
+use tenax_sim::session::Board;
 
-/// A hand at rest, and somebody who fills the line with anything.
+/// A hand at rest whose trusted line is full of noise, commands and torn drive commands for 10 s.
 struct Noise {
     pins: Pins,
     random: ChaCha8Rng,
     encoder: Encoder,
+    /// Valid drive commands are among the commands.
     drives: bool,
     waiting: Vec<u8>,
-    /// What the bytes that were sent say, to a receiver of our own.
     receiver: Receiver,
     scans: u32,
     valid: u32,
     /// Scans in which a valid drive command was sent.
     driven: Vec<u32>,
-    bytes: usize,
-    duration_s: f64,
 }
 
 impl Noise {
-    fn new(seed: u64, drives: bool, duration_s: f64) -> Self {
-        Self {
+    fn run(seed: u64, drives: bool) -> (tenax_sim::board::Run, Self) {
+        let noise = Self {
             pins: Pins::default(),
             random: ChaCha8Rng::seed_from_u64(seed),
             encoder: Encoder::default(),
@@ -40,60 +37,48 @@ impl Noise {
             scans: 0,
             valid: 0,
             driven: Vec::new(),
-            bytes: 0,
-            duration_s,
-        }
+        };
+        Board::Host.run(noise, &mut |_| {}).unwrap()
     }
 
     fn command(&mut self) -> Down {
         let random = &mut self.random;
-        let drive = Down::Drive {
-            drive: MotorDrive::Close(Duty::per_mille(random.random_range(1..=1_000))),
-            hold_ms: random.random_range(0..300),
-        };
-        let setting = SettingId::ALL[random.random_range(0..SettingId::ALL.len())].row();
-        match random.random_range(0..10) {
-            0 if self.drives => drive,
+        let drive = MotorDrive::Close(Duty::per_mille(random.random_range(1..=1_000)));
+        let id = SettingId::ALL[random.random_range(0..SettingId::ALL.len())];
+        match random.random_range(0..8) {
+            0 if self.drives => Down::Drive { drive, hold_ms: random.random_range(0..300) },
             1 => Down::Set(Setting { id: random.random(), value: random.random() }),
             2 => Down::Set(Setting {
-                id: SettingId::by_name(setting.name).expect("its own name").number(),
-                value: random.random_range(setting.min..=setting.max),
+                id: id.number(),
+                value: random.random_range(id.row().min..=id.row().max),
             }),
             3 => Down::Zero,
-            4 => Down::Teach { codes: [Code::Minus, Code::Plus], age_ms: random.random_range(0..100) },
-            5 => Down::Get(random.random()),
-            6 => Down::Settings(random.random()),
-            7 => Down::Samples,
-            8 => Down::Network,
+            4 => Down::Get(random.random()),
+            5 => Down::Settings(random.random()),
+            6 => Down::Network,
             _ => Down::Ping,
         }
     }
 
-    /// Bytes of any kind: noise, a frame, or a frame with a fault in it.
+    /// More bytes: noise, a torn drive command, or a command.
     fn refill(&mut self) {
-        let command = self.command();
-        // Frames with faults are of drive commands too, whether valid ones are sent or not.
-        let faulty = Down::Drive { drive: MotorDrive::Open(Duty::per_mille(1_000)), hold_ms: 200 };
-        match self.random.random_range(0..4) {
-            0 => {
-                let length = self.random.random_range(1..800);
-                self.waiting.extend((0..length).map(|_| self.random.random::<u8>()));
-                // So that not everything after it is lost.
-                self.waiting.push(0);
-            }
+        let (command, random) = (self.command(), &mut self.random);
+        let bytes = match random.random_range(0..4) {
+            0 => (0..random.random_range(1..800)).map(|_| random.random::<u8>()).chain([0]).collect(),
             1 => {
-                let mut frame = self.encoder.frame(&faulty).1.to_vec();
-                let at = self.random.random_range(0..frame.len() - 1);
-                match self.random.random_range(0..3) {
-                    0 => frame[at] ^= 1 << self.random.random_range(0..8),
+                let drive = MotorDrive::Open(Duty::per_mille(1_000));
+                let mut frame = self.encoder.frame(&Down::Drive { drive, hold_ms: 200 }).1.to_vec();
+                let at = random.random_range(0..frame.len() - 1);
+                match random.random_range(0..3) {
+                    0 => frame[at] ^= 1 << random.random_range(0..8),
                     1 => frame.truncate(at),
-                    _ => frame.insert(at, self.random.random_range(1..=255)),
+                    _ => frame.insert(at, random.random_range(1..=255)),
                 }
-                self.waiting.extend(frame);
-                self.waiting.push(0);
+                [&frame[..], &[0]].concat()
             }
-            _ => self.waiting.extend(self.encoder.frame(&command).1),
-        }
+            _ => self.encoder.frame(&command).1.to_vec(),
+        };
+        self.waiting.extend(bytes);
     }
 }
 
@@ -110,9 +95,7 @@ impl Plant for Noise {
             self.refill();
         }
         let bytes: Vec<u8> = self.waiting.drain(..length).collect();
-        self.bytes += length;
-        for &byte in &bytes {
-            let Some(Ok(command)) = self.receiver.push::<Down>(byte) else { continue };
+        for command in bytes.iter().filter_map(|&byte| self.receiver.push::<Down>(byte)).flatten() {
             self.valid += 1;
             if matches!(command.message, Down::Drive { .. }) {
                 self.driven.push(self.scans);
@@ -126,25 +109,23 @@ impl Plant for Noise {
     }
 
     fn duration_s(&self) -> f64 {
-        self.duration_s
+        10.0
     }
 }
 
 #[test]
 fn noise_and_torn_frames_never_move_the_hand() {
     for seed in 0..4 {
-        let (run, noise) = Board::Host.run(Noise::new(seed, false, 10.0), &mut |_| {}).unwrap();
-        assert!(noise.bytes > 800_000 && noise.valid > 1_000, "{} bytes, {} valid", noise.bytes, noise.valid);
+        let (run, noise) = Noise::run(seed, false);
         assert!(noise.driven.is_empty(), "a CRC-32 lets one in four billion through");
         assert!(run.drives.iter().all(|drive| *drive == MotorDrive::Coast), "seed {seed}");
-        assert!(run.counters.bad_frames > 1_000, "{:?}", run.counters);
+        assert!(noise.valid > 1_000 && run.counters.bad_frames > 1_000, "{:?}", run.counters);
     }
 }
 
 #[test]
 fn a_valid_drive_command_moves_it_for_as_long_as_it_may() {
-    let (run, noise) = Board::Host.run(Noise::new(9, true, 10.0), &mut |_| {}).unwrap();
-    assert!(!noise.driven.is_empty());
+    let (run, noise) = Noise::run(9, true);
     assert!(run.drives.iter().any(|drive| *drive != MotorDrive::Coast), "the absence above means something");
     // A backlog of commands is taken in a few ticks; the ring holds 11 ms of a full line.
     let hold = (u32::from(DRIVE_HOLD_MAX_MS) + 20) * SCAN_HZ / 1_000;

@@ -8,17 +8,25 @@ use clap::Subcommand;
 use tenax_hal_shim::wire::{Answer, Down, Refusal, SETTINGS_PER_ANSWER, Setting};
 use tenax_logic::setting::SettingId;
 
-use super::port;
-use tenax_frames::link::{ANSWER_WITHIN, Client, Target};
+use super::port::Line;
+use tenax_frames::link::{ANSWER_WITHIN, Client};
 use tenax_frames::settings;
 use tenax_frames::tool::out;
 
+const EXAMPLES: &str = "\
+Examples:
+  tenax config list
+  tenax config set s1-mv=120 s2-permille=300
+  tenax config export hand.toml
+  tenax config diff hand.toml
+  tenax config reset --all";
+
 /// Show and change a board's settings.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// Serial line: /dev/ttyACM0, COM3, /dev/pts/5 or tcp:127.0.0.1:7777 [default: the only board that is plugged in]
-    #[arg(long, value_name = "PORT", global = true)]
-    port: Option<Target>,
+    #[command(flatten)]
+    line: Line,
     #[command(subcommand)]
     command: Command,
 }
@@ -65,9 +73,9 @@ enum Command {
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    // What is wrong with a file or a name is said before the board is asked.
+    // An error in a file or a name is reported before the board is asked.
     let wanted = wanted(&args.command)?;
-    let mut client = Client::open(&port::or_found(args.port.as_ref())?)?;
+    let mut client = args.line.open()?;
     match &args.command {
         Command::List => out::print(format_args!("{}", list(&all(&mut client)?)))?,
         Command::Get { name } => out::say!("{}", client.setting(settings::named(name)?)?)?,
@@ -103,7 +111,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What is to be set.
+/// The settings that a command sets or compares.
 fn wanted(command: &Command) -> anyhow::Result<Vec<Setting>> {
     let default = |id: SettingId| Setting { id: id.number(), value: id.row().default };
     match command {
@@ -122,8 +130,8 @@ fn wanted(command: &Command) -> anyhow::Result<Vec<Setting>> {
     }
 }
 
-/// The settings that a file names. Says so if it is of a tool that has others. Fails if it cannot be read, or names what there is not.
-pub fn of_file(path: &Path) -> anyhow::Result<Vec<Setting>> {
+/// The settings that a file names. Warns if it was saved by a tool that has others.
+fn of_file(path: &Path) -> anyhow::Result<Vec<Setting>> {
     let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
     if let Some(why) = settings::of_other_schema(&text) {
         out::note!("{} {why}", path.display());
@@ -134,24 +142,22 @@ pub fn of_file(path: &Path) -> anyhow::Result<Vec<Setting>> {
 /// Every setting of the board.
 fn all(client: &mut Client) -> anyhow::Result<Vec<Setting>> {
     let mut settings: Vec<Setting> = Vec::new();
-    let mut from = 0;
     loop {
+        let from = settings.last().map_or(0, |last| last.id + 1);
         let answer = client.ask(&Down::Settings(from), ANSWER_WITHIN)?;
         let Answer::Settings(some) = answer else { bail!("the board answers {answer:?}") };
         settings.extend(&some);
-        match some.last() {
-            Some(last) if some.len() == SETTINGS_PER_ANSWER && last.id < u8::MAX => from = last.id + 1,
-            _ => return Ok(settings),
+        if some.len() < SETTINGS_PER_ANSWER || settings.last().is_none_or(|last| last.id == u8::MAX) {
+            return Ok(settings);
         }
     }
 }
 
-/// Sets a setting, and says so. Fails if the board does not have it then.
+/// Sets a setting and reads it back.
 pub fn set(client: &mut Client, setting: Setting) -> anyhow::Result<()> {
     let name = SettingId::from_number(setting.id).map_or("?", |id| id.row().name);
     match client.ask(&Down::Set(setting), ANSWER_WITHIN)? {
         Answer::Setting(own) if own == setting => {}
-        Answer::Setting(own) => bail!("{name}: the board says {} instead of {}", own.value, setting.value),
         Answer::Refused(Refusal::OutOfRange { min, max }) => {
             bail!("{name} = {} is refused: it has to be {min} to {max}", setting.value)
         }
@@ -162,11 +168,8 @@ pub fn set(client: &mut Client, setting: Setting) -> anyhow::Result<()> {
         Answer::Refused(why) => bail!("{name} = {} is refused: {why:?}", setting.value),
         other => bail!("the board answers {other:?}"),
     }
-    // What it answers is what it has; what it has is asked for once more.
     match client.ask(&Down::Get(setting.id), ANSWER_WITHIN)? {
-        Answer::Setting(own) if own == setting => {
-            out::say!("{name} = {}", own.value)
-        }
+        Answer::Setting(own) if own == setting => out::say!("{name} = {}", own.value),
         other => bail!("{name} was set to {}, and the board now answers {other:?}", setting.value),
     }
 }

@@ -11,24 +11,24 @@ use anyhow::{Context, bail};
 use tenax_hal_shim::wire::{Answer, Down, Setting, Up};
 use tenax_logic::setting::SettingId;
 
-use super::port;
-use tenax_frames::link::{ANSWER_WITHIN, Client, LastSeconds, Target};
+use super::port::Line;
+use tenax_frames::link::{ANSWER_WITHIN, Client, LastSeconds};
 use tenax_frames::record::{self, Recording};
 use tenax_frames::tool::out;
-use tenax_frames::words::in_words;
+use tenax_frames::tool::status::Status;
+use tenax_frames::words::{in_words, seconds};
 
-/// The board streams for as long after each time that it is asked.
-const HOLD_S: u16 = 5;
-/// How soon a setting is in flash: settings are saved every 3 s at most.
+/// Frames are asked for at this interval, s, for twice as long.
+const ASKED_EVERY_S: u16 = 2;
+/// Settings are saved every 3 s at most.
 const SAVED_WITHIN: Duration = Duration::from_secs(4);
 
 /// Record a board's line.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// Serial line: /dev/ttyACM0, COM3, /dev/pts/5 or tcp:127.0.0.1:7777 [default: the only board that is plugged in]
-    #[arg(long, value_name = "PORT")]
-    port: Option<Target>,
+    #[command(flatten)]
+    line: Line,
     /// The recording, a new file [default: tenax- and the time, in this folder]
     #[arg(long, value_name = "FILE.mcap")]
     out: Option<PathBuf>,
@@ -61,10 +61,9 @@ Examples:
 
   tenax record --from-start --out fault.mcap   from the board's reset on, for `tenax run --replay`";
 
-/// Records until it is to end.
+/// Records until the time is over, the line ends or Ctrl-C.
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    let target = port::or_found(args.port.as_ref())?;
-    let mut client = Client::open(&target)?;
+    let mut client = args.line.open()?;
     let path = args.out.clone().unwrap_or_else(record::name_now);
     if args.last {
         return last(&mut client, &path);
@@ -77,45 +76,50 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let stopped = Arc::new(AtomicBool::new(false));
     signal_hook::flag::register(signal_hook::consts::SIGINT, Arc::clone(&stopped))
         .context("cannot listen for Ctrl-C")?;
-    if client.can_send() && !from_start {
+    if !from_start {
         client.send(&Down::About)?;
     }
-    let mut began = Instant::now();
-    let mut waits = from_start;
-    let mut asked: Option<Instant> = None;
-    let (mut joined, mut progress) = (Joined::default(), Progress::new(began));
-    let is_over = |began: Instant| {
-        stopped.load(Relaxed) || args.seconds.is_some_and(|seconds| began.elapsed().as_secs_f64() >= seconds)
-    };
-    while waits && !stopped.load(Relaxed) || !is_over(began) {
-        if !waits
-            && client.can_send()
-            && asked.is_none_or(|at| at.elapsed().as_secs() >= u64::from(HOLD_S) / 2)
-        {
-            client.send(&Down::Stream {
-                raw: !args.no_frames && !args.compact,
-                senses: true,
-                hold_s: HOLD_S,
-            })?;
+    let stream =
+        Down::Stream { raw: !args.no_frames && !args.compact, senses: true, hold_s: 2 * ASKED_EVERY_S };
+    let status = Status::new("record");
+    let (mut began, mut waits, mut asked) = (Instant::now(), from_start, None::<Instant>);
+    let mut is_joined = false;
+    let is_over = |began: Instant| args.seconds.is_some_and(|s| began.elapsed().as_secs_f64() >= s);
+    while !stopped.load(Relaxed) && (waits || !is_over(began)) {
+        if !waits && asked.is_none_or(|at| at.elapsed().as_secs() >= u64::from(ASKED_EVERY_S)) {
+            client.send(&stream)?;
             asked = Some(Instant::now());
         }
         match client.next_message() {
             Ok(Some(heard)) if waits && !matches!(heard.received.message, Up::Hello { .. }) => {}
             Ok(Some(heard)) => {
                 if std::mem::take(&mut waits) {
-                    out::note!("the board has started: recording");
-                    (began, asked, progress) =
-                        (Instant::now(), Some(Instant::now()), Progress::new(Instant::now()));
+                    status.print(|| out::note!("the board has started: recording"));
+                    (began, asked) = (Instant::now(), Some(Instant::now()));
                 }
-                joined.take(&heard.received.message);
+                let first = match &heard.received.message {
+                    Up::Hello { .. } => Some(0),
+                    Up::Raw(raw) => Some(raw.first),
+                    _ => None,
+                };
+                if let Some(frame @ 1..) = first.filter(|_| !is_joined) {
+                    status.print(|| {
+                        out::note!(
+                            "it begins {:.1} s after the board's start: it can be watched, plotted and exported, but not \
+                             replayed. For one that can be: tenax record --from-start",
+                            seconds(frame)
+                        );
+                    });
+                }
+                is_joined |= first.is_some();
                 recording.take(&heard.received);
             }
             Ok(None) => {}
             Err(_) => break,
         }
-        progress.show(|| format!("{}, {} kB", client.counts(), recording.bytes() / 1_000));
+        status.say(client.counts().to_string());
     }
-    progress.end();
+    drop(status);
     recording.finish().with_context(|| format!("cannot write {}", path.display()))?;
     let lasted = Duration::from_secs(began.elapsed().as_secs());
     out::note!("{} in {lasted:?}, written to {}", client.counts(), path.display());
@@ -141,7 +145,6 @@ fn stream_at_start(client: &mut Client) -> anyhow::Result<()> {
     let setting = Setting { id: SettingId::StreamAtStart.number(), value: 1 };
     if client.ask(&Down::Get(setting.id), ANSWER_WITHIN)? != Answer::Setting(setting) {
         super::config::set(client, setting)?;
-        // Or the board would not know it after its start.
         let began = Instant::now();
         while began.elapsed() < SAVED_WITHIN {
             client.next_message().context("the line ended")?;
@@ -151,61 +154,7 @@ fn stream_at_start(client: &mut Client) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Where in the board's run the recording begins: before its start, or too late for a replay, which is said once.
-#[derive(Default)]
-struct Joined {
-    is_known: bool,
-}
-
-impl Joined {
-    fn take(&mut self, message: &Up) {
-        let frame = match message {
-            Up::Hello { .. } => Some(0),
-            Up::Raw(raw) => Some(raw.first),
-            _ => None,
-        };
-        if !self.is_known && frame.is_some_and(|frame| frame > 0) {
-            out::note!(
-                "it begins {:.1} s after the board's start: it can be watched, plotted and exported, but not replayed. For one \
-                 that can be: tenax record --from-start",
-                tenax_frames::words::seconds(frame.unwrap_or(0))
-            );
-        }
-        self.is_known |= frame.is_some();
-    }
-}
-
-/// How far it is: each second on a terminal, every ten seconds in a log.
-struct Progress {
-    began: Instant,
-    every: Duration,
-    shown: Duration,
-}
-
-impl Progress {
-    fn new(began: Instant) -> Self {
-        let every = Duration::from_secs(if io::stderr().is_terminal() { 1 } else { 10 });
-        Self { began, every, shown: Duration::ZERO }
-    }
-
-    fn show(&mut self, what: impl Fn() -> String) {
-        let now = self.began.elapsed();
-        if now < self.shown + self.every {
-            return;
-        }
-        self.shown = now;
-        let line = format!("{:4} s: {}", now.as_secs(), what());
-        if self.every.as_secs() == 1 { eprint!("\r{line} ") } else { out::note!("{line}") }
-    }
-
-    fn end(&self) {
-        if self.every.as_secs() == 1 && !self.shown.is_zero() {
-            eprintln!();
-        }
-    }
-}
-
-/// What the board keeps of a run that ended in a fault.
+/// Records what the board keeps of a run that ended in a fault.
 fn last(client: &mut Client, path: &Path) -> anyhow::Result<ExitCode> {
     let Some(kept) = LastSeconds::fetch(client)? else {
         bail!(
@@ -215,10 +164,9 @@ fn last(client: &mut Client, path: &Path) -> anyhow::Result<ExitCode> {
     let mut recording = Recording::create(path)?;
     recording.line(&kept.line);
     recording.finish().with_context(|| format!("cannot write {}", path.display()))?;
-    // Only now that it is in a file.
     LastSeconds::let_go(client)?;
     let span = kept.span().map_or_else(String::new, |(from, to)| {
-        let (from_s, to_s) = (tenax_frames::words::seconds(from), tenax_frames::words::seconds(to));
+        let (from_s, to_s) = (seconds(from), seconds(to));
         format!(", {:.2} s, from {from_s:.2} to {to_s:.2} s", to_s - from_s)
     });
     out::note!(

@@ -1,4 +1,4 @@
-//! Where a board's line is: a serial port, a pseudo-terminal, a TCP address or a captured file; and how it is opened.
+//! The place of a board's line: a serial port, a pseudo-terminal, a TCP address or a file.
 
 use std::fmt::{self, Display};
 use std::io::{self, Read, Write};
@@ -10,12 +10,9 @@ use std::time::Duration;
 use anyhow::{Context, anyhow, bail};
 use tenax_hal_shim::wire::BAUD;
 
-use super::holder;
-use crate::link::captured::line_of;
+use super::captured::line_of;
 
-/// How long a read waits for bytes before it returns, so that whoever reads can look at something else meanwhile.
 const READ_TIMEOUT: Duration = Duration::from_millis(100);
-/// How long a TCP address may take to answer.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -23,12 +20,8 @@ pub enum Target {
     /// A serial port or a pseudo-terminal: `/dev/ttyACM0`, `COM3`, `/dev/pts/5`.
     Port(String),
     /// `tcp:HOST:PORT`.
-    Tcp {
-        /// Name or address.
-        host: String,
-        port: u16,
-    },
-    /// A line that was captured.
+    Tcp { host: String, port: u16 },
+    /// A recording or a captured line.
     File(PathBuf),
 }
 
@@ -80,30 +73,21 @@ impl Target {
         }
     }
 
-    /// Why the line can have ended, and what to do about it.
-    pub fn after_end(&self, error: Option<&io::Error>) -> String {
-        let why = error.map_or_else(String::new, |error| format!(" ({error})"));
-        match self {
-            Self::Port(name) => format!(
-                "{name} went away{why}: was the board unplugged, or is the served run over? Plug it in or start it \
-                 again, and then this"
-            ),
-            Self::Tcp { .. } | Self::File(_) => {
-                format!("{self} was closed at its other end{why}: the served run is over; start it again")
-            }
-        }
+    /// Why the line ended, and what to do about it.
+    pub fn after_end(&self, error: &io::Error) -> String {
+        format!("{self} is gone ({error}): plug the board in or start the served run again, and then this")
     }
 }
 
 fn open_port(name: &str) -> anyhow::Result<Line> {
-    // Whoever is killed would leave a pseudo-terminal locked for everybody after him. A real port is for one alone: two
+    // A pseudo-terminal that is opened exclusively stays locked when its client is killed. A real port is for one alone: two
     // would each get half of the bytes.
     let pseudo = is_pseudo(name);
-    if holder::of(Path::new(name)).is_some() {
+    if holder(name).is_some() {
         // A served run opens it for an instant, to drop what its last client has not read.
         std::thread::sleep(READ_TIMEOUT);
     }
-    if let Some(holder) = holder::of(Path::new(name)) {
+    if let Some(holder) = holder(name) {
         bail!(
             "another program reads {name}: {holder}. Two would each get half of the bytes: end it first, or serve on \
              TCP (--serve-tcp), where each client hears everything"
@@ -123,6 +107,19 @@ fn open_port(name: &str) -> anyhow::Result<Line> {
             "cannot open {name}: {error}; ports on this machine: {seen}. A scene's line is where `tenax run --serve` \
              says, or tcp:HOST:PORT"
         )
+    })
+}
+
+/// Another process that has a port open. None as well where the system, or another user's process, does not tell.
+fn holder(port: &str) -> Option<String> {
+    let port = Path::new(port).canonicalize().ok()?;
+    std::fs::read_dir("/proc").ok()?.flatten().find_map(|process| {
+        let pid: u32 = process.file_name().to_str()?.parse().ok()?;
+        let mut files = std::fs::read_dir(process.path().join("fd")).ok()?.flatten();
+        let is_held = pid != std::process::id()
+            && files.any(|file| std::fs::read_link(file.path()).is_ok_and(|path| path == port));
+        let name = || std::fs::read_to_string(process.path().join("comm")).unwrap_or_default();
+        is_held.then(|| format!("process {pid} ({})", name().trim()))
     })
 }
 
@@ -157,7 +154,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_meant_is_told_by_how_it_is_written() {
+    fn a_place_is_told_by_how_it_is_written_and_an_error_says_what_to_do() {
         let tcp = |host: &str| Target::Tcp { host: host.to_owned(), port: 7_777 };
         assert_eq!("tcp:127.0.0.1:7777".parse(), Ok(tcp("127.0.0.1")));
         assert_eq!("tcp:[::1]:7777".parse(), Ok(tcp("::1")));
@@ -165,13 +162,8 @@ mod tests {
         for wrong in ["tcp:", "tcp:7777", "tcp::7777", "tcp:host:", "tcp:host:70000"] {
             assert!(wrong.parse::<Target>().unwrap_err().contains("tcp:HOST:PORT"), "{wrong}");
         }
-        assert_eq!("COM3".parse(), Ok(Target::Port("COM3".to_owned())));
         let file = tempfile::NamedTempFile::new().unwrap();
         assert_eq!(file.path().to_str().unwrap().parse(), Ok(Target::File(file.path().to_owned())));
-    }
-
-    #[test]
-    fn what_cannot_be_opened_says_what_to_do() {
         let error = |text: &str| format!("{:#}", text.parse::<Target>().unwrap().open().err().unwrap());
         assert!(error("/dev/no-such-port").contains("ports on this machine: "));
         // Nobody listens on port 1.

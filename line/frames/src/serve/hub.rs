@@ -1,4 +1,4 @@
-//! Who hears what comes up the line. It never waits: what a client has no room for is dropped and counted.
+//! Distributes frames to clients. It never waits: what a client has no room for is dropped and counted.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering::Relaxed};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
@@ -11,10 +11,9 @@ pub type Frame = Arc<[u8]>;
 /// Frames on their way to a client: two seconds and a half of a line at rest.
 const CLIENT_FRAMES: usize = 256;
 
-/// Every client that is there.
+/// The clients that are there.
 #[derive(Debug, Default)]
 pub struct Hub {
-    /// None when there is no more to come.
     clients: Mutex<Clients>,
     served: AtomicU64,
     dropped: AtomicU64,
@@ -24,20 +23,19 @@ pub struct Hub {
 
 #[derive(Debug, Default)]
 struct Clients {
-    /// The first that each is sent, if there is any.
+    /// The first frame for each client.
     greeting: Option<Frame>,
     senders: Vec<SyncSender<Frame>>,
     no_more: bool,
 }
 
 impl Hub {
-    /// One that sends this to whoever comes.
     pub fn greeting(frame: &[u8]) -> Self {
         let clients = Clients { greeting: Some(Frame::from(frame)), ..Clients::default() };
         Self { clients: Mutex::new(clients), ..Self::default() }
     }
 
-    /// A client has come: what it is to be sent, from the next frame on. It leaves by dropping this.
+    /// Adds a client: its frames, from the next one on. It leaves by dropping them.
     pub fn join(&self) -> Receiver<Frame> {
         let (sender, frames) = sync_channel(CLIENT_FRAMES);
         let mut clients = self.clients();
@@ -75,17 +73,15 @@ impl Hub {
         clients.senders.clear();
     }
 
-    /// Nobody is served any more.
     pub fn close(&self) {
         self.closed.store(true, Relaxed);
     }
 
-    /// Whether nobody is served any more.
     pub fn is_closed(&self) -> bool {
         self.closed.load(Relaxed)
     }
 
-    /// Does something that counts as writing to a client.
+    /// Counts `write` among the [`writers`](Self::writers) until it returns.
     pub fn writing<T>(&self, write: impl FnOnce() -> T) -> T {
         self.writers.fetch_add(1, Relaxed);
         let written = write();
@@ -93,7 +89,6 @@ impl Hub {
         written
     }
 
-    /// How many clients are written to.
     pub fn writers(&self) -> usize {
         self.writers.load(Relaxed)
     }
@@ -103,28 +98,6 @@ impl Hub {
     }
 
     fn clients(&self) -> MutexGuard<'_, Clients> {
-        // Nothing in here is ever half done.
         self.clients.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn who_does_not_read_loses_frames_and_who_left_is_forgotten() {
-        let hub = Hub::default();
-        let (reads, never_reads, left) = (hub.join(), hub.join(), hub.join());
-        drop(left);
-        for n in 0..CLIENT_FRAMES + 10 {
-            hub.publish(&[n as u8, 0]);
-            assert_eq!(reads.recv().unwrap()[0], n as u8);
-        }
-        assert_eq!(hub.tally(), Tally { clients: 3, dropped: 10 });
-        hub.no_more();
-        hub.publish(&[0]);
-        assert_eq!((reads.try_iter().count(), never_reads.try_iter().count()), (0, CLIENT_FRAMES));
-        assert!(hub.join().recv().is_err());
     }
 }

@@ -1,7 +1,5 @@
-//! The line on a pseudo-terminal, where any program that knows a serial port finds it.
-//!
-//! Nobody is there while the far end is not open; what comes up meanwhile goes nowhere, as on a cable that is not plugged in.
-//! Who opens it then hears the line from the next message on, and nothing that is old.
+//! The line on a pseudo-terminal, for one client after the other. While none has it open, what comes up is lost, as on a cable that
+//! is not plugged in.
 
 use std::fs;
 use std::io::{self, ErrorKind, Read, Write};
@@ -16,12 +14,11 @@ use anyhow::{Context, bail};
 use serialport::{SerialPort, TTYPort};
 use tenax_hal_shim::wire::BAUD;
 
-use super::client::Ends;
-use super::framer::Framer;
+use super::client::{Ends, Framer};
 
-/// How often it is looked whether anybody has come or gone.
+/// Interval at which a new or lost client is noticed.
 const LOOK_EVERY: Duration = Duration::from_millis(10);
-/// How long a client has to read the last bytes: what it has not read is lost when the near end closes.
+/// Time for a client to read the last bytes: the rest is lost when the near end closes.
 const LAST_READ: Duration = Duration::from_millis(100);
 
 /// The near end of a pseudo-terminal.
@@ -49,7 +46,7 @@ impl Pty {
         [self.path.clone()].into_iter().chain(link).collect()
     }
 
-    /// Serves one client after the other until nobody is served any more.
+    /// Serves one client after the other until the hub is closed.
     pub fn serve(mut self, ends: &Ends) {
         let mut client: Option<Arc<AtomicBool>> = None;
         let (mut framer, mut buffer) = (Framer::default(), [0; 4096]);
@@ -60,7 +57,7 @@ impl Pty {
                 if let Some(gone) = client.take() {
                     // Its writer may be waiting for a frame: the next client would hear each one twice.
                     gone.store(true, Relaxed);
-                    framer.clear();
+                    framer = Framer::default();
                     self.forget();
                 }
                 continue;
@@ -135,7 +132,6 @@ impl Link {
 
 impl Drop for Link {
     fn drop(&mut self) {
-        // If somebody else took it away, that is as good.
         let _ = fs::remove_file(&self.0);
     }
 }

@@ -8,12 +8,9 @@ use anyhow::Context;
 
 use super::client::Ends;
 
-/// How often a wait looks whether it is over.
 const LOOK_EVERY: Duration = Duration::from_millis(10);
-/// How long a read or a write waits before it looks.
 const TIMEOUT: Duration = Duration::from_millis(100);
 
-/// A port that is listened on.
 pub struct Tcp(TcpListener);
 
 impl Tcp {
@@ -34,11 +31,10 @@ impl Tcp {
         Ok(format!("tcp:{}", self.0.local_addr()?))
     }
 
-    /// Serves whoever comes until nobody is served any more.
+    /// Serves clients until the hub is closed.
     pub fn serve(&self, ends: &Ends) {
         while !ends.hub.is_closed() {
             match self.0.accept() {
-                // One that is gone already is no loss.
                 Ok((stream, _)) => drop(client(stream, ends)),
                 Err(_) => thread::sleep(LOOK_EVERY),
             }

@@ -1,40 +1,41 @@
-//! A test on a line: what is said and what is heard, the same for the terminal and the page.
+//! A self-test on a line, the same for the terminal and the page.
 
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
+use tenax_frames::link::Client;
 use tenax_hal_shim::channel::{CHANNELS, COUNT, Role, by_name};
 use tenax_hal_shim::wire::{Down, Up};
 use tenax_logic::setting::SettingId;
 
 use super::{REST_PROMPT, Selftest};
 use crate::guide::{Say, ask};
-use tenax_frames::link::Client;
 
-/// Silence after which a board is said to send nothing.
+/// A board that is silent for longer sends no readings.
 const SILENCE: Duration = Duration::from_secs(4);
 
-/// The channels that are called so, or whose names begin so; without any word, all. Fails on a word that fits none.
+/// The channels of these names or prefixes; without any, all. Fails on a word that fits none.
 pub fn named(words: &[String]) -> anyhow::Result<Vec<usize>> {
     let fits = |n: usize, word: &String| match by_name(word) {
         Some(only) => n == only,
         None => CHANNELS[n].name.starts_with(word.as_str()),
     };
     if let Some(word) = words.iter().find(|word| !(0..COUNT).any(|n| fits(n, word))) {
-        bail!("no channel begins with `{word}`: docs/wiring.md has them");
+        bail!("no channel begins with `{word}`: `tenax tables wiring` has them");
     }
     Ok((0..COUNT).filter(|&n| words.is_empty() || words.iter().any(|word| fits(n, word))).collect())
 }
 
-/// A test that goes on, and all that it has said.
+/// A self-test and all its lines.
 pub struct Session {
     test: Selftest,
     said: Vec<String>,
     heard: Instant,
+    failed: Option<String>,
 }
 
 impl Session {
-    /// Of the channels that are called so, of a board with these settings. A gripper without a wearer has no muscles to contract.
+    /// Of channels of these names or prefixes. Without any, a gripper without a wearer has no muscles to contract.
     /// Fails on a name that fits none.
     pub fn begin(words: &[String], head: bool, no_wearer: bool, limit_s: u32) -> anyhow::Result<Self> {
         let mut channels = named(words)?;
@@ -46,6 +47,7 @@ impl Session {
             test: Selftest::new(channels, head, limit_s),
             said: said.map(str::to_owned).to_vec(),
             heard: Instant::now(),
+            failed: None,
         })
     }
 
@@ -58,32 +60,45 @@ impl Session {
         &self.said
     }
 
-    /// Takes a message, or that there is none. Fails if the board sends no readings, or starts anew: the test cannot go on.
-    pub fn take(&mut self, message: Option<&Up>) -> anyhow::Result<()> {
+    /// Why the test cannot go on.
+    pub fn failed(&self) -> Option<&str> {
+        self.failed.as_deref()
+    }
+
+    /// Ends the test, unless it is over.
+    pub fn fail(&mut self, why: &str) {
+        if !self.test.is_over() {
+            self.failed.get_or_insert_with(|| why.to_owned());
+        }
+    }
+
+    /// Takes a message, or notes that none came. A board that sends no readings or starts anew fails the test.
+    pub fn take(&mut self, message: Option<&Up>) {
         match message {
-            _ if self.test.is_over() => {}
+            _ if self.test.is_over() || self.failed.is_some() => {}
             Some(Up::Senses(senses)) => {
                 self.heard = Instant::now();
                 let said = self.test.hear(senses);
                 self.said.extend(said);
             }
             Some(Up::Hello { .. }) if self.test.has_begun() => {
-                bail!("the board was switched on anew: start again")
+                self.fail("the board was switched on anew: start again");
             }
-            _ if self.heard.elapsed() > SILENCE => bail!("the board sends no readings"),
+            _ if self.heard.elapsed() > SILENCE => self.fail("the board sends no readings"),
             _ => {}
         }
-        Ok(())
     }
 
     /// Leaves out the channel that is asked for.
     pub fn skip(&mut self) {
-        let said = self.test.skip();
-        self.said.extend(said);
+        if self.failed.is_none() {
+            let said = self.test.skip();
+            self.said.extend(said);
+        }
     }
 }
 
-/// Runs the test to its end; whether all pass.
+/// Runs the test to its end; whether all channels pass.
 pub fn run(client: &mut Client, words: &[String], limit_s: u32, say: Say<'_>) -> anyhow::Result<bool> {
     let (head, no_wearer) =
         (client.setting(SettingId::Head)? != 0, client.setting(SettingId::NoWearer)? != 0);
@@ -93,6 +108,9 @@ pub fn run(client: &mut Client, words: &[String], limit_s: u32, say: Say<'_>) ->
     loop {
         session.said()[printed..].iter().try_for_each(|line| say(line))?;
         printed = session.said().len();
+        if let Some(why) = session.failed() {
+            bail!("{why}");
+        }
         if session.test().is_over() {
             return Ok(session.test().passes());
         }
@@ -101,6 +119,6 @@ pub fn run(client: &mut Client, words: &[String], limit_s: u32, say: Say<'_>) ->
             asked = Some(Instant::now());
         }
         let message = client.next_message().context("the line ended")?;
-        session.take(message.as_ref().map(|heard| &heard.received.message))?;
+        session.take(message.as_ref().map(|heard| &heard.received.message));
     }
 }

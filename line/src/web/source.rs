@@ -1,57 +1,49 @@
-//! The board's line on a thread of its own: it is opened again whenever it ends, commands go down it, and all that comes
-//! up is handed on.
+//! Watches a line, a recording and a scene's true state on threads of their own. A line is opened again whenever it ends.
 
 use std::path::Path;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use tenax_frames::link::{ANSWER_WITHIN, Client, Counts, Heard, Target};
+use tenax_frames::play::{self, Playing, Reel};
+use tenax_frames::truth::{self, Bench, Truth};
 use tenax_hal_shim::wire::{Answer, BadFrame, Down};
 
-use tenax_frames::link::{ANSWER_WITHIN, Client, Counts, Heard, Target};
-use tenax_frames::play::{self, Playing, Reel, Told as Played};
-use tenax_frames::truth::{self, Bench, Told, Truth};
-
-/// Pause before a line is opened again.
 const AGAIN_AFTER: Duration = Duration::from_millis(500);
-/// Readings are asked for this often, for twice as long.
+/// Readings are asked for at this interval, for twice as long.
 const STREAM_EVERY: Duration = Duration::from_secs(2);
 
-/// What there is to tell.
 #[derive(Debug)]
 pub enum News {
     Open,
-    /// It is not, and why.
+    /// The line is gone, with the reason.
     Gone(String),
-    /// A message, or a frame that is none; what has been counted; and when it came.
+    /// A message, or why a frame is none; the counts so far; the time of arrival.
     Frame(Result<Heard, BadFrame>, Counts, Instant),
-    /// What really happens in the scene.
     Truth(Truth),
-    /// What can be done at the scene's bench; None: there is none any more.
+    /// What can be done at the scene's bench; None: the scene is gone.
     Bench(Option<Bench>),
-    /// Where the recording is that is watched.
     Playing(Playing),
-    /// It goes on elsewhere.
+    /// The recording goes on elsewhere.
     Rewound,
-    /// What was asked, and the answer.
     Answered(Down, Result<Answer, String>),
 }
 
 #[derive(Clone, Debug)]
 pub struct Places {
     pub line: Target,
-    /// Where what really happens is told, if that is known.
+    /// Address of the scene's true state.
     pub truth: Option<Target>,
 }
 
-/// Watches all of it on threads of their own, which end when nobody listens any more. Lines that are sent to what it returns are
-/// done at the bench of a scene that tells the truth, or say how a recording is played; anywhere else they go nowhere.
+/// Starts the threads, which end when `news` is dropped. Lines sent to what it returns are done at the scene's bench, or control how a
+/// recording is played.
 pub fn start(places: &Places, commands: Receiver<Down>, news: Sender<News>) -> Sender<String> {
     let (bench, acts) = channel();
     if let Target::File(path) = places.line.clone() {
         thread::spawn(move || {
             if let Err(error) = watch_recording(&path, &acts, &news) {
-                // Nobody listens any more.
                 let _left = news.send(News::Gone(format!("{error:#}")));
             }
         });
@@ -61,8 +53,8 @@ pub fn start(places: &Places, commands: Receiver<Down>, news: Sender<News>) -> S
         let news = news.clone();
         let mut tell = move |told| {
             let told = match told {
-                Told::Truth(truth) => News::Truth(truth),
-                Told::Bench(bench) => News::Bench(bench),
+                truth::Told::Truth(truth) => News::Truth(truth),
+                truth::Told::Bench(bench) => News::Bench(bench),
             };
             news.send(told).is_ok()
         };
@@ -73,40 +65,34 @@ pub fn start(places: &Places, commands: Receiver<Down>, news: Sender<News>) -> S
     bench
 }
 
-/// Plays a recording until nobody listens any more.
 fn watch_recording(path: &Path, controls: &Receiver<String>, news: &Sender<News>) -> anyhow::Result<()> {
-    let mut reel = Reel::open(path)?;
+    let reel = Reel::open(path)?;
     let mut counts = Counts::default();
     let playing = Playing::new(&reel);
     let _left = news.send(News::Playing(playing));
-    play::play(&mut reel, playing, controls, &mut |told| {
+    play::play(&reel, playing, controls, &mut |told| {
         let told = match told {
-            Played::Message(heard) => {
+            play::Told::Message(heard) => {
                 counts.messages += 1;
                 counts.missed += u64::from(heard.missed);
                 News::Frame(Ok(*heard), counts, Instant::now())
             }
-            Played::Again => News::Rewound,
-            Played::At(playing) => News::Playing(playing),
-            Played::Over => return true,
+            play::Told::Again => News::Rewound,
+            play::Told::At(playing) => News::Playing(playing),
+            play::Told::Over => return true,
         };
         news.send(told).is_ok()
-    })
+    });
+    Ok(())
 }
 
-/// Watches a line until nobody listens any more.
-pub fn watch(target: &Target, commands: &Receiver<Down>, news: &Sender<News>) {
+fn watch(target: &Target, commands: &Receiver<Down>, news: &Sender<News>) {
     loop {
         let ended = match Client::open(target) {
-            Ok(client) => {
-                if news.send(News::Open).is_err() {
-                    return;
-                }
-                match attend(client, commands, news) {
-                    Some(why) => why,
-                    None => return,
-                }
-            }
+            Ok(client) => match attend(client, commands, news) {
+                Some(why) => why,
+                None => return,
+            },
             Err(error) => format!("{error:#}"),
         };
         if news.send(News::Gone(ended)).is_err() {
@@ -116,17 +102,15 @@ pub fn watch(target: &Target, commands: &Receiver<Down>, news: &Sender<News>) {
     }
 }
 
-/// One line until it ends: why it did. None when nobody listens any more.
+/// Attends to one line until it ends; the reason. None: `news` was dropped.
 fn attend(mut client: Client, commands: &Receiver<Down>, news: &Sender<News>) -> Option<String> {
+    news.send(News::Open).ok()?;
     let mut streamed: Option<Instant> = None;
-    if client.can_send() {
-        // They only read, and an older image answers what it knows.
-        let _asked = client.send(&Down::About);
-        // Whether its last run ended in a fault.
-        let _asked = client.send(&Down::Last(0));
-    }
+    // Reading commands: identity, and whether the last run ended in a fault.
+    let _asked = client.send(&Down::About);
+    let _asked = client.send(&Down::Last(0));
     loop {
-        if client.can_send() && streamed.is_none_or(|at| at.elapsed() >= STREAM_EVERY) {
+        if streamed.is_none_or(|at| at.elapsed() >= STREAM_EVERY) {
             let hold_s = 2 * STREAM_EVERY.as_secs() as u16;
             let _asked = client.send(&Down::Stream { raw: false, senses: true, hold_s });
             streamed = Some(Instant::now());

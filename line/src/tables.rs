@@ -1,0 +1,138 @@
+//! Channels, settings and wire messages as Markdown tables: `tenax tables`.
+
+use serde_json::Value;
+use tenax_hal_shim::channel::{
+    CHANNELS, Channel, FRAME_HZ, Input, RANK_SWITCH_A, RANK_SWITCH_B, SCAN, SCAN_HZ, SLOW_HZ,
+};
+use tenax_logic::setting::SettingId;
+
+const SIGNALS: &str = "\
+# Wiring
+
+| other signals of the NUCLEO-F411RE | pins |
+|---|---|
+| select lines S0 to S3, shared by both CD74HC4067 switches | PB12 to PB15 |
+| motor bridge, 20 kHz: close, open | PA8 (TIM1 channel 1), PA9 (TIM1 channel 2) |
+| vibration motor, 20 kHz | PB6 (TIM4 channel 1) |
+| button to ground | PC13 |
+| light: series resistor and LED to ground | PC6 |
+| nFAULT of the motor bridge | PC8 |
+| serial line USART2 through the ST-LINK: to the PC, from it | PA2, PA3 |
+| known voltages, against broken select lines | switch B: 14 at 3.3 V, 15 at ground |
+
+";
+
+/// Pins and valid voltages of every channel.
+pub fn wiring() -> String {
+    let mut page = format!(
+        "{SIGNALS}Every pin is read {SCAN_HZ} times a second. Direct pins give {FRAME_HZ} samples a second, switched \
+         signals {SLOW_HZ}, myosensors {}.\nA voltage below `low` is a cut wire, above `high` a short or a sensor out of \
+         range. Cut wires of films and myosensors can\nstay within these limits.\n\n\
+         | channel | pin | ADC1 input | switch, select | rest mV | low mV | high mV |\n|---|---|---|---|---|---|---|\n",
+        3 * SLOW_HZ
+    );
+    CHANNELS.chunk_by(are_alike).for_each(|channels| page += &row(channels));
+    page
+}
+
+/// Neighbours on the same switch, of one kind of sensor, with the same voltages.
+fn are_alike(a: &Channel, b: &Channel) -> bool {
+    let kind = |channel: &Channel| channel.name.split('_').next().map(str::to_owned);
+    let voltages = |channel: &Channel| (channel.rest_mv, channel.low_mv, channel.high_mv);
+    place(a).0 == place(b).0 && kind(a) == kind(b) && voltages(a) == voltages(b)
+}
+
+/// The rank in the scan, and the switch with its select.
+fn place(channel: &Channel) -> (usize, Option<(char, u8)>) {
+    match channel.input {
+        Input::Direct { rank } => (usize::from(rank), None),
+        Input::SwitchA { select } => (RANK_SWITCH_A, Some(('A', select))),
+        Input::SwitchB { select } => (RANK_SWITCH_B, Some(('B', select))),
+    }
+}
+
+/// The input of a channel: `PA0`, or `switch A, 3`.
+pub fn input(channel: usize) -> String {
+    match place(&CHANNELS[channel]) {
+        (rank, None) => SCAN[rank].pin.to_owned(),
+        (_, Some((switch, select))) => format!("switch {switch}, {select}"),
+    }
+}
+
+/// The row of channels that are alike.
+fn row(channels: &[Channel]) -> String {
+    let (Some(first), Some(last)) = (channels.first(), channels.last()) else { return String::new() };
+    let (rank, from) = place(first);
+    let (names, selects) = match (from, place(last).1) {
+        (Some((switch, from)), Some((_, to))) if from != to => {
+            (format!("`{}` to `{}`", first.name, last.name), format!("{switch}, {from} to {to}"))
+        }
+        (Some((switch, from)), _) => (format!("`{}`", first.name), format!("{switch}, {from}")),
+        (None, _) => (format!("`{}`", first.name), String::from("-")),
+    };
+    format!(
+        "| {names} | {} | IN{} | {selects} | {} | {} | {} |\n",
+        SCAN[rank].pin, SCAN[rank].adc, first.rest_mv, first.low_mv, first.high_mv
+    )
+}
+
+/// Every setting with number, unit, range, default and meaning.
+pub fn settings() -> String {
+    let mut page = String::from(
+        "# Settings\n\nThe number names the setting on the wire and in flash. A trusted line has wider ranges.\n\n\
+         | number | name with unit | range | default | meaning |\n|---|---|---|---|---|\n",
+    );
+    for id in SettingId::ALL {
+        let (row, number, range) = (id.row(), id.number(), id.row().range());
+        let trusted = match row.range_in_force(true) {
+            trusted if trusted == range => String::new(),
+            trusted => format!(" (trusted: {} to {})", trusted.start(), trusted.end()),
+        };
+        let (start, end) = range.into_inner();
+        page += &format!(
+            "| {number} | `{}` | {start} to {end}{trusted} | {} | {} |\n",
+            row.name, row.default, row.meaning
+        );
+    }
+    page
+}
+
+/// Every message and type of the wire with its fields. A test of `hal-shim` writes the file from the types.
+pub fn wire() -> anyhow::Result<String> {
+    let wire: Value = serde_json::from_str(include_str!("../../python/tenax/wire.json"))?;
+    let types = wire["types"].as_object().into_iter().flatten();
+    let mut page = format!("# Wire\n\nVersion {}, schema `{}`.\n", wire["version"], text(&wire["schema"]));
+    for (name, of) in types {
+        page += &match of["enum"].as_array() {
+            Some(variants) => {
+                let rows = (0..).zip(variants).map(|(number, variant): (u32, _)| {
+                    format!("| {number} | `{}` | {} |\n", text(&variant[0]), fields(&variant[1]))
+                });
+                let rows: String = rows.collect();
+                format!("\n## {name}\n\n| number | `{name}` | fields |\n|---|---|---|\n{rows}")
+            }
+            None => format!("\n## {name}\n\n{}\n", fields(&of["struct"])),
+        };
+    }
+    Ok(page)
+}
+
+fn text(value: &Value) -> &str {
+    value.as_str().unwrap_or_default()
+}
+
+fn fields(all: &Value) -> String {
+    let field = |field: &Value| format!("`{}: {}`", text(&field[0]), kind(&field[1]));
+    all.as_array().into_iter().flatten().map(field).collect::<Vec<_>>().join(", ")
+}
+
+/// A field's type: a name, or `["opt", T]`, `["vec", T]`, `["arr", N, T]`, `["tuple", [T, ...]]`.
+fn kind(of: &Value) -> String {
+    match of.as_array().map(Vec::as_slice) {
+        Some([form, of]) if form == "opt" => format!("option {}", kind(of)),
+        Some([form, of]) if form == "vec" => format!("list {}", kind(of)),
+        Some([_, Value::Number(length), of]) => format!("[{length}] {}", kind(of)),
+        Some([_, Value::Array(all)]) => format!("({})", all.iter().map(kind).collect::<Vec<_>>().join(", ")),
+        _ => text(of).to_owned(),
+    }
+}
