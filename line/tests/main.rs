@@ -13,6 +13,5 @@ mod python;
 mod recording;
 mod selftest;
 mod served;
-mod served_noise;
 mod serving;
 mod tables;

@@ -101,18 +101,23 @@ pub fn answer_words(command: &Down, answer: &Answer) -> String {
     }
 }
 
-fn refusal_words(refusal: &Refusal) -> String {
+/// Why a command was refused, and what to do about it.
+pub fn refusal_words(refusal: &Refusal) -> String {
     match refusal {
-        Refusal::OutOfRange { min, max } => format!("outside {min}..={max}"),
+        Refusal::OutOfRange { min, max } => format!("it has to be {min} to {max}"),
         Refusal::NotArmed => {
             "nobody at the hand has consented: contract both muscles for 2 s or press the blue \
-                              button, then send it again within a minute"
+                              button, then try again within a minute"
                 .to_owned()
         }
         Refusal::HeldTooLong => {
             "the line has silenced the reflex for too long; move a muscle, consent again, or wait \
                                  as long"
                 .to_owned()
+        }
+        Refusal::Loaded => "something presses on the finger, or is held".to_owned(),
+        Refusal::SensorLost => {
+            "a sensor that it needs gives no number; `tenax monitor` says which".to_owned()
         }
         other => format!("{other:?}"),
     }

@@ -54,8 +54,8 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let mut client = args.line.open()?;
     match &args.what {
         What::Force { weights_n } => {
-            let calibration = guide::force::calibrate(&mut client, weights_n, say)?;
-            say(&format!("\n{}", calibration.text().trim_end()))?;
+            let weighed = guide::force::calibrate(&mut client, weights_n, say)?;
+            say(&format!("\n{}", guide::force::report(&weighed)))?;
         }
         What::Friction { strokes } => {
             let measured = guide::friction::calibrate(&mut client, *strokes, say)?;

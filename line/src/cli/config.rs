@@ -5,13 +5,14 @@ use std::process::ExitCode;
 
 use anyhow::{Context, bail};
 use clap::Subcommand;
-use tenax_hal_shim::wire::{Answer, Down, Refusal, SETTINGS_PER_ANSWER, Setting};
+use tenax_hal_shim::wire::{Answer, Down, SETTINGS_PER_ANSWER, Setting};
 use tenax_logic::setting::SettingId;
 
 use super::port::Line;
 use tenax_frames::link::{ANSWER_WITHIN, Client};
 use tenax_frames::settings;
 use tenax_frames::tool::out;
+use tenax_frames::words::refusal_words;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -33,7 +34,7 @@ pub struct Args {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Every setting: value, unit, range, default, meaning
+    /// Print every setting: value, unit, range, default, meaning
     List,
     /// One setting's value
     Get {
@@ -77,7 +78,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let wanted = wanted(&args.command)?;
     let mut client = args.line.open()?;
     match &args.command {
-        Command::List => out::print(format_args!("{}", list(&all(&mut client)?)))?,
+        Command::List => out::print(format_args!("{}", settings::toml(&all(&mut client)?)))?,
         Command::Get { name } => out::say!("{}", client.setting(settings::named(name)?)?)?,
         Command::Export { file } => {
             let text = match client.ask(&Down::About, ANSWER_WITHIN)? {
@@ -158,35 +159,11 @@ pub fn set(client: &mut Client, setting: Setting) -> anyhow::Result<()> {
     let name = SettingId::from_number(setting.id).map_or("?", |id| id.row().name);
     match client.ask(&Down::Set(setting), ANSWER_WITHIN)? {
         Answer::Setting(own) if own == setting => {}
-        Answer::Refused(Refusal::OutOfRange { min, max }) => {
-            bail!("{name} = {} is refused: it has to be {min} to {max}", setting.value)
-        }
-        Answer::Refused(Refusal::NotArmed) => bail!(
-            "{name} is refused: nobody at the hand has consented. Contract both muscles for 2 s or press the blue button \
-             (of a served scene: Enter where it runs), then try again within a minute"
-        ),
-        Answer::Refused(why) => bail!("{name} = {} is refused: {why:?}", setting.value),
+        Answer::Refused(why) => bail!("{name} = {} is refused: {}", setting.value, refusal_words(&why)),
         other => bail!("the board answers {other:?}"),
     }
     match client.ask(&Down::Get(setting.id), ANSWER_WITHIN)? {
         Answer::Setting(own) if own == setting => out::say!("{name} = {}", own.value),
         other => bail!("{name} was set to {}, and the board now answers {other:?}", setting.value),
     }
-}
-
-fn list(settings: &[Setting]) -> String {
-    let trusted = settings::trusts_line(settings);
-    let line = |setting: &Setting| match SettingId::from_number(setting.id) {
-        Some(id) => {
-            let row = id.row();
-            let (min, max) = row.range_in_force(trusted).into_inner();
-            let changed = if setting.value == row.default { ' ' } else { '*' };
-            format!(
-                "{changed} {:<28}{:>9} {:<10} {min} to {max}, default {}: {}\n",
-                row.name, setting.value, row.unit, row.default, row.meaning
-            )
-        }
-        None => format!("? setting {} = {}, which this tool does not know\n", setting.id, setting.value),
-    };
-    settings.iter().map(line).collect()
 }

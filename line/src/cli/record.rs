@@ -1,6 +1,5 @@
 //! `tenax record`: a board's line into an MCAP file.
 
-use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -18,8 +17,6 @@ use tenax_frames::tool::out;
 use tenax_frames::tool::status::Status;
 use tenax_frames::words::{in_words, seconds};
 
-/// Frames are asked for at this interval, s, for twice as long.
-const ASKED_EVERY_S: u16 = 2;
 /// Settings are saved every 3 s at most.
 const SAVED_WITHIN: Duration = Duration::from_secs(4);
 
@@ -35,27 +32,23 @@ pub struct Args {
     /// Length, s [default: until Ctrl-C or the end of the line]
     #[arg(long, value_name = "S")]
     seconds: Option<f64>,
-    /// Leave out the frames, three fifths of the bytes; `tenax run --replay` then cannot replay it
-    #[arg(long)]
-    no_frames: bool,
     /// For hours: no frames, and only the topics /line, /state (20 a second), /event, /counters and /setting. `tenax play
     /// --csv` restores the other topics
-    #[arg(long, conflicts_with = "no_frames")]
+    #[arg(long)]
     compact: bool,
     /// Begin at the board's next start, so that `tenax run --replay` can replay the recording: sets stream-at-start-flag, then
     /// waits until somebody presses the board's reset button
-    #[arg(long, conflicts_with_all = ["no_frames", "compact", "last"])]
+    #[arg(long, conflicts_with_all = ["compact", "last"])]
     from_start: bool,
     /// Fetch the last 2 to 3 s before a fault from the board instead; the board then deletes them
-    #[arg(long, conflicts_with_all = ["seconds", "no_frames", "compact"])]
+    #[arg(long, conflicts_with_all = ["seconds", "compact"])]
     last: bool,
 }
 
 const EXAMPLES: &str = "\
 Examples:
   tenax record --out walk.mcap                 until Ctrl-C, with every frame
-  tenax record --seconds 60 --no-frames        a minute of decisions, without frames
-  tenax record --compact                       less than 60 MB an hour
+  tenax record --compact --seconds 3600        less than 60 MB an hour, without frames
   tenax record --last --out fault.mcap         after a fault: the seconds before the restart
   tenax plot fault.mcap                        draws any of them
 
@@ -68,34 +61,29 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if args.last {
         return last(&mut client, &path);
     }
-    let from_start = args.from_start || offer(&client, args)?;
     let mut recording = if args.compact { Recording::compact(&path) } else { Recording::create(&path) }?;
-    if from_start {
+    if args.from_start {
         stream_at_start(&mut client)?;
     }
     let stopped = Arc::new(AtomicBool::new(false));
     signal_hook::flag::register(signal_hook::consts::SIGINT, Arc::clone(&stopped))
         .context("cannot listen for Ctrl-C")?;
-    if !from_start {
+    if !args.from_start && client.can_send() {
         client.send(&Down::About)?;
     }
-    let stream =
-        Down::Stream { raw: !args.no_frames && !args.compact, senses: true, hold_s: 2 * ASKED_EVERY_S };
     let status = Status::new("record");
-    let (mut began, mut waits, mut asked) = (Instant::now(), from_start, None::<Instant>);
-    let mut is_joined = false;
+    let (mut began, mut waits, mut is_joined) = (Instant::now(), args.from_start, false);
     let is_over = |began: Instant| args.seconds.is_some_and(|s| began.elapsed().as_secs_f64() >= s);
     while !stopped.load(Relaxed) && (waits || !is_over(began)) {
-        if !waits && asked.is_none_or(|at| at.elapsed().as_secs() >= u64::from(ASKED_EVERY_S)) {
-            client.send(&stream)?;
-            asked = Some(Instant::now());
+        if !waits {
+            client.keep_streaming(!args.compact)?;
         }
         match client.next_message() {
             Ok(Some(heard)) if waits && !matches!(heard.received.message, Up::Hello { .. }) => {}
             Ok(Some(heard)) => {
                 if std::mem::take(&mut waits) {
                     status.print(|| out::note!("the board has started: recording"));
-                    (began, asked) = (Instant::now(), Some(Instant::now()));
+                    began = Instant::now();
                 }
                 let first = match &heard.received.message {
                     Up::Hello { .. } => Some(0),
@@ -117,27 +105,13 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             Ok(None) => {}
             Err(_) => break,
         }
-        status.say(client.counts().to_string());
+        status.say_with(|_| client.counts().to_string());
     }
     drop(status);
     recording.finish().with_context(|| format!("cannot write {}", path.display()))?;
     let lasted = Duration::from_secs(began.elapsed().as_secs());
     out::note!("{} in {lasted:?}, written to {}", client.counts(), path.display());
     Ok(ExitCode::SUCCESS)
-}
-
-/// Whether a person wants to begin with the board's next start: asked where somebody can answer.
-fn offer(client: &Client, args: &Args) -> anyhow::Result<bool> {
-    if args.no_frames || args.compact || !client.can_send() || !io::stdin().is_terminal() {
-        return Ok(false);
-    }
-    out::note!(
-        "From now on, it can be watched, plotted and exported; from the board's start on, replayed, too. Restart the board \
-         for that? [y/N]"
-    );
-    let mut answer = String::new();
-    io::stdin().read_line(&mut answer)?;
-    Ok(answer.trim().eq_ignore_ascii_case("y"))
 }
 
 /// Has the board stream from its start on, and asks for that. Fails if it does not let itself be set.
@@ -165,12 +139,8 @@ fn last(client: &mut Client, path: &Path) -> anyhow::Result<ExitCode> {
     recording.line(&kept.line);
     recording.finish().with_context(|| format!("cannot write {}", path.display()))?;
     LastSeconds::let_go(client)?;
-    let span = kept.span().map_or_else(String::new, |(from, to)| {
-        let (from_s, to_s) = (seconds(from), seconds(to));
-        format!(", {:.2} s, from {from_s:.2} to {to_s:.2} s", to_s - from_s)
-    });
     out::note!(
-        "before {}{}: {} bytes{span}, written to {}",
+        "before {}{}: {} bytes, written to {}",
         in_words(&kept.after),
         if kept.why.is_empty() { String::new() } else { format!(" ({})", kept.why) },
         kept.line.len(),

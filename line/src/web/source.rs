@@ -7,12 +7,10 @@ use std::time::{Duration, Instant};
 
 use tenax_frames::link::{ANSWER_WITHIN, Client, Counts, Heard, Target};
 use tenax_frames::play::{self, Playing, Reel};
-use tenax_frames::truth::{self, Bench, Truth};
+use tenax_frames::truth;
 use tenax_hal_shim::wire::{Answer, BadFrame, Down};
 
 const AGAIN_AFTER: Duration = Duration::from_millis(500);
-/// Readings are asked for at this interval, for twice as long.
-const STREAM_EVERY: Duration = Duration::from_secs(2);
 
 #[derive(Debug)]
 pub enum News {
@@ -21,12 +19,8 @@ pub enum News {
     Gone(String),
     /// A message, or why a frame is none; the counts so far; the time of arrival.
     Frame(Result<Heard, BadFrame>, Counts, Instant),
-    Truth(Truth),
-    /// What can be done at the scene's bench; None: the scene is gone.
-    Bench(Option<Bench>),
-    Playing(Playing),
-    /// The recording goes on elsewhere.
-    Rewound,
+    Scene(truth::Told),
+    Played(play::Told),
     Answered(Down, Result<Answer, String>),
 }
 
@@ -51,13 +45,7 @@ pub fn start(places: &Places, commands: Receiver<Down>, news: Sender<News>) -> S
     }
     if let Some(target) = places.truth.clone() {
         let news = news.clone();
-        let mut tell = move |told| {
-            let told = match told {
-                truth::Told::Truth(truth) => News::Truth(truth),
-                truth::Told::Bench(bench) => News::Bench(bench),
-            };
-            news.send(told).is_ok()
-        };
+        let mut tell = move |told| news.send(News::Scene(told)).is_ok();
         thread::spawn(move || truth::watch(&target, &acts, &mut tell));
     }
     let target = places.line.clone();
@@ -67,22 +55,10 @@ pub fn start(places: &Places, commands: Receiver<Down>, news: Sender<News>) -> S
 
 fn watch_recording(path: &Path, controls: &Receiver<String>, news: &Sender<News>) -> anyhow::Result<()> {
     let reel = Reel::open(path)?;
-    let mut counts = Counts::default();
     let playing = Playing::new(&reel);
-    let _left = news.send(News::Playing(playing));
-    play::play(&reel, playing, controls, &mut |told| {
-        let told = match told {
-            play::Told::Message(heard) => {
-                counts.messages += 1;
-                counts.missed += u64::from(heard.missed);
-                News::Frame(Ok(*heard), counts, Instant::now())
-            }
-            play::Told::Again => News::Rewound,
-            play::Told::At(playing) => News::Playing(playing),
-            play::Told::Over => return true,
-        };
-        news.send(told).is_ok()
-    });
+    let mut tell = |told| news.send(News::Played(told)).is_ok();
+    tell(play::Told::At(playing));
+    play::play(&reel, playing, controls, &mut tell);
     Ok(())
 }
 
@@ -105,16 +81,11 @@ fn watch(target: &Target, commands: &Receiver<Down>, news: &Sender<News>) {
 /// Attends to one line until it ends; the reason. None: `news` was dropped.
 fn attend(mut client: Client, commands: &Receiver<Down>, news: &Sender<News>) -> Option<String> {
     news.send(News::Open).ok()?;
-    let mut streamed: Option<Instant> = None;
     // Reading commands: identity, and whether the last run ended in a fault.
     let _asked = client.send(&Down::About);
     let _asked = client.send(&Down::Last(0));
     loop {
-        if streamed.is_none_or(|at| at.elapsed() >= STREAM_EVERY) {
-            let hold_s = 2 * STREAM_EVERY.as_secs() as u16;
-            let _asked = client.send(&Down::Stream { raw: false, senses: true, hold_s });
-            streamed = Some(Instant::now());
-        }
+        let _asked = client.keep_streaming(false);
         loop {
             match commands.try_recv() {
                 Ok(command) => {

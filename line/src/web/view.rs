@@ -7,9 +7,9 @@ use anyhow::{Context, bail};
 use serde::Serialize;
 use serde_json::{Value, json};
 use tenax_frames::link::{Counts, Heard};
-use tenax_frames::play::Playing;
+use tenax_frames::play::{self, Playing};
 use tenax_frames::settings;
-use tenax_frames::truth::{Bench, Truth};
+use tenax_frames::truth::{self, Bench, Truth};
 use tenax_frames::words::{answer_words, seconds, why, words};
 use tenax_hal_shim::channel::{CHANNELS, mv_from_sample};
 use tenax_hal_shim::detector::{DetectorId, DetectorSet, Evidence};
@@ -127,16 +127,22 @@ impl View {
                     Err(_) => {}
                 }
             }
-            News::Truth(truth) => {
+            News::Scene(truth::Told::Truth(truth)) => {
                 // A scene that was started anew begins at 0 again.
                 if self.truth.back().is_some_and(|last| last.t_s > truth.t_s) {
                     self.truth.clear();
                 }
                 push(&mut self.truth, HISTORY, truth);
             }
-            News::Bench(bench) => self.bench = bench,
-            News::Playing(playing) => self.playing = Some(playing),
-            News::Rewound => self.begin_anew(),
+            News::Scene(truth::Told::Bench(bench)) => self.bench = bench,
+            News::Played(play::Told::Message(heard)) => {
+                self.counts.messages += 1;
+                self.counts.missed += u64::from(heard.missed);
+                self.hear(*heard, Instant::now());
+            }
+            News::Played(play::Told::At(playing)) => self.playing = Some(playing),
+            News::Played(play::Told::Again) => self.begin_anew(),
+            News::Played(play::Told::Over) => {}
             News::Answered(command, Ok(answer)) => {
                 self.say(format!("> {}", answer_words(&command, &answer)));
             }

@@ -17,6 +17,8 @@ pub const ANSWER_WITHIN: Duration = Duration::from_secs(2);
 const SESSIONS_MAX: u32 = 8;
 /// Pause after a command: the board takes 500 a second, and skips the rest.
 const EACH: Duration = Duration::from_micros(2_500);
+/// Interval at which streams are asked for, each time for twice as long.
+const STREAM_EVERY: Duration = Duration::from_secs(2);
 /// Commands that one with a long answer counts as.
 const LONG: u32 = 6;
 
@@ -30,6 +32,8 @@ pub struct Client {
     answer: Option<Answer>,
     /// When the next command may be sent.
     free_at: Instant,
+    /// When readings were asked for.
+    streamed: Option<Instant>,
 }
 
 impl From<Line> for Client {
@@ -42,6 +46,7 @@ impl From<Line> for Client {
             asked: None,
             answer: None,
             free_at: Instant::now(),
+            streamed: None,
         }
     }
 }
@@ -87,6 +92,16 @@ impl Client {
         );
         self.free_at = Instant::now() + if is_long { EACH * LONG } else { EACH };
         outbox.send(command).context("cannot write to the line")
+    }
+
+    /// Asks the board to stream its readings, and its frames too if `raw`, each time that half of the time before is over.
+    pub fn keep_streaming(&mut self, raw: bool) -> anyhow::Result<()> {
+        if self.can_send() && self.streamed.is_none_or(|at| at.elapsed() >= STREAM_EVERY) {
+            let hold_s = 2 * STREAM_EVERY.as_secs() as u16;
+            self.send(&Down::Stream { raw, senses: true, hold_s })?;
+            self.streamed = Some(Instant::now());
+        }
+        Ok(())
     }
 
     /// Sends a command and returns its answer. All messages that come meanwhile, the answer too, are still given by

@@ -1,7 +1,7 @@
 //! The seconds before a fault that a board keeps, fetched piece by piece.
 
 use anyhow::{bail, ensure};
-use tenax_hal_shim::wire::{Answer, Down, Up};
+use tenax_hal_shim::wire::{Answer, Down};
 use tenax_hal_shim::words::Fault;
 
 use super::{ANSWER_WITHIN, Client, Inbox};
@@ -43,18 +43,6 @@ impl LastSeconds {
     /// Lets the board overwrite them. Fails if the board does not answer.
     pub fn let_go(client: &mut Client) -> anyhow::Result<()> {
         client.ask(&Down::Last(u16::MAX), ANSWER_WITHIN).map(drop)
-    }
-
-    /// First and last frame.
-    pub fn span(&self) -> Option<(u32, u32)> {
-        let mut inbox = Inbox::default();
-        let heard = self.line.iter().filter_map(|&byte| inbox.push(byte)).flatten();
-        let mut frames = heard.filter_map(|heard| match heard.received.message {
-            Up::Slow(slow) => Some(slow.frame),
-            _ => None,
-        });
-        let first = frames.next()?;
-        Some((first, frames.last().unwrap_or(first)))
     }
 }
 

@@ -5,11 +5,11 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, bail};
 use tenax_frames::link::Client;
 use tenax_hal_shim::channel::{CHANNELS, COUNT, Role, by_name};
-use tenax_hal_shim::wire::{Down, Up};
+use tenax_hal_shim::wire::Up;
 use tenax_logic::setting::SettingId;
 
 use super::{REST_PROMPT, Selftest};
-use crate::guide::{Say, ask};
+use crate::guide::Say;
 
 /// A board that is silent for longer sends no readings.
 const SILENCE: Duration = Duration::from_secs(4);
@@ -103,8 +103,7 @@ pub fn run(client: &mut Client, words: &[String], limit_s: u32, say: Say<'_>) ->
     let (head, no_wearer) =
         (client.setting(SettingId::Head)? != 0, client.setting(SettingId::NoWearer)? != 0);
     let mut session = Session::begin(words, head, no_wearer, limit_s)?;
-    let stream = Down::Stream { raw: false, senses: true, hold_s: 10 };
-    let (mut asked, mut printed) = (None::<Instant>, 0);
+    let mut printed = 0;
     loop {
         session.said()[printed..].iter().try_for_each(|line| say(line))?;
         printed = session.said().len();
@@ -114,10 +113,7 @@ pub fn run(client: &mut Client, words: &[String], limit_s: u32, say: Say<'_>) ->
         if session.test().is_over() {
             return Ok(session.test().passes());
         }
-        if asked.is_none_or(|at| at.elapsed() > Duration::from_secs(4)) {
-            ask(client, stream)?;
-            asked = Some(Instant::now());
-        }
+        client.keep_streaming(false)?;
         let message = client.next_message().context("the line ended")?;
         session.take(message.as_ref().map(|heard| &heard.received.message));
     }
