@@ -213,7 +213,7 @@ fn the_seconds_before_a_fault_are_a_recording() {
     let (place, path) = (keeper(kept.clone()), folder.path().join("fault.mcap"));
     let args = ["record", "--last", "--port", &place, "--out", path.to_str().unwrap()];
     let (done, _, said) = tenax(&args);
-    assert!(done && said.contains(" (scan.rs:7): 40003 bytes"), "{said}");
+    assert!(done && said.contains(" (scan.rs:7): "), "{said}");
     let first = kept.iter().position(|&byte| byte == 0).unwrap() + 1;
     assert!(line_of(&path).unwrap() == kept[first..], "every whole message");
     let (again, _, said) = tenax(&args);

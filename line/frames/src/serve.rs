@@ -4,7 +4,6 @@
 //! commands. The run never waits: a client that does not keep up loses whole messages, which are counted, and shows gaps in
 //! their numbers.
 
-mod client;
 mod hub;
 #[cfg(unix)]
 mod pty;
@@ -12,13 +11,12 @@ mod tcp;
 
 use std::fmt::{self, Display};
 use std::path::PathBuf;
-use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::mpsc::{Receiver, sync_channel};
 use std::sync::{Arc, Mutex};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use self::client::{Ends, Framer};
-use self::hub::Hub;
+use self::hub::{Frame, Framer, Hub};
 use crate::truth::{Bench, Key, Truth};
 
 /// Frames on their way down to the board; a client that sends more waits.
@@ -74,27 +72,33 @@ impl Server {
     /// Begins to serve. Fails if a place cannot be had; says which and what to do.
     pub fn start(options: &Options) -> anyhow::Result<(Self, Down)> {
         let (down, bytes) = sync_channel(DOWN_FRAMES);
-        let hub = Arc::new(Hub::default());
-        let ends = Ends { hub: Arc::clone(&hub), down, end: 0 };
+        let hub = Hub::new(down, 0, None);
         let (mut places, mut doors) = (Vec::new(), Vec::new());
         if options.pty {
             #[cfg(unix)]
             {
                 let pty = pty::Pty::new(options.at.as_deref())?;
                 places.extend(pty.places());
-                let ends = ends.clone();
-                doors.push(thread::spawn(move || pty.serve(&ends)));
+                let hub = Arc::clone(&hub);
+                doors.push(thread::spawn(move || pty.serve(&hub)));
             }
             #[cfg(not(unix))]
             anyhow::bail!("this system has no pseudo-terminals: serve on TCP, with --serve-tcp PORT");
         }
         if let Some(port) = options.tcp {
-            let tcp = tcp::Tcp::new(port)?;
-            places.push(tcp.place()?);
-            doors.push(thread::spawn(move || tcp.serve(&ends)));
+            let (place, door) = tcp::serve(port, &hub)?;
+            places.push(place);
+            doors.push(door);
         }
         let (act, acts) = sync_channel(DOWN_FRAMES);
-        let truth = options.truth.map(|port| truth_at(port, &options.keys, act, &mut doors)).transpose()?;
+        let mut truth = None;
+        if let Some(port) = options.truth {
+            let bench = serde_json::to_string(&Bench { keys: options.keys.clone() })? + "\n";
+            let hub = Hub::new(act, b'\n', Some(Frame::from(bench.as_bytes())));
+            let (place, door) = tcp::serve(port, &hub)?;
+            doors.push(door);
+            truth = Some((place, hub));
+        }
         let teller = Teller(truth.as_ref().map(|(_, hub)| Arc::clone(hub)));
         Ok((
             Self { hub, framer: Framer::default(), places, truth, acts: Some(acts), doors },
@@ -146,22 +150,6 @@ impl Server {
         }
         self.hub.tally()
     }
-}
-
-/// Place and clients of the scene's true state. Lines that clients send there are done at the bench.
-fn truth_at(
-    port: u16,
-    keys: &[Key],
-    down: SyncSender<Vec<u8>>,
-    doors: &mut Vec<JoinHandle<()>>,
-) -> anyhow::Result<(String, Arc<Hub>)> {
-    let bench = serde_json::to_string(&Bench { keys: keys.to_vec() })?;
-    let hub = Arc::new(Hub::greeting(format!("{bench}\n").as_bytes()));
-    let ends = Ends { hub: Arc::clone(&hub), down, end: b'\n' };
-    let tcp = tcp::Tcp::new(port)?;
-    let place = tcp.place()?;
-    doors.push(thread::spawn(move || tcp.serve(&ends)));
-    Ok((place, hub))
 }
 
 /// Sends the scene's true state to its clients.

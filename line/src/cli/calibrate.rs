@@ -53,24 +53,9 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let say: guide::Say<'_> = &mut |text| out::say!("{text}");
     let mut client = args.line.open()?;
     match &args.what {
-        What::Force { weights_n } => {
-            let weighed = guide::force::calibrate(&mut client, weights_n, say)?;
-            say(&format!("\n{}", guide::force::report(&weighed)))?;
-        }
-        What::Friction { strokes } => {
-            let measured = guide::friction::calibrate(&mut client, *strokes, say)?;
-            let [mu_s, s2] =
-                [measured.mu_s_permille, measured.s2_permille].map(|permille| f64::from(permille) / 1e3);
-            say(&format!(
-                "Static friction {mu_s:.3} on the scale of Ft/Fn; S2 is {s2:.3} from now on, and kept."
-            ))?;
-        }
-        What::Emg => {
-            let apart = guide::emg::calibrate(&mut client, say)?;
-            say(&format!(
-                "Taken, and kept: rest, closing and opening are {apart:.1} deviations apart (3 are needed)."
-            ))?;
-        }
+        What::Force { weights_n } => guide::force::calibrate(&mut client, weights_n, say)?,
+        What::Friction { strokes } => guide::friction::calibrate(&mut client, *strokes, say)?,
+        What::Emg => guide::emg::calibrate(&mut client, say)?,
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -96,10 +96,10 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             let own = all(&mut client)?;
             for Setting { id, value } in wanted {
                 let name = SettingId::from_number(id).map_or("?", |id| id.row().name);
-                match own.iter().find(|setting| setting.id == id) {
-                    Some(own) if own.value == value => {}
-                    Some(own) => out::say!("{name} = {}, there {value}", own.value)?,
-                    None => out::say!("{name}: the board does not have it, there {value}")?,
+                let own = own.iter().find(|setting| setting.id == id).map(|setting| setting.value);
+                if own != Some(value) {
+                    let own = own.map_or_else(|| "unknown".to_owned(), |own| own.to_string());
+                    out::say!("{name} = {own}, there {value}")?;
                 }
             }
         }

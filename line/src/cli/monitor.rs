@@ -119,6 +119,8 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     out::note!("{}", client.counts());
     match &target {
         Target::File(_) => Ok(ExitCode::SUCCESS),
-        _ => bail!(target.after_end(&end)),
+        _ => {
+            bail!("{target} is gone ({end}): plug the board in or start the served run again, and then this")
+        }
     }
 }

@@ -29,9 +29,9 @@ const GRAVITY: f64 = 9.806_65;
 
 /// A weight and the board's reading of it, N.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Weighed {
-    pub true_n: f64,
-    pub read_n: f64,
+struct Weighed {
+    true_n: f64,
+    read_n: f64,
 }
 
 /// The reading of 1 N, by least squares through no load.
@@ -41,7 +41,7 @@ fn gain(weighed: &[Weighed]) -> f64 {
 }
 
 /// The table of the weights, and what follows from it.
-pub fn report(weighed: &[Weighed]) -> String {
+fn report(weighed: &[Weighed]) -> String {
     let gain = gain(weighed);
     let mut text =
         format!("{:>10}{:>10}{:>12}{:>16}\n", "weight, N", "read, N", "error, %", "off the line, %");
@@ -74,8 +74,8 @@ fn settings(gain: f64) -> String {
     scaled.concat()
 }
 
-/// Zeroes the unloaded finger, then asks for one weight after the other. Fails if the board refuses, or a weight never comes.
-pub fn calibrate(client: &mut Client, weights_n: &[f64], say: Say<'_>) -> anyhow::Result<Vec<Weighed>> {
+/// Zeroes the unloaded finger, asks for one weight after the other and tells the errors. Fails if the board refuses, or a weight never comes.
+pub fn calibrate(client: &mut Client, weights_n: &[f64], say: Say<'_>) -> anyhow::Result<()> {
     say("Nothing may touch the finger.")?;
     wait_for(client, PATIENCE, "a finger that nothing touches", steady(-1.0, 0.5))?;
     ask(client, Down::Zero)?;
@@ -97,7 +97,7 @@ pub fn calibrate(client: &mut Client, weights_n: &[f64], say: Say<'_>) -> anyhow
         })?;
         weighed.push(Weighed { true_n, read_n });
     }
-    Ok(weighed)
+    say(&format!("\n{}", report(&weighed)))
 }
 
 /// Finds the load that has stood still between these, N.

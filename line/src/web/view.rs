@@ -103,6 +103,7 @@ impl View {
         if let Some(test) = &mut self.selftest {
             match &news {
                 News::Frame(Ok(heard), ..) => test.take(Some(&heard.received.message)),
+                News::Played(play::Told::Message(heard)) => test.take(Some(&heard.received.message)),
                 News::Gone(why) => test.fail(&format!("the line is gone: {why}")),
                 _ => test.take(None),
             }

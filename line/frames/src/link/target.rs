@@ -19,8 +19,8 @@ const CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
 pub enum Target {
     /// A serial port or a pseudo-terminal: `/dev/ttyACM0`, `COM3`, `/dev/pts/5`.
     Port(String),
-    /// `tcp:HOST:PORT`.
-    Tcp { host: String, port: u16 },
+    /// HOST:PORT, written `tcp:HOST:PORT`.
+    Tcp(String),
     /// A recording or a captured line.
     File(PathBuf),
 }
@@ -38,12 +38,11 @@ impl FromStr for Target {
     /// A regular file is a captured line; anything else that is no `tcp:` is a port.
     fn from_str(text: &str) -> Result<Self, String> {
         if let Some(address) = text.strip_prefix("tcp:") {
-            return address
-                .rsplit_once(':')
-                .and_then(|(host, port)| Some((host, port.parse().ok()?)))
-                .filter(|(host, _)| !host.is_empty())
-                .map(|(host, port)| Self::Tcp { host: host.trim_matches(['[', ']']).to_owned(), port })
-                .ok_or_else(|| "write tcp:HOST:PORT, such as tcp:127.0.0.1:7777".to_owned());
+            let (host, port) = address.rsplit_once(':').unwrap_or_default();
+            return match port.parse::<u16>() {
+                Ok(_) if !host.is_empty() => Ok(Self::Tcp(address.to_owned())),
+                _ => Err("write tcp:HOST:PORT, such as tcp:127.0.0.1:7777".to_owned()),
+            };
         }
         let path = Path::new(text);
         Ok(if path.is_file() { Self::File(path.to_owned()) } else { Self::Port(text.to_owned()) })
@@ -54,8 +53,7 @@ impl Display for Target {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Port(name) => f.write_str(name),
-            Self::Tcp { host, port } if host.contains(':') => write!(f, "tcp:[{host}]:{port}"),
-            Self::Tcp { host, port } => write!(f, "tcp:{host}:{port}"),
+            Self::Tcp(address) => write!(f, "tcp:{address}"),
             Self::File(path) => path.display().fmt(f),
         }
     }
@@ -66,16 +64,11 @@ impl Target {
     pub fn open(&self) -> anyhow::Result<Line> {
         match self {
             Self::Port(name) => open_port(name),
-            Self::Tcp { host, port } => connect(host, *port).with_context(|| {
-                format!("cannot connect to {self}: is `tenax run --serve-tcp {port}` running there?")
+            Self::Tcp(address) => connect(address).with_context(|| {
+                format!("cannot connect to {self}: is `tenax run --serve-tcp` running there?")
             }),
             Self::File(path) => Ok(Line { up: Box::new(io::Cursor::new(line_of(path)?)), down: None }),
         }
-    }
-
-    /// Why the line ended, and what to do about it.
-    pub fn after_end(&self, error: &io::Error) -> String {
-        format!("{self} is gone ({error}): plug the board in or start the served run again, and then this")
     }
 }
 
@@ -130,9 +123,9 @@ fn is_pseudo(name: &str) -> bool {
         || (cfg!(target_os = "macos") && path.to_string_lossy().starts_with("/dev/ttys"))
 }
 
-fn connect(host: &str, port: u16) -> anyhow::Result<Line> {
-    let mut failed = None;
-    for address in (host, port).to_socket_addrs()? {
+fn connect(address: &str) -> io::Result<Line> {
+    let mut failed = io::Error::from(io::ErrorKind::AddrNotAvailable);
+    for address in address.to_socket_addrs()? {
         match TcpStream::connect_timeout(&address, CONNECT_TIMEOUT) {
             Ok(up) => {
                 up.set_nodelay(true)?;
@@ -140,13 +133,10 @@ fn connect(host: &str, port: u16) -> anyhow::Result<Line> {
                 let down = up.try_clone()?;
                 return Ok(Line { up: Box::new(up), down: Some(Box::new(down)) });
             }
-            Err(error) => failed = Some(error),
+            Err(error) => failed = error,
         }
     }
-    match failed {
-        Some(error) => Err(error.into()),
-        None => bail!("{host} has no address"),
-    }
+    Err(failed)
 }
 
 #[cfg(test)]
@@ -155,10 +145,10 @@ mod tests {
 
     #[test]
     fn a_place_is_told_by_how_it_is_written_and_an_error_says_what_to_do() {
-        let tcp = |host: &str| Target::Tcp { host: host.to_owned(), port: 7_777 };
-        assert_eq!("tcp:127.0.0.1:7777".parse(), Ok(tcp("127.0.0.1")));
-        assert_eq!("tcp:[::1]:7777".parse(), Ok(tcp("::1")));
-        assert_eq!(tcp("::1").to_string(), "tcp:[::1]:7777");
+        for right in ["tcp:127.0.0.1:7777", "tcp:[::1]:7777"] {
+            let target: Target = right.parse().unwrap();
+            assert!(matches!(target, Target::Tcp(_)) && target.to_string() == right);
+        }
         for wrong in ["tcp:", "tcp:7777", "tcp::7777", "tcp:host:", "tcp:host:70000"] {
             assert!(wrong.parse::<Target>().unwrap_err().contains("tcp:HOST:PORT"), "{wrong}");
         }
@@ -167,6 +157,6 @@ mod tests {
         let error = |text: &str| format!("{:#}", text.parse::<Target>().unwrap().open().err().unwrap());
         assert!(error("/dev/no-such-port").contains("ports on this machine: "));
         // Nobody listens on port 1.
-        assert!(error("tcp:127.0.0.1:1").contains("is `tenax run --serve-tcp 1` running there?"));
+        assert!(error("tcp:127.0.0.1:1").contains("is `tenax run --serve-tcp` running there?"));
     }
 }

@@ -2,7 +2,7 @@
 //! is not plugged in.
 
 use std::fs;
-use std::io::{self, ErrorKind, Read, Write};
+use std::io::{ErrorKind, Read};
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use anyhow::{Context, bail};
 use serialport::{SerialPort, TTYPort};
 use tenax_hal_shim::wire::BAUD;
 
-use super::client::{Ends, Framer};
+use super::hub::{Framer, Hub};
 
 /// Interval at which a new or lost client is noticed.
 const LOOK_EVERY: Duration = Duration::from_millis(10);
@@ -47,10 +47,10 @@ impl Pty {
     }
 
     /// Serves one client after the other until the hub is closed.
-    pub fn serve(mut self, ends: &Ends) {
+    pub fn serve(mut self, hub: &Arc<Hub>) {
         let mut client: Option<Arc<AtomicBool>> = None;
         let (mut framer, mut buffer) = (Framer::default(), [0; 4096]);
-        while !ends.hub.is_closed() {
+        while !hub.is_closed() {
             let read = self.near.read(&mut buffer);
             if matches!(&read, Err(error) if error.kind() == ErrorKind::BrokenPipe) {
                 thread::sleep(LOOK_EVERY);
@@ -63,10 +63,10 @@ impl Pty {
                 continue;
             }
             if client.is_none() {
-                client = self.write(ends);
+                client = self.write(hub);
             }
             if let Ok(count) = read {
-                ends.pass_on(&mut framer, &buffer[..count]);
+                hub.pass_on(&mut framer, &buffer[..count]);
             }
         }
         if client.is_some() {
@@ -75,11 +75,11 @@ impl Pty {
     }
 
     /// Writes to a client from now on, until it is told that the client is gone.
-    fn write(&self, ends: &Ends) -> Option<Arc<AtomicBool>> {
+    fn write(&self, hub: &Arc<Hub>) -> Option<Arc<AtomicBool>> {
         let gone = Arc::<AtomicBool>::default();
-        let mut near = Near { near: self.near.try_clone_native().ok()?, gone: Arc::clone(&gone) };
-        let (frames, ends) = (ends.hub.join(), ends.clone());
-        thread::spawn(move || ends.write(&frames, &mut near));
+        let (mut near, frames) = (self.near.try_clone_native().ok()?, hub.join());
+        let (hub, left) = (Arc::clone(hub), Arc::clone(&gone));
+        thread::spawn(move || hub.write(&frames, &mut near, &left));
         Some(gone)
     }
 
@@ -90,25 +90,6 @@ impl Pty {
             let mut buffer = [0; 4096];
             while far.read(&mut buffer).is_ok_and(|count| count > 0) {}
         }
-    }
-}
-
-/// The near end for one client.
-struct Near {
-    near: TTYPort,
-    gone: Arc<AtomicBool>,
-}
-
-impl Write for Near {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if self.gone.load(Relaxed) {
-            return Err(ErrorKind::BrokenPipe.into());
-        }
-        self.near.write(bytes)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.near.flush()
     }
 }
 
