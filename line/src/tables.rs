@@ -28,52 +28,38 @@ pub fn wiring() -> String {
         "{SIGNALS}Every pin is read {SCAN_HZ} times a second. Direct pins give {FRAME_HZ} samples a second, switched \
          signals {SLOW_HZ}, myosensors {}.\nA voltage below `low` is a cut wire, above `high` a short or a sensor out of \
          range. Cut wires of films and myosensors can\nstay within these limits.\n\n\
-         | channel | pin | ADC1 input | switch, select | rest mV | low mV | high mV |\n|---|---|---|---|---|---|---|\n",
+         | channel | input | pin | ADC1 input | rest mV | low mV | high mV |\n|---|---|---|---|---|---|---|\n",
         3 * SLOW_HZ
     );
-    CHANNELS.chunk_by(are_alike).for_each(|channels| page += &row(channels));
+    for (n, channel) in CHANNELS.iter().enumerate() {
+        let Channel { name, rest_mv, low_mv, high_mv, .. } = channel;
+        let pin = &SCAN[rank(channel)];
+        page += &format!(
+            "| `{name}` | {} | {} | IN{} | {rest_mv} | {low_mv} | {high_mv} |\n",
+            input(n),
+            pin.pin,
+            pin.adc
+        );
+    }
     page
 }
 
-/// Neighbours on the same switch, of one kind of sensor, with the same voltages.
-fn are_alike(a: &Channel, b: &Channel) -> bool {
-    let kind = |channel: &Channel| channel.name.split('_').next().map(str::to_owned);
-    let voltages = |channel: &Channel| (channel.rest_mv, channel.low_mv, channel.high_mv);
-    place(a).0 == place(b).0 && kind(a) == kind(b) && voltages(a) == voltages(b)
-}
-
-/// The rank in the scan, and the switch with its select.
-fn place(channel: &Channel) -> (usize, Option<(char, u8)>) {
+/// Place of the channel's pin in the scan.
+fn rank(channel: &Channel) -> usize {
     match channel.input {
-        Input::Direct { rank } => (usize::from(rank), None),
-        Input::SwitchA { select } => (RANK_SWITCH_A, Some(('A', select))),
-        Input::SwitchB { select } => (RANK_SWITCH_B, Some(('B', select))),
+        Input::Direct { rank } => rank.into(),
+        Input::SwitchA { .. } => RANK_SWITCH_A,
+        Input::SwitchB { .. } => RANK_SWITCH_B,
     }
 }
 
 /// The input of a channel: `PA0`, or `switch A, 3`.
 pub fn input(channel: usize) -> String {
-    match place(&CHANNELS[channel]) {
-        (rank, None) => SCAN[rank].pin.to_owned(),
-        (_, Some((switch, select))) => format!("switch {switch}, {select}"),
+    match CHANNELS[channel].input {
+        Input::Direct { rank } => SCAN[usize::from(rank)].pin.to_owned(),
+        Input::SwitchA { select } => format!("switch A, {select}"),
+        Input::SwitchB { select } => format!("switch B, {select}"),
     }
-}
-
-/// The row of channels that are alike.
-fn row(channels: &[Channel]) -> String {
-    let (Some(first), Some(last)) = (channels.first(), channels.last()) else { return String::new() };
-    let (rank, from) = place(first);
-    let (names, selects) = match (from, place(last).1) {
-        (Some((switch, from)), Some((_, to))) if from != to => {
-            (format!("`{}` to `{}`", first.name, last.name), format!("{switch}, {from} to {to}"))
-        }
-        (Some((switch, from)), _) => (format!("`{}`", first.name), format!("{switch}, {from}")),
-        (None, _) => (format!("`{}`", first.name), String::from("-")),
-    };
-    format!(
-        "| {names} | {} | IN{} | {selects} | {} | {} | {} |\n",
-        SCAN[rank].pin, SCAN[rank].adc, first.rest_mv, first.low_mv, first.high_mv
-    )
 }
 
 /// Every setting with number, unit, range, default and meaning.

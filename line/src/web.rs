@@ -1,12 +1,13 @@
 //! The page of `tenax monitor`, in a browser of this machine.
 //!
-//! The page is one file without a build step. Points come as server-sent events, twenty times a second. Only this machine is served, and
+//! The page is one file without a build step. Changes come as server-sent events, at most twenty a second. Only this machine is served, and
 //! only pages of this address may ask: a page of another site in the same browser may not.
 
 pub mod source;
 pub mod view;
 
 use std::io::{self, Write};
+use std::iter;
 use std::net::Ipv4Addr;
 use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -14,12 +15,13 @@ use std::thread;
 use std::time::Duration;
 
 use anyhow::anyhow;
+use serde_json::{Value, json};
 use tenax_hal_shim::wire::{Down, Setting};
 use tenax_logic::setting::SettingId;
 use tiny_http::{Header, Method, Request, Response, Server};
 
 use self::source::Places;
-use self::view::{After, View};
+use self::view::View;
 
 const PAGE: &str = include_str!("web/page.html");
 const EVENT_EVERY: Duration = Duration::from_millis(50);
@@ -33,7 +35,6 @@ struct Shared {
     commands: Sender<Down>,
     /// Lines for the scene's bench or the player: never a command of the board's line.
     bench: Sender<String>,
-    place: String,
     control: bool,
     port: u16,
 }
@@ -54,8 +55,8 @@ impl Web {
         let (sender, news) = channel();
         let view = Arc::<Mutex<View>>::default();
         let bench = source::start(places, waiting, sender);
-        let place = places.line.to_string();
-        let shared = Shared { view, commands, bench, place, control, port };
+        let shared = Shared { view, commands, bench, control, port };
+        shared.view().tell(json!({ "place": places.line.to_string() }));
         let own = shared.clone();
         thread::spawn(move || news.into_iter().for_each(|news| own.view().take(news)));
         Ok(Self { server, shared })
@@ -149,10 +150,10 @@ impl Shared {
         let sent = match (act, command) {
             (Some(act), _) => {
                 let mut view = self.view();
-                if view.bench.is_none() {
+                if !view.state().get("bench").is_some_and(Value::is_array) {
                     return answer(404, "no bench: only a served scene has one, where --truth says");
                 }
-                view.say(format!("at the bench: {act}"));
+                view.say(&format!("at the bench: {act}"));
                 self.bench.send(act).is_ok()
             }
             (None, command) => command.is_some_and(|command| self.commands.send(command).is_ok()),
@@ -160,19 +161,20 @@ impl Shared {
         if sent { answer(202, "sent") } else { answer(503, "there is no line") }
     }
 
-    /// Sends what is new, for as long as the page is open.
+    /// Sends the state and its changes, for as long as the page is open.
     fn events(&self, mut page: Box<dyn Write + Send>) -> io::Result<()> {
         write!(
             page,
             "HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\nCache-Control: no-store\r\nConnection: close\r\n\r\n"
         )?;
-        let mut after = After::NOTHING;
-        loop {
-            let event = self.view().event(&self.place, &mut after).to_string();
-            write!(page, "data: {event}\n\n")?;
+        let changes = self.view().join();
+        for first in &changes {
+            let batch: Vec<Value> = iter::once(first).chain(changes.try_iter()).collect();
+            write!(page, "data: {}\n\n", Value::Array(batch))?;
             page.flush()?;
             thread::sleep(EVENT_EVERY);
         }
+        Ok(())
     }
 }
 

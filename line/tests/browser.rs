@@ -115,7 +115,7 @@ impl Drop for Page {
 #[test]
 #[cfg_attr(not(chromium), ignore = "no Chromium here: TENAX_CHROMIUM names one that is not on PATH")]
 fn a_person_sees_the_board_sets_a_setting_tests_wires_and_grips_in_the_page() {
-    let served = Serving::start(&(BENCH.to_owned() + &fault("fsr_b", "dead", "")));
+    let served = Serving::start(&format!("line_trusted = true\n{BENCH}{}", fault("fsr_b", "dead", "")));
     let web = Web::watching(&served, &["--control"]);
     let mut page = Page::open(&web.url);
     page.until("at('mode').textContent !== '-' && points.length > 40 && last.rates !== null");

@@ -5,7 +5,7 @@ use std::net::TcpStream;
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use crate::selftest::fault;
 use crate::serving::{BENCH, Serving, command};
@@ -55,10 +55,20 @@ impl Web {
         answer(self.ask("POST", path))
     }
 
-    /// What the page is told, event by event.
-    pub fn events(&self) -> impl Iterator<Item = Value> + use<> {
+    /// The state, then its changes.
+    pub fn changes(&self) -> impl Iterator<Item = Map<String, Value>> + use<> {
         let lines = BufReader::new(self.ask("GET", "/events")).lines().map(Result::unwrap);
-        lines.filter_map(|line| Some(serde_json::from_str(line.strip_prefix("data: ")?).unwrap()))
+        let batch = |line: String| serde_json::from_str(line.strip_prefix("data: ")?).unwrap();
+        lines.filter_map(batch).flat_map(|batch: Vec<Map<String, Value>>| batch)
+    }
+
+    /// The state after each change.
+    pub fn events(&self) -> impl Iterator<Item = Value> + use<> {
+        let mut state = Map::new();
+        self.changes().map(move |change| {
+            state.extend(change);
+            Value::Object(state.clone())
+        })
     }
 
     /// The first event of which this is so.
@@ -106,8 +116,7 @@ fn the_page_names_exchanged_and_dead_wires() {
     assert!(web.post("/selftest/start/nonsense").1.starts_with("no channel begins with `nonsense`"));
 
     let (mut said, mut loudest, mut results) = (Vec::new(), 0.0_f64, Value::Null);
-    for event in web.events() {
-        let test = &event["selftest"];
+    for test in web.changes().filter_map(|mut change| change.remove("selftest")) {
         for line in test["lines"].as_array().unwrap().iter().map(|line| line.as_str().unwrap().to_owned()) {
             match line.split(' ').collect::<Vec<_>>()[..] {
                 ["press", "fsr_c", ..] => assert_eq!(web.post("/selftest/skip").0, 202),
@@ -210,7 +219,7 @@ fn only_pages_of_this_address_may_ask_and_without_control_they_change_nothing() 
 fn a_line_alone_has_no_bench_as_on_a_real_board() {
     let served = Serving::start(BENCH);
     let web = Web::start(&["--port", &served.place, "--control"]);
-    let event = web.until("the board", |event| event["t_s"].as_f64().unwrap() > 1.0);
+    let event = web.until("the board", |event| event["t_s"].as_f64() > Some(1.0));
     assert!(event["bench"].is_null() && event["truth"].is_null());
     let (status, why) = web.post("/bench/g");
     assert!(status == 404 && why.starts_with("no bench"), "{status} {why}");

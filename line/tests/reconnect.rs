@@ -60,6 +60,10 @@ impl Watch {
     }
 }
 
+fn text<'a>(view: &'a View, key: &str) -> Option<&'a str> {
+    view.state().get(key)?.as_str()
+}
+
 #[test]
 fn a_board_that_is_served_again_is_watched_again() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
@@ -73,12 +77,12 @@ fn a_board_that_is_served_again_is_watched_again() {
     let stream = serve(&listener, 7);
     watch.until("the first message", |view| view.counts.messages == 1);
     drop((stream, listener));
-    watch.until("gone", |view| view.gone.is_some());
+    watch.until("gone", |view| text(view, "gone").is_some());
     // Long enough for it to have been refused.
     thread::sleep(Duration::from_millis(1_200));
     let listener = TcpListener::bind(address).unwrap();
     let mut stream = serve(&listener, 0);
-    watch.until("back", |view| view.gone.is_none() && view.counts.messages == 1);
+    watch.until("back", |view| text(view, "gone").is_none() && view.counts.messages == 1);
 
     // Garbage is counted, and what comes after it is heard.
     stream.write_all(&[&[0x55; 2_000][..], &[0], &frame(1)].concat()).unwrap();
@@ -87,11 +91,11 @@ fn a_board_that_is_served_again_is_watched_again() {
     });
     stream.write_all(&foreign()).unwrap();
     let said = format!("of version {}, and this tool speaks {VERSION}", VERSION + 1);
-    let is_foreign = |view: &View| view.other_version.as_ref().is_some_and(|own| own.starts_with(&said));
+    let is_foreign = |view: &View| text(view, "other_version").is_some_and(|own| own.starts_with(&said));
     watch.until(&said, is_foreign);
     // It was flashed anew.
     stream.write_all(&frame(2)).unwrap();
-    watch.until("this version again", |view| view.other_version.is_none());
+    watch.until("this version again", |view| text(view, "other_version").is_none());
 }
 
 #[test]
@@ -110,7 +114,7 @@ fn a_board_that_is_unplugged_and_plugged_in_again_is_watched_again() {
         let mut numbers = 0..;
         watch.until("messages", |view| {
             board.write_all(&frame(numbers.next().unwrap())).unwrap();
-            view.gone.is_none() && view.counts.messages > 0
+            text(view, "gone").is_none() && view.counts.messages > 0
         });
     };
     let (mut board, port) = plug();
@@ -119,8 +123,8 @@ fn a_board_that_is_unplugged_and_plugged_in_again_is_watched_again() {
     // The cable is pulled: the port is gone, and so is its name.
     std::fs::remove_file(&at).unwrap();
     drop((board, port));
-    watch.until("gone", |view| view.gone.is_some());
+    watch.until("gone", |view| text(view, "gone").is_some());
     let (mut board, _port) = plug();
-    watch.until("back", |view| view.gone.is_none());
+    watch.until("back", |view| text(view, "gone").is_none());
     say(&mut board, &mut watch);
 }

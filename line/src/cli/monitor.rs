@@ -46,41 +46,24 @@ pub struct Args {
     /// Let the page change settings, zero and calibrate [default: it only watches]
     #[arg(long, conflicts_with = "plain")]
     control: bool,
-    /// Send this command and print the board's answer; may be given more than once. With --plain, watching goes on
-    #[arg(long, value_name = "COMMAND")]
-    send: Vec<Send>,
+    /// Send this command and print the board's answer; may be given more than once: ping, samples (of every channel), network
+    /// (weights and activations), zero (the unloaded force sensor), save or forget (the weights), calibrate-emg. With --plain, watching goes
+    /// on
+    #[arg(long, value_name = "COMMAND", value_parser = send)]
+    send: Vec<Down>,
 }
 
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum Send {
-    /// Ask whether the board answers
-    Ping,
-    /// Ask for the last sample of every channel
-    Samples,
-    /// Ask for the network's weights and activations
-    Network,
-    /// Take the force sensor's readings as zero; refused while the finger is loaded
-    Zero,
-    /// Save the network's weights now
-    Save,
-    /// Forget the network's weights
-    Forget,
-    /// Calibrate the myosensors to the wearer: three prompts of 5 s
-    CalibrateEmg,
-}
-
-impl From<Send> for Down {
-    fn from(send: Send) -> Self {
-        match send {
-            Send::Ping => Self::Ping,
-            Send::Samples => Self::Samples,
-            Send::Network => Self::Network,
-            Send::Zero => Self::Zero,
-            Send::Save => Self::Save,
-            Send::Forget => Self::Forget,
-            Send::CalibrateEmg => Self::CalibrateEmg,
-        }
-    }
+fn send(name: &str) -> Result<Down, String> {
+    Ok(match name {
+        "ping" => Down::Ping,
+        "samples" => Down::Samples,
+        "network" => Down::Network,
+        "zero" => Down::Zero,
+        "save" => Down::Save,
+        "forget" => Down::Forget,
+        "calibrate-emg" => Down::CalibrateEmg,
+        _ => return Err("one of ping, samples, network, zero, save, forget, calibrate-emg".to_owned()),
+    })
 }
 
 /// Watches a line until it ends or the person does. 1: a command was refused.
@@ -101,12 +84,12 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     }
     let mut client = Client::open(&target)?;
     let mut refused = false;
-    for command in args.send.iter().map(|&send| Down::from(send)) {
-        let answer = client.ask(&command, ANSWER_WITHIN)?;
+    for command in &args.send {
+        let answer = client.ask(command, ANSWER_WITHIN)?;
         refused |= matches!(answer, Answer::Refused(_));
         // Watching prints it where it comes up the line.
         if !args.plain {
-            out::say!("{}", answer_words(&command, &answer))?;
+            out::say!("{}", answer_words(command, &answer))?;
         }
     }
     if !args.plain {

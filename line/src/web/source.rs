@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use tenax_frames::link::{ANSWER_WITHIN, Client, Counts, Heard, Target};
 use tenax_frames::play::{self, Playing, Reel};
@@ -17,8 +17,8 @@ pub enum News {
     Open,
     /// The line is gone, with the reason.
     Gone(String),
-    /// A message, or why a frame is none; the counts so far; the time of arrival.
-    Frame(Result<Heard, BadFrame>, Counts, Instant),
+    /// A message, or why a frame is none; the counts so far.
+    Frame(Result<Heard, BadFrame>, Counts),
     Scene(truth::Told),
     Played(play::Told),
     Answered(Down, Result<Answer, String>),
@@ -97,7 +97,7 @@ fn attend(mut client: Client, commands: &Receiver<Down>, news: &Sender<News>) ->
             }
         }
         match client.next_frame() {
-            Ok(Some(frame)) => news.send(News::Frame(frame, client.counts(), Instant::now())).ok()?,
+            Ok(Some(frame)) => news.send(News::Frame(frame, client.counts())).ok()?,
             Ok(None) => {}
             Err(error) => return Some(error.to_string()),
         }

@@ -1,21 +1,18 @@
-//! The state of a board from its messages, and as JSON for the page.
+//! The state of a board for the page, as JSON: each change is sent to the pages, which merge it as [`View`] does.
 
 use std::collections::{BTreeMap, VecDeque};
-use std::time::{Duration, Instant};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
 use anyhow::{Context, bail};
-use serde::Serialize;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 use tenax_frames::link::{Counts, Heard};
-use tenax_frames::play::{self, Playing};
+use tenax_frames::play;
 use tenax_frames::settings;
-use tenax_frames::truth::{self, Bench, Truth};
+use tenax_frames::truth;
 use tenax_frames::words::{answer_words, seconds, why, words};
 use tenax_hal_shim::channel::{CHANNELS, mv_from_sample};
-use tenax_hal_shim::detector::{DetectorId, DetectorSet, Evidence};
-use tenax_hal_shim::wire::{
-    About, Answer, BadFrame, Counters, EventKind, Senses, Setting, Slow, TickRecord, Up,
-};
+use tenax_hal_shim::detector::{DetectorId, DetectorSet};
+use tenax_hal_shim::wire::{About, Answer, BadFrame, EventKind, Setting, Slow, TickRecord, Up};
 use tenax_hal_shim::words::Fault;
 use tenax_logic::setting::SettingId;
 
@@ -23,67 +20,29 @@ use super::source::News;
 use crate::guide::selftest::{Session, Verdict};
 use crate::tables::input;
 
-/// Slow frames that are kept: 10 s.
+/// Slow frames (10 s) and lines of the log for a page that is opened later.
 const HISTORY: usize = 800;
-/// Lines of the log that are kept.
 const LOG: usize = 500;
-/// Span of the rates.
-const RATE_OVER: Duration = Duration::from_secs(2);
+/// Changes that a page may be behind: 20 s. A page that is further behind is dropped, and connects again.
+const CHANGES: usize = 4_096;
 /// Time for each touch of the self-test, s: as in `tenax selftest`.
 const TOUCH_S: u32 = 8;
 
-/// Newest frames in which a detector said slip or warned, was believed, and was acted on; its last conclusion.
-#[derive(Clone, Copy, Debug, Default, Serialize)]
-struct Fate {
-    said: Option<u32>,
-    believed: Option<u32>,
-    acted: Option<u32>,
-    evidence: Option<Evidence>,
-}
-
-/// Readings of a slow frame: time (s), largest vibration envelope (mV), Ft/Fn, S2 in force, load (N), flexor and extensor (mV).
-type Point = (f64, u32, Option<f64>, f64, Option<f64>, Option<i16>, Option<i16>);
-
 #[derive(Default)]
 pub struct View {
-    /// Why there is no line.
-    pub gone: Option<String>,
-    /// Messages of another version came last.
-    pub other_version: Option<String>,
+    state: Map<String, Value>,
+    pages: Vec<SyncSender<Value>>,
+    log: VecDeque<String>,
+    points: VecDeque<Value>,
     pub counts: Counts,
-    pub bench: Option<Bench>,
     about: Option<About>,
-    slow: Option<Slow>,
-    senses: Option<Senses>,
-    counters: Option<Counters>,
     settings: BTreeMap<u8, i32>,
-    history: VecDeque<Point>,
-    fates: [Fate; DetectorId::COUNT],
     /// Lost channels and capabilities, each with its words.
     faults: BTreeMap<String, String>,
-    log: VecDeque<String>,
-    /// Lines of the log so far, those that were dropped included.
-    said: u64,
-    truth: VecDeque<Truth>,
-    playing: Option<Playing>,
-    arrivals: VecDeque<(Instant, u32)>,
-    heard: u64,
     selftest: Option<Session>,
-    /// Self-tests that were begun.
+    /// Self-tests that were begun, and lines of the last that pages have.
     selftests: u64,
-}
-
-/// What a page has been told: points and true states up to a time (s), lines of the log, number of the self-test and its lines.
-#[derive(Clone, Copy, Debug)]
-pub struct After {
-    points_s: f64,
-    truth_s: f64,
-    lines: u64,
-    selftest: (u64, usize),
-}
-
-impl After {
-    pub const NOTHING: Self = Self { points_s: f64::MIN, truth_s: f64::MIN, lines: 0, selftest: (0, 0) };
+    lines: usize,
 }
 
 fn push<T>(all: &mut VecDeque<T>, most: usize, one: T) {
@@ -98,134 +57,107 @@ fn thousandths(value: impl Into<f64>) -> f64 {
 }
 
 impl View {
-    /// Updates it.
-    pub fn take(&mut self, news: News) {
-        if let Some(test) = &mut self.selftest {
-            match &news {
-                News::Frame(Ok(heard), ..) => test.take(Some(&heard.received.message)),
-                News::Played(play::Told::Message(heard)) => test.take(Some(&heard.received.message)),
-                News::Gone(why) => test.fail(&format!("the line is gone: {why}")),
-                _ => test.take(None),
-            }
-        }
-        match news {
-            News::Open => {
-                self.gone = None;
-                self.say("the line is open".to_owned());
-            }
-            News::Gone(why) => {
-                if self.gone.is_none() {
-                    self.say(format!("the line is gone: {why}; it is opened again when it is back"));
-                }
-                self.gone = Some(why);
-                self.arrivals.clear();
-            }
-            News::Frame(frame, counts, at) => {
-                self.counts = counts;
-                match frame {
-                    Ok(heard) => self.hear(heard, at),
-                    Err(bad @ BadFrame::Version(_)) => self.other_version = Some(why(bad)),
-                    Err(_) => {}
-                }
-            }
-            News::Scene(truth::Told::Truth(truth)) => {
-                // A scene that was started anew begins at 0 again.
-                if self.truth.back().is_some_and(|last| last.t_s > truth.t_s) {
-                    self.truth.clear();
-                }
-                push(&mut self.truth, HISTORY, truth);
-            }
-            News::Scene(truth::Told::Bench(bench)) => self.bench = bench,
-            News::Played(play::Told::Message(heard)) => {
-                self.counts.messages += 1;
-                self.counts.missed += u64::from(heard.missed);
-                self.hear(*heard, Instant::now());
-            }
-            News::Played(play::Told::At(playing)) => self.playing = Some(playing),
-            News::Played(play::Told::Again) => self.begin_anew(),
-            News::Played(play::Told::Over) => {}
-            News::Answered(command, Ok(answer)) => {
-                self.say(format!("> {}", answer_words(&command, &answer)));
-            }
-            News::Answered(command, Err(why)) => self.say(format!("> {command:?}: {why}")),
-        }
+    /// The merged changes.
+    pub const fn state(&self) -> &Map<String, Value> {
+        &self.state
+    }
+
+    /// Adds a page: the state, then its changes.
+    pub fn join(&mut self) -> Receiver<Value> {
+        let (page, changes) = sync_channel(CHANGES);
+        let mut state = self.state.clone();
+        state.insert("log".to_owned(), json!(self.log));
+        state.insert("points".to_owned(), json!(self.points));
+        state.insert("selftest".to_owned(), self.selftest_state(0));
+        // There is room.
+        let _sent = page.try_send(Value::Object(state));
+        self.pages.push(page);
+        changes
+    }
+
+    /// Merges a change, an object, into the state and sends it to the pages.
+    pub fn tell(&mut self, change: Value) {
+        self.state.extend(change.as_object().cloned().unwrap_or_default());
+        self.pages.retain(|page| page.try_send(change.clone()).is_ok());
     }
 
     /// Adds a line to the log.
-    pub fn say(&mut self, line: String) {
-        push(&mut self.log, LOG, line);
-        self.said += 1;
+    pub fn say(&mut self, line: &str) {
+        push(&mut self.log, LOG, line.trim_start().to_owned());
+        self.tell(json!({ "log": [line.trim_start()] }));
     }
 
-    /// The settings as a file, once the board has sent its identity.
-    pub fn backup(&self) -> Option<String> {
-        let settings: Vec<Setting> =
-            self.settings.iter().map(|(&id, &value)| Setting { id, value }).collect();
-        self.about.as_ref().map(|about| settings::backup(about, &settings))
-    }
-
-    /// Self-test: `start`, with channels after it, `skip` or `stop`. Fails if that cannot be done now.
-    pub fn selftest(&mut self, words: &[String]) -> anyhow::Result<()> {
-        match words.split_first() {
-            Some((first, channels)) if first == "start" => {
-                if let Some(gone) = &self.gone {
-                    bail!("no line: {gone}");
+    /// Takes what came, and tells the pages.
+    pub fn take(&mut self, news: News) {
+        self.test(&news);
+        match news {
+            News::Open => {
+                self.tell(json!({ "gone": null }));
+                self.say("the line is open");
+            }
+            News::Gone(why) => {
+                if self.state.get("gone").is_none_or(Value::is_null) {
+                    self.say(&format!("the line is gone: {why}; it is opened again when it is back"));
                 }
-                let flag = |id| self.setting(id).context("the board has not said its settings yet");
-                let (head, no_wearer) = (flag(SettingId::Head)? != 0, flag(SettingId::NoWearer)? != 0);
-                self.selftest = Some(Session::begin(channels, head, no_wearer, TOUCH_S)?);
-                self.selftests += 1;
+                self.tell(json!({ "gone": why }));
             }
-            Some((first, [])) if first == "skip" => {
-                self.selftest.as_mut().context("no test goes on")?.skip();
+            News::Frame(frame, counts) => {
+                if counts.bad_frames != self.counts.bad_frames || counts.missed != self.counts.missed {
+                    self.tell(json!({ "missed": counts.missed, "bad_frames": counts.bad_frames }));
+                }
+                self.counts = counts;
+                match frame {
+                    Ok(heard) => self.hear(&heard),
+                    Err(bad @ BadFrame::Version(_)) => self.tell(json!({ "other_version": why(bad) })),
+                    Err(_) => {}
+                }
             }
-            Some((first, [])) if first == "stop" => self.selftest = None,
-            _ => bail!("write start, skip or stop"),
+            News::Scene(truth::Told::Truth(truth)) => self.tell(json!({ "truth": truth })),
+            News::Scene(truth::Told::Bench(bench)) => {
+                self.tell(json!({ "bench": bench.map(|bench| bench.keys) }));
+            }
+            News::Played(play::Told::Message(heard)) => self.hear(&heard),
+            News::Played(play::Told::At(playing)) => self.tell(json!({ "playing": playing })),
+            News::Played(play::Told::Again) => self.begin_anew(),
+            News::Played(play::Told::Over) => {}
+            News::Answered(command, Ok(answer)) => {
+                self.say(&format!("> {}", answer_words(&command, &answer)));
+            }
+            News::Answered(command, Err(why)) => self.say(&format!("> {command:?}: {why}")),
         }
-        Ok(())
     }
 
-    fn setting(&self, id: SettingId) -> Option<i32> {
-        self.settings.get(&id.number()).copied()
-    }
-
-    fn t_s(&self) -> f64 {
-        self.slow.as_ref().map_or(0.0, |slow| seconds(slow.frame))
-    }
-
-    /// Frames of the board's time, and slow frames that came, both a second of this computer's time.
-    fn rates(&self) -> Option<(f64, f64)> {
-        let ((first, from), (last, to)) = (self.arrivals.front()?, self.arrivals.back()?);
-        let lasted_s = last.duration_since(*first).as_secs_f64();
-        (lasted_s > 0.5).then(|| {
-            (f64::from(to.wrapping_sub(*from)) / lasted_s, (self.arrivals.len() - 1) as f64 / lasted_s)
-        })
-    }
-
-    fn hear(&mut self, Heard { received, missed }: Heard, at: Instant) {
-        self.heard += 1;
-        self.other_version = None;
-        // Before the first message none is missed.
-        if missed > 0 && self.heard > 1 {
-            self.say(format!("{missed} messages missed"));
+    fn hear(&mut self, Heard { received, missed }: &Heard) {
+        if self.state.get("other_version").is_some_and(Value::is_string) {
+            self.tell(json!({ "other_version": null }));
         }
-        let message = received.message;
-        match &message {
+        if *missed > 0 {
+            self.say(&format!("{missed} messages missed"));
+        }
+        let message = &received.message;
+        match message {
             Up::Raw(_) | Up::Taken { .. } => {}
-            Up::Slow(slow) => self.slow(slow.clone(), at),
-            Up::Senses(senses) => self.senses = Some(senses.clone()),
-            Up::Counters(counters) => self.counters = Some(*counters),
-            Up::About(about) => self.about(about),
-            Up::Answer { answer: Answer::About(about), .. } => self.about(about),
+            Up::Slow(slow) => self.slow(slow),
+            Up::Senses(senses) => {
+                let all = CHANNELS.iter().zip(&senses.samples);
+                let sensors: Vec<_> =
+                    all.map(|(channel, &sample)| (channel.name, mv_from_sample(sample))).collect();
+                self.tell(json!({ "sensors": sensors }));
+            }
+            Up::Counters(counters) => self.tell(json!({ "counters": counters })),
+            Up::About(about) | Up::Answer { answer: Answer::About(about), .. } => {
+                self.about = Some(about.clone());
+                self.set(&about.settings);
+            }
             Up::Answer { answer: Answer::Setting(setting), .. } => self.set(&[*setting]),
             Up::Answer { answer: Answer::Settings(all), .. } => self.set(all),
             Up::Answer { answer: Answer::Last(last), .. } if last.after.is_some() && last.from == 0 => {
-                self.say(words(&message));
+                self.say(&words(message));
             }
             Up::Answer { .. } => {}
             Up::Hello { .. } => {
                 self.begin_anew();
-                self.say(words(&message));
+                self.say(&words(message));
             }
             Up::Event(event) => {
                 match event.kind {
@@ -235,33 +167,22 @@ impl View {
                     }
                     _ => {}
                 }
-                self.say(words(&message));
+                self.say(&words(message));
             }
-            Up::Saved { .. } | Up::Restored(_) => self.say(words(&message)),
+            Up::Saved { .. } | Up::Restored(_) => self.say(&words(message)),
         }
     }
 
     fn begin_anew(&mut self) {
         self.faults.clear();
-        self.history.clear();
-        self.fates = Default::default();
+        self.points.clear();
+        self.tell(json!({ "restarted": true, "faults": [] }));
     }
 
-    fn slow(&mut self, slow: Slow, now: Instant) {
-        for id in DetectorId::ALL {
-            let fate = &mut self.fates[id as usize];
-            let is_in = |set: fn(&TickRecord) -> DetectorSet| {
-                slow.ticks.iter().any(|tick| set(tick).contains(id)).then_some(slow.frame)
-            };
-            fate.said = is_in(|tick| tick.said).or(fate.said);
-            fate.believed = is_in(|tick| tick.believed).or(fate.believed);
-            fate.acted = is_in(|tick| tick.acted).or(fate.acted);
-        }
-        for (id, evidence) in &slow.evidence {
-            self.fates[*id as usize].evidence = Some(*evidence);
-        }
+    fn slow(&mut self, slow: &Slow) {
         let vibration = slow.ticks.iter().map(|tick| tick.vibration).max().unwrap_or(0);
-        let point = (
+        // Time (s), largest vibration envelope (mV), Ft/Fn, S2 in force, load (N), flexor and extensor (mV).
+        let point = json!([
             seconds(slow.frame),
             mv_from_sample(vibration),
             slow.forces.and_then(|forces| forces.ratio_permille).map(thousandths),
@@ -269,22 +190,40 @@ impl View {
             slow.forces.map(|forces| thousandths(forces.load_mn)),
             slow.flexor_mv,
             slow.extensor_mv,
-        );
-        push(&mut self.history, HISTORY, point);
-        self.arrivals.push_back((now, slow.frame));
-        while self.arrivals.front().is_some_and(|(at, _)| now.duration_since(*at) > RATE_OVER) {
-            self.arrivals.pop_front();
-        }
-        self.slow = Some(slow);
-    }
-
-    fn about(&mut self, about: &About) {
-        self.set(&about.settings);
-        self.about = Some(about.clone());
+        ]);
+        push(&mut self.points, HISTORY, point.clone());
+        // Only a test injects slip.
+        let detectors = DetectorId::ALL.into_iter().filter(|&id| id != DetectorId::Injected).map(|id| {
+            let ever =
+                |set: fn(&TickRecord) -> DetectorSet| slow.ticks.iter().any(|tick| set(tick).contains(id));
+            let evidence = slow.evidence.iter().find(|(own, _)| *own == id).map(|(_, evidence)| evidence);
+            json!([
+                id.name(),
+                ever(|tick| tick.said),
+                ever(|tick| tick.believed),
+                ever(|tick| tick.acted),
+                evidence
+            ])
+        });
+        self.tell(json!({
+            "t_s": seconds(slow.frame),
+            "frame": slow.frame,
+            "mode": format!("{:?}", slow.mode),
+            "line": format!("{:?}", slow.line),
+            "wearer_active": slow.wearer_active,
+            "points": [point],
+            "detectors": detectors.collect::<Vec<_>>(),
+        }));
     }
 
     fn set(&mut self, all: &[Setting]) {
         self.settings.extend(all.iter().map(|setting| (setting.id, setting.value)));
+        let [s1_mv, emg_on_mv] = [SettingId::S1, SettingId::EmgOn].map(|id| self.setting(id));
+        self.tell(json!({ "s1_mv": s1_mv, "emg_on_mv": emg_on_mv }));
+    }
+
+    fn setting(&self, id: SettingId) -> Option<i32> {
+        self.settings.get(&id.number()).copied()
     }
 
     fn fault(&mut self, fault: &Fault) {
@@ -300,90 +239,14 @@ impl View {
             Fault::CapabilityBack(capability) => _ = self.faults.remove(&format!("{capability:?}")),
             _ => {}
         }
+        self.tell(json!({ "faults": self.faults.values().collect::<Vec<_>>() }));
     }
 
-    /// The state, and what is new for a page, which is noted in `after`.
-    pub fn event(&self, place: &str, after: &mut After) -> Value {
-        let truth_s = self.truth.back().map_or(f64::MIN, |truth| truth.t_s);
-        // A board or a scene that started anew counts from 0 again.
-        if self.t_s() < after.points_s {
-            after.points_s = f64::MIN;
-        }
-        if truth_s < after.truth_s {
-            after.truth_s = f64::MIN;
-        }
-        let points: Vec<&Point> = self.history.iter().filter(|point| point.0 > after.points_s).collect();
-        let truths = self.truth.iter().filter(|truth| truth.t_s > after.truth_s);
-        let truths: Vec<_> =
-            truths.map(|truth| (truth.t_s, truth.slide_mm_s, truth.needed_n, truth.grip_n)).collect();
-        let new = usize::try_from(self.said - after.lines).unwrap_or(LOG).min(self.log.len());
-        let log: Vec<&str> =
-            self.log.iter().skip(self.log.len() - new).map(|line| line.trim_start()).collect();
-        // Only a test injects slip.
-        let detectors: Vec<_> = DetectorId::ALL
-            .into_iter()
-            .filter(|&id| id != DetectorId::Injected)
-            .map(|id| (id.name(), self.fates[id as usize]))
-            .collect();
-        let slow = self.slow.as_ref();
-        let sensors = self.senses.as_ref().map(|senses| {
-            let all = CHANNELS.iter().zip(&senses.samples);
-            all.map(|(channel, &sample)| (channel.name, mv_from_sample(sample))).collect::<Vec<_>>()
-        });
-        let event = json!({
-            "place": place,
-            "gone": self.gone,
-            "other_version": self.other_version,
-            "t_s": self.t_s(),
-            "frame": slow.map(|slow| slow.frame),
-            "mode": slow.map(|slow| format!("{:?}", slow.mode)),
-            "line": slow.map(|slow| format!("{:?}", slow.line)),
-            "flexor_mv": slow.and_then(|slow| slow.flexor_mv),
-            "extensor_mv": slow.and_then(|slow| slow.extensor_mv),
-            "wearer_active": slow.is_some_and(|slow| slow.wearer_active),
-            "s1_mv": self.setting(SettingId::S1),
-            "emg_on_mv": self.setting(SettingId::EmgOn),
-            "sensors": sensors,
-            "detectors": detectors,
-            "faults": self.faults.values().collect::<Vec<_>>(),
-            "rates": self.rates(),
-            "missed": self.counts.missed,
-            "bad_frames": self.counts.bad_frames,
-            "counters": self.counters.unwrap_or_default(),
-            "points": points,
-            "log": log,
-            "truth": self.truth.back(),
-            "truths": truths,
-            "bench": self.bench.as_ref().map(|bench| &bench.keys),
-            "playing": self.playing,
-            "selftest": self.selftest.as_ref().map(|test| self.selftest_event(test, after.selftest)),
-        });
-        let lines = self.selftest.as_ref().map_or(0, |test| test.said().len());
-        *after = After { points_s: self.t_s(), truth_s, lines: self.said, selftest: (self.selftests, lines) };
-        event
-    }
-
-    /// The state of the self-test; its lines and verdicts only where there are new ones.
-    fn selftest_event(&self, session: &Session, (number, lines): (u64, usize)) -> Value {
-        let (test, said, number_is_new) = (session.test(), session.said(), number != self.selftests);
-        let known = if number_is_new { 0 } else { lines.min(said.len()) };
-        let result = |&channel: &usize| {
-            let verdict = test.verdict(channel);
-            let passes = verdict.map(|verdict| matches!(verdict, Verdict::Pass(_)));
-            let words = verdict.map(|verdict| test.words(channel, verdict));
-            (CHANNELS[channel].name, input(channel), passes, words)
-        };
-        let is_new = known < said.len() || number_is_new;
-        json!({
-            "number": self.selftests,
-            "prompt": test.prompt(),
-            "over": test.is_over(),
-            "passes": test.passes(),
-            "failed": session.failed(),
-            "level": test.level(),
-            "lines": &said[known..],
-            "results": is_new.then(|| test.channels().iter().map(result).collect::<Vec<_>>()),
-        })
+    /// The settings as a file, once the board has sent its identity.
+    pub fn backup(&self) -> Option<String> {
+        let settings: Vec<Setting> =
+            self.settings.iter().map(|(&id, &value)| Setting { id, value }).collect();
+        self.about.as_ref().map(|about| settings::backup(about, &settings))
     }
 
     /// Every setting with value, unit, range in force, default and meaning.
@@ -398,5 +261,73 @@ impl View {
             })
         });
         json!({ "control": control, "settings": rows.as_slice() })
+    }
+
+    /// Self-test: `start`, with channels after it, `skip` or `stop`. Fails if that cannot be done now.
+    pub fn selftest(&mut self, words: &[String]) -> anyhow::Result<()> {
+        match words.split_first() {
+            Some((first, channels)) if first == "start" => {
+                if let Some(gone) = self.state.get("gone").and_then(Value::as_str) {
+                    bail!("no line: {gone}");
+                }
+                let flag = |id| self.setting(id).context("the board has not said its settings yet");
+                let (head, no_wearer) = (flag(SettingId::Head)? != 0, flag(SettingId::NoWearer)? != 0);
+                self.selftest = Some(Session::begin(channels, head, no_wearer, TOUCH_S)?);
+                self.selftests += 1;
+                self.lines = 0;
+            }
+            Some((first, [])) if first == "skip" => {
+                self.selftest.as_mut().context("no test goes on")?.skip();
+            }
+            Some((first, [])) if first == "stop" => self.selftest = None,
+            _ => bail!("write start, skip or stop"),
+        }
+        self.tell_selftest();
+        Ok(())
+    }
+
+    /// Lets the self-test take what came.
+    fn test(&mut self, news: &News) {
+        let Some(test) = &mut self.selftest else { return };
+        let message = match news {
+            News::Frame(Ok(heard), _) => Some(&heard.received.message),
+            News::Played(play::Told::Message(heard)) => Some(&heard.received.message),
+            _ => None,
+        };
+        let had_failed = test.failed().is_some();
+        match news {
+            News::Gone(why) => test.fail(&format!("the line is gone: {why}")),
+            _ => test.take(message),
+        }
+        if matches!(message, Some(Up::Senses(_))) || test.failed().is_some() != had_failed {
+            self.tell_selftest();
+        }
+    }
+
+    fn tell_selftest(&mut self) {
+        self.tell(json!({ "selftest": self.selftest_state(self.lines) }));
+        self.lines = self.selftest.as_ref().map_or(0, |test| test.said().len());
+    }
+
+    /// The state of the self-test: the lines after those that are known, and the verdicts if there are such lines.
+    fn selftest_state(&self, known: usize) -> Value {
+        let Some(session) = &self.selftest else { return Value::Null };
+        let (test, lines) = (session.test(), &session.said()[known..]);
+        let result = |&channel: &usize| {
+            let verdict = test.verdict(channel);
+            let passes = verdict.map(|verdict| matches!(verdict, Verdict::Pass(_)));
+            let words = verdict.map(|verdict| test.words(channel, verdict));
+            (CHANNELS[channel].name, input(channel), passes, words)
+        };
+        json!({
+            "number": self.selftests,
+            "prompt": test.prompt(),
+            "over": test.is_over(),
+            "passes": test.passes(),
+            "failed": session.failed(),
+            "level": test.level(),
+            "lines": lines,
+            "results": (!lines.is_empty()).then(|| test.channels().iter().map(result).collect::<Vec<_>>()),
+        })
     }
 }
