@@ -16,11 +16,11 @@ use std::time::Duration;
 
 use anyhow::anyhow;
 use serde_json::{Value, json};
+use tenax_frames::link::Target;
 use tenax_hal_shim::wire::{Down, Setting};
 use tenax_logic::setting::SettingId;
 use tiny_http::{Header, Method, Request, Response, Server};
 
-use self::source::Places;
 use self::view::View;
 
 const PAGE: &str = include_str!("web/page.html");
@@ -46,7 +46,7 @@ pub struct Web {
 
 impl Web {
     /// Watches a board, for a page on this port of 127.0.0.1; 0: any free port. Fails if the port cannot be had.
-    pub fn new(places: &Places, control: bool, port: u16) -> anyhow::Result<Self> {
+    pub fn new(line: &Target, truth: Option<&Target>, control: bool, port: u16) -> anyhow::Result<Self> {
         let server = Server::http((Ipv4Addr::LOCALHOST, port)).map_err(|error| {
             anyhow!("cannot serve a page on port {port}: choose another, or 0 for any that is free: {error}")
         })?;
@@ -54,9 +54,9 @@ impl Web {
         let (commands, waiting) = channel();
         let (sender, news) = channel();
         let view = Arc::<Mutex<View>>::default();
-        let bench = source::start(places, waiting, sender);
+        let bench = source::start(line, truth, waiting, sender);
         let shared = Shared { view, commands, bench, control, port };
-        shared.view().tell(json!({ "place": places.line.to_string() }));
+        shared.view().tell(json!({ "place": line.to_string(), "missed": 0, "bad_frames": 0 }));
         let own = shared.clone();
         thread::spawn(move || news.into_iter().for_each(|news| own.view().take(news)));
         Ok(Self { server, shared })

@@ -32,11 +32,7 @@ fn every_setting_is_set_read_back_exported_imported_and_reset() {
     assert_eq!(config(&["diff"]).1, "line-trusted-flag = 1, there 0\n");
     assert!(config(&["diff", file]).1.contains("s1-mv = 100, there 30\n"));
     assert_eq!(config(&["get", "s1-mv"]).1, "100\n");
-    // A file from a tool that has other settings is read, with a warning; one that names an unknown setting is not.
-    let exported = std::fs::read_to_string(file).unwrap();
-    std::fs::write(file, exported.replacen("settings: ", "settings: 1", 1)).unwrap();
-    let (done, _, error) = config(&["import", file]);
-    assert!(done && error.contains("was saved with other settings"), "{error}");
+    assert!(config(&["import", file]).0);
     assert_eq!(config(&["get", "s1-mv"]).1, "30\n");
     std::fs::write(file, "s1 = 30\n").unwrap();
     let (done, _, error) = config(&["import", file]);

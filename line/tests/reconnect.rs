@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use crc::{CRC_32_ISO_HDLC, Crc};
 use serialport::{SerialPort, TTYPort};
 use tenax_hal_shim::wire::{Counters, Down, FRAME_MAX, Up, VERSION, encode};
-use tenax_line::web::source::{News, Places, start};
+use tenax_line::web::source::{News, start};
 use tenax_line::web::view::View;
 
 const WITHIN: Duration = Duration::from_secs(20);
@@ -43,7 +43,7 @@ struct Watch {
 impl Watch {
     fn of(place: &str) -> Self {
         let ((commands, waiting), (sender, news)) = (channel(), channel());
-        start(&Places { line: place.parse().unwrap(), truth: None }, waiting, sender);
+        start(&place.parse().unwrap(), None, waiting, sender);
         Self { view: View::default(), news, _commands: commands }
     }
 

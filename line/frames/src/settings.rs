@@ -22,35 +22,16 @@ pub fn trusts_line(settings: &[Setting]) -> bool {
     settings.contains(&Setting { id: SettingId::LineTrusted.number(), value: 1 })
 }
 
-/// Hash (FNV-1a) of the settings' numbers, names and units, to notice a file of another tool.
-pub fn schema() -> u32 {
-    let rows = SettingId::ALL.map(|id| format!("{} {} {}\n", id.number(), id.row().name, id.row().unit));
-    rows.concat().bytes().fold(0x811c_9dc5, |hash, byte| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193))
-}
-
-/// The words before [`schema`] in a file.
-const SCHEMA: &str = "# Schema of the settings: ";
-
 /// A board's settings as a TOML file that names the board.
 pub fn backup(about: &About, settings: &[Setting]) -> String {
     let now = humantime::format_rfc3339_seconds(SystemTime::now());
     format!(
-        "# Saved {now} by tenax {}, wire version {VERSION}, schema {:016x}.\n# Board: {}.\n{SCHEMA}{:08x}\n{}",
+        "# Saved {now} by tenax {}, wire version {VERSION}, schema {:016x}.\n# Board: {}.\n{}",
         env!("CARGO_PKG_VERSION"),
         about.schema,
         identity_words(about),
-        schema(),
         toml(settings)
     )
-}
-
-/// A warning, if a backup was saved by a tool that has other settings.
-pub fn of_other_schema(text: &str) -> Option<String> {
-    let own = format!("{:08x}", schema());
-    let other = text.lines().find_map(|line| line.strip_prefix(SCHEMA)).filter(|other| *other != own)?;
-    Some(format!(
-        "was saved with other settings (schema {other}; this tool has {own}): look through what is set"
-    ))
 }
 
 /// Settings as a TOML file, with unit, range and meaning of each.
@@ -98,12 +79,9 @@ mod tests {
     fn a_backup_names_its_board_and_is_imported_as_it_was() {
         let all = SettingId::ALL.map(|id| Setting { id: id.number(), value: id.row().min });
         let text = backup(&About { schema: 0x1234, ..About::default() }, &all);
-        for word in
-            ["the host's own build", "schema 0000000000001234", &format!("settings: {:08x}", schema())]
-        {
+        for word in ["the host's own build", "schema 0000000000001234"] {
             assert!(text.contains(word), "{text}");
         }
-        assert_eq!(of_other_schema(&text), None);
         let mut back = of_toml(&text).unwrap();
         back.sort_by_key(|setting| setting.id);
         assert_eq!(back, all);

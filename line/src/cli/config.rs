@@ -131,12 +131,9 @@ fn wanted(command: &Command) -> anyhow::Result<Vec<Setting>> {
     }
 }
 
-/// The settings that a file names. Warns if it was saved by a tool that has others.
+/// The settings that a file names. A setting whose unit changed has another name.
 fn of_file(path: &Path) -> anyhow::Result<Vec<Setting>> {
     let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
-    if let Some(why) = settings::of_other_schema(&text) {
-        out::note!("{} {why}", path.display());
-    }
     settings::of_toml(&text).with_context(|| path.display().to_string())
 }
 

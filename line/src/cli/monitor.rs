@@ -10,7 +10,6 @@ use tenax_hal_shim::wire::{Answer, Down};
 use super::port;
 use crate::monitor;
 use crate::web::Web;
-use crate::web::source::Places;
 use tenax_frames::link::{ANSWER_WITHIN, Client, Target};
 use tenax_frames::play::Reel;
 use tenax_frames::tool::out;
@@ -76,8 +75,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         if let Target::File(path) = &target {
             Reel::open(path)?;
         }
-        let places = Places { line: target, truth: args.truth.clone() };
-        let web = Web::new(&places, args.control, args.web)?;
+        let web = Web::new(&target, args.truth.as_ref(), args.control, args.web)?;
         out::note!("open {} in a browser of this machine; Ctrl-C ends it", web.place());
         web.serve();
         return Ok(ExitCode::SUCCESS);

@@ -24,18 +24,16 @@ pub enum News {
     Answered(Down, Result<Answer, String>),
 }
 
-#[derive(Clone, Debug)]
-pub struct Places {
-    pub line: Target,
-    /// Address of the scene's true state.
-    pub truth: Option<Target>,
-}
-
-/// Starts the threads, which end when `news` is dropped. Lines sent to what it returns are done at the scene's bench, or control how a
+/// Starts the threads, which end when `news` is dropped; `truth` is the address of the scene's true state. Lines sent to what it returns are done at the scene's bench, or control how a
 /// recording is played.
-pub fn start(places: &Places, commands: Receiver<Down>, news: Sender<News>) -> Sender<String> {
+pub fn start(
+    line: &Target,
+    truth: Option<&Target>,
+    commands: Receiver<Down>,
+    news: Sender<News>,
+) -> Sender<String> {
     let (bench, acts) = channel();
-    if let Target::File(path) = places.line.clone() {
+    if let Target::File(path) = line.clone() {
         thread::spawn(move || {
             if let Err(error) = watch_recording(&path, &acts, &news) {
                 let _left = news.send(News::Gone(format!("{error:#}")));
@@ -43,12 +41,12 @@ pub fn start(places: &Places, commands: Receiver<Down>, news: Sender<News>) -> S
         });
         return bench;
     }
-    if let Some(target) = places.truth.clone() {
+    if let Some(target) = truth.cloned() {
         let news = news.clone();
         let mut tell = move |told| news.send(News::Scene(told)).is_ok();
         thread::spawn(move || truth::watch(&target, &acts, &mut tell));
     }
-    let target = places.line.clone();
+    let target = line.clone();
     thread::spawn(move || watch(&target, &commands, &news));
     bench
 }
