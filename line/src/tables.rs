@@ -65,18 +65,14 @@ pub fn input(channel: usize) -> String {
 /// Every setting with number, unit, range, default and meaning.
 pub fn settings() -> String {
     let mut page = String::from(
-        "# Settings\n\nThe number names the setting on the wire and in flash. A trusted line has wider ranges.\n\n\
+        "# Settings\n\nThe number names the setting on the wire and in flash.\n\n\
          | number | name with unit | range | default | meaning |\n|---|---|---|---|---|\n",
     );
     for id in SettingId::ALL {
         let (row, number, range) = (id.row(), id.number(), id.row().range());
-        let trusted = match row.range_in_force(true) {
-            trusted if trusted == range => String::new(),
-            trusted => format!(" (trusted: {} to {})", trusted.start(), trusted.end()),
-        };
         let (start, end) = range.into_inner();
         page += &format!(
-            "| {number} | `{}` | {start} to {end}{trusted} | {} | {} |\n",
+            "| {number} | `{}` | {start} to {end} | {} | {} |\n",
             row.name, row.default, row.meaning
         );
     }

@@ -27,20 +27,20 @@ fn every_setting_is_set_read_back_exported_imported_and_reset() {
     assert!(config(&["export", file]).0);
     let (done, _, error) = config(&["reset"]);
     assert!(!done && error.contains("--all"), "nothing is reset unasked: {error}");
-    assert!(config(&["diff"]).1.contains("s1-mv = 30, there 100\n"));
+    assert!(config(&["diff"]).1.contains("s1-mv = 20, there 100\n"));
     assert!(config(&["reset", "--all"]).0);
     assert_eq!(config(&["diff"]).1, "line-trusted-flag = 1, there 0\n");
-    assert!(config(&["diff", file]).1.contains("s1-mv = 100, there 30\n"));
+    assert!(config(&["diff", file]).1.contains("s1-mv = 100, there 20\n"));
     assert_eq!(config(&["get", "s1-mv"]).1, "100\n");
     assert!(config(&["import", file]).0);
-    assert_eq!(config(&["get", "s1-mv"]).1, "30\n");
+    assert_eq!(config(&["get", "s1-mv"]).1, "20\n");
     std::fs::write(file, "s1 = 30\n").unwrap();
     let (done, _, error) = config(&["import", file]);
     assert!(!done && error.contains("no setting is called s1; the settings are s1-mv"), "{error}");
 
     let (done, _, error) = config(&["set", "s1-mv=1501"]);
     assert!(!done && error.contains("s1-mv = 1501 is refused: it has to be 20 to 1500"), "{error}");
-    // From here on the narrower range is in force, and consent is needed.
+    // From here on consent is needed.
     assert!(config(&["set", "line-trusted-flag=0"]).0);
     let (done, _, error) = config(&["set", "s1-mv=120"]);
     assert!(!done && error.contains("nobody at the hand has consented"), "{error}");

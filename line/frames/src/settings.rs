@@ -17,11 +17,6 @@ pub fn named(name: &str) -> anyhow::Result<SettingId> {
     })
 }
 
-/// Whether the line is trusted with these settings: it decides the ranges of some.
-pub fn trusts_line(settings: &[Setting]) -> bool {
-    settings.contains(&Setting { id: SettingId::LineTrusted.number(), value: 1 })
-}
-
 /// A board's settings as a TOML file that names the board.
 pub fn backup(about: &About, settings: &[Setting]) -> String {
     let now = humantime::format_rfc3339_seconds(SystemTime::now());
@@ -37,11 +32,10 @@ pub fn backup(about: &About, settings: &[Setting]) -> String {
 /// Settings as a TOML file, with unit, range and meaning of each.
 pub fn toml(settings: &[Setting]) -> String {
     let mut text = String::from("# `tenax config import` sets what is named here.\n");
-    let trusted = trusts_line(settings);
     for setting in settings {
         if let Some(id) = SettingId::from_number(setting.id) {
             let row = id.row();
-            let (min, max) = row.range_in_force(trusted).into_inner();
+            let (min, max) = row.range().into_inner();
             // Writing into a String cannot fail.
             let _ = writeln!(
                 text,
@@ -53,7 +47,7 @@ pub fn toml(settings: &[Setting]) -> String {
     text
 }
 
-/// The settings that a TOML file names. `line-trusted-flag` comes last: after it narrower ranges can be in force.
+/// The settings that a TOML file names. `line-trusted-flag` comes last: without trust, what follows would need consent.
 /// An error says what is wrong with the text.
 pub fn of_toml(text: &str) -> anyhow::Result<Vec<Setting>> {
     let table: toml::Table = text.parse().context("this is no TOML")?;

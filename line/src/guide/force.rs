@@ -129,7 +129,7 @@ mod tests {
         let told = of(|n| 1.2 * n);
         assert!(told.contains("        20.0 "), "{told}");
         assert!(told.contains("change the amplifier"), "{told}");
-        assert!(told.contains("\n  tenax config set force-ceiling-mn=48000 loaded-mn=700\n"), "{told}");
+        assert!(told.contains("\n  tenax config set force-ceiling-mn=48000 loaded-mn=720\n"), "{told}");
         // At most what a setting may be: an earlier ceiling or load is the safe side.
         assert!(of(|n| 1.8 * n).contains("force-ceiling-mn=60000 "));
         assert!(of(|n| n * n.sqrt()).contains("not straight"));
