@@ -231,13 +231,16 @@ fn slow_words(slow: &Slow) -> String {
         Some(MotorDrive::Open(duty)) => text += &format!(" opening {}", duty.as_per_mille()),
         Some(MotorDrive::Coast) | None => {}
     }
-    let sets: [(&str, fn(&TickRecord) -> DetectorSet); 3] =
-        [("said", |tick| tick.said), ("believed", |tick| tick.believed), ("acted", |tick| tick.acted)];
-    for (word, set) in sets {
-        let ever = slow.ticks.iter().fold(DetectorSet::NONE, |ever, tick| ever.or(set(tick)));
-        if !ever.is_empty() {
-            text += &format!(" {word}: {}", names(ever));
-        }
+    let ever = |set: fn(&TickRecord) -> DetectorSet| {
+        names(slow.ticks.iter().fold(DetectorSet::NONE, |ever, tick| ever.or(set(tick))))
+    };
+    let sets = [
+        ("said", ever(|tick| tick.said)),
+        ("believed", ever(|tick| tick.believed)),
+        ("acted", ever(|tick| tick.acted)),
+    ];
+    for (word, names) in sets.iter().filter(|(_, names)| !names.is_empty()) {
+        text += &format!(" {word}: {names}");
     }
     text += if slow.lesson.is_some() { " learning" } else { "" };
     text += if slow.wearer_active { " wearer" } else { "" };
