@@ -69,10 +69,12 @@ impl Recorder for Tester {
     fn line(&mut self, bytes: &[u8]) {
         for heard in bytes.iter().filter_map(|&byte| self.inbox.push(byte)).flatten() {
             let Up::Senses(senses) = heard.received.message else { continue };
-            let said = self.test.hear(&senses);
+            let known = self.test.said.len();
+            self.test.hear(&senses);
+            let said = &self.test.said[known..];
             let mut talk = self.talk.lock().unwrap();
             talk.acts.extend(said.iter().filter_map(|line| line.parse::<Act>().ok()));
-            talk.said.extend(said);
+            talk.said.extend(said.iter().cloned());
         }
     }
 }
@@ -109,7 +111,7 @@ type Is = fn(Verdict) -> bool;
 fn wrong(faults: &str, seed: u64, expected: &[(usize, Is)]) -> Option<String> {
     let (test, said) = tested(faults, seed);
     let is_right = |channel: usize| {
-        let verdict = test.verdict(channel);
+        let verdict = test.verdicts[channel];
         match expected.iter().find(|(own, _)| *own == channel) {
             Some((_, is_it)) => verdict.is_some_and(is_it),
             None => matches!(verdict, Some(Verdict::Pass(_))),
@@ -117,7 +119,7 @@ fn wrong(faults: &str, seed: u64, expected: &[(usize, Is)]) -> Option<String> {
     };
     let wrong = (0..COUNT).filter(|&channel| !is_right(channel));
     let wrong: Vec<_> =
-        wrong.map(|channel| format!("{}: {:?}", CHANNELS[channel].name, test.verdict(channel))).collect();
+        wrong.map(|channel| format!("{}: {:?}", CHANNELS[channel].name, test.verdicts[channel])).collect();
     (!wrong.is_empty()).then(|| format!("seed {seed}{faults}{wrong:?}\n{}", said.join("\n")))
 }
 
@@ -175,14 +177,14 @@ fn each_exchanged_pair_is_found_and_no_other() {
         let [own, other] = [a, b].map(|name| by_name(name).unwrap());
         let (test, said) = tested(&fault(a, "swapped", b), seed);
         // One side is enough: what the reflex does meanwhile may move a wrong wire, too.
-        let names = |asked, other| test.verdict(asked) == Some(Verdict::Moved(other));
+        let names = |asked, other| test.verdicts[asked] == Some(Verdict::Moved(other));
         let blames =
-            |asked, other| matches!(test.verdict(asked), Some(Verdict::Moved(moved)) if moved != other);
+            |asked, other| matches!(test.verdicts[asked], Some(Verdict::Moved(moved)) if moved != other);
         let is_named = (names(own, other) || names(other, own)) && !blames(own, other) && !blames(other, own);
         // What stands on a muscle's wire can drive the motor all the time.
         let drives = [own, other].iter().any(|&n| Role::of(n, false) == Role::Muscle);
         let mut others = (0..COUNT).filter(|n| !([own, other].contains(n) || drives && *n == MOTOR_CURRENT));
-        let all_pass = others.all(|n| matches!(test.verdict(n), Some(Verdict::Pass(_))));
+        let all_pass = others.all(|n| matches!(test.verdicts[n], Some(Verdict::Pass(_))));
         (!is_named || !all_pass).then(|| format!("seed {seed}, {a} and {b}:\n{}", said.join("\n")))
     });
 }

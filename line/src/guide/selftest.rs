@@ -1,18 +1,20 @@
 //! Tests every sensor's wire: at rest each has its level, and what is touched is what moves.
 //!
-//! [`Selftest`] takes readings and gives lines; [`Session`] runs it on a line. A prompt begins with the verb and the channel's name: it can
+//! A prompt begins with the verb and the channel's name: it can
 //! be piped to a served scene's bench.
 
 mod session;
 
-pub use self::session::{Session, named, run};
+pub use self::session::{named, run};
+
+use std::time::{Duration, Instant};
 
 use serde::Serialize;
 use tenax_hal_shim::channel::{
     CHANNELS, COUNT, Channel, FRAME_HZ, MOTOR_CURRENT, OPENING, PVDF, PVDF_COUNT, REFERENCE_MV, Role,
     SAMPLE_MAX,
 };
-use tenax_hal_shim::wire::Senses;
+use tenax_hal_shim::wire::{Senses, Up};
 
 use crate::tables::input;
 
@@ -22,6 +24,8 @@ const WATCHED: u32 = FRAME_HZ / 2;
 /// Before the next prompt nothing may move for this many readings; at most for this time, frames.
 const STILL: usize = 20;
 const STILL_WITHIN: u32 = 3 * FRAME_HZ;
+/// A board that is silent for longer sends no readings.
+const SILENCE: Duration = Duration::from_secs(4);
 /// Range of a working wire, mV: films have no narrower one of their own.
 const DEAD_MV: f64 = 45.0;
 const SHORT_MV: f64 = 3_255.0;
@@ -112,7 +116,15 @@ enum Step {
 
 pub struct Selftest {
     roles: [Role; COUNT],
-    channels: Vec<usize>,
+    /// In the order in which they are asked for.
+    pub channels: Vec<usize>,
+    /// None: the channel was not asked for.
+    pub verdicts: [Option<Verdict>; COUNT],
+    /// Lines for the person, the oldest first.
+    pub said: Vec<String>,
+    /// Why the test cannot go on.
+    pub failed: Option<String>,
+    heard: Instant,
     limit: u32,
     step: Step,
     began: Option<u32>,
@@ -122,7 +134,6 @@ pub struct Selftest {
     /// Mean of the last readings in which nothing moved: what is held, creeps or drifts is no touch.
     rest_mv: Row,
     noise_mv: Row,
-    verdicts: [Option<Verdict>; COUNT],
 }
 
 impl Selftest {
@@ -131,6 +142,13 @@ impl Selftest {
         Self {
             roles: std::array::from_fn(|channel| Role::of(channel, head_is_fitted)),
             channels,
+            verdicts: [None; COUNT],
+            said: vec![
+                "The hand is empty: the reflex may close it on what is pressed.".to_owned(),
+                REST_PROMPT.to_owned(),
+            ],
+            failed: None,
+            heard: Instant::now(),
             limit: limit_s * FRAME_HZ,
             step: Step::Rest,
             began: None,
@@ -138,25 +156,11 @@ impl Selftest {
             rows: Vec::new(),
             rest_mv: [0.0; COUNT + PVDF_COUNT],
             noise_mv: [0.0; COUNT + PVDF_COUNT],
-            verdicts: [None; COUNT],
         }
     }
 
     pub fn is_over(&self) -> bool {
         self.step == Step::Over
-    }
-
-    /// None: the channel was not asked for.
-    pub fn verdict(&self, channel: usize) -> Option<Verdict> {
-        self.verdicts[channel]
-    }
-
-    pub const fn has_begun(&self) -> bool {
-        self.began.is_some()
-    }
-
-    pub fn channels(&self) -> &[usize] {
-        &self.channels
     }
 
     /// The instruction for now.
@@ -177,40 +181,62 @@ impl Selftest {
         Some(Level { mv: row[asked], moved_mv: self.moved(row, asked) * needed_mv, needed_mv })
     }
 
-    /// Leaves out the channel that is asked for; lines for the person.
-    pub fn skip(&mut self) -> Vec<String> {
-        let Step::Asked(n, ..) = self.step else { return Vec::new() };
-        self.begin(Step::Stills(n + 1, false), self.last);
-        vec!["   left out".to_owned()]
+    /// Leaves out the channel that is asked for.
+    pub fn skip(&mut self) {
+        if let Step::Asked(n, ..) = self.step {
+            self.begin(Step::Stills(n + 1, false), self.last);
+            self.said.push("   left out".to_owned());
+        }
     }
 
-    /// Takes readings; lines for the person.
-    pub fn hear(&mut self, senses: &Senses) -> Vec<String> {
+    /// Takes a message, or notes that none came. A board that sends no readings or starts anew fails the test.
+    pub fn take(&mut self, message: Option<&Up>) {
+        match message {
+            _ if self.is_over() || self.failed.is_some() => {}
+            Some(Up::Senses(senses)) => self.hear(senses),
+            Some(Up::Hello { .. }) if self.began.is_some() => {
+                self.fail("the board was switched on anew: start again");
+            }
+            _ if self.heard.elapsed() > SILENCE => self.fail("the board sends no readings"),
+            _ => {}
+        }
+    }
+
+    /// Ends the test, unless it is over.
+    pub fn fail(&mut self, why: &str) {
+        if !self.is_over() {
+            self.failed.get_or_insert_with(|| why.to_owned());
+        }
+    }
+
+    /// Takes readings.
+    pub fn hear(&mut self, senses: &Senses) {
         let since = senses.frame.wrapping_sub(*self.began.get_or_insert(senses.frame));
         let row = row(senses);
-        self.last = senses.frame;
+        (self.last, self.heard) = (senses.frame, Instant::now());
         self.rows.push(row);
         match self.step {
             Step::Rest if since >= REST => {
                 self.judge_rest();
-                self.ask(0, false, senses.frame)
+                self.ask(0, false, senses.frame);
             }
             Step::Asked(n, again, moved) => {
                 let moved = moved.or_else(|| self.moves(&row).then_some(senses.frame));
                 self.step = Step::Asked(n, again, moved);
                 let watched = moved.is_some_and(|at| senses.frame.wrapping_sub(at) >= WATCHED);
-                if watched || since >= self.limit { self.touched(n, again, senses.frame) } else { Vec::new() }
+                if watched || since >= self.limit {
+                    self.touched(n, again, senses.frame);
+                }
             }
             Step::Stills(n, again) => {
                 let last = self.rows.len().saturating_sub(STILL);
                 self.rows.drain(..last);
-                if self.rows.len() < STILL || (!self.is_still() && since < STILL_WITHIN) {
-                    return Vec::new();
+                if self.rows.len() >= STILL && (self.is_still() || since >= STILL_WITHIN) {
+                    self.rest_mv = mean(&self.rows);
+                    self.ask(n, again, senses.frame);
                 }
-                self.rest_mv = mean(&self.rows);
-                self.ask(n, again, senses.frame)
             }
-            Step::Rest | Step::Over => Vec::new(),
+            Step::Rest | Step::Over => {}
         }
     }
 
@@ -249,7 +275,7 @@ impl Selftest {
     }
 
     /// Asks for the channel in this place, or for the next that a touch can test.
-    fn ask(&mut self, n: usize, again: bool, frame: u32) -> Vec<String> {
+    fn ask(&mut self, n: usize, again: bool, frame: u32) {
         let can_be_touched = |channel: &usize| {
             *channel != MOTOR_CURRENT
                 && matches!(self.verdicts[*channel], None | Some(Verdict::Off(_) | Verdict::Moved(_)))
@@ -257,10 +283,11 @@ impl Selftest {
         let Some(n) = (n..self.channels.len()).find(|&n| can_be_touched(&self.channels[n])) else {
             self.begin(Step::Over, frame);
             self.compare();
-            return self.summary();
+            self.said.extend(self.summary());
+            return;
         };
         self.begin(Step::Asked(n, again, None), frame);
-        vec![self.asks(n, again)]
+        self.said.push(self.asks(n, again));
     }
 
     /// The prompt for the channel in this place.
@@ -313,7 +340,7 @@ impl Selftest {
     }
 
     /// Judges a touch.
-    fn touched(&mut self, n: usize, again: bool, frame: u32) -> Vec<String> {
+    fn touched(&mut self, n: usize, again: bool, frame: u32) {
         let asked = self.channels[n];
         let peak = |channel: usize| self.rows.iter().map(|row| self.moved(row, channel)).fold(0.0, f64::max);
         let peaks: [f64; COUNT] = std::array::from_fn(peak);
@@ -348,13 +375,12 @@ impl Selftest {
         if !keeps {
             self.verdicts[asked] = Some(verdict);
         }
-        let said = match verdict {
+        self.said.push(match verdict {
             Verdict::Pass(_) if stands_off => "   moves".to_owned(),
             Verdict::Pass(mv) => format!("   pass, {mv:.0} mV"),
             other => format!("   FAIL: {}", self.words(asked, other)),
-        };
+        });
         self.begin(Step::Stills(if repeats { n } else { n + 1 }, repeats), frame);
-        vec![said]
     }
 
     /// Largest distance of a channel from its rest, mV.

@@ -17,7 +17,7 @@ use tenax_hal_shim::words::Fault;
 use tenax_logic::setting::SettingId;
 
 use super::source::News;
-use crate::guide::selftest::{Session, Verdict};
+use crate::guide::selftest::{Selftest, Verdict};
 use crate::tables::input;
 
 /// Slow frames (10 s) and lines of the log for a page that is opened later.
@@ -39,7 +39,7 @@ pub struct View {
     settings: BTreeMap<u8, i32>,
     /// Lost channels and capabilities, each with its words.
     faults: BTreeMap<String, String>,
-    selftest: Option<Session>,
+    selftest: Option<Selftest>,
     /// Self-tests that were begun, and lines of the last that pages have.
     selftests: u64,
     lines: usize,
@@ -271,7 +271,7 @@ impl View {
                 }
                 let flag = |id| self.setting(id).context("the board has not said its settings yet");
                 let (head, no_wearer) = (flag(SettingId::Head)? != 0, flag(SettingId::NoWearer)? != 0);
-                self.selftest = Some(Session::begin(channels, head, no_wearer, TOUCH_S)?);
+                self.selftest = Some(Selftest::begin_named(channels, head, no_wearer, TOUCH_S)?);
                 self.selftests += 1;
                 self.lines = 0;
             }
@@ -293,27 +293,27 @@ impl View {
             News::Played(play::Told::Message(heard)) => Some(&heard.received.message),
             _ => None,
         };
-        let had_failed = test.failed().is_some();
+        let had_failed = test.failed.is_some();
         match news {
             News::Gone(why) => test.fail(&format!("the line is gone: {why}")),
             _ => test.take(message),
         }
-        if matches!(message, Some(Up::Senses(_))) || test.failed().is_some() != had_failed {
+        if matches!(message, Some(Up::Senses(_))) || test.failed.is_some() != had_failed {
             self.tell_selftest();
         }
     }
 
     fn tell_selftest(&mut self) {
         self.tell(json!({ "selftest": self.selftest_state(self.lines) }));
-        self.lines = self.selftest.as_ref().map_or(0, |test| test.said().len());
+        self.lines = self.selftest.as_ref().map_or(0, |test| test.said.len());
     }
 
     /// The state of the self-test: the lines after those that are known, and the verdicts if there are such lines.
     fn selftest_state(&self, known: usize) -> Value {
-        let Some(session) = &self.selftest else { return Value::Null };
-        let (test, lines) = (session.test(), &session.said()[known..]);
+        let Some(test) = &self.selftest else { return Value::Null };
+        let lines = &test.said[known..];
         let result = |&channel: &usize| {
-            let verdict = test.verdict(channel);
+            let verdict = test.verdicts[channel];
             let passes = verdict.map(|verdict| matches!(verdict, Verdict::Pass(_)));
             let words = verdict.map(|verdict| test.words(channel, verdict));
             (CHANNELS[channel].name, input(channel), passes, words)
@@ -323,10 +323,10 @@ impl View {
             "prompt": test.prompt(),
             "over": test.is_over(),
             "passes": test.passes(),
-            "failed": session.failed(),
+            "failed": test.failed,
             "level": test.level(),
             "lines": lines,
-            "results": (!lines.is_empty()).then(|| test.channels().iter().map(result).collect::<Vec<_>>()),
+            "results": (!lines.is_empty()).then(|| test.channels.iter().map(result).collect::<Vec<_>>()),
         })
     }
 }
