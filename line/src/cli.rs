@@ -12,10 +12,9 @@ pub mod selftest;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use tenax_frames::settings;
 use tenax_frames::tool::{exit, out};
 
-use crate::wiring;
+use crate::tables;
 
 /// Watches, records, plays and sets up a Tenax fingertip over its serial line.
 #[derive(Debug, Parser)]
@@ -41,10 +40,22 @@ enum Command {
     Config(config::Args),
     /// Calibrate a sensor or the wearer's muscles, step by step
     Calibrate(calibrate::Args),
-    /// Print the channel map as a Markdown table
+    /// Print channels, settings or wire messages as Markdown tables
+    #[command(after_help = "Examples:\n  tenax tables wiring | less\n  tenax tables settings > settings.md")]
+    Tables {
+        #[arg(value_enum)]
+        table: Table,
+    },
+}
+
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum Table {
+    /// Pins and valid voltages of every channel
     Wiring,
-    /// Print every setting with unit, range, default and meaning as a Markdown table
+    /// Every setting with number, unit, range, default and meaning
     Settings,
+    /// Every message and type of the serial line with its fields
+    Wire,
 }
 
 /// Runs the command line. 0: done. 2: it could not be run.
@@ -57,13 +68,17 @@ pub fn main() -> ExitCode {
         Command::Play(args) => play::main(&args),
         Command::Config(args) => config::main(&args),
         Command::Calibrate(args) => calibrate::main(&args),
-        Command::Wiring => page(&wiring::markdown()),
-        Command::Settings => page(&settings::markdown()),
+        Command::Tables { table } => print(table),
     })
 }
 
-fn page(text: &str) -> anyhow::Result<ExitCode> {
-    out::print(format_args!("{text}"))?;
+fn print(table: Table) -> anyhow::Result<ExitCode> {
+    let page = match table {
+        Table::Wiring => tables::wiring(),
+        Table::Settings => tables::settings(),
+        Table::Wire => tables::wire()?,
+    };
+    out::print(format_args!("{page}"))?;
     Ok(ExitCode::SUCCESS)
 }
 

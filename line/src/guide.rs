@@ -1,6 +1,4 @@
-//! Calibrations in which a person does something at the hand and is told what, step by step.
-//!
-//! Nobody has to press a key: the board's own readings say when a weight is on, a stroke is over, a muscle is relaxed.
+//! Calibrations that tell a person step by step what to do at the hand. The board's readings say when a step is done.
 
 pub mod emg;
 pub mod force;
@@ -10,34 +8,23 @@ pub mod selftest;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
-use tenax_hal_shim::wire::{Answer, Down, Forces, Refusal, Up};
-
 use tenax_frames::link::{ANSWER_WITHIN, Client};
+use tenax_frames::words::refusal_words;
+use tenax_hal_shim::wire::{Answer, Down, Forces, Up};
 
-/// Where the person reads what to do.
+/// Prints a line for the person.
 pub type Say<'a> = &'a mut dyn FnMut(&str) -> anyhow::Result<()>;
 
-/// Asks for something, and says what to do if the board refuses it.
+/// Sends a command. Fails if the board refuses it; says what to do.
 fn ask(client: &mut Client, command: Down) -> anyhow::Result<()> {
     match client.ask(&command, ANSWER_WITHIN)? {
         Answer::Done => Ok(()),
-        Answer::Refused(Refusal::NotArmed) => bail!(
-            "the board refuses {command:?}: nobody at the hand has consented. Contract both muscles for 2 s or press the blue \
-             button, then start again within a minute"
-        ),
-        Answer::Refused(Refusal::Loaded) => {
-            bail!("the board refuses {command:?}: something presses on the finger, or is held")
-        }
-        Answer::Refused(Refusal::SensorLost) => {
-            bail!(
-                "the board refuses {command:?}: the sensor it needs gives no number; `tenax monitor` says which"
-            )
-        }
-        other => bail!("the board refuses {command:?}: {other:?}"),
+        Answer::Refused(why) => bail!("the board refuses {command:?}: {}", refusal_words(&why)),
+        other => bail!("the board answers {other:?}"),
     }
 }
 
-/// Looks at every message until `found` gives something.
+/// Takes messages until `found` gives something.
 fn wait_for<T>(
     client: &mut Client,
     within: Duration,
@@ -56,7 +43,6 @@ fn wait_for<T>(
     bail!("waited {} s for {what}, in vain", within.as_secs())
 }
 
-/// The forces that a message tells.
 fn forces(message: &Up) -> Option<Forces> {
     match message {
         Up::Slow(slow) => slow.forces,

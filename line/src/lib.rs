@@ -1,4 +1,4 @@
-//! The tools for a Tenax fingertip's serial line: watched, recorded, played, set up.
+//! The tools for a Tenax fingertip's serial line: it is watched, recorded, played and set up.
 //!
 //! One file a command in [`cli`]; the page of `tenax monitor` is [`web`]. `cargo install --locked --path line` installs them alone.
 #![forbid(unsafe_code)]
@@ -6,5 +6,5 @@
 pub mod cli;
 pub mod guide;
 pub mod monitor;
+pub mod tables;
 pub mod web;
-pub mod wiring;

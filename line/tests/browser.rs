@@ -1,33 +1,40 @@
-//! A headless Chromium, told what to do through a pair of pipes (its DevTools protocol).
+//! The page in a headless Chromium, driven through a pair of pipes (its DevTools protocol).
 
-use std::collections::VecDeque;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 use tempfile::TempDir;
+use tenax_logic::setting::SettingId;
 
-/// A page in a browser of its own.
-pub struct Page {
+use crate::page::Web;
+use crate::selftest::fault;
+use crate::serving::{BENCH, Serving};
+
+const WITHIN: Duration = Duration::from_secs(40);
+
+struct Page {
     browser: Child,
     to: File,
     from: BufReader<File>,
     session: Option<String>,
     number: u64,
-    /// What the page's scripts threw and what it logged as errors.
-    pub errors: VecDeque<String>,
+    /// Exceptions and console errors of the page's scripts.
+    errors: Vec<String>,
     _folder: TempDir,
 }
 
 impl Page {
     /// Opens a page in the browser that the build script found.
-    pub fn open(url: &str) -> Self {
+    fn open(url: &str) -> Self {
         let chromium = option_env!("CHROMIUM").unwrap_or("chromium");
         let folder = tempfile::tempdir().unwrap();
         let [to, from] = ["to", "from"].map(|name| folder.path().join(name));
         assert!(Command::new("mkfifo").args([&to, &from]).status().unwrap().success());
-        // It reads from 3 and writes to 4. What it says of its own troubles is nothing to us.
+        // It reads from 3 and writes to 4.
         let browser = Command::new("sh")
             .args(["-c", "exec \"$@\" 3<\"$TO\" 4>\"$FROM\"", "sh", chromium])
             .args(["--headless", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe"])
@@ -40,11 +47,10 @@ impl Page {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        // Each waits for the other end, in the shell's order.
         let to = File::options().write(true).open(to).unwrap();
         let from = BufReader::new(File::open(from).unwrap());
-        let errors = VecDeque::new();
-        let mut page = Self { browser, to, from, session: None, number: 0, errors, _folder: folder };
+        let mut page =
+            Self { browser, to, from, session: None, number: 0, errors: Vec::new(), _folder: folder };
         let target = page.ask("Target.createTarget", json!({ "url": "about:blank" }));
         let attached =
             page.ask("Target.attachToTarget", json!({ "targetId": target["targetId"], "flatten": true }));
@@ -56,24 +62,22 @@ impl Page {
     }
 
     /// The value of an expression in the page.
-    pub fn value(&mut self, expression: &str) -> Value {
+    fn value(&mut self, expression: &str) -> Value {
         let asked = json!({ "expression": expression, "returnByValue": true, "awaitPromise": true });
         let answer = self.ask("Runtime.evaluate", asked);
         assert!(answer.get("exceptionDetails").is_none(), "{expression}: {answer}");
         answer["result"]["value"].clone()
     }
 
-    /// Makes its window as large as this, in pixels.
-    pub fn size(&mut self, width: u32, height: u32) {
-        let size = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 800 });
-        self.ask("Emulation.setDeviceMetricsOverride", size);
-    }
-
-    /// Writes its picture, as a PNG in base64, where `TENAX_PICTURE` says, with this after the name; else nowhere.
-    pub fn picture(&mut self, name: &str) {
-        let Ok(path) = std::env::var("TENAX_PICTURE") else { return };
-        let shot = self.ask("Page.captureScreenshot", json!({ "format": "png" }));
-        std::fs::write(path + name, shot["data"].as_str().unwrap()).unwrap();
+    fn until(&mut self, condition: &str) {
+        let began = Instant::now();
+        // What the page has not loaded yet throws.
+        let asked = format!("(() => {{ try {{ return {condition} }} catch {{ return false }} }})()");
+        while self.value(&asked) != true {
+            let text = "document.body.innerText";
+            assert!(began.elapsed() < WITHIN, "never: {condition}\n{}", self.value(text));
+            thread::sleep(Duration::from_millis(50));
+        }
     }
 
     fn ask(&mut self, method: &str, params: Value) -> Value {
@@ -88,12 +92,10 @@ impl Page {
             assert!(self.from.read_until(0, &mut bytes).unwrap() > 0, "the browser ended");
             bytes.pop();
             let heard: Value = serde_json::from_slice(&bytes).unwrap();
-            match heard["method"].as_str() {
-                Some("Runtime.exceptionThrown") => self.errors.push_back(heard["params"].to_string()),
-                Some("Runtime.consoleAPICalled") if heard["params"]["type"] == "error" => {
-                    self.errors.push_back(heard["params"].to_string());
-                }
-                _ => {}
+            let is_error =
+                heard["method"] == "Runtime.consoleAPICalled" && heard["params"]["type"] == "error";
+            if is_error || heard["method"] == "Runtime.exceptionThrown" {
+                self.errors.push(heard["params"].to_string());
             }
             if heard["id"] == self.number {
                 assert!(heard.get("error").is_none(), "{method}: {heard}");
@@ -108,4 +110,37 @@ impl Drop for Page {
         let _gone = self.browser.kill();
         let _gone = self.browser.wait();
     }
+}
+
+#[test]
+#[cfg_attr(not(chromium), ignore = "no Chromium here: TENAX_CHROMIUM names one that is not on PATH")]
+fn a_person_sees_the_board_sets_a_setting_tests_wires_and_grips_in_the_page() {
+    let served = Serving::start(&format!("line_trusted = true\n{BENCH}{}", fault("fsr_b", "dead", "")));
+    let web = Web::watching(&served, &["--control"]);
+    let mut page = Page::open(&web.url);
+    page.until("at('mode').textContent !== '-' && points.length > 40 && last.rates !== null");
+    page.until(&format!("document.querySelectorAll('#settings tr').length === {}", SettingId::ALL.len()));
+    assert_eq!(page.value("document.querySelectorAll('#detectors tr').length"), 5);
+    page.until("[...document.querySelectorAll('.knobs')].every(row => row.childElementCount > 2)");
+    page.value(
+        "(() => { const input = document.querySelector('#settings input'); input.value = 120; \
+         input.dispatchEvent(new Event('change')); return true; })()",
+    );
+    page.until("at('log').textContent.includes('> s1-mv = 120 mV') && last.s1_mv === 120");
+    page.value("at('undo').click()");
+    page.until("last.s1_mv === 100");
+
+    page.value("(() => { at('of').value = 'fsr_a fsr_b'; at('start').click(); return true; })()");
+    page.until("at('prompt').textContent.startsWith('press fsr_a (') && !at('touch').hidden");
+    page.value("at('touch').click()");
+    page.until("at('level').value > 1 && at('levels').textContent.includes('a touch is')");
+    page.until("at('prompt').textContent === '1 of 2 channels pass' && at('prompt').className === 'bad'");
+    assert_eq!(page.value("[...at('results').children].map(span => span.className).join()"), "good,bad");
+
+    page.value("document.body.dispatchEvent(new KeyboardEvent('keydown', { key: 'g', bubbles: true }))");
+    page.until("last.truth.needed_n > 0 && at('truth').textContent.includes('kept')");
+    assert_eq!(page.value("[last.missed, last.bad_frames].join()"), "0,0");
+    served.end();
+    page.until("at('gone').textContent.includes('no line, trying again')");
+    assert!(page.errors.is_empty(), "{:?}", page.errors);
 }

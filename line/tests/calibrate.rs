@@ -1,22 +1,17 @@
-//! `tenax calibrate` on served scenes, in which weights are put on and surfaces are stroked at known instants: nobody presses a
-//! key. The muscles are calibrated in `journey.rs`.
+//! `tenax calibrate` on served scenes: weights are put on, a surface is stroked and muscles are contracted.
 
+use std::io::{BufRead, BufReader};
+use std::process::Stdio;
 use std::thread;
+use std::time::Duration;
 
-use crate::serving::Serving;
-use crate::tool::tenax;
+use crate::serving::{BENCH, Serving, command, tenax};
 
-const HEAD: &str = "name = \"bench\"
-title = \"A bench\"
-from = \"a test\"
-slip_floor_mm_s = 1.0
-line_trusted = true
-";
-
-/// A probe that is pressed on a surface with these forces, N, each from an instant on for so long, s; and drawn over it.
-fn bench(duration_s: f64, presses: &[(f64, f64, f64)], sweeps: &[(f64, f64)]) -> String {
+/// A probe that is pressed on a surface at these instants (s), for so long (s), with this force (N); and drawn over it.
+fn probe(duration_s: f64, presses: &[(f64, f64, f64)], sweeps: &[(f64, f64)]) -> String {
     let mut text = format!(
-        "{HEAD}duration_s = {duration_s}\n[contact]\nmu_s = 0.5\nmu_d = 0.4\npad_length_mm = 18\npitch_mm = 1.2\n\
+        "name = \"probe\"\ntitle = \"A probe\"\nfrom = \"a test\"\nslip_floor_mm_s = 1.0\nline_trusted = true\n\
+         duration_s = {duration_s}\n[contact]\nmu_s = 0.5\nmu_d = 0.4\npad_length_mm = 18\npitch_mm = 1.2\n\
          [robot]\nprobe_kg = 0.2\nstiffness_n_per_mm = 0.5\ndamping = 0.7\nramp_ms = 80\n"
     );
     for (at_s, for_s, load_n) in presses {
@@ -28,10 +23,6 @@ fn bench(duration_s: f64, presses: &[(f64, f64, f64)], sweeps: &[(f64, f64)]) ->
     text
 }
 
-fn calibrate(place: &str, args: &[&str]) -> (bool, String, String) {
-    tenax(&[&["calibrate"], args, &["--port", place]].concat())
-}
-
 /// The number that follows these words.
 fn number(text: &str, after: &str) -> f64 {
     let rest = text.split(after).nth(1).unwrap_or_else(|| panic!("no '{after}': {text}"));
@@ -39,43 +30,60 @@ fn number(text: &str, after: &str) -> f64 {
 }
 
 fn known_weights_show_how_far_the_force_sensor_is_off() {
-    let presses = [(6.0, 2.5, 2.0), (9.5, 2.5, 5.0), (13.0, 2.5, 10.0)];
-    let mut served = Serving::start(&bench(25.0, &presses, &[]), &[]);
-    let place = served.places[0].clone();
-    // The control, at the same time: somebody who puts on a sixth less than they say.
-    let wrong = thread::spawn(move || calibrate(&place, &["force", "--weights-n", "2.4,6,12"]));
-    let (done, out, error) = calibrate(&served.places[0], &["force", "--weights-n", "2,5,10"]);
-    println!("{out}{error}");
-    assert!(done && out.contains("Zeroed.") && out.contains("put on 5 N (510 g)"), "{out}{error}");
+    let served = Serving::start(&probe(25.0, &[(6.0, 2.5, 2.0), (9.5, 2.5, 5.0), (13.0, 2.5, 10.0)], &[]));
+    let force =
+        |weights: &str| tenax(&["calibrate", "force", "--weights-n", weights, "--port", &served.place]);
+    // The control, at the same time: a sixth less is put on than is said.
+    let [(right, out, error), (wrong, off, _)] = thread::scope(|scope| {
+        let wrong = scope.spawn(|| force("2.4,6,12"));
+        [force("2,5,10"), wrong.join().unwrap()]
+    });
+    assert!(right && out.contains("Zeroed.") && out.contains("put on 5 N (510 g)"), "{out}{error}");
     assert!(out.contains("within 5 %: nothing to do"), "{out}");
     assert!(number(&out, "off that line by ") < 5.0, "{out}");
-    let (done, out, error) = wrong.join().unwrap();
-    assert!(done && out.contains("change the amplifier") && out.contains("reads 0.8"), "{out}{error}");
+    assert!(wrong && off.contains("change the amplifier") && off.contains("reads 0.8"), "{off}");
     // What it proposes is a command that the board takes.
-    let proposed = out.lines().find_map(|line| line.trim().strip_prefix("tenax config ")).expect("a command");
-    println!("{proposed}");
-    let gain = number(&out, "the board reads ");
-    assert!((0.78..0.87).contains(&gain), "{out}");
+    let proposed = off.lines().find_map(|line| line.trim().strip_prefix("tenax config ")).expect("a command");
+    let gain = number(&off, "the board reads ");
+    assert!((0.78..0.87).contains(&gain), "{off}");
     assert!((number(proposed, "force-ceiling-mn=") - 40_000.0 * gain).abs() < 30.0, "{proposed}");
     assert!((number(proposed, "loaded-mn=") - 600.0 * gain).abs() < 1.0, "{proposed}");
     let words: Vec<&str> = proposed.split(' ').collect();
-    let (set, _, error) = tenax(&[&["config"], &words[..], &["--port", &served.places[0]]].concat());
+    let (set, _, error) = tenax(&[&["config"], &words[..], &["--port", &served.place]].concat());
     assert!(set, "{error}");
-    served.kill();
+    served.end();
 }
 
 fn strokes_measure_friction_and_set_s2() {
     let strokes = [5.0, 7.5, 10.0];
-    let presses = strokes.map(|at_s| (at_s, 1.8, 2.0));
-    let sweeps = strokes.map(|at_s| (at_s + 0.5, 1.0));
-    let mut served = Serving::start(&bench(15.0, &presses, &sweeps), &[]);
-    let (done, out, error) = calibrate(&served.places[0], &["friction", "--strokes", "3"]);
-    println!("{out}{error}");
+    let (presses, sweeps) = (strokes.map(|at_s| (at_s, 1.8, 2.0)), strokes.map(|at_s| (at_s + 0.5, 1.0)));
+    let served = Serving::start(&probe(15.0, &presses, &sweeps));
+    let (done, out, error) = tenax(&["calibrate", "friction", "--strokes", "3", "--port", &served.place]);
     // 0.5 on the board's scale of ratios, r / sqrt(1 + r^2), is 0.447; S2 is 0.8 of it.
     assert!(done && out.contains("3 of 3"), "{out}{error}");
     assert!((number(&out, "Static friction ") - 0.447).abs() < 0.03, "{out}");
     assert!((number(&out, "S2 is ") - 0.358).abs() < 0.03, "{out}");
-    served.kill();
+    served.end();
+}
+
+fn three_prompts_calibrate_the_muscles() {
+    let served = Serving::start(BENCH);
+    thread::sleep(Duration::from_secs(1));
+    served.tell("button");
+    thread::sleep(Duration::from_millis(500));
+    let mut child =
+        command(&["calibrate", "emg", "--port", &served.place]).stdout(Stdio::piped()).spawn().unwrap();
+    let mut said = String::new();
+    for line in BufReader::new(child.stdout.take().unwrap()).lines().map(Result::unwrap) {
+        for (prompt, key) in [("shall close the hand", "c"), ("shall open the hand", "o")] {
+            if line.contains(prompt) {
+                served.tell(key);
+            }
+        }
+        said += &line;
+    }
+    assert!(child.wait().unwrap().success() && said.contains("Taken, and kept"), "{said}");
+    served.end();
 }
 
 /// All at once: each waits for its scene nearly all the time.
@@ -84,13 +92,8 @@ fn a_person_who_does_what_is_said_calibrates_the_hand() {
     thread::scope(|scope| {
         scope.spawn(known_weights_show_how_far_the_force_sensor_is_off);
         scope.spawn(strokes_measure_friction_and_set_s2);
+        scope.spawn(three_prompts_calibrate_the_muscles);
     });
-}
-
-#[test]
-fn the_help_says_how() {
-    let (done, out, _) = calibrate("nowhere", &["--help"]);
-    assert!(done && out.contains("tenax calibrate force --weights-n 1,2,5,10"), "{out}");
-    let (done, _, error) = calibrate("nowhere", &["force", "--weights-n", "500"]);
+    let (done, _, error) = tenax(&["calibrate", "force", "--weights-n", "500", "--port", "nowhere"]);
     assert!(!done && error.contains("0.1 to 60 N"), "{error}");
 }

@@ -1,10 +1,10 @@
-//! The Python package reads a served board: the proof that `docs/protocol.md` is enough.
+//! The Python package reads a served board: `docs/protocol.md` is enough for a client.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 
-use crate::serving::Serving;
-use crate::tool::tenax;
+use crate::recording::line;
+use crate::serving::trusting;
 
 fn package() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().join("python")
@@ -20,9 +20,8 @@ fn python() -> Command {
 #[test]
 #[cfg_attr(not(python), ignore = "no python3 here")]
 fn every_golden_frame_is_decoded() {
-    let mut python = python();
-    let ran =
-        python.args(["-m", "unittest", "discover", "-s", "tests"]).current_dir(package()).output().unwrap();
+    let args = ["-m", "unittest", "discover", "-s", "tests"];
+    let ran = python().args(args).current_dir(package()).output().unwrap();
     assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
 }
 
@@ -48,43 +47,38 @@ with tenax.open(sys.argv[1]) as board:
     assert frames == list(range(frames[0], frames[0] + 2000, 5)), 'a frame is missing'
     assert 78 <= kinds['Slow'] <= 82 and 78 <= kinds['Senses'] <= 82, kinds
     assert (board.missed, board.bad) == (0, 0), (board.missed, board.bad)
-    print(sum(kinds.values()))
 ";
-
-/// The example beside a board and the line that one left; a recording, too, where Python's mcap is.
-#[test]
-#[cfg_attr(not(python), ignore = "no python3 here")]
-fn the_example_runs_live_and_offline() {
-    let mut python = python();
-    let folder = tempfile::tempdir().unwrap();
-    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
-    let (out, recorded) = (folder.path().to_str().unwrap(), path("glass.mcap"));
-    assert!(tenax(&["run", "--host", "--scene", "glass", "--out", out, "--record", &recorded]).0);
-    let mut has_mcap = self::python();
-    let has_mcap = has_mcap.args(["-c", "import mcap"]).stderr(Stdio::null()).status().unwrap().success();
-    let files = [path("glass.line.bin"), recorded];
-    let files = if has_mcap { &files[..] } else { &files[..1] };
-    let served = Serving::trusting();
-    python.arg(package().join("example.py")).arg(&served.places[0]).args(files);
-    let ran = python.current_dir(&folder).output().unwrap();
-    let (said, error) = (String::from_utf8_lossy(&ran.stdout), String::from_utf8_lossy(&ran.stderr));
-    println!("{said}");
-    assert!(ran.status.success(), "{said}{error}");
-    assert!(said.contains("image 0000000000000000") && said.contains("0 missed, 0 bad"), "{said}");
-    for file in files {
-        let line = |words: &str| said.lines().any(|line| line.starts_with(file) && line.contains(words));
-        assert!(line("4800 slow frames, 120000 ticks") || line("4799 slow frames, 119975 ticks"), "{said}");
-        assert!(line("s on S1") && line("s on S2"), "{said}");
-    }
-    served.end();
-}
 
 #[test]
 #[cfg_attr(not(python), ignore = "no python3 here")]
 fn it_reads_sets_and_streams_a_served_board() {
-    let mut python = python();
-    let served = Serving::trusting();
-    let visit = python.args(["-c", VISIT, &served.places[0]]).output().unwrap();
+    let served = trusting();
+    let visit = python().args(["-c", VISIT, &served.place]).output().unwrap();
     assert!(visit.status.success(), "{}", String::from_utf8_lossy(&visit.stderr));
+    served.end();
+}
+
+/// The example on a served board and on a captured line.
+#[test]
+#[cfg_attr(not(python), ignore = "no python3 here")]
+fn the_example_runs_live_and_offline() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("glass.line.bin");
+    std::fs::write(&file, line("glass", false)).unwrap();
+    let served = trusting();
+    let ran = python()
+        .arg(package().join("example.py"))
+        .arg(&served.place)
+        .arg(&file)
+        .current_dir(&folder)
+        .output()
+        .unwrap();
+    let (said, error) = (String::from_utf8_lossy(&ran.stdout), String::from_utf8_lossy(&ran.stderr));
+    assert!(ran.status.success(), "{said}{error}");
+    assert!(said.contains("image 0000000000000000") && said.contains("0 missed, 0 bad"), "{said}");
+    let file = file.to_str().unwrap();
+    let says = |words: &str| said.lines().any(|line| line.starts_with(file) && line.contains(words));
+    assert!(says("4800 slow frames, 120000 ticks") || says("4799 slow frames, 119975 ticks"), "{said}");
+    assert!(says("s on S1") && says("s on S2"), "{said}");
     served.end();
 }

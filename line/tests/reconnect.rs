@@ -1,27 +1,20 @@
-//! What a monitor's screen makes of a board that goes away and comes back, of garbage and of another version: on real
-//! pseudo-terminals and sockets, drawn as a person sees it.
+//! The page's view of a board that goes away and comes back, of garbage and of another version: on real pseudo-terminals and
+//! sockets.
 //!
 //! A program of its own: whatever another test starts would inherit these pseudo-terminals and pass for their holder.
 #![cfg(unix)]
 
-#[path = "line/picture.rs"]
-mod picture;
-
 use std::io::Write;
-use std::net::{TcpListener, TcpStream};
-use std::sync::mpsc::{Receiver, channel};
+use std::net::TcpListener;
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use crc::{CRC_32_ISO_HDLC, Crc};
 use serialport::{SerialPort, TTYPort};
-use tenax_hal_shim::wire::{Counters, FRAME_MAX, Up, VERSION, encode};
-use tenax_frames::link::Target;
-use tenax_line::monitor::screen::Shown;
-use tenax_line::monitor::source::{News, Places, start};
-use tenax_line::monitor::view::View;
-
-use self::picture::picture;
+use tenax_hal_shim::wire::{Counters, Down, FRAME_MAX, Up, VERSION, encode};
+use tenax_line::web::source::{News, start};
+use tenax_line::web::view::View;
 
 const WITHIN: Duration = Duration::from_secs(20);
 
@@ -30,7 +23,7 @@ fn frame(sequence: u16) -> Vec<u8> {
     encode(sequence, &message, &mut [0; FRAME_MAX]).expect("it fits").to_vec()
 }
 
-/// The same of another version: its CRC is right.
+/// A frame of another version, with a right CRC.
 fn foreign() -> Vec<u8> {
     let mut plain = vec![VERSION + 1, 0, 3, 0];
     let crc = Crc::<u32>::new(&CRC_32_ISO_HDLC).checksum(&plain);
@@ -41,78 +34,68 @@ fn foreign() -> Vec<u8> {
     framed
 }
 
-struct Screen {
+struct Watch {
     view: View,
     news: Receiver<News>,
-    shown: Shown,
-    _commands: std::sync::mpsc::Sender<tenax_hal_shim::wire::Down>,
+    _commands: Sender<Down>,
 }
 
-impl Screen {
-    fn watching(place: &str) -> Self {
-        let (commands, waiting) = channel();
-        let (sender, news) = channel();
-        let line: Target = place.parse().unwrap();
-        start(&Places { line, truth: None }, waiting, sender);
-        let shown = Shown { place: place.to_owned(), ..Shown::default() };
-        Self { view: View::default(), news, shown, _commands: commands }
+impl Watch {
+    fn of(place: &str) -> Self {
+        let ((commands, waiting), (sender, news)) = (channel(), channel());
+        start(&place.parse().unwrap(), None, waiting, sender);
+        Self { view: View::default(), news, _commands: commands }
     }
 
-    /// Draws until the picture is as wanted.
-    fn shows(&mut self, what: &str, is_wanted: impl Fn(&str, &View) -> bool) {
+    fn until(&mut self, what: &str, mut is_so: impl FnMut(&View) -> bool) {
         let began = Instant::now();
         loop {
-            while let Ok(news) = self.news.try_recv() {
-                self.view.take(news);
-            }
-            let picture = picture(&self.view, &self.shown, 80, 24);
-            if is_wanted(&picture, &self.view) {
+            self.news.try_iter().for_each(|news| self.view.take(news));
+            if is_so(&self.view) {
                 return;
             }
-            assert!(began.elapsed() < WITHIN, "it never shows {what}:\n{picture}");
+            assert!(began.elapsed() < WITHIN, "never {what}");
             thread::sleep(Duration::from_millis(20));
         }
     }
 }
 
+fn text<'a>(view: &'a View, key: &str) -> Option<&'a str> {
+    view.state().get(key)?.as_str()
+}
+
 #[test]
 fn a_board_that_is_served_again_is_watched_again() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-    let place = format!("tcp:{}", listener.local_addr().unwrap());
-    let mut screen = Screen::watching(&place);
-    let serve = |listener: &TcpListener, sequence| -> TcpStream {
+    let address = listener.local_addr().unwrap();
+    let mut watch = Watch::of(&format!("tcp:{address}"));
+    let serve = |listener: &TcpListener, sequence| {
         let (mut stream, _) = listener.accept().unwrap();
         stream.write_all(&frame(sequence)).unwrap();
         stream
     };
     let stream = serve(&listener, 7);
-    screen.shows("the first message", |_, view| view.counts.messages == 1);
-    // The run is over, and its port is nobody's.
-    let address = listener.local_addr().unwrap();
+    watch.until("the first message", |view| view.counts.messages == 1);
     drop((stream, listener));
-    screen.shows("that the line is gone", |picture, _| picture.contains("NO LINE, trying again"));
+    watch.until("gone", |view| text(view, "gone").is_some());
     // Long enough for it to have been refused.
     thread::sleep(Duration::from_millis(1_200));
-    screen.shows("that it still tries", |picture, _| picture.contains("NO LINE, trying again"));
     let listener = TcpListener::bind(address).unwrap();
     let mut stream = serve(&listener, 0);
-    screen
-        .shows("that it is back", |picture, view| !picture.contains("NO LINE") && view.counts.messages == 1);
+    watch.until("back", |view| text(view, "gone").is_none() && view.counts.messages == 1);
 
     // Garbage is counted, and what comes after it is heard.
-    stream.write_all(&[0x55; 2_000]).unwrap();
-    stream.write_all(&[0]).unwrap();
-    stream.write_all(&frame(1)).unwrap();
-    screen.shows("the garbage", |picture, view| {
-        picture.contains("missed 0 bad 1") && view.counts.messages == 2
+    stream.write_all(&[&[0x55; 2_000][..], &[0], &frame(1)].concat()).unwrap();
+    watch.until("the garbage", |view| {
+        (view.counts.missed, view.counts.bad_frames, view.counts.messages) == (0, 1, 2)
     });
-
     stream.write_all(&foreign()).unwrap();
-    let said = format!("a board of version {}, and this tool speaks {VERSION}", VERSION + 1);
-    screen.shows(&said, |picture, _| picture.contains(&said));
+    let said = format!("of version {}, and this tool speaks {VERSION}", VERSION + 1);
+    let is_foreign = |view: &View| text(view, "other_version").is_some_and(|own| own.starts_with(&said));
+    watch.until(&said, is_foreign);
     // It was flashed anew.
     stream.write_all(&frame(2)).unwrap();
-    screen.shows("this version again", |picture, _| !picture.contains(&said));
+    watch.until("this version again", |view| text(view, "other_version").is_none());
 }
 
 #[test]
@@ -122,30 +105,26 @@ fn a_board_that_is_unplugged_and_plugged_in_again_is_watched_again() {
     let plug = || {
         let (board, mut port) = TTYPort::pair().expect("this machine has ptys");
         port.set_exclusive(false).unwrap();
-        let name = port.name().expect("a pty has a name");
         let _none = std::fs::remove_file(&at);
-        std::os::unix::fs::symlink(name, &at).unwrap();
+        std::os::unix::fs::symlink(port.name().expect("a pty has a name"), &at).unwrap();
         (board, port)
     };
-    let (board, port) = plug();
-    let mut screen = Screen::watching(at.to_str().unwrap());
-    // As long as it takes: what is said before the monitor has opened the port is lost, as on a cable.
-    let say = |board: TTYPort, screen: &mut Screen| {
-        let sequence = std::cell::Cell::new(0);
-        let board = std::cell::RefCell::new(board);
-        screen.shows("messages", |_, view| {
-            board.borrow_mut().write_all(&frame(sequence.get())).unwrap();
-            sequence.set(sequence.get().wrapping_add(1));
-            view.gone.is_none() && view.counts.messages > 0
+    // As long as it takes: what is said before the port is opened is lost, as on a cable.
+    let say = |board: &mut TTYPort, watch: &mut Watch| {
+        let mut numbers = 0..;
+        watch.until("messages", |view| {
+            board.write_all(&frame(numbers.next().unwrap())).unwrap();
+            text(view, "gone").is_none() && view.counts.messages > 0
         });
-        board.into_inner()
     };
-    let board = say(board, &mut screen);
+    let (mut board, port) = plug();
+    let mut watch = Watch::of(at.to_str().unwrap());
+    say(&mut board, &mut watch);
     // The cable is pulled: the port is gone, and so is its name.
     std::fs::remove_file(&at).unwrap();
     drop((board, port));
-    screen.shows("that the line is gone", |picture, _| picture.contains("NO LINE, trying again"));
-    let (board, _port) = plug();
-    screen.shows("that it is back", |picture, _| !picture.contains("NO LINE"));
-    say(board, &mut screen);
+    watch.until("gone", |view| text(view, "gone").is_some());
+    let (mut board, _port) = plug();
+    watch.until("back", |view| text(view, "gone").is_none());
+    say(&mut board, &mut watch);
 }

@@ -1,25 +1,23 @@
-//! A running board's line, served: settings are set and read back, nothing is missed, and nobody can hold up the run.
+//! A running board's line, served: settings are set and read back, no message is missed, and no client holds up the run.
 
-use std::fs;
-use std::process::{Command, Output, Stdio};
+use std::iter;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use tenax_sim::board::Run;
-use tenax_sim::live::{Live, Use};
-use tenax_sim::session::Board;
+use tenax_frames::link::{Client, Counts, Target};
+use tenax_frames::serve::{Options, Server, Tally};
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{Answer, Down, Refusal, Setting, Up};
+use tenax_hal_shim::wire::{Answer, Down, Refusal, Setting, Slow, Up};
 use tenax_hal_shim::words::Line;
 use tenax_logic::setting::SettingId;
 use tenax_scene::plant::{Pins, Plant};
-use tenax_frames::link::{Client, Target};
-use tenax_frames::serve::{Options, Server, Tally};
-
-use crate::serving::Serving;
+use tenax_sim::board::Run;
+use tenax_sim::live::{Live, Use};
+use tenax_sim::session::Board;
 
 const WITHIN: Duration = Duration::from_secs(5);
 
+/// A hand at rest, and for how long, s.
 struct Rest(Pins, f64);
 
 impl Plant for Rest {
@@ -32,90 +30,85 @@ impl Plant for Rest {
     }
 }
 
-fn start(options: &Options) -> (Server, Live) {
-    let (server, down) = Server::start(options).expect("this machine has ptys and free ports");
-    (server, Live::new(down, |_| {}))
-}
-
-/// Serves a hand at rest for so long, while `visit` is told where.
-fn serve(options: &Options, duration_s: f64, visit: impl FnOnce(&[Target]) + Send) -> (Run, Tally) {
-    let (mut server, live) = start(options);
+/// Serves a hand at rest on a pseudo-terminal and on TCP, while `visit` is told where.
+fn serve(options: Options, duration_s: f64, visit: impl FnOnce(&[Target]) + Send) -> (Run, Tally) {
+    let options = Options { pty: true, tcp: Some(0), ..options };
+    let (mut server, down) = Server::start(&options).expect("this machine has ptys and free ports");
     let places: Vec<Target> = server.places().iter().map(|place| place.parse().unwrap()).collect();
     thread::scope(|scope| {
         let visitor = scope.spawn(move || visit(&places));
         let mut run = Run::default();
-        let plant = Use { live: Some(live), streams_at_start: false }.of(Rest(Pins::default(), duration_s));
+        let live = Some(Live::new(down, |_| {}));
+        let plant = Use { live, streams_at_start: false }.of(Rest(Pins::default(), duration_s));
         let began = Instant::now();
-        let (summary, _) =
-            Board::Host.record(plant, &mut (&mut run, &mut server), &mut |_| {}).expect("a run");
-        run.summary = summary;
+        run.summary = Board::Host.record(plant, &mut (&mut run, &mut server), &mut |_| {}).expect("a run").0;
         assert!(began.elapsed().as_secs_f64() > duration_s - 0.01, "never faster than real time");
         visitor.join().expect("the visitor found what it looked for");
         (run, server.close())
     })
 }
 
-fn setting(id: SettingId, value: i32) -> Setting {
-    Setting { id: id.number(), value }
+/// Slow frames that come for this time, and at least one.
+fn listen(client: &mut Client, time: Duration) -> Vec<Slow> {
+    let (began, mut slows) = (Instant::now(), Vec::new());
+    while began.elapsed() < time || slows.is_empty() {
+        assert!(began.elapsed() < WITHIN, "nothing comes");
+        if let Some(Up::Slow(slow)) = client.next_message().unwrap().map(|heard| heard.received.message) {
+            slows.push(slow);
+        }
+    }
+    slows
+}
+
+fn all_heard(client: &Client) {
+    let Counts { missed, bad_frames, .. } = client.counts();
+    assert_eq!((missed, bad_frames), (0, 0));
 }
 
 /// Sets S1, reads it back, and listens for half a second: everything comes, in order.
 fn set_and_read_back(target: &Target, mv: i32) {
     let mut client = Client::open(target).unwrap();
-    let s1 = setting(SettingId::S1, mv);
-    // Switched on with nothing held, the board consents within its first cycles: whoever is there before is refused.
-    let began = Instant::now();
-    let is_armed = |up: &Up| matches!(up, Up::Slow(slow) if slow.line != Line::Reading);
-    while !client.next_message().unwrap().is_some_and(|heard| is_armed(&heard.received.message)) {
-        assert!(began.elapsed() < WITHIN, "it never consents");
-    }
-    assert_eq!(client.ask(&Down::Set(s1), WITHIN).unwrap(), Answer::Setting(s1));
-    assert_eq!(client.ask(&Down::Get(s1.id), WITHIN).unwrap(), Answer::Setting(s1));
-    let Answer::Settings(settings) = client.ask(&Down::Settings(0), WITHIN).unwrap() else {
-        panic!("the settings were asked for");
-    };
-    assert!(settings.contains(&s1));
-    let refused = client.ask(&Down::Set(setting(SettingId::S1, -1)), WITHIN).unwrap();
+    let setting = |value| Setting { id: SettingId::S1.number(), value };
+    // Switched on with nothing held, the board consents within its first cycles: before that it refuses.
+    let waits = iter::from_fn(|| listen(&mut client, Duration::ZERO).pop());
+    waits.take(400).find(|slow| slow.line != Line::Reading).expect("it consents");
+    let mut ask = |command| client.ask(&command, WITHIN).unwrap();
+    assert_eq!(ask(Down::Set(setting(mv))), Answer::Setting(setting(mv)));
+    assert_eq!(ask(Down::Get(setting(mv).id)), Answer::Setting(setting(mv)));
+    let Answer::Settings(settings) = ask(Down::Settings(0)) else { panic!("the settings were asked for") };
+    assert!(settings.contains(&setting(mv)));
+    let refused = ask(Down::Set(setting(-1)));
     assert!(matches!(refused, Answer::Refused(Refusal::OutOfRange { .. })), "{refused:?}");
-    let began = Instant::now();
-    let mut slows = 0;
-    while began.elapsed() < Duration::from_millis(500) {
-        let heard = client.next_message().unwrap();
-        slows += usize::from(heard.is_some_and(|heard| matches!(heard.received.message, Up::Slow(_))));
-    }
-    assert!(slows > 10, "{slows}");
-    assert_eq!((client.counts().missed, client.counts().bad_frames), (0, 0), "{}", client.counts());
+    assert!(listen(&mut client, Duration::from_millis(500)).len() > 10);
+    all_heard(&client);
 }
 
 #[test]
 fn a_setting_is_set_and_read_back_on_a_pty_on_its_symlink_and_on_tcp() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path().join("board");
-    let options = Options { pty: true, at: Some(at.clone()), tcp: Some(0), ..Options::default() };
-    let (run, tally) = serve(&options, 6.0, |places| {
+    let options = Options { at: Some(at.clone()), ..Options::default() };
+    let (run, tally) = serve(options, 6.0, |places| {
         assert_eq!(places.len(), 3);
         for (target, mv) in places.iter().zip([120, 130, 140]) {
             set_and_read_back(target, mv);
-            // Whoever opens a pty within 10 ms of the one before is taken for the same.
+            // A pty takes a client that comes within 10 ms of the one before for the same.
             thread::sleep(Duration::from_millis(100));
         }
     });
     // Four commands each, and the session that the first asked for: a refusal, its number, its opening.
     assert_eq!(run.answers.len(), 3 * 7);
     assert_eq!(tally, Tally { clients: 3, dropped: 0 });
-    assert!(fs::symlink_metadata(&at).is_err(), "the symlink is gone");
+    assert!(std::fs::symlink_metadata(&at).is_err(), "the symlink is gone");
 }
 
-/// Somebody who runs one command after the other: no writer of the client before is left to double what the next one hears.
+/// No writer of the client before is left to double what the next one hears.
 #[test]
 fn clients_that_follow_each_other_at_once_hear_everything_once() {
-    let (run, _) = serve(&Options { pty: true, ..Options::default() }, 8.0, |places| {
+    let (run, _) = serve(Options::default(), 8.0, |places| {
         for wait_ms in (0..30).map(|n| 11 + n % 5) {
             let mut client = Client::open(&places[0]).unwrap();
-            let began = Instant::now();
-            while began.elapsed() < Duration::from_millis(150) {
-                client.next_message().unwrap();
-            }
+            listen(&mut client, Duration::from_millis(150));
             assert_eq!(client.counts().missed, 0, "after {wait_ms} ms: {}", client.counts());
             drop(client);
             thread::sleep(Duration::from_millis(wait_ms));
@@ -124,10 +117,11 @@ fn clients_that_follow_each_other_at_once_hear_everything_once() {
     assert!(run.slows.len() > 500);
 }
 
-/// With a client that never reads on each, far more comes up than any of them has room for.
+/// With a client that never reads on each place, far more comes up than any of them has room for.
 #[test]
 fn a_client_that_never_reads_holds_up_nothing() {
-    let (mut server, _live) = start(&Options { pty: true, tcp: Some(0), ..Options::default() });
+    let options = Options { pty: true, tcp: Some(0), ..Options::default() };
+    let (mut server, _down) = Server::start(&options).unwrap();
     let targets: Vec<Target> = server.places().iter().map(|place| place.parse().unwrap()).collect();
     let clients: Vec<_> = targets.iter().map(|target| target.open().unwrap()).collect();
     let joined = Instant::now();
@@ -144,15 +138,13 @@ fn a_client_that_never_reads_holds_up_nothing() {
     let began = Instant::now();
     let tally = server.close();
     assert!(began.elapsed() < Duration::from_secs(2), "{:?}", began.elapsed());
-    assert_eq!(tally.clients, 2);
-    assert!(tally.dropped > 10_000, "{tally}");
+    assert!(tally.clients == 2 && tally.dropped > 10_000, "{tally}");
     drop(clients);
 }
 
 #[test]
-fn who_comes_and_goes_and_who_never_reads_changes_nothing_in_the_run() {
-    let options = Options { pty: true, tcp: Some(0), ..Options::default() };
-    let (run, tally) = serve(&options, 2.0, |places| {
+fn clients_that_come_and_go_or_never_read_change_nothing_in_the_run() {
+    let (run, tally) = serve(Options::default(), 2.0, |places| {
         let _silent: Vec<_> = places.iter().map(|place| place.open().unwrap()).collect();
         for _ in 0..5 {
             let gone = places[1].open().unwrap();
@@ -167,62 +159,20 @@ fn who_comes_and_goes_and_who_never_reads_changes_nothing_in_the_run() {
     assert_eq!(tally.clients, 7);
 }
 
-/// What a client has not read is not the next one's. A witness on TCP tells how far the run was when the first one left: a
-/// loaded machine runs behind the clock.
+/// A witness on TCP tells how far the run was when the first client left: a loaded machine runs behind the clock.
 #[test]
 fn the_second_client_of_a_pty_hears_nothing_old() {
-    let options = Options { pty: true, tcp: Some(0), ..Options::default() };
-    serve(&options, 3.0, |places| {
+    serve(Options::default(), 3.0, |places| {
         let mut witness = Client::open(&places[1]).unwrap();
         let silent = places[0].open().unwrap();
-        let began = Instant::now();
-        let mut seen = 0;
-        while began.elapsed() < Duration::from_millis(800) || seen == 0 {
-            assert!(began.elapsed() < WITHIN, "nothing comes");
-            if let Some(Up::Slow(slow)) = witness.next_message().unwrap().map(|heard| heard.received.message)
-            {
-                seen = slow.frame;
-            }
-        }
+        let seen = listen(&mut witness, Duration::from_millis(800)).pop().unwrap().frame;
         drop(silent);
         thread::sleep(Duration::from_millis(400));
         let mut client = Client::open(&places[0]).unwrap();
-        let frames: Vec<u32> = std::iter::from_fn(|| Some(client.next_message().unwrap()))
-            .take(60)
-            .flatten()
-            .filter_map(|heard| match heard.received.message {
-                Up::Slow(slow) => Some(slow.frame),
-                _ => None,
-            })
-            .collect();
-        assert!(!frames.is_empty() && frames.iter().all(|&frame| frame > seen), "{seen} {frames:?}");
-        assert_eq!((client.counts().missed, client.counts().bad_frames), (0, 0), "{}", client.counts());
+        let heard = listen(&mut client, Duration::from_millis(500));
+        assert!(heard.iter().all(|slow| slow.frame > seen), "{seen}");
+        all_heard(&client);
     });
-}
-
-/// The tool against itself, as a person uses it.
-#[test]
-fn the_monitor_sets_a_setting_of_a_scene_that_runs() {
-    let tenax = || Command::new(env!("CARGO_BIN_EXE_tenax-host"));
-    let served = Serving::start(include_str!("../../../scenes/rig.toml"), &["--serve"]);
-    let places = served.places.clone();
-    assert!(places[0].starts_with("/dev/") && places[1].starts_with("tcp:127.0.0.1:"), "{places:?}");
-    let monitors: Vec<_> = places
-        .iter()
-        .map(|place| {
-            let args = ["monitor", "--port", place, "--set", "s1-mv=120", "--send", "ping", "--settings"];
-            tenax().args(args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
-        })
-        .collect();
-    for (monitor, place) in monitors.into_iter().zip(&places) {
-        let Output { status, stdout, stderr } = monitor.wait_with_output().unwrap();
-        let [text, error] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
-        // The answers, and then it ends.
-        assert!(text.starts_with("Ping: done\ns1-mv = 120 mV\nsettings:\n"), "{text}{error}");
-        assert_eq!((status.code(), error.as_str()), (Some(0), ""), "{place}");
-    }
-    let rest = served.end();
-    assert!(rest.iter().any(|line| line.contains("2 clients, 0 messages dropped")), "{rest:?}");
 }
 
 #[test]
@@ -233,10 +183,6 @@ fn a_place_that_cannot_be_had_is_named() {
     assert!(error(&at).contains("no symlink: choose another path"), "{}", error(&at));
     let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
     let port = taken.local_addr().unwrap().port();
-    let tcp = Options { tcp: Some(port), ..Options::default() };
-    assert!(
-        error(&tcp).contains(&format!("cannot serve on TCP port {port}: choose another")),
-        "{}",
-        error(&tcp)
-    );
+    let said = error(&Options { tcp: Some(port), ..Options::default() });
+    assert!(said.contains(&format!("cannot serve on TCP port {port}: choose another")), "{said}");
 }

@@ -1,95 +1,90 @@
-//! A scene that the tool serves, as a person starts it.
+//! A scene on the host's board whose line is served, and the tool as a person starts it.
 
-use std::io::{BufRead, BufReader, Read, Write};
-use std::process::{Child, ChildStderr, Command, Stdio};
+use std::process::{Command, Output};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::thread::{self, JoinHandle};
 
-use serde_json::Value;
-use tempfile::TempDir;
+use tenax_frames::serve::{Options, Server, Tally};
+use tenax_scene::SceneFile;
+use tenax_sim::live::{Live, Person, Use};
+use tenax_sim::session::{Board, scene_alone};
 
-/// `tenax run --host --serve-tcp 0`, and where it serves.
+pub const BENCH: &str = include_str!("../../scenes/parts/bench.toml");
+
+/// The `tenax` command with these arguments.
+pub fn command(args: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_tenax"));
+    command.args(args);
+    command
+}
+
+/// Runs a command: whether it succeeded, its output and its messages.
+pub fn tenax(args: &[&str]) -> (bool, String, String) {
+    let Output { status, stdout, stderr } = command(args).output().unwrap();
+    let [out, error] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+    (status.success(), out, error)
+}
+
+/// The rig's scene on a board that trusts its line, so that nobody at the hand has to consent.
+pub fn trusting() -> Serving {
+    let rig = include_str!("../../scenes/rig.toml");
+    Serving::start(&rig.replacen("\n[contact]", "\nline_trusted = true\n\n[contact]", 1))
+}
+
 pub struct Serving {
-    run: Child,
-    said: BufReader<ChildStderr>,
-    /// In the order in which it says them.
-    pub places: Vec<String>,
-    /// Where it writes what a run leaves.
-    pub folder: TempDir,
+    /// Addresses of the line and of the true state.
+    pub place: String,
+    pub truth: String,
+    person: Person,
+    ended: Arc<AtomicBool>,
+    run: JoinHandle<Tally>,
 }
 
 impl Serving {
-    /// Serves a scene file's text at one place more than `more` asks for.
-    pub fn start(scene: &str, more: &[&str]) -> Self {
-        Self::at(scene, more, 1 + more.len())
+    /// Serves a scene file's text. A board that is reset starts again and has kept its flash.
+    pub fn start(scene: &str) -> Self {
+        let file = SceneFile::parse(scene, "served").unwrap_or_else(|error| panic!("{error}"));
+        let keys = vec![("g".to_owned(), "grip".to_owned())];
+        let options = Options { tcp: Some(0), truth: Some(0), keys, ..Options::default() };
+        let (mut server, down) = Server::start(&options).unwrap();
+        let (place, truth) = (server.places()[0].clone(), server.truth_place().unwrap().to_owned());
+        let (person, ended) = (Person::default(), Arc::<AtomicBool>::default());
+        let (acts, at_bench) = (server.take_acts().unwrap(), person.clone());
+        thread::spawn(move || {
+            acts.iter().for_each(|line| act(&at_bench, String::from_utf8_lossy(&line).trim_end()));
+        });
+        let (runs, ends) = (person.clone(), Arc::clone(&ended));
+        let run = thread::spawn(move || {
+            loop {
+                let live = Live::new(down.clone(), |_| {}).with_person(runs.clone());
+                let line = Use { live: Some(live), streams_at_start: false };
+                scene_alone(&file, 1, &Board::Host, line, &mut server).unwrap();
+                if !runs.lets_go() || ends.load(Relaxed) {
+                    return server.close();
+                }
+            }
+        });
+        Self { place, truth, person, ended, run }
     }
 
-    /// Serves it on TCP, and tells the truth at a second place.
-    pub fn start_telling(scene: &str) -> Self {
-        Self::at(scene, &["--serve-truth", "0"], 2)
-    }
-
-    /// Serves it again and again, as a board that can be reset.
-    pub fn looping(scene: &str) -> Self {
-        Self::at(scene, &["--loop"], 1)
-    }
-
-    fn at(scene: &str, more: &[&str], places: usize) -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("served.toml");
-        std::fs::write(&path, scene).unwrap();
-        let mut run = Command::new(env!("CARGO_BIN_EXE_tenax-host"))
-            .args(["run", "--host", "--serve-tcp", "0", "--scene"])
-            .arg(path)
-            .args(more)
-            .arg("--out")
-            .arg(folder.path())
-            .stdin(Stdio::piped())
-            .stdout(Stdio::null())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
-        let mut said = BufReader::new(run.stderr.take().unwrap());
-        let place = |_| {
-            let mut line = String::new();
-            said.read_line(&mut line).unwrap();
-            let place = line.trim_end().split_once(" on ").unwrap_or_else(|| panic!("{line}")).1;
-            place.to_owned()
-        };
-        let places = (0..places).map(place).collect();
-        Self { run, said, places, folder }
-    }
-
-    /// Serves a board that trusts its line, so that nobody at the hand has to consent.
-    pub fn trusting() -> Self {
-        let rig = include_str!("../../../scenes/rig.toml");
-        Self::start(&rig.replacen("\n[contact]", "\nline_trusted = true\n\n[contact]", 1), &[])
-    }
-
-    /// Somebody at the bench does this.
-    pub fn tell(&mut self, line: &str) {
-        writeln!(self.run.stdin.as_mut().unwrap(), "{line}").unwrap();
+    /// Does this at the bench.
+    pub fn tell(&self, line: &str) {
+        act(&self.person, line);
     }
 
     /// Ends the run now.
-    pub fn kill(&mut self) {
-        self.run.kill().unwrap();
-        self.run.wait().unwrap();
+    pub fn end(self) -> Tally {
+        self.ended.store(true, Relaxed);
+        self.person.reset();
+        self.run.join().unwrap()
     }
+}
 
-    /// Waits for the run's end; what else it said.
-    pub fn end(mut self) -> Vec<String> {
-        self.wait()
-    }
-
-    /// Waits for the run's end; its report.
-    pub fn report(mut self) -> Value {
-        self.wait();
-        let path = self.folder.path().join("served.json");
-        serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
-    }
-
-    fn wait(&mut self) -> Vec<String> {
-        let rest = self.said.by_ref().lines().map(Result::unwrap).collect();
-        assert!(self.run.wait().unwrap().success());
-        rest
+fn act(person: &Person, line: &str) {
+    match line {
+        "button" => person.press(),
+        "reset" => person.reset(),
+        _ => line.parse().into_iter().for_each(|act| person.act(act)),
     }
 }

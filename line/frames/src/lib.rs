@@ -1,13 +1,12 @@
-//! Frames of a fingertip's serial line: [`link`] hears and sends them, [`record`] and [`play`] keep them, [`serve`] gives a board's line
-//! to others.
+//! Frames of a fingertip's serial line: [`link`] receives and sends them, [`record`] and [`play`] keep them, [`serve`] gives a board's
+//! line to other programs.
 //!
-//! The boards of `tenax-sim` and the commands of `tenax-line` both stand on it; [`tool`] is what their command lines share.
+//! The boards of `tenax-sim` and the commands of `tenax-line` both use it; [`tool`] is what their command lines share.
 #![forbid(unsafe_code)]
 
 pub mod link;
-pub mod mcap;
 pub mod play;
-pub mod protobuf;
+mod protobuf;
 pub mod quantile;
 pub mod record;
 pub mod serve;

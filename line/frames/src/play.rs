@@ -1,9 +1,6 @@
-//! A recording's line once more, at its pace or another, from any second: for `tenax play`, and for screen and page of
-//! `tenax monitor`.
+//! Plays a recording's line, at its pace or another, from any second: for `tenax play` and the page of `tenax monitor`.
 
-mod reel;
-
-use std::str::FromStr;
+use std::path::Path;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -11,19 +8,72 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 use tenax_hal_shim::wire::Up;
 
-pub use self::reel::Reel;
-use crate::link::Heard;
+use crate::link::captured::line_of;
+use crate::link::{Heard, Inbox};
+use crate::words::seconds;
 
-/// Of a recording's time, how often it is told where it is, s.
+/// Interval of [`Told::At`], s of the recording.
 const TOLD_EACH_S: f64 = 0.1;
-/// The speeds that there are, times as fast as it was recorded.
+/// Who the board is and its settings come within this time, s: they are told wherever playing begins.
+const BEGINNING_S: f64 = 2.0;
+/// The slowest and the fastest speed, times real time.
 pub const SPEEDS: (f64, f64) = (0.01, 100.0);
+
+/// A recording: its line, and time (s) and place of each slow frame.
+pub struct Reel {
+    line: Vec<u8>,
+    places: Vec<(f64, usize)>,
+    length_s: f64,
+}
+
+impl Reel {
+    /// Fails if the file cannot be read, or holds no message of a board.
+    pub fn open(path: &Path) -> anyhow::Result<Self> {
+        let line = line_of(path)?;
+        let (mut inbox, mut places, mut begin) = (Inbox::default(), Vec::new(), 0);
+        // A board that starts anew counts from 0 again: its time goes on.
+        let (mut at_s, mut zero_s) = (0.0, None);
+        for (n, &byte) in line.iter().enumerate() {
+            let Some(frame) = inbox.push(byte) else { continue };
+            match frame.map(|heard| heard.received.message) {
+                Ok(Up::Hello { .. }) => zero_s = Some(at_s),
+                Ok(Up::Slow(slow)) => {
+                    let board_s = seconds(slow.frame);
+                    at_s = board_s + *zero_s.get_or_insert(-board_s);
+                    places.push((at_s, begin));
+                }
+                _ => {}
+            }
+            begin = n + 1;
+        }
+        Ok(Self { line, places, length_s: at_s })
+    }
+
+    pub const fn length_s(&self) -> f64 {
+        self.length_s
+    }
+
+    /// The messages from the slow frame at `from_s` on, each with its time, s.
+    fn messages(&self, from_s: f64) -> impl Iterator<Item = (f64, Heard)> {
+        let mut next = self.places.partition_point(|(at_s, _)| *at_s < from_s);
+        let before = next.checked_sub(1).map(|n| self.places[n].0);
+        let begin = if next == 0 { 0 } else { self.places.get(next).map_or(self.line.len(), |(_, at)| *at) };
+        let (mut inbox, mut at_s) = (Inbox::default(), before.unwrap_or(0.0));
+        self.line[begin..].iter().filter_map(move |&byte| inbox.push(byte)).flatten().map(move |heard| {
+            if let (Up::Slow(_), Some((slow_s, _))) = (&heard.received.message, self.places.get(next)) {
+                at_s = *slow_s;
+                next += 1;
+            }
+            (at_s, heard)
+        })
+    }
+}
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Playing {
     pub at_s: f64,
     pub of_s: f64,
-    /// Times as fast as it was recorded.
+    /// Times real time.
     pub speed: f64,
     /// It begins again when it is over.
     pub repeat: bool,
@@ -31,189 +81,139 @@ pub struct Playing {
 }
 
 impl Playing {
-    /// From the beginning, as fast as it was recorded.
+    /// From the beginning, in real time.
     pub const fn new(reel: &Reel) -> Self {
         Self { at_s: 0.0, of_s: reel.length_s(), speed: 1.0, repeat: false, paused: false }
     }
-}
 
-/// What a person may do with it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Control {
-    /// Goes on from here, s.
-    Seek(f64),
-    /// Goes so far, s, back if it is below 0.
-    Step(f64),
-    Speed(f64),
-    Loop,
-    Pause,
-}
-
-impl FromStr for Control {
-    type Err = ();
-
-    /// `12.5`, `+5`, `-5`, `x2`, `loop`, `pause`.
-    fn from_str(line: &str) -> Result<Self, ()> {
-        let number = |text: &str| text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or(());
+    /// Does what a line says. Some(true): playing goes on elsewhere. None: the line is no control.
+    fn control(&mut self, line: &str) -> Option<bool> {
+        let number = |text: &str| text.parse().ok().filter(|number: &f64| number.is_finite());
         match line {
-            "loop" => Ok(Self::Loop),
-            "pause" => Ok(Self::Pause),
-            _ if line.starts_with(['+', '-']) => number(line).map(Self::Step),
+            "loop" => self.repeat = !self.repeat,
+            "pause" => self.paused = !self.paused,
             _ => match line.strip_prefix('x') {
-                Some(speed) => number(speed).map(Self::Speed),
-                None => number(line).map(Self::Seek),
+                Some(speed) => self.speed = number(speed)?.clamp(SPEEDS.0, SPEEDS.1),
+                None => {
+                    let from_s = if line.starts_with(['+', '-']) { self.at_s } else { 0.0 };
+                    self.at_s = (from_s + number(line)?).clamp(0.0, self.of_s);
+                    return Some(true);
+                }
             },
         }
+        Some(false)
     }
 }
 
-/// What is told of a recording that is played.
 #[derive(Debug)]
 pub enum Told {
     Message(Box<Heard>),
-    /// It goes on elsewhere: what was heard so far is no more so.
+    /// Playing goes on elsewhere: state from earlier messages is void.
     Again,
     At(Playing),
-    /// It is over, and does not begin again.
+    /// It is over, and does not begin again by itself.
     Over,
 }
 
-/// Plays until `tell` is false, or does not want to go on when it is over. Lines that are no [`Control`] are passed over.
-/// Fails if the recording cannot be read.
+/// Why playing stopped.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Stop {
+    AtEnd,
+    Jump,
+    /// Nobody listens, or nobody is left who could let it go on.
+    Left,
+}
+
+/// Plays until `tell` returns false, or the controls end while it stands still. Lines that are no control are ignored: `12.5`
+/// (that second), `+5` and `-5` (by seconds), `x2` (speed), `loop` and `pause` are.
 pub fn play(
-    reel: &mut Reel,
-    playing: Playing,
+    reel: &Reel,
+    mut playing: Playing,
     controls: &Receiver<String>,
     tell: &mut dyn FnMut(Told) -> bool,
-) -> anyhow::Result<()> {
-    let mut player = Player { playing, controls, tell };
-    // What stays so is at the beginning: who the board is, and its settings.
-    let beginning = reel.piece(0)?.unwrap_or_default();
-    let mut is_first = true;
+) {
     loop {
-        let from_s = player.playing.at_s.clamp(0.0, reel.length_s());
-        let mut n = reel.piece_at(from_s);
-        player.playing.at_s = from_s;
-        if !is_first && !(player.tell)(Told::Again) {
-            return Ok(());
-        }
-        is_first = false;
-        let mut early =
-            beginning.iter().filter(|(at_s, heard)| *at_s < from_s && stays(&heard.received.message));
-        if !early.all(|(_, heard)| (player.tell)(Told::Message(Box::new(heard.clone())))) {
-            return Ok(());
-        }
-        let mut next = player.piece(&reel.piece(n)?.unwrap_or_default(), from_s);
-        while next == Next::Goes {
-            n += 1;
-            next = match reel.piece(n)? {
-                Some(said) => player.piece(&said, from_s),
-                None => player.is_over(),
-            };
-        }
-        if next == Next::Ends {
-            return Ok(());
-        }
-    }
-}
-
-fn stays(message: &Up) -> bool {
-    matches!(message, Up::About(_) | Up::Answer { .. })
-}
-
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Next {
-    Goes,
-    Jumps,
-    Ends,
-}
-
-struct Player<'a> {
-    playing: Playing,
-    controls: &'a Receiver<String>,
-    tell: &'a mut dyn FnMut(Told) -> bool,
-}
-
-impl Player<'_> {
-    /// Says each message from `from_s` on when it is due.
-    fn piece(&mut self, said: &[(f64, Heard)], from_s: f64) -> Next {
-        let mut clock = (Instant::now(), self.playing.at_s);
-        for (at_s, heard) in said.iter().filter(|(at_s, _)| *at_s >= from_s) {
-            loop {
-                let due = Duration::from_secs_f64((at_s - clock.1).max(0.0) / self.playing.speed);
-                let left = due.saturating_sub(clock.0.elapsed());
-                let control = match (self.playing.paused, left.is_zero()) {
-                    (true, _) => self.controls.recv().ok(),
-                    (false, true) => self.controls.try_recv().ok(),
-                    (false, false) => match self.controls.recv_timeout(left) {
-                        Ok(control) => Some(control),
-                        Err(RecvTimeoutError::Timeout) => None,
-                        Err(RecvTimeoutError::Disconnected) => {
-                            thread::sleep(left);
-                            None
-                        }
-                    },
-                };
-                let is_due = !self.playing.paused && left.is_zero();
-                match control.and_then(|line| line.parse().ok()) {
-                    Some(control) => {
-                        let jumps = self.control(control);
-                        clock = (Instant::now(), self.playing.at_s);
-                        if !(self.tell)(Told::At(self.playing)) {
-                            return Next::Ends;
-                        }
-                        if jumps {
-                            return Next::Jumps;
-                        }
-                    }
-                    // Nobody is there any more who could let it go on.
-                    None if self.playing.paused => return Next::Ends,
-                    None if is_due => break,
-                    None => {}
+        match play_on(reel, &mut playing, controls, tell) {
+            Stop::Left => return,
+            Stop::AtEnd if playing.repeat => playing.at_s = 0.0,
+            Stop::AtEnd => {
+                if !tell(Told::Over) || !wait_at_end(&mut playing, controls) {
+                    return;
                 }
             }
-            let told = (self.playing.at_s / TOLD_EACH_S).floor();
-            self.playing.at_s = self.playing.at_s.max(*at_s);
-            let is_told = (self.playing.at_s / TOLD_EACH_S).floor() > told;
-            if !(self.tell)(Told::Message(Box::new(heard.clone())))
-                || is_told && !(self.tell)(Told::At(self.playing))
-            {
-                return Next::Ends;
+            Stop::Jump => {}
+        }
+        if !tell(Told::Again) {
+            return;
+        }
+    }
+}
+
+/// Waits for a control that begins it again. False: there are no more.
+fn wait_at_end(playing: &mut Playing, controls: &Receiver<String>) -> bool {
+    for line in controls {
+        let jumps = playing.control(&line) == Some(true);
+        playing.paused = false;
+        if ["loop", "pause"].contains(&line.as_str()) {
+            playing.at_s = 0.0;
+            return true;
+        }
+        if jumps {
+            return true;
+        }
+    }
+    false
+}
+
+fn play_on(
+    reel: &Reel,
+    playing: &mut Playing,
+    controls: &Receiver<String>,
+    tell: &mut dyn FnMut(Told) -> bool,
+) -> Stop {
+    playing.at_s = playing.at_s.clamp(0.0, reel.length_s());
+    let from_s = playing.at_s;
+    let stays = |message: &Up| matches!(message, Up::About(_) | Up::Answer { .. });
+    let beginning = reel.messages(0.0).take_while(|(at_s, _)| *at_s < BEGINNING_S.min(from_s));
+    for (_, heard) in beginning.filter(|(_, heard)| stays(&heard.received.message)) {
+        if !tell(Told::Message(Box::new(heard))) {
+            return Stop::Left;
+        }
+    }
+    let mut clock = (Instant::now(), from_s);
+    for (at_s, heard) in reel.messages(from_s) {
+        loop {
+            let due = Duration::from_secs_f64((at_s - clock.1).max(0.0) / playing.speed);
+            let left = due.saturating_sub(clock.0.elapsed());
+            let control = match (playing.paused, controls.recv_timeout(left)) {
+                (_, Ok(control)) => Some(control),
+                (true, Err(_)) => controls.recv().ok(),
+                (false, Err(RecvTimeoutError::Timeout)) => None,
+                (false, Err(RecvTimeoutError::Disconnected)) => {
+                    thread::sleep(left);
+                    None
+                }
+            };
+            match control {
+                Some(line) => {
+                    let Some(jumps) = playing.control(&line) else { continue };
+                    clock = (Instant::now(), playing.at_s);
+                    if !tell(Told::At(*playing)) {
+                        return Stop::Left;
+                    }
+                    if jumps {
+                        return Stop::Jump;
+                    }
+                }
+                None if playing.paused => return Stop::Left,
+                None => break,
             }
         }
-        Next::Goes
-    }
-
-    /// Does it. True: it goes on elsewhere.
-    fn control(&mut self, control: Control) -> bool {
-        let Playing { at_s, of_s, speed, repeat, paused } = &mut self.playing;
-        match control {
-            Control::Seek(to_s) => *at_s = to_s.clamp(0.0, *of_s),
-            Control::Step(by_s) => *at_s = (*at_s + by_s).clamp(0.0, *of_s),
-            Control::Speed(times) => *speed = times.clamp(SPEEDS.0, SPEEDS.1),
-            Control::Loop => *repeat = !*repeat,
-            Control::Pause => *paused = !*paused,
+        let is_told = (at_s / TOLD_EACH_S).floor() > (playing.at_s / TOLD_EACH_S).floor();
+        playing.at_s = playing.at_s.max(at_s);
+        if !tell(Told::Message(Box::new(heard))) || is_told && !tell(Told::At(*playing)) {
+            return Stop::Left;
         }
-        matches!(control, Control::Seek(_) | Control::Step(_))
     }
-
-    /// All is said.
-    fn is_over(&mut self) -> Next {
-        let mut goes_on = self.playing.repeat;
-        if !goes_on && !(self.tell)(Told::Over) {
-            return Next::Ends;
-        }
-        while !goes_on {
-            let Ok(line) = self.controls.recv() else { return Next::Ends };
-            let Ok(control) = line.parse() else { continue };
-            if self.control(control) {
-                return Next::Jumps;
-            }
-            // Whoever lets it go on at its end sees it again.
-            goes_on = matches!(control, Control::Loop | Control::Pause);
-            self.playing.paused = false;
-        }
-        self.playing.at_s = 0.0;
-        Next::Jumps
-    }
+    Stop::AtEnd
 }

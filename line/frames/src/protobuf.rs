@@ -1,19 +1,8 @@
-//! As much of protobuf as a recording needs: messages of plain fields, and the descriptor that says which they are, both
-//! made from one list, so that they cannot differ. Foxglove, PlotJuggler and the public decoders read the descriptor.
+//! Protobuf messages of plain fields and the descriptor of them, which Foxglove, PlotJuggler and the public decoders read.
 
-/// What a field holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// A number. NaN: there was none.
-    Number,
-    Numbers,
-    /// Yes or no.
-    Flag,
-    /// Words.
-    Text,
-    Bytes,
-}
+use std::borrow::Cow;
 
+/// A field's value. NaN: there was none.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     Number(f64),
@@ -23,9 +12,13 @@ pub enum Value {
     Bytes(Vec<u8>),
 }
 
+/// The fields of a message, in the order of their numbers from 1.
+pub type Fields = Vec<(Cow<'static, str>, Value)>;
+
 /// The package that the messages belong to.
 pub const PACKAGE: &str = "tenax";
 
+// Wire types.
 const VARINT: u64 = 0;
 const FIXED64: u64 = 1;
 const BYTES: u64 = 2;
@@ -44,10 +37,9 @@ fn bytes(out: &mut Vec<u8>, number: u64, bytes: &[u8]) {
     out.extend_from_slice(bytes);
 }
 
-/// A message with these values in the order of its fields.
-pub fn message(values: &[Value]) -> Vec<u8> {
+pub fn message(fields: &Fields) -> Vec<u8> {
     let mut out = Vec::new();
-    for (number, value) in (1..).zip(values) {
+    for (number, (_, value)) in (1..).zip(fields) {
         match value {
             Value::Number(value) => {
                 varint(&mut out, number << 3 | FIXED64);
@@ -84,20 +76,22 @@ pub fn first_bytes(message: &[u8]) -> Option<&[u8]> {
 }
 
 /// The `FileDescriptorSet` of one message (`google/protobuf/descriptor.proto`).
-pub fn descriptor(name: &str, fields: &[(String, Kind)]) -> Vec<u8> {
+pub fn descriptor(name: &str, fields: &Fields) -> Vec<u8> {
+    const OPTIONAL: u64 = 1;
+    const REPEATED: u64 = 3;
     let mut message = Vec::new();
     bytes(&mut message, 1, name.as_bytes());
-    for (number, (name, kind)) in (1..).zip(fields) {
-        let (label, code) = match kind {
-            Kind::Number => (1, 1),
-            Kind::Numbers => (3, 1),
-            Kind::Flag => (1, 8),
-            Kind::Text => (1, 9),
-            Kind::Bytes => (1, 12),
+    for (number, (name, value)) in (1..).zip(fields) {
+        let (label, kind) = match value {
+            Value::Number(_) => (OPTIONAL, 1),
+            Value::Numbers(_) => (REPEATED, 1),
+            Value::Flag(_) => (OPTIONAL, 8),
+            Value::Text(_) => (OPTIONAL, 9),
+            Value::Bytes(_) => (OPTIONAL, 12),
         };
         let mut field = Vec::new();
         bytes(&mut field, 1, name.as_bytes());
-        for (place, value) in [(3, number), (4, label), (5, code)] {
+        for (place, value) in [(3, number), (4, label), (5, kind)] {
             varint(&mut field, place << 3 | VARINT);
             varint(&mut field, value);
         }
@@ -117,23 +111,15 @@ pub fn descriptor(name: &str, fields: &[(String, Kind)]) -> Vec<u8> {
 mod tests {
     use super::*;
 
+    /// protobuf.dev, encoding: field 2 with the words `testing`.
     #[test]
-    fn bytes_are_those_of_the_documentation() {
-        // protobuf.dev, encoding: field 2 with the words `testing`.
+    fn bytes_are_those_of_the_documentation_and_what_is_cut_short_is_none() {
         let values = [Value::Flag(true), Value::Text("testing".to_owned()), Value::Number(1.0)];
-        let expected = [
-            &[0x08, 0x01][..],
-            &[0x12, 0x07, 0x74, 0x65, 0x73, 0x74, 0x69, 0x6e, 0x67],
-            &[0x19, 0, 0, 0, 0, 0, 0, 0xf0, 0x3f],
-        ];
-        assert_eq!(message(&values), expected.concat());
-    }
-
-    #[test]
-    fn the_first_bytes_come_back_and_what_is_cut_short_is_none() {
-        let data = vec![7; 300];
-        let whole = message(&[Value::Bytes(data.clone())]);
-        assert_eq!(first_bytes(&whole), Some(&data[..]));
+        let of = |values: &[Value]| message(&values.iter().map(|value| ("".into(), value.clone())).collect());
+        let expected = b"\x08\x01\x12\x07testing\x19\0\0\0\0\0\0\xf0\x3f";
+        assert_eq!(of(&values), expected);
+        let whole = of(&[Value::Bytes(vec![7; 300])]);
+        assert_eq!(first_bytes(&whole), Some(&[7; 300][..]));
         assert_eq!(first_bytes(&whole[..200]), None);
         assert_eq!(first_bytes(&[0x0a, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 1]), None);
     }

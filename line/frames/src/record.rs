@@ -1,29 +1,32 @@
 //! Recordings of a board's line: MCAP for Foxglove, PlotJuggler and Python, and CSV with the same values.
 //!
-//! The topic `/line` holds the bytes as they came; all other topics are made from them. So a recording is played, watched
-//! and replayed like a captured line, and what a later tool knows better it takes from the bytes again. A message's log time is the
-//! board's, from where it was by this computer's clock at the beginning; its publish time is this computer's. The metadata `tenax` tell tool, chip, build, schema and settings.
+//! The topic `/line` holds the bytes as they came; all other topics are made from them. A message's log time is the board's,
+//! counted from this computer's clock at the beginning; its publish time is this computer's. The metadata `tenax` names tool,
+//! chip, build, schema and settings.
 
 pub mod csv;
 pub mod topics;
 
+use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{self, BufWriter, ErrorKind};
+use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use anyhow::{Context, bail};
+use mcap::records::{MessageHeader, Metadata};
+use mcap::write::NoSeek;
+use mcap::{McapResult, WriteOptions, Writer};
 use tenax_hal_shim::wire::{About, Answer, FRAME_MAX, Received, Up, encode};
 
-use self::topics::{Topic, rows};
+use self::topics::{Row, rows};
 use crate::link::Inbox;
-use crate::link::captured::is_recording;
-use crate::mcap::{Packing, Writer};
+use crate::link::captured::{TOPIC, is_recording};
 use crate::protobuf::{self, PACKAGE, Value};
 use crate::settings;
 use crate::words::seconds;
 
-/// What a recording that begins now is called: `tenax-20261123T081500Z.mcap`.
+/// The name of a recording that begins now: `tenax-20261123T081500Z.mcap`.
 pub fn name_now() -> PathBuf {
     let now = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
     PathBuf::from(format!("tenax-{}.mcap", now.replace(['-', ':'], "")))
@@ -31,37 +34,42 @@ pub fn name_now() -> PathBuf {
 
 /// A recording that is being written.
 pub struct Recording {
-    file: Writer<BufWriter<File>>,
-    channels: Vec<(Topic, u16)>,
-    /// When the file was begun, and when the board's time 0 was by this computer's clock, if that is known.
+    file: Writer<NoSeek<BufWriter<File>>>,
+    /// Number of each topic's channel, and of its next message.
+    channels: BTreeMap<String, (u16, u32)>,
+    /// When the file was begun, and the board's time 0 by this computer's clock, if that is known.
     began_ns: u64,
     zero_ns: Option<u64>,
+    /// The newest frame.
     last: u32,
     about: Option<About>,
-    error: Option<io::Error>,
+    error: Option<anyhow::Error>,
     inbox: Inbox,
-    /// Bytes of the line that wait to be one message, the slow frames in them, and how many of these it has.
-    batch: (Vec<u8>, u32, u32),
+    is_compact: bool,
+    /// Bytes of the line that wait to be one message, and the slow frames in them.
+    batch: (Vec<u8>, u32),
 }
 
 /// Slow frames in a message of a compact recording's line, and for each of its states: a message takes 16 bytes of an index that
 /// nothing compresses.
 const BATCH: u32 = 4;
+/// Topics of a compact recording.
+const COMPACT: [&str; 5] = [TOPIC, "/state", "/event", "/counters", "/setting"];
 
 impl Recording {
     /// A recording of every topic in a new file.
     /// Fails if the file cannot be written, is there already, or is not called `*.mcap`.
     pub fn create(path: &Path) -> anyhow::Result<Self> {
-        Self::of(path, Topic::all(), Packing::FAST, 1)
+        Self::of(path, false)
     }
 
     /// One for hours: the line, and what a person draws first, 20 times a second.
     /// Fails as [`create`](Self::create) does.
     pub fn compact(path: &Path) -> anyhow::Result<Self> {
-        Self::of(path, Topic::compact(), Packing::SMALL, BATCH)
+        Self::of(path, true)
     }
 
-    fn of(path: &Path, topics: Vec<Topic>, packing: Packing, batch: u32) -> anyhow::Result<Self> {
+    fn of(path: &Path, is_compact: bool) -> anyhow::Result<Self> {
         let name = path.display();
         if !is_recording(path) {
             bail!(
@@ -69,37 +77,35 @@ impl Recording {
                 path.with_extension("mcap").display()
             );
         }
-        let cannot = || format!("cannot write {name}");
         let file = match File::create_new(path) {
             Err(error) if error.kind() == ErrorKind::AlreadyExists => {
                 bail!("{name} is there already, and a recording overwrites nothing: choose another name")
             }
-            other => other.with_context(cannot)?,
+            other => other.with_context(|| format!("cannot write {name}"))?,
         };
-        let out = BufWriter::new(file);
-        let mut file = Writer::new(out, packing).with_context(cannot)?;
-        let channels = topics
-            .into_iter()
-            .map(|topic| {
-                let message = topic.message();
-                let descriptor = protobuf::descriptor(message, &topic.fields());
-                (topic, file.channel(&topic.name(), &format!("{PACKAGE}.{message}"), &descriptor))
-            })
-            .collect();
+        let options = WriteOptions::new()
+            .library(concat!("tenax ", env!("CARGO_PKG_VERSION")))
+            .compression_threads(0)
+            // A chunk is written when it is whole: a file that is cut short is read up to there.
+            .disable_seeking(true);
+        // Level 17 is a seventh smaller; a chunk takes 17 ms, and a serial port's 4 kB last for 40 ms of the whole line.
+        let options =
+            if is_compact { options.chunk_size(Some(128 << 10)).compression_level(17) } else { options };
         Ok(Self {
-            file,
-            channels,
+            file: options.create(NoSeek::new(BufWriter::new(file)))?,
+            channels: BTreeMap::new(),
             began_ns: now_ns(),
             zero_ns: None,
             last: 0,
             about: None,
             error: None,
             inbox: Inbox::default(),
-            batch: (Vec::new(), 0, batch),
+            is_compact,
+            batch: (Vec::new(), 0),
         })
     }
 
-    /// Takes a message in. An error is kept for [`finish`](Self::finish).
+    /// Records a message. An error is kept for [`finish`](Self::finish).
     pub fn take(&mut self, received: &Received<Up>) {
         if let Up::About(about) | Up::Answer { answer: Answer::About(about), .. } = &received.message {
             self.about = Some(about.clone());
@@ -111,11 +117,9 @@ impl Recording {
             (self.zero_ns, self.last) = (Some(came_ns.max(self.at_ns(self.last) + 1)), 0);
         }
         let rows = rows(&received.message, self.last);
-        if let Some(last) = rows.iter().map(|(_, frame, _)| *frame).max() {
-            self.last = self.last.max(last);
-        }
+        self.last = rows.iter().map(|row| row.frame).fold(self.last, u32::max);
         if self.zero_ns.is_none() {
-            // What was said before the first time was is of no time.
+            // Before the first frame there is no time.
             if self.last == 0 {
                 return;
             }
@@ -125,38 +129,55 @@ impl Recording {
         let bytes = encode(received.sequence, &received.message, &mut buffer);
         self.batch.0.extend_from_slice(bytes.unwrap_or_default());
         self.batch.1 += u32::from(matches!(received.message, Up::Slow(_)));
-        let ends = self.batch.2 == 1 || self.batch.1 >= self.batch.2;
+        let ends = !self.is_compact || self.batch.1 >= BATCH;
         if ends {
             self.end_batch();
         }
-        for (topic, frame, values) in rows.into_iter().filter(|(topic, ..)| ends || *topic != Topic::State) {
-            self.put(topic, frame, came_ns, &values);
+        for row in rows {
+            let is_left_out = !COMPACT.contains(&&*row.topic) || row.topic == "/state" && !ends;
+            if !(self.is_compact && is_left_out) {
+                self.put(&row, came_ns);
+            }
         }
     }
 
-    /// Writes what there is of the line's bytes.
+    /// Writes the line's bytes that wait.
     fn end_batch(&mut self) {
-        let bytes = std::mem::take(&mut self.batch.0);
-        self.batch.1 = 0;
+        let (bytes, _) = std::mem::take(&mut self.batch);
         if !bytes.is_empty() {
-            self.put(Topic::Line, self.last, now_ns(), &[Value::Bytes(bytes)]);
+            let fields = vec![("data".into(), Value::Bytes(bytes))];
+            self.put(&Row { topic: TOPIC.into(), message: "Line", frame: self.last, fields }, now_ns());
         }
     }
 
-    fn put(&mut self, topic: Topic, frame: u32, came_ns: u64, values: &[Value]) {
-        let at_ns = self.at_ns(frame);
-        let Some((_, channel)) = self.channels.iter().find(|(own, _)| *own == topic) else { return };
-        if let Err(error) = self.file.message(*channel, at_ns, came_ns, &protobuf::message(values)) {
-            self.error.get_or_insert(error);
+    fn put(&mut self, row: &Row, came_ns: u64) {
+        if let Err(error) = self.write(row, came_ns) {
+            self.error.get_or_insert(error.into());
         }
     }
 
-    /// When a frame ended, by the file's time.
+    fn write(&mut self, row: &Row, came_ns: u64) -> McapResult<()> {
+        let log_time = self.at_ns(row.frame);
+        if !self.channels.contains_key(&*row.topic) {
+            let descriptor = protobuf::descriptor(row.message, &row.fields);
+            let schema =
+                self.file.add_schema(&format!("{PACKAGE}.{}", row.message), "protobuf", &descriptor)?;
+            let channel = self.file.add_channel(schema, &row.topic, "protobuf", &BTreeMap::new())?;
+            self.channels.insert(row.topic.to_string(), (channel, 0));
+        }
+        let Some((channel_id, next)) = self.channels.get_mut(&*row.topic) else { return Ok(()) };
+        let header =
+            MessageHeader { channel_id: *channel_id, sequence: *next, log_time, publish_time: came_ns };
+        *next += 1;
+        self.file.write_to_known_channel(&header, &protobuf::message(&row.fields))
+    }
+
+    /// When a frame ended, ns of the file's time.
     fn at_ns(&self, frame: u32) -> u64 {
         self.zero_ns.unwrap_or(0) + in_ns(frame)
     }
 
-    /// Takes in what comes up a line, as it comes.
+    /// Records the messages in bytes that came up a line.
     pub fn line(&mut self, bytes: &[u8]) {
         for &byte in bytes {
             if let Some(Ok(heard)) = self.inbox.push(byte) {
@@ -165,41 +186,34 @@ impl Recording {
         }
     }
 
-    /// Bytes in the file so far.
-    pub const fn bytes(&self) -> u64 {
-        self.file.bytes()
-    }
-
-    /// Who the board is, as far as it said so.
-    fn metadata(&self) -> Vec<(&'static str, String)> {
-        let mut metadata = vec![
+    fn metadata(&self) -> Metadata {
+        let began = UNIX_EPOCH + Duration::from_nanos(self.began_ns);
+        let mut all = vec![
             ("tool", concat!("tenax ", env!("CARGO_PKG_VERSION")).to_owned()),
-            (
-                "began",
-                humantime::format_rfc3339_millis(UNIX_EPOCH + Duration::from_nanos(self.began_ns))
-                    .to_string(),
-            ),
+            ("began", humantime::format_rfc3339_millis(began).to_string()),
         ];
         if let Some(About { identity, schema, settings, .. }) = &self.about {
             let [c0, c1, c2] = identity.chip;
-            metadata.extend([
+            all.extend([
                 ("chip", format!("{c0:08x}-{c1:08x}-{c2:08x}")),
                 ("build", format!("{:016x}", identity.build)),
                 ("schema", format!("{schema:016x}")),
                 ("settings", settings::toml(settings)),
             ]);
         }
-        metadata
+        let metadata = all.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
+        Metadata { name: "tenax".to_owned(), metadata }
     }
 
     /// Ends the file. Fails if it could not be written whole.
-    pub fn finish(mut self) -> io::Result<()> {
+    pub fn finish(mut self) -> anyhow::Result<()> {
         self.end_batch();
-        if let Err(error) = self.file.metadata("tenax", &self.metadata()) {
-            self.error.get_or_insert(error);
+        if let Some(error) = self.error {
+            return Err(error);
         }
-        let finished = self.file.finish().map(drop);
-        self.error.map_or(finished, Err)
+        self.file.write_metadata(&self.metadata())?;
+        self.file.finish()?;
+        Ok(self.file.into_inner().flush()?)
     }
 }
 

@@ -1,50 +1,13 @@
-//! The settings as a page for people: `docs/settings.md`. A test holds that file against this.
+//! Settings by name, and as a TOML file.
 
 use std::fmt::Write;
-
-use std::collections::BTreeMap;
 use std::time::SystemTime;
 
 use anyhow::Context;
-use serde::Serialize;
 use tenax_hal_shim::wire::{About, Setting, VERSION};
 use tenax_logic::setting::SettingId;
 
-use crate::words::AboutWords;
-
-const HEAD: &str = "\
-# Settings
-
-This page lists the numbers that a user can change.
-
-<!-- Printed from logic/src/*/settings.rs by cargo tenax settings; do not edit. -->
-
-Press the blue button briefly ([consent](safety.md#the-cable)), then run `cargo tenax config set NAME=VALUE`. The value outlives a power cut. A scene uses
-`kind = \"set-NAME\"` with `value`. No setting opens the hand or closes it above the force ceiling; some can switch slip detection off.
-The number names the setting on the wire and in flash.
-
-| number | name with unit | range | default | meaning |
-|---|---|---|---|---|
-";
-
-pub fn markdown() -> String {
-    let mut page = String::from(HEAD);
-    for id in SettingId::ALL {
-        let row = id.row();
-        let (number, range) = (id.number(), row.range());
-        // Writing into a String cannot fail.
-        let _ = writeln!(
-            page,
-            "| {number} | `{}` | {} to {} | {} | {} |",
-            row.name,
-            range.start(),
-            range.end(),
-            row.default,
-            row.meaning
-        );
-    }
-    page
-}
+use crate::words::identity_words;
 
 /// The setting of this name. An error names all that there are.
 pub fn named(name: &str) -> anyhow::Result<SettingId> {
@@ -54,74 +17,19 @@ pub fn named(name: &str) -> anyhow::Result<SettingId> {
     })
 }
 
-/// The trace of a screen or page that shows what a setting moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Trace {
-    Vibration,
-    Ratio,
-    Load,
-    Muscles,
-}
-
-impl Trace {
-    /// None: no trace shows it.
-    pub fn of(id: SettingId) -> Option<Self> {
-        let name = id.row().name;
-        let is = |stems: &[&str]| stems.iter().any(|stem| name.starts_with(stem));
-        if is(&["s1-", "impact-"]) {
-            Some(Self::Vibration)
-        } else if is(&["s2-", "loaded-", "hebbian-ahead"]) {
-            Some(Self::Ratio)
-        } else if is(&["force-ceiling", "slip-", "incipient-", "settle-", "blind-"]) {
-            Some(Self::Load)
-        } else if is(&["emg-"]) {
-            Some(Self::Muscles)
-        } else {
-            None
-        }
-    }
-}
-
-/// Which settings there are, and in which units (FNV-1a): a file from other ones says so.
-pub fn schema() -> u32 {
-    let rows = SettingId::ALL.map(|id| format!("{} {} {}\n", id.number(), id.row().name, id.row().unit));
-    rows.concat().bytes().fold(0x811c_9dc5, |hash, byte| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193))
-}
-
-/// What stands before [`schema`] in a file.
-const SCHEMA: &str = "# Schema of the settings: ";
-
-/// A board's settings as a TOML file that says whose they are.
+/// A board's settings as a TOML file that names the board.
 pub fn backup(about: &About, settings: &[Setting]) -> String {
     let now = humantime::format_rfc3339_seconds(SystemTime::now());
     format!(
-        "# Saved {now} by tenax {}, wire version {VERSION}, schema {:016x}.\n# Board: {}.\n{SCHEMA}{:08x}\n{}",
+        "# Saved {now} by tenax {}, wire version {VERSION}, schema {:016x}.\n# Board: {}.\n{}",
         env!("CARGO_PKG_VERSION"),
         about.schema,
-        AboutWords(about),
-        schema(),
+        identity_words(about),
         toml(settings)
     )
 }
 
-/// Of the text of a backup: what there is to say of it if it was saved by a tool that has other settings.
-pub fn of_other_schema(text: &str) -> Option<String> {
-    let (own, other) =
-        (format!("{:08x}", schema()), text.lines().find_map(|line| line.strip_prefix(SCHEMA))?);
-    (own != other).then(|| {
-        format!(
-            "was saved with other settings (schema {other}; this tool has {own}): look through what is set"
-        )
-    })
-}
-
-/// Those of a list by their numbers.
-pub fn by_number(settings: &[Setting]) -> BTreeMap<u8, i32> {
-    settings.iter().map(|setting| (setting.id, setting.value)).collect()
-}
-
-/// Settings as a TOML file, with what each does.
+/// Settings as a TOML file, with unit, range and meaning of each.
 pub fn toml(settings: &[Setting]) -> String {
     let mut text = String::from("# `tenax config import` sets what is named here.\n");
     for setting in settings {
@@ -139,8 +47,8 @@ pub fn toml(settings: &[Setting]) -> String {
     text
 }
 
-/// The settings that a TOML file names. Whether the line is trusted comes last: without trust, what follows would need consent.
-/// An error says what is wrong with it.
+/// The settings that a TOML file names. `line-trusted-flag` comes last: without trust, what follows would need consent.
+/// An error says what is wrong with the text.
 pub fn of_toml(text: &str) -> anyhow::Result<Vec<Setting>> {
     let table: toml::Table = text.parse().context("this is no TOML")?;
     let mut settings: Vec<Setting> =
@@ -149,8 +57,7 @@ pub fn of_toml(text: &str) -> anyhow::Result<Vec<Setting>> {
     Ok(settings)
 }
 
-/// A setting and its value from `NAME=VALUE`. Whether the value is accepted is for the board to say, which knows the range that is
-/// in force. An error says what is wrong with it.
+/// A setting and its value from `NAME=VALUE`; the board checks the range. An error says what is wrong with the text.
 pub fn parse(text: &str) -> anyhow::Result<Setting> {
     let (name, value) = text.split_once('=').with_context(|| format!("{text} is no NAME=VALUE"))?;
     let id = named(name.trim())?;
@@ -163,33 +70,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_exported_file_is_imported_as_it_was() {
+    fn a_backup_names_its_board_and_is_imported_as_it_was() {
         let all = SettingId::ALL.map(|id| Setting { id: id.number(), value: id.row().min });
-        let mut back = of_toml(&toml(&all)).unwrap();
+        let text = backup(&About { schema: 0x1234, ..About::default() }, &all);
+        for word in ["the host's own build", "schema 0000000000001234"] {
+            assert!(text.contains(word), "{text}");
+        }
+        let mut back = of_toml(&text).unwrap();
         back.sort_by_key(|setting| setting.id);
         assert_eq!(back, all);
         for (wrong, word) in [("s1 = 1", "no setting"), ("s1-mv = [", "no TOML")] {
             let error = format!("{:#}", of_toml(wrong).unwrap_err());
             assert!(error.contains(word), "{error}");
         }
-    }
-
-    #[test]
-    fn a_backup_names_its_board_and_what_moves_a_trace_is_known() {
-        let about =
-            About { identity: Default::default(), schema: 0x1234, frames: 0, settings: Default::default() };
-        let text = backup(&about, &[Setting { id: SettingId::S1.number(), value: 120 }]);
-        for word in
-            ["the host's own build", "schema 0000000000001234", &format!("settings: {:08x}", schema())]
-        {
-            assert!(text.contains(word), "{text}");
-        }
-        assert_eq!(by_number(&of_toml(&text).unwrap())[&SettingId::S1.number()], 120);
-        assert_eq!(
-            [SettingId::S1, SettingId::S2].map(Trace::of),
-            [Some(Trace::Vibration), Some(Trace::Ratio)]
-        );
-        assert_eq!(Trace::of(SettingId::LineTrusted), None);
     }
 
     #[test]

@@ -1,18 +1,25 @@
 //! Messages of a board, for people.
 
-use std::fmt::{self, Display};
-
 use tenax_hal_shim::channel::{CHANNELS, COUNT, FRAME_HZ, mv_from_sample};
-use tenax_hal_shim::detector::{DetectorHealth, DetectorId, DetectorSet};
+use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{
-    About, Answer, BadFrame, Down, Event, EventKind, Identity, Last, NetworkState, Raw, Refusal, Restored,
-    SCHEMA, Setting, Slow, TickRecord, Up, VERSION,
+    About, Answer, BadFrame, Down, EventKind, NetworkState, Refusal, Restored, SCHEMA, Setting, Slow,
+    TickRecord, Up, VERSION,
 };
-use tenax_hal_shim::words::{Calibration, Fault, Kept, Line};
+use tenax_hal_shim::words::{Calibration, Fault, Kept};
 use tenax_logic::setting::SettingId;
 
-/// The names of detectors, one blank between them.
+/// When a frame ended, s of the board's time.
+pub fn seconds(frame: u32) -> f64 {
+    (f64::from(frame) + 1.0) / f64::from(FRAME_HZ)
+}
+
+fn stamp(frame: u32) -> String {
+    format!("{:10.4} s", seconds(frame))
+}
+
+/// Names of detectors, separated by blanks.
 pub fn names(set: DetectorSet) -> String {
     let names: Vec<&str> =
         DetectorId::ALL.iter().filter(|id| set.contains(**id)).map(|id| id.name()).collect();
@@ -23,11 +30,9 @@ pub fn names(set: DetectorSet) -> String {
 pub fn why(bad: BadFrame) -> String {
     match bad {
         BadFrame::Garbled => "garbled".to_owned(),
-        BadFrame::Version(version) => {
-            format!(
-                "of version {version}, and this tool speaks {VERSION}: flash the board anew, or use its own tool"
-            )
-        }
+        BadFrame::Version(version) => format!(
+            "of version {version}, and this tool speaks {VERSION}: flash the board anew, or use its own tool"
+        ),
         BadFrame::TooLong => "longer than any message".to_owned(),
         BadFrame::Skipped => "no time for it".to_owned(),
     }
@@ -37,33 +42,35 @@ pub fn why(bad: BadFrame) -> String {
 pub fn in_words(fault: &Fault) -> String {
     let name =
         |channel: u8| CHANNELS.get(usize::from(channel)).map_or("unknown channel", |channel| channel.name);
-    match *fault {
-        Fault::SensorLost { channel, reason } => format!("{} gives no number: {reason:?}", name(channel)),
-        Fault::SensorBack { channel } => format!("{} gives numbers again", name(channel)),
-        Fault::CapabilityLost(capability) => format!("lost: {capability:?}"),
-        Fault::CapabilityBack(capability) => format!("back: {capability:?}"),
-        Fault::FramesLost { count } => format!("{count} frames lost"),
-        Fault::PressedAtBoot { channel } => format!("{} was loaded when the board started", name(channel)),
-        Fault::WatchdogReset => "restarted by the watchdog".to_owned(),
-        Fault::PanicReset => "restarted after a panic".to_owned(),
-        Fault::SupplySagged => "restarted because the supply sagged".to_owned(),
-        Fault::CrystalLost => "the crystal is lost: timing is a per cent off".to_owned(),
-        Fault::TooManyRestarts => {
-            "restarted too often: nothing moves before it is switched off and on".to_owned()
+    let text = match *fault {
+        Fault::SensorLost { channel, reason } => {
+            return format!("{} gives no number: {reason:?}", name(channel));
         }
-        Fault::NeverUnloaded => "the force sensor reads a load, and the hand is surely open".to_owned(),
+        Fault::SensorBack { channel } => return format!("{} gives numbers again", name(channel)),
+        Fault::CapabilityLost(capability) => return format!("lost: {capability:?}"),
+        Fault::CapabilityBack(capability) => return format!("back: {capability:?}"),
+        Fault::FramesLost { count } => return format!("{count} frames lost"),
+        Fault::PressedAtBoot { channel } => {
+            return format!("{} was loaded when the board started", name(channel));
+        }
         Fault::RecordDamaged(kept) => {
-            format!("the last {} to be saved are lost; older ones are used", kept_in_words(kept))
+            return format!("the last {} to be saved are lost; older ones are used", kept_in_words(kept));
         }
         Fault::StoreFull(kept) => {
-            format!("no room to save {}: switch the hand off and on again", kept_in_words(kept))
+            return format!("no room to save {}: switch the hand off and on again", kept_in_words(kept));
         }
-        Fault::StoreFailed(kept) => format!("the flash did not take {}", kept_in_words(kept)),
-    }
+        Fault::StoreFailed(kept) => return format!("the flash did not take {}", kept_in_words(kept)),
+        Fault::WatchdogReset => "restarted by the watchdog",
+        Fault::PanicReset => "restarted after a panic",
+        Fault::SupplySagged => "restarted because the supply sagged",
+        Fault::CrystalLost => "the crystal is lost: timing is a per cent off",
+        Fault::TooManyRestarts => "restarted too often: nothing moves before it is switched off and on",
+        Fault::NeverUnloaded => "the force sensor reads a load, and the hand is surely open",
+    };
+    text.to_owned()
 }
 
-/// What is kept, for a person.
-pub const fn kept_in_words(kept: Kept) -> &'static str {
+const fn kept_in_words(kept: Kept) -> &'static str {
     match kept {
         Kept::Network => "the network's weights",
         Kept::Zero => "the force sensor's zeros",
@@ -73,329 +80,211 @@ pub const fn kept_in_words(kept: Kept) -> &'static str {
 }
 
 /// Which image runs on which chip.
-pub struct AboutWords<'a>(pub &'a About);
-
-impl Display for AboutWords<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Identity { build, chip: [c0, c1, c2], .. } = self.0.identity;
-        match build {
-            0 => write!(f, "the host's own build"),
-            _ => write!(f, "image {build:016x} on chip {c0:08x}{c1:08x}{c2:08x}"),
-        }
+pub fn identity_words(about: &About) -> String {
+    let [c0, c1, c2] = about.identity.chip;
+    match about.identity.build {
+        0 => "the host's own build".to_owned(),
+        build => format!("image {build:016x} on chip {c0:08x}{c1:08x}{c2:08x}"),
     }
 }
 
-/// What the board answers to a command, for the person who gave it.
-pub struct AnswerWords<'a>(pub &'a Down, pub &'a Answer);
+/// The answer to a command, for the person who gave it.
+pub fn answer_words(command: &Down, answer: &Answer) -> String {
+    let said = match command {
+        Down::Set(setting) => format!("set {}: ", setting_words(setting)),
+        other => format!("{other:?}: "),
+    };
+    match answer {
+        Answer::Done => said + "done",
+        Answer::Refused(refusal) => said + "refused: " + &refusal_words(refusal),
+        other => told(other, 0),
+    }
+}
 
-impl Display for AnswerWords<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self(command, answer) = self;
-        match (command, answer) {
-            (Down::Set(Setting { id, value }), Answer::Done | Answer::Refused(_)) => {
-                match SettingId::from_number(*id) {
-                    Some(id) => write!(f, "set {} = {value}: ", id.row().name)?,
-                    None => write!(f, "set {id} = {value}: ")?,
-                }
-            }
-            (_, Answer::Done | Answer::Refused(_)) => write!(f, "{command:?}: ")?,
-            _ => {}
+/// Why a command was refused, and what to do about it.
+pub fn refusal_words(refusal: &Refusal) -> String {
+    match refusal {
+        Refusal::OutOfRange { min, max } => format!("it has to be {min} to {max}"),
+        Refusal::NotArmed => {
+            "nobody at the hand has consented: contract both muscles for 2 s or press the blue \
+                              button, then try again within a minute"
+                .to_owned()
         }
-        let up = Up::Answer { of: 0, frame: 0, answer: (*answer).clone() };
-        write!(f, "{}", Words(&up).to_string().replace(": command 0", "").replace(" command 0", ""))
+        Refusal::HeldTooLong => {
+            "the line has silenced the reflex for too long; move a muscle, consent again, or wait \
+                                 as long"
+                .to_owned()
+        }
+        Refusal::Loaded => "something presses on the finger, or is held".to_owned(),
+        Refusal::SensorLost => {
+            "a sensor that it needs gives no number; `tenax monitor` says which".to_owned()
+        }
+        other => format!("{other:?}"),
     }
 }
 
 /// A message, for a person.
-pub struct Words<'a>(pub &'a Up);
-
-impl Display for Words<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.0 {
-            Up::Hello { frame_hz, after: None } => {
-                write!(f, "hello: switched on, {frame_hz} frames a second")
-            }
-            Up::Hello { frame_hz, after: Some(fault) } => {
-                write!(f, "hello: {}, {frame_hz} frames a second", in_words(fault))
-            }
-            Up::Slow(slow) => slow_words(f, slow),
-            Up::Event(event) => event_words(f, event),
-            Up::Counters(counters) => write!(
-                f,
-                "counters: {} frames, {} lost, {} overruns; {} ticks, {} late; {} messages dropped, {} bad frames heard, {} commands skipped; a frame took \
-                 control {} us at worst, {:.1} % of the time now",
-                counters.frames,
-                counters.frames_lost,
-                counters.overruns,
-                counters.ticks,
-                counters.ticks_late,
-                counters.telemetry_dropped,
-                counters.bad_frames,
-                counters.commands_skipped,
-                counters.control_us_max,
-                f64::from(counters.control_permille) / 10.0
-            ),
-            Up::Answer { of, frame, answer } => answer_words(f, *of, *frame, answer),
-            Up::Saved { frame, kept } => {
-                write!(f, "{:10.4} s saved: {}", seconds(*frame), kept_in_words(*kept))
-            }
-            Up::About(about) => about_words(f, about),
-            Up::Restored(Restored { kept, payload }) => {
-                write!(f, "taken up from flash: {}, {} bytes", kept_in_words(*kept), payload.len())
-            }
-            Up::Raw(raw) => raw_words(f, raw),
-            Up::Senses(senses) => {
-                write!(f, "{:10.4} s senses, mV:", seconds(senses.frame))?;
-                samples_words(f, &senses.samples)
-            }
-            Up::Taken { before, of, command } => {
-                write!(f, "{:10.4} s takes command {of}: {command:?}", seconds(before.wrapping_sub(1)))
-            }
+pub fn words(message: &Up) -> String {
+    match message {
+        Up::Hello { frame_hz, after } => {
+            let after = after.as_ref().map_or_else(|| "switched on".to_owned(), in_words);
+            format!("hello: {after}, {frame_hz} frames a second")
+        }
+        Up::Slow(slow) => slow_words(slow),
+        Up::Event(event) => format!("{} {}", stamp(event.frame), event_words(event.kind)),
+        Up::Counters(own) => format!("{own:?}"),
+        Up::Answer { of, answer: Answer::Done, .. } => format!("done: command {of}"),
+        Up::Answer { of, answer: Answer::Refused(refusal), .. } => {
+            format!("refused: command {of}: {}", refusal_words(refusal))
+        }
+        Up::Answer { frame, answer, .. } => told(answer, *frame),
+        Up::Saved { frame, kept } => format!("{} saved: {}", stamp(*frame), kept_in_words(*kept)),
+        Up::About(about) => about_words(about),
+        Up::Restored(Restored { kept, payload }) => {
+            format!("taken up from flash: {}, {} bytes", kept_in_words(*kept), payload.len())
+        }
+        Up::Raw(raw) => {
+            let lost = raw.frames().iter().filter(|frame| !frame.valid).count();
+            format!("{} {} frames, {lost} lost", stamp(raw.first), raw.frames().len())
+        }
+        Up::Senses(own) => format!("{} senses, mV:{}", stamp(own.frame), samples_words(&own.samples)),
+        Up::Taken { before, of, command } => {
+            format!("{} takes command {of}: {command:?}", stamp(before.wrapping_sub(1)))
         }
     }
 }
 
-fn answer_words(f: &mut fmt::Formatter<'_>, of: u16, frame: u32, answer: &Answer) -> fmt::Result {
+/// What an answer tells, of this frame.
+fn told(answer: &Answer, frame: u32) -> String {
     match answer {
-        Answer::Done => write!(f, "done: command {of}"),
-        Answer::Refused(Refusal::OutOfRange { min, max }) => {
-            write!(f, "refused: command {of}: outside {min}..={max}")
-        }
-        Answer::Refused(Refusal::NotArmed) => write!(
-            f,
-            "refused: command {of}: nobody at the hand has consented: contract both muscles for 2 s or press the blue \
-             button, then send it again within a minute"
-        ),
-        Answer::Refused(Refusal::HeldTooLong) => write!(
-            f,
-            "refused: command {of}: the line has silenced the reflex for too long; move a muscle, consent again, or wait as long"
-        ),
-        Answer::Refused(refusal) => write!(f, "refused: command {of}: {refusal:?}"),
-        Answer::Setting(own) => setting_words(f, own),
-        Answer::Settings(all) => {
-            write!(f, "settings:")?;
-            all.iter().try_for_each(|own| {
-                write!(f, "\n      ")?;
-                setting_words(f, own)
-            })
-        }
-        Answer::Samples(samples) => {
-            write!(f, "{:10.4} s samples, mV:", seconds(frame))?;
-            samples_words(f, samples)
-        }
-        Answer::Network(network) => network_words(f, network),
-        Answer::About(about) => about_words(f, about),
-        Answer::Last(last) => last_words(f, last),
-        Answer::Nonce(nonce) => write!(f, "a session opens with {nonce:#010x}"),
+        Answer::Setting(own) => setting_words(own),
+        Answer::Settings(all) => format!("settings:{}", setting_lines(all)),
+        Answer::Samples(samples) => format!("{} samples, mV:{}", stamp(frame), samples_words(samples)),
+        Answer::Network(network) => network_words(network),
+        Answer::About(about) => about_words(about),
+        Answer::Last(last) => match &last.after {
+            None => "nothing is kept of a run before".to_owned(),
+            Some(fault) => format!(
+                "{} bytes are kept of the seconds before {} ({}): `tenax record --last` fetches them",
+                last.length,
+                in_words(fault),
+                String::from_utf8_lossy(&last.why)
+            ),
+        },
+        Answer::Nonce(nonce) => format!("a session opens with {nonce:#010x}"),
+        Answer::Done | Answer::Refused(_) => format!("{answer:?}"),
     }
 }
 
-fn last_words(f: &mut fmt::Formatter<'_>, last: &Last) -> fmt::Result {
-    match &last.after {
-        None => f.write_str("nothing is kept of a run before"),
-        Some(fault) => write!(
-            f,
-            "{} bytes are kept of the seconds before {} ({}): `tenax record --last` fetches them",
-            last.length,
-            in_words(fault),
-            String::from_utf8_lossy(&last.why)
-        ),
-    }
-}
-
-fn about_words(f: &mut fmt::Formatter<'_>, about: &About) -> fmt::Result {
+fn about_words(about: &About) -> String {
     let ago_s = f64::from(about.frames) / f64::from(FRAME_HZ);
-    write!(
-        f,
-        "about: {}, started because of {:?}, {ago_s:.1} s ago",
-        AboutWords(about),
-        about.identity.reset
-    )?;
-    if about.schema != SCHEMA {
-        let (own, board) = (SCHEMA, about.schema);
-        write!(
-            f,
-            "; its messages follow schema {board:016x}, this tool's {own:016x}: built from other sources"
-        )?;
-    }
-    for setting in &about.settings {
-        write!(f, "\n      ")?;
-        setting_words(f, setting)?;
-    }
-    Ok(())
+    let (identity, reset, board) = (identity_words(about), about.identity.reset, about.schema);
+    let other = match board == SCHEMA {
+        true => String::new(),
+        false => format!(
+            "; its messages follow schema {board:016x}, this tool's {SCHEMA:016x}: built from other sources"
+        ),
+    };
+    let settings = setting_lines(&about.settings);
+    format!("about: {identity}, started because of {reset:?}, {ago_s:.1} s ago{other}{settings}")
 }
 
-fn raw_words(f: &mut fmt::Formatter<'_>, raw: &Raw) -> fmt::Result {
-    for (n, frame) in raw.frames().iter().enumerate() {
-        if n > 0 {
-            write!(f, "\n      ")?;
-        }
-        write!(f, "{:10.4} s frame", seconds(frame.sequence))?;
-        match frame.valid {
-            true => write!(f, " {:?} {} {}", frame.pvdf, frame.switch_a, frame.switch_b)?,
-            false => write!(f, " lost")?,
-        }
-    }
-    Ok(())
+fn setting_lines(all: &[Setting]) -> String {
+    all.iter().map(|own| format!("\n      {}", setting_words(own))).collect()
 }
 
-fn samples_words(f: &mut fmt::Formatter<'_>, samples: &[u16; COUNT]) -> fmt::Result {
-    CHANNELS
-        .iter()
-        .zip(samples)
-        .try_for_each(|(channel, &sample)| write!(f, " {}={}", channel.name, mv_from_sample(sample)))
-}
-
-fn setting_words(f: &mut fmt::Formatter<'_>, setting: &Setting) -> fmt::Result {
+fn setting_words(setting: &Setting) -> String {
     match SettingId::from_number(setting.id) {
-        Some(id) => write!(f, "{} = {} {}", id.row().name, setting.value, id.row().unit),
-        None => write!(f, "setting {} = {}, which this tool does not know", setting.id, setting.value),
+        Some(id) => format!("{} = {} {}", id.row().name, setting.value, id.row().unit),
+        None => format!("setting {} = {}, which this tool does not know", setting.id, setting.value),
     }
 }
 
-/// When a frame ended, s of the board's time.
-pub fn seconds(frame: u32) -> f64 {
-    (f64::from(frame) + 1.0) / f64::from(FRAME_HZ)
+fn samples_words(samples: &[u16; COUNT]) -> String {
+    let word = |(channel, &sample): (&tenax_hal_shim::channel::Channel, &u16)| {
+        format!(" {}={}", channel.name, mv_from_sample(sample))
+    };
+    CHANNELS.iter().zip(samples).map(word).collect()
 }
 
-fn slow_words(f: &mut fmt::Formatter<'_>, slow: &Slow) -> fmt::Result {
-    write!(f, "{:10.4} s {:<9}", seconds(slow.frame), format!("{:?}", slow.mode))?;
-    match slow.forces {
-        Some(forces) => {
-            write!(
-                f,
-                " Fn {:6.2} N Ft {:6.2} N",
-                f64::from(forces.fn_mn) / 1e3,
-                f64::from(forces.ft_mn) / 1e3
-            )?;
-            match forces.ratio_permille {
-                Some(ratio) => write!(f, " Ft/Fn {:5.3}", f64::from(ratio) / 1e3)?,
-                None => write!(f, " Ft/Fn     -")?,
-            }
-        }
-        None => write!(f, " no force")?,
-    }
+fn slow_words(slow: &Slow) -> String {
+    let forces = slow.forces.map_or_else(
+        || "no force".to_owned(),
+        |forces| {
+            let [normal, shear] = [forces.fn_mn, forces.ft_mn].map(|mn| f64::from(mn) / 1e3);
+            let ratio = f64::from(forces.ratio_permille.unwrap_or(0)) / 1e3;
+            format!("Fn {normal:6.2} N Ft {shear:6.2} N Ft/Fn {ratio:5.3}")
+        },
+    );
+    let muscle = |mv: Option<i16>| mv.map_or_else(|| "lost".to_owned(), |mv| format!("{mv:5} mV"));
     let vibration = slow.ticks.iter().map(|tick| tick.vibration).max().unwrap_or(0);
-    write!(f, " vibration {:4} mV", mv_from_sample(vibration))?;
-    for (name, mv) in [("flexor", slow.flexor_mv), ("extensor", slow.extensor_mv)] {
-        match mv {
-            Some(mv) => write!(f, " {name} {mv:5} mV")?,
-            None => write!(f, " {name} lost")?,
-        }
-    }
-    let last = slow.ticks.last();
-    if let Some([o1, o2]) =
-        last.map(|tick| tick.outputs.map(|o| f64::from(o) / 128.0)).filter(|o| *o != [0.0; 2])
-    {
-        write!(f, " o {o1:5.2} {o2:5.2}")?;
-    }
-    if slow.lesson.is_some() {
-        f.write_str(" learning")?;
-    }
-    let mlp = slow
-        .evidence
-        .iter()
-        .find(|(id, own)| *id == DetectorId::Mlp && own.health == DetectorHealth::Working);
-    if let Some((_, mlp)) = mlp {
-        write!(f, " p(slip) {:5.3}", f64::from(mlp.confidence_permille) / 1e3)?;
-    }
-    match last.map(|tick| tick.drive) {
-        Some(MotorDrive::Close(duty)) => write!(f, " closing {}", duty.as_per_mille())?,
-        Some(MotorDrive::Open(duty)) => write!(f, " opening {}", duty.as_per_mille())?,
+    let mut text = format!(
+        "{} {:<9} {forces} vibration {:4} mV flexor {} extensor {}",
+        stamp(slow.frame),
+        format!("{:?}", slow.mode),
+        mv_from_sample(vibration),
+        muscle(slow.flexor_mv),
+        muscle(slow.extensor_mv)
+    );
+    match slow.ticks.last().map(|tick| tick.drive) {
+        Some(MotorDrive::Close(duty)) => text += &format!(" closing {}", duty.as_per_mille()),
+        Some(MotorDrive::Open(duty)) => text += &format!(" opening {}", duty.as_per_mille()),
         Some(MotorDrive::Coast) | None => {}
     }
-    // Said, and what became of it.
     let ever = |set: fn(&TickRecord) -> DetectorSet| {
-        slow.ticks.iter().fold(DetectorSet::NONE, |ever, tick| ever.or(set(tick)))
+        names(slow.ticks.iter().fold(DetectorSet::NONE, |ever, tick| ever.or(set(tick))))
     };
-    let (said, believed, acted) =
-        (ever(|tick| tick.said), ever(|tick| tick.believed), ever(|tick| tick.acted));
-    for id in DetectorId::ALL.into_iter().filter(|id| said.contains(*id)) {
-        let fate = match (acted.contains(id), believed.contains(id)) {
-            (true, _) => "!",
-            (false, true) => "",
-            (false, false) => " ignored",
-        };
-        write!(f, " {}{fate}", id.name())?;
+    let sets = [
+        ("said", ever(|tick| tick.said)),
+        ("believed", ever(|tick| tick.believed)),
+        ("acted", ever(|tick| tick.acted)),
+    ];
+    for (word, names) in sets.iter().filter(|(_, names)| !names.is_empty()) {
+        text += &format!(" {word}: {names}");
     }
-    f.write_str(if slow.wearer_active { " wearer" } else { "" })?;
-    match slow.line {
-        Line::Reading => Ok(()),
-        Line::Armed { left_s } => write!(f, " armed {left_s} s"),
-        Line::Trusted => f.write_str(" line trusted"),
-    }
+    text += if slow.lesson.is_some() { " learning" } else { "" };
+    text += if slow.wearer_active { " wearer" } else { "" };
+    text + &format!(" {:?}", slow.line)
 }
 
-fn network_words(f: &mut fmt::Formatter<'_>, network: &NetworkState) -> fmt::Result {
-    write!(f, "{:10.4} s network: {} updates", seconds(network.frame), network.updates)?;
-    match (network.no_lesson, network.teacher_age_ms) {
-        (None, _) => f.write_str(", learning")?,
-        (Some(why), Some(age_ms)) => {
-            write!(f, ", no lesson: {why:?}, the teacher's picture is {age_ms} ms old")?
-        }
-        (Some(why), None) => write!(f, ", no lesson: {why:?}")?,
+fn network_words(network: &NetworkState) -> String {
+    let NetworkState { updates, no_lesson, teacher_age_ms, .. } = network;
+    let mut text = format!(
+        "{} network: {updates} updates, no lesson: {no_lesson:?}, age of the teacher's picture, ms: {teacher_age_ms:?}",
+        stamp(network.frame)
+    );
+    for (output, weights) in (1..).zip(&network.weights) {
+        text += &format!("\n      w{output}: {:.3?}", weights.map(|own| f64::from(own) / f64::from(1 << 27)));
     }
-    for (output, weights) in network.weights.iter().enumerate() {
-        write!(f, "\n      w{}:", output + 1)?;
-        for &weight in weights {
-            write!(f, " {:6.3}", f64::from(weight) / f64::from(1 << 27))?;
-        }
-    }
-    write!(f, "\n       t:")?;
-    for &activation in &network.activations {
-        write!(f, " {:6.3}", f64::from(activation) / f64::from(1 << 14))?;
-    }
-    Ok(())
+    text + &format!("\n       t: {:.3?}", network.activations.map(|own| f64::from(own) / f64::from(1 << 14)))
 }
 
-fn event_words(f: &mut fmt::Formatter<'_>, event: &Event) -> fmt::Result {
-    write!(f, "{:10.4} s ", seconds(event.frame))?;
-    match event.kind {
-        EventKind::Mode { from, to, cause } => write!(f, "mode: {from} -> {to}: {cause}"),
-        EventKind::Fault(fault) => write!(f, "fault: {}", in_words(&fault)),
-        EventKind::Stroke { mu_s_permille, s2_permille } => write!(
-            f,
-            "stroke: mu_s {:.3}, S2 is now {:.3}",
-            f64::from(mu_s_permille) / 1e3,
-            f64::from(s2_permille) / 1e3
-        ),
-        EventKind::Armed(by) => write!(f, "armed: {by:?} consented to what the line sends"),
-        EventKind::Disarmed => f.write_str("disarmed: the line is only read"),
-        EventKind::LineTrusted(true) => f.write_str("the line is trusted: it moves the hand without consent"),
-        EventKind::NoWearer(true) => f.write_str("no wearer: the reflex works without myosensors"),
-        EventKind::NoWearer(false) => f.write_str("a wearer: the reflex works with both myosensors only"),
-        EventKind::LineTrusted(false) => f.write_str("the line is trusted no more"),
-        EventKind::EventsLost(count) => write!(f, "{count} events lost"),
-        EventKind::Motor(Some(stop)) => write!(f, "motor: stopped, {}", stop.name()),
-        EventKind::Motor(None) => f.write_str("motor: free again"),
+fn event_words(kind: EventKind) -> String {
+    match kind {
+        EventKind::Mode { from, to, cause } => format!("mode: {from} -> {to}: {cause}"),
+        EventKind::Fault(fault) => format!("fault: {}", in_words(&fault)),
+        EventKind::Stroke { mu_s_permille, s2_permille } => {
+            let [mu_s, s2] = [mu_s_permille, s2_permille].map(|permille| f64::from(permille) / 1e3);
+            format!("stroke: mu_s {mu_s:.3}, S2 is now {s2:.3}")
+        }
         EventKind::Pulse { margin_mn, said, believed } => {
-            f.write_str("pulse: margin ")?;
-            match margin_mn {
-                Some(mn) => write!(f, "{:.2} N", f64::from(mn) / 1e3)?,
-                None => f.write_str("unknown")?,
-            }
-            let doubted = said.without(believed);
-            write!(f, ", believed: {}", names(believed))?;
-            if doubted.is_empty() { Ok(()) } else { write!(f, ", not believed: {}", names(doubted)) }
+            let margin = margin_mn.map_or_else(|| "unknown".to_owned(), |mn| format!("{mn} mN"));
+            format!("pulse: margin {margin}, said: {}, believed: {}", names(said), names(believed))
         }
-        EventKind::Behaviour(what, None) => write!(f, "behaviour: {} begins", what.name()),
-        EventKind::Behaviour(what, Some(ending)) => {
-            write!(f, "behaviour: {} ended, {}", what.name(), ending.name())
+        EventKind::Motor(Some(stop)) => format!("motor: stopped, {}", stop.name()),
+        EventKind::Behaviour(what, ending) => {
+            let ending = ending.map_or("begins", |ending| ending.name());
+            format!("behaviour: {}: {ending}", what.name())
         }
         EventKind::Calibration(Calibration::Asks(prompt)) => {
-            write!(f, "calibration: {}, for 5 s from now", prompt.name())
+            format!("calibration: {}, for 5 s from now", prompt.name())
         }
-        EventKind::Calibration(Calibration::Done { separation_permille }) => {
-            write!(
-                f,
-                "calibration: done, the states are {:.1} deviations apart",
-                f64::from(separation_permille) / 1e3
-            )
+        EventKind::Calibration(Calibration::Refused(why)) => {
+            format!("calibration: refused, {why}; the one before is still in force")
         }
-        EventKind::Calibration(Calibration::Refused(refusal)) => {
-            write!(f, "calibration: refused, {refusal}; what was in force before still is")
-        }
-        EventKind::Calibration(Calibration::Fit(fit)) => write!(f, "calibration: {}", fit.name()),
+        EventKind::Calibration(Calibration::Fit(fit)) => format!("calibration: {}", fit.name()),
+        // Such as `Armed(Button)`, `LineTrusted(true)`.
+        other => format!("{other:?}"),
     }
 }
 
@@ -405,7 +294,7 @@ mod tests {
 
     #[test]
     fn a_board_of_another_schema_is_named_and_one_of_ours_is_not() {
-        let words = |schema| Words(&Up::About(About { schema, ..About::default() })).to_string();
+        let words = |schema| words(&Up::About(About { schema, ..About::default() }));
         assert!(!words(SCHEMA).contains("schema"));
         assert!(words(7).contains("schema 0000000000000007, this tool's"), "{}", words(7));
     }

@@ -5,10 +5,7 @@ use std::process::{Command, ExitCode};
 
 use anyhow::{Context, bail};
 
-use tenax_frames::tool::image;
-
-use tenax_frames::tool::out;
-use tenax_frames::tool::workspace;
+use tenax_frames::tool::{image, out, workspace};
 
 const INSTALL: &str = "\
 probe-rs is not installed, and it is what talks to the board's ST-LINK.
@@ -94,16 +91,9 @@ mod tests {
             std::fs::read_to_string(path).unwrap().parse().unwrap()
         };
         let (own, all) = (table("firmware/.cargo/config.toml"), table("Cargo.toml"));
-        let (mut run, mut flashed) = (own["profile"]["dev"].clone(), all["profile"]["firmware"].clone());
         assert_eq!(own["build"]["target"].as_str(), Some(image::TARGET));
-        // Said by the profile that the other inherits from.
-        assert_eq!(run.as_table_mut().unwrap().remove("debug-assertions"), Some(false.into()));
-        assert_eq!(flashed.as_table_mut().unwrap().remove("inherits"), Some("release".into()));
-        // Against the checks that the workspace's release build has of its own crates.
-        let package = flashed.as_table_mut().unwrap().remove("package").expect("it takes back the checks");
-        let checks =
-            package.as_table().unwrap().values().flat_map(|package| package.as_table().unwrap().values());
-        assert!(checks.into_iter().all(|check| *check == false.into()), "{package}");
-        assert_eq!(run, flashed);
+        for (key, value) in own["profile"]["dev"].as_table().unwrap() {
+            assert_eq!(all["profile"]["firmware"].get(key), Some(value), "{key}");
+        }
     }
 }

@@ -1,6 +1,5 @@
 //! `tenax play`: a recording's line once more, at the pace at which it was recorded; or as CSV.
 
-use std::io;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::mpsc::channel;
@@ -22,8 +21,7 @@ const EXAMPLES: &str = "\
 Examples:
   tenax play hand.mcap --csv tables            CSV files in the folder tables
   tenax play hand.mcap --serve --speed 2       serves the line at twice its speed
-While the line is served, type with Enter: 12.5 goes to that second, +5 and -5 move by seconds, x2 doubles the speed, pause and
-loop switch on and off. `tenax monitor --file FILE` plays a recording on the page.";
+`tenax monitor --file FILE` plays a recording on the page, which scrubs, loops and pauses it.";
 
 /// Play a recording.
 #[derive(Debug, clap::Args)]
@@ -58,7 +56,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         }
         return Ok(ExitCode::SUCCESS);
     }
-    let mut reel = Reel::open(&args.file)?;
+    let reel = Reel::open(&args.file)?;
     if !args.serve && args.serve_tcp.is_none() {
         bail!(
             "say where to: --csv DIR, --serve or --serve-tcp PORT; `tenax monitor --file` shows it, and --plain prints it at once"
@@ -73,19 +71,17 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     while server.tally().clients == 0 {
         thread::sleep(Duration::from_millis(50));
     }
-    let (typed, controls) = channel();
-    // It ends with its input, or with the process.
-    thread::spawn(move || io::stdin().lines().map_while(Result::ok).try_for_each(|line| typed.send(line)));
+    let (_none, controls) = channel();
     let speed = args.speed.clamp(SPEEDS.0, SPEEDS.1);
     let playing = Playing { at_s: args.from, speed, repeat: args.repeat, ..Playing::new(&reel) };
     let (mut encoder, mut messages) = (Encoder::default(), 0_u64);
-    play(&mut reel, playing, &controls, &mut |told| {
+    play(&reel, playing, &controls, &mut |told| {
         match told {
             Told::Message(heard) => {
                 messages += 1;
                 server.line(encoder.frame(&heard.received.message).1);
             }
-            // Who watches has to know that time begins anew.
+            // For a client, time begins anew.
             Told::Again => {
                 server.line(encoder.frame(&Up::Hello { frame_hz: FRAME_HZ as u16, after: None }).1);
             }
@@ -93,7 +89,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
             Told::Over => return false,
         }
         true
-    })?;
+    });
     out::note!("{messages} messages; {}", server.close());
     Ok(ExitCode::SUCCESS)
 }

@@ -1,14 +1,26 @@
-//! Which line is meant when none is named: the only board that is plugged in.
+//! The option `--port`, and the only board that is plugged in, where none is named.
 
 use anyhow::bail;
 use serialport::SerialPortType;
+use tenax_frames::link::{Client, Target};
 
-use tenax_frames::link::Target;
-
-/// The maker of the ST-LINK on the board.
+/// Vendor id of the board's ST-LINK.
 const ST: u16 = 0x0483;
 
-/// The line that was named, or that of the only board. Fails if there is none or there are several: says what is seen.
+#[derive(Debug, clap::Args)]
+pub struct Line {
+    /// Serial line: /dev/ttyACM0, COM3, /dev/pts/5 or tcp:127.0.0.1:7777 [default: the only board that is plugged in]
+    #[arg(long, value_name = "PORT", global = true)]
+    pub port: Option<Target>,
+}
+
+impl Line {
+    pub fn open(&self) -> anyhow::Result<Client> {
+        Client::open(&or_found(self.port.as_ref())?)
+    }
+}
+
+/// The line that was named, or that of the only board. Fails if there is none or there are several: names the ports.
 pub fn or_found(named: Option<&Target>) -> anyhow::Result<Target> {
     if let Some(target) = named {
         return Ok(target.clone());

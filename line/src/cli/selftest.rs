@@ -1,13 +1,13 @@
-//! `tenax selftest`: every sensor's wire, touched one after the other.
+//! `tenax selftest`: tests every sensor's wire by a touch.
 
 use std::process::ExitCode;
 
-use super::calibrate::Line;
+use super::port::Line;
 use crate::guide::selftest;
 use tenax_frames::tool::out;
 
 const EXAMPLES: &str = "\
-`tenax monitor --web` has the same test in its page.
+The page of `tenax monitor` has the same test.
 Examples:
   tenax selftest                                        the board that is plugged in, every channel
   tenax selftest fsr array_3                            fsr_a to fsr_d, and array_3

@@ -1,4 +1,4 @@
-//! The force sensor under known weights: its zero, and how far what it reads is off.
+//! Calibration of the force sensor with known weights: its zero and its gain.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -10,93 +10,72 @@ use tenax_logic::setting::SettingId;
 use super::{Say, ask, forces, wait_for};
 use tenax_frames::link::Client;
 
-/// A reading counts once it has stood still for so many slow frames: one second.
+/// Slow frames in which a steady reading stands still: 1 s.
 const STEADY: usize = SLOW_HZ as usize;
-/// Still: all of them within this part of their mean, or within so much, N.
+/// Largest distance of a steady reading from its mean: part of the mean, and N.
 const STILL_PART: f64 = 0.03;
 const STILL_N: f64 = 0.04;
-/// It is this weight if it reads between these parts of it.
+/// Range of the readings of a weight, parts of it.
 const BETWEEN: (f64, f64) = (0.5, 2.0);
-/// Taken off: less than this part of it is left.
+/// Part of a weight below which it is taken off.
 const OFF_PART: f64 = 0.1;
-/// How long a person may take.
+/// Time for a person.
 const PATIENCE: Duration = Duration::from_secs(120);
-/// A gain that is further from 1 is worth changing something.
+/// Largest error of a gain that needs no change.
 const GAIN_OFF: f64 = 0.05;
-/// The settings that are compared with what the sensor reads as a force.
 const COMPARED: [SettingId; 2] = [SettingId::ForceCeiling, SettingId::Loaded];
 /// Standard gravity, m/s^2.
 const GRAVITY: f64 = 9.806_65;
 
-/// A weight, and what the board read, N.
+/// A weight and the board's reading of it, N.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Weighed {
-    pub true_n: f64,
-    /// What the board says.
-    pub read_n: f64,
+struct Weighed {
+    true_n: f64,
+    read_n: f64,
 }
 
-#[derive(Clone, Debug, PartialEq)]
-pub struct Calibration {
-    /// Every weight, in its order.
-    pub weighed: Vec<Weighed>,
+/// The reading of 1 N, by least squares through no load.
+fn gain(weighed: &[Weighed]) -> f64 {
+    let sum = |product: fn(&Weighed) -> f64| weighed.iter().map(product).sum::<f64>();
+    sum(|own| own.read_n * own.true_n) / sum(|own| own.true_n * own.true_n)
 }
 
-impl Calibration {
-    /// What the board reads for 1 N, by least squares through no load.
-    pub fn gain(&self) -> f64 {
-        let sum = |product: fn(&Weighed) -> f64| self.weighed.iter().map(product).sum::<f64>();
-        sum(|own| own.read_n * own.true_n) / sum(|own| own.true_n * own.true_n)
+/// The table of the weights, and what follows from it.
+fn report(weighed: &[Weighed]) -> String {
+    let gain = gain(weighed);
+    let mut text =
+        format!("{:>10}{:>10}{:>12}{:>16}\n", "weight, N", "read, N", "error, %", "off the line, %");
+    let mut worst = 0.0_f64;
+    for Weighed { true_n, read_n } in weighed {
+        let [error, off] = [*true_n, gain * true_n].map(|expected| 100.0 * (read_n - expected) / true_n);
+        text += &format!("{true_n:>10.3}{read_n:>10.3}{error:>12.1}{off:>16.1}\n");
+        worst = worst.max(off.abs());
     }
-
-    /// How far each reading is from its weight, and how far from the straight line through them, % of the weight.
-    pub fn residuals(&self) -> impl Iterator<Item = (Weighed, f64, f64)> {
-        let gain = self.gain();
-        self.weighed.iter().map(move |&own| {
-            let percent = |expected: f64| 100.0 * (own.read_n - expected) / own.true_n;
-            (own, percent(own.true_n), percent(gain * own.true_n))
-        })
-    }
-
-    /// The table, and what follows from it.
-    pub fn text(&self) -> String {
-        let mut text =
-            format!("{:>10}{:>10}{:>12}{:>16}\n", "weight, N", "read, N", "error, %", "off the line, %");
-        for (Weighed { true_n, read_n }, error, off) in self.residuals() {
-            text += &format!("{true_n:>10.3}{read_n:>10.3}{error:>12.1}{off:>16.1}\n");
-        }
-        let gain = self.gain();
-        let worst = self.residuals().map(|(_, _, off)| off.abs()).fold(0.0, f64::max);
-        text += &format!("the board reads {gain:.3} N for 1 N; off that line by {worst:.1} % at most\n");
-        text += &if worst > 10.0 {
-            "the line is not straight: another sensor, another resistor beside it, or a weight off its middle\n".into()
-        } else if (gain - 1.0).abs() > GAIN_OFF {
-            format!(
-                "change the amplifier by the inverse of that. Until then every force that the board shows is that much off, and\n\
-                 \u{20} tenax config set{}\n\
-                 has the hand do at these forces what the defaults say\n",
-                self.settings()
-            )
-        } else {
-            String::from("within 5 %: nothing to do. The zero is kept on the board\n")
-        };
-        text
-    }
-
-    /// The settings that the reflex compares a load with, as if the sensor read right. Not a gain on the board: a wrong one would move
-    /// the ceiling far more than a setting of it may.
-    fn settings(&self) -> String {
-        let scaled = COMPARED.map(|id| {
-            let row = id.row();
-            let value = (f64::from(row.default) * self.gain()).round() as i32;
-            format!(" {}={}", row.name, value.clamp(row.min, row.max))
-        });
-        scaled.concat()
+    text += &format!("the board reads {gain:.3} N for 1 N; off that line by {worst:.1} % at most\n");
+    if worst > 10.0 {
+        text + "the line is not straight: another sensor, another resistor beside it, or a weight off its middle"
+    } else if (gain - 1.0).abs() > GAIN_OFF {
+        text + "change the amplifier by the inverse of that. Until then every force that the board shows is that much off, and\n"
+            + &format!("  tenax config set{}\n", settings(gain))
+            + "has the hand do at these forces what the defaults say"
+    } else {
+        text + "within 5 %: nothing to do. The zero is kept on the board"
     }
 }
 
-/// Zeroes the unloaded finger, then has one weight after the other put on it. Fails if the board refuses, or a weight never comes.
-pub fn calibrate(client: &mut Client, weights_n: &[f64], say: Say<'_>) -> anyhow::Result<Calibration> {
+/// The settings that the reflex compares a load with, scaled as if the sensor read right. A gain on the board would not do: a wrong one
+/// would move the ceiling far more than a setting of it may.
+fn settings(gain: f64) -> String {
+    let scaled = COMPARED.map(|id| {
+        let row = id.row();
+        let value = (f64::from(row.default) * gain).round() as i32;
+        format!(" {}={}", row.name, value.clamp(row.min, row.max))
+    });
+    scaled.concat()
+}
+
+/// Zeroes the unloaded finger, asks for one weight after the other and tells the errors. Fails if the board refuses, or a weight never comes.
+pub fn calibrate(client: &mut Client, weights_n: &[f64], say: Say<'_>) -> anyhow::Result<()> {
     say("Nothing may touch the finger.")?;
     wait_for(client, PATIENCE, "a finger that nothing touches", steady(-1.0, 0.5))?;
     ask(client, Down::Zero)?;
@@ -118,7 +97,7 @@ pub fn calibrate(client: &mut Client, weights_n: &[f64], say: Say<'_>) -> anyhow
         })?;
         weighed.push(Weighed { true_n, read_n });
     }
-    Ok(Calibration { weighed })
+    say(&format!("\n{}", report(&weighed)))
 }
 
 /// Finds the load that has stood still between these, N.
@@ -143,18 +122,17 @@ mod tests {
 
     #[test]
     fn a_gain_is_told_from_a_curve() {
-        let of = |read: fn(f64) -> f64| Calibration {
-            weighed: [1.0, 2.0, 5.0].map(|true_n| Weighed { true_n, read_n: read(true_n) }).to_vec(),
-        };
-        let straight = of(|n| 1.2 * n);
-        assert!((straight.gain() - 1.2).abs() < 1e-9);
-        assert!(straight.residuals().all(|(_, error, off)| (error - 20.0).abs() < 1e-6 && off.abs() < 1e-6));
-        assert!(straight.text().contains("change the amplifier"), "{}", straight.text());
-        let told = straight.text();
-        assert!(told.contains("\n  tenax config set force-ceiling-mn=48000 loaded-mn=700\n"), "{told}");
+        let weighed =
+            |read: fn(f64) -> f64| [1.0, 2.0, 5.0].map(|true_n| Weighed { true_n, read_n: read(true_n) });
+        let of = |read: fn(f64) -> f64| report(&weighed(read));
+        assert!((gain(&weighed(|n| 1.2 * n)) - 1.2).abs() < 1e-9);
+        let told = of(|n| 1.2 * n);
+        assert!(told.contains("        20.0 "), "{told}");
+        assert!(told.contains("change the amplifier"), "{told}");
+        assert!(told.contains("\n  tenax config set force-ceiling-mn=48000 loaded-mn=720\n"), "{told}");
         // At most what a setting may be: an earlier ceiling or load is the safe side.
-        assert!(of(|n| 1.8 * n).text().contains("force-ceiling-mn=60000 "));
-        assert!(of(|n| n * n.sqrt()).text().contains("not straight"));
-        assert!(of(|n| 1.01 * n).text().contains("nothing to do"));
+        assert!(of(|n| 1.8 * n).contains("force-ceiling-mn=60000 "));
+        assert!(of(|n| n * n.sqrt()).contains("not straight"));
+        assert!(of(|n| 1.01 * n).contains("nothing to do"));
     }
 }

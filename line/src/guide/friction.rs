@@ -1,4 +1,4 @@
-//! Friction by strokes over the surface that is to be held: S2 follows.
+//! Calibration of S2 by strokes over the surface that is to be held.
 
 use std::time::Duration;
 
@@ -9,27 +9,17 @@ use tenax_hal_shim::words::GripMode;
 use super::{Say, ask, forces, wait_for};
 use tenax_frames::link::Client;
 
-/// From this load on it is a stroke, and below this part of it the finger is lifted, N.
+/// Load from which on the finger is pressed, and below which it is lifted, N.
 const PRESSED_N: f64 = 0.6;
 const LIFTED_N: f64 = 0.3;
-/// A stroke lasts for so many slow frames at least: 0.3 s.
+/// Shortest stroke, slow frames: 0.3 s.
 const STROKE: u32 = 24;
-/// How long a person may take for all of them; the board ends a stroke by itself after a minute.
+/// Time for all strokes; the board ends the behaviour after a minute.
 const PATIENCE: Duration = Duration::from_secs(58);
 const TOLD_WITHIN: Duration = Duration::from_secs(5);
 
-/// What the strokes measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Measured {
-    /// Static friction, on the scale of the board's ratio, per mille.
-    pub mu_s_permille: u16,
-    /// The S2 that is in force and kept from now on, per mille.
-    pub s2_permille: u16,
-}
-
-/// Has so many strokes done. Fails if the board refuses, or nothing slid.
-pub fn calibrate(client: &mut Client, strokes: u32, say: Say<'_>) -> anyhow::Result<Measured> {
-    // A board that was just switched on knows its sensors a moment later, and a muscle may still be relaxing.
+/// Asks for strokes and tells friction and S2. Fails if the board refuses, or nothing slid.
+pub fn calibrate(client: &mut Client, strokes: u32, say: Say<'_>) -> anyhow::Result<()> {
     let ready = "the hand to be at rest with every sensor that the reflex needs; `tenax monitor` says which is missing";
     wait_for(client, TOLD_WITHIN, ready, |message| {
         Ok(match message {
@@ -57,18 +47,16 @@ pub fn calibrate(client: &mut Client, strokes: u32, say: Say<'_>) -> anyhow::Res
         }
         Ok((done >= strokes).then_some(()))
     });
-    // Whatever came of it, the reflex is wanted back.
+    // The reflex is back, whatever came of the strokes.
     ask(client, Down::End)?;
     stroked?;
-    wait_for(client, TOLD_WITHIN, "what the strokes measured: nothing slid", |message| {
-        Ok(match message {
-            Up::Event(event) => match event.kind {
-                EventKind::Stroke { mu_s_permille, s2_permille } => {
-                    Some(Measured { mu_s_permille, s2_permille })
-                }
-                _ => None,
-            },
+    let measured = wait_for(client, TOLD_WITHIN, "what the strokes measured: nothing slid", |message| {
+        let Up::Event(event) = message else { return Ok(None) };
+        Ok(match event.kind {
+            EventKind::Stroke { mu_s_permille, s2_permille } => Some([mu_s_permille, s2_permille]),
             _ => None,
         })
-    })
+    })?;
+    let [mu_s, s2] = measured.map(|permille| f64::from(permille) / 1e3);
+    say(&format!("Static friction {mu_s:.3} on the scale of Ft/Fn; S2 is {s2:.3} from now on, and kept."))
 }

@@ -1,45 +1,47 @@
-//! Every sensor's wire, one after the other: at rest each has its level, and what is touched is what moves.
+//! Tests every sensor's wire: at rest each has its level, and what is touched is what moves.
 //!
-//! [`Selftest`] only hears readings and says lines, so a test can run it beside a board that knows no real time. A prompt
-//! begins with what is to be done and the channel's name: whoever serves a scene can pipe it to the bench (`tenax run --serve`).
-//! [`Session`] runs it on a line; the terminal and the page each show one.
+//! A prompt begins with the verb and the channel's name: it can
+//! be piped to a served scene's bench.
 
 mod session;
 
-pub use self::session::{Session, named, run};
+pub use self::session::{named, run};
 
+use std::time::{Duration, Instant};
+
+use serde::Serialize;
 use tenax_hal_shim::channel::{
-    CHANNELS, COUNT, Channel, FRAME_HZ, Input, MOTOR_CURRENT, OPENING, PVDF, PVDF_COUNT, REFERENCE_MV, Role,
+    CHANNELS, COUNT, Channel, FRAME_HZ, MOTOR_CURRENT, OPENING, PVDF, PVDF_COUNT, REFERENCE_MV, Role,
     SAMPLE_MAX,
 };
-use tenax_hal_shim::wire::Senses;
+use tenax_hal_shim::wire::{Senses, Up};
 
-use crate::wiring::input;
+use crate::tables::input;
 
-/// How long the hand is watched at rest, and how long a touch is watched once something moves, in frames.
+/// Time at rest, and of a touch once something moves, frames.
 const REST: u32 = 2 * FRAME_HZ;
 const WATCHED: u32 = FRAME_HZ / 2;
-/// Before the next prompt nothing may move for so many readings; but nobody waits longer than so, in frames.
+/// Before the next prompt nothing may move for this many readings; at most for this time, frames.
 const STILL: usize = 20;
 const STILL_WITHIN: u32 = 3 * FRAME_HZ;
-/// Below this no wire works, and above that none that is not shorted, mV: films have no narrower range of their own.
+/// A board that is silent for longer sends no readings.
+const SILENCE: Duration = Duration::from_secs(4);
+/// Range of a working wire, mV: films have no narrower one of their own.
 const DEAD_MV: f64 = 45.0;
 const SHORT_MV: f64 = 3_255.0;
-/// A channel moves if it moves by so many times what it does at rest.
+/// Ratio of a move to the noise at rest.
 const OVER_NOISE: f64 = 3.0;
-/// Two wires touch if their readings differ by less than this part of their move,
+/// Two wires touch if their readings differ by less than this part of their move, and both move by this part of what moves most.
 const ALIKE: f64 = 0.25;
-/// And both move by this part of what moves most.
 const ALIKE_LOUD: f64 = 0.7;
-/// Who moved in the place of another is one of its kind if that moved by this part of the loudest.
+/// A channel of the asked kind that moved by this part of the loudest is the one that moved.
 const BROTHERS: f64 = 0.5;
-/// So many exchanged wires of one switch are its select lines.
+/// Exchanged pairs of one switch from which on its select lines are suspect.
 const SELECT_LINES: usize = 3;
 
-/// What is to be done first.
 const REST_PROMPT: &str = "Touch nothing and relax for 2 s.";
 
-/// What a sensor moves at least when it is touched; and how far below and above its rest it may stand, mV.
+/// The least move of a touched sensor; and how far below and above its rest it may stand, mV.
 const fn demands(role: Role) -> (f64, [f64; 2]) {
     match role {
         Role::Vibration => (60.0, [150.0, 150.0]),
@@ -54,27 +56,31 @@ const fn demands(role: Role) -> (f64, [f64; 2]) {
     }
 }
 
-/// What came of a channel.
+/// Voltages and moves in mV.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
-    /// It moved by this, mV; or stands right and cannot be touched.
+    /// It moved by this, or stands right and cannot be touched.
     Pass(f64),
-    /// Its voltage is none of a working sensor, mV.
     Dead(f64),
     Shorted(f64),
     /// It never changes.
     Stuck(f64),
-    /// It does not stand where its kind does, mV.
+    /// It does not stand where its kind does.
     Off(f64),
     /// Nothing moved.
     Silent,
-    /// This one moved in its place.
+    /// This channel moved in its place.
     Moved(usize),
-    /// This one does all that it does.
+    /// This channel reads the same.
     Bridged(usize),
 }
 
-/// Readings of all channels, mV, and the films' envelopes behind them.
+/// A channel and its input: `fsr_a (switch A, 12)`.
+fn wire(channel: usize) -> String {
+    format!("{} ({})", CHANNELS[channel].name, input(channel))
+}
+
+/// Readings of all channels, mV, then the films' envelopes.
 type Row = [f64; COUNT + PVDF_COUNT];
 
 fn row(senses: &Senses) -> Row {
@@ -89,11 +95,11 @@ fn mean(rows: &[Row]) -> Row {
     std::array::from_fn(|n| rows.iter().map(|row| row[n]).sum::<f64>() / rows.len() as f64)
 }
 
-/// What the channel that is asked for does now.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Reading of the channel that is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Level {
     pub mv: f64,
-    /// How far it is from its rest, a film by its envelope, and how far is a touch, mV.
+    /// Distance from its rest, a film's by its envelope, and the distance that is a touch, mV.
     pub moved_mv: f64,
     pub needed_mv: f64,
 }
@@ -101,7 +107,7 @@ pub struct Level {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Step {
     Rest,
-    /// This place of the channels to be asked for; whether it is asked for again; the frame in which something began to move.
+    /// Place in the list of channels; whether it is asked for again; the frame in which something began to move.
     Asked(usize, bool, Option<u32>),
     /// Until nothing moves; then this place is asked for.
     Stills(usize, bool),
@@ -110,25 +116,39 @@ enum Step {
 
 pub struct Selftest {
     roles: [Role; COUNT],
-    channels: Vec<usize>,
+    /// In the order in which they are asked for.
+    pub channels: Vec<usize>,
+    /// None: the channel was not asked for.
+    pub verdicts: [Option<Verdict>; COUNT],
+    /// Lines for the person, the oldest first.
+    pub said: Vec<String>,
+    /// Why the test cannot go on.
+    pub failed: Option<String>,
+    heard: Instant,
     limit: u32,
     step: Step,
     began: Option<u32>,
-    /// The newest reading's frame.
+    /// Frame of the newest reading.
     last: u32,
     rows: Vec<Row>,
-    /// Of the last readings in which nothing moved: what is held, creeps or drifts is no touch.
+    /// Mean of the last readings in which nothing moved: what is held, creeps or drifts is no touch.
     rest_mv: Row,
     noise_mv: Row,
-    verdicts: [Option<Verdict>; COUNT],
 }
 
 impl Selftest {
-    /// Of these channels, each touched within so many seconds. `head_is_fitted`: a photoelastic head is in the place of a film.
+    /// Of these channels, each touched within `limit_s`. `head_is_fitted`: a photoelastic head is in the place of a film.
     pub fn new(channels: Vec<usize>, head_is_fitted: bool, limit_s: u32) -> Self {
         Self {
             roles: std::array::from_fn(|channel| Role::of(channel, head_is_fitted)),
             channels,
+            verdicts: [None; COUNT],
+            said: vec![
+                "The hand is empty: the reflex may close it on what is pressed.".to_owned(),
+                REST_PROMPT.to_owned(),
+            ],
+            failed: None,
+            heard: Instant::now(),
             limit: limit_s * FRAME_HZ,
             step: Step::Rest,
             began: None,
@@ -136,7 +156,6 @@ impl Selftest {
             rows: Vec::new(),
             rest_mv: [0.0; COUNT + PVDF_COUNT],
             noise_mv: [0.0; COUNT + PVDF_COUNT],
-            verdicts: [None; COUNT],
         }
     }
 
@@ -144,21 +163,7 @@ impl Selftest {
         self.step == Step::Over
     }
 
-    /// What came of a channel; None of one that was not asked for.
-    pub fn verdict(&self, channel: usize) -> Option<Verdict> {
-        self.verdicts[channel]
-    }
-
-    pub const fn has_begun(&self) -> bool {
-        self.began.is_some()
-    }
-
-    /// The channels that are tested, in their order.
-    pub fn channels(&self) -> &[usize] {
-        &self.channels
-    }
-
-    /// What is to be done now, for whoever does not see the lines.
+    /// The instruction for now.
     pub fn prompt(&self) -> String {
         match self.step {
             Step::Rest => REST_PROMPT.to_owned(),
@@ -168,7 +173,7 @@ impl Selftest {
         }
     }
 
-    /// How loud the channel is that is asked for. None while none is.
+    /// Reading of the channel that is asked for.
     pub fn level(&self) -> Option<Level> {
         let Step::Asked(n, ..) = self.step else { return None };
         let (asked, row) = (self.channels[n], self.rows.last()?);
@@ -176,40 +181,62 @@ impl Selftest {
         Some(Level { mv: row[asked], moved_mv: self.moved(row, asked) * needed_mv, needed_mv })
     }
 
-    /// Leaves out the channel that is asked for; what a person is told then.
-    pub fn skip(&mut self) -> Vec<String> {
-        let Step::Asked(n, ..) = self.step else { return Vec::new() };
-        self.begin(Step::Stills(n + 1, false), self.last);
-        vec!["   left out".to_owned()]
+    /// Leaves out the channel that is asked for.
+    pub fn skip(&mut self) {
+        if let Step::Asked(n, ..) = self.step {
+            self.begin(Step::Stills(n + 1, false), self.last);
+            self.said.push("   left out".to_owned());
+        }
     }
 
-    /// Takes readings; what a person is told then.
-    pub fn hear(&mut self, senses: &Senses) -> Vec<String> {
+    /// Takes a message, or notes that none came. A board that sends no readings or starts anew fails the test.
+    pub fn take(&mut self, message: Option<&Up>) {
+        match message {
+            _ if self.is_over() || self.failed.is_some() => {}
+            Some(Up::Senses(senses)) => self.hear(senses),
+            Some(Up::Hello { .. }) if self.began.is_some() => {
+                self.fail("the board was switched on anew: start again");
+            }
+            _ if self.heard.elapsed() > SILENCE => self.fail("the board sends no readings"),
+            _ => {}
+        }
+    }
+
+    /// Ends the test, unless it is over.
+    pub fn fail(&mut self, why: &str) {
+        if !self.is_over() {
+            self.failed.get_or_insert_with(|| why.to_owned());
+        }
+    }
+
+    /// Takes readings.
+    pub fn hear(&mut self, senses: &Senses) {
         let since = senses.frame.wrapping_sub(*self.began.get_or_insert(senses.frame));
         let row = row(senses);
-        self.last = senses.frame;
+        (self.last, self.heard) = (senses.frame, Instant::now());
         self.rows.push(row);
         match self.step {
             Step::Rest if since >= REST => {
                 self.judge_rest();
-                self.ask(0, false, senses.frame)
+                self.ask(0, false, senses.frame);
             }
             Step::Asked(n, again, moved) => {
                 let moved = moved.or_else(|| self.moves(&row).then_some(senses.frame));
                 self.step = Step::Asked(n, again, moved);
                 let watched = moved.is_some_and(|at| senses.frame.wrapping_sub(at) >= WATCHED);
-                if watched || since >= self.limit { self.touched(n, again, senses.frame) } else { Vec::new() }
+                if watched || since >= self.limit {
+                    self.touched(n, again, senses.frame);
+                }
             }
             Step::Stills(n, again) => {
                 let last = self.rows.len().saturating_sub(STILL);
                 self.rows.drain(..last);
-                if self.rows.len() < STILL || (!self.is_still() && since < STILL_WITHIN) {
-                    return Vec::new();
+                if self.rows.len() >= STILL && (self.is_still() || since >= STILL_WITHIN) {
+                    self.rest_mv = mean(&self.rows);
+                    self.ask(n, again, senses.frame);
                 }
-                self.rest_mv = mean(&self.rows);
-                self.ask(n, again, senses.frame)
             }
-            Step::Rest | Step::Over => Vec::new(),
+            Step::Rest | Step::Over => {}
         }
     }
 
@@ -218,9 +245,8 @@ impl Selftest {
         self.rows.clear();
     }
 
-    /// Judges what needs no touch.
+    /// Judges what needs no touch, on the second half of the rest: in the first the person may still move.
     fn judge_rest(&mut self) {
-        // Of its first half nothing is taken: whoever read the prompt may still move.
         let half = self.rows.len() / 2;
         self.rows.drain(..half);
         self.rest_mv = mean(&self.rows);
@@ -241,15 +267,15 @@ impl Selftest {
         }
     }
 
-    /// Whether it stands where no sensor of its kind does. The fingers may stand anywhere.
+    /// Whether it stands where no sensor of its kind does. The hand's opening may stand anywhere.
     fn is_off(&self, channel: usize) -> bool {
         let (_, [below, above]) = demands(self.roles[channel]);
         let off_mv = self.rest_mv[channel] - f64::from(CHANNELS[channel].rest_mv);
         channel != OPENING && !(-below..=above).contains(&off_mv)
     }
 
-    /// Asks for the channel in this place, or for the next that a touch can say something of.
-    fn ask(&mut self, n: usize, again: bool, frame: u32) -> Vec<String> {
+    /// Asks for the channel in this place, or for the next that a touch can test.
+    fn ask(&mut self, n: usize, again: bool, frame: u32) {
         let can_be_touched = |channel: &usize| {
             *channel != MOTOR_CURRENT
                 && matches!(self.verdicts[*channel], None | Some(Verdict::Off(_) | Verdict::Moved(_)))
@@ -257,10 +283,11 @@ impl Selftest {
         let Some(n) = (n..self.channels.len()).find(|&n| can_be_touched(&self.channels[n])) else {
             self.begin(Step::Over, frame);
             self.compare();
-            return self.summary();
+            self.said.extend(self.summary());
+            return;
         };
         self.begin(Step::Asked(n, again, None), frame);
-        vec![self.asks(n, again)]
+        self.said.push(self.asks(n, again));
     }
 
     /// The prompt for the channel in this place.
@@ -276,8 +303,7 @@ impl Selftest {
         format!("{} {name}{hint}{again} ({}; {} of {of})", self.roles[channel].verb(), input(channel), n + 1)
     }
 
-    /// Holds the sides of exchanged wires against each other. What passes, or was not asked, has moved in no other's place: then the
-    /// channel in whose place this one moved is the right one.
+    /// Corrects one side of exchanged wires by the other: a channel that passed, or was not asked for, was not exchanged.
     fn compare(&mut self) {
         for channel in 0..COUNT {
             let Some(Verdict::Moved(other)) = self.verdicts[channel] else { continue };
@@ -291,7 +317,7 @@ impl Selftest {
         }
     }
 
-    /// How far a channel is from its rest, in what makes it a move.
+    /// Distance of a channel from its rest; from 1 on it is a move.
     fn moved(&self, row: &Row, channel: usize) -> f64 {
         let (least_mv, _) = demands(self.roles[channel]);
         let part = |n: usize| {
@@ -314,7 +340,7 @@ impl Selftest {
     }
 
     /// Judges a touch.
-    fn touched(&mut self, n: usize, again: bool, frame: u32) -> Vec<String> {
+    fn touched(&mut self, n: usize, again: bool, frame: u32) {
         let asked = self.channels[n];
         let peak = |channel: usize| self.rows.iter().map(|row| self.moved(row, channel)).fold(0.0, f64::max);
         let peaks: [f64; COUNT] = std::array::from_fn(peak);
@@ -330,7 +356,7 @@ impl Selftest {
             let loud = ALIKE_LOUD * peaks[of_kind].max(1.0);
             other != asked && peaks[asked].min(peaks[other]) >= loud && self.is_bridged(asked, other)
         });
-        // Brothers hear a little of each other, and what a finger presses moves other kinds, too.
+        // Sensors of one kind pick up a little of each other, and a press moves other kinds, too.
         let other = if peaks[of_kind] >= BROTHERS * peaks[of_all] { of_kind } else { of_all };
         let verdict = match bridged {
             Some(other) => Verdict::Bridged(other),
@@ -340,7 +366,7 @@ impl Selftest {
         };
         // The wrong sensor may have been touched.
         let repeats = matches!(verdict, Verdict::Moved(_)) && !again;
-        // Whoever finds less the second time has found something before.
+        // A verdict from before outweighs silence.
         let keeps = match verdict {
             Verdict::Silent => stands_off || again,
             Verdict::Pass(_) => stands_off,
@@ -349,16 +375,15 @@ impl Selftest {
         if !keeps {
             self.verdicts[asked] = Some(verdict);
         }
-        let said = match verdict {
+        self.said.push(match verdict {
             Verdict::Pass(_) if stands_off => "   moves".to_owned(),
             Verdict::Pass(mv) => format!("   pass, {mv:.0} mV"),
             other => format!("   FAIL: {}", self.words(asked, other)),
-        };
+        });
         self.begin(Step::Stills(if repeats { n } else { n + 1 }, repeats), frame);
-        vec![said]
     }
 
-    /// The farthest that a channel was from its rest, mV.
+    /// Largest distance of a channel from its rest, mV.
     fn most_mv(&self, n: usize) -> f64 {
         self.rows.iter().map(|row| (row[n] - self.rest_mv[n]).abs()).fold(0.0, f64::max)
     }
@@ -371,20 +396,14 @@ impl Selftest {
             moved += (row[asked] - rest).abs();
             apart += (row[asked] - row[other]).abs();
         }
-        moved > 0.0 && apart < ALIKE * moved && self.moved(&self.rest_row(asked, other), other) < 1.0
-    }
-
-    /// The rest, with the reading of `other` in the place of `asked`'s.
-    fn rest_row(&self, asked: usize, other: usize) -> Row {
         let mut row = self.rest_mv;
-        row[other] = self.rest_mv[asked];
-        row
+        row[other] = rest;
+        moved > 0.0 && apart < ALIKE * moved && self.moved(&row, other) < 1.0
     }
 
     /// A verdict for a person.
     pub fn words(&self, channel: usize, verdict: Verdict) -> String {
         let Channel { rest_mv, name, .. } = CHANNELS[channel];
-        let wire = |other: usize| format!("{} ({})", CHANNELS[other].name, input(other));
         match verdict {
             Verdict::Pass(mv) => format!("{name}: {mv:.0} mV"),
             Verdict::Dead(mv) => format!("{mv:.0} mV: a cut wire, a short to ground, or no supply"),
@@ -397,22 +416,18 @@ impl Selftest {
         }
     }
 
-    /// What is wrong, a line each, and the count.
+    /// A line for each fault, and the count.
     fn summary(&self) -> Vec<String> {
         let mut lines = vec![String::new()];
-        let bad = |channel: &usize| !matches!(self.verdicts[*channel], Some(Verdict::Pass(_)));
-        let switches: [fn(&Input) -> bool; 2] =
-            [|input| matches!(input, Input::SwitchA { .. }), |input| matches!(input, Input::SwitchB { .. })];
-        for (switch, is_on) in ["A", "B"].into_iter().zip(switches) {
+        let passes = |channel: usize| matches!(self.verdicts[channel], Some(Verdict::Pass(_)));
+        let is_moved = |channel: usize| matches!(self.verdicts[channel], Some(Verdict::Moved(_)));
+        for switch in ["A", "B"] {
+            let stem = format!("switch {switch},");
             let on: Vec<usize> =
-                self.channels.iter().copied().filter(|&n| is_on(&CHANNELS[n].input)).collect();
-            let exchanged =
-                on.iter().filter(|&&n| matches!(self.verdicts[n], Some(Verdict::Moved(_)))).count();
-            // Where wires are only exchanged the switch works; and what was left out says nothing.
-            let fails = |channel: &usize| {
-                let verdict = self.verdicts[*channel];
-                verdict.is_some_and(|verdict| !matches!(verdict, Verdict::Pass(_) | Verdict::Moved(_)))
-            };
+                self.channels.iter().copied().filter(|&n| input(n).starts_with(&stem)).collect();
+            let exchanged = on.iter().filter(|&&n| is_moved(n)).count();
+            // Where wires are only exchanged the switch works.
+            let fails = |&n: &usize| self.verdicts[n].is_some() && !passes(n) && !is_moved(n);
             if on.len() > 1 && on.iter().all(fails) {
                 lines.push(format!(
                     "All of switch {switch} fails: its supply, its enable, its output's wire."
@@ -423,31 +438,25 @@ impl Selftest {
                 ));
             }
         }
-        for &channel in self.channels.iter().filter(|channel| bad(channel)) {
-            let place = format!("{} ({})", CHANNELS[channel].name, input(channel));
-            let Some(verdict) = self.verdicts[channel] else {
-                lines.push(format!("{place}: left out, not tested"));
-                continue;
-            };
-            match verdict {
-                // The other side may have been said already.
-                Verdict::Moved(other)
-                    if self.verdicts[other] == Some(Verdict::Moved(channel)) && other < channel => {}
-                Verdict::Moved(other) => {
-                    lines.push(format!(
-                        "{place} and {} ({}): exchange their wires",
-                        CHANNELS[other].name,
-                        input(other)
-                    ));
+        for &channel in self.channels.iter().filter(|&&channel| !passes(channel)) {
+            let wrong = match self.verdicts[channel] {
+                None => "left out, not tested".to_owned(),
+                // The other side has been named.
+                Some(Verdict::Moved(other))
+                    if self.verdicts[other] == Some(Verdict::Moved(channel)) && other < channel =>
+                {
+                    continue;
                 }
-                other => lines.push(format!("{place}: {}", self.words(channel, other))),
-            }
+                Some(Verdict::Moved(other)) => {
+                    lines.push(format!("{} and {}: exchange their wires", wire(channel), wire(other)));
+                    continue;
+                }
+                Some(verdict) => self.words(channel, verdict),
+            };
+            lines.push(format!("{}: {wrong}", wire(channel)));
         }
-        let all = self.channels.len();
-        lines.push(format!(
-            "{} of {all} channels pass",
-            all - self.channels.iter().filter(|n| bad(n)).count()
-        ));
+        let passed = self.channels.iter().filter(|&&channel| passes(channel)).count();
+        lines.push(format!("{passed} of {} channels pass", self.channels.len()));
         lines
     }
 

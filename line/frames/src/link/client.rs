@@ -1,4 +1,4 @@
-//! Both directions of a line: commands are sent, their answers waited for, and every message counted.
+//! Both directions of a line: sends commands, waits for their answers, counts messages.
 
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
@@ -11,13 +11,14 @@ use tenax_logic::setting::SettingId;
 
 use super::{Counts, Heard, Inbox, Line, Outbox, Target};
 
-/// How long a board may take to answer.
+/// Time for a board to answer.
 pub const ANSWER_WITHIN: Duration = Duration::from_secs(2);
-/// How often a session is asked for, if somebody else on the line asks for one at the same time.
+/// Attempts to open a session, if another client of the line opens one at the same time.
 const SESSIONS_MAX: u32 = 8;
-
-/// The board takes 500 commands a second, and skips what comes faster: a little less than that is sent.
+/// Pause after a command: the board takes 500 a second, and skips the rest.
 const EACH: Duration = Duration::from_micros(2_500);
+/// Interval at which streams are asked for, each time for twice as long.
+const STREAM_EVERY: Duration = Duration::from_secs(2);
 /// Commands that one with a long answer counts as.
 const LONG: u32 = 6;
 
@@ -26,10 +27,13 @@ pub struct Client {
     outbox: Option<Outbox<Box<dyn Write + Send>>>,
     inbox: Inbox,
     heard: VecDeque<Result<Heard, BadFrame>>,
+    /// Number of the command that is waited for, and its answer.
+    asked: Option<u16>,
+    answer: Option<Answer>,
     /// When the next command may be sent.
-    free_at: Option<Instant>,
-    /// Messages at the front of `heard` that were looked at while an answer was waited for.
-    looked_at: usize,
+    free_at: Instant,
+    /// When readings were asked for.
+    streamed: Option<Instant>,
 }
 
 impl From<Line> for Client {
@@ -39,14 +43,16 @@ impl From<Line> for Client {
             outbox: line.down.map(Outbox::new),
             inbox: Inbox::default(),
             heard: VecDeque::new(),
-            free_at: None,
-            looked_at: 0,
+            asked: None,
+            answer: None,
+            free_at: Instant::now(),
+            streamed: None,
         }
     }
 }
 
 impl Client {
-    /// One on the line at `target`. Fails as [`Target::open`] does.
+    /// Opens the line at `target`. Fails as [`Target::open`] does.
     pub fn open(target: &Target) -> anyhow::Result<Self> {
         target.open().map(Self::from)
     }
@@ -55,54 +61,64 @@ impl Client {
         self.inbox.counts()
     }
 
-    /// The next message. None while there is none yet, after a tenth of a second at most.
-    /// Fails if the line has ended: `UnexpectedEof` where it was closed in order.
+    /// The next message. None if none comes within 0.1 s.
+    /// Fails if the line has ended: with `UnexpectedEof` if it was closed in order.
     pub fn next_message(&mut self) -> io::Result<Option<Heard>> {
         Ok(self.next_frame()?.and_then(Result::ok))
     }
 
-    /// The next message, or a frame that was none. None while nothing has come. Fails as [`next_message`](Self::next_message) does.
+    /// The next message, or why a frame is none. Otherwise as [`next_message`](Self::next_message).
     pub fn next_frame(&mut self) -> io::Result<Option<Result<Heard, BadFrame>>> {
         if self.heard.is_empty() {
             self.read()?;
         }
-        self.looked_at = self.looked_at.saturating_sub(1);
         Ok(self.heard.pop_front())
     }
 
-    /// Whether commands can be sent: a captured line takes none.
+    /// Whether commands can be sent: not to a file.
     pub const fn can_send(&self) -> bool {
         self.outbox.is_some()
     }
 
-    /// Sends a command without waiting; returns its number, which its answer names. Fails if the line is a captured one, or has ended.
+    /// Sends a command without waiting; returns its number, which its answer names. Fails if the line is a file, or has ended.
     pub fn send(&mut self, command: &Down) -> anyhow::Result<u16> {
         let Some(outbox) = &mut self.outbox else {
             bail!("a captured line cannot be told anything: give a port, or tcp:HOST:PORT");
         };
-        let now = Instant::now();
-        let free_at = self.free_at.map_or(now, |at| at.max(now));
-        thread::sleep(free_at - now);
-        self.free_at = Some(free_at + if has_long_answer(command) { EACH * LONG } else { EACH });
+        thread::sleep(self.free_at.saturating_duration_since(Instant::now()));
+        let is_long = matches!(
+            command,
+            Down::Samples | Down::Network | Down::Settings(_) | Down::About | Down::Last(_)
+        );
+        self.free_at = Instant::now() + if is_long { EACH * LONG } else { EACH };
         outbox.send(command).context("cannot write to the line")
     }
 
+    /// Asks the board to stream its readings, and its frames too if `raw`, each time that half of the time before is over.
+    pub fn keep_streaming(&mut self, raw: bool) -> anyhow::Result<()> {
+        if self.can_send() && self.streamed.is_none_or(|at| at.elapsed() >= STREAM_EVERY) {
+            let hold_s = 2 * STREAM_EVERY.as_secs() as u16;
+            self.send(&Down::Stream { raw, senses: true, hold_s })?;
+            self.streamed = Some(Instant::now());
+        }
+        Ok(())
+    }
+
     /// Sends a command and returns its answer. All messages that come meanwhile, the answer too, are still given by
-    /// [`next_message`](Self::next_message). What changes something needs a session: one is opened when the board asks
-    /// for it. Fails if there is no answer in `within`, or the line has ended, or is a captured one.
+    /// [`next_message`](Self::next_message). A session is opened when the board asks for one.
+    /// Fails if there is no answer in `within`, or as [`send`](Self::send) does.
     pub fn ask(&mut self, command: &Down, within: Duration) -> anyhow::Result<Answer> {
         let mut answer = self.ask_once(command, within)?;
         for attempt in 1..=SESSIONS_MAX {
-            // Somebody else on the same line may have opened one of their own: then the numbers that count are theirs.
+            // Another client of the line may have opened a session: then only its numbers count.
             if !matches!(answer, Answer::Refused(Refusal::NoSession | Refusal::Replayed)) {
                 break;
             }
+            // Two clients in step would void each other's sessions for ever.
+            let pause = if attempt > 1 { std::process::id() % 31 * attempt } else { 0 };
+            thread::sleep(Duration::from_millis(pause.into()));
             self.open_session(within)?;
             answer = self.ask_once(command, within)?;
-            if matches!(answer, Answer::Refused(Refusal::NoSession | Refusal::Replayed)) {
-                // Two who ask in step would void each other's sessions for ever.
-                thread::sleep(Duration::from_millis(u64::from(std::process::id() % 31 * attempt)));
-            }
         }
         Ok(answer)
     }
@@ -115,7 +131,7 @@ impl Client {
         }
     }
 
-    /// Opens a session, without which the board only lets read. False if it refused. Fails as [`ask`](Self::ask) does.
+    /// Opens a session, without which the board only answers reading commands. False: it refused. Fails as [`ask`](Self::ask) does.
     pub fn open_session(&mut self, within: Duration) -> anyhow::Result<bool> {
         let Answer::Nonce(nonce) = self.ask_once(&Down::Hello, within)? else { return Ok(false) };
         Ok(self.ask_once(&Down::Open { nonce }, within)? == Answer::Done)
@@ -127,52 +143,41 @@ impl Client {
     }
 
     fn ask_once(&mut self, command: &Down, within: Duration) -> anyhow::Result<Answer> {
-        // A board that is slower than real time takes fewer commands; the same twice does no more than once.
-        let again = command.reads() || matches!(command, Down::Set(_));
-        if again && let Some(answer) = self.ask_number(command, within / 2)? {
-            return Ok(answer);
-        }
-        match self.ask_number(command, within)? {
-            Some(answer) => Ok(answer),
-            None => bail!("no answer in {} s: is this a fingertip's line?", within.as_secs_f64()),
-        }
-    }
-
-    fn ask_number(&mut self, command: &Down, within: Duration) -> anyhow::Result<Option<Answer>> {
-        let number = self.send(command)?;
-        let began = Instant::now();
-        while began.elapsed() < within {
-            while let Some(heard) = self.heard.get(self.looked_at) {
-                self.looked_at += 1;
-                if let Ok(heard) = heard
-                    && let Up::Answer { of, answer, .. } = &heard.received.message
-                    && *of == number
-                {
-                    return Ok(Some(answer.clone()));
+        // A board that is slower than real time skips more commands. Twice the same read or `Set` does no more than one.
+        let repeats = command.reads() || matches!(command, Down::Set(_));
+        let waits = if repeats { &[within / 2, within][..] } else { &[within] };
+        for wait in waits {
+            self.asked = Some(self.send(command)?);
+            let began = Instant::now();
+            while began.elapsed() < *wait {
+                self.read().context("the line ended before the answer came")?;
+                if let Some(answer) = self.answer.take() {
+                    return Ok(answer);
                 }
             }
-            self.read().context("the line ended before the answer came")?;
         }
-        Ok(None)
+        bail!("no answer in {} s: is this a fingertip's line?", within.as_secs_f64())
     }
 
     fn read(&mut self) -> io::Result<()> {
         let mut buffer = [0; 4096];
-        match self.up.read(&mut buffer) {
-            Ok(0) => Err(ErrorKind::UnexpectedEof.into()),
-            Ok(length) => {
-                self.heard.extend(buffer[..length].iter().filter_map(|&byte| self.inbox.push(byte)));
-                Ok(())
+        let length = match self.up.read(&mut buffer) {
+            Ok(0) => return Err(ErrorKind::UnexpectedEof.into()),
+            Ok(length) => length,
+            Err(error) if is_silence(&error) => return Ok(()),
+            Err(error) => return Err(error),
+        };
+        for frame in buffer[..length].iter().filter_map(|&byte| self.inbox.push(byte)) {
+            if let Ok(heard) = &frame
+                && let Up::Answer { of, answer, .. } = &heard.received.message
+                && self.asked.take_if(|asked| *asked == *of).is_some()
+            {
+                self.answer = Some(answer.clone());
             }
-            Err(error) if is_silence(&error) => Ok(()),
-            Err(error) => Err(error),
+            self.heard.push_back(frame);
         }
+        Ok(())
     }
-}
-
-/// Whether a command's answer takes a good part of the line, so that the board counts it as several.
-const fn has_long_answer(command: &Down) -> bool {
-    matches!(command, Down::Samples | Down::Network | Down::Settings(_) | Down::About | Down::Last(_))
 }
 
 /// Whether a read failed only because nothing has come yet.

@@ -1,10 +1,9 @@
-//! What comes up a line: messages, the gaps between their numbers, and what is no message. Nothing on it is trusted.
+//! Messages from a line's bytes. Gaps in their numbers and frames that are no message are counted.
 
 use std::fmt::{self, Display};
 
 use tenax_hal_shim::wire::{BadFrame, Received, Receiver, Up};
 
-/// What came, and what should have come.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     pub messages: u64,
@@ -21,10 +20,8 @@ impl Display for Counts {
     }
 }
 
-/// A message, and how many are missing before it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Heard {
-    /// The message and its number.
     pub received: Received<Up>,
     /// Messages missing between the last one and this.
     pub missed: u16,
@@ -82,42 +79,30 @@ mod tests {
     }
 
     #[test]
-    fn gaps_in_the_numbers_are_counted_across_their_wrap() {
+    fn gaps_across_a_wrap_count_garbage_is_skipped_and_a_new_start_is_no_gap() {
         let counted = counts(&[frame(65_534), frame(1), frame(2)].concat());
         assert_eq!(counted, Counts { messages: 3, bad_frames: 0, missed: 2 });
+        let mut torn = frame(0);
+        torn[3] ^= 0x40;
+        let counted = counts(&[torn, vec![0xff; 2_000], vec![0], frame(0)].concat());
+        assert_eq!(counted, Counts { messages: 1, bad_frames: 2, missed: 0 });
+        let mut buffer = [0; FRAME_MAX];
+        let hello = encode(0, &Up::Hello { frame_hz: 2_000, after: None }, &mut buffer).expect("it fits");
+        assert_eq!(counts(&[&frame(700)[..], hello, &frame(1)].concat()).missed, 0);
     }
 
     #[test]
-    fn ten_minutes_of_numbers_come_round_five_times_and_any_shorter_gap_is_counted() {
+    fn numbers_that_come_round_five_times_and_any_gap_below_65_536_are_counted() {
         let mut inbox = Inbox::default();
         let mut hear = |number: u32| {
             frame(number as u16).into_iter().for_each(|byte| _ = inbox.push(byte));
             inbox.counts().missed
         };
-        // 572 messages a second.
-        assert_eq!((0..343_200).map(&mut hear).last(), Some(0));
-        // A gap over a wrap, and the longest one that is told.
         let wrap = 6 * 65_536;
-        (343_200..wrap - 10).for_each(|number| _ = hear(number));
+        assert_eq!((0..wrap - 10).map(&mut hear).last(), Some(0));
         assert_eq!(hear(wrap + 1_000), 1_010);
         assert_eq!(hear(wrap + 1_001 + 65_535), 1_010 + 65_535);
-        // What the page says of a longer one.
+        // A longer gap counts modulo 65 536.
         assert_eq!(hear(wrap + 1_001 + 65_535 + 65_537 + 7), 1_010 + 65_535 + 7);
-    }
-
-    #[test]
-    fn garbage_is_skipped_and_the_next_message_is_heard() {
-        let mut torn = frame(0);
-        torn[3] ^= 0x40;
-        let counted = counts(&[torn, vec![0xff; 2_000], vec![0], frame(0)].concat());
-        assert_eq!(counted, Counts { messages: 1, bad_frames: 2, missed: 0 });
-    }
-
-    #[test]
-    fn a_board_that_starts_anew_counts_anew() {
-        let hello = encode(0, &Up::Hello { frame_hz: 2_000, after: None }, &mut [0; FRAME_MAX])
-            .expect("it fits")
-            .to_vec();
-        assert_eq!(counts(&[frame(700), hello, frame(1)].concat()).missed, 0);
     }
 }

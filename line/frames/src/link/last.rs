@@ -1,19 +1,17 @@
-//! What a board keeps of the seconds before its last run ended in a fault: fetched piece by piece.
+//! The seconds before a fault that a board keeps, fetched piece by piece.
 
 use anyhow::{bail, ensure};
-use tenax_hal_shim::wire::{Answer, Down, Up};
+use tenax_hal_shim::wire::{Answer, Down};
 use tenax_hal_shim::words::Fault;
 
 use super::{ANSWER_WITHIN, Client, Inbox};
 
-/// What had gone up a line before a fault.
 #[derive(Clone, Debug)]
 pub struct LastSeconds {
-    /// What ended the run.
     pub after: Fault,
-    /// Why, as far as the image could say; else empty.
+    /// Place or message, if the image knew it; else empty.
     pub why: String,
-    /// The line's bytes, frame by frame. They begin with a whole one.
+    /// The line's bytes, from a whole frame on.
     pub line: Vec<u8>,
 }
 
@@ -42,25 +40,13 @@ impl LastSeconds {
         }
     }
 
-    /// Tells the board that it is in safe hands: it keeps what it says from now on. Fails if the board does not answer.
+    /// Lets the board overwrite them. Fails if the board does not answer.
     pub fn let_go(client: &mut Client) -> anyhow::Result<()> {
         client.ask(&Down::Last(u16::MAX), ANSWER_WITHIN).map(drop)
     }
-
-    /// From and to, frames of the board's time.
-    pub fn span(&self) -> Option<(u32, u32)> {
-        let mut inbox = Inbox::default();
-        let heard = self.line.iter().filter_map(|&byte| inbox.push(byte)).flatten();
-        let mut frames = heard.filter_map(|heard| match heard.received.message {
-            Up::Slow(slow) => Some(slow.frame),
-            _ => None,
-        });
-        let first = frames.next()?;
-        Some((first, frames.last().unwrap_or(first)))
-    }
 }
 
-/// Without what is left of a frame whose beginning was written over.
+/// Without the rest of a frame whose beginning was overwritten.
 fn whole(mut line: Vec<u8>) -> Vec<u8> {
     let mut inbox = Inbox::default();
     if let Some(end) = line.iter().position(|&byte| byte == 0)

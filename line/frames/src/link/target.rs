@@ -1,4 +1,4 @@
-//! Where a board's line is: a serial port, a pseudo-terminal, a TCP address or a captured file; and how it is opened.
+//! The place of a board's line: a serial port, a pseudo-terminal, a TCP address or a file.
 
 use std::fmt::{self, Display};
 use std::io::{self, Read, Write};
@@ -10,25 +10,18 @@ use std::time::Duration;
 use anyhow::{Context, anyhow, bail};
 use tenax_hal_shim::wire::BAUD;
 
-use super::holder;
-use crate::link::captured::line_of;
+use super::captured::line_of;
 
-/// How long a read waits for bytes before it returns, so that whoever reads can look at something else meanwhile.
 const READ_TIMEOUT: Duration = Duration::from_millis(100);
-/// How long a TCP address may take to answer.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Target {
     /// A serial port or a pseudo-terminal: `/dev/ttyACM0`, `COM3`, `/dev/pts/5`.
     Port(String),
-    /// `tcp:HOST:PORT`.
-    Tcp {
-        /// Name or address.
-        host: String,
-        port: u16,
-    },
-    /// A line that was captured.
+    /// HOST:PORT, written `tcp:HOST:PORT`.
+    Tcp(String),
+    /// A recording or a captured line.
     File(PathBuf),
 }
 
@@ -45,12 +38,11 @@ impl FromStr for Target {
     /// A regular file is a captured line; anything else that is no `tcp:` is a port.
     fn from_str(text: &str) -> Result<Self, String> {
         if let Some(address) = text.strip_prefix("tcp:") {
-            return address
-                .rsplit_once(':')
-                .and_then(|(host, port)| Some((host, port.parse().ok()?)))
-                .filter(|(host, _)| !host.is_empty())
-                .map(|(host, port)| Self::Tcp { host: host.trim_matches(['[', ']']).to_owned(), port })
-                .ok_or_else(|| "write tcp:HOST:PORT, such as tcp:127.0.0.1:7777".to_owned());
+            let (host, port) = address.rsplit_once(':').unwrap_or_default();
+            return match port.parse::<u16>() {
+                Ok(_) if !host.is_empty() => Ok(Self::Tcp(address.to_owned())),
+                _ => Err("write tcp:HOST:PORT, such as tcp:127.0.0.1:7777".to_owned()),
+            };
         }
         let path = Path::new(text);
         Ok(if path.is_file() { Self::File(path.to_owned()) } else { Self::Port(text.to_owned()) })
@@ -61,8 +53,7 @@ impl Display for Target {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Port(name) => f.write_str(name),
-            Self::Tcp { host, port } if host.contains(':') => write!(f, "tcp:[{host}]:{port}"),
-            Self::Tcp { host, port } => write!(f, "tcp:{host}:{port}"),
+            Self::Tcp(address) => write!(f, "tcp:{address}"),
             Self::File(path) => path.display().fmt(f),
         }
     }
@@ -73,37 +64,23 @@ impl Target {
     pub fn open(&self) -> anyhow::Result<Line> {
         match self {
             Self::Port(name) => open_port(name),
-            Self::Tcp { host, port } => connect(host, *port).with_context(|| {
-                format!("cannot connect to {self}: is `tenax run --serve-tcp {port}` running there?")
+            Self::Tcp(address) => connect(address).with_context(|| {
+                format!("cannot connect to {self}: is `tenax run --serve-tcp` running there?")
             }),
             Self::File(path) => Ok(Line { up: Box::new(io::Cursor::new(line_of(path)?)), down: None }),
-        }
-    }
-
-    /// Why the line can have ended, and what to do about it.
-    pub fn after_end(&self, error: Option<&io::Error>) -> String {
-        let why = error.map_or_else(String::new, |error| format!(" ({error})"));
-        match self {
-            Self::Port(name) => format!(
-                "{name} went away{why}: was the board unplugged, or is the served run over? Plug it in or start it \
-                 again, and then this"
-            ),
-            Self::Tcp { .. } | Self::File(_) => {
-                format!("{self} was closed at its other end{why}: the served run is over; start it again")
-            }
         }
     }
 }
 
 fn open_port(name: &str) -> anyhow::Result<Line> {
-    // Whoever is killed would leave a pseudo-terminal locked for everybody after him. A real port is for one alone: two
+    // A pseudo-terminal that is opened exclusively stays locked when its client is killed. A real port is for one alone: two
     // would each get half of the bytes.
     let pseudo = is_pseudo(name);
-    if holder::of(Path::new(name)).is_some() {
+    if holder(name).is_some() {
         // A served run opens it for an instant, to drop what its last client has not read.
         std::thread::sleep(READ_TIMEOUT);
     }
-    if let Some(holder) = holder::of(Path::new(name)) {
+    if let Some(holder) = holder(name) {
         bail!(
             "another program reads {name}: {holder}. Two would each get half of the bytes: end it first, or serve on \
              TCP (--serve-tcp), where each client hears everything"
@@ -126,6 +103,19 @@ fn open_port(name: &str) -> anyhow::Result<Line> {
     })
 }
 
+/// Another process that has a port open. None as well where the system, or another user's process, does not tell.
+fn holder(port: &str) -> Option<String> {
+    let port = Path::new(port).canonicalize().ok()?;
+    std::fs::read_dir("/proc").ok()?.flatten().find_map(|process| {
+        let pid: u32 = process.file_name().to_str()?.parse().ok()?;
+        let mut files = std::fs::read_dir(process.path().join("fd")).ok()?.flatten();
+        let is_held = pid != std::process::id()
+            && files.any(|file| std::fs::read_link(file.path()).is_ok_and(|path| path == port));
+        let name = || std::fs::read_to_string(process.path().join("comm")).unwrap_or_default();
+        is_held.then(|| format!("process {pid} ({})", name().trim()))
+    })
+}
+
 /// Whether a path leads to a pseudo-terminal.
 fn is_pseudo(name: &str) -> bool {
     let path = std::fs::canonicalize(name).unwrap_or_default();
@@ -133,9 +123,9 @@ fn is_pseudo(name: &str) -> bool {
         || (cfg!(target_os = "macos") && path.to_string_lossy().starts_with("/dev/ttys"))
 }
 
-fn connect(host: &str, port: u16) -> anyhow::Result<Line> {
-    let mut failed = None;
-    for address in (host, port).to_socket_addrs()? {
+fn connect(address: &str) -> io::Result<Line> {
+    let mut failed = io::Error::from(io::ErrorKind::AddrNotAvailable);
+    for address in address.to_socket_addrs()? {
         match TcpStream::connect_timeout(&address, CONNECT_TIMEOUT) {
             Ok(up) => {
                 up.set_nodelay(true)?;
@@ -143,13 +133,10 @@ fn connect(host: &str, port: u16) -> anyhow::Result<Line> {
                 let down = up.try_clone()?;
                 return Ok(Line { up: Box::new(up), down: Some(Box::new(down)) });
             }
-            Err(error) => failed = Some(error),
+            Err(error) => failed = error,
         }
     }
-    match failed {
-        Some(error) => Err(error.into()),
-        None => bail!("{host} has no address"),
-    }
+    Err(failed)
 }
 
 #[cfg(test)]
@@ -157,24 +144,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_meant_is_told_by_how_it_is_written() {
-        let tcp = |host: &str| Target::Tcp { host: host.to_owned(), port: 7_777 };
-        assert_eq!("tcp:127.0.0.1:7777".parse(), Ok(tcp("127.0.0.1")));
-        assert_eq!("tcp:[::1]:7777".parse(), Ok(tcp("::1")));
-        assert_eq!(tcp("::1").to_string(), "tcp:[::1]:7777");
+    fn a_place_is_told_by_how_it_is_written_and_an_error_says_what_to_do() {
+        for right in ["tcp:127.0.0.1:7777", "tcp:[::1]:7777"] {
+            let target: Target = right.parse().unwrap();
+            assert!(matches!(target, Target::Tcp(_)) && target.to_string() == right);
+        }
         for wrong in ["tcp:", "tcp:7777", "tcp::7777", "tcp:host:", "tcp:host:70000"] {
             assert!(wrong.parse::<Target>().unwrap_err().contains("tcp:HOST:PORT"), "{wrong}");
         }
-        assert_eq!("COM3".parse(), Ok(Target::Port("COM3".to_owned())));
         let file = tempfile::NamedTempFile::new().unwrap();
         assert_eq!(file.path().to_str().unwrap().parse(), Ok(Target::File(file.path().to_owned())));
-    }
-
-    #[test]
-    fn what_cannot_be_opened_says_what_to_do() {
         let error = |text: &str| format!("{:#}", text.parse::<Target>().unwrap().open().err().unwrap());
         assert!(error("/dev/no-such-port").contains("ports on this machine: "));
         // Nobody listens on port 1.
-        assert!(error("tcp:127.0.0.1:1").contains("is `tenax run --serve-tcp 1` running there?"));
+        assert!(error("tcp:127.0.0.1:1").contains("is `tenax run --serve-tcp` running there?"));
     }
 }

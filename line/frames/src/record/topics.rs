@@ -1,241 +1,40 @@
-//! What of a board's messages goes where in a recording: topics, their fields, and the values, for MCAP and CSV alike.
+//! Topics of a recording, their fields and values, for MCAP and CSV.
+
+use std::borrow::Cow;
 
 use tenax_hal_shim::channel::{CHANNELS, mv_from_sample};
-use tenax_hal_shim::detector::{DetectorId, Evidence};
+use tenax_hal_shim::detector::Evidence;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::{Answer, Counters, Forces, Setting, Slow, TickRecord, Up};
+use tenax_hal_shim::wire::{Answer, Counters, Forces, Senses, Setting, Slow, TickRecord, Up};
 use tenax_logic::setting::SettingId;
 
-use crate::link::captured;
-use crate::protobuf::{Kind, Value};
-use crate::words::{Words, names, seconds};
+use crate::protobuf::Fields;
+use crate::protobuf::Value::{self, Flag, Number, Numbers, Text};
+use crate::words::{names, seconds, words};
 
-/// Where values go.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Topic {
-    /// The line's bytes: all there is to know.
-    Line,
-    /// Mode, forces, muscles, 80 times a second.
-    State,
-    /// What every tick decided, 2000 times a second.
-    Tick,
-    /// What a detector concluded, 80 times a second.
-    Detector(DetectorId),
-    /// Frames as they were sampled, 2000 times a second, if they were asked for.
-    Frame,
-    /// Every sensor's reading, 80 times a second, if they were asked for.
-    Sensors,
-    /// What happened, in words.
-    Event,
-    Counters,
-    /// Settings whose value was said.
-    Setting,
+/// A message of a topic.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    pub topic: Cow<'static, str>,
+    /// The name of its type.
+    pub message: &'static str,
+    /// The frame whose end is its time.
+    pub frame: u32,
+    pub fields: Fields,
 }
 
-impl Topic {
-    pub fn all() -> Vec<Self> {
-        let detectors = DetectorId::ALL.map(Self::Detector);
-        let rest =
-            [Self::State, Self::Tick, Self::Frame, Self::Sensors, Self::Event, Self::Counters, Self::Setting];
-        [Self::Line].into_iter().chain(rest).chain(detectors).collect()
-    }
-
-    /// Those of a compact recording: the line, from which all others can be made again, and what a person draws first.
-    pub fn compact() -> Vec<Self> {
-        vec![Self::Line, Self::State, Self::Event, Self::Counters, Self::Setting]
-    }
-
-    /// What it is called in the file.
-    pub fn name(self) -> String {
-        match self {
-            Self::Line => captured::TOPIC.to_owned(),
-            Self::State => "/state".to_owned(),
-            Self::Tick => "/tick".to_owned(),
-            Self::Detector(id) => format!("/detector/{}", id.name()),
-            Self::Frame => "/frame".to_owned(),
-            Self::Sensors => "/sensors".to_owned(),
-            Self::Event => "/event".to_owned(),
-            Self::Counters => "/counters".to_owned(),
-            Self::Setting => "/setting".to_owned(),
-        }
-    }
-
-    /// What its messages are called.
-    pub const fn message(self) -> &'static str {
-        match self {
-            Self::Line => "Line",
-            Self::State => "State",
-            Self::Tick => "Tick",
-            Self::Detector(_) => "Detector",
-            Self::Frame => "Frame",
-            Self::Sensors => "Sensors",
-            Self::Event => "Event",
-            Self::Counters => "Counters",
-            Self::Setting => "Setting",
-        }
-    }
-
-    pub fn fields(self) -> Vec<(String, Kind)> {
-        match self {
-            Self::Line => vec![("data".to_owned(), Kind::Bytes)],
-            Self::State => fields(&STATE),
-            Self::Tick => fields(&TICK),
-            Self::Detector(_) => fields(&DETECTOR),
-            Self::Frame => fields(&FRAME),
-            Self::Sensors => {
-                let channels = CHANNELS.iter().map(|channel| (identifier(channel.name, "mv"), Kind::Number));
-                channels.chain([("film_envelopes_mv".to_owned(), Kind::Numbers)]).collect()
-            }
-            Self::Event => fields(&EVENT),
-            Self::Counters => fields(&COUNTERS),
-            Self::Setting => fields(&SETTING),
-        }
-    }
-}
-
-/// How a field is read from what the board said.
-enum Read<T> {
-    Number(fn(&T) -> f64),
-    /// NaN: there was none.
-    Maybe(fn(&T) -> Option<f64>),
-    Numbers(fn(&T) -> Vec<f64>),
-    Flag(fn(&T) -> bool),
-    Text(fn(&T) -> String),
-}
-
-/// A field: its name, and how it is read.
-type Field<T> = (&'static str, Read<T>);
-
-use Read::{Flag, Maybe, Number, Numbers, Text};
-
-const STATE: [Field<Slow>; 13] = [
-    ("mode", Text(|slow| format!("{:?}", slow.mode))),
-    ("fn_n", Maybe(|slow| newtons(slow, |forces| forces.fn_mn))),
-    ("load_n", Maybe(|slow| newtons(slow, |forces| forces.load_mn))),
-    ("fx_n", Maybe(|slow| newtons(slow, |forces| forces.fx_mn))),
-    ("fy_n", Maybe(|slow| newtons(slow, |forces| forces.fy_mn))),
-    ("ft_n", Maybe(|slow| newtons(slow, |forces| forces.ft_mn))),
-    ("ratio", Maybe(|slow| Some(f64::from(slow.forces?.ratio_permille?) / 1e3))),
-    ("s2", Number(|slow| f64::from(slow.s2_permille) / 1e3)),
-    ("margin_mn", Maybe(|slow| Some(slow.forces?.margin_mn(slow.s2_permille)?.into()))),
-    ("flexor_mv", Maybe(|slow| slow.flexor_mv.map(f64::from))),
-    ("extensor_mv", Maybe(|slow| slow.extensor_mv.map(f64::from))),
-    ("wearer_active", Flag(|slow| slow.wearer_active)),
-    ("line", Text(|slow| format!("{:?}", slow.line))),
-];
-
-const TICK: [Field<TickRecord>; 8] = [
-    ("vibration_mv", Number(|tick| mv_from_sample(tick.vibration).into())),
-    ("o1", Number(|tick| f64::from(tick.outputs[0]) / 128.0)),
-    ("o2", Number(|tick| f64::from(tick.outputs[1]) / 128.0)),
-    ("drive", Number(|tick| duty(tick.drive))),
-    ("source", Text(|tick| format!("{:?}", tick.source))),
-    ("said", Text(|tick| names(tick.said))),
-    ("believed", Text(|tick| names(tick.believed))),
-    ("acted", Text(|tick| names(tick.acted))),
-];
-
-const DETECTOR: [Field<Evidence>; 7] = [
-    ("slip", Flag(|evidence| evidence.slip)),
-    ("incipient", Flag(|evidence| evidence.incipient)),
-    ("confidence", Number(|evidence| f64::from(evidence.confidence_permille) / 1e3)),
-    ("direction", Text(|evidence| format!("{:?}", evidence.direction))),
-    ("health", Text(|evidence| format!("{:?}", evidence.health))),
-    ("raw", Number(|evidence| evidence.raw.into())),
-    ("decided_s", Number(|evidence| seconds(evidence.decided_at))),
-];
-
-const FRAME: [Field<Frame>; 4] = [
-    ("valid", Flag(|frame| frame.valid)),
-    ("films", Numbers(|frame| frame.pvdf.map(f64::from).to_vec())),
-    ("switch_a", Number(|frame| frame.switch_a.into())),
-    ("switch_b", Number(|frame| frame.switch_b.into())),
-];
-
-const EVENT: [Field<Up>; 1] = [("text", Text(|message| Words(message).to_string()))];
-
-const COUNTERS: [Field<Counters>; 9] = [
-    ("frames", Number(|counters| counters.frames.into())),
-    ("frames_lost", Number(|counters| counters.frames_lost.into())),
-    ("overruns", Number(|counters| counters.overruns.into())),
-    ("ticks_late", Number(|counters| counters.ticks_late.into())),
-    ("telemetry_dropped", Number(|counters| counters.telemetry_dropped.into())),
-    ("bad_frames", Number(|counters| counters.bad_frames.into())),
-    ("commands_skipped", Number(|counters| counters.commands_skipped.into())),
-    ("control_us_max", Number(|counters| counters.control_us_max.into())),
-    ("control_permille", Number(|counters| counters.control_permille.into())),
-];
-
-const SETTING: [Field<Setting>; 2] =
-    [("name", Text(|setting| setting_name(setting.id))), ("value", Number(|setting| setting.value.into()))];
-
-fn fields<T>(all: &[Field<T>]) -> Vec<(String, Kind)> {
-    let kind = |read: &Read<T>| match read {
-        Number(_) | Maybe(_) => Kind::Number,
-        Numbers(_) => Kind::Numbers,
-        Flag(_) => Kind::Flag,
-        Text(_) => Kind::Text,
-    };
-    all.iter().map(|(name, read)| ((*name).to_owned(), kind(read))).collect()
-}
-
-fn values<T>(all: &[Field<T>], of: &T) -> Vec<Value> {
-    let value = |(_, read): &Field<T>| match read {
-        Number(read) => Value::Number(read(of)),
-        Maybe(read) => Value::Number(read(of).unwrap_or(f64::NAN)),
-        Numbers(read) => Value::Numbers(read(of)),
-        Flag(read) => Value::Flag(read(of)),
-        Text(read) => Value::Text(read(of)),
-    };
-    all.iter().map(value).collect()
-}
-
-fn newtons(slow: &Slow, force: fn(&Forces) -> i32) -> Option<f64> {
-    slow.forces.as_ref().map(|forces| f64::from(force(forces)) / 1e3)
-}
-
-/// From -1, opening, to 1, closing.
-fn duty(drive: MotorDrive) -> f64 {
-    match drive {
-        MotorDrive::Coast => 0.0,
-        MotorDrive::Close(duty) => f64::from(duty.as_per_mille()) / 1e3,
-        MotorDrive::Open(duty) => -f64::from(duty.as_per_mille()) / 1e3,
-    }
-}
-
-fn setting_name(id: u8) -> String {
-    SettingId::from_number(id).map_or_else(|| format!("setting {id}"), |id| id.row().name.to_owned())
-}
-
-/// A channel's name as protobuf takes it.
-fn identifier(name: &str, unit: &str) -> String {
-    let name: String =
-        name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' }).collect();
-    format!("{name}_{unit}")
-}
-
-/// What a message says, each with the frame that it is of. `last` is the frame that was heard of last, for messages that
-/// name none.
-pub fn rows(message: &Up, last: u32) -> Vec<(Topic, u32, Vec<Value>)> {
-    let text = |frame: u32| (Topic::Event, frame, values(&EVENT, message));
-    let settings = |all: &[Setting], frame: u32| {
-        let row = |setting| (Topic::Setting, frame, values(&SETTING, setting));
-        [text(frame)].into_iter().chain(all.iter().map(row)).collect()
+/// The rows of a message. `last` is the newest frame, for messages that name none.
+pub fn rows(message: &Up, last: u32) -> Vec<Row> {
+    let text = |frame| row("/event", "Event", frame, [("text", Text(words(message)))]);
+    let settings = |all: &[Setting], frame| {
+        [text(frame)].into_iter().chain(all.iter().map(|own| setting(own, frame))).collect()
     };
     match message {
         Up::Slow(slow) => slow_rows(slow),
-        Up::Raw(raw) => {
-            raw.frames().iter().map(|frame| (Topic::Frame, frame.sequence, values(&FRAME, frame))).collect()
-        }
-        Up::Senses(senses) => {
-            let mv = |sample: &u16| f64::from(mv_from_sample(*sample));
-            let films = Value::Numbers(senses.films.iter().map(mv).collect());
-            let values =
-                senses.samples.iter().map(|sample| Value::Number(mv(sample))).chain([films]).collect();
-            vec![(Topic::Sensors, senses.frame, values)]
-        }
-        Up::Counters(counters) => vec![(Topic::Counters, last, values(&COUNTERS, counters))],
+        Up::Raw(raw) => raw.frames().iter().map(frame_row).collect(),
+        Up::Senses(senses) => vec![sensors(senses)],
+        Up::Counters(own) => vec![counters(own, last)],
         Up::About(about) => settings(&about.settings, last),
         Up::Answer { frame, answer, .. } => match answer {
             Answer::About(about) => settings(&about.settings, *frame),
@@ -250,11 +49,123 @@ pub fn rows(message: &Up, last: u32) -> Vec<(Topic, u32, Vec<Value>)> {
     }
 }
 
-fn slow_rows(slow: &Slow) -> Vec<(Topic, u32, Vec<Value>)> {
+fn row<const N: usize>(
+    topic: impl Into<Cow<'static, str>>,
+    message: &'static str,
+    frame: u32,
+    fields: [(&'static str, Value); N],
+) -> Row {
+    let fields = fields.map(|(name, value)| (name.into(), value)).into();
+    Row { topic: topic.into(), message, frame, fields }
+}
+
+fn maybe(value: Option<impl Into<f64>>) -> Value {
+    Number(value.map_or(f64::NAN, Into::into))
+}
+
+fn thousandth(value: impl Into<f64>) -> f64 {
+    value.into() / 1e3
+}
+
+fn slow_rows(slow: &Slow) -> Vec<Row> {
     let first = slow.frame.wrapping_sub(slow.ticks.len() as u32 - 1);
-    let ticks =
-        (0..).zip(&slow.ticks).map(|(n, tick)| (Topic::Tick, first.wrapping_add(n), values(&TICK, tick)));
-    let evidence =
-        slow.evidence.iter().map(|(id, own)| (Topic::Detector(*id), slow.frame, values(&DETECTOR, own)));
-    ticks.chain([(Topic::State, slow.frame, values(&STATE, slow))]).chain(evidence).collect()
+    let ticks = (0..).zip(&slow.ticks).map(|(n, own)| tick(own, first.wrapping_add(n)));
+    let detectors = slow.evidence.iter().map(|(id, own)| {
+        let topic = format!("/detector/{}", id.name());
+        row(topic, "Detector", slow.frame, evidence(own))
+    });
+    ticks.chain([state(slow)]).chain(detectors).collect()
+}
+
+fn state(slow: &Slow) -> Row {
+    let newtons = |force: fn(&Forces) -> i32| maybe(slow.forces.as_ref().map(force).map(thousandth));
+    let fields = [
+        ("mode", Text(format!("{:?}", slow.mode))),
+        ("fn_n", newtons(|forces| forces.fn_mn)),
+        ("load_n", newtons(|forces| forces.load_mn)),
+        ("fx_n", newtons(|forces| forces.fx_mn)),
+        ("fy_n", newtons(|forces| forces.fy_mn)),
+        ("ft_n", newtons(|forces| forces.ft_mn)),
+        ("ratio", maybe(slow.forces.and_then(|forces| forces.ratio_permille).map(thousandth))),
+        ("s2", Number(thousandth(slow.s2_permille))),
+        ("margin_mn", maybe(slow.forces.and_then(|forces| forces.margin_mn(slow.s2_permille)))),
+        ("flexor_mv", maybe(slow.flexor_mv)),
+        ("extensor_mv", maybe(slow.extensor_mv)),
+        ("wearer_active", Flag(slow.wearer_active)),
+        ("line", Text(format!("{:?}", slow.line))),
+    ];
+    row("/state", "State", slow.frame, fields)
+}
+
+fn tick(tick: &TickRecord, frame: u32) -> Row {
+    // From -1, opening, to 1, closing.
+    let drive = match tick.drive {
+        MotorDrive::Coast => 0.0,
+        MotorDrive::Close(duty) => thousandth(duty.as_per_mille()),
+        MotorDrive::Open(duty) => -thousandth(duty.as_per_mille()),
+    };
+    let fields = [
+        ("vibration_mv", Number(mv_from_sample(tick.vibration).into())),
+        ("o1", Number(f64::from(tick.outputs[0]) / 128.0)),
+        ("o2", Number(f64::from(tick.outputs[1]) / 128.0)),
+        ("drive", Number(drive)),
+        ("source", Text(format!("{:?}", tick.source))),
+        ("said", Text(names(tick.said))),
+        ("believed", Text(names(tick.believed))),
+        ("acted", Text(names(tick.acted))),
+    ];
+    row("/tick", "Tick", frame, fields)
+}
+
+fn evidence(evidence: &Evidence) -> [(&'static str, Value); 7] {
+    [
+        ("slip", Flag(evidence.slip)),
+        ("incipient", Flag(evidence.incipient)),
+        ("confidence", Number(thousandth(evidence.confidence_permille))),
+        ("direction", Text(format!("{:?}", evidence.direction))),
+        ("health", Text(format!("{:?}", evidence.health))),
+        ("raw", Number(evidence.raw.into())),
+        ("decided_s", Number(seconds(evidence.decided_at))),
+    ]
+}
+
+fn frame_row(frame: &Frame) -> Row {
+    let fields = [
+        ("valid", Flag(frame.valid)),
+        ("films", Numbers(frame.pvdf.map(f64::from).to_vec())),
+        ("switch_a", Number(frame.switch_a.into())),
+        ("switch_b", Number(frame.switch_b.into())),
+    ];
+    row("/frame", "Frame", frame.sequence, fields)
+}
+
+fn sensors(senses: &Senses) -> Row {
+    let mv = |sample: &u16| f64::from(mv_from_sample(*sample));
+    let channels = CHANNELS.iter().zip(&senses.samples);
+    let films = ("film_envelopes_mv".into(), Numbers(senses.films.iter().map(mv).collect()));
+    let fields = channels
+        .map(|(channel, sample)| (format!("{}_mv", channel.name).into(), Number(mv(sample))))
+        .chain([films]);
+    Row { topic: "/sensors".into(), message: "Sensors", frame: senses.frame, fields: fields.collect() }
+}
+
+fn counters(counters: &Counters, frame: u32) -> Row {
+    let fields = [
+        ("frames", counters.frames),
+        ("frames_lost", counters.frames_lost),
+        ("overruns", counters.overruns),
+        ("ticks_late", counters.ticks_late),
+        ("telemetry_dropped", counters.telemetry_dropped),
+        ("bad_frames", counters.bad_frames),
+        ("commands_skipped", counters.commands_skipped),
+        ("control_us_max", counters.control_us_max),
+        ("control_permille", counters.control_permille.into()),
+    ];
+    row("/counters", "Counters", frame, fields.map(|(name, count)| (name, Number(count.into()))))
+}
+
+fn setting(setting: &Setting, frame: u32) -> Row {
+    let name = SettingId::from_number(setting.id)
+        .map_or_else(|| format!("setting {}", setting.id), |id| id.row().name.to_owned());
+    row("/setting", "Setting", frame, [("name", Text(name)), ("value", Number(setting.value.into()))])
 }

@@ -1,110 +1,160 @@
-//! Who hears what comes up the line. It never waits: what a client has no room for is dropped and counted.
+//! Clients of a line: each gets the frames that come up, and theirs go down. It never waits: what a client has no room for is dropped and
+//! counted.
 
-use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering::Relaxed};
+use std::io::{Read, Write};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread;
+use std::time::Duration;
+
+use tenax_hal_shim::wire::FRAME_MAX;
 
 use super::Tally;
+use crate::link::is_silence;
 
 pub type Frame = Arc<[u8]>;
 
-/// Frames on their way to a client: two seconds and a half of a line at rest.
+/// Frames on their way to a client: 2.5 s of a line at rest.
 const CLIENT_FRAMES: usize = 256;
 
-/// Every client that is there.
-#[derive(Debug, Default)]
 pub struct Hub {
-    /// None when there is no more to come.
     clients: Mutex<Clients>,
-    served: AtomicU64,
-    dropped: AtomicU64,
     writers: AtomicUsize,
     closed: AtomicBool,
+    /// The first frame for each client.
+    greeting: Option<Frame>,
+    /// Frames that go down, and the byte that ends one.
+    down: SyncSender<Vec<u8>>,
+    end: u8,
 }
 
-#[derive(Debug, Default)]
+#[derive(Default)]
 struct Clients {
-    /// The first that each is sent, if there is any.
-    greeting: Option<Frame>,
-    senders: Vec<SyncSender<Frame>>,
-    no_more: bool,
+    /// None: no more frames come.
+    senders: Option<Vec<SyncSender<Frame>>>,
+    tally: Tally,
 }
 
 impl Hub {
-    /// One that sends this to whoever comes.
-    pub fn greeting(frame: &[u8]) -> Self {
-        let clients = Clients { greeting: Some(Frame::from(frame)), ..Clients::default() };
-        Self { clients: Mutex::new(clients), ..Self::default() }
+    pub fn new(down: SyncSender<Vec<u8>>, end: u8, greeting: Option<Frame>) -> Arc<Self> {
+        let clients = Mutex::new(Clients { senders: Some(Vec::new()), ..Clients::default() });
+        let (writers, closed) = (AtomicUsize::new(0), AtomicBool::new(false));
+        Arc::new(Self { clients, writers, closed, greeting, down, end })
     }
 
-    /// A client has come: what it is to be sent, from the next frame on. It leaves by dropping this.
+    /// Adds a client: its frames, from the next one on. It leaves by dropping them.
     pub fn join(&self) -> Receiver<Frame> {
         let (sender, frames) = sync_channel(CLIENT_FRAMES);
-        let mut clients = self.clients();
-        if !clients.no_more {
-            if let Some(greeting) = &clients.greeting {
-                // There is room.
-                let _sent = sender.try_send(Arc::clone(greeting));
-            }
-            clients.senders.push(sender);
-            self.served.fetch_add(1, Relaxed);
+        let Clients { senders: Some(senders), tally } = &mut *self.clients() else { return frames };
+        if let Some(greeting) = &self.greeting {
+            // There is room.
+            let _sent = sender.try_send(Arc::clone(greeting));
         }
+        tally.clients += 1;
+        senders.push(sender);
         frames
     }
 
     pub fn publish(&self, frame: &[u8]) {
-        let mut clients = self.clients();
-        if clients.senders.is_empty() {
-            return;
-        }
+        let Clients { senders: Some(senders), tally } = &mut *self.clients() else { return };
         let frame = Frame::from(frame);
-        clients.senders.retain(|sender| match sender.try_send(Arc::clone(&frame)) {
-            Ok(()) => true,
-            Err(TrySendError::Full(_)) => {
-                self.dropped.fetch_add(1, Relaxed);
-                true
-            }
-            Err(TrySendError::Disconnected(_)) => false,
+        senders.retain(|sender| {
+            let sent = sender.try_send(Arc::clone(&frame));
+            tally.dropped += u64::from(matches!(sent, Err(TrySendError::Full(_))));
+            !matches!(sent, Err(TrySendError::Disconnected(_)))
         });
     }
 
     /// The line is over; clients get what is on its way.
     pub fn no_more(&self) {
-        let mut clients = self.clients();
-        clients.no_more = true;
-        clients.senders.clear();
+        self.clients().senders = None;
     }
 
-    /// Nobody is served any more.
     pub fn close(&self) {
         self.closed.store(true, Relaxed);
     }
 
-    /// Whether nobody is served any more.
     pub fn is_closed(&self) -> bool {
         self.closed.load(Relaxed)
     }
 
-    /// Does something that counts as writing to a client.
-    pub fn writing<T>(&self, write: impl FnOnce() -> T) -> T {
-        self.writers.fetch_add(1, Relaxed);
-        let written = write();
-        self.writers.fetch_sub(1, Relaxed);
-        written
-    }
-
-    /// How many clients are written to.
+    /// Clients that are being written to.
     pub fn writers(&self) -> usize {
         self.writers.load(Relaxed)
     }
 
     pub fn tally(&self) -> Tally {
-        Tally { clients: self.served.load(Relaxed), dropped: self.dropped.load(Relaxed) }
+        self.clients().tally
+    }
+
+    /// Sends frames to a client until there are no more, or it is `gone`. A timeout is no error: the end of the run is noticed then.
+    pub fn write(&self, frames: &Receiver<Frame>, client: &mut dyn Write, gone: &AtomicBool) {
+        self.writers.fetch_add(1, Relaxed);
+        let mut write = |frame: Frame| {
+            let mut rest = &frame[..];
+            while !rest.is_empty() {
+                match client.write(rest) {
+                    Ok(count @ 1..) if !gone.load(Relaxed) => rest = &rest[count..],
+                    Err(error) if is_silence(&error) && !self.is_closed() && !gone.load(Relaxed) => {}
+                    _ => return None,
+                }
+            }
+            Some(())
+        };
+        let _left = frames.iter().try_for_each(&mut write);
+        self.writers.fetch_sub(1, Relaxed);
+    }
+
+    /// Passes on what a client sends until it leaves or the hub is closed.
+    pub fn read(&self, client: &mut dyn Read) {
+        let (mut framer, mut buffer) = (Framer::ending(self.end), [0; 4096]);
+        while !self.is_closed() {
+            match client.read(&mut buffer) {
+                Ok(0) => break,
+                Ok(count) => self.pass_on(&mut framer, &buffer[..count]),
+                Err(error) if is_silence(&error) => {}
+                Err(_) => break,
+            }
+        }
+    }
+
+    /// Passes bytes on down the line; waits while the board has not taken those before.
+    pub fn pass_on(&self, framer: &mut Framer, bytes: &[u8]) {
+        for mut frame in bytes.iter().filter_map(|&byte| framer.push(byte)) {
+            while let Err(TrySendError::Full(back)) = self.down.try_send(frame) {
+                if self.is_closed() {
+                    return;
+                }
+                frame = back;
+                thread::sleep(Duration::from_millis(1));
+            }
+        }
     }
 
     fn clients(&self) -> MutexGuard<'_, Clients> {
-        // Nothing in here is ever half done.
         self.clients.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Cuts a stream of bytes after each `end`: into frames, or into lines.
+#[derive(Debug, Default)]
+pub struct Framer {
+    bytes: Vec<u8>,
+    end: u8,
+}
+
+impl Framer {
+    pub const fn ending(end: u8) -> Self {
+        Self { bytes: Vec::new(), end }
+    }
+
+    /// Takes a byte; gives the frame that it ends. Of one that is too long to be any, as much as shows that.
+    pub fn push(&mut self, byte: u8) -> Option<Vec<u8>> {
+        if byte == self.end || self.bytes.len() <= FRAME_MAX {
+            self.bytes.push(byte);
+        }
+        (byte == self.end).then(|| std::mem::take(&mut self.bytes))
     }
 }
 
@@ -113,18 +163,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn who_does_not_read_loses_frames_and_who_left_is_forgotten() {
-        let hub = Hub::default();
-        let (reads, never_reads, left) = (hub.join(), hub.join(), hub.join());
-        drop(left);
-        for n in 0..CLIENT_FRAMES + 10 {
-            hub.publish(&[n as u8, 0]);
-            assert_eq!(reads.recv().unwrap()[0], n as u8);
-        }
-        assert_eq!(hub.tally(), Tally { clients: 3, dropped: 10 });
-        hub.no_more();
-        hub.publish(&[0]);
-        assert_eq!((reads.try_iter().count(), never_reads.try_iter().count()), (0, CLIENT_FRAMES));
-        assert!(hub.join().recv().is_err());
+    fn frames_end_with_their_zero_and_none_grows_for_ever() {
+        let mut framer = Framer::default();
+        let frames: Vec<_> = [1, 2, 0, 0].iter().filter_map(|&byte| framer.push(byte)).collect();
+        assert_eq!(frames, [vec![1, 2, 0], vec![0]]);
+        (0..1 << 20).for_each(|_| assert_eq!(framer.push(7), None));
+        assert_eq!(framer.push(0).unwrap().len(), FRAME_MAX + 2);
     }
 }

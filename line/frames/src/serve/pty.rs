@@ -1,10 +1,8 @@
-//! The line on a pseudo-terminal, where any program that knows a serial port finds it.
-//!
-//! Nobody is there while the far end is not open; what comes up meanwhile goes nowhere, as on a cable that is not plugged in.
-//! Who opens it then hears the line from the next message on, and nothing that is old.
+//! The line on a pseudo-terminal, for one client after the other. While none has it open, what comes up is lost, as on a cable that
+//! is not plugged in.
 
 use std::fs;
-use std::io::{self, ErrorKind, Read, Write};
+use std::io::{ErrorKind, Read};
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -16,12 +14,11 @@ use anyhow::{Context, bail};
 use serialport::{SerialPort, TTYPort};
 use tenax_hal_shim::wire::BAUD;
 
-use super::client::Ends;
-use super::framer::Framer;
+use super::hub::{Framer, Hub};
 
-/// How often it is looked whether anybody has come or gone.
+/// Interval at which a new or lost client is noticed.
 const LOOK_EVERY: Duration = Duration::from_millis(10);
-/// How long a client has to read the last bytes: what it has not read is lost when the near end closes.
+/// Time for a client to read the last bytes: the rest is lost when the near end closes.
 const LAST_READ: Duration = Duration::from_millis(100);
 
 /// The near end of a pseudo-terminal.
@@ -49,27 +46,27 @@ impl Pty {
         [self.path.clone()].into_iter().chain(link).collect()
     }
 
-    /// Serves one client after the other until nobody is served any more.
-    pub fn serve(mut self, ends: &Ends) {
+    /// Serves one client after the other until the hub is closed.
+    pub fn serve(mut self, hub: &Arc<Hub>) {
         let mut client: Option<Arc<AtomicBool>> = None;
         let (mut framer, mut buffer) = (Framer::default(), [0; 4096]);
-        while !ends.hub.is_closed() {
+        while !hub.is_closed() {
             let read = self.near.read(&mut buffer);
             if matches!(&read, Err(error) if error.kind() == ErrorKind::BrokenPipe) {
                 thread::sleep(LOOK_EVERY);
                 if let Some(gone) = client.take() {
                     // Its writer may be waiting for a frame: the next client would hear each one twice.
                     gone.store(true, Relaxed);
-                    framer.clear();
+                    framer = Framer::default();
                     self.forget();
                 }
                 continue;
             }
             if client.is_none() {
-                client = self.write(ends);
+                client = self.write(hub);
             }
             if let Ok(count) = read {
-                ends.pass_on(&mut framer, &buffer[..count]);
+                hub.pass_on(&mut framer, &buffer[..count]);
             }
         }
         if client.is_some() {
@@ -78,11 +75,11 @@ impl Pty {
     }
 
     /// Writes to a client from now on, until it is told that the client is gone.
-    fn write(&self, ends: &Ends) -> Option<Arc<AtomicBool>> {
+    fn write(&self, hub: &Arc<Hub>) -> Option<Arc<AtomicBool>> {
         let gone = Arc::<AtomicBool>::default();
-        let mut near = Near { near: self.near.try_clone_native().ok()?, gone: Arc::clone(&gone) };
-        let (frames, ends) = (ends.hub.join(), ends.clone());
-        thread::spawn(move || ends.write(&frames, &mut near));
+        let (mut near, frames) = (self.near.try_clone_native().ok()?, hub.join());
+        let (hub, left) = (Arc::clone(hub), Arc::clone(&gone));
+        thread::spawn(move || hub.write(&frames, &mut near, &left));
         Some(gone)
     }
 
@@ -93,25 +90,6 @@ impl Pty {
             let mut buffer = [0; 4096];
             while far.read(&mut buffer).is_ok_and(|count| count > 0) {}
         }
-    }
-}
-
-/// The near end for one client.
-struct Near {
-    near: TTYPort,
-    gone: Arc<AtomicBool>,
-}
-
-impl Write for Near {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if self.gone.load(Relaxed) {
-            return Err(ErrorKind::BrokenPipe.into());
-        }
-        self.near.write(bytes)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.near.flush()
     }
 }
 
@@ -135,7 +113,6 @@ impl Link {
 
 impl Drop for Link {
     fn drop(&mut self) {
-        // If somebody else took it away, that is as good.
         let _ = fs::remove_file(&self.0);
     }
 }

@@ -1,67 +1,49 @@
 //! The line on a TCP port of this machine, for any number of clients.
 
 use std::net::{Ipv4Addr, Shutdown, TcpListener, TcpStream};
-use std::thread;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use anyhow::Context;
 
-use super::client::Ends;
+use super::hub::Hub;
 
-/// How often a wait looks whether it is over.
 const LOOK_EVERY: Duration = Duration::from_millis(10);
-/// How long a read or a write waits before it looks.
 const TIMEOUT: Duration = Duration::from_millis(100);
 
-/// A port that is listened on.
-pub struct Tcp(TcpListener);
-
-impl Tcp {
-    /// On 127.0.0.1: whoever reaches the line can drive the motor, so no other machine may.
-    pub fn new(port: u16) -> anyhow::Result<Self> {
-        let listen = || {
-            let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
-            listener.set_nonblocking(true)?;
-            Ok::<_, std::io::Error>(listener)
-        };
-        listen().map(Self).with_context(|| {
-            format!("cannot serve on TCP port {port}: choose another, or 0 for any that is free")
-        })
-    }
-
-    /// As `tenax monitor --port` takes it.
-    pub fn place(&self) -> anyhow::Result<String> {
-        Ok(format!("tcp:{}", self.0.local_addr()?))
-    }
-
-    /// Serves whoever comes until nobody is served any more.
-    pub fn serve(&self, ends: &Ends) {
-        while !ends.hub.is_closed() {
-            match self.0.accept() {
-                // One that is gone already is no loss.
-                Ok((stream, _)) => drop(client(stream, ends)),
+/// Serves on 127.0.0.1 until the hub is closed; the address for `tenax monitor --port`. No other machine may reach the line: it can drive
+/// the motor.
+pub fn serve(port: u16, hub: &Arc<Hub>) -> anyhow::Result<(String, JoinHandle<()>)> {
+    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).with_context(|| {
+        format!("cannot serve on TCP port {port}: choose another, or 0 for any that is free")
+    })?;
+    listener.set_nonblocking(true)?;
+    let (place, hub) = (format!("tcp:{}", listener.local_addr()?), Arc::clone(hub));
+    let door = thread::spawn(move || {
+        while !hub.is_closed() {
+            match listener.accept() {
+                Ok((stream, _)) => drop(attend(stream, &hub)),
                 Err(_) => thread::sleep(LOOK_EVERY),
             }
         }
-    }
+    });
+    Ok((place, door))
 }
 
-fn client(mut stream: TcpStream, ends: &Ends) -> std::io::Result<()> {
+fn attend(mut stream: TcpStream, hub: &Arc<Hub>) -> std::io::Result<()> {
     stream.set_nonblocking(false)?;
     stream.set_nodelay(true)?;
     stream.set_read_timeout(Some(TIMEOUT))?;
     stream.set_write_timeout(Some(TIMEOUT))?;
-    let mut up = stream.try_clone()?;
-    let frames = ends.hub.join();
-    let writer = ends.clone();
+    let (mut up, frames) = (stream.try_clone()?, hub.join());
+    let (writer, reader) = (Arc::clone(hub), Arc::clone(hub));
     thread::spawn(move || {
-        let _left = writer.write(&frames, &mut up);
+        writer.write(&frames, &mut up, &AtomicBool::default());
         // The reader's thread has the stream too, so it is not closed by itself.
         let _closed = up.shutdown(Shutdown::Both);
     });
-    let reader = ends.clone();
-    thread::spawn(move || {
-        let _left = reader.read(&mut stream);
-    });
+    thread::spawn(move || reader.read(&mut stream));
     Ok(())
 }

@@ -1,6 +1,6 @@
-//! How a report is printed.
+//! Reports as text or JSON.
 
-use std::fmt::{self, Display};
+use std::fmt::Display;
 
 use clap::ValueEnum;
 use serde::Serialize;
@@ -17,8 +17,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// Prints a report on stdout: as `text`, or as the keys and numbers of `report`.
-    /// Fails if the report cannot be written as JSON, or not printed.
+    /// Prints a report as `text`, or as JSON.
     pub fn print(self, text: &impl Display, report: &impl Serialize) -> anyhow::Result<()> {
         match self {
             Self::Text => out::print(format_args!("{text}")),
@@ -26,59 +25,46 @@ impl Format {
         }
     }
 
-    /// Prints a report of which people read the keys and numbers, too. Fails as [`print`](Self::print) does.
+    /// Prints a report as keys and values for people, or as JSON.
     pub fn show(self, report: &impl Serialize) -> anyhow::Result<()> {
-        self.print(&Plain(&serde_json::to_value(report)?), report)
+        let text = match serde_json::to_value(report)? {
+            Value::Object(fields) => lines(&fields, 0),
+            other => word(&other) + "\n",
+        };
+        self.print(&text, report)
     }
 }
 
-/// A report as lines of key and value; entries with the same keys are the rows of a table.
-struct Plain<'a>(&'a Value);
-
-impl Display for Plain<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.0 {
-            Value::Object(fields) => lines(f, fields, 0),
-            other => writeln!(f, "{}", word(other)),
-        }
-    }
-}
-
-fn lines(f: &mut fmt::Formatter<'_>, fields: &Map<String, Value>, indent: usize) -> fmt::Result {
+/// Lines of key and value. Neighbours with the same keys are the rows of a table.
+fn lines(fields: &Map<String, Value>, indent: usize) -> String {
+    let pad = " ".repeat(indent);
     let (nested, plain): (Vec<_>, Vec<_>) = fields.iter().partition(|(_, value)| is_nested(value));
-    for (key, value) in plain {
-        writeln!(f, "{:indent$}{key:<28}{}", "", word(value))?;
-    }
-    // What stands side by side and has the same keys is one table.
+    let mut text: String =
+        plain.iter().map(|(key, value)| format!("{pad}{key:<28}{}\n", word(value))).collect();
     for rows in nested.chunk_by(|a, b| columns(a.1).is_some() && columns(a.1) == columns(b.1)) {
-        let [(key, value), others @ ..] = rows else { continue };
-        match value {
-            Value::Object(_) if columns(value).is_some() && !others.is_empty() => {
-                table(f, &rows.iter().map(|(key, row)| (key.as_str(), *row)).collect::<Vec<_>>(), indent)?;
+        let (key, value) = rows[0];
+        text += &match value {
+            Value::Object(_) if rows.len() > 1 => {
+                table(&rows.iter().map(|(key, row)| (key.as_str(), *row)).collect::<Vec<_>>(), indent)
             }
-            Value::Object(fields) => {
-                writeln!(f, "{:indent$}{key}", "")?;
-                lines(f, fields, indent + 2)?;
-            }
+            Value::Object(fields) => format!("{pad}{key}\n{}", lines(fields, indent + 2)),
             Value::Array(list) if list.iter().all(|row| columns(row).is_some()) => {
-                writeln!(f, "{:indent$}{key}", "")?;
-                for rows in list.chunk_by(|a, b| columns(a) == columns(b)) {
-                    table(f, &rows.iter().map(|row| ("", row)).collect::<Vec<_>>(), indent)?;
-                }
+                let tables = list
+                    .chunk_by(|a, b| columns(a) == columns(b))
+                    .map(|rows| table(&rows.iter().map(|row| ("", row)).collect::<Vec<_>>(), indent));
+                format!("{pad}{key}\n{}", tables.collect::<String>())
             }
             Value::Array(list) => {
-                for (n, entry) in list.iter().enumerate() {
-                    writeln!(f, "{:indent$}{key} {}", "", n + 1)?;
-                    match entry {
-                        Value::Object(fields) => lines(f, fields, indent + 2)?,
-                        other => writeln!(f, "{:indent$}  {}", "", word(other))?,
-                    }
-                }
+                let entry = |(n, entry): (u32, &Value)| match entry {
+                    Value::Object(fields) => format!("{pad}{key} {n}\n{}", lines(fields, indent + 2)),
+                    other => format!("{pad}{key} {n}\n{pad}  {}\n", word(other)),
+                };
+                (1..).zip(list).map(entry).collect()
             }
-            _ => {}
-        }
+            _ => String::new(),
+        };
     }
-    Ok(())
+    text
 }
 
 /// Whether it takes lines of its own.
@@ -90,26 +76,26 @@ fn is_nested(value: &Value) -> bool {
     }
 }
 
-/// The keys of an entry that nothing is nested in.
+/// The keys of an entry without nested ones.
 fn columns(value: &Value) -> Option<Vec<&String>> {
     let fields = value.as_object()?;
     (!fields.is_empty() && !fields.values().any(is_nested)).then(|| fields.keys().collect())
 }
 
-fn table(f: &mut fmt::Formatter<'_>, rows: &[(&str, &Value)], indent: usize) -> fmt::Result {
-    let Some(columns) = rows.first().and_then(|(_, row)| columns(row)) else { return Ok(()) };
-    let name = rows.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
-    let cells = |row: &Value| columns.iter().map(|key| word(&row[key.as_str()])).collect::<Vec<_>>();
-    let cells: Vec<Vec<String>> = rows.iter().map(|(_, row)| cells(row)).collect();
-    let width = |n: usize| cells.iter().map(|row| row[n].len()).chain([columns[n].len()]).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..columns.len()).map(width).collect();
-    let mut line = |name_of: &str, words: &mut dyn Iterator<Item = &String>| {
-        write!(f, "{:indent$}{name_of:<name$}", "")?;
-        words.zip(&widths).try_for_each(|(word, width)| write!(f, "  {word:>width$}"))?;
-        writeln!(f)
+fn table(rows: &[(&str, &Value)], indent: usize) -> String {
+    let keys = rows.first().and_then(|(_, row)| columns(row)).unwrap_or_default();
+    let cells = |row: &Value| keys.iter().map(|key| word(&row[key.as_str()])).collect::<Vec<_>>();
+    let mut all = vec![("", keys.iter().map(ToString::to_string).collect())];
+    all.extend(rows.iter().map(|(name, row)| (*name, cells(row))));
+    let name = all.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+    let width = |n: usize| all.iter().map(|(_, cells)| cells[n].len()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..keys.len()).map(width).collect();
+    let line = |(own, cells): &(&str, Vec<String>)| {
+        let cells: String =
+            cells.iter().zip(&widths).map(|(cell, width)| format!("  {cell:>width$}")).collect();
+        format!("{:indent$}{own:<name$}{cells}\n", "")
     };
-    line("", &mut columns.iter().copied())?;
-    rows.iter().zip(&cells).try_for_each(|((name, _), cells)| line(name, &mut cells.iter()))
+    all.iter().map(line).collect()
 }
 
 /// Four digits of a number, `-` where there is none.
@@ -120,14 +106,13 @@ fn word(value: &Value) -> String {
         Value::String(text) => text.clone(),
         Value::Array(list) if list.is_empty() => "none".to_owned(),
         Value::Array(list) => list.iter().map(word).collect::<Vec<_>>().join(", "),
-        Value::Number(number) if number.is_f64() => {
-            let exact = number.as_f64().unwrap_or(f64::NAN);
-            if exact == 0.0 {
-                return "0".to_owned();
+        Value::Number(number) if number.is_f64() => match number.as_f64().unwrap_or(f64::NAN) {
+            0.0 => "0".to_owned(),
+            exact => {
+                let places = (3.0 - exact.abs().max(1e-3).log10().floor()).clamp(0.0, 6.0) as usize;
+                format!("{exact:.places$}")
             }
-            let places = (3.0 - exact.abs().max(1e-3).log10().floor()).clamp(0.0, 6.0) as usize;
-            format!("{exact:.places$}")
-        }
+        },
         other => other.to_string(),
     }
 }
@@ -167,10 +152,6 @@ stories 1
     n
     1
 ";
-        let shown = Plain(&report).to_string();
-        assert_eq!(
-            shown.lines().map(str::trim_end).collect::<Vec<_>>(),
-            expected.lines().collect::<Vec<_>>()
-        );
+        assert_eq!(lines(report.as_object().unwrap(), 0), expected);
     }
 }

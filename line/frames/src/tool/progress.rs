@@ -1,44 +1,32 @@
-//! How far a run is, on standard error, for as long as it takes.
-
-use std::sync::Mutex;
-use std::time::{Duration, Instant};
+//! Progress of a run on standard error.
 
 use crate::tool::status::{SHOWN_AFTER, Status};
 
 use super::out;
 
-/// Saying it more often would only cost time.
-const SAID_EVERY: Duration = Duration::from_millis(100);
-
-/// Virtual time going by, or any other part of a whole. When it is dropped, it says how long it took, if it was long.
+/// Progress in virtual time, or any other part of a whole. Dropped, it says how long it took, if that was more than 1 s.
 pub struct Progress {
     what: String,
     virtual_s: f64,
-    said: Mutex<Instant>,
     status: Status,
 }
 
 impl Progress {
-    /// So many virtual seconds are to go by.
+    /// Of so many virtual seconds.
     pub fn new(what: &str, virtual_s: f64) -> Self {
-        Self { what: what.to_owned(), virtual_s, said: Mutex::new(Instant::now()), status: Status::new(what) }
+        Self { what: what.to_owned(), virtual_s, status: Status::new(what) }
     }
 
     /// So many virtual seconds have gone by; infinitely many while the bound of a scene is searched.
     pub fn at(&self, virtual_s: f64) {
-        if virtual_s.is_infinite() {
-            return self.status.say(format!("{}: searching the least force that holds", self.what));
-        }
         let part = (virtual_s / self.virtual_s).clamp(0.0, 1.0);
-        // Whoever finds another thread saying it has nothing to add.
-        let Ok(mut said) = self.said.try_lock() else {
-            return;
-        };
-        if part > 0.0 && said.elapsed() >= SAID_EVERY {
-            *said = Instant::now();
-            let left_s = self.status.elapsed().as_secs_f64() * (1.0 - part) / part;
-            self.status.say(format!("{} {:.0} %, {left_s:.0} s left", self.what, 100.0 * part));
-        }
+        self.status.say_with(|elapsed| match virtual_s.is_infinite() {
+            true => format!("{}: searching the least force that holds", self.what),
+            false => {
+                let left_s = elapsed.as_secs_f64() * (1.0 - part) / part.max(1e-6);
+                format!("{} {:.0} %, {left_s:.0} s left", self.what, 100.0 * part)
+            }
+        });
     }
 }
 
@@ -51,7 +39,7 @@ impl Drop for Progress {
     }
 }
 
-/// Does something that says how much of it is done, from 0 to 1.
+/// Runs something that tells which part of it is done, 0 to 1.
 pub fn with_bar<T>(what: &str, run: impl FnOnce(&(dyn Fn(f64) + Sync)) -> T) -> T {
     let progress = Progress::new(what, 1.0);
     run(&|part| progress.at(part))

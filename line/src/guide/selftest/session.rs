@@ -1,106 +1,54 @@
-//! A test on a line: what is said and what is heard, the same for the terminal and the page.
-
-use std::time::{Duration, Instant};
+//! A self-test of named channels, and one in the terminal.
 
 use anyhow::{Context, bail};
+use tenax_frames::link::Client;
 use tenax_hal_shim::channel::{CHANNELS, COUNT, Role, by_name};
-use tenax_hal_shim::wire::{Down, Up};
 use tenax_logic::setting::SettingId;
 
-use super::{REST_PROMPT, Selftest};
-use crate::guide::{Say, ask};
-use tenax_frames::link::Client;
+use super::Selftest;
+use crate::guide::Say;
 
-/// Silence after which a board is said to send nothing.
-const SILENCE: Duration = Duration::from_secs(4);
-
-/// The channels that are called so, or whose names begin so; without any word, all. Fails on a word that fits none.
+/// The channels of these names or prefixes; without any, all. Fails on a word that fits none.
 pub fn named(words: &[String]) -> anyhow::Result<Vec<usize>> {
     let fits = |n: usize, word: &String| match by_name(word) {
         Some(only) => n == only,
         None => CHANNELS[n].name.starts_with(word.as_str()),
     };
     if let Some(word) = words.iter().find(|word| !(0..COUNT).any(|n| fits(n, word))) {
-        bail!("no channel begins with `{word}`: docs/wiring.md has them");
+        bail!("no channel begins with `{word}`: `tenax tables wiring` has them");
     }
     Ok((0..COUNT).filter(|&n| words.is_empty() || words.iter().any(|word| fits(n, word))).collect())
 }
 
-/// A test that goes on, and all that it has said.
-pub struct Session {
-    test: Selftest,
-    said: Vec<String>,
-    heard: Instant,
-}
-
-impl Session {
-    /// Of the channels that are called so, of a board with these settings. A gripper without a wearer has no muscles to contract.
+impl Selftest {
+    /// Of channels of these names or prefixes. Without any, a gripper without a wearer has no muscles to contract.
     /// Fails on a name that fits none.
-    pub fn begin(words: &[String], head: bool, no_wearer: bool, limit_s: u32) -> anyhow::Result<Self> {
+    pub fn begin_named(words: &[String], head: bool, no_wearer: bool, limit_s: u32) -> anyhow::Result<Self> {
         let mut channels = named(words)?;
         if words.is_empty() && no_wearer {
             channels.retain(|&channel| Role::of(channel, head) != Role::Muscle);
         }
-        let said = ["The hand is empty: the reflex may close it on what is pressed.", REST_PROMPT];
-        Ok(Self {
-            test: Selftest::new(channels, head, limit_s),
-            said: said.map(str::to_owned).to_vec(),
-            heard: Instant::now(),
-        })
-    }
-
-    pub const fn test(&self) -> &Selftest {
-        &self.test
-    }
-
-    /// Every line so far, the oldest first.
-    pub fn said(&self) -> &[String] {
-        &self.said
-    }
-
-    /// Takes a message, or that there is none. Fails if the board sends no readings, or starts anew: the test cannot go on.
-    pub fn take(&mut self, message: Option<&Up>) -> anyhow::Result<()> {
-        match message {
-            _ if self.test.is_over() => {}
-            Some(Up::Senses(senses)) => {
-                self.heard = Instant::now();
-                let said = self.test.hear(senses);
-                self.said.extend(said);
-            }
-            Some(Up::Hello { .. }) if self.test.has_begun() => {
-                bail!("the board was switched on anew: start again")
-            }
-            _ if self.heard.elapsed() > SILENCE => bail!("the board sends no readings"),
-            _ => {}
-        }
-        Ok(())
-    }
-
-    /// Leaves out the channel that is asked for.
-    pub fn skip(&mut self) {
-        let said = self.test.skip();
-        self.said.extend(said);
+        Ok(Self::new(channels, head, limit_s))
     }
 }
 
-/// Runs the test to its end; whether all pass.
+/// Runs the test to its end; whether all channels pass.
 pub fn run(client: &mut Client, words: &[String], limit_s: u32, say: Say<'_>) -> anyhow::Result<bool> {
     let (head, no_wearer) =
         (client.setting(SettingId::Head)? != 0, client.setting(SettingId::NoWearer)? != 0);
-    let mut session = Session::begin(words, head, no_wearer, limit_s)?;
-    let stream = Down::Stream { raw: false, senses: true, hold_s: 10 };
-    let (mut asked, mut printed) = (None::<Instant>, 0);
+    let mut test = Selftest::begin_named(words, head, no_wearer, limit_s)?;
+    let mut printed = 0;
     loop {
-        session.said()[printed..].iter().try_for_each(|line| say(line))?;
-        printed = session.said().len();
-        if session.test().is_over() {
-            return Ok(session.test().passes());
+        test.said[printed..].iter().try_for_each(|line| say(line))?;
+        printed = test.said.len();
+        if let Some(why) = &test.failed {
+            bail!("{why}");
         }
-        if asked.is_none_or(|at| at.elapsed() > Duration::from_secs(4)) {
-            ask(client, stream)?;
-            asked = Some(Instant::now());
+        if test.is_over() {
+            return Ok(test.passes());
         }
+        client.keep_streaming(false)?;
         let message = client.next_message().context("the line ended")?;
-        session.take(message.as_ref().map(|heard| &heard.received.message))?;
+        test.take(message.as_ref().map(|heard| &heard.received.message));
     }
 }

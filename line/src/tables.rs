@@ -1,0 +1,120 @@
+//! Channels, settings and wire messages as Markdown tables: `tenax tables`.
+
+use serde_json::Value;
+use tenax_hal_shim::channel::{
+    CHANNELS, Channel, FRAME_HZ, Input, RANK_SWITCH_A, RANK_SWITCH_B, SCAN, SCAN_HZ, SLOW_HZ,
+};
+use tenax_logic::setting::SettingId;
+
+const SIGNALS: &str = "\
+# Wiring
+
+| other signals of the NUCLEO-F411RE | pins |
+|---|---|
+| select lines S0 to S3, shared by both CD74HC4067 switches | PB12 to PB15 |
+| motor bridge, 20 kHz: close, open | PA8 (TIM1 channel 1), PA9 (TIM1 channel 2) |
+| vibration motor, 20 kHz | PB6 (TIM4 channel 1) |
+| button to ground | PC13 |
+| light: series resistor and LED to ground | PC6 |
+| nFAULT of the motor bridge | PC8 |
+| serial line USART2 through the ST-LINK: to the PC, from it | PA2, PA3 |
+| known voltages, against broken select lines | switch B: 14 at 3.3 V, 15 at ground |
+
+";
+
+/// Pins and valid voltages of every channel.
+pub fn wiring() -> String {
+    let mut page = format!(
+        "{SIGNALS}Every pin is read {SCAN_HZ} times a second. Direct pins give {FRAME_HZ} samples a second, switched \
+         signals {SLOW_HZ}, myosensors {}.\nA voltage below `low` is a cut wire, above `high` a short or a sensor out of \
+         range. Cut wires of films and myosensors can\nstay within these limits.\n\n\
+         | channel | input | pin | ADC1 input | rest mV | low mV | high mV |\n|---|---|---|---|---|---|---|\n",
+        3 * SLOW_HZ
+    );
+    for (n, channel) in CHANNELS.iter().enumerate() {
+        let Channel { name, rest_mv, low_mv, high_mv, .. } = channel;
+        let pin = &SCAN[rank(channel)];
+        page += &format!(
+            "| `{name}` | {} | {} | IN{} | {rest_mv} | {low_mv} | {high_mv} |\n",
+            input(n),
+            pin.pin,
+            pin.adc
+        );
+    }
+    page
+}
+
+/// Place of the channel's pin in the scan.
+fn rank(channel: &Channel) -> usize {
+    match channel.input {
+        Input::Direct { rank } => rank.into(),
+        Input::SwitchA { .. } => RANK_SWITCH_A,
+        Input::SwitchB { .. } => RANK_SWITCH_B,
+    }
+}
+
+/// The input of a channel: `PA0`, or `switch A, 3`.
+pub fn input(channel: usize) -> String {
+    match CHANNELS[channel].input {
+        Input::Direct { rank } => SCAN[usize::from(rank)].pin.to_owned(),
+        Input::SwitchA { select } => format!("switch A, {select}"),
+        Input::SwitchB { select } => format!("switch B, {select}"),
+    }
+}
+
+/// Every setting with number, unit, range, default and meaning.
+pub fn settings() -> String {
+    let mut page = String::from(
+        "# Settings\n\nThe number names the setting on the wire and in flash.\n\n\
+         | number | name with unit | range | default | meaning |\n|---|---|---|---|---|\n",
+    );
+    for id in SettingId::ALL {
+        let (row, number, range) = (id.row(), id.number(), id.row().range());
+        let (start, end) = range.into_inner();
+        page += &format!(
+            "| {number} | `{}` | {start} to {end} | {} | {} |\n",
+            row.name, row.default, row.meaning
+        );
+    }
+    page
+}
+
+/// Every message and type of the wire with its fields. A test of `hal-shim` writes the file from the types.
+pub fn wire() -> anyhow::Result<String> {
+    let wire: Value = serde_json::from_str(include_str!("../../python/tenax/wire.json"))?;
+    let types = wire["types"].as_object().into_iter().flatten();
+    let mut page = format!("# Wire\n\nVersion {}, schema `{}`.\n", wire["version"], text(&wire["schema"]));
+    for (name, of) in types {
+        page += &match of["enum"].as_array() {
+            Some(variants) => {
+                let rows = (0..).zip(variants).map(|(number, variant): (u32, _)| {
+                    format!("| {number} | `{}` | {} |\n", text(&variant[0]), fields(&variant[1]))
+                });
+                let rows: String = rows.collect();
+                format!("\n## {name}\n\n| number | `{name}` | fields |\n|---|---|---|\n{rows}")
+            }
+            None => format!("\n## {name}\n\n{}\n", fields(&of["struct"])),
+        };
+    }
+    Ok(page)
+}
+
+fn text(value: &Value) -> &str {
+    value.as_str().unwrap_or_default()
+}
+
+fn fields(all: &Value) -> String {
+    let field = |field: &Value| format!("`{}: {}`", text(&field[0]), kind(&field[1]));
+    all.as_array().into_iter().flatten().map(field).collect::<Vec<_>>().join(", ")
+}
+
+/// A field's type: a name, or `["opt", T]`, `["vec", T]`, `["arr", N, T]`, `["tuple", [T, ...]]`.
+fn kind(of: &Value) -> String {
+    match of.as_array().map(Vec::as_slice) {
+        Some([form, of]) if form == "opt" => format!("option {}", kind(of)),
+        Some([form, of]) if form == "vec" => format!("list {}", kind(of)),
+        Some([_, Value::Number(length), of]) => format!("[{length}] {}", kind(of)),
+        Some([_, Value::Array(all)]) => format!("({})", all.iter().map(kind).collect::<Vec<_>>().join(", ")),
+        _ => text(of).to_owned(),
+    }
+}

@@ -1,0 +1,103 @@
+//! Watches a line, a recording and a scene's true state on threads of their own. A line is opened again whenever it ends.
+
+use std::path::Path;
+use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
+use std::thread;
+use std::time::Duration;
+
+use tenax_frames::link::{ANSWER_WITHIN, Client, Counts, Heard, Target};
+use tenax_frames::play::{self, Playing, Reel};
+use tenax_frames::truth;
+use tenax_hal_shim::wire::{Answer, BadFrame, Down};
+
+const AGAIN_AFTER: Duration = Duration::from_millis(500);
+
+#[derive(Debug)]
+pub enum News {
+    Open,
+    /// The line is gone, with the reason.
+    Gone(String),
+    /// A message, or why a frame is none; the counts so far.
+    Frame(Result<Heard, BadFrame>, Counts),
+    Scene(truth::Told),
+    Played(play::Told),
+    Answered(Down, Result<Answer, String>),
+}
+
+/// Starts the threads, which end when `news` is dropped; `truth` is the address of the scene's true state. Lines sent to what it returns are done at the scene's bench, or control how a
+/// recording is played.
+pub fn start(
+    line: &Target,
+    truth: Option<&Target>,
+    commands: Receiver<Down>,
+    news: Sender<News>,
+) -> Sender<String> {
+    let (bench, acts) = channel();
+    if let Target::File(path) = line.clone() {
+        thread::spawn(move || {
+            if let Err(error) = watch_recording(&path, &acts, &news) {
+                let _left = news.send(News::Gone(format!("{error:#}")));
+            }
+        });
+        return bench;
+    }
+    if let Some(target) = truth.cloned() {
+        let news = news.clone();
+        let mut tell = move |told| news.send(News::Scene(told)).is_ok();
+        thread::spawn(move || truth::watch(&target, &acts, &mut tell));
+    }
+    let target = line.clone();
+    thread::spawn(move || watch(&target, &commands, &news));
+    bench
+}
+
+fn watch_recording(path: &Path, controls: &Receiver<String>, news: &Sender<News>) -> anyhow::Result<()> {
+    let reel = Reel::open(path)?;
+    let playing = Playing::new(&reel);
+    let mut tell = |told| news.send(News::Played(told)).is_ok();
+    tell(play::Told::At(playing));
+    play::play(&reel, playing, controls, &mut tell);
+    Ok(())
+}
+
+fn watch(target: &Target, commands: &Receiver<Down>, news: &Sender<News>) {
+    loop {
+        let ended = match Client::open(target) {
+            Ok(client) => match attend(client, commands, news) {
+                Some(why) => why,
+                None => return,
+            },
+            Err(error) => format!("{error:#}"),
+        };
+        if news.send(News::Gone(ended)).is_err() {
+            return;
+        }
+        thread::sleep(AGAIN_AFTER);
+    }
+}
+
+/// Attends to one line until it ends; the reason. None: `news` was dropped.
+fn attend(mut client: Client, commands: &Receiver<Down>, news: &Sender<News>) -> Option<String> {
+    news.send(News::Open).ok()?;
+    // Reading commands: identity, and whether the last run ended in a fault.
+    let _asked = client.send(&Down::About);
+    let _asked = client.send(&Down::Last(0));
+    loop {
+        let _asked = client.keep_streaming(false);
+        loop {
+            match commands.try_recv() {
+                Ok(command) => {
+                    let answer = client.ask(&command, ANSWER_WITHIN).map_err(|error| format!("{error:#}"));
+                    news.send(News::Answered(command, answer)).ok()?;
+                }
+                Err(TryRecvError::Empty) => break,
+                Err(TryRecvError::Disconnected) => return None,
+            }
+        }
+        match client.next_frame() {
+            Ok(Some(frame)) => news.send(News::Frame(frame, client.counts())).ok()?,
+            Ok(None) => {}
+            Err(error) => return Some(error.to_string()),
+        }
+    }
+}

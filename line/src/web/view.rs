@@ -1,0 +1,332 @@
+//! The state of a board for the page, as JSON: each change is sent to the pages, which merge it as [`View`] does.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+
+use anyhow::{Context, bail};
+use serde_json::{Map, Value, json};
+use tenax_frames::link::{Counts, Heard};
+use tenax_frames::play;
+use tenax_frames::settings;
+use tenax_frames::truth;
+use tenax_frames::words::{answer_words, seconds, why, words};
+use tenax_hal_shim::channel::{CHANNELS, mv_from_sample};
+use tenax_hal_shim::detector::{DetectorId, DetectorSet};
+use tenax_hal_shim::wire::{About, Answer, BadFrame, EventKind, Setting, Slow, TickRecord, Up};
+use tenax_hal_shim::words::Fault;
+use tenax_logic::setting::SettingId;
+
+use super::source::News;
+use crate::guide::selftest::{Selftest, Verdict};
+use crate::tables::input;
+
+/// Slow frames (10 s) and lines of the log for a page that is opened later.
+const HISTORY: usize = 800;
+const LOG: usize = 500;
+/// Changes that a page may be behind: 20 s. A page that is further behind is dropped, and connects again.
+const CHANGES: usize = 4_096;
+/// Time for each touch of the self-test, s: as in `tenax selftest`.
+const TOUCH_S: u32 = 8;
+
+#[derive(Default)]
+pub struct View {
+    state: Map<String, Value>,
+    pages: Vec<SyncSender<Value>>,
+    log: VecDeque<String>,
+    points: VecDeque<Value>,
+    pub counts: Counts,
+    about: Option<About>,
+    settings: BTreeMap<u8, i32>,
+    /// Lost channels and capabilities, each with its words.
+    faults: BTreeMap<String, String>,
+    selftest: Option<Selftest>,
+    /// Self-tests that were begun, and lines of the last that pages have.
+    selftests: u64,
+    lines: usize,
+}
+
+fn push<T>(all: &mut VecDeque<T>, most: usize, one: T) {
+    if all.len() == most {
+        all.pop_front();
+    }
+    all.push_back(one);
+}
+
+fn thousandths(value: impl Into<f64>) -> f64 {
+    value.into() / 1e3
+}
+
+impl View {
+    /// The merged changes.
+    pub const fn state(&self) -> &Map<String, Value> {
+        &self.state
+    }
+
+    /// Adds a page: the state, then its changes.
+    pub fn join(&mut self) -> Receiver<Value> {
+        let (page, changes) = sync_channel(CHANGES);
+        let mut state = self.state.clone();
+        state.insert("log".to_owned(), json!(self.log));
+        state.insert("points".to_owned(), json!(self.points));
+        state.insert("selftest".to_owned(), self.selftest_state(0));
+        // There is room.
+        let _sent = page.try_send(Value::Object(state));
+        self.pages.push(page);
+        changes
+    }
+
+    /// Merges a change, an object, into the state and sends it to the pages.
+    pub fn tell(&mut self, change: Value) {
+        self.state.extend(change.as_object().cloned().unwrap_or_default());
+        self.pages.retain(|page| page.try_send(change.clone()).is_ok());
+    }
+
+    /// Adds a line to the log.
+    pub fn say(&mut self, line: &str) {
+        push(&mut self.log, LOG, line.trim_start().to_owned());
+        self.tell(json!({ "log": [line.trim_start()] }));
+    }
+
+    /// Takes what came, and tells the pages.
+    pub fn take(&mut self, news: News) {
+        self.test(&news);
+        match news {
+            News::Open => {
+                self.tell(json!({ "gone": null }));
+                self.say("the line is open");
+            }
+            News::Gone(why) => {
+                if self.state.get("gone").is_none_or(Value::is_null) {
+                    self.say(&format!("the line is gone: {why}; it is opened again when it is back"));
+                }
+                self.tell(json!({ "gone": why }));
+            }
+            News::Frame(frame, counts) => {
+                if counts.bad_frames != self.counts.bad_frames || counts.missed != self.counts.missed {
+                    self.tell(json!({ "missed": counts.missed, "bad_frames": counts.bad_frames }));
+                }
+                self.counts = counts;
+                match frame {
+                    Ok(heard) => self.hear(&heard),
+                    Err(bad @ BadFrame::Version(_)) => self.tell(json!({ "other_version": why(bad) })),
+                    Err(_) => {}
+                }
+            }
+            News::Scene(truth::Told::Truth(truth)) => self.tell(json!({ "truth": truth })),
+            News::Scene(truth::Told::Bench(bench)) => {
+                self.tell(json!({ "bench": bench.map(|bench| bench.keys) }));
+            }
+            News::Played(play::Told::Message(heard)) => self.hear(&heard),
+            News::Played(play::Told::At(playing)) => self.tell(json!({ "playing": playing })),
+            News::Played(play::Told::Again) => self.begin_anew(),
+            News::Played(play::Told::Over) => {}
+            News::Answered(command, Ok(answer)) => {
+                self.say(&format!("> {}", answer_words(&command, &answer)));
+            }
+            News::Answered(command, Err(why)) => self.say(&format!("> {command:?}: {why}")),
+        }
+    }
+
+    fn hear(&mut self, Heard { received, missed }: &Heard) {
+        if self.state.get("other_version").is_some_and(Value::is_string) {
+            self.tell(json!({ "other_version": null }));
+        }
+        if *missed > 0 {
+            self.say(&format!("{missed} messages missed"));
+        }
+        let message = &received.message;
+        match message {
+            Up::Raw(_) | Up::Taken { .. } => {}
+            Up::Slow(slow) => self.slow(slow),
+            Up::Senses(senses) => {
+                let all = CHANNELS.iter().zip(&senses.samples);
+                let sensors: Vec<_> =
+                    all.map(|(channel, &sample)| (channel.name, mv_from_sample(sample))).collect();
+                self.tell(json!({ "sensors": sensors }));
+            }
+            Up::Counters(counters) => self.tell(json!({ "counters": counters })),
+            Up::About(about) | Up::Answer { answer: Answer::About(about), .. } => {
+                self.about = Some(about.clone());
+                self.set(&about.settings);
+            }
+            Up::Answer { answer: Answer::Setting(setting), .. } => self.set(&[*setting]),
+            Up::Answer { answer: Answer::Settings(all), .. } => self.set(all),
+            Up::Answer { answer: Answer::Last(last), .. } if last.after.is_some() && last.from == 0 => {
+                self.say(&words(message));
+            }
+            Up::Answer { .. } => {}
+            Up::Hello { .. } => {
+                self.begin_anew();
+                self.say(&words(message));
+            }
+            Up::Event(event) => {
+                match event.kind {
+                    EventKind::Fault(fault) => self.fault(&fault),
+                    EventKind::Stroke { s2_permille, .. } => {
+                        self.set(&[Setting { id: SettingId::S2.number(), value: s2_permille.into() }]);
+                    }
+                    _ => {}
+                }
+                self.say(&words(message));
+            }
+            Up::Saved { .. } | Up::Restored(_) => self.say(&words(message)),
+        }
+    }
+
+    fn begin_anew(&mut self) {
+        self.faults.clear();
+        self.points.clear();
+        self.tell(json!({ "restarted": true, "faults": [] }));
+    }
+
+    fn slow(&mut self, slow: &Slow) {
+        let vibration = slow.ticks.iter().map(|tick| tick.vibration).max().unwrap_or(0);
+        // Time (s), largest vibration envelope (mV), Ft/Fn, S2 in force, load (N), flexor and extensor (mV).
+        let point = json!([
+            seconds(slow.frame),
+            mv_from_sample(vibration),
+            slow.forces.and_then(|forces| forces.ratio_permille).map(thousandths),
+            thousandths(slow.s2_permille),
+            slow.forces.map(|forces| thousandths(forces.load_mn)),
+            slow.flexor_mv,
+            slow.extensor_mv,
+        ]);
+        push(&mut self.points, HISTORY, point.clone());
+        // Only a test injects slip.
+        let detectors = DetectorId::ALL.into_iter().filter(|&id| id != DetectorId::Injected).map(|id| {
+            let ever =
+                |set: fn(&TickRecord) -> DetectorSet| slow.ticks.iter().any(|tick| set(tick).contains(id));
+            let evidence = slow.evidence.iter().find(|(own, _)| *own == id).map(|(_, evidence)| evidence);
+            json!([
+                id.name(),
+                ever(|tick| tick.said),
+                ever(|tick| tick.believed),
+                ever(|tick| tick.acted),
+                evidence
+            ])
+        });
+        self.tell(json!({
+            "t_s": seconds(slow.frame),
+            "frame": slow.frame,
+            "mode": format!("{:?}", slow.mode),
+            "line": format!("{:?}", slow.line),
+            "wearer_active": slow.wearer_active,
+            "points": [point],
+            "detectors": detectors.collect::<Vec<_>>(),
+        }));
+    }
+
+    fn set(&mut self, all: &[Setting]) {
+        self.settings.extend(all.iter().map(|setting| (setting.id, setting.value)));
+        let [s1_mv, emg_on_mv] = [SettingId::S1, SettingId::EmgOn].map(|id| self.setting(id));
+        self.tell(json!({ "s1_mv": s1_mv, "emg_on_mv": emg_on_mv }));
+    }
+
+    fn setting(&self, id: SettingId) -> Option<i32> {
+        self.settings.get(&id.number()).copied()
+    }
+
+    fn fault(&mut self, fault: &Fault) {
+        let name = |channel: u8| CHANNELS.get(usize::from(channel)).map_or("channel", |channel| channel.name);
+        match *fault {
+            Fault::SensorLost { channel, reason } => {
+                self.faults.insert(name(channel).to_owned(), format!("{}: {reason:?}", name(channel)));
+            }
+            Fault::SensorBack { channel } => _ = self.faults.remove(name(channel)),
+            Fault::CapabilityLost(capability) => {
+                self.faults.insert(format!("{capability:?}"), format!("no {capability:?}"));
+            }
+            Fault::CapabilityBack(capability) => _ = self.faults.remove(&format!("{capability:?}")),
+            _ => {}
+        }
+        self.tell(json!({ "faults": self.faults.values().collect::<Vec<_>>() }));
+    }
+
+    /// The settings as a file, once the board has sent its identity.
+    pub fn backup(&self) -> Option<String> {
+        let settings: Vec<Setting> =
+            self.settings.iter().map(|(&id, &value)| Setting { id, value }).collect();
+        self.about.as_ref().map(|about| settings::backup(about, &settings))
+    }
+
+    /// Every setting with value, unit, range in force, default and meaning.
+    pub fn settings(&self, control: bool) -> Value {
+        let rows = SettingId::ALL.map(|id| {
+            let row = id.row();
+            let (min, max) = row.range().into_inner();
+            json!({
+                "name": row.name, "unit": row.unit, "min": min, "max": max, "default": row.default,
+                "meaning": row.meaning, "value": self.setting(id),
+            })
+        });
+        json!({ "control": control, "settings": rows.as_slice() })
+    }
+
+    /// Self-test: `start`, with channels after it, `skip` or `stop`. Fails if that cannot be done now.
+    pub fn selftest(&mut self, words: &[String]) -> anyhow::Result<()> {
+        match words.split_first() {
+            Some((first, channels)) if first == "start" => {
+                if let Some(gone) = self.state.get("gone").and_then(Value::as_str) {
+                    bail!("no line: {gone}");
+                }
+                let flag = |id| self.setting(id).context("the board has not said its settings yet");
+                let (head, no_wearer) = (flag(SettingId::Head)? != 0, flag(SettingId::NoWearer)? != 0);
+                self.selftest = Some(Selftest::begin_named(channels, head, no_wearer, TOUCH_S)?);
+                self.selftests += 1;
+                self.lines = 0;
+            }
+            Some((first, [])) if first == "skip" => {
+                self.selftest.as_mut().context("no test goes on")?.skip();
+            }
+            Some((first, [])) if first == "stop" => self.selftest = None,
+            _ => bail!("write start, skip or stop"),
+        }
+        self.tell_selftest();
+        Ok(())
+    }
+
+    /// Lets the self-test take what came.
+    fn test(&mut self, news: &News) {
+        let Some(test) = &mut self.selftest else { return };
+        let message = match news {
+            News::Frame(Ok(heard), _) => Some(&heard.received.message),
+            News::Played(play::Told::Message(heard)) => Some(&heard.received.message),
+            _ => None,
+        };
+        let had_failed = test.failed.is_some();
+        match news {
+            News::Gone(why) => test.fail(&format!("the line is gone: {why}")),
+            _ => test.take(message),
+        }
+        if matches!(message, Some(Up::Senses(_))) || test.failed.is_some() != had_failed {
+            self.tell_selftest();
+        }
+    }
+
+    fn tell_selftest(&mut self) {
+        self.tell(json!({ "selftest": self.selftest_state(self.lines) }));
+        self.lines = self.selftest.as_ref().map_or(0, |test| test.said.len());
+    }
+
+    /// The state of the self-test: the lines after those that are known, and the verdicts if there are such lines.
+    fn selftest_state(&self, known: usize) -> Value {
+        let Some(test) = &self.selftest else { return Value::Null };
+        let lines = &test.said[known..];
+        let result = |&channel: &usize| {
+            let verdict = test.verdicts[channel];
+            let passes = verdict.map(|verdict| matches!(verdict, Verdict::Pass(_)));
+            let words = verdict.map(|verdict| test.words(channel, verdict));
+            (CHANNELS[channel].name, input(channel), passes, words)
+        };
+        json!({
+            "number": self.selftests,
+            "prompt": test.prompt(),
+            "over": test.is_over(),
+            "passes": test.passes(),
+            "failed": test.failed,
+            "level": test.level(),
+            "lines": lines,
+            "results": (!lines.is_empty()).then(|| test.channels.iter().map(result).collect::<Vec<_>>()),
+        })
+    }
+}
