@@ -9,7 +9,6 @@ use tenax_hal_shim::motor::MotorDrive;
 use tenax_scene::plant::Plant;
 use tenax_sim::replay::ReplayPlant;
 
-/// The converter's noise never reaches so far, V.
 const NOISE_V: f64 = 0.003;
 
 fn pins(mut plant: ReplayPlant) -> Vec<[f64; COUNT]> {

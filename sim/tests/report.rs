@@ -25,19 +25,15 @@ const KEYS: &str = "
     object.handed_over object.turned_deg behaviours
 ";
 
-/// Of each detector, below its name.
 const DETECTOR_KEYS: [&str; 6] = ["first_s", "detections", "false_alarms", "said", "acted", "events"];
 
-/// Of its event scores, which a recording has not; behind them, false alarms by what the scene was doing.
 const EVENT_KEYS: [&str; 6] = ["count", "caught", "early", "late", "said_before", "missed"];
 
-/// Those behind them.
 const LAST_KEYS: &str = "
     detectors.wearer.first_s detectors.wearer.detections detectors.wearer.false_alarms
     faults line.bytes line.messages_missed line.telemetry_dropped line.bad_frames
 ";
 
-/// What a recording's report has below `replay`.
 const REPLAY_KEYS: &str = "
     replay.recording replay.recipe replay.first_s replay.duration_s replay.lead_in_s replay.longest_gap_ms
     replay.unused_columns replay.assumed replay.doubts
@@ -140,7 +136,6 @@ fn a_push_is_planned_for() {
     assert!((1.0..1.3).contains(&(bound.peak_grip_n.unwrap() / least_n)), "{bound:?}");
 }
 
-/// Its search would not end: no plan, however small, makes this grip worse.
 #[test]
 fn a_grip_that_is_enough_by_itself_is_its_own_bound() {
     let outcome = ran(&parsed(&text("swung")), 1);

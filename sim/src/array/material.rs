@@ -9,47 +9,35 @@ use serde::Serialize;
 
 pub type Ends = [f64; 2];
 
-/// One material under the array's silicone cover.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Material {
-    /// What it is called in the data.
     pub name: &'static str,
     pub mu_s: Ends,
-    /// Dynamic friction of slow sliding over static friction.
     pub mu_ratio: Ends,
-    /// How much dynamic friction rises with each decade of speed, as a part.
     pub mu_per_decade: Ends,
     /// Pitch of its texture or of the cover's grooves, the coarser, mm.
     pub pitch_mm: Ends,
-    /// Unevenness, as a part of an element's load.
     pub uneven: Ends,
     /// Stiffness of cover and wall together, a finger, N/mm.
     pub stiffness_n_per_mm: Ends,
-    /// What every surface has in its own measure.
     pub contact: Contact,
 }
 
-/// What a contact does to an array: nobody has measured it, so it is the same decade for every material but one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Contact {
     /// The way over which all contacts under an element are new ones, um: single contacts on polymers are some micrometres to
     /// some tens wide (Dieterich and Kilgore 1994).
     pub renews_um: Ends,
-    /// How much of the shear that lets go comes off an element's load.
     pub slip_part: Ends,
-    /// The part of it that goes to the cover's rim.
     pub rim_part: Ends,
     /// Sensitivity of the array, mV/N: 14.7 N over 3 V is 200 (Bamshad 2023, section 2.1); a skin spreads the load.
     pub mv_per_n: Ends,
-    /// How unlike its elements are.
     pub spread: Ends,
     /// Noise of a reading, mV: a tenth of the converter's step to a real BioTac's (3 counts, 2.4 mV here).
     pub noise_mv: Ends,
     /// What a knock presses on the pad, mN for each mV at a film.
     pub knock_mn_per_mv: Ends,
-    /// What the gear's teeth press on it, as a part of the load.
     pub motor_part: Ends,
-    /// How much of the load a shear as large as it moves to the pad's end: a stiff finger's pads hardly tilt, a soft one's lose half.
     pub tilt: Ends,
 }
 
@@ -65,7 +53,6 @@ const DECADES: Contact = Contact {
     tilt: [0.08, 0.8],
 };
 
-/// The four that a detector may learn from.
 pub const SEEN: [Material; 4] = [
     // A drawn wall: it slides evenly, and the cover's own grooves are its texture.
     Material {
@@ -113,8 +100,6 @@ pub const SEEN: [Material; 4] = [
     },
 ];
 
-/// The one that no detector sees before it is tested, outside the hull of the others in everything: soft ribbed rubber, on an
-/// array that is less sensitive and noisier. It slips with a jerk, which is easy, and hides it under a thick cover, which is not.
 pub const HELD_OUT: Material = Material {
     name: "rubber",
     mu_s: [1.12, 1.2],
@@ -161,13 +146,6 @@ mod tests {
             let low = others.iter().map(|ends| ends[0]).fold(f64::INFINITY, f64::min);
             let high = others.iter().map(|ends| ends[1]).fold(0.0, f64::max);
             assert!(own[1] < low || own[0] > high, "quantity {n}: {own:?} in {low} to {high}");
-        }
-    }
-
-    #[test]
-    fn what_nobody_has_measured_is_drawn_over_a_decade() {
-        for ends in ranges(&SEEN[0].contact) {
-            assert!(ends[1] / ends[0] > 9.99, "{ends:?}");
         }
     }
 }

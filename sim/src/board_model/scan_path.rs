@@ -10,8 +10,6 @@
 //! It knows what the image uses: a regular group of a trigger, fetched into a ring by stream 0 of DMA2. It panics at what
 //! it does not know. The common status register (ADC_CSR) does not image the flags.
 
-#[cfg(test)]
-mod beside;
 mod converter;
 mod stream;
 
@@ -23,10 +21,8 @@ use rigless::time::{EventId, VirtualNanos};
 use self::converter::Converter;
 use self::stream::Stream;
 
-/// Where a written one clears the controller's flag.
 const DMA2_LIFCR: u64 = 0x4002_6408;
 
-/// Which of the two is asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Asked {
     /// The converter, ADC1.
@@ -35,7 +31,6 @@ pub enum Asked {
     Controller,
 }
 
-/// The converter and its DMA.
 #[derive(Debug)]
 pub struct ScanPath {
     converter: Converter,
@@ -45,38 +40,32 @@ pub struct ScanPath {
 }
 
 impl ScanPath {
-    /// One out of reset.
     pub fn new() -> Self {
         Self { converter: Converter::new(), stream: Stream::new(), asked: Asked::Controller, wakes: None }
     }
 
-    /// The model of one of the two.
     pub fn of(&mut self, asked: Asked) -> &mut Self {
         self.asked = asked;
         self
     }
 
-    /// As a reset of the chip leaves it. The pins stay as they are.
     pub fn restarted(&mut self) {
         self.converter.restarted();
         self.stream.reset();
         self.wakes = None;
     }
 
-    /// Puts codes on pins. What was converted before was converted from what was there before.
     pub fn put(&mut self, codes: impl IntoIterator<Item = (u8, u16)>, context: &mut DeviceContext<'_>) {
         self.catch_up(context);
         codes.into_iter().for_each(|(channel, code)| self.converter.put(channel, code));
     }
 
-    /// A trigger arrives that the converter listens to. What is handed over is the controller's.
     pub fn trigger(&mut self, registers: &mut RegisterFile, context: &mut DeviceContext<'_>) {
         self.catch_up(context);
         self.converter.start(context.now());
         self.settle(registers, context);
     }
 
-    /// Takes the conversions that have ended by now.
     fn catch_up(&mut self, context: &mut DeviceContext<'_>) {
         let Self { converter, stream, .. } = self;
         while converter.convert(context.now()).is_some() {
@@ -85,7 +74,6 @@ impl ScanPath {
         stream.put(context);
     }
 
-    /// What follows from an access to the controller or its event.
     fn settle(&mut self, registers: &mut RegisterFile, context: &mut DeviceContext<'_>) {
         self.stream.settle(registers, context);
         // Nothing is seen before somebody asks, except when the stream raises a flag.
@@ -94,7 +82,6 @@ impl ScanPath {
     }
 }
 
-/// DMA fetches the code that it is asked for.
 fn fetch(converter: &mut Converter, stream: &mut Stream, context: &mut DeviceContext<'_>) {
     if converter.requests() {
         stream.take(|| converter.taken(), context);
@@ -167,7 +154,6 @@ impl ErasedDevice for ScanPath {
         }
     }
 
-    /// The converter's request does not go over the bus, and nothing else's is carried.
     fn on_request(
         &mut self,
         _request: RequestChange,

@@ -6,20 +6,13 @@ use std::path::Path;
 use anyhow::{Context, Result, bail, ensure};
 use object::{File, Object, ObjectSection, ObjectSymbol};
 
-/// The name of the tick of the logic in the image.
 pub(crate) const TICK: &str = "tenax_control_tick";
-/// The name of what gives the logic a command.
 const COMMAND: &str = "tenax_control_command";
-/// Addresses in an image.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Symbols {
-    /// The first instruction of a tick.
     pub tick: u64,
-    /// The instruction that the tick returns to.
     pub after_tick: u64,
-    /// The first instruction of taking a command.
     pub command: u64,
-    /// RAM above the image's variables: the stack grows down into it.
     pub stack: Range<u64>,
 }
 
@@ -29,7 +22,6 @@ fn read<T>(elf: &Path, of: impl FnOnce(&File<'_>) -> Result<T>) -> Result<T> {
     symbols.with_context(|| format!("the image {}", elf.display()))
 }
 
-/// RAM above an image's variables.
 fn stack(file: &File<'_>) -> Result<Range<u64>> {
     let stack = address_of(file, "__sheap")?..address_of(file, "_stack_start")?;
     ensure!(stack.start < stack.end, "leaves no RAM for the stack");
@@ -37,7 +29,6 @@ fn stack(file: &File<'_>) -> Result<Range<u64>> {
 }
 
 impl Symbols {
-    /// Reads them from an ELF file.
     pub fn read(elf: &Path) -> Result<Self> {
         read(elf, Self::of)
     }
@@ -59,14 +50,12 @@ pub(super) fn entry_and_return(file: &File<'_>, name: &str) -> Result<(u64, u64)
     }
 }
 
-/// Where a function begins, and every instruction that it returns to.
 pub(super) fn entry_and_returns(file: &File<'_>, name: &str) -> Result<(u64, Vec<u64>)> {
     let entry = entry(file, name)?;
     let text = file.section_by_name(".text").context("has no .text section")?;
     Ok((entry, return_addresses(text.data()?, text.address(), entry)))
 }
 
-/// Where a function begins.
 fn entry(file: &File<'_>, name: &str) -> Result<u64> {
     // Bit 0 of a function's address says that it is Thumb code.
     Ok(address_of(file, name)? & !1)

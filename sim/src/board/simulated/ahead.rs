@@ -4,18 +4,13 @@ use tenax_hal_shim::behaviour::Behaviour;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_logic::fingertip::Fingertip;
 
-/// A plan beside what the hand does by itself: the fingers are where the further of the two has closed them. It stands aside
-/// while the hand is opened and where a behaviour expects slip.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Ahead {
-    /// How much further the plan has closed, per mille of full duty times frames.
     by: u32,
-    /// Whether the wearer is opening the hand.
     opens: bool,
 }
 
 impl Ahead {
-    /// Of what the hand does in a frame, and what is planned for it.
     pub fn drive(
         &mut self,
         own: MotorDrive,

@@ -6,19 +6,14 @@ use rigless::soc::stm32f427::generated::adc1::{cr1, cr2, sqr1, sr};
 use rigless::time::{Run, VirtualNanos};
 use tenax_hal_shim::channel::CODE_MAX;
 
-/// Ranks of a sequence.
 const RANKS: usize = 16;
-/// Pins that it can read.
 const PINS: usize = 16;
-/// ADCCLK out of reset, Hz: PCLK2 over two.
 const RESET_CLOCK_HZ: u64 = 8_000_000;
 /// Cycles of sampling for each code of SMPx (RM0383, section 11.12.4), before the twelve of the conversion.
 const SAMPLING_CYCLES: [u128; 8] = [3, 15, 28, 56, 84, 112, 144, 480];
 const CONVERSION_CYCLES: u128 = 12;
-/// Registers that it keeps: those of the regular group, by their rows.
 const KEPT: usize = Register::Sqr3 as usize + 1;
 
-/// What this model leaves to `rigless`'s own.
 const FOREIGN_CR1: u64 = cr1::EOCIE.mask()
     | cr1::AWDIE.mask()
     | cr1::JEOCIE.mask()
@@ -31,7 +26,6 @@ const FOREIGN_CR1: u64 = cr1::EOCIE.mask()
 const FOREIGN_CR2: u64 =
     cr2::CONT.mask() | cr2::EOCS.mask() | cr2::ALIGN.mask() | cr2::SWSTART.mask() | cr2::JSWSTART.mask();
 
-/// A converter that is asked now and then what it has converted by now.
 #[derive(Debug)]
 pub struct Converter {
     clock_hz: u64,
@@ -41,7 +35,6 @@ pub struct Converter {
     data: u16,
     unread: bool,
     sequence: Option<Sequence>,
-    /// The next sequence, as the registers and the clock have it.
     plan: Option<Plan>,
 }
 
@@ -53,7 +46,6 @@ struct Plan {
     length: usize,
 }
 
-/// A sequence under way.
 #[derive(Clone, Copy, Debug)]
 struct Sequence {
     plan: Plan,
@@ -68,7 +60,6 @@ impl Sequence {
 }
 
 impl Converter {
-    /// One out of reset, every pin at zero.
     pub fn new() -> Self {
         Self {
             clock_hz: RESET_CLOCK_HZ,
@@ -82,28 +73,23 @@ impl Converter {
         }
     }
 
-    /// As a reset of the whole chip leaves it. The pins stay as they are.
     pub fn restarted(&mut self) {
         *self = Self { inputs: self.inputs, ..Self::new() };
     }
 
-    /// As its own reset line leaves it: its clock is not its own.
     pub fn reset(&mut self) {
         *self = Self { inputs: self.inputs, clock_hz: self.clock_hz, ..Self::new() };
     }
 
-    /// ADCCLK changes; a sequence under way goes on as it began.
     pub fn clock(&mut self, hz: u64) {
         self.clock_hz = hz;
         self.plan = None;
     }
 
-    /// Puts a code on a pin.
     pub fn put(&mut self, channel: u8, code: u16) {
         self.inputs[usize::from(channel)] = code.min(CODE_MAX);
     }
 
-    /// What a read of a register gives that the register file does not hold.
     pub fn shows(&self, row: usize) -> Option<u64> {
         match row {
             _ if row == Register::Sr as usize => Some(self.status),
@@ -112,7 +98,6 @@ impl Converter {
         }
     }
 
-    /// The core has read the data register.
     pub fn taken(&mut self) -> u16 {
         self.status &= !sr::EOC.mask();
         self.unread = false;
@@ -144,7 +129,6 @@ impl Converter {
         }
     }
 
-    /// A trigger arrives: a sequence begins unless one is under way or the converter has overrun.
     pub fn start(&mut self, now: VirtualNanos) {
         if self.status & sr::OVR.mask() != 0 || self.sequence.is_some() {
             return;
@@ -179,7 +163,6 @@ impl Converter {
         Some(())
     }
 
-    /// Whether it asks DMA to fetch its code.
     pub fn requests(&self) -> bool {
         let by_dma = self.registers[Register::Cr2 as usize] & cr2::DMA.mask() != 0;
         by_dma && self.unread && self.status & sr::OVR.mask() == 0

@@ -6,38 +6,30 @@ use rigless::soc::stm32f427::generated::dma2::{Register, lisr, s0cr, s0fcr, s0nd
 
 /// Where the converter's code is fetched: ADC1's DR.
 const ADC1_DR: u64 = 0x4001_204C;
-/// The chip's RAM: what is carried to anywhere else may be refused.
 const RAM: std::ops::Range<u64> = 0x2000_0000..0x2002_0000;
 const CODE_BYTES: u64 = 2;
 /// The registers of stream 0, in the order of their addresses, and the first one of stream 1.
 const FIRST_ROW: usize = Register::S0cr as usize;
 const PAST_ROW: usize = Register::S1cr as usize;
-/// Registers of one stream.
 const ROWS: usize = PAST_ROW - FIRST_ROW;
 /// What may be written while the stream is on (RM0383, sections 9.5.5 and 9.5.10).
 const OPEN_CR: u64 =
     s0cr::EN.mask() | s0cr::DMEIE.mask() | s0cr::TEIE.mask() | s0cr::HTIE.mask() | s0cr::TCIE.mask();
 const OPEN_FCR: u64 = s0fcr::FEIE.mask();
-/// Its interrupt line, of the controller's eight.
 const LINE: usize = 0;
 
-/// The stream, and the ring that it fills.
 #[derive(Debug)]
 pub struct Stream {
     ring: Option<Ring>,
     programmed: u64,
-    /// What the registers held after the last access.
     kept: [u64; ROWS],
     flags: u64,
     interrupt: Level,
-    /// Rings begun so far: what comes back of an earlier one is not this one's.
     begun: u64,
-    /// Codes taken and not yet put into memory, which follow one another there.
     taken: Vec<u16>,
     taken_at: u64,
 }
 
-/// A ring being filled.
 #[derive(Clone, Copy, Debug)]
 struct Ring {
     begins: u64,
@@ -46,21 +38,18 @@ struct Ring {
 }
 
 impl Ring {
-    /// Codes up to the next flag.
     fn to_flag(self) -> u64 {
         let filled = self.length - self.left;
         let half = self.length.div_ceil(2);
         if filled < half { half - filled } else { self.left }
     }
 
-    /// Whether nothing can go wrong with it.
     fn is_in_memory(self) -> bool {
         RAM.contains(&self.begins) && self.begins + CODE_BYTES * self.length <= RAM.end
     }
 }
 
 impl Stream {
-    /// One out of reset.
     pub fn new() -> Self {
         Self {
             ring: None,
@@ -74,12 +63,10 @@ impl Stream {
         }
     }
 
-    /// As a reset leaves it.
     pub fn reset(&mut self) {
         *self = Self { begun: self.begun, ..Self::new() };
     }
 
-    /// What a read of a register gives that the register file may not hold yet.
     pub fn shows(&self, row: usize) -> Option<u64> {
         match row {
             _ if row == Register::Lisr as usize => Some(self.flags),
@@ -93,7 +80,6 @@ impl Stream {
         self.ring.map(|ring| if ring.is_in_memory() { ring.to_flag().max(1) } else { 1 })
     }
 
-    /// Takes a code if it is on.
     pub fn take(&mut self, code: impl FnOnce() -> u16, context: &mut DeviceContext<'_>) {
         let Some(ring) = self.ring.as_mut().filter(|ring| ring.left > 0) else {
             return;
@@ -117,7 +103,6 @@ impl Stream {
         }
     }
 
-    /// Puts what was taken into memory, in as few accesses as it can.
     pub fn put(&mut self, context: &mut DeviceContext<'_>) {
         let mut codes = self.taken.as_slice();
         while !codes.is_empty() {
@@ -135,7 +120,6 @@ impl Stream {
         self.taken.clear();
     }
 
-    /// Memory refused what was put there: a transfer error, which switches the stream off.
     pub fn refused(&mut self, token: u64, registers: &mut RegisterFile, context: &mut DeviceContext<'_>) {
         if token == self.begun && self.ring.is_some() {
             self.flags |= lisr::TEIF0.mask();
@@ -195,7 +179,6 @@ impl Stream {
         self.settle(registers, context);
     }
 
-    /// Drives the interrupt line by the flags, and keeps what the registers hold.
     pub fn settle(&mut self, registers: &mut RegisterFile, context: &mut DeviceContext<'_>) {
         if let Some(ring) = self.ring {
             registers.set(Register::S0ndtr, ring.left);
