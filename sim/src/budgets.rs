@@ -1,4 +1,4 @@
-//! `budgets.toml`: what the image may take of the chip.
+//! `budgets.toml`: what the image may take of the chip, and the lines of each folder.
 
 use std::collections::BTreeMap;
 
@@ -15,11 +15,8 @@ pub struct Budgets {
     pub tick_instructions_max: u64,
     /// Everything that the core executes in a period of 0.5 ms, mean.
     pub period_instructions_mean: u64,
-    pub array_covariance_instructions: u64,
-    pub array_spectrum_instructions: u64,
-    pub array_network_instructions: u64,
-    pub array_slow_frame_instructions: u64,
-    pub panic_sites: BTreeMap<String, u64>,
+    /// Lines of source by folder of the checkout.
+    pub lines: BTreeMap<String, u64>,
 }
 
 impl Budgets {

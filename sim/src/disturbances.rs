@@ -14,7 +14,7 @@ pub const NAME: &str = "disturbance-hour";
 pub fn text(seed: u64, minutes: u32) -> String {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut text = format!(
-        r#"# Drawn from seed {seed} by bench/src/disturbances.rs.
+        r#"# Drawn from seed {seed} by sim/src/disturbances.rs.
 name = "{NAME}"
 title = "An hour of disturbances in a hand that holds a glass; nothing slips"
 from = "the disturbances that run through every experiment"

@@ -240,18 +240,4 @@ mod tests {
         let after = run(&mut pace, SCAN_HZ / 5);
         assert!(after >= Duration::from_millis(150), "{after:?}");
     }
-
-    #[test]
-    fn a_board_that_is_slow_is_told_from_one_that_was_slow_to_start() {
-        let slow_at = |lost_ms: [u64; 4]| -> Vec<Option<f64>> {
-            let mut pace = Pace::new(|_| {});
-            let watch = |(n, ms): (u64, u64)| {
-                pace.lost += Duration::from_millis(ms);
-                pace.slowness(Duration::from_secs(2 * n))
-            };
-            (1..).zip(lost_ms).map(watch).collect()
-        };
-        assert_eq!(slow_at([1_500, 0, 50, 0]), [None; 4]);
-        assert_eq!(slow_at([1_500, 1_000, 0, 500]), [None, Some(0.5), None, Some(0.75)]);
-    }
 }

@@ -27,7 +27,7 @@ const CORE_HZ: f64 = 100e6;
 /// bracket, and a wide one.
 pub const CYCLES_PER_INSTRUCTION: [f64; 2] = [1.0, 3.0];
 
-/// A report. Its keys are stable: `bench/tests/report.rs` lists them. Null where a thing did not happen.
+/// A report. Its keys are stable: `tests/report.rs` lists them. Null where a thing did not happen.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     pub scene: String,

@@ -282,16 +282,4 @@ mod tests {
         verdicts[0].by_wearer = true;
         assert_eq!(Card::of(&[SLIP], &verdicts, &whole()).slips.missed, 1);
     }
-
-    #[test]
-    fn cards_add_up() {
-        let (one, other) = (card(&[(1.12, 1.2)]), card(&[(0.2, 0.3), (1.2, 1.25)]));
-        let mut both = one;
-        both.add(&other);
-        let Counts { count, caught, late, .. } = both.slips;
-        assert_eq!((count, caught, late, both.false_alarms.count), (2, 1, 1, 1));
-        assert!((both.false_alarms.hours - 0.002).abs() < 1e-12);
-        assert_eq!(both.latency_ms(0.5).map(f64::round), Some(20.0));
-        assert_eq!(both.caught_part(), Some(0.5));
-    }
 }

@@ -1,7 +1,7 @@
 //! One run: from what is to be run, on which board, to its report and its figure.
 //!
 //! ```
-//! use crate::session::{self, Board};
+//! use tenax_sim::session::{self, Board};
 //! use tenax_hal_shim::detector::DetectorId;
 //!
 //! let file = session::load_scene("glass")?;

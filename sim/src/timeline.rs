@@ -126,18 +126,3 @@ impl Edges {
         self.before = now;
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_edge_is_where_it_becomes_true() {
-        let mut edges = Edges::default();
-        for (frame, on) in (0..).zip([true, true, false, true, false]) {
-            edges.push(frame, on, false);
-        }
-        assert_eq!((edges.frames.as_slice(), edges.ends.as_slice()), (&[0, 3][..], &[2, 4][..]));
-        assert!(Edges::default().frames.is_empty());
-    }
-}

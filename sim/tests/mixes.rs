@@ -1,5 +1,5 @@
 //! Settings anywhere in their ranges, several at once: none of them drops what the defaults keep, crushes it or deafens the hand.
-//! `TENAX_MIXES=500 cargo test --release -p tenax-bench --test all mixes -- --nocapture`; `TENAX_SEED` draws others.
+//! `TENAX_MIXES=500 cargo test --release -p tenax-sim --test all mixes -- --nocapture`; `TENAX_SEED` draws others.
 
 use std::fmt::Write as _;
 use std::sync::OnceLock;

@@ -1,7 +1,7 @@
 //! The reflex on loads and disturbances that its scenes were not built with: a weight that comes at once, knocks of every
 //! ringing, and how much force a warning adds.
 //!
-//! `TENAX_SEEDS=12 cargo test --release -p tenax-bench --test all reflex -- --nocapture`
+//! `TENAX_SEEDS=12 cargo test --release -p tenax-sim --test all reflex -- --nocapture`
 
 use crate::common::{asked, parsed, text};
 use rand::rngs::ChaCha8Rng;

@@ -53,50 +53,29 @@ const DECADES: Contact = Contact {
     tilt: [0.08, 0.8],
 };
 
+const fn seen(name: &'static str, mu_s: Ends, mu_ratio: Ends, pitch_mm: Ends, uneven: Ends) -> Material {
+    let (mu_per_decade, stiffness_n_per_mm) = ([0.02, 0.10], [2.0, 8.0]);
+    Material { name, mu_s, mu_ratio, mu_per_decade, pitch_mm, uneven, stiffness_n_per_mm, contact: DECADES }
+}
+
+/// The four that a detector may learn from.
 pub const SEEN: [Material; 4] = [
     // A drawn wall: it slides evenly, and the cover's own grooves are its texture.
-    Material {
-        name: "plastic",
-        mu_s: [0.30, 1.0],
-        mu_ratio: [0.75, 0.95],
-        mu_per_decade: [0.02, 0.10],
-        pitch_mm: [0.2, 1.2],
-        uneven: [0.006, 0.03],
-        stiffness_n_per_mm: [2.0, 8.0],
-        contact: DECADES,
-    },
+    seen("plastic", [0.30, 1.0], [0.75, 0.95], [0.2, 1.2], [0.006, 0.03]),
     // Fibres: it lets go with a jerk. A wall of paper gives.
     Material {
-        name: "paper",
-        mu_s: [0.25, 0.8],
-        mu_ratio: [0.70, 0.92],
-        mu_per_decade: [0.02, 0.10],
-        pitch_mm: [0.2, 0.8],
-        uneven: [0.01, 0.05],
         stiffness_n_per_mm: [1.5, 4.0],
-        contact: DECADES,
+        ..seen("paper", [0.25, 0.8], [0.70, 0.92], [0.2, 0.8], [0.01, 0.05])
     },
     // Ra 0.8 um: smooth and hard, and the one that Bamshad's detector was weakest on (figure 9).
     Material {
-        name: "aluminium",
-        mu_s: [0.25, 0.9],
-        mu_ratio: [0.75, 0.95],
-        mu_per_decade: [0.02, 0.10],
-        pitch_mm: [0.2, 0.6],
-        uneven: [0.006, 0.02],
         stiffness_n_per_mm: [5.0, 15.0],
-        contact: DECADES,
+        ..seen("aluminium", [0.25, 0.9], [0.75, 0.95], [0.2, 0.6], [0.006, 0.02])
     },
     // Grain.
     Material {
-        name: "wood",
-        mu_s: [0.30, 1.1],
-        mu_ratio: [0.66, 0.90],
-        mu_per_decade: [0.02, 0.10],
-        pitch_mm: [0.5, 2.0],
-        uneven: [0.02, 0.06],
         stiffness_n_per_mm: [3.0, 12.0],
-        contact: DECADES,
+        ..seen("wood", [0.30, 1.1], [0.66, 0.90], [0.5, 2.0], [0.02, 0.06])
     },
 ];
 

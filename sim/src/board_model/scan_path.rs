@@ -1,14 +1,10 @@
 //! The way of a scan through the chip, converter and DMA, as one model: one event a frame instead of one a conversion.
 //!
-//! `rigless` stops the core at each conversion's end, moves a code, and tells every peripheral of every request. Nothing
-//! of that is seen from outside before a frame's last code: the ring is read after DMA's interrupt. So this model is
-//! worked out when it is looked at: at every access to a register of the two, and at the instants at which something is
-//! to be seen without one, which are DMA's interrupts, it takes the conversions that have ended by then, one after another
-//! with the times that the clock and the sampling give them. What is read at any instant is what `rigless`'s own models
-//! show at that instant: `beside.rs` and `bench/tests/emulated/converter.rs` hold them beside each other.
+//! Nothing of a scan is seen from outside before a frame's last code, so this model is worked out when it is looked at: at
+//! every access to a register of the two and at DMA's interrupts it takes the conversions that have ended by then, with the
+//! times that clock and sampling give them. `tests/emulated/converter.rs` holds it beside `rigless`'s own models.
 //!
-//! It knows what the image uses: a regular group of a trigger, fetched into a ring by stream 0 of DMA2. It panics at what
-//! it does not know. The common status register (ADC_CSR) does not image the flags.
+//! It knows what the image uses: a regular group of a trigger, fetched into a ring by stream 0 of DMA2.
 
 mod converter;
 mod stream;
@@ -154,15 +150,12 @@ impl ErasedDevice for ScanPath {
         }
     }
 
-    fn on_request(
-        &mut self,
-        _request: RequestChange,
-        _registers: &mut RegisterFile,
-        _context: &mut DeviceContext<'_>,
-    ) {
-    }
+    /// The converter's request does not go over the bus, and nothing else's is carried.
+    fn on_request(&mut self, _: RequestChange, _: &mut RegisterFile, _: &mut DeviceContext<'_>) {}
 
-    fn poll(&mut self, _registers: &mut RegisterFile, _context: &mut DeviceContext<'_>) {}
+    fn poll(&mut self, _: &mut RegisterFile, _: &mut DeviceContext<'_>) {}
+
+    fn on_access(&mut self, _: u64, _: u64, _: &mut RegisterFile, _: &mut DeviceContext<'_>) {}
 
     fn reset(&mut self) {
         match self.asked {
@@ -174,15 +167,6 @@ impl ErasedDevice for ScanPath {
     fn reset_line(&mut self, _registers: &mut RegisterFile, context: &mut DeviceContext<'_>) {
         self.catch_up(context);
         self.reset();
-    }
-
-    fn on_access(
-        &mut self,
-        _token: u64,
-        _value: u64,
-        _registers: &mut RegisterFile,
-        _context: &mut DeviceContext<'_>,
-    ) {
     }
 
     fn on_refused(&mut self, token: u64, registers: &mut RegisterFile, context: &mut DeviceContext<'_>) {

@@ -234,13 +234,4 @@ mod tests {
         let said = outcome.report.detectors.of_id(DetectorId::Mlp).said;
         assert_eq!(highest(mlp).fract() > 0.5, said > 0, "said {said} times");
     }
-
-    #[test]
-    fn a_few_slips_are_drawn_as_they_are_and_many_in_no_more_than_the_pixels() {
-        let slips = |count: u32| (0..count).map(move |n| (f64::from(n), f64::from(n) + 0.1));
-        assert_eq!(joined(slips(3), (0.0, 3.0)).len(), 3);
-        let many = joined(slips(1_000_000), (0.0, 1e6));
-        assert!(many.len() <= MANY && many.first().map(|slip| slip.0) == Some(0.0));
-        assert!(many.last().is_some_and(|slip| slip.1 > 999_999.0));
-    }
 }

@@ -16,8 +16,8 @@ const SETTLED_FRAMES: u32 = FRAME_HZ * 15 / 100;
 /// A pulse that begins this long before a micro onset answers that slip, s: a warning sees it come. What a pulse adds this long
 /// after a slip's end was still meant for it: the motor's dead time.
 pub(super) const BEFORE_S: f64 = 0.050;
+/// Safety ratio: a grip up to 1.1 times the largest need within [`ABOUT_S`] counts as needed.
 const ABOUT_PART: f64 = 1.1;
-/// ... at any time within so long, s.
 const ABOUT_S: f64 = 1.0;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -103,10 +103,15 @@ impl Grips {
         (t_s * f64::from(TRACE_HZ)) as usize
     }
 
-    fn gained(&self, stretch: &Stretch, truth: &Fate) -> [f64; 2] {
+    /// The rows of a stretch with its settling, and the place of the first.
+    fn rows(&self, stretch: &Stretch) -> (usize, &[[f32; 2]]) {
         let (from, to) =
             (Self::row(frame_end_s(stretch.from)), Self::row(frame_end_s(stretch.to + SETTLED_FRAMES)));
-        let rows = self.0.get(from..self.0.len().min(to + 1)).unwrap_or_default();
+        (from, self.0.get(from..self.0.len().min(to + 1)).unwrap_or_default())
+    }
+
+    fn gained(&self, stretch: &Stretch, truth: &Fate) -> [f64; 2] {
+        let (from, rows) = self.rows(stretch);
         let mut most_n = rows.first().map_or(0.0, |[grip_n, _]| *grip_n);
         let (mut gained_n, mut without_n) = (0.0, 0.0);
         for (n, &[grip_n, _]) in rows.iter().enumerate().filter(|(_, [grip_n, _])| *grip_n > 0.0) {
@@ -126,9 +131,7 @@ impl Grips {
     }
 
     fn lost(&self, stretch: &Stretch) -> f64 {
-        let (from, to) =
-            (Self::row(frame_end_s(stretch.from)), Self::row(frame_end_s(stretch.to + SETTLED_FRAMES)));
-        let rows = self.0.get(from..self.0.len().min(to + 1)).unwrap_or_default();
+        let (_, rows) = self.rows(stretch);
         let least_n = rows.iter().map(|[grip_n, _]| *grip_n).fold(f32::INFINITY, f32::min);
         rows.first().map_or(0.0, |[grip_n, _]| f64::from(grip_n - least_n))
     }

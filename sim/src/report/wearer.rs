@@ -98,7 +98,7 @@ impl Opening {
     }
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Judge {
     on_mv: [i64; 2],
     opening: Option<Opening>,
@@ -134,12 +134,6 @@ impl Stretch {
     }
 }
 
-impl Default for Judge {
-    fn default() -> Self {
-        Self::new(None)
-    }
-}
-
 impl Judge {
     pub fn new(calibrated: Option<&EmgModel>) -> Self {
         // Whoever contracts with less than any muscle does is active all the same; a wearer whose rest is strong, later.
@@ -147,24 +141,7 @@ impl Judge {
             let decide = Decide::new(Some(model));
             [0, 1].map(|n| ON_MV.max(i64::from(decide.active_uv(n)[0]) / 1_000 + 2))
         });
-        Self {
-            on_mv,
-            opening: calibrated.map(Opening::of),
-            opened: false,
-            muscles: Muscles::default(),
-            deaf: Vec::new(),
-            scans: Vec::with_capacity(SCANS_PER_FRAME),
-            frames: 0,
-            active: Frames::default(),
-            wish_since: None,
-            slowest: None,
-            reflex_ticks: 0,
-            reflex_while_active: 0,
-            slow_frames: 0,
-            active_slow_frames: 0,
-            closed: Stretch::default(),
-            opened_by_muscle: Stretch::default(),
-        }
+        Self { on_mv, opening: calibrated.map(Opening::of), ..Self::default() }
     }
 }
 
@@ -254,19 +231,5 @@ impl Frames {
     fn contains(&self, frame: usize) -> bool {
         let begun = self.0.partition_point(|stretch| stretch.start <= frame);
         begun.checked_sub(1).is_some_and(|last| self.0[last].contains(&frame))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn frames_are_found_in_their_stretches() {
-        let mut frames = Frames::default();
-        [3, 4, 5, 9, 20].into_iter().for_each(|frame| frames.push(frame));
-        assert_eq!(frames.0, [3..6, 9..10, 20..21]);
-        let found: Vec<usize> = (0..25).filter(|&frame| frames.contains(frame)).collect();
-        assert_eq!(found, [3, 4, 5, 9, 20]);
     }
 }

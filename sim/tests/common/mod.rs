@@ -42,11 +42,6 @@ pub fn shared(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data").join(name)
 }
 
-pub fn played(name: &str) -> Outcome {
-    session::replay(&shared(name), None, 1, &Board::Host, &mut |_| {})
-        .expect("the recording is here, it and its recipe are good")
-}
-
 pub fn recording(csv: &str) -> Recording {
     Recording::parse(csv.as_bytes(), "r.csv").expect("the recording is good")
 }

@@ -75,17 +75,6 @@ impl Downlink {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tenax_frames::link::Encoder;
-
-    #[test]
-    fn a_flood_is_taken_one_command_a_tick_and_no_more_than_is_earned() {
-        let (mut encoder, mut down) = (Encoder::default(), Downlink::default());
-        (0..100).for_each(|_| down.take(encoder.frame(&Down::Ping).1));
-        let taken = (0..200).filter_map(|frame| down.command(frame));
-        let numbers: Vec<u16> = taken.map(|command| command.sequence).collect();
-        assert_eq!(numbers, (0..BURST as u16).collect::<Vec<_>>());
-        assert_eq!(down.counters(200).commands_skipped, 100 - BURST);
-    }
 
     #[test]
     fn only_who_asked_for_a_session_gives_its_number_back() {

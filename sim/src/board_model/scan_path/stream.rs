@@ -2,27 +2,16 @@
 
 use rigless::device::{DeviceContext, Level, RegisterFile};
 use rigless::soc::Width;
-use rigless::soc::stm32f427::generated::dma2::{Register, lisr, s0cr, s0fcr, s0ndtr};
+use rigless::soc::stm32f427::generated::dma2::{Register, lisr, s0cr, s0ndtr};
 
-/// Where the converter's code is fetched: ADC1's DR.
-const ADC1_DR: u64 = 0x4001_204C;
 const RAM: std::ops::Range<u64> = 0x2000_0000..0x2002_0000;
 const CODE_BYTES: u64 = 2;
-/// The registers of stream 0, in the order of their addresses, and the first one of stream 1.
-const FIRST_ROW: usize = Register::S0cr as usize;
-const PAST_ROW: usize = Register::S1cr as usize;
-const ROWS: usize = PAST_ROW - FIRST_ROW;
-/// What may be written while the stream is on (RM0383, sections 9.5.5 and 9.5.10).
-const OPEN_CR: u64 =
-    s0cr::EN.mask() | s0cr::DMEIE.mask() | s0cr::TEIE.mask() | s0cr::HTIE.mask() | s0cr::TCIE.mask();
-const OPEN_FCR: u64 = s0fcr::FEIE.mask();
 const LINE: usize = 0;
 
 #[derive(Debug)]
 pub struct Stream {
     ring: Option<Ring>,
     programmed: u64,
-    kept: [u64; ROWS],
     flags: u64,
     interrupt: Level,
     begun: u64,
@@ -54,7 +43,6 @@ impl Stream {
         Self {
             ring: None,
             programmed: 0,
-            kept: [0; ROWS],
             flags: 0,
             interrupt: Level::Low,
             begun: 0,
@@ -91,10 +79,6 @@ impl Stream {
         if ring.to_flag() == 1 {
             let whole = ring.left == 1;
             self.flags |= if whole { lisr::TCIF0.mask() } else { lisr::HTIF0.mask() };
-            // A ring of one code has its half and its whole at once.
-            if ring.length == 1 {
-                self.flags |= lisr::HTIF0.mask();
-            }
         }
         ring.left -= 1;
         if ring.left == 0 {
@@ -139,7 +123,6 @@ impl Stream {
         registers: &mut RegisterFile,
         context: &mut DeviceContext<'_>,
     ) {
-        let on = self.ring.is_some();
         match row {
             _ if row == Register::Lifcr as usize => {
                 self.flags &= !written;
@@ -147,10 +130,7 @@ impl Stream {
             }
             _ if row == Register::Hifcr as usize => registers.set(Register::Hifcr, 0),
             _ if row == Register::S0cr as usize => {
-                if on {
-                    registers.restore(Register::S0cr, !OPEN_CR, self.kept[0]);
-                }
-                match (on, s0cr::EN.is_set(registers.get(Register::S0cr))) {
+                match (self.ring.is_some(), s0cr::EN.is_set(registers.get(Register::S0cr))) {
                     (false, true) => self.switch_on(registers),
                     (true, false) => {
                         // What is switched off has ended (RM0383, section 9.3.14).
@@ -160,19 +140,8 @@ impl Stream {
                     _ => {}
                 }
             }
-            _ if row == Register::S0fcr as usize && on => {
-                registers.restore(Register::S0fcr, !OPEN_FCR, self.kept[row - FIRST_ROW]);
-            }
-            _ if (FIRST_ROW..PAST_ROW).contains(&row) && on => {
-                let register = Register::ALL[row];
-                registers.set(register, self.kept[row - FIRST_ROW]);
-            }
             _ if row == Register::S0ndtr as usize => {
                 self.programmed = s0ndtr::NDT.get(registers.get(Register::S0ndtr));
-            }
-            _ if row >= PAST_ROW => {
-                let control = (row - FIRST_ROW).is_multiple_of(ROWS);
-                assert!(!control || written & s0cr::EN.mask() == 0, "DMA2 carries the scan and nothing else");
             }
             _ => {}
         }
@@ -184,10 +153,8 @@ impl Stream {
             registers.set(Register::S0ndtr, ring.left);
         }
         registers.set(Register::Lisr, self.flags);
-        for (kept, &register) in self.kept.iter_mut().zip(&Register::ALL[FIRST_ROW..PAST_ROW]) {
-            *kept = registers.get(register);
-        }
-        let enabled = |enable: u64, flag: u64| self.kept[0] & enable != 0 && self.flags & flag != 0;
+        let control = registers.get(Register::S0cr);
+        let enabled = |enable: u64, flag: u64| control & enable != 0 && self.flags & flag != 0;
         let level = Level::from(
             enabled(s0cr::TEIE.mask(), lisr::TEIF0.mask())
                 || enabled(s0cr::HTIE.mask(), lisr::HTIF0.mask())
@@ -200,20 +167,14 @@ impl Stream {
     }
 
     fn switch_on(&mut self, registers: &mut RegisterFile) {
-        // Direct mode forces the memory's side to the peripheral's (RM0383, section 9.5.5).
         let control = registers.get(Register::S0cr);
-        let control = s0cr::MSIZE.set(control, s0cr::PSIZE.get(control));
-        let control = s0cr::PINCOS.set(s0cr::PBURST.set(s0cr::MBURST.set(control, 0), 0), 0);
-        registers.set(Register::S0cr, control);
         let [from_peripheral, half_words, adc1] =
             [s0cr::DIR.get(control), s0cr::PSIZE.get(control), s0cr::CHSEL.get(control)];
         assert!(
             (from_peripheral, half_words, adc1) == (0, 1, 0)
-                && s0cr::CIRC.is_set(control)
-                && s0cr::MINC.is_set(control)
                 && control & (s0cr::PINC.mask() | s0cr::DBM.mask() | s0cr::PFCTRL.mask()) == 0
-                && !s0fcr::DMDIS.is_set(registers.get(Register::S0fcr))
-                && registers.get(Register::S0par) == ADC1_DR,
+                && s0cr::CIRC.is_set(control)
+                && s0cr::MINC.is_set(control),
             "the scan's DMA carries ADC1's codes into a ring and nothing else: {control:#x}"
         );
         self.begun += 1;
