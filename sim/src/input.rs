@@ -88,7 +88,7 @@ pub fn number(column: &str, cell: &str) -> Result<f64, String> {
     }
 }
 
-/// The source of a CSV file, cut off with [`TooLong`] where it is longer than allowed.
+/// The source of a CSV file, cut off where it is longer than allowed.
 #[derive(Debug)]
 pub struct Rows<R> {
     source: R,

@@ -92,10 +92,6 @@ impl Sectors {
         (STORE, self.0.iter().flat_map(|word| word.to_le_bytes()).collect())
     }
 
-    pub fn trusting() -> Self {
-        Self::provisioned(&Provision { trusts_line: true, ..Provision::default() })
-    }
-
     pub fn provisioned(provision: &Provision) -> Self {
         provision
             .records()

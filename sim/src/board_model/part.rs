@@ -53,7 +53,7 @@ impl Own {
         answers[bus.slot("ADC1")?] = Answers::Scan(scan_path::Asked::Converter);
         answers[bus.slot("TIM1")?] = Answers::BridgeTimer;
         answers[bus.slot("TIM4")?] = Answers::RegistersAlone;
-        Ok(Self { scan: ScanPath::new(), bridge: BridgeTimer::default(), scan_controller, answers })
+        Ok(Self { scan: ScanPath::new()?, bridge: BridgeTimer::default(), scan_controller, answers })
     }
 }
 
@@ -112,8 +112,8 @@ impl Part {
         let Self { chip, own } = self;
         match own {
             Some(own) => {
-                let (registers, mut context) = chip.bus_mut().drive(now, own.scan_controller);
-                own.scan.trigger(registers, &mut context);
+                let (_, mut context) = chip.bus_mut().drive(now, own.scan_controller);
+                own.scan.trigger(&mut context);
             }
             None => {
                 let started = chip

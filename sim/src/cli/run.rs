@@ -124,7 +124,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let stem = Path::new(&name).file_stem().map_or("run".into(), |stem| stem.to_string_lossy());
     let path = |extension: &str| folder.join(format!("{stem}.{extension}"));
     let board = if args.host { Board::Host } else { Board::emulated(&workspace::root()?)? };
-    let mut line = LineFile::new(path("line.bin"));
+    let mut line = LineFile::create(path("line.bin"));
     let (mut server, down) = served(args)?.unzip();
     let person = Person::default();
     if let Some(server) = &mut server {
@@ -164,7 +164,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         recording.finish().with_context(|| format!("cannot write {}", path.display()))?;
         files.push(path.clone());
     }
-    files.extend(line.close()?);
+    files.push(line.close()?);
     args.report.print(&Text(&outcome.report), &outcome.report)?;
     // On stderr, so that a program that reads the report reads nothing else.
     for file in files {

@@ -21,7 +21,7 @@ pub struct Sketch {
     pub needs: Option<Needs>,
     pub ratio: Thin,
     /// S2. A stroke changes it.
-    pub s2: Steps,
+    pub s2: Thin,
     /// The PVDF envelope, mV.
     pub vibration: Thin,
     /// Flexor and extensor, mV.
@@ -57,7 +57,7 @@ impl Sketch {
             forces: [thin(), thin()],
             needs: None,
             ratio: thin(),
-            s2: Steps::new(span_s),
+            s2: thin(),
             vibration: thin(),
             muscles: [thin(), thin()],
             motor: [DriveSource::Wearer, DriveSource::Reflex, DriveSource::Link, DriveSource::Behaviour]
@@ -117,41 +117,6 @@ impl Needs {
         self.grip.push((row.t_s, row.grip_n));
         // While the hand carries nothing, nothing is needed: a gap in the curve.
         self.needed.push((row.t_s, if row.needed_n > 0.0 { row.needed_n } else { f64::NAN }));
-    }
-}
-
-#[derive(Clone, Debug)]
-pub struct Steps {
-    span_s: (f64, f64),
-    last: Option<f64>,
-    corners: Thin,
-}
-
-impl Steps {
-    fn new(span_s: (f64, f64)) -> Self {
-        Self { span_s, last: None, corners: Thin::new(span_s) }
-    }
-
-    fn push(&mut self, (t_s, value): (f64, f64)) {
-        let (from_s, to_s) = self.span_s;
-        if t_s > to_s {
-            return;
-        }
-        match self.last.replace(value) {
-            Some(before) if before == value => {}
-            Some(before) => {
-                self.corners.push((t_s.max(from_s), before));
-                self.corners.push((t_s.max(from_s), value));
-            }
-            None => self.corners.push((from_s, value)),
-        }
-    }
-
-    pub fn points(self) -> Vec<(f64, f64)> {
-        let (_, to_s) = self.span_s;
-        let mut points = self.corners.points();
-        points.extend(self.last.map(|value| (to_s, value)));
-        points
     }
 }
 
