@@ -4,7 +4,6 @@
 //! the chip is reset.
 
 use core::mem::MaybeUninit;
-use core::panic::PanicInfo;
 use core::ptr::{addr_of, addr_of_mut};
 
 use cortex_m::peripheral::SCB;
@@ -69,22 +68,6 @@ pub fn give_up(mark: Mark, why: &str) -> ! {
     }
     black_box::why(why.as_bytes());
     SCB::sys_reset()
-}
-
-#[panic_handler]
-fn on_panic(info: &PanicInfo) -> ! {
-    cortex_m::interrupt::disable();
-    bridge::off();
-    defmt::error!("{}", defmt::Display2Format(info));
-    if let Some(place) = info.location() {
-        // The end of a path says most.
-        let path = place.file().as_bytes();
-        let from = path.iter().rposition(|&byte| byte == b'/').map_or(0, |at| at + 1);
-        black_box::why(path.get(from..).unwrap_or(path));
-        black_box::why(b":");
-        black_box::why_decimal(place.line());
-    }
-    give_up(Mark::Panicked, "")
 }
 
 /// A fault of the core: as a panic.

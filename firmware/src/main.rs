@@ -41,6 +41,8 @@ mod telemetry;
 mod vibrator;
 mod watchdog;
 
+use core::panic::PanicInfo;
+
 use cortex_m::peripheral::SCB;
 use defmt_rtt as _;
 use embassy_executor::{InterruptExecutor, SpawnError, SpawnToken, Spawner};
@@ -53,7 +55,7 @@ use tenax_hal_shim::wire::{ResetCause, Up};
 use tenax_hal_shim::words::Fault;
 use tenax_logic::device::Device;
 use tenax_logic::rescue::{self, Rescue};
-use tenax_logic::restart::Start;
+use tenax_logic::restart::{Mark, Start};
 use tenax_logic::store::Erase;
 
 use crate::bridge::Bridge;
@@ -206,4 +208,20 @@ async fn wait_for_button(
 /// A task that is started here and nowhere else.
 fn once<S>(task: Result<SpawnToken<S>, SpawnError>) -> SpawnToken<S> {
     task.expect("each task is started once")
+}
+
+#[panic_handler]
+fn on_panic(info: &PanicInfo) -> ! {
+    cortex_m::interrupt::disable();
+    bridge::off();
+    defmt::error!("{}", defmt::Display2Format(info));
+    if let Some(place) = info.location() {
+        // The end of a path says most.
+        let path = place.file().as_bytes();
+        let from = path.iter().rposition(|&byte| byte == b'/').map_or(0, |at| at + 1);
+        black_box::why(path.get(from..).unwrap_or(path));
+        black_box::why(b":");
+        black_box::why_decimal(place.line());
+    }
+    last_words::give_up(Mark::Panicked, "")
 }

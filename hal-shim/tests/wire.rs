@@ -1,7 +1,13 @@
 //! The wire under garbage, loss and cuts. A failing case prints its seed and is kept by proptest.
 
+use std::fmt::Debug;
+
 use proptest::collection::vec;
+use proptest::option;
 use proptest::prelude::*;
+use proptest::sample::Index;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use tenax_hal_shim::behaviour::Behaviour;
 use tenax_hal_shim::channel::{COUNT, PVDF_COUNT};
 use tenax_hal_shim::detector::{DetectorHealth, DetectorId, DetectorSet, Direction, Evidence};
@@ -33,49 +39,104 @@ fn down() -> impl Strategy<Value = Down> {
     ]
 }
 
+fn up() -> impl Strategy<Value = Up> {
+    prop_oneof![
+        any::<u32>().prop_map(|frames| Up::Counters(Counters { frames, ..Counters::default() })),
+        any::<(u16, u32)>().prop_map(|(of, frame)| Up::Answer { of, frame, answer: Answer::Done }),
+        Just(Up::Raw(Raw::default())),
+        Just(Up::Senses(Senses { frame: 24, samples: [8_191; COUNT], films: [40; PVDF_COUNT] })),
+    ]
+}
+
 fn answer(answer: Answer) -> Up {
     Up::Answer { of: u16::MAX, frame: u32::MAX, answer }
 }
 
-fn receive(bytes: &[u8]) -> Vec<Result<(u16, Down), BadFrame>> {
+fn receive<T: DeserializeOwned>(bytes: &[u8]) -> Vec<Result<(u16, T), BadFrame>> {
     let mut receiver = Receiver::new();
     bytes
         .iter()
-        .filter_map(|&byte| receiver.push::<Down>(byte))
+        .filter_map(|&byte| receiver.push::<T>(byte))
         .map(|frame| frame.map(|received| (received.sequence, received.message)))
         .collect()
 }
 
-fn frame(sequence: u16, message: &Down) -> Vec<u8> {
+fn frame(sequence: u16, message: &impl Serialize) -> Vec<u8> {
     let mut buffer = [0; FRAME_MAX];
     encode(sequence, message, &mut buffer).unwrap().to_vec()
 }
 
-proptest! {
-    #[test]
-    fn what_is_sent_arrives(messages in vec((any::<u16>(), down()), 1..20)) {
-        let bytes: Vec<u8> = messages.iter().flat_map(|(sequence, message)| frame(*sequence, message)).collect();
-        prop_assert_eq!(receive(&bytes), messages.into_iter().map(Ok).collect::<Vec<_>>());
-    }
+/// Damage to a frame; a zero follows, so that the next frame is whole.
+#[derive(Clone, Debug)]
+enum Damage {
+    Flip(Index, u8),
+    Cut(Index),
+    Insert(Index, u8),
+    Replace(Vec<u8>),
+}
 
+fn damage() -> impl Strategy<Value = Option<Damage>> {
+    option::of(prop_oneof![
+        (any::<Index>(), 0..8u8).prop_map(|(at, bit)| Damage::Flip(at, bit)),
+        any::<Index>().prop_map(Damage::Cut),
+        any::<(Index, u8)>().prop_map(|(at, byte)| Damage::Insert(at, byte)),
+        vec(any::<u8>(), 0..700).prop_map(Damage::Replace),
+    ])
+}
+
+fn damaged(mut bytes: Vec<u8>, damage: Damage) -> Vec<u8> {
+    match damage {
+        Damage::Flip(at, bit) => {
+            let at = at.index(bytes.len());
+            bytes[at] ^= 1 << bit;
+        }
+        Damage::Cut(at) => bytes.truncate(at.index(bytes.len())),
+        Damage::Insert(at, byte) => bytes.insert(at.index(bytes.len()), byte),
+        Damage::Replace(others) => bytes = others,
+    }
+    bytes.push(0);
+    bytes
+}
+
+/// Every whole frame arrives, and of the damaged ones nothing that was not sent.
+fn arrives<T>(sent: Vec<(T, Option<Damage>)>) -> Result<(), TestCaseError>
+where
+    T: Serialize + DeserializeOwned + Clone + Debug + PartialEq,
+{
+    let (mut bytes, mut whole) = (Vec::new(), Vec::new());
+    for (number, (message, damage)) in (0..).zip(&sent) {
+        let frame = frame(number, message);
+        match damage.clone() {
+            None => {
+                whole.push(number);
+                bytes.extend(frame);
+            }
+            Some(damage) => bytes.extend(damaged(frame, damage)),
+        }
+    }
+    let heard: Vec<(u16, T)> = receive(&bytes).into_iter().flatten().collect();
+    for (number, message) in &heard {
+        prop_assert_eq!(Some(message), sent.get(usize::from(*number)).map(|(message, _)| message));
+    }
+    prop_assert!(whole.iter().all(|number| heard.iter().any(|(heard, _)| heard == number)), "{heard:?}");
+    Ok(())
+}
+
+proptest! {
+    // Shows L5.
     #[test]
-    fn garbage_is_no_message_and_the_next_frame_arrives(garbage in vec(any::<u8>(), 0..2_000), message in down()) {
-        let mut bytes = garbage;
-        bytes.push(0);
-        let before = receive(&bytes);
-        prop_assert!(before.iter().all(Result::is_err), "{before:?}");
-        bytes.extend(frame(7, &message));
-        prop_assert_eq!(receive(&bytes).pop(), Some(Ok((7, message))));
+    fn bad_bytes_are_no_message_and_every_whole_frame_arrives(
+        to_the_board in vec((down(), damage()), 1..40),
+        from_the_board in vec((up(), damage()), 1..40),
+    ) {
+        arrives(to_the_board)?;
+        arrives(from_the_board)?;
     }
 
     // Shows L5.
     #[test]
-    fn one_wrong_bit_is_never_another_command(message in down(), at in any::<prop::sample::Index>(), bit in 0..8u8) {
-        let mut bytes = frame(1, &message);
-        let at = at.index(bytes.len());
-        bytes[at] ^= 1 << bit;
-        bytes.push(0);
-        for received in receive(&bytes).into_iter().flatten() {
+    fn one_wrong_bit_is_never_another_command(message in down(), at in any::<Index>(), bit in 0..8u8) {
+        for received in receive::<Down>(&damaged(frame(1, &message), Damage::Flip(at, bit))).into_iter().flatten() {
             prop_assert_eq!(received, (1, message));
         }
     }
@@ -86,7 +147,7 @@ fn another_version_is_named() {
     let mut buffer = [0; FRAME_MAX];
     // The same envelope as `encode` writes, with version 9 and a message that this version does not know.
     let bytes = encode_as(9, &mut buffer);
-    assert_eq!(receive(&bytes), [Err(BadFrame::Version(9))]);
+    assert_eq!(receive::<Down>(&bytes), [Err(BadFrame::Version(9))]);
 }
 
 fn encode_as(version: u8, buffer: &mut [u8]) -> Vec<u8> {
@@ -102,7 +163,7 @@ fn an_endless_frame_is_too_long_and_the_next_arrives() {
     let mut bytes = vec![1; 10 * FRAME_MAX];
     bytes.push(0);
     bytes.extend(frame(2, &Down::Ping));
-    assert_eq!(receive(&bytes), [Err(BadFrame::TooLong), Ok((2, Down::Ping))]);
+    assert_eq!(receive::<Down>(&bytes), [Err(BadFrame::TooLong), Ok((2, Down::Ping))]);
 }
 
 #[test]

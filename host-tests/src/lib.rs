@@ -1,28 +1,34 @@
-//! What the tests in `tests/` share: a fingertip on a bench, with a knob for the voltage of every pin.
+//! A fingertip on a bench, with a voltage for every pin: shared by all tests in `tests/`.
 #![forbid(unsafe_code)]
 
 pub mod onsets;
 pub mod teaching;
 
+use std::f64::consts::TAU;
+use std::ops::Range;
+
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use tenax_hal_shim::channel::{
-    ARRAY, ARRAY_COUNT, CHANNELS, COUNT, FRAMES_PER_SLOW_FRAME, FSR, HIGH_SELECT, MYO_EXTENSOR, MYO_FLEXOR,
-    PVDF, PVDF_COUNT, RANK_SWITCH_A, RANK_SWITCH_B, SAMPLE_MAX, sample_from_mv,
+    ARRAY, ARRAY_COUNT, CHANNELS, COUNT, FRAMES_PER_SLOW_FRAME, FSR, FSR_COUNT, HIGH_SELECT, MYO_EXTENSOR,
+    MYO_FLEXOR, PVDF, PVDF_COUNT, RANK_SWITCH_A, RANK_SWITCH_B, SAMPLE_MAX, sample_from_mv,
 };
 use tenax_hal_shim::frame::{Frame, scan_of_pins};
 use tenax_hal_shim::front_end::{MYO_REST_MV, fsr_mv, fsr_quadrants_n};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::wire::{Down, Event, EventKind, Setting, Slow, TickRecord};
-use tenax_hal_shim::words::{Cause, DriveSource, GripMode, Kept};
+use tenax_hal_shim::words::{Cause, DriveSource, Fault, GripMode, Kept, Reason};
 use tenax_logic::emg::model::EmgModel;
 use tenax_logic::fingertip::Fingertip;
 use tenax_logic::samples::LastSamples;
 use tenax_logic::setting::SettingId;
 use tenax_logic::store::payload;
 
-/// Every channel at rest, the muscles at the wearer's.
+/// Opening of the scenes' hand at full duty, mm a frame: 120 mm/s.
+const FULL_DUTY_MM: f64 = 120.0 / 2_000.0;
+
+/// Every channel at rest, both muscles at the tone of the scenes' wearer.
 fn relaxed() -> [f64; COUNT] {
     let mut pins_mv = CHANNELS.map(|channel| f64::from(channel.rest_mv));
     pins_mv[MYO_FLEXOR] += 50.0;
@@ -50,10 +56,43 @@ pub fn set(id: SettingId, value: i32) -> Down {
     Down::Set(Setting { id: id.number(), value })
 }
 
-/// A fingertip whose pins are set by hand. The converter's noise is +-2 of a 14-bit sample, from a seed.
+pub fn opens(drives: &[MotorDrive]) -> bool {
+    drives.iter().any(|drive| drive.opens())
+}
+
+pub fn closes(drives: &[MotorDrive]) -> bool {
+    closing_frames(drives) > 0
+}
+
+pub fn closing_frames(drives: &[MotorDrive]) -> usize {
+    drives.iter().filter(|drive| drive.closes()).count()
+}
+
+pub fn rests(drives: &[MotorDrive]) -> bool {
+    drives.iter().all(|drive| *drive == MotorDrive::Coast)
+}
+
+/// Distance by which these frames open the scenes' hand, mm; closing does not count.
+pub fn opened_mm(drives: &[MotorDrive]) -> f64 {
+    let part = |drive: &MotorDrive| match drive {
+        MotorDrive::Open(duty) => f64::from(duty.as_per_mille()) / 1e3,
+        _ => 0.0,
+    };
+    FULL_DUTY_MM * drives.iter().map(part).sum::<f64>()
+}
+
+/// Distance by which this frame closes the scenes' hand, mm.
+pub fn closed_mm(drive: MotorDrive) -> f64 {
+    if let MotorDrive::Close(duty) = drive {
+        FULL_DUTY_MM * f64::from(duty.as_per_mille()) / 1e3
+    } else {
+        0.0
+    }
+}
+
+/// A fingertip whose pins are set by the test. The converter's noise is +-2 of a 14-bit sample, from a seed.
 #[derive(Debug)]
 pub struct Bench {
-    /// The logic under test.
     pub fingertip: Fingertip,
     /// Voltage of every pin, mV.
     pub pins_mv: [f64; COUNT],
@@ -62,21 +101,21 @@ pub struct Bench {
     pub slows: Vec<Slow>,
     /// Amplitude of a 60 Hz vibration on all films, mV.
     pub vibration_mv: f64,
-    /// Load that goes from element to element of the array in a slow frame while the whole stays the same, mV at most:
-    /// an object that slides.
+    /// Largest load that moves from one array element to another in a slow frame, mV; their sum is constant. A sliding
+    /// object does this.
     pub sliding_mv: f64,
-    /// How a contraction fluctuates, as a part of it, rms: an envelope that stands still is no muscle's.
+    /// Fluctuation of a contraction, rms, relative to its level above rest.
     pub lively: f64,
-    /// A myosensor's pin whose electrode is off the skin: it does not fluctuate.
+    /// Pin of the myosensor whose electrode is off the skin: it does not fluctuate.
     pub lifted: Option<usize>,
-    /// Select lines that are stuck low, and high, a bit each.
+    /// Select lines that are stuck low, and those stuck high: bit n is line Sn.
     pub stuck_lines: [u8; 2],
-    /// Whether the switches' inputs of known voltage are wired; without, both are at ground.
+    /// The switches' inputs of known voltage are wired; otherwise both are at ground.
     pub known_inputs: bool,
     pub frames: u32,
     samples: LastSamples,
     muscle_noise: ChaCha8Rng,
-    /// Two low-passes each.
+    /// State of two low-passes of each muscle.
     wander: [[f64; 2]; 2],
     noise: ChaCha8Rng,
 }
@@ -87,7 +126,6 @@ impl Bench {
         Self::of(calibrated(), seed)
     }
 
-    /// The same with this fingertip.
     pub fn of(fingertip: Fingertip, seed: u64) -> Self {
         Self {
             fingertip,
@@ -118,11 +156,22 @@ impl Bench {
         bench
     }
 
-    /// Loads the force sensor.
+    /// Load on the force sensor, N.
     pub fn load(&mut self, normal_n: f64, shear_n: f64) {
-        for (n, force_n) in fsr_quadrants_n(normal_n, shear_n, 0.0).into_iter().enumerate() {
-            self.pins_mv[FSR + n] = fsr_mv(force_n, f64::powf).min(3_200.0);
+        self.load_quadrants(fsr_quadrants_n(normal_n, shear_n, 0.0));
+    }
+
+    /// Forces on the four quadrants of the force sensor, N.
+    pub fn load_quadrants(&mut self, newtons: [f64; FSR_COUNT]) {
+        for (pin_mv, force_n) in self.pins_mv[FSR..].iter_mut().zip(newtons) {
+            *pin_mv = fsr_mv(force_n, f64::powf).min(3_200.0);
         }
+    }
+
+    /// An electrode off the skin: a constant envelope, mV above the live zero, instead of its muscle's.
+    pub fn lift(&mut self, pin: usize, mv: f64) {
+        self.lifted = Some(pin);
+        self.pins_mv[pin] = f64::from(MYO_REST_MV) + mv;
     }
 
     /// Presses every element of the array alike, mV above rest.
@@ -140,7 +189,7 @@ impl Bench {
     pub fn frame(&mut self) -> Frame {
         let sequence = self.frames;
         self.frames += 1;
-        let phase = f64::from(sequence) * 60.0 / 2_000.0 * std::f64::consts::TAU;
+        let phase = f64::from(sequence) * 60.0 / 2_000.0 * TAU;
         let shake_mv = self.vibration_mv * phase.sin();
         if self.sliding_mv > 0.0 && sequence.is_multiple_of(u32::from(FRAMES_PER_SLOW_FRAME)) {
             self.slide();
@@ -169,8 +218,8 @@ impl Bench {
         frame
     }
 
-    /// Both myosensors' pins: what is above rest fluctuates, slower than 6 Hz, and each electrode hears 5 % of the other one's
-    /// contraction, as the wearer was calibrated. What an electrode's fault gives is not heard by the other.
+    /// Voltages of both myosensors' pins, mV. A contraction fluctuates below 6 Hz, and 5 % of it is heard by the other electrode.
+    /// A fault of an electrode is not heard by the other.
     fn contract(&mut self) -> [f64; 2] {
         const PART: f64 = 0.02;
         const HEARS: f64 = 0.05;
@@ -202,13 +251,12 @@ impl Bench {
         }
     }
 
-    /// Gives one frame to the fingertip.
     pub fn step(&mut self) -> MotorDrive {
         let frame = self.frame();
         self.give(&frame)
     }
 
-    /// Gives this frame to the fingertip, and collects what it tells.
+    /// Gives this frame to the fingertip; collects its slow frames and events.
     pub fn give(&mut self, frame: &Frame) -> MotorDrive {
         let drive = self.fingertip.tick(frame);
         // As the device does.
@@ -223,12 +271,69 @@ impl Bench {
         drive
     }
 
-    /// Gives many frames; how the motor was driven in each.
+    /// Gives many frames; the drive of each.
     pub fn run(&mut self, frames: u32) -> Vec<MotorDrive> {
         (0..frames).map(|_| self.step()).collect()
     }
 
-    /// What was decided in every tick of the slow frames so far.
+    /// Gives many frames, of which those at these places of the slow frame are lost; the drive of each.
+    pub fn run_losing(&mut self, places: &[u8], frames: u32) -> Vec<MotorDrive> {
+        let give = |_| {
+            let frame = self.frame();
+            let gone = places.contains(&frame.slot());
+            self.give(&if gone { Frame::lost(frame.sequence) } else { frame })
+        };
+        (0..frames).map(give).collect()
+    }
+
+    /// Gives many frames in which these films hear mains of 50 Hz, mV.
+    pub fn run_humming(&mut self, films: Range<usize>, mv: f64, frames: u32) {
+        let rest_mv = f64::from(CHANNELS[PVDF].rest_mv);
+        for n in 0..frames {
+            let phase = f64::from(n) * 50.0 / 2_000.0 * TAU;
+            self.pins_mv[films.clone()].fill(rest_mv + mv * phase.sin());
+            self.step();
+        }
+        self.pins_mv[films].fill(rest_mv);
+    }
+
+    /// Sends a command that must be accepted.
+    ///
+    /// # Panics
+    /// If it is refused.
+    pub fn accepts(&mut self, command: Down) {
+        assert_eq!(self.fingertip.command(&command), Ok(()), "{command:?}");
+    }
+
+    /// Holds the button for so many frames and releases it for 0.1 s; the drive of each frame.
+    pub fn press_button(&mut self, frames: u32) -> Vec<MotorDrive> {
+        self.fingertip.button(true);
+        let mut drives = self.run(frames);
+        self.fingertip.button(false);
+        drives.extend(self.run(200));
+        drives
+    }
+
+    pub fn kinds(&self) -> impl Iterator<Item = EventKind> {
+        self.events.iter().map(|event| event.kind)
+    }
+
+    pub fn count(&self, kind: EventKind) -> usize {
+        self.kinds().filter(|other| *other == kind).count()
+    }
+
+    /// Frames in which this channel was reported as lost, with the reasons.
+    pub fn lost(&self, channel: usize) -> Vec<(u32, Reason)> {
+        let lost = self.events.iter().filter_map(|event| match event.kind {
+            EventKind::Fault(Fault::SensorLost { channel: lost, reason }) if usize::from(lost) == channel => {
+                Some((event.frame, reason))
+            }
+            _ => None,
+        });
+        lost.collect()
+    }
+
+    /// Records of every tick of the slow frames so far.
     pub fn ticks(&self) -> impl Iterator<Item = &TickRecord> {
         self.slows.iter().flat_map(|slow| &slow.ticks)
     }
@@ -238,11 +343,9 @@ impl Bench {
         self.ticks().filter(|tick| tick.source == DriveSource::Reflex).count()
     }
 
-    /// How the reflex came into the mode it is in.
-    pub fn last_cause(&self) -> Option<Cause> {
-        self.events.iter().rev().find_map(|event| match event.kind {
-            EventKind::Mode { cause, .. } => Some(cause),
-            _ => None,
-        })
+    /// Causes of the reflex's changes of mode so far.
+    pub fn causes(&self) -> Vec<Cause> {
+        let cause = |kind| if let EventKind::Mode { cause, .. } = kind { Some(cause) } else { None };
+        self.kinds().filter_map(cause).collect()
     }
 }

@@ -286,39 +286,3 @@ fn bursts_of_a_real_muscle_are_answered_and_no_sensor_is_doubted() {
     println!("{:.3} of held bursts answered", mean);
     assert!(mean > 0.9, "{mean}");
 }
-
-/// Opening follows its envelope: from the reading that supports it to the wish.
-// Shows W3.
-#[test]
-fn opening_is_answered_within_25_ms_of_its_envelope() {
-    let strategy = (0usize..3, 1.4..2.0, 0.03..0.3, any::<bool>(), any::<u64>());
-    runner()
-        .run(&strategy, |(person, over, rise_s, humming, seed): (usize, f64, f64, bool, u64)| {
-            let model = wearer(person).unwrap();
-            let mut emg = Emg::new(Some(&model));
-            let at = |point: [i32; 2]| point.map(|level| 2f64.powf(f64::from(level) / 1_024.0) / 1e3);
-            let (rest, peak) = (at(model.rest()), at(model.open()));
-            let mut muscle = Muscle::new(seed);
-            let (mut supported, mut opened) = (None, None);
-            for slow in 0..80 * 4 {
-                let wave = muscle.step().clamp(0.9, 1.2);
-                for at in AT_S {
-                    let t = f64::from(slow) / 80.0 + at;
-                    let up = ((t - 2.0) / rise_s).clamp(0.0, 1.0);
-                    let flexor = if humming { 500.0 } else { rest[0] + up * (peak[0] - rest[0]) * wave };
-                    let extensor = rest[1] + up * (over * peak[1] * wave - rest[1]);
-                    let verdict = emg.take([flexor, extensor].map(|mv| Some((mv.min(2_900.0) * 1e3) as i32)));
-                    if extensor >= 1.25 * peak[1] {
-                        supported.get_or_insert(t);
-                    }
-                    if verdict.wish == Wish::Open {
-                        opened.get_or_insert(t);
-                    }
-                }
-            }
-            let late_s: f64 = opened.unwrap_or(9.0) - supported.unwrap();
-            prop_assert!(late_s < 0.025, "{} ms", 1e3 * late_s);
-            Ok(())
-        })
-        .unwrap();
-}

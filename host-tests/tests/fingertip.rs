@@ -1,5 +1,4 @@
-//! All tests of the logic in closed loops, one program: linking one for each file took longer than running most of them.
-//! `--test fingertip wearer` runs those of a file.
+//! All tests of the logic in closed loops, as one program. `--test fingertip wearer` runs those of a file.
 
 mod adversary;
 mod array;
@@ -14,7 +13,6 @@ mod hebbian;
 mod motor;
 mod myosensor_faults;
 mod no_wearer;
-mod random_steps;
 mod ranges;
 mod reflex;
 mod restart;

@@ -1,6 +1,6 @@
 //! Short histories as arrays, the newest value first.
 
-/// Puts the newest first and drops the oldest. Not `rotate_right`, which links a memmove of 1.6 kB.
+/// Newest first; the oldest is dropped. `rotate_right` would link a memmove of 1.6 kB.
 pub fn push<T: Copy, const N: usize>(latest: &mut [T; N], newest: T) {
     let mut carried = newest;
     for slot in latest {

@@ -8,14 +8,11 @@ use Cause::{
 };
 use GripMode::{Incipient, Settle, Slip, Standby, Watch, Wearer};
 
-/// Stands for every detector in the table.
 const ANY: DetectorId = DetectorId::S1;
 
-/// Every legal step: from, why, to. A cause without a row for the mode changes nothing. The steps are the same for
-/// every detector.
-///
-/// Rules for entering: [`Slip`] and [`Incipient`], the only two that close the hand, are entered from [`Watch`] alone (and
-/// [`Slip`] from [`Incipient`]), and [`Watch`] is left for [`Wearer`] or [`Standby`] before a detector is asked.
+/// Every legal step, the same for every detector: from, why, to. A cause without a row changes nothing.
+/// [`Slip`] and [`Incipient`], the only two that close the hand, are entered from [`Watch`] alone (and
+/// [`Slip`] from [`Incipient`]); [`Watch`] is left for [`Wearer`] or [`Standby`] before a detector is asked.
 pub const TRANSITIONS: [(GripMode, Cause, GripMode); 17] = [
     (Standby, SensorsReady, Watch),
     (Wearer, SensorsLost, Standby),
@@ -39,7 +36,6 @@ pub const TRANSITIONS: [(GripMode, Cause, GripMode); 17] = [
 const MODES: usize = Settle as usize + 1;
 const CAUSES: usize = 8;
 
-/// A cause's place in the table.
 const fn index(cause: Cause) -> usize {
     match cause {
         SensorsReady => 0,
@@ -53,7 +49,7 @@ const fn index(cause: Cause) -> usize {
     }
 }
 
-/// The table by mode and cause, for three look-ups in every tick without a search.
+/// By mode and cause, for look-ups without a search.
 static NEXT: [[Option<GripMode>; CAUSES]; MODES] = {
     let mut next = [[None; CAUSES]; MODES];
     let mut row = 0;
@@ -65,14 +61,11 @@ static NEXT: [[Option<GripMode>; CAUSES]; MODES] = {
     next
 };
 
-/// The next mode after a cause; None if the mode stays.
-#[must_use]
+/// None if the mode stays.
 pub const fn next(from: GripMode, cause: Cause) -> Option<GripMode> {
     NEXT[from as usize][index(cause)]
 }
 
-/// Whether the reflex may drive the motor in this mode.
-#[must_use]
 pub const fn closes(mode: GripMode) -> bool {
     matches!(mode, Slip | Incipient)
 }
@@ -105,7 +98,6 @@ mod tests {
         }
     }
 
-    /// Figure 9 as a drawing: every mode with every cause, in the causes' order below. A letter is the mode that it leads to.
     const FIGURE: [&str; MODES] = [
         "W.......", // Standby
         ".S.E....", // Wearer

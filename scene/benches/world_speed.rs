@@ -12,7 +12,6 @@ use tenax_scene::plant::Plant;
 use tenax_scene::{SceneFile, World, builtin};
 
 const SCENES: [&str; 2] = ["pick-up", "glass"];
-/// Million instructions a virtual second of the first of them.
 const BAR_M_PER_S: f64 = 40.0;
 /// Told by this program to itself, with a scene's name and the part of it to run: run it, and nothing else.
 const ONLY: &str = "--only";
@@ -22,7 +21,6 @@ fn scene(name: &str) -> SceneFile {
     SceneFile::parse(text, name).expect("the repository's scenes parse")
 }
 
-/// Runs so much of a scene under a controller that does nothing: the world and its codes alone.
 fn run(scene: &SceneFile, virtual_s: f64) {
     let mut world = World::new(scene, 1);
     for _ in 0..(virtual_s * 8e3) as u64 {
@@ -30,7 +28,6 @@ fn run(scene: &SceneFile, virtual_s: f64) {
     }
 }
 
-/// Virtual seconds for one second of one core.
 fn times_real_time(scene: &SceneFile) -> f64 {
     let began = Instant::now();
     run(scene, scene.duration_s());

@@ -9,24 +9,15 @@ use tenax_hal_shim::channel::{
 
 use crate::schedule::{Span, smooth};
 
-/// One thing that is done, from now on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Act {
-    /// The wearer closes the hand until it grips, and lifts.
     Grip,
-    /// They put down what they hold, and open the hand.
     PutDown,
-    /// Somebody pulls the object down.
     Pull,
-    /// The surface gets wet; where it is, it gets dry.
     Wet,
-    /// The wearer contracts the muscle that closes, for as long as a calibration asks.
     Close,
-    /// The muscle that opens, likewise.
     Open,
-    /// A weight lies on the finger for a while, N.
     Weight(f64),
-    /// The sensor of this channel is touched, as its kind needs it.
     Touch(usize),
 }
 
@@ -43,7 +34,6 @@ pub const KEYS: [(&str, &str, Act); 6] = [
 impl FromStr for Act {
     type Err = ();
 
-    /// A key, `weight 5`, or a prompt of `tenax selftest`: `tap pvdf_3`.
     fn from_str(line: &str) -> Result<Self, ()> {
         let mut words = line.split_whitespace();
         let (first, second) = (words.next().ok_or(())?, words.next());
@@ -64,21 +54,17 @@ impl FromStr for Act {
 
 /// How soon a person does what they are told, s (all here assumed).
 pub(crate) const REACTS_S: f64 = 0.2;
-/// How long they touch a sensor, and how long that comes and goes, s.
 const TOUCHES_S: f64 = 0.5;
 const RAMP_S: f64 = 0.05;
 /// A finger that touches one sensor moves its neighbours by this part.
 const NEIGHBOURS: f64 = 0.1;
-/// Of taps: the peak at the pin, what rings, its decay, and from one tap to the next.
 const TAP_V: f64 = 0.6;
 const TAP_HZ: f64 = 180.0;
 const TAP_S: f64 = 0.015;
 const TAPS_EACH_S: f64 = 0.137;
-/// A bent gauge and a pressed taxel at the pin, V; a turned axle.
 const BENT_V: f64 = 0.25;
 const TAXEL_V: f64 = 0.4;
 const TURNED_V: f64 = 0.5;
-/// A pressed quadrant, N.
 const QUADRANT_N: f64 = 3.0;
 
 /// Sensors that are touched, and weights that lie on the finger.
@@ -93,7 +79,6 @@ impl Touches {
         self.touched.push((Span::new(at_s, TOUCHES_S), channel));
     }
 
-    /// As long as `tenax calibrate force` waits for a steady reading, and some more.
     pub(crate) fn weigh(&mut self, at_s: f64, newtons: f64) {
         self.weights.push((Span::new(at_s, 2.5), newtons));
     }
@@ -113,7 +98,6 @@ impl Touches {
         pressed_n
     }
 
-    /// Puts on the pins what the touches put there.
     pub(crate) fn apply(&self, t_s: f64, pins_v: &mut [f64; COUNT]) {
         for &(span, channel) in &self.touched {
             let pushed = part(span, t_s);
@@ -128,7 +112,6 @@ impl Touches {
     }
 }
 
-/// Adds to the sensor that is touched, and a little to the others of its kind, which begins at channel `first`.
 fn share(kind: &mut [f64], channel: usize, first: usize, adds: f64) {
     let Some(touched) = channel.checked_sub(first).filter(|n| *n < kind.len()) else { return };
     for (n, value) in kind.iter_mut().enumerate() {
@@ -136,13 +119,11 @@ fn share(kind: &mut [f64], channel: usize, first: usize, adds: f64) {
     }
 }
 
-/// Comes and goes without a jerk.
 fn part(span: Span, t_s: f64) -> f64 {
     smooth(((t_s - span.begin_s) / RAMP_S).clamp(0.0, 1.0))
         * smooth(((span.end_s - t_s) / RAMP_S).clamp(0.0, 1.0))
 }
 
-/// A tap after the other.
 fn rings(since_s: f64) -> f64 {
     if since_s < 0.0 {
         return 0.0;

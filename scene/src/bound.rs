@@ -12,7 +12,6 @@ use crate::schedule::{FRAME_S, STEP_S};
 const EDGE: f64 = 0.02;
 /// The part of its speed at which the gripper is taken to close: drives are whole per mille, forces one frame old.
 const SPEED_PART: f64 = 0.8;
-/// So much earlier than dead times ask, frames.
 const EARLY_FRAMES: usize = 4;
 
 /// What each finger has to press at each frame of a scene, N, once it touches something.
@@ -47,12 +46,10 @@ impl Plan {
         Some(Self { target_n, most_n: f64::INFINITY })
     }
 
-    /// The same with no more than so much force, N.
     pub fn at_most(self, most_n: f64) -> Self {
         Self { most_n, ..self }
     }
 
-    /// At an instant, N. `stops_n` is what stops the object where it slides.
     pub fn target_n(&self, t_s: f64, stops_n: Option<f64>) -> f64 {
         let frame = (t_s * f64::from(FRAME_HZ)) as usize;
         let planned_n = self.target_n.get(frame).copied().map_or(0.0, f64::from);
@@ -60,7 +57,6 @@ impl Plan {
     }
 }
 
-/// What the object needs in each frame while it moves with the hand, N: it is held firmly and neither breaks nor yields.
 fn needed_n(scene: &SceneFile) -> Option<Vec<f32>> {
     let mut object = scene.object.as_ref()?.get_ref().clone();
     (object.crush_n, object.break_n) = (None, None);

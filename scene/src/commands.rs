@@ -8,11 +8,8 @@ use tenax_hal_shim::wire::{DRIVE_HOLD_MAX_MS, Down, Setting};
 
 use crate::file::sections::{Command, CommandKind};
 
-/// How often a tool repeats a drive while its key is held, s: well inside [`DRIVE_HOLD_MAX_MS`].
 const REPEAT_S: f64 = 0.1;
-/// How long somebody presses the button, s.
 const PRESS_S: f64 = 0.3;
-/// When a session is asked for, s: the board has heard some noise by then.
 const HELLO_S: f64 = 0.05;
 
 /// The commands of a scene, in the order in which they are sent.
@@ -35,12 +32,10 @@ impl Script {
         Self { sent: sent.into(), pressed_at_s: presses.map(|press| press.at_s.get_ref().get()).collect() }
     }
 
-    /// Whether somebody holds the button down at `t_s`.
     pub(crate) fn button(&self, t_s: f64) -> bool {
         self.pressed_at_s.iter().any(|at_s| (*at_s..at_s + PRESS_S).contains(&t_s))
     }
 
-    /// Those that are due at `t_s` and were not taken yet.
     pub(crate) fn take(&mut self, t_s: f64) -> Vec<Down> {
         let due = self.sent.iter().take_while(|(at_s, _)| *at_s <= t_s).count();
         self.sent.drain(..due).map(|(_, down)| down).collect()
@@ -73,7 +68,6 @@ fn expand(command: &Command) -> Vec<(f64, Down)> {
     }
 }
 
-/// A drive is repeated while its key is held, and the last one holds for just what is left.
 fn held(at_s: f64, command: &Command, drive: MotorDrive) -> Vec<(f64, Down)> {
     let for_s = command.for_s.map_or(0.0, |duration| duration.get());
     let repeats = (for_s / REPEAT_S).ceil() as u32;

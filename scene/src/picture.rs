@@ -20,7 +20,6 @@ pub const PIXELS: usize = WIDTH * HEIGHT;
 /// Samples of noise that pictures take theirs from.
 const NOISE: usize = 1 << 18;
 
-/// What a session is drawn from; `seed` draws the rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
     pub seed: u64,
@@ -28,20 +27,13 @@ pub struct Options {
     pub fisheye: bool,
 }
 
-/// What a session has that is harder than drawn, one thing at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stress {
-    /// How much brighter than the wall the object is, or darker where there is no room, levels.
     pub apart: Option<f64>,
-    /// How much nearer to cyan than the wall it is, as bright, levels.
     pub colour: Option<f64>,
-    /// Contrast of the pattern on it, levels.
     pub texture: Option<f64>,
-    /// How many times as far it slides and turns in the same time.
     pub speed: f64,
-    /// By which part the light of the mains goes up and down.
     pub flicker: f64,
-    /// The part of the markers that is gone from the grasp on.
     pub markers_lost: f64,
 }
 
@@ -51,10 +43,8 @@ impl Default for Stress {
     }
 }
 
-/// How often light of the mains goes up and down, Hz.
 const FLICKER_HZ: f64 = 100.0;
 
-/// A camera's session.
 #[derive(Clone, Debug)]
 pub struct Session {
     options: Options,
@@ -69,7 +59,6 @@ pub struct Session {
     sigma: f64,
     readout_s: f64,
     noise: Vec<f32>,
-    /// The flat place of each pixel.
     flat: Vec<(f32, f32)>,
     frame: u32,
 }
@@ -81,20 +70,13 @@ struct Marker {
     level: f32,
 }
 
-/// What a picture truly shows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Truth {
-    /// When its first row was taken, s.
     pub t_s: f64,
-    /// Where each marker's middle is imaged, px, and where it would be with nothing touching the skin.
     pub markers: Vec<((f64, f64), (f64, f64))>,
-    /// The world as the middle row was taken.
     pub state: State,
-    /// Whether a part of the object is in view.
     pub in_view: bool,
-    /// Whether all of it is.
     pub whole: bool,
-    /// Whether the object moves against the finger.
     pub slides: bool,
     pub gripped: bool,
 }
@@ -104,7 +86,6 @@ impl Session {
         Self::under(options, Stress::default())
     }
 
-    /// Draws the same session, but for what is harder.
     pub fn under(options: Options, stress: Stress) -> Self {
         let mut noise = Noise::new(options.seed, Source::Picture);
         let middle = ((WIDTH as f64 - 1.0) / 2.0, (HEIGHT as f64 - 1.0) / 2.0);
@@ -177,7 +158,6 @@ impl Session {
         self.lens
     }
 
-    /// How many markers are in view.
     pub const fn markers(&self) -> usize {
         self.markers.len()
     }
@@ -210,12 +190,10 @@ impl Session {
         Some(self.truth(t_s))
     }
 
-    /// When a row is taken: a rolling shutter takes one after the other.
     fn row_time_s(&self, t_s: f64, y: f64) -> f64 {
         t_s + self.readout_s * y / HEIGHT as f64
     }
 
-    /// Markers that a row may cross, moved: flat middle, radius, level.
     fn near(&self, state: &State, (row_s, y): (f64, f64)) -> Vec<((f64, f64), f64, f32)> {
         let lost = if row_s < story::GRASPED_S { 0.0 } else { self.stress.markers_lost };
         // Lost ones lie everywhere: each step of the golden ratio is far from those before.
@@ -225,7 +203,6 @@ impl Session {
         moved.filter(|(at, radius, _)| (self.lens.seen(*at).1 - y).abs() < radius + 3.0).collect()
     }
 
-    /// Where a place of the skin is while it is sheared and pressed: as one in the contact, ever less outside of it.
     fn moved(&self, state: &State, (x, y): (f64, f64)) -> (f64, f64) {
         let (dx, dy) = (x - self.lens.middle.0, y - self.lens.middle.1);
         let r = libm::hypot(dx, dy) / self.contact_px;

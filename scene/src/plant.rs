@@ -13,7 +13,6 @@ use crate::act::Act;
 pub struct Pins(pub [f64; COUNT]);
 
 impl Default for Pins {
-    /// Every channel at rest.
     fn default() -> Self {
         Self(CHANNELS.map(|channel| f64::from(channel.rest_mv) / 1e3))
     }
@@ -41,9 +40,7 @@ impl Pins {
 /// The wearer to whom the board was calibrated before the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Calibrated {
-    /// Whose envelopes are these, mV above the live zero, flexor first.
     Levels { rest_mv: [u16; 2], close_mv: [u16; 2], open_mv: [u16; 2] },
-    /// Whose calibration was kept in these words.
     Words([i32; 10]),
 }
 
@@ -51,20 +48,16 @@ pub enum Calibrated {
 ///
 /// One that is put around another names it as `within`, and says itself only what is different.
 pub trait Plant: Send {
-    /// The plant that this one is put around, if it is.
     fn within(&self) -> Option<&dyn Plant> {
         None
     }
 
-    /// The same, to go on with.
     fn within_mut(&mut self) -> Option<&mut dyn Plant> {
         None
     }
 
-    /// Goes on by one scan period (125 us) under `drive` and gives the voltages at the pins at its end.
     fn scan(&mut self, drive: MotorDrive) -> &Pins;
 
-    /// Goes on by a frame: what the board samples of it, and what came down the line meanwhile.
     fn frame(&mut self, sequence: u32, drive: MotorDrive) -> (Frame, Vec<Down>) {
         let select = Frame::lost(sequence).select();
         let mut commands = Vec::new();
@@ -76,58 +69,48 @@ pub trait Plant: Send {
         (Frame::from_scans(sequence, &scans), commands)
     }
 
-    /// Commands that somebody sends over the serial line at this instant.
     fn commands(&mut self) -> Vec<Down> {
         self.within_mut().map_or_else(Vec::new, Plant::commands)
     }
 
-    /// Bytes that somebody sends down the serial line at this instant, whatever they are.
     fn line_bytes(&mut self) -> Vec<u8> {
         self.within_mut().map_or_else(Vec::new, Plant::line_bytes)
     }
 
-    /// The board drives its vibration motor so, from now on. A recording takes no notice.
     fn vibrate(&mut self, duty: Duty) {
         if let Some(within) = self.within_mut() {
             within.vibrate(duty);
         }
     }
 
-    /// Somebody at the bench does something, from now on. A recording takes no notice.
     fn act(&mut self, act: Act) {
         if let Some(within) = self.within_mut() {
             within.act(act);
         }
     }
 
-    /// Whether the board trusts whoever sends them (the setting `line-trusted-flag`, kept in its flash from before).
     fn trusts_line(&self) -> bool {
         self.within().is_some_and(Plant::trusts_line)
     }
 
-    /// Whether the board streams its frames from the start (the setting `stream-at-start-flag`, kept in its flash from before).
     fn streams_at_start(&self) -> bool {
         self.within().is_some_and(Plant::streams_at_start)
     }
 
-    /// What the board's flash has kept from before.
     fn kept(&self) -> Vec<(Kept, Vec<u8>)> {
         self.within().map_or_else(Vec::new, Plant::kept)
     }
 
-    /// The board has saved this.
     fn keep(&mut self, kept: Kept, payload: &[u8]) {
         if let Some(within) = self.within_mut() {
             within.keep(kept, payload);
         }
     }
 
-    /// Whether the board is reset at this instant: its run is over.
     fn resets(&self) -> bool {
         self.within().is_some_and(Plant::resets)
     }
 
-    /// Whether somebody holds the board's button down at this instant.
     fn button(&self) -> bool {
         self.within().is_some_and(Plant::button)
     }
@@ -144,17 +127,14 @@ pub trait Plant: Send {
         self.within()?.closing_to(target_n)
     }
 
-    /// Whether the object moves relative to the finger at this instant.
     fn slipping(&self) -> bool {
         self.within().is_some_and(Plant::slipping)
     }
 
-    /// The wearer to whom the board was calibrated before the start, if to any.
     fn calibrated(&self) -> Option<Calibrated> {
         self.within()?.calibrated()
     }
 
-    /// How long it lasts, s. A plant by itself says it.
     fn duration_s(&self) -> f64 {
         self.within().map_or(0.0, Plant::duration_s)
     }
@@ -164,7 +144,6 @@ pub trait Plant: Send {
 mod tests {
     use super::*;
 
-    /// Says everything that a plant may say.
     struct Outspoken(Pins);
 
     impl Plant for Outspoken {
@@ -213,7 +192,6 @@ mod tests {
         }
     }
 
-    /// Says nothing by itself.
     struct Around<P>(P);
 
     impl<P: Plant> Plant for Around<P> {

@@ -11,17 +11,14 @@ pub(crate) struct LowPass {
 }
 
 impl LowPass {
-    /// Stepped once a scan.
     pub(crate) fn with_tau_s(tau_s: f64) -> Self {
         Self::new(tau_s, STEP_S)
     }
 
-    /// Stepped once a scan.
     pub(crate) fn with_corner_hz(corner_hz: f64) -> Self {
         Self::with_tau_s(1.0 / (std::f64::consts::TAU * corner_hz))
     }
 
-    /// Stepped once a frame.
     pub(crate) fn of_frames(tau_s: f64) -> Self {
         Self::new(tau_s, FRAME_S)
     }
@@ -35,7 +32,6 @@ impl LowPass {
         self.state
     }
 
-    /// Standard deviation of what it makes of white noise of standard deviation 1.
     pub(crate) fn noise_gain(&self) -> f64 {
         (self.part / (2.0 - self.part)).sqrt()
     }

@@ -2,13 +2,10 @@
 
 use tenax_hal_shim::channel::{FRAME_HZ, SCAN_HZ};
 
-/// One step of every model: one scan, s.
 pub(crate) const STEP_S: f64 = 1.0 / SCAN_HZ as f64;
 
-/// One frame, s: how often the slow sensors are stepped.
 pub(crate) const FRAME_S: f64 = 1.0 / FRAME_HZ as f64;
 
-/// From a beginning to an end, s. The end is not part of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Span {
     pub(crate) begin_s: f64,
@@ -24,7 +21,6 @@ impl Span {
         (self.begin_s..self.end_s).contains(&t_s)
     }
 
-    /// How much of it is over at `t_s`, 0 to 1.
     pub(crate) fn progress(&self, t_s: f64) -> f64 {
         if t_s >= self.end_s {
             return 1.0;

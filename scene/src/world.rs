@@ -35,10 +35,8 @@ use crate::sensor::skin::SkinCamera;
 use crate::sensor::strain::Gauges;
 use crate::truth::{self, Row, State, TRACE_HZ, Truth};
 
-/// Scans between two rows of the trace.
 const TRACE_EVERY: u64 = (SCAN_HZ / TRACE_HZ) as u64;
 
-/// A scene that runs.
 #[derive(Debug)]
 pub struct World {
     scans: u64,
@@ -46,13 +44,11 @@ pub struct World {
     floor_mm_s: f64,
     wearer: Wearer,
     gripper: Gripper,
-    /// It tells the wearer.
     vibrator: Option<Vibrator>,
     jams: Vec<Span>,
     task: Task,
     touch: Touch,
     films: Films,
-    /// In the place of the last film.
     head: Option<Head>,
     quadrants: Quadrants,
     envelopes: Envelopes,
@@ -72,12 +68,9 @@ pub struct World {
     truth: Truth,
 }
 
-/// What the fingertip is busy with.
 #[derive(Clone, Debug)]
 enum Task {
-    /// An object between the fingers, carried by the wearer's arm.
     Grasp { grasp: Box<Grasp>, hand: Hand, arm: Arm },
-    /// A surface, stroked by a robot.
     Stroke(Box<Stroke>),
 }
 
@@ -135,7 +128,6 @@ impl World {
         }
     }
 
-    /// The same with a plan to grip by ([`Plant::planned`]).
     pub fn planning(mut self, plan: Option<Plan>) -> Self {
         self.plan = plan;
         self
@@ -145,22 +137,18 @@ impl World {
         &self.truth
     }
 
-    /// Takes the rows of the trace that have come since they were last taken, so that a long run need not keep them.
     pub fn take_trace(&mut self) -> std::vec::Drain<'_, Row> {
         self.truth.trace.drain(..)
     }
 
-    /// What the sensed fingertip feels at this instant.
     pub const fn touch(&self) -> &Touch {
         &self.touch
     }
 
-    /// The photoelastic head, if there is one.
     pub const fn head(&self) -> Option<&Head> {
         self.head.as_ref()
     }
 
-    /// The camera's newest words that have come over the line.
     pub const fn said(&self) -> Option<Seen> {
         self.eye.said()
     }
@@ -169,12 +157,10 @@ impl World {
         matches!(self.task, Task::Stroke(_))
     }
 
-    /// How much of it is over, s.
     pub fn now_s(&self) -> f64 {
         self.scans as f64 * STEP_S
     }
 
-    /// Steps what sits behind the switches, once a frame: each of it is read once in 25.
     fn slow(&mut self, t_s: f64, effort: &Effort) {
         let released_n = std::mem::take(&mut self.released_n);
         let pins_v = &mut self.slow_v;
@@ -189,7 +175,6 @@ impl World {
         self.truth.wearer(t_s, effort.intent, pins_v);
     }
 
-    /// Somebody handles the object, if there is one.
     fn handle(&mut self, at_s: f64, act: Act) {
         let Task::Grasp { grasp, hand, .. } = &mut self.task else { return };
         match act {

@@ -4,7 +4,6 @@ use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_scene::plant::Plant;
 use tenax_scene::{SceneFile, World, builtin};
 
-/// FNV-1a over the codes of a few seconds in which everything that computes has its turn.
 fn checksum(name: &str, seed: u64, seconds: u32) -> u64 {
     let (_, text) = builtin().iter().find(|(builtin, _)| *builtin == name).unwrap();
     let mut world = World::new(&SceneFile::parse(text, name).unwrap(), seed);

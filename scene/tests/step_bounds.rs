@@ -12,17 +12,12 @@ use tenax_scene::stepping::SHIPPED_S;
 const FRICTION: Friction = Friction { mu_s: 0.5, mu_d: 0.4 };
 const MASS_KG: f64 = 0.2;
 
-/// What acts on the mass at an instant.
 struct Load {
-    /// Everything but friction, N.
     force_n: f64,
-    /// On the contact, N.
     normal_n: f64,
-    /// Speed of what it rubs on, m/s.
     surface_m_s: f64,
 }
 
-/// A mass of [`MASS_KG`] that rubs with [`FRICTION`].
 #[derive(Default)]
 struct State {
     t_s: f64,
@@ -32,7 +27,6 @@ struct State {
     contact: RigidCoulomb,
 }
 
-/// Steps the mass for `duration_s` under the load at a time, position and speed, and shows each state to `look`; false ends it.
 fn run(
     start: State,
     dt_s: f64,
@@ -97,7 +91,6 @@ fn an_oscillator_is_stable_inside_its_bound_and_not_outside() {
     assert!((bounds::semi_implicit_oscillator_s(0.2, 2_000.0, 0.0) - 0.02).abs() < 1e-15);
 }
 
-/// On an incline of this tangent.
 fn on_incline(tan: f64) -> Load {
     let normal_n = MASS_KG * GRAVITY_M_S2 / (1.0 + tan * tan).sqrt();
     Load { force_n: normal_n * tan, normal_n, surface_m_s: 0.0 }
@@ -135,7 +128,6 @@ fn a_block_slides_from_mu_s_on_and_then_as_mu_d_lets_it() {
     within(1e-3, last.1, 0.5 * speed_m_s);
 }
 
-/// A block on a moving belt, held by a spring. Its undamped limit cycle is a straight line and an arc of a sine.
 #[test]
 fn stick_slip_has_the_amplitude_and_the_period_of_its_limit_cycle() {
     const STIFFNESS_N_PER_M: f64 = 1_000.0;

@@ -11,7 +11,6 @@ mod feedback;
 mod golden;
 mod gripper;
 mod lines;
-mod mixes;
 mod onsets;
 mod recipes;
 mod recordings;

@@ -12,15 +12,11 @@ pub use self::window::{Blob, Levels, SIDE, Window};
 
 pub const MARKERS_MAX: usize = 64;
 
-/// The farthest that a marker may be from where it was found last, px: farther is a jump, not a force.
 const STEP_MAX_PX: f32 = 2.5;
-/// The most that its radius may differ from what it was found with last, px.
 const GROWTH_MAX_PX: f32 = 1.0;
 /// Failures in a row after which it is looked for where it was calibrated.
 const FAILURES_MAX: u8 = 3;
-/// The farthest that a marker may be from where it was calibrated, px.
 const MOVE_MAX_PX: f32 = 14.0;
-/// The most that its move may differ from the median of its neighbours', px: skin that is pressed pulls on all around it.
 const APART_MAX_PX: f32 = 2.5;
 /// Markers around one whose moves are compared with its own.
 const NEIGHBOURS: usize = 6;
@@ -32,39 +28,27 @@ const FAILED_SHARE_FRAMES: u32 = 6;
 /// Readings in a row, each near the one before, that a marker must give after that before it counts again.
 const PROBATION: u8 = 3;
 
-/// Why a marker was not found in a frame.
+/// Reason why a marker was not found in a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Failure {
-    /// The number of dark pixels in its window is not nearly its own: it is covered, or something dark is behind it.
     DarkPixels,
-    /// Not one blob of its kind but none or several.
     Blobs,
-    /// Too far from where it was.
     Moved,
-    /// Its size changed too much.
     Resized,
-    /// Too little of its outline stands out.
     Outline,
-    /// Its neighbours moved otherwise.
     Apart,
-    /// It is seen again, and not yet for long enough to be believed.
     Probation,
 }
 
-/// What is known of a marker at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shape {
-    /// Its middle.
     pub at: Point,
-    /// How far its outline is from there along each ray, px.
     pub radii: [f32; RAYS],
     pub area: u32,
-    /// Dark pixels in its window, others' included.
     pub dark_pixels: u32,
 }
 
 impl Shape {
-    /// The mean of its radii, px.
     pub fn radius(&self) -> f32 {
         self.radii.iter().sum::<f32>() / RAYS as f32
     }
@@ -72,32 +56,24 @@ impl Shape {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Marker {
-    /// As it was calibrated.
     pub rest: Shape,
-    /// Where it was found last.
     pub at: Point,
-    /// How much its radius has grown since it was calibrated, px.
     pub growth: f32,
-    /// What the last frame gave.
     pub found: Result<(), Failure>,
     failures: u8,
     probation: u8,
-    /// Share of failed frames, 65536 is all.
     failed_share: u16,
 }
 
 impl Marker {
-    /// One that lies as it was calibrated.
     pub fn new(rest: Shape) -> Self {
         Self { rest, at: rest.at, growth: 0.0, found: Ok(()), failures: 0, probation: 0, failed_share: 0 }
     }
 
-    /// How far it has moved since it was calibrated, px: to the right, down.
     pub fn moved(&self) -> (f32, f32) {
         (self.at.x - self.rest.at.x, self.at.y - self.rest.at.y)
     }
 
-    /// Whether its place is known well enough for a force: found in one of the last few frames, and not on probation.
     pub fn known(&self) -> bool {
         self.failures <= FAILURES_MAX && self.probation == 0 && self.failed_share >> 8 <= FAILED_SHARE_MAX
     }
@@ -127,7 +103,6 @@ impl Marker {
         self.failed_share = self.failed_share - (self.failed_share >> FAILED_SHARE_FRAMES) + failed;
     }
 
-    /// Looks for it in a picture by itself, `moved` from where it was calibrated.
     fn place(&mut self, grey: &Plane, moved: (f32, f32)) {
         let near = Point { x: self.rest.at.x + moved.0, y: self.rest.at.y + moved.1 };
         self.found = find(grey, &self.rest, near, 0.0, MOVE_MAX_PX).map(|(at, growth)| {
@@ -136,7 +111,6 @@ impl Marker {
         self.failures = if self.found.is_ok() { 0 } else { FAILURES_MAX + 1 };
     }
 
-    /// What was found is not the marker: it is looked for at rest again.
     fn disown(&mut self, failure: Failure) {
         (self.found, self.failures, self.probation) = (Err(failure), FAILURES_MAX + 1, 0);
         (self.at, self.growth) = (self.rest.at, 0.0);
@@ -171,9 +145,6 @@ impl Markers {
         Self { markers, neighbours, count }
     }
 
-    /// Looks for each in a frame.
-    // By itself in the program, so that its instructions can be counted; so are the object and the moves.
-    #[inline(never)]
     pub fn follow(&mut self, grey: &Plane) {
         let count = self.count;
         for marker in &mut self.markers[..count] {
@@ -210,7 +181,6 @@ impl Markers {
         }
     }
 
-    /// How far a marker's move is from the median of its neighbours', px; 0 if too few of them are known.
     fn apart(&self, at: usize) -> f32 {
         let (x, y) = self.markers[at].moved();
         self.neighbours_moved(at).map_or(0.0, |near| libm::hypotf(x - near.0, y - near.1))
@@ -246,7 +216,6 @@ impl core::ops::Deref for Markers {
     }
 }
 
-/// Where a marker of this shape is now, and how much its radius has grown, if it was at `last` before.
 fn find(
     grey: &Plane,
     shape: &Shape,
@@ -284,7 +253,6 @@ const CONTRAST_MIN: u8 = 16;
 /// the marker stands alone is good enough, for the outline is looked for afterwards.
 const CUTS: [u16; 3] = [4, 3, 2];
 
-/// The middle of the one blob in the window around `last` that can be this marker.
 fn blob(grey: &Plane, shape: &Shape, last: Point) -> Result<Point, Failure> {
     let window = Window::around(grey, last);
     let levels = window.levels();

@@ -7,16 +7,10 @@ use core::ops::Range;
 
 use crate::frame::{Frame, HEIGHT, PIXELS, Point, WIDTH};
 
-/// Pixels in a word of a row.
-#[cfg(not(feature = "quarter"))]
-pub type Word = u64;
-/// Pixels in a word of a row: a row is a whole number of them.
-#[cfg(feature = "quarter")]
-pub type Word = u32;
-pub const BITS: usize = Word::BITS as usize;
-pub const WORDS: usize = WIDTH / BITS;
+type Word = u64;
+const BITS: usize = Word::BITS as usize;
+const WORDS: usize = WIDTH / BITS;
 
-/// A set of pixels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mask {
     rows: [[Word; WORDS]; HEIGHT],
@@ -31,21 +25,18 @@ impl Default for Mask {
 impl Mask {
     pub const EMPTY: Self = Self { rows: [[0; WORDS]; HEIGHT] };
 
-    /// Its rows, the leftmost pixel of a word in the lowest bit.
-    pub const fn rows(&self) -> &[[Word; WORDS]; HEIGHT] {
+    pub const fn rows(&self) -> &[[u64; WORDS]; HEIGHT] {
         &self.rows
     }
 
-    pub fn words_mut(&mut self) -> impl Iterator<Item = &mut Word> {
+    fn words_mut(&mut self) -> impl Iterator<Item = &mut Word> {
         self.rows.iter_mut().flatten()
     }
 
-    /// The pixels whose byte is 1 and not 0.
     pub fn pack(&mut self, bytes: &[u8; PIXELS]) {
         self.words_mut().zip(bytes.as_chunks().0).for_each(|(word, bytes)| *word = packed(bytes));
     }
 
-    /// 1 for a pixel that is in the set, 0 for another.
     pub fn unpack(&self, bytes: &mut [u8; PIXELS]) {
         for (word, bytes) in self.rows.iter().flatten().zip(bytes.chunks_exact_mut(BITS)) {
             for (eight, bits) in bytes.chunks_exact_mut(8).zip(word.to_le_bytes()) {
@@ -61,7 +52,6 @@ impl Mask {
         self.rows[y][x / BITS] |= 1 << (x % BITS);
     }
 
-    /// Puts in the pixels of some columns of some rows.
     pub fn insert_block(&mut self, columns: Range<usize>, rows: Range<usize>) {
         let row: [Word; WORDS] = core::array::from_fn(|word| {
             // Those of its pixels that are in no column from here on.
@@ -79,7 +69,6 @@ impl Mask {
         self.rows[y][x / BITS] >> (x % BITS) & 1 != 0
     }
 
-    /// The pixels whose place is inside a polygon of these corners, px.
     pub fn of_outline(corners: &[(f32, f32)]) -> Self {
         let mut mask = Self::EMPTY;
         for (x, y) in (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (x, y))) {
@@ -95,7 +84,6 @@ impl Mask {
         mask
     }
 
-    /// How well two sets agree: pixels in both, for each that is in one of them, 0 to 1.
     pub fn overlap(&self, other: &Self) -> f32 {
         let words = || self.rows.iter().flatten().zip(other.rows.iter().flatten());
         let both: u32 = words().map(|(own, other)| (own & other).count_ones()).sum();
@@ -145,20 +133,17 @@ impl Mask {
         }
     }
 
-    /// Keeps one row of `keep`.
     pub fn thin(&mut self, keep: usize) {
         let gone = self.rows.iter_mut().enumerate().filter(|(y, _)| y % keep != 0);
         gone.for_each(|(_, row)| *row = [0; WORDS]);
     }
 
-    /// Takes out what is in it and puts in what is not.
     pub fn invert(&mut self) {
         for word in self.words_mut() {
             *word = !*word;
         }
     }
 
-    /// Puts in what it surrounds: every pixel from which the border cannot be reached but through it.
     pub fn fill_holes(&mut self) {
         let mut free = self.clone();
         free.invert();
@@ -172,30 +157,17 @@ impl Mask {
         let mut grown = true;
         while grown {
             grown = false;
-            for step in 0..2 * HEIGHT - 2 {
-                // Down, then up.
-                let (from, to) = if step < HEIGHT - 1 {
-                    (step, step + 1)
-                } else {
-                    (2 * HEIGHT - 2 - step, 2 * HEIGHT - 3 - step)
-                };
-                let mut seed = outside.rows[to];
-                let mut new = 0;
-                for (word, seed) in seed.iter_mut().enumerate() {
-                    let reached = outside.rows[from][word] & free.rows[to][word];
-                    new |= reached & !*seed;
-                    *seed |= reached;
-                }
-                if new != 0 {
-                    (outside.rows[to], grown) = (flood(&seed, &free.rows[to]), true);
-                }
+            for y in 1..HEIGHT {
+                grown |= outside.grow(y - 1, y, &free);
+            }
+            for y in (1..HEIGHT).rev() {
+                grown |= outside.grow(y, y - 1, &free);
             }
         }
         outside.invert();
         *self = outside;
     }
 
-    /// Keeps the pixels whose colour, red, green and blue, is `kept`.
     #[inline]
     pub fn keep(&mut self, frame: &Frame, kept: impl Fn(u8, u8, u8) -> bool) {
         let colours = [frame.red, frame.green, frame.blue].map(|plane| plane.as_chunks::<BITS>().0);
@@ -217,7 +189,6 @@ impl Mask {
         }
     }
 
-    /// Calls `each` with every pixel's place in a plane.
     #[inline]
     pub fn for_each(&self, mut each: impl FnMut(usize)) {
         for (number, &word) in self.rows.iter().flatten().enumerate() {
@@ -229,7 +200,6 @@ impl Mask {
         }
     }
 
-    /// Calls `each` with the place of every `every`th pixel.
     #[inline]
     pub fn for_every(&self, every: u32, mut each: impl FnMut(usize)) {
         // Pixels until the next.
@@ -246,21 +216,17 @@ impl Mask {
         }
     }
 
-    /// How it lies. None of an empty set.
+    /// None of an empty set.
     pub fn moments(&self) -> Option<Moments> {
         let (mut n, mut sx, mut sy, mut sxx, mut sxy, mut syy) = (0u64, 0, 0, 0, 0, 0);
         for (y, row) in self.rows.iter().enumerate() {
             let (mut count, mut sum, mut squares) = (0u64, 0u64, 0u64);
             for (place, &word) in row.iter().enumerate() {
-                for (byte, bits) in word.to_le_bytes().into_iter().enumerate().filter(|(_, bits)| *bits != 0)
-                {
-                    let (ones, bit_sum, bit_squares) = BYTES[usize::from(bits)];
-                    let (ones, bit_sum, bit_squares) =
-                        (u64::from(ones), u64::from(bit_sum), u64::from(bit_squares));
-                    let left = (BITS * place + 8 * byte) as u64;
-                    count += ones;
-                    sum += ones * left + bit_sum;
-                    squares += ones * left * left + 2 * left * bit_sum + bit_squares;
+                let mut left = word;
+                while left != 0 {
+                    let x = BITS as u64 * place as u64 + u64::from(left.trailing_zeros());
+                    (count, sum, squares) = (count + 1, sum + x, squares + x * x);
+                    left &= left - 1;
                 }
             }
             let y = y as u64;
@@ -283,21 +249,18 @@ impl Mask {
     }
 }
 
-/// Bytes that are 0 or 1 as the bits of a word.
 #[inline]
 fn packed(bytes: &[u8; BITS]) -> Word {
     let eights = bytes.as_chunks::<8>().0.iter().enumerate();
     eights.map(|(place, eight)| Word::from(eight_bits(*eight)) << (8 * place)).sum()
 }
 
-/// Eight bytes that are 0 or 1 as the bits of one, the first in the lowest bit.
 #[inline]
-pub fn eight_bits(bytes: [u8; 8]) -> u8 {
+pub(crate) fn eight_bits(bytes: [u8; 8]) -> u8 {
     // They slide into the top byte.
     (u64::from_le_bytes(bytes).wrapping_mul(0x0102_0408_1020_4080) >> 56) as u8
 }
 
-/// How many of each pixel and its neighbours to the left and right are set: the bits of one and of two.
 fn three(row: &[Word; WORDS]) -> ([Word; WORDS], [Word; WORDS]) {
     let (mut ones, mut twos) = ([0; WORDS], [0; WORDS]);
     for word in 0..WORDS {
@@ -308,7 +271,6 @@ fn three(row: &[Word; WORDS]) -> ([Word; WORDS], [Word; WORDS]) {
     (ones, twos)
 }
 
-/// The sum of three bits, for each pixel of a word: bit of one, bit of two.
 const fn full_adder(a: Word, b: Word, c: Word) -> (Word, Word) {
     (a ^ b ^ c, a & b | c & (a ^ b))
 }
@@ -335,34 +297,12 @@ fn flood(seed: &[Word; WORDS], free: &[Word; WORDS]) -> [Word; WORDS] {
     core::array::from_fn(|word| right[word] | left[word])
 }
 
-/// Of each byte: its ones, the sum of their places, and the sum of their squares.
-const BYTES: [(u8, u8, u8); 256] = {
-    let mut table = [(0, 0, 0); 256];
-    let mut byte = 0;
-    while byte < 256 {
-        let mut bit = 0;
-        while bit < 8 {
-            if byte >> bit & 1 != 0 {
-                let (ones, sum, squares) = table[byte];
-                table[byte] = (ones + 1, sum + bit, squares + bit * bit);
-            }
-            bit += 1;
-        }
-        byte += 1;
-    }
-    table
-};
-
-/// How a set of pixels lies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moments {
     pub area: u32,
     pub middle: Point,
-    /// Second moments about the middle, px^2.
     pub xx: f32,
-    /// The mixed one.
     pub xy: f32,
-    /// The one of the rows.
     pub yy: f32,
 }
 
@@ -372,7 +312,6 @@ impl Moments {
         0.5 * libm::atan2f(2.0 * self.xy, self.xx - self.yy)
     }
 
-    /// How much longer it is than wide, 0 for a disc and 1 for a line: below 0.3 its angle says little.
     pub fn eccentricity(&self) -> f32 {
         let both = self.xx + self.yy;
         let apart = libm::hypotf(self.xx - self.yy, 2.0 * self.xy);

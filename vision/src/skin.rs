@@ -7,21 +7,13 @@ use crate::frame::Point;
 use crate::markers::{MARKERS_MAX, Marker};
 use crate::motion::{ARM_PX, Flow};
 
-/// How far from the middle a marker counts a tenth, px.
 const REACH_PX: f32 = 75.0;
 /// Below this sum of weights no marker is near.
 const WEIGHT_MIN: f32 = 0.5;
 
-/// Where the markers were in the picture before.
 #[derive(Clone, Debug)]
 pub struct Skin {
     before: [Option<Point>; MARKERS_MAX],
-}
-
-impl Default for Skin {
-    fn default() -> Self {
-        Self::new()
-    }
 }
 
 impl Skin {
@@ -29,14 +21,13 @@ impl Skin {
         Self { before: [None; MARKERS_MAX] }
     }
 
-    /// Takes the places of a picture, for the next one.
     pub fn remember(&mut self, markers: &[Marker]) {
         for (before, marker) in self.before.iter_mut().zip(markers) {
             *before = is_sure(marker).then_some(marker.at);
         }
     }
 
-    /// How the skin at `middle` has moved since. None where no marker near it was found in both pictures.
+    /// Move of the skin at `middle`. None where no marker near it was found in both pictures.
     pub fn flow(&self, markers: &[Marker], middle: Point) -> Option<Flow> {
         let (mut w, mut x, mut y, mut turn, mut arm) = (0.0, 0.0, 0.0, 0.0, 0.0);
         let mut moves = [(0.0, Point::default(), Point::default()); MARKERS_MAX];

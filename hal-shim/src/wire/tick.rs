@@ -36,9 +36,7 @@ pub struct TickRecord {
     pub believed: DetectorSet,
     /// The detectors in `believed` for which the reflex closes the hand.
     pub acted: DetectorSet,
-    /// Drive of the motor.
     pub drive: MotorDrive,
-    /// Source of the drive.
     pub source: DriveSource,
 }
 
@@ -66,7 +64,6 @@ impl TickRecord {
         [self.said.bits(), self.believed.bits(), self.acted.bits()]
     }
 
-    /// The record of these fields; None for values that no tick has.
     fn of(vibration: u16, outputs: [i8; NETWORK_OUTPUTS], driven: u16, sets: [u8; 3]) -> Option<Self> {
         let permille = driven & ((1 << DRIVE_SHIFT) - 1);
         let duty = Duty::per_mille(permille);

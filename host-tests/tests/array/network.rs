@@ -8,7 +8,6 @@ const H1: usize = 8;
 const L: usize = 3;
 const H2: usize = 6;
 
-/// A layer as it is written down.
 #[derive(Clone, Debug)]
 struct Plain<const IN: usize, const OUT: usize> {
     weights: [[i16; IN]; OUT],
@@ -52,7 +51,7 @@ fn inputs() -> impl Strategy<Value = [i16; I]> {
 
 proptest! {
     #[test]
-    fn it_is_the_network_in_64_bits(
+    fn the_logit_is_that_of_64_bits(
         first in plain::<I, H1>(),
         second in [plain::<H1, H2>(), plain::<H1, H2>(), plain::<H1, H2>()],
         last in plain::<H2, 1>(),

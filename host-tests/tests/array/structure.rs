@@ -1,4 +1,4 @@
-//! Structure functions against the oracle, and what they are for.
+//! Structure functions against the oracle.
 
 use proptest::prelude::*;
 use rand::rngs::ChaCha8Rng;
@@ -37,7 +37,7 @@ proptest! {
     }
 
     #[test]
-    fn what_all_do_together_is_not_in_them(
+    fn a_change_of_all_elements_together_is_not_in_them(
         walk in prop::collection::vec(-100..100i32, READY_AFTER..90),
         dead in 0..ELEMENTS,
     ) {
@@ -61,7 +61,7 @@ proptest! {
         let without = |frame: &[u16; ELEMENTS]| -> Reading {
             std::array::from_fn(|n| (n != dead).then_some(frame[n]))
         };
-        // What it said last is not to be believed, whatever it was.
+        // Its last reading is not believed.
         let mut last = [Some(2_000); ELEMENTS];
         last[dead] = Some(SAMPLE_MAX);
         let gone = without(&[2_000; ELEMENTS]);
@@ -73,7 +73,7 @@ proptest! {
 }
 
 #[test]
-fn the_worst_that_a_converter_gives_fits() {
+fn the_largest_changes_of_a_converter_fit() {
     // Half of the elements go from rail to rail against the others: as far apart as changes can be.
     for half_period in [1, 2, 3, 4, 8, 16] {
         let frames: Vec<Reading> = (0..200)
@@ -89,7 +89,7 @@ fn the_worst_that_a_converter_gives_fits() {
     }
 }
 
-/// Elements that tremble by `size` samples, each for itself.
+/// Elements that tremble independently by up to `size` samples.
 fn trembling(random: &mut ChaCha8Rng, frames: usize, size: i32) -> Vec<Reading> {
     let mut frame = || std::array::from_fn(|_| Some((4_000 + random.random_range(-size..=size)) as u16));
     (0..frames).map(|_| frame()).collect()
@@ -113,15 +113,15 @@ fn the_quiet_level_is_the_noise_and_outlasts_a_slip_and_an_element() {
         let after = structure_of(noise.iter().chain(&slip)).quiet();
         assert!((level..=level * 14 / 10).contains(&after), "{after} after {level}");
     }
-    // A supply that has gone bad for good is what is quiet, some time later.
+    // A supply that is noisy for good becomes the quiet level within 20 s.
     let worse = trembling(&mut random, 80 * 20, 40);
     let after = structure_of(noise.iter().chain(&worse)).quiet();
     assert!(after > 50 * level, "{after} after {level}");
 }
 
-/// The reason for all of it: the contacts' memory is a way, so what slides twice as fast forgets in half the time.
+/// The contacts' memory is a distance: what slides twice as fast forgets in half the time.
 #[test]
-fn where_they_stop_rising_tells_the_speed_and_gain_does_not_matter() {
+fn the_lag_at_which_they_stop_rising_is_the_speed_at_any_gain() {
     println!("seed 3");
     let mut random = ChaCha8Rng::seed_from_u64(3);
     // An element's share forgets by a part `1 - kept` in each frame.

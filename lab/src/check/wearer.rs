@@ -40,7 +40,7 @@ pub fn scenes() -> anyhow::Result<Vec<Bar>> {
     ])
 }
 
-/// The contract against random hands: `host-tests/tests/wearer.rs` and `random_steps.rs`, run by cargo.
+/// The contract against random hands: `host-tests/tests/wearer.rs` and `adversary.rs`, run by cargo.
 pub fn random(test: &mut Command) -> Bar {
     const PROMISE: &str =
         "1,000,000 random steps: reflex silent while active, open within 2 slow frames, no fault opens";
@@ -51,7 +51,7 @@ pub fn random(test: &mut Command) -> Bar {
     let text = String::from_utf8_lossy(&output.stdout);
     let result = text.lines().find_map(|line| line.strip_prefix("test result: "));
     let figure = match result.and_then(|line| line.split(';').next()) {
-        Some(line) => format!("host-tests/tests/wearer.rs and random_steps.rs: {line}"),
+        Some(line) => format!("host-tests/tests/wearer.rs and adversary.rs: {line}"),
         None => format!("the tests did not run: {}", String::from_utf8_lossy(&output.stderr).trim()),
     };
     Bar::new(PROMISE, figure, output.status.success() && result.is_some())

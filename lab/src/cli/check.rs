@@ -48,7 +48,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         Group::new("random hands", || {
             Ok(vec![wearer::random(
                 suite::all()
-                    .args(["--quiet", "--test", "fingertip", "--", "wearer::", "random_steps::"])
+                    .args(["--quiet", "--test", "fingertip", "--", "wearer::", "adversary::"])
                     .current_dir(&root),
             )])
         }),

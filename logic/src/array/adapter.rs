@@ -1,11 +1,10 @@
-//! The multilayer perceptron on normal forces as a detector: its work is split over several ticks of a slow frame.
+//! The multilayer perceptron as a detector: its work is split over several ticks of a slow frame.
 
 use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
 
 use super::{ARRAY_READ, ShippedDetector};
 use crate::detectors::{Description, Detector, Said, Sensed};
 
-/// The detector, and where in its work it is.
 #[derive(Clone, Debug, Default)]
 pub struct MlpDetector(ShippedDetector);
 
@@ -13,8 +12,8 @@ impl Detector for MlpDetector {
     const ID: DetectorId = DetectorId::Mlp;
     type Config = ();
 
-    /// Lost frames do their share, since it needs none of their samples: or an old verdict would stand for as long as they
-    /// are lost.
+    /// Lost frames do their share too: it needs no sample of theirs, and an old verdict would stand
+    /// meanwhile.
     fn step(&mut self, _config: &(), sensed: &Sensed<'_>) -> Option<Said> {
         let share = sensed.slot.checked_sub(ARRAY_READ)?;
         self.0.work(share.into(), sensed.taxels).map(|verdict| Said::slip(verdict.slip))

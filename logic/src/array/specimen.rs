@@ -1,16 +1,13 @@
-//! Networks of any size with weights that nobody trained: what a network costs, and whether two machines agree on it, does
-//! not depend on what it has learned.
+//! Untrained networks of any size, to measure cost and agreement of machines.
 
 use super::FEATURES;
 use super::detector::{Judgement, Model};
 use super::network::{Layer, Mlp};
 use super::preprocess::PreprocessorConfig;
 
-/// A detector of the shipped one's size.
 pub static MODEL: Model<32, 1, 16> = Model {
     preprocessor: PreprocessorConfig::DEFAULT,
     network: mlp::<FEATURES, 32, 1, 16>(1),
-    // Its logits spread over a few times this.
     judgement: Judgement {
         logit_per_nat: 1 << 19,
         on_permille: 700,
@@ -20,11 +17,6 @@ pub static MODEL: Model<32, 1, 16> = Model {
     },
 };
 
-/// A network of 8-bit weights from a generator's `seed`.
-///
-/// # Panics
-/// In the compiler, if a layer of this size could overflow.
-#[must_use]
 pub const fn mlp<const I: usize, const H1: usize, const L: usize, const H2: usize>(
     seed: u32,
 ) -> Mlp<I, H1, L, H2> {
@@ -42,12 +34,7 @@ pub const fn mlp<const I: usize, const H1: usize, const L: usize, const H2: usiz
     }
 }
 
-/// A layer of weights within +-128 and biases within +-2^20, and a shift that keeps most activations from saturating.
-/// `seed` is advanced for the next layer.
-///
-/// # Panics
-/// In the compiler, if a layer of this size could overflow.
-#[must_use]
+/// Weights within +-128, biases within +-2^20, and a shift that keeps most activations from saturating.
 pub const fn layer<const I: usize, const O: usize>(seed: &mut u32) -> Layer<I, O> {
     let mut weights = [[0; I]; O];
     let mut bias = [0; O];
@@ -67,7 +54,6 @@ pub const fn layer<const I: usize, const O: usize>(seed: &mut u32) -> Layer<I, O
     }
 }
 
-/// A linear congruential generator (Numerical Recipes); its upper bits are the good ones.
 const fn next(seed: &mut u32) -> i32 {
     *seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
     *seed as i32

@@ -7,7 +7,6 @@ use crate::health::{Change, Limits, SensorHealth};
 
 static LIMITS: Limits = Limits::of(&CHANNELS[ARRAY], SLOW_HZ);
 
-/// Health and last valid reading of each of the ten taxels.
 #[derive(Clone, Debug, Default)]
 pub struct Taxels {
     health: [SensorHealth; ARRAY_COUNT],
@@ -15,7 +14,6 @@ pub struct Taxels {
 }
 
 impl Taxels {
-    /// Takes a 14-bit reading of one element (0 to 9; others are ignored). Gives whether it was lost or came back.
     pub fn read(&mut self, element: usize, sample: u16) -> Option<Change> {
         let (health, slot) = (self.health.get_mut(element)?, self.reading.get_mut(element)?);
         if health.is_plain(&LIMITS, sample) {
@@ -27,14 +25,12 @@ impl Taxels {
         change
     }
 
-    /// The frame of this element was lost: its reading is None until the next.
     pub fn lose(&mut self, element: usize) {
         if let Some(slot) = self.reading.get_mut(element) {
             *slot = None;
         }
     }
 
-    /// The last reading of every element.
     pub const fn reading(&self) -> &Reading {
         &self.reading
     }

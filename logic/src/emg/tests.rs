@@ -35,7 +35,6 @@ fn a_contraction_moves_the_hand_its_way_and_rest_does_not() {
     let mut emg = wearer();
     let resting = run(&mut emg, 3.0, rest);
     assert!(resting.iter().all(|v| v.wish == Wish::Rest && !v.active));
-    // From the first slow frame on.
     assert!(resting.iter().skip(2).all(|v| v.known));
     let closing = run(&mut emg, 2.0, |t| [alive(450.0, t), alive(160.0, t + 0.1)]);
     assert!(part(&closing, Wish::Close) > 0.9 && part(&closing, Wish::Open) == 0.0);
@@ -79,7 +78,6 @@ fn opening_wins_over_a_flexor_that_hums() {
     let opening = run(&mut emg, 1.0, |t| [500.0, alive(2_000.0, t)]);
     let opened = opening.iter().position(|v| v.wish == Wish::Open).unwrap();
     assert!(opened as f64 / HZ < 0.025, "{opened} readings");
-    // Both at once: the hum has not been found out yet.
     let mut emg = wearer();
     run(&mut emg, 1.0, rest);
     let opening = run(&mut emg, 1.0, |t| [500.0, alive(1_900.0, t).max(1_750.0)]);
@@ -90,7 +88,6 @@ fn opening_wins_over_a_flexor_that_hums() {
 #[test]
 fn what_the_flexor_does_not_hear_is_never_proven() {
     let crest = |t: f64| [80.0, 50.0 + 1_750.0 * (-(t - 0.4).powi(2) / 0.015).exp()];
-    // At walking pace, with the arm's tone.
     let swings = |t: f64| [alive(90.0, t), 1_000.0 + 900.0 * (TAU * 1.3 * t).sin()];
     let creeps = |t: f64| [alive(90.0, t), (50.0 + 800.0 * t).min(2_840.0)];
     for (seconds, of) in [(1.0, crest as fn(f64) -> [f64; 2]), (18.0, swings), (5.0, creeps)] {
@@ -109,7 +106,6 @@ fn saturation_goes_on_opening_and_permits_no_closing() {
     run(&mut emg, 0.5, |t| [alive(150.0, t), alive(2_000.0, t)]);
     let over = run(&mut emg, 3.0, |t| [alive(900.0, t), 3_000.0]);
     assert!(over.iter().all(|v| v.wish == Wish::Open));
-    // What begins so opens nothing.
     let mut emg = wearer();
     run(&mut emg, 1.0, rest);
     assert!(run(&mut emg, 3.0, |t| [alive(900.0, t), 3_000.0]).iter().all(|v| v.wish == Wish::Rest));
@@ -211,10 +207,8 @@ fn an_electrode_that_swings_and_is_not_heard_is_doubted() {
         run(&mut emg, 2.0, rest);
         run(&mut emg, 3.0, |t| [rest(t)[0], 50.0 + 800.0 * swing(t)]);
         assert_eq!([emg.quality(0), emg.quality(1)], [Quality::Good, Quality::LeadOff], "{hz} Hz");
-        // And believed again after 3 s of rest.
         run(&mut emg, 3.5, rest);
         assert_eq!(emg.quality(1), Quality::Good);
-        // A muscle that does the same is heard.
         run(&mut emg, 6.0, |t| [60.0 + 90.0 * swing(t), 50.0 + 800.0 * swing(t)]);
         assert_eq!([emg.quality(0), emg.quality(1)], [Quality::Good; 2], "{hz} Hz");
     }
@@ -239,7 +233,6 @@ fn what_wavers_about_the_end_of_the_range_is_doubted() {
     for channel in 0..2 {
         let mut emg = wearer();
         run(&mut emg, 2.0, rest);
-        // Each slow frame has a reading above the range and one within it.
         run(&mut emg, 2.0, |t| {
             let mv = 2_950.0 + 40.0 * (TAU * 80.0 * t + 1.0).sin();
             if channel == 0 { [mv, rest(t)[1]] } else { [rest(t)[0], mv] }

@@ -4,7 +4,6 @@ use tenax_hal_shim::detector::DetectorSet;
 
 use crate::detectors::Detectors;
 
-/// The detectors that the reflex may act on: by default all.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Acting(pub DetectorSet);
 
@@ -15,22 +14,16 @@ impl Default for Acting {
 }
 
 impl Acting {
-    /// This set without the detectors `off`.
     pub const fn but(self, off: DetectorSet) -> Self {
         Self(self.0.without(off))
     }
 }
 
-/// The detectors' reports in one tick: all, and those that are believed and may be acted on.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Verdicts {
-    /// Detectors that report slip or a warning.
     pub said: DetectorSet,
-    /// Those of them that are believed.
     pub believed: DetectorSet,
-    /// Detectors whose report of slip is believed and may be acted on.
     pub slip: DetectorSet,
-    /// Detectors whose warning is believed and may be acted on.
     pub incipient: DetectorSet,
 }
 

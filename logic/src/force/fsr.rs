@@ -1,13 +1,10 @@
-//! From the voltage of a force sensing resistor's quadrant back to its force.
-//!
-//! The front end's power law (`front_end::fsr_mv`) is inverted by a table: force in mN at each of [`KNOTS`] voltages
-//! above rest, straight lines between. The table's steps grow with the voltage, so that the relative error stays even.
-//! A test compares it with `f64` over the whole range and another regenerates every entry.
+//! Voltage of a force sensing resistor's quadrant to force: the inverse of `front_end::fsr_mv` as a table of
+//! [`KNOTS`], straight lines between; error below 2 % or 6 mN.
 
 use tenax_hal_shim::channel::{REFERENCE_MV, SAMPLE_MAX};
 use tenax_hal_shim::front_end::FSR_REST_MV;
 
-/// Voltage above rest, uV, and force, mN, at each knot: `1000 (mv / 180)^(1 / 0.9)`.
+/// Voltage above rest, uV, and force, mN: `1000 (mv / 180)^(1 / 0.9)`.
 pub const KNOTS: [(i32, i32); 14] = [
     (0, 0),
     (10_000, 40),
@@ -25,16 +22,14 @@ pub const KNOTS: [(i32, i32); 14] = [
     (3_100_000, 23_628),
 ];
 
-/// Microvolts above the unloaded voltage. Rounds down; negative below rest.
-#[must_use]
+/// Rounds down; negative below rest.
 pub fn uv_above_rest(sample: u16) -> i32 {
     const UV_MAX: u64 = REFERENCE_MV as u64 * 1_000;
     let uv = u64::from(sample) * UV_MAX / SAMPLE_MAX as u64;
     uv as i32 - FSR_REST_MV as i32 * 1_000
 }
 
-/// Force on a quadrant, mN, from its voltage above rest, uV. Below rest it is 0; above the last knot, the last force.
-#[must_use]
+/// Force on a quadrant, mN, from its voltage above rest, uV; 0 below rest, the last knot's force above it.
 pub fn force_mn(uv: i32) -> i32 {
     let mut below = KNOTS[0];
     for knot in KNOTS {

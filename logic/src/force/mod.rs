@@ -1,5 +1,5 @@
-//! Normal and shear force from the four-quadrant force sensor, its drift, and warnings from their ratio: S2, the look-ahead, and the force
-//! that a warning may add.
+//! Normal and shear force from the four-quadrant force sensor, its drift, and warnings from their ratio (S2,
+//! look-ahead).
 
 mod ahead;
 mod asked;

@@ -7,7 +7,7 @@ use super::detector::{Felt, HebbianDetector, SHEAR_IS_JUDGED};
 use crate::detectors::{Description, Detector, Said, Sensed, confidence};
 use crate::hebbian::settings::HebbianConfig;
 
-/// From this part of its range on, the second output tells a direction, of 128.
+/// Least value of the second output that tells a direction; 128 is 1.
 const DIRECTION_FROM: i8 = 16;
 
 impl Detector for HebbianDetector {

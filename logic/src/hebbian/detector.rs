@@ -1,23 +1,12 @@
-//! The Hebbian detector: films' envelopes and gauges' loads are the inputs of the network (Tada 2006), a camera
-//! teaches it over the serial line, and its outputs from touch alone report slip and warn of it.
+//! The Hebbian detector: films' envelopes and gauges' loads are the network's inputs, a camera teaches it
+//! over the line, and its outputs from touch alone report slip and warn of it.
 //!
-//! Every tick has an output; lessons are taught at 1 kHz, in every other tick, and the maxima rise in the ticks between,
-//! so that no tick does both. The network is used while it learns: its outputs never contain the teacher's
-//! codes (they are taken as 0).
-//!
-//! Slip is reported while the films' part of o1 is far enough below 0, for some ticks, on a finger that holds something,
-//! and not while an impact rings or the motor runs fast, or just did. The gauges' part is not used: it grows with
-//! the grip, which counts against slip and hides its beginning; and a gauge that dies would change
-//! o1 for good. An untaught network gives 0: no slip.
-//!
-//! Slip begins in one place of the contact and reaches the films there. An impact, a swing and the motor reach
-//! all films, so vibration of all films is slip only if it lasts.
-//!
-//! Ft/Fn that rises towards the ratio at which the camera saw slip ([`Ahead`]) is a warning. If the films' own noise is above the
-//! threshold, that noise is the threshold ([`noise`](super::noise)).
-//!
-//! The direction comes from the gauges alone: "vibration information only helps to detect micro slips, but not to detect
-//! the direction" (Tada 2006, section I), and a slip down that was louder than the slip up would be an offset of o2.
+//! Lessons are taught at 1 kHz, in every other tick; the maxima rise in the ticks between. Slip is reported
+//! while the films' part of o1 is far enough below 0 (and below the films' own noise,
+//! [`noise`](super::noise)) on a finger that holds something, and not while an impact rings or the motor runs
+//! fast. The gauges' part grows with the grip and is not used. Slip begins in one place: vibration of all
+//! films is slip only if it lasts. Ft/Fn near the learned ratio ([`Ahead`]) is a warning. The direction comes
+//! from the gauges alone (Tada 2006, section I).
 
 use core::ops::Range;
 
@@ -36,12 +25,10 @@ use crate::force::Ahead;
 use crate::hebbian::settings::HebbianConfig;
 use crate::strain::Gauges;
 
-/// Weights and maxima, to be saved.
 pub type Learned = snapshot::Contents<RECEPTORS, NETWORK_OUTPUTS>;
-/// Bytes of a saved network.
 pub const SNAPSHOT_LENGTH: usize = snapshot::length(RECEPTORS, NETWORK_OUTPUTS);
 
-/// Normalisation of the readings to activations. Films and gauges are samples (14 bits) with 4 fraction bits.
+/// Raw readings are samples (14 bits) with 4 fraction bits.
 pub static NORMALISER: NormaliserConfig<RECEPTORS> = NormaliserConfig {
     senses: {
         let mut senses = [Sense::Pressure; RECEPTORS];
@@ -66,59 +53,46 @@ pub static NORMALISER: NormaliserConfig<RECEPTORS> = NormaliserConfig {
     average_shift: 8,
 };
 
-/// Input of the detector in a tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Felt<'a> {
-    /// Each film's envelope, 14-bit samples in Q16: 65536 is one sample.
+    /// Q16 samples (14 bits).
     pub envelopes: &'a [i32; PVDF_COUNT],
-    /// The gauges: loads in 1/16 of a sample.
+    /// Loads, 1/16 of a sample.
     pub gauges: &'a Gauges,
-    /// The gauge that was read in this tick, 0 to 11; another number: none.
+    /// Gauge that was read in this tick, 0 to 11; another number: none.
     pub gauge: usize,
-    /// Whether an impact rings, or the motor runs fast.
+    /// An impact rings, or the motor runs fast.
     pub loud: bool,
-    /// Whether the finger is known to touch nothing.
     pub unloaded: bool,
-    /// Whether the finger holds something, and whether the receptors are disturbed.
     pub situation: Situation,
 }
 
-/// The films, and the gauges, among the receptors.
 const FILMS: Range<usize> = 0..PVDF_COUNT;
 const GAUGES: Range<usize> = PVDF_COUNT..RECEPTORS;
-/// 1, as an output.
 const ONE: i64 = 1 << 26;
-/// More films than this hear what is everywhere.
+/// Most films that hear slip that is not everywhere.
 const SOMEWHERE_MAX: usize = 6;
 
-/// The slot in which shear is judged: the tick after the forces are there, which has more room than theirs.
+/// The tick after the forces, which has more room than theirs.
 pub const SHEAR_IS_JUDGED: u8 = slot_of(Job::Forces) + 1;
-/// The slot in which a cycle of the films' part ends: nobody needs it for more.
 const CYCLE_ENDS: usize = 20;
 
-/// The network with its teacher, inputs, look-ahead and verdict.
 #[derive(Clone, Debug)]
 pub struct HebbianDetector {
     normaliser: Normaliser<RECEPTORS>,
     network: FingertipNetwork,
     teacher: Teacher,
-    /// Activations; the films' are updated only during lessons.
     activations: Activations<RECEPTORS>,
     pvdf_part: PvdfPart,
     noise: Noise,
     shear: Ahead,
     outputs: [Output; NETWORK_OUTPUTS],
-    /// The gauges' part of each output, since the last of them was read.
     by_gauges: [i64; NETWORK_OUTPUTS],
-    /// The films' part of o1.
     by_films: i64,
-    /// Whether a weight has changed since the gains were computed.
     weights_changed: bool,
     since_loud_frames: u32,
     said_frames: u32,
-    /// Whether the films' part reports slip.
     films_say: bool,
-    /// Whether shear gives a warning, on a finger that holds something.
     warns: bool,
     lesson: Result<Codes, NoLesson>,
     odd: bool,
@@ -127,7 +101,6 @@ pub struct HebbianDetector {
 }
 
 impl Default for HebbianDetector {
-    /// A detector without readings and with weights of 0.
     fn default() -> Self {
         Self {
             normaliser: Normaliser::new(&NORMALISER),
@@ -154,7 +127,6 @@ impl Default for HebbianDetector {
 }
 
 impl HebbianDetector {
-    /// Takes the input of one tick, learns if there is a lesson, and judges slip.
     pub fn tick(&mut self, config: &HebbianConfig, felt: &Felt<'_>) {
         let learns = self.lesson.is_ok();
         if self.pvdf_part.is_outdated() && !learns {
@@ -165,7 +137,6 @@ impl HebbianDetector {
             self.weigh(PVDF_COUNT + felt.gauge, load);
         }
         if learns {
-            // Weights change with every lesson.
             self.feel_films();
             by_films = self.network.sum_of_parts(0, FILMS, &self.activations);
         }
@@ -181,7 +152,8 @@ impl HebbianDetector {
         self.learn(config, felt, learns);
     }
 
-    /// Takes forces, None without a number, in slot [`SHEAR_IS_JUDGED`], before its tick. `anew`: nothing is touched, or a muscle is active.
+    /// Call it in slot [`SHEAR_IS_JUDGED`], before its tick. `anew`: nothing is touched, or a muscle is
+    /// active.
     #[inline(never)]
     pub fn foretell(&mut self, config: &HebbianConfig, forces: Option<&Forces>, grasp: bool, anew: bool) {
         if anew {
@@ -191,20 +163,18 @@ impl HebbianDetector {
         self.warns = grasp && self.shear.warns();
     }
 
-    /// The films' activations of now.
     #[inline(never)]
     fn feel_films(&mut self) {
         self.normaliser.renew(&NORMALISER, 0, self.pvdf_part.heard(), &mut self.activations);
     }
 
-    /// The gains after the last lesson.
     #[inline(never)]
     fn know_gains(&mut self) {
         let [to_o1, _] = self.network.weights();
         self.pvdf_part.renew(&to_o1, &self.normaliser.maxima());
     }
 
-    /// Takes a new reading of one gauge into the gauges' part. While no weight has changed, no other gauge's has.
+    /// While no weight has changed, no other gauge's part has.
     fn weigh(&mut self, receptor: usize, load: i32) {
         let before = self.network.parts_of(receptor, &self.activations);
         self.normaliser.renew(&NORMALISER, receptor, &[load], &mut self.activations);
@@ -219,7 +189,6 @@ impl HebbianDetector {
         }
     }
 
-    /// A frame was lost: there is no input.
     pub fn lose(&mut self) {
         self.outputs = [Output::default(); NETWORK_OUTPUTS];
         self.said_frames = 0;
@@ -229,12 +198,10 @@ impl HebbianDetector {
         self.pass();
     }
 
-    /// Takes the teacher's codes and the age of their picture, ms.
     pub fn teach(&mut self, config: &HebbianConfig, codes: Codes, age_ms: u16) {
         self.teacher.receive(&config.teacher, codes, age_ms);
     }
 
-    /// Resets weights and maxima.
     pub fn forget(&mut self) {
         self.normaliser.reset(&NORMALISER);
         self.network = FingertipNetwork::default();
@@ -247,43 +214,37 @@ impl HebbianDetector {
         self.updates = 0;
     }
 
-    /// Whether the films' part of o1 reports slip.
     pub const fn slips(&self) -> bool {
         self.films_say
     }
 
-    /// Whether the look-ahead of shear warns of slip.
     pub const fn warns(&self) -> bool {
         self.warns
     }
 
-    /// Outputs from touch alone, relative motion (o1) and direction (o2); 128 would be 1.
+    /// Relative motion (o1) and direction (o2) from touch alone; 128 is 1.
     pub fn outputs(&self) -> [i8; NETWORK_OUTPUTS] {
         self.outputs.map(|output| (output.into_bits() >> 19).clamp(-128, 127) as i8)
     }
 
-    /// The PVDF part of o1, per mille.
+    /// PVDF part of o1, per mille.
     pub const fn by_films_permille(&self) -> i32 {
         (self.by_films * 1_000 / ONE) as i32
     }
 
-    /// Whether it has seen the finger unloaded, so that it can tell hum from slip.
+    /// The finger has been seen unloaded, so that hum can be told from slip.
     pub const fn is_quiet_known(&self) -> bool {
         self.pvdf_part.is_quiet_known()
     }
 
-    /// The codes of the present lesson, or why there is none.
     pub const fn lesson(&self) -> Result<Codes, NoLesson> {
         self.lesson
     }
 
-    /// Updates of the weights since the start or the last [`forget`](Self::forget).
     pub const fn updates(&self) -> u32 {
         self.updates
     }
 
-    /// Snapshot for telemetry at this frame: weights, activations, age of the teacher's picture, lesson.
-    #[must_use]
     pub fn state(&self, frame: u32) -> NetworkState {
         let mut activations = self.activations;
         self.normaliser.renew(&NORMALISER, 0, self.pvdf_part.heard(), &mut activations);
@@ -297,15 +258,10 @@ impl HebbianDetector {
         }
     }
 
-    /// Weights and maxima, to be saved.
     pub fn learned(&self) -> Learned {
         Learned::of(&self.normaliser, &self.network, self.shear.learned())
     }
 
-    /// Restores saved weights and maxima.
-    ///
-    /// # Errors
-    /// Why the bytes are refused; nothing has changed then.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), snapshot::Damaged> {
         let slips_at;
         (self.normaliser, self.network, slips_at) = snapshot::restore(&NORMALISER, bytes)?;
@@ -316,10 +272,9 @@ impl HebbianDetector {
         Ok(())
     }
 
-    /// `sum` is the films' part of o1.
     fn judge(&mut self, config: &HebbianConfig, felt: &Felt<'_>, sum: i64) {
         self.since_loud_frames = if felt.loud { 0 } else { self.since_loud_frames.saturating_add(1) };
-        // Once said, half of it keeps it said: one slip has dips.
+        // Half the threshold keeps it on: one slip has dips.
         let threshold = i64::from(config.slip_permille) / if self.films_say { 2 } else { 1 };
         let says = felt.situation.grasp
             && self.since_loud_frames >= config.loud_frames
@@ -331,7 +286,6 @@ impl HebbianDetector {
             return;
         }
         self.said_frames = self.said_frames.saturating_add(1);
-        // Somewhere: at most so many films have half of the mean.
         let hears = |part: &i32| i64::from(*part) * 2 * PVDF_COUNT as i64 <= sum;
         let count = if self.lesson.is_ok() {
             self.network.parts(0, FILMS, &self.activations).filter(hears).count()
@@ -346,7 +300,6 @@ impl HebbianDetector {
         }
     }
 
-    /// `felt_so` is whether the activations are those of now.
     fn learn(&mut self, config: &HebbianConfig, felt: &Felt<'_>, felt_so: bool) {
         self.lesson = self.teacher.lesson(&config.teacher, felt.situation);
         if let Ok(codes) = self.lesson {
@@ -381,7 +334,7 @@ impl HebbianDetector {
     }
 }
 
-/// Equation 4, of a sum of parts.
+/// Equation 4.
 fn output(sum: i64) -> Output {
     Output::from_bits(sum.clamp(-ONE, ONE) as i32)
 }

@@ -1,51 +1,39 @@
-//! Bytes of the network that survive a power cut: the weights, and the maxima of the inputs that belong to them.
+//! Bytes of the network that survive a power cut. A restored network gives the same outputs bit for bit.
 //!
 //! ```text
 //! 0  version         1  inputs        2  outputs        3  0
 //! 4  maxima          u32 each, little-endian, raw units
 //!    weights         i32 Q27 each, little-endian, a row for each output
-//!    more            u32, little-endian: what belongs to them and is no weight
+//!    more            u32, little-endian: one word that is no weight
 //!    CRC-32          u32, little-endian, of everything before it (the wire's: ISO-HDLC)
 //! ```
-//!
-//! The lower words of the kept weights are left out: they are below the resolution of an output, so a restored network
-//! gives the same outputs bit for bit and goes on learning from within 2^-27 of each weight.
 
 use super::activations::{Normaliser, NormaliserConfig};
 use super::network::{Network, Weight};
 use crate::checksum::CRC;
 
-/// Version of a snapshot's layout. [`restore`] refuses a snapshot of another version.
 pub const VERSION: u8 = 2;
 
 const HEADER: usize = 4;
 const WORD: usize = 4;
 
-/// Why a snapshot is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Damaged {
-    /// It has fewer or more bytes than a snapshot of this network.
     Length,
-    /// Its CRC does not fit: cut off in writing, worn flash, or never written.
+    /// Cut off in writing, worn flash, or never written.
     Checksum,
-    /// Of another version of the layout.
     Version(u8),
-    /// Of a network of another size.
     Shape {
-        /// Its inputs.
         inputs: u8,
-        /// Its outputs.
         outputs: u8,
     },
 }
 
-/// Bytes of a snapshot.
-#[must_use]
 pub const fn length(inputs: usize, outputs: usize) -> usize {
     HEADER + WORD * (inputs + inputs * outputs + 2)
 }
 
-/// Contents of a snapshot: small enough to be copied in a tick, so that the bytes can be made when there is more time.
+/// Small enough to be copied in a tick; the bytes are made when there is more time.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Contents<const I: usize, const O: usize> {
     maxima: [u32; I],
@@ -54,12 +42,11 @@ pub struct Contents<const I: usize, const O: usize> {
 }
 
 impl<const I: usize, const O: usize> Contents<I, O> {
-    /// Contents from a network, the normaliser that its weights belong to, and one more word.
     pub fn of(normaliser: &Normaliser<I>, network: &Network<I, O>, more: u32) -> Self {
         Self { maxima: normaliser.maxima(), weights: network.weights(), more }
     }
 
-    /// Writes the snapshot to the beginning of `buffer` and gives it. None if the buffer is shorter than [`length`].
+    /// None if the buffer is shorter than [`length`].
     pub fn write<'a>(&self, buffer: &'a mut [u8]) -> Option<&'a [u8]> {
         let snapshot = buffer.get_mut(..length(I, O))?;
         let (body, crc) = snapshot.split_last_chunk_mut::<WORD>()?;
@@ -78,7 +65,7 @@ impl<const I: usize, const O: usize> Contents<I, O> {
     }
 }
 
-/// Writes a snapshot to the beginning of `buffer` and gives it. None if the buffer is shorter than [`length`].
+/// None if the buffer is shorter than [`length`].
 pub fn save<'a, const I: usize, const O: usize>(
     normaliser: &Normaliser<I>,
     network: &Network<I, O>,
@@ -88,7 +75,6 @@ pub fn save<'a, const I: usize, const O: usize>(
     Contents::of(normaliser, network, more).write(buffer)
 }
 
-/// Normaliser, network and the additional word of a snapshot, or why it is refused. The receptors' zeros are not in it.
 pub fn restore<const I: usize, const O: usize>(
     config: &NormaliserConfig<I>,
     snapshot: &[u8],

@@ -48,13 +48,10 @@ impl Bench {
         (sample_from_mv(mv.clamp(0.0, 3_300.0) as u32) + noise).saturating_sub(2)
     }
 
-    /// A slow frame in which this is asked for. The motor turns at this part of the speed that its duty would give it: 0 is a stall.
-    /// How it was driven.
     fn cycle(&mut self, asked: MotorDrive, turns: f64) -> MotorDrive {
         self.motor_is_asked(asked, 0, turns)
     }
 
-    /// The same, asked for in the last so many of the five looks less.
     fn motor_is_asked(&mut self, asked: MotorDrive, rests: u32, turns: f64) -> MotorDrive {
         let drive = if self.motor.allows(asked) { asked } else { MotorDrive::Coast };
         for look in 0..STEPS {
@@ -165,7 +162,6 @@ fn without_either_sensor_the_duty_is_taken_for_a_stall_and_only_closing_waits_un
     (bench.current_pin_mv, bench.opening_pin_mv) = (Some(0.0), Some(0.0));
     bench.driven(MotorDrive::Coast, 0.0, 80);
     assert!(bench.is_lost(MOTOR_CURRENT) && bench.is_lost(OPENING));
-    // The whole range takes 0.85 s.
     let driven = bench.driven(close(1_000), 0.0, 300);
     assert!((CYCLES_PER_S..2 * CYCLES_PER_S).contains(&driven), "{driven}");
     assert_eq!(bench.stops()[0], Some(MotorStop::Hot));
@@ -179,7 +175,6 @@ fn without_either_sensor_the_duty_is_taken_for_a_stall_and_only_closing_waits_un
 fn a_current_that_nobody_drives_is_the_sensors_fault_and_stops_nothing_for_ever() {
     let mut bench = Bench::new(4);
     bench.driven(MotorDrive::Coast, 0.0, 80);
-    // It reads a stall, noise and all, whatever happens.
     let mut driven = 0;
     for n in 0..60 * CYCLES_PER_S {
         let mv = 2_700.0 + f64::from(n % 3);
@@ -201,7 +196,6 @@ fn a_current_that_nobody_drives_is_the_sensors_fault_and_stops_nothing_for_ever(
 fn an_offset_too_small_to_be_noticed_heats_nothing_for_ever() {
     let mut bench = Bench::new(11);
     bench.config.limit_ma = 300;
-    // 0.11 A at rest.
     let mut driven = 0;
     for n in 0..60 * CYCLES_PER_S {
         bench.current_pin_mv = Some(564.0 + f64::from(n % 3));
@@ -246,7 +240,6 @@ fn a_motor_that_turns_under_too_much_current_is_hot_and_says_so() {
     let driven = bench.driven(close(1_000), 0.3, 60 * CYCLES_PER_S);
     assert!((2 * CYCLES_PER_S..40 * CYCLES_PER_S).contains(&driven), "{driven}");
     assert_eq!(bench.stops()[0], Some(MotorStop::Hot));
-    // The worst that may flow for ever does not.
     let mut bench = Bench::new(7);
     assert_eq!(bench.driven(close(1_000), 0.76, 600 * CYCLES_PER_S), 600 * CYCLES_PER_S);
     assert_eq!(bench.stops(), []);

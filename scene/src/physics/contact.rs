@@ -10,13 +10,10 @@ pub struct RigidCoulomb {
     sticks: bool,
 }
 
-/// What a step of friction did.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
     pub speed_m_s: f64,
-    /// Mean friction force during the step, N, on the body.
     pub force_n: f64,
-    /// Whether it began to slide in this step.
     pub onset: bool,
 }
 
@@ -64,7 +61,6 @@ mod tests {
     const FRICTION: Friction = Friction { mu_s: 0.5, mu_d: 0.4 };
     const MASS_KG: f64 = 0.3;
 
-    /// A block on an incline: one step under gravity.
     fn incline(contact: &mut RigidCoulomb, speed_m_s: f64, angle_rad: f64, dt_s: f64) -> Outcome {
         let (sin, cos) = angle_rad.sin_cos();
         let free_m_s = speed_m_s + GRAVITY_M_S2 * sin * dt_s;

@@ -25,7 +25,6 @@ pub struct Grasp {
     empty_kg: f64,
     fills: Vec<(Span, f64)>,
     pulls: Pulls,
-    /// Another hand has it, or has taken it.
     shared: bool,
     taken: bool,
     surface: Surface,
@@ -46,19 +45,15 @@ pub struct Grasp {
     mass_kg: f64,
     table_n: f64,
     needed_n: f64,
-    /// Its parts: along the pad, and against turning.
     needs_n: [f64; 2],
     shear_n: f64,
-    /// Shear over normal force that a slow pull still finds sticking, and that of what slides.
     holds: f64,
     slides: f64,
 }
 
-/// What slides is to stand still so soon, s: the motor's dead time, before which nothing can be known to have helped.
 const STOPS_S: f64 = 0.030;
 
 impl Grasp {
-    /// `object` is the scene's.
     pub(crate) fn new(scene: &SceneFile, object: &Object) -> Self {
         let empty_kg = object.mass_kg.get();
         let mat_n_per_m = scene.table.mat_n_per_mm.get() * 1e3;
@@ -103,17 +98,14 @@ impl Grasp {
         }
     }
 
-    /// Somebody pulls the object down for a second.
     pub(crate) fn pull(&mut self, at_s: f64, force_n: f64) {
         self.pulls.push(at_s, 1.0, -force_n, 0.1);
     }
 
-    /// The surface gets wet, or dry again.
     pub(crate) fn wet(&mut self, at_s: f64) {
         self.surface.wet(at_s);
     }
 
-    /// Goes on by one scan to `t_s`, pressed by each finger with `grip_n`.
     pub fn step(&mut self, t_s: f64, hand: &Hand, grip_n: f64) -> Touch {
         let poured_kg = self.fills.iter().map(|(span, kg)| kg * span.progress(t_s)).sum::<f64>();
         self.mass_kg = self.empty_kg + poured_kg;
@@ -174,7 +166,6 @@ impl Grasp {
         }
     }
 
-    /// The table keeps what stands on it from turning.
     fn turn(&mut self, friction: Friction, grip_n: f64, drag_ns_per_m: f64, hand: &Hand) -> Turn {
         let Some(pitch) = self.pitch.as_mut().filter(|_| self.in_hand) else { return Turn::default() };
         let hangs = self.table_n == 0.0;
@@ -191,13 +182,11 @@ impl Grasp {
         pitch.step(load, friction)
     }
 
-    /// How fast the pads rub over the object, by sliding and by turning, m/s.
     fn rubs_m_s(&self) -> f64 {
         let turns_m_s = self.pitch.as_ref().map_or(0.0, Pitch::turns_m_s);
         (self.speed_m_s * self.speed_m_s + turns_m_s * turns_m_s).sqrt()
     }
 
-    /// The part of sliding friction that grows with speed, as damping of what slides or turns, N s/m.
     fn drag_ns_per_m(&self, friction: Friction, grip_n: f64) -> f64 {
         if self.sticks && !self.turns() {
             return 0.0;
@@ -215,32 +204,26 @@ impl Grasp {
         self.in_hand.then(|| (self.body.width_mm(), self.body.stiffness_n_per_mm()))
     }
 
-    /// Over where it stood, m.
     pub fn height_m(&self, hand: &Hand) -> f64 {
         self.rest_m + hand.height_m() + self.slid_m
     }
 
-    /// With what is in it, kg.
     pub const fn mass_kg(&self) -> f64 {
         self.mass_kg
     }
 
-    /// The part of its weight that stands on the table.
     pub fn table_part(&self) -> f64 {
         self.table_n / (self.mass_kg * GRAVITY_M_S2)
     }
 
-    /// Whether nothing but the hand carries it.
     pub fn is_held(&self) -> bool {
         self.in_hand && self.lifted && self.table_n == 0.0
     }
 
-    /// Whether it was lifted and has then left the pads.
     pub const fn is_dropped(&self) -> bool {
         self.lifted && !self.in_hand && !self.taken
     }
 
-    /// Whether another hand has it too, so that what slides now is meant to.
     pub const fn is_shared(&self) -> bool {
         self.shared || self.taken
     }
@@ -249,12 +232,10 @@ impl Grasp {
         self.taken
     }
 
-    /// How far it has turned about the pads, rad.
     pub fn pitch_rad(&self) -> f64 {
         self.pitch.as_ref().map_or(0.0, Pitch::angle_rad)
     }
 
-    /// What the grip did to it.
     pub const fn body(&self) -> &Body {
         &self.body
     }
@@ -274,7 +255,6 @@ impl Grasp {
         along_n.max(self.shear_n.abs() / self.holds).hypot(turning_n)
     }
 
-    /// The shear that each finger could still carry before it slides, N; below 0 it slides.
     pub fn margin_n(&self, grip_n: f64) -> f64 {
         self.holds * (grip_n - self.needed_n)
     }
@@ -290,7 +270,6 @@ mod tests {
     use super::*;
     use crate::SceneFile;
 
-    /// A glass that is lifted from 1 s on and gripped with `grip_n` all along; its touch at the end of `for_s`.
     fn lifted(grip_n: f64, for_s: f64) -> (Grasp, Touch) {
         let (_, text) = crate::builtin()[0];
         let mut scene = SceneFile::parse(text, "glass").unwrap();

@@ -46,12 +46,10 @@ impl Gripper {
         }
     }
 
-    /// Whether something between the gear's teeth blocks it from now on.
     pub const fn jam(&mut self, is_jammed: bool) {
         self.is_jammed = is_jammed;
     }
 
-    /// Goes on by one scan under `drive`, while each finger presses with `grip_n`.
     pub fn step(&mut self, drive: MotorDrive, grip_n: f64) {
         self.pipeline.push_back(drive);
         let load = grip_n / self.force_max_n;
@@ -113,7 +111,6 @@ impl Gripper {
         Some(MotorDrive::Close(Duty::per_mille(permille as u16)))
     }
 
-    /// Where the fingers are next: at the aim, or on the way to the whole step nearest to it, as fast as they can.
     fn reach(&self, load: f64) -> f64 {
         if self.step_mm == 0.0 {
             return self.aim_mm;
@@ -126,7 +123,6 @@ impl Gripper {
         goal_mm.clamp(self.opening_mm - closing_mm, self.opening_mm + self.speed_max_mm_s * STEP_S)
     }
 
-    /// Distance between the pads when nothing is compressed, mm.
     pub const fn opening_mm(&self) -> f64 {
         self.opening_mm
     }
@@ -136,7 +132,6 @@ impl Gripper {
         self.opening_mm / self.range_mm
     }
 
-    /// How fast the opening grows, mm/s.
     pub const fn speed_mm_s(&self) -> f64 {
         self.speed_mm_s
     }
@@ -152,7 +147,6 @@ impl Gripper {
         self.current
     }
 
-    /// Force of each finger on something `width_mm` wide, N: the pads and what they press on are one spring.
     pub fn grip_n(&self, width_mm: f64, stiffness_n_per_mm: f64) -> f64 {
         (stiffness_n_per_mm * (width_mm - self.opening_mm) / 2.0).max(0.0)
     }

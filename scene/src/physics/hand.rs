@@ -43,7 +43,6 @@ impl Hand {
         }
     }
 
-    /// The arm moves to `to_m` over where the hand grasped.
     pub(crate) fn reach(&mut self, at_s: f64, for_s: f64, to_m: f64) {
         let from_m: f64 = self.moves.iter().map(|(_, by_m)| by_m).sum();
         self.moves.push((Span::new(at_s, for_s), to_m - from_m));
@@ -66,17 +65,14 @@ impl Hand {
         self.height_m += speed_m_s * STEP_S;
     }
 
-    /// Over where it grasps, m.
     pub const fn height_m(&self) -> f64 {
         self.height_m
     }
 
-    /// Upwards, m/s.
     pub const fn speed_m_s(&self) -> f64 {
         self.speed_m_s
     }
 
-    /// Upwards, m/s^2.
     pub const fn acceleration_m_s2(&self) -> f64 {
         self.acceleration_m_s2
     }
@@ -87,7 +83,6 @@ fn minimum_jerk(p: f64) -> f64 {
     p * p * p * (10.0 + p * (6.0 * p - 15.0))
 }
 
-/// A whole number of cycles under a Hann window: the arm ends where it began.
 fn swing_m_s(span: &Span, swing: &Swing, t_s: f64) -> f64 {
     if !span.contains(t_s) {
         return 0.0;

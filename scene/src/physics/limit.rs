@@ -30,7 +30,6 @@ impl Body {
         }
     }
 
-    /// What is left of the force of each finger once it has yielded, N.
     pub fn bears(&mut self, grip_n: f64) -> f64 {
         self.broken |= grip_n > self.break_n;
         let over_n = grip_n - self.crush_n;
@@ -42,17 +41,14 @@ impl Body {
         self.crush_n
     }
 
-    /// Where the fingers take it, mm.
     pub fn width_mm(&self) -> f64 {
         self.width_mm - self.dent_mm
     }
 
-    /// Of pad and object together, N/mm a finger.
     pub const fn stiffness_n_per_mm(&self) -> f64 {
         self.stiffness_n_per_mm
     }
 
-    /// How far it is crushed for good, mm.
     pub const fn dent_mm(&self) -> f64 {
         self.dent_mm
     }

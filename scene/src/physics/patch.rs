@@ -15,7 +15,6 @@ pub struct Patch {
 }
 
 impl Patch {
-    /// At rest, loose.
     pub fn new(pad: Pad, relaxation_s: f64) -> Self {
         Self {
             brush: BrushPatch::new(pad, ELEMENTS),

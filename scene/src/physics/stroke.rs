@@ -55,7 +55,6 @@ impl Stroke {
         }
     }
 
-    /// Goes on by one scan to `t_s`.
     pub fn step(&mut self, t_s: f64) -> Touch {
         let load_n = self.over_time(&self.presses, t_s);
         let friction = self.surface.at(t_s);
@@ -87,7 +86,6 @@ impl Stroke {
         self.probe_m
     }
 
-    /// What a list of spans and heights adds up to at `t_s`, each coming and going without a jerk.
     fn over_time(&self, list: &[(Span, f64)], t_s: f64) -> f64 {
         let part = |span: &Span| {
             let up = ((t_s - span.begin_s) / self.ramp_s).clamp(0.0, 1.0);

@@ -13,7 +13,6 @@ pub(crate) struct Vibrator {
     film_mv: f64,
     full_hz: f64,
     spin_s: f64,
-    /// Parts of the whole.
     duty: f64,
     speed: f64,
     phase: f64,
@@ -35,7 +34,6 @@ impl Vibrator {
         self.duty = f64::from(duty.as_per_mille()) / 1e3;
     }
 
-    /// What a film of mean gain hears after one scan more, mV.
     pub(crate) fn step(&mut self) -> f64 {
         self.speed += (self.duty - self.speed) * (1.0 - libm::exp(-STEP_S / self.spin_s));
         self.phase = (self.phase + self.full_hz * self.speed * STEP_S).fract();

@@ -24,14 +24,11 @@ struct Contraction {
     until_grip_n: f64,
 }
 
-/// What they do at an instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Effort {
     /// What they want; None is rest.
     pub intent: Option<Intent>,
-    /// Contraction of the flexor, mV of envelope above rest once it has risen.
     pub flexor_mv: f64,
-    /// Contraction of the extensor, likewise.
     pub extensor_mv: f64,
 }
 
@@ -58,7 +55,6 @@ impl Wearer {
         (!self.contractions.is_empty()).then_some(WEARER)
     }
 
-    /// Goes on to `t_s`, while each finger presses with `grip_n`.
     pub fn step(&mut self, t_s: f64, grip_n: f64) -> Effort {
         let Some(now) = self.contractions.iter_mut().find(|contraction| contraction.span.contains(t_s))
         else {

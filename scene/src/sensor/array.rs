@@ -47,14 +47,10 @@ pub(crate) struct Elements {
     slips: Noise,
 }
 
-/// What shakes the array besides the touch.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Shakes {
-    /// At the end of the frame, s.
     pub(crate) t_s: f64,
-    /// The shear that was let go during it, N.
     pub(crate) released_n: f64,
-    /// The motor's speed as a part of the fastest.
     pub(crate) motor_speed: f64,
 }
 
@@ -65,16 +61,12 @@ struct Element {
     /// Across and along the pad, -1 to 1.
     across: f64,
     along: f64,
-    /// Of the load, at rest.
     part: f64,
-    /// How far the surface went over it, m.
     travel_m: f64,
-    /// What the surface adds to its load there, rms 1 over a long way.
     uneven: f64,
     moved_n: f64,
 }
 
-/// One wave of the surface: its length, and where it begins under each row, in turns.
 #[derive(Clone, Copy, Debug)]
 struct Wave {
     length_m: f64,
@@ -131,7 +123,6 @@ impl Elements {
         }
     }
 
-    /// Voltages at the pins after one frame.
     pub(crate) fn step(&mut self, touch: &Touch, shakes: Shakes) -> [f64; ARRAY_COUNT] {
         let pressed = touch.normal_n > TOUCH_N;
         self.slip(touch, if pressed { shakes.released_n } else { 0.0 });
@@ -168,7 +159,6 @@ impl Elements {
         pins
     }
 
-    /// What a knock and the gear press on the whole pad, N.
     fn shaken_n(&mut self, touch: &Touch, shakes: Shakes) -> f64 {
         let p = &self.parameters;
         self.motor_phase = (self.motor_phase + self.motor_hz * shakes.motor_speed * FRAME_S).fract();
@@ -181,7 +171,6 @@ impl Elements {
         (gear_n + p.knock_mn_per_mv.get() / 1e3 * knocks_mv).max(-touch.normal_n)
     }
 
-    /// What lets go moves load to its neighbours; what slides moves it all the time.
     fn slip(&mut self, touch: &Touch, released_n: f64) {
         let forgets = libm::exp(-FRAME_S / FORGETS_S);
         let part = self.parameters.slip_part.get();
@@ -218,7 +207,6 @@ impl Elements {
     }
 }
 
-/// What the surface under an element adds to its load, rms 1 over a long way.
 fn uneven(waves: &[Wave; WAVES], element: &Element, patch_m: f64) -> f64 {
     let row = usize::from(element.across > 0.0);
     let at_m = element.travel_m + element.along * patch_m;
@@ -226,7 +214,6 @@ fn uneven(waves: &[Wave; WAVES], element: &Element, patch_m: f64) -> f64 {
     waves.iter().map(wave).sum::<f64>() * (2.0 / WAVES as f64).sqrt()
 }
 
-/// How fast the surface goes over an element that is off the middle of what turns, m/s.
 fn rub_m_s(touch: &Touch, element: &Element, patch_m: f64) -> f64 {
     let turns_per_s = touch.turn_m_s / patch_m;
     let (across_m, along_m) = (element.across * patch_m / LONG as f64, element.along * patch_m);

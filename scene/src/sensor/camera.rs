@@ -8,16 +8,13 @@ use tenax_hal_shim::words::Code;
 use crate::file::sections::Camera;
 use crate::random::{Noise, Source};
 
-/// What it says of two images.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
-    /// When the second image was taken, s.
     pub t_s: f64,
-    /// When the words have come over the line, s.
     pub arrives_s: f64,
-    /// v1: -1 the object moves relative to the hand, 1 they move as one, 0 neither moves.
+    /// -1: the object moves against the hand, 1: they move as one, 0: neither moves.
     pub v1: i8,
-    /// v2: 1 the hand moves upward, -1 downward, 0 not.
+    /// 1: the hand moves up, -1: down, 0: not.
     pub v2: i8,
 }
 
@@ -39,7 +36,6 @@ pub(crate) struct Eye {
     pixel_mm: f64,
     rate_hz: f64,
     jitter_px: f64,
-    /// Where the marks lie on the grid of pixels, as parts of a pixel.
     phases: [f64; 2],
     noise: Noise,
     images: u64,
@@ -47,7 +43,6 @@ pub(crate) struct Eye {
     post: Post,
 }
 
-/// The way of the words from the camera to the board.
 #[derive(Debug)]
 struct Post {
     delay_s: f64,
@@ -78,7 +73,6 @@ impl Eye {
         }
     }
 
-    /// Goes on to `t_s`; says something whenever an image is due and there is one before it.
     pub(crate) fn step(&mut self, t_s: f64, hand_mm: f64, object_mm: f64) -> Option<Seen> {
         self.post.deliver(t_s);
         if t_s * self.rate_hz < self.images as f64 {
@@ -103,7 +97,6 @@ impl Eye {
         self.post.arrived
     }
 
-    /// The words that arrived just now, as they come down the serial line, if this camera teaches.
     pub(crate) fn teach(&mut self, t_s: f64) -> Option<Down> {
         let seen = self.post.unsent.take().filter(|_| self.post.teaches)?;
         let age_ms = ((t_s - seen.t_s) * 1e3).round() as u16;
@@ -115,7 +108,6 @@ impl Eye {
 mod tests {
     use super::*;
 
-    /// The words of one second in which the hand moves at `hand_mm_s` and the object at `object_mm_s`.
     fn words(hand_mm_s: f64, object_mm_s: f64) -> Vec<Seen> {
         let mut eye =
             Eye::new(&Camera { jitter_px: crate::file::quantity::Part::of(0.0), ..Camera::default() }, 1);

@@ -7,7 +7,6 @@ use tenax_hal_shim::channel::{
 
 use crate::random::{Noise, Source};
 
-/// One code, V.
 const LSB_V: f64 = REFERENCE_MV as f64 / 1e3 / (CODE_MAX as f64 + 1.0);
 /// Noise, rms, codes (STM32F411 data sheet: an effective resolution of about 10.5 bits; converter and wiring).
 const NOISE_LSB: f64 = 1.0;

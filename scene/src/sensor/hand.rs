@@ -11,7 +11,6 @@ const OPENING_SPAN_MV: f64 = 2_400.0;
 /// Stall current at the whole supply, A (assumed: `motor-stall-ma`).
 const STALL_A: f64 = 1.0;
 
-/// Voltages at the pins of opening and motor current.
 pub(crate) fn pins_v(gripper: &Gripper) -> [f64; 2] {
     let at = |channel: usize, mv: f64| front_end_v(f64::from(CHANNELS[channel].rest_mv) + mv);
     [

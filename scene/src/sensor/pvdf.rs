@@ -35,13 +35,11 @@ pub(crate) struct Films {
     pitch_m: f64,
     films: [Film; PVDF_COUNT],
     gains: [f64; PVDF_COUNT],
-    /// Each film's noise over the mean one's.
     noises: [f64; PVDF_COUNT],
     skin: [LowPasses<PVDF_COUNT>; 2],
     amplifiers: LowPasses<PVDF_COUNT>,
     noise: Noise,
     last_normal_n: f64,
-    /// The edge of what slides, before this step.
     last_edge: f64,
     texture_phase: f64,
     motor_phase: f64,
@@ -49,13 +47,10 @@ pub(crate) struct Films {
 
 #[derive(Clone, Copy, Debug)]
 struct Film {
-    /// Of the texture and of a knock's ring: where the film lies. In turns.
     phase: f64,
     place: Place,
-    /// How much of pressure and of shear it hears, over a film that lies as those of the recordings.
     pressure: f64,
     shear: f64,
-    /// The shear that it has heard being let go, N.
     released_n: f64,
 }
 
@@ -198,14 +193,12 @@ impl Films {
 }
 
 impl Film {
-    /// How much of a knock it hears. Where a knock comes from is drawn by its instant: the films of one side hear it more.
     fn hears(&self, knock: &Knock) -> f64 {
         let comes_from = (knock.at_s.get_ref().get() * 7.389).fract();
         1.0 + knock.uneven.get() * libm::cos(TAU * (self.phase - comes_from))
     }
 }
 
-/// One spike a turn over one pitch, mean 0, peak about 1: `((1 + cos) / 2)^4` less its mean of 35/128.
 fn spike(turns: f64) -> f64 {
     let hump = (1.0 + libm::cos(TAU * turns)) / 2.0;
     hump * hump * hump * hump - 35.0 / 128.0

@@ -63,7 +63,6 @@ impl Gauges {
         }
     }
 
-    /// Voltages at the pins after one frame.
     pub(crate) fn step(&mut self, touch: &Touch) -> [f64; STRAIN_COUNT] {
         // s of the brush, and what makes its two zones add up to the shear: the mean of min(s, w) over the patch.
         let slid = (1.0 - touch.stuck_part).max(0.0).sqrt();
@@ -84,7 +83,6 @@ impl Gauges {
     }
 }
 
-/// A local value over its mean, as it is felt at a depth of 0 (all of it) to 1 (half of it: the rest is the mean).
 fn mixed(local: f64, depth: f64) -> f64 {
     1.0 + (local - 1.0) * (1.0 - depth / 2.0)
 }

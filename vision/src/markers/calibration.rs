@@ -22,9 +22,7 @@ const CLEAR_MIN: usize = 12;
 const MIDDLE_MAX_PERCENT: f32 = 58.0;
 /// The most that its outline may differ from an ellipse, of its radius: what lies behind the skin is seldom round.
 const IRREGULAR_MAX: f32 = 0.12;
-/// The most that it may move during the calibration, px.
 const MOVED_MAX_PX: f32 = 0.8;
-/// The most that its radius may change, px.
 const GROWTH_MAX_PX: f32 = 0.5;
 
 /// A calibration that goes on. Feed it [`FRAMES`] frames of an unloaded skin, then [`Calibration::markers`].
@@ -37,9 +35,7 @@ pub struct Calibration {
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     marker: Marker,
-    /// How well it stands out: the best view of a blob is kept.
     quality: f32,
-    /// Sums over the frames since the first, from which the mean pose follows.
     x: f32,
     y: f32,
     growth: f32,
@@ -49,16 +45,11 @@ struct Candidate {
 
 impl Default for Calibration {
     fn default() -> Self {
-        Self::new()
+        Self { candidates: [None; MARKERS_MAX], frames: 0 }
     }
 }
 
 impl Calibration {
-    pub const fn new() -> Self {
-        Self { candidates: [None; MARKERS_MAX], frames: 0 }
-    }
-
-    /// Takes a frame. Returns whether it was the last that is needed.
     pub fn frame(&mut self, grey: &Plane) -> bool {
         if self.frames == 0 {
             self.search(grey);
@@ -71,7 +62,6 @@ impl Calibration {
         self.frames >= FRAMES
     }
 
-    /// The markers, numbered by rows from the top left; returns how many there are.
     pub fn markers(&self, into: &mut [Marker; MARKERS_MAX]) -> usize {
         let steady = self.candidates.iter().flatten().filter(|candidate| {
             candidate.steady && 10 * candidate.found >= 8 * (self.frames.saturating_sub(1))
@@ -100,7 +90,6 @@ impl Calibration {
         kept
     }
 
-    /// Every place of a frame that looks like a marker.
     fn search(&mut self, grey: &Plane) {
         for top in (0..HEIGHT - SIDE / 2).step_by(STRIDE) {
             for left in (0..WIDTH - SIDE / 2).step_by(STRIDE) {
@@ -169,7 +158,6 @@ impl Candidate {
     }
 }
 
-/// The marker that a blob may be, and how well it stands out.
 fn shape_of(grey: &Plane, blob: &Blob, dark_pixels: u32) -> Option<(Shape, f32)> {
     let radius = libm::sqrtf(blob.area as f32 / core::f32::consts::PI);
     let mut at = blob.at;

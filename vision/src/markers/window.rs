@@ -8,7 +8,6 @@ use crate::mask::eight_bits;
 /// Side of the window, px (FingerVision 2017, section IV).
 pub const SIDE: usize = 30;
 
-/// A window's place in the picture and what it holds.
 #[derive(Clone, Debug)]
 pub struct Window {
     left: usize,
@@ -16,13 +15,10 @@ pub struct Window {
     levels: [[u8; SIDE]; SIDE],
 }
 
-/// One connected dark piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blob {
-    /// Its middle.
     pub at: Point,
     pub area: u32,
-    /// Whether it reaches the window's border, where nobody knows how it goes on.
     pub cut: bool,
 }
 
@@ -30,24 +26,19 @@ impl Blob {
     pub const NONE: Self = Self { at: Point { x: 0.0, y: 0.0 }, area: 0, cut: true };
 }
 
-/// The levels between which a window's threshold lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Levels {
-    /// Level that a hundredth of the pixels is below.
     pub dark: u8,
-    /// Level that half of the pixels is below.
     pub surround: u8,
 }
 
 impl Levels {
-    /// The level that is `eighths` of the way from dark to usual.
     pub const fn cut(self, eighths: u16) -> u8 {
         (self.dark as u16 + (self.surround.saturating_sub(self.dark) as u16 * eighths) / 8) as u8
     }
 }
 
 impl Window {
-    /// The window whose middle is `at`, moved inside the picture where it would stick out.
     pub fn around(grey: &Plane, at: Point) -> Self {
         let corner = |middle: f32, end: usize| (middle as usize).saturating_sub(SIDE / 2).min(end - SIDE);
         let (left, top) = (corner(at.x + 0.5, WIDTH), corner(at.y + 0.5, HEIGHT));
@@ -59,7 +50,6 @@ impl Window {
         Self { left, top, levels }
     }
 
-    /// Its dark and its usual level.
     pub fn levels(&self) -> Levels {
         // Steps of 4: finer than the noise, and four times fewer to add up.
         let mut counts = [0u16; 64];
@@ -78,7 +68,6 @@ impl Window {
         Levels { dark: below(pixels / 100), surround: below(pixels / 2) }
     }
 
-    /// The pixels that are below `threshold`, a word a row.
     pub fn below(&self, threshold: u8) -> [u32; SIDE] {
         let mut rows = [0; SIDE];
         for (bits, levels) in rows.iter_mut().zip(&self.levels) {
@@ -124,7 +113,6 @@ impl Window {
     }
 }
 
-/// The connected piece that the lowest bit of `row` belongs to; pixels that touch at a corner are connected.
 fn flood(dark: &[u32; SIDE], row: usize) -> [u32; SIDE] {
     let mut piece = [0u32; SIDE];
     piece[row] = dark[row] & dark[row].wrapping_neg();
@@ -158,11 +146,9 @@ fn flood(dark: &[u32; SIDE], row: usize) -> [u32; SIDE] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use alloc::vec;
 
-    fn picture(discs: &[(f32, f32, f32)]) -> alloc::boxed::Box<Plane> {
-        let mut grey: alloc::boxed::Box<Plane> =
-            vec![200; crate::frame::PIXELS].into_boxed_slice().try_into().unwrap();
+    fn picture(discs: &[(f32, f32, f32)]) -> Box<Plane> {
+        let mut grey: Box<Plane> = vec![200; crate::frame::PIXELS].into_boxed_slice().try_into().unwrap();
         for (at, level) in grey.iter_mut().enumerate() {
             let (x, y) = ((at % WIDTH) as f32, (at / WIDTH) as f32);
             if discs.iter().any(|&(cx, cy, r)| libm::hypotf(x - cx, y - cy) <= r) {

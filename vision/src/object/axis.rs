@@ -10,7 +10,6 @@ use crate::rectify::Rectifier;
 
 /// Below this eccentricity an object has no long rims.
 const ECCENTRICITY_MIN: f32 = 0.1;
-/// How long a slice is along the axis, px.
 const SLICE_PX: f32 = 2.0;
 /// Slices, from the middle half of them to each side.
 const SLICES: usize = 256;
@@ -18,13 +17,11 @@ const SLICES: usize = 256;
 const SLICES_MIN: usize = 16;
 /// A part of the slices at each end belongs to the short rims: one of so many.
 const END: usize = 12;
-/// How far from the line a point of the rim may be, px.
 const NEAR_PX: f32 = 2.5;
 /// Share of the slices that must lie on a line for it to be a rim.
 const SHARE_MIN: f32 = 0.25;
-/// How far a rim may be off the moments' direction, radians.
+/// Largest angle between a rim and the moments' direction, radians.
 const OFF_MAX: f32 = 1.0;
-/// Where less of the outline lies on the rims, something leans on the object and has turned the moments: ...
 const SHARE_CLEAR: f32 = 0.75;
 /// ... rims are looked for there, too, radians aside.
 const ASIDE: [f32; 2] = [-0.5, 0.5];
@@ -82,7 +79,6 @@ pub fn find(object: &Mask, moments: &Moments, lens: Option<&Rectifier>) -> Rims 
     Rims { angle, ..best }
 }
 
-/// The places of an object's outermost pixels, from its middle.
 struct Outline {
     places: [(f32, f32); PLACES_MAX],
     count: usize,
@@ -111,7 +107,6 @@ impl Outline {
         outline
     }
 
-    /// The long rims near this direction; their share is 0 if there are none.
     fn rims(&self, from: f32) -> Rims {
         let mut rims = Rims { angle: from, share: 0.0 };
         for _ in 0..ROUNDS {
@@ -121,7 +116,7 @@ impl Outline {
         rims
     }
 
-    /// By how much both rims lean from the direction `angle`, and their share. None without rims.
+    /// Lean of both rims from the direction `angle`, and their share. None without rims.
     fn slope(&self, angle: f32) -> Option<(f32, f32)> {
         let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));
         let (mut low, mut high) = ([f32::INFINITY; SLICES], [f32::NEG_INFINITY; SLICES]);
@@ -198,7 +193,6 @@ impl Rim {
         (share >= SHARE_MIN).then_some(Line { slope, weight, share })
     }
 
-    /// Slope and offset of the line through two points that are far apart near which most of the others lie.
     fn coarse(&self) -> (f32, f32) {
         let mut best = (0, 0.0, 0.0);
         for reach in [self.count / 3, self.count / 2, 2 * self.count / 3] {
@@ -215,7 +209,6 @@ impl Rim {
         (best.1, best.2)
     }
 
-    /// How many points lie near a line: in lanes, for the compiler's vectors.
     fn near(&self, slope: f32, offset: f32) -> u32 {
         let mut near = [0; LANES];
         let lanes = self.along.as_chunks::<LANES>().0.iter().zip(self.across.as_chunks::<LANES>().0);
@@ -247,7 +240,6 @@ mod tests {
         mask
     }
 
-    /// Degrees off: by the rims, and by the moments.
     fn off(angle: f32, mask: &Mask) -> (f32, f32) {
         let moments = mask.moments().unwrap();
         let wrapped = |off: f32| off - core::f32::consts::PI * libm::roundf(off / core::f32::consts::PI);

@@ -22,7 +22,6 @@ fn opened() -> Tracker {
     tracker
 }
 
-/// Goes evenly from one force and shear to others in so many cycles, and holds what is said against the truth.
 fn ramp(tracker: &mut Tracker, from: (f64, f64), to: (f64, f64), cycles: u32, hints: Hints) {
     for n in 1..=cycles {
         let part = f64::from(n) / f64::from(cycles);
@@ -39,7 +38,6 @@ fn ramp(tracker: &mut Tracker, from: (f64, f64), to: (f64, f64), cycles: u32, hi
     }
 }
 
-/// A hand that grips, shears and lets go as it likes is never told a wrong force, nor a wrong branch for certain.
 #[test]
 fn whatever_the_shear_the_force_is_within_what_is_said() {
     for seed in 1..=400_u64 {

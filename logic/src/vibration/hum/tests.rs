@@ -26,7 +26,6 @@ fn envelopes_of(config: &VibrationConfig, for_s: f64, heard: impl Fn(f64) -> f64
             let t_s = f64::from(n) / f64::from(FRAME_HZ);
             let samples = core::array::from_fn(|film| {
                 noise = noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                // Each film as loud as it lies.
                 sample(heard(t_s) * (0.4 + 0.1 * film as f64), noise >> 8)
             });
             detector.process(config, &samples, None);
@@ -39,7 +38,6 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// What is left of a hum, over what is heard of it at first, after 4 s.
 fn left(hum: impl Fn(f64) -> f64) -> f64 {
     let all = envelopes(6.0, hum);
     mean(&all[8_000..]) / mean(&all[60..120])

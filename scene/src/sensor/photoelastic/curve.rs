@@ -10,34 +10,22 @@ pub const PEAK_N: f64 = 1.7;
 /// Force at which figure 14 is back at its first value, N.
 pub const BACK_N: f64 = 6.0;
 
-/// How one head came out in the making.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Making {
-    /// Force at the peak, N.
     pub peak_n: f64,
-    /// Force at which the intensity is back at its first value, N.
     pub back_n: f64,
-    /// How far its phase bends off the power law, as a part of a half turn.
     pub bend: f64,
-    /// Voltage in the dark, mV: the "high initial offset".
     pub dark_mv: f64,
-    /// What the peak adds to it, mV.
     pub span_mv: f64,
-    /// Birefringence frozen into the layer, rad of phase.
     pub frozen_rad: f64,
 }
 
-/// What has changed since the head was made, on one day.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Day {
-    /// Light of the source, as a part of its first.
     pub source: f64,
-    /// How the source goes on drifting, as a part of its first, in a minute.
     pub source_per_min: f64,
     pub ambient_mv: f64,
-    /// What ageing of the epoxy adds to the frozen birefringence, rad.
     pub aged_rad: f64,
-    /// What ageing makes of the stress-optic coefficient, as a part.
     pub aged_optic: f64,
 }
 

@@ -24,7 +24,6 @@ use tenax_hal_shim::channel::SCANS_PER_FRAME;
 pub const HEAD_STRIP: Slider =
     Slider { mass_kg: 0.010, stiffness_n_per_m: 10_000.0, damping_ns_per_m: 4.0, friction: METAL };
 
-/// A head, on its day.
 #[derive(Debug)]
 pub struct Head {
     layer: Layer,
@@ -60,7 +59,6 @@ impl Head {
         head
     }
 
-    /// A head by itself, for a bench: nothing knocks at it.
     pub fn with(layer: Layer, making: Making, day: Day, slider: Slider, seeds: Seeds) -> Self {
         Self {
             layer,
@@ -77,7 +75,6 @@ impl Head {
         }
     }
 
-    /// The voltage at the pin after one scan that ends at `t_s`.
     pub fn step(&mut self, t_s: f64, touch: &Touch) -> f64 {
         let rings = self.knocks.iter().map(|knock| super::pvdf::ring_mv(knock, t_s, 0.0)).sum::<f64>();
         let normal_n = (self.share * touch.normal_n + rings * self.knock_mn_per_mv / 1e3).max(0.0);
@@ -95,14 +92,12 @@ impl Head {
     }
 }
 
-/// What slides over the strip. Without the strip, friction does not fall with speed.
 fn friction(parameters: &Photoelastic) -> Stribeck {
     let mu_d = parameters.mu_d.get();
     let mu_s = if parameters.strip { parameters.mu_s.get() } else { mu_d };
     Stribeck { mu_s: mu_s.max(mu_d), mu_d, speed_m_s: parameters.stribeck_mm_s.get() / 1e3 }
 }
 
-/// The strip and the layer under it, as they came out in the making.
 pub fn drawn_strip(seeds: Seeds, spread: f64) -> Slider {
     let mut noise = Noise::new(seeds.making, Source::HeadStrip);
     let mut near = |mean: f64| mean * noise.between(1.0 - spread, 1.0 + spread);

@@ -1,17 +1,11 @@
 //! Equations 3 to 9 of Dubey 2006, as printed, with the sensor's dimensions.
 
-/// The photoelastic layer between crossed polarisers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layer {
-    /// b: along the slip, m.
     pub breadth_m: f64,
-    /// t: along the light, m.
     pub thickness_m: f64,
-    /// lambda, m.
     pub wavelength_m: f64,
-    /// c: stress-optic coefficient, m^2/N.
     pub stress_optic_m2_n: f64,
-    /// Angle between the polariser's axis and x, the direction of the normal force, rad.
     pub polariser_rad: f64,
 }
 
@@ -28,7 +22,6 @@ impl Layer {
         polariser_rad: std::f64::consts::FRAC_PI_4,
     };
 
-    /// Equation 5: the sensing area, m^2.
     pub fn area_m2(&self) -> f64 {
         self.breadth_m * self.thickness_m
     }
@@ -53,13 +46,11 @@ impl Layer {
             / self.wavelength_m
     }
 
-    /// Equation 9's first factor, `sin^2 2 theta`; theta lies between the plane of sigma_1 and that of polarisation.
     pub fn orientation(&self, stress: &Stress) -> f64 {
         let sine = libm::sin(2.0 * (self.polariser_rad - stress.alpha_rad));
         sine * sine
     }
 
-    /// Equation 9 as printed: the part of the incident light that comes out.
     pub fn intensity(&self, normal_n: f64, shear_n: f64) -> f64 {
         let stress = self.stress(normal_n, shear_n);
         let sine = libm::sin(self.phase_rad(&stress));
@@ -67,18 +58,13 @@ impl Layer {
     }
 }
 
-/// Stress in the layer, N/m^2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stress {
     /// Along the normal force. The paper counts compression as positive.
     pub sigma_x: f64,
-    /// Along the surface.
     pub tau_xy: f64,
-    /// The greater principal stress.
     pub sigma_1: f64,
-    /// The smaller.
     pub sigma_2: f64,
-    /// Between x and sigma_1, rad.
     pub alpha_rad: f64,
 }
 
