@@ -35,9 +35,11 @@ pub struct Summary {
     pub virtual_s: f64,
     pub wall_s: f64,
     pub trusts_line: bool,
+    /// Commands that the logic took, each with the sequence number of the frame before whose tick it did.
     pub taken: Vec<(u32, Received<Down>)>,
     pub events: Vec<Event>,
     pub answers: Vec<(u16, Answer)>,
+    /// Records, each with the sequence number of the last frame before.
     pub saved: Vec<(u32, Kept)>,
     pub feedback: Vec<(u32, Duty)>,
     pub starts: Vec<Option<Fault>>,

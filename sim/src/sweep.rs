@@ -80,6 +80,7 @@ fn file_of(folder: &Path, (scene, seed): (&str, u64)) -> PathBuf {
     folder.join(format!("{scene}.{seed}.json"))
 }
 
+/// Written aside and renamed, so that a reader finds all of it or nothing.
 fn write(path: &Path, text: &str) -> anyhow::Result<()> {
     let part = path.with_extension("part");
     let written = fs::write(&part, text).and_then(|()| fs::rename(&part, path));

@@ -10,10 +10,12 @@ use crate::labelled::{Recording, Step};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Steps {
     pub steps: usize,
+    /// Slipping steps that were not called slip.
     pub missed: usize,
     #[serde(rename = "false")]
     pub false_steps: usize,
     pub accuracy: f64,
+    /// Mean of the parts of the slipping and of the other steps that are right.
     pub balanced: f64,
     pub prevalence: f64,
     #[serde(skip)]

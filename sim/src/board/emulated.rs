@@ -77,9 +77,11 @@ pub struct Tick {
 /// Something that a board must survive.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Mishap {
+    /// The converter's DMA stream switches off: the converter overruns.
     DmaStalls,
     Garbage(Vec<u8>),
     CoreHangs,
+    /// The converter's DMA stream is sent where nothing is: its driver panics.
     DmaFails,
     /// The power goes for an instant while the flash programs the word after the next `words`.
     PowerFails {
@@ -88,8 +90,10 @@ pub enum Mishap {
     BrownsOut,
     /// From now on the supply is so high, mV: the voltage detector says if it is too low. A brown-out's reset is not drawn by it.
     SupplyIs(u32),
+    /// The clock security system reports it if it is on. True: the crystal is there again at the next start.
     CrystalStops(bool),
     ResetByPin,
+    /// The bridge's nFAULT: true is low.
     BridgeIsOff(bool),
 }
 

@@ -5,6 +5,7 @@
 //! (RM0383, section 3.5). The chip's memories are the F411's, not the F427's.
 
 use std::collections::VecDeque;
+use std::iter::repeat_n;
 use std::num::{NonZeroU32, NonZeroU64};
 
 use rigless::device::{ErasedDevice, ResetCause};
@@ -196,19 +197,11 @@ fn fail(mcu: &mut Part) {
 }
 
 fn erase(sector: u64, host: &mut dyn Host) {
-    let mut begins = BASE;
-    let mut left = sector;
-    for run in &SECTORS {
-        let count = u64::from(run.count.get());
-        if left < count {
-            begins += left * run.size.get();
-            for word in (begins..begins + run.size.get()).step_by(8) {
-                let landed = host.program(word, Width::W64, u64::MAX);
-                debug_assert!(landed.is_ok(), "{word:#x} is in the flash");
-            }
-            return;
-        }
-        left -= count;
-        begins += count * run.size.get();
+    let mut sizes = SECTORS.iter().flat_map(|run| repeat_n(run.size.get(), run.count.get() as usize));
+    let begins = BASE + sizes.by_ref().take(sector as usize).sum::<u64>();
+    let ends = begins + sizes.next().unwrap_or(0);
+    for word in (begins..ends).step_by(8) {
+        let landed = host.program(word, Width::W64, u64::MAX);
+        debug_assert!(landed.is_ok(), "{word:#x} is in the flash");
     }
 }
