@@ -31,7 +31,6 @@ mod identity;
 mod last_words;
 mod line;
 mod mail;
-mod micros;
 mod scan;
 mod stack;
 mod store;
@@ -77,14 +76,12 @@ unsafe fn I2C3_ER() {
     unsafe { URGENT.on_interrupt() }
 }
 
-/// The box that a DMA ring stands in for as long as the image runs.
 static SCAN_RING: ConstStaticCell<[u32; halves::RING_LEN]> = ConstStaticCell::new([0; halves::RING_LEN]);
 
-/// What control works with: built once and never moved, for every move of it by value is a copy on the stack.
+/// Control's state, built in place and never moved: a move by value is a copy of 9 kB on the stack.
 static CONTROL: StaticCell<control::Control> = StaticCell::new();
 
-/// A function of its own makes it in place. Inlined into the task it stood on the stack first, for as long as the task runs: 9 kB, and 6 kB
-/// of flash.
+/// Not inlined: the task would keep a copy on its stack.
 #[inline(never)]
 fn made(new: impl FnOnce() -> control::Control) -> &'static mut control::Control {
     CONTROL.init_with(new)
@@ -139,7 +136,7 @@ async fn main(spawner: Spawner) {
     mail::post(Up::Hello { frame_hz: FRAME_HZ as u16, after });
     spawner.spawn(once(telemetry::telemetry(up)));
     if !supplied {
-        // It is told why, and starts anew when there is enough to drive a motor with.
+        // Starts anew when the supply can drive a motor.
         while supply::is_low() {
             deadline.until(deadline.now().after(10_000), || None::<()>).await;
         }
@@ -187,7 +184,7 @@ async fn main(spawner: Spawner) {
     urgent.spawn(once(control::control(scan, control)));
 }
 
-/// What is left after too many restarts. A watchdog that is not fed ends this, too, with the bridge off.
+/// The mode after too many restarts: the button opens the hand, nothing else moves it.
 async fn wait_for_button(
     deadline: &Deadline,
     mut bridge: Bridge,

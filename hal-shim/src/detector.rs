@@ -118,7 +118,7 @@ pub enum Direction {
     Up,
 }
 
-/// Whether a detector has the input that it needs.
+/// State of a detector's input.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum DetectorHealth {
     /// The detector does not work yet: its windows fill, or it has not seen the finger unloaded.

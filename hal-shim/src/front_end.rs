@@ -5,7 +5,7 @@
 
 /// PVDF: voltage at rest, the middle of the supply, mV.
 pub const PVDF_REST_MV: u32 = 1_650;
-/// What a film's amplifier gives while the wire to its film is cut, mV: the film's end of the wire has a bias (docs/hardware.md).
+/// PVDF: voltage while the wire to the film is cut, mV: the film's end of the wire has a bias (docs/hardware.md).
 pub const PVDF_CUT_MV: u32 = 1_550;
 
 /// FSR: voltage of an unloaded quadrant, mV.

@@ -152,20 +152,13 @@ mod tests {
 
     #[test]
     fn a_job_comes_after_its_readings_and_before_the_cycle_ends() {
-        let reads_after = |job, first: usize, count: usize| {
-            SCHEDULE[usize::from(slot_of(job)) + 1..].iter().any(|slot| {
-                [slot.switch_a, slot.switch_b]
-                    .into_iter()
-                    .flatten()
-                    .any(|channel| (first..first + count).contains(&usize::from(channel)))
-            })
-        };
-        assert!(
-            !reads_after(Job::Forces, FSR, FSR_COUNT) && !reads_after(Job::ArrayBegins, ARRAY, ARRAY_COUNT)
-        );
-        assert!(
-            slot_of(Job::MlpDecides) < slot_of(Job::Think) && slot_of(Job::Save) < slot_of(Job::EndOfCycle)
-        );
+        for (job, first, count) in [(Job::Forces, FSR, FSR_COUNT), (Job::ArrayBegins, ARRAY, ARRAY_COUNT)] {
+            let later = SCHEDULE[usize::from(slot_of(job)) + 1..].iter();
+            let mut read_later = later.flat_map(|slot| [slot.switch_a, slot.switch_b]).flatten();
+            assert!(read_later.all(|n| !(first..first + count).contains(&usize::from(n))), "{job:?}");
+        }
+        let jobs = [Job::Forces, Job::ArrayBegins, Job::MlpDecides, Job::Think, Job::Save, Job::EndOfCycle];
+        assert!(jobs[1..].is_sorted_by_key(|&job| slot_of(job)));
         assert_eq!(usize::from(slot_of(Job::EndOfCycle)), SLOTS - 1);
         for job in [Job::Think, Job::Save] {
             assert_eq!(SCHEDULE[usize::from(slot_of(job))].switch_b, None);

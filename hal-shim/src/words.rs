@@ -49,7 +49,7 @@ impl fmt::Display for GripMode {
     }
 }
 
-/// Why the mode changed.
+/// Cause of a change of mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Cause {
     SensorsReady,
@@ -80,7 +80,7 @@ impl fmt::Display for Cause {
     }
 }
 
-/// Why a sensor gives no number.
+/// Reason for which a sensor gives no number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Reason {
     /// Below its live zero: a cut wire, a lost supply.
@@ -168,12 +168,12 @@ pub enum Fault {
     NeverUnloaded,
 }
 
-/// Why the motor is not driven although a source asks for it.
+/// Reason for which the motor is not driven although a source asks for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum MotorStop {
-    /// It stalled while closing. Opening is allowed.
+    /// Opening is allowed.
     ClosingStalled,
-    /// It stalled while opening: at its stop, or the gear is jammed. A new opening command is tried again.
+    /// At its stop, or the gear is jammed. A new opening command is tried again.
     OpeningStalled,
     /// Too much current for too long: closing is stopped until the motor has cooled. Opening is allowed.
     Hot,
@@ -192,7 +192,7 @@ impl MotorStop {
     }
 }
 
-/// What a teacher says about one output of the network (Tada 2006, equations 1 and 2).
+/// A teacher's label for one output of the network (Tada 2006, equations 1 and 2).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Code {
     /// v1: object and hand move against each other, it slips. v2: the hand moves down.
@@ -225,7 +225,7 @@ impl Code {
 /// Relative motion (v1, equation 1) and direction (v2, equation 2).
 pub type Codes = [Code; 2];
 
-/// Why the network learns nothing at the moment.
+/// Reason for which the network does not learn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum NoLesson {
     /// No teacher, or too few codes yet.
@@ -240,7 +240,7 @@ pub enum NoLesson {
     Disturbed,
 }
 
-/// How a person at the hand consents to commands of the serial line.
+/// Source of a consent to commands of the serial line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Consent {
     /// Switched on with a finger that is known to hold nothing.
@@ -295,23 +295,18 @@ impl Prompt {
     }
 }
 
-/// Why a calibration of the myosensors was not taken.
+/// Reason for which a calibration of the myosensors was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum CalibrationRefusal {
     /// An envelope wandered while the wearer should rest: a contraction, a loose electrode, interference.
     RestNotQuiet,
     NoClosing,
     NoOpening,
-    /// Both contractions drive the electrodes in the same proportion.
     SameDirection,
-    /// The states differ, but by less than they fluctuate.
     Overlap,
-    /// An envelope stood still during a contraction, which no muscle's does.
     NotAMuscle,
-    /// An envelope was at the top of its range.
     Saturated,
     SensorLost,
-    /// The words are not those of a model.
     Damaged,
     /// The hand came to hold something, or its force sensor gave no number: the muscles must be able to open it.
     Loaded,
@@ -342,13 +337,13 @@ impl fmt::Display for CalibrationRefusal {
     }
 }
 
-/// Whether contractions still fit the calibration of the myosensors.
+/// Agreement of contractions with the calibration of the myosensors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Fit {
     /// The contractions fit, or it is not known.
     #[default]
     Fits,
-    /// They do not fit: the electrodes have moved, or the wearer contracts differently. A new calibration is needed.
+    /// The electrodes have moved, or the wearer contracts differently: a new calibration is needed.
     Moved,
     Exchanged,
 }
@@ -363,7 +358,7 @@ impl Fit {
     }
 }
 
-/// How the calibration of the myosensors goes on.
+/// Progress of a calibration of the myosensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Schema)]
 pub enum Calibration {
     /// Prompt for the next 5 s.
@@ -374,6 +369,5 @@ pub enum Calibration {
     },
     /// The calibration was refused; the one before stays in force.
     Refused(CalibrationRefusal),
-    /// Whether the calibration in force still fits has changed.
     Fit(Fit),
 }

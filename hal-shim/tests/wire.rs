@@ -14,9 +14,9 @@ use tenax_hal_shim::detector::{DetectorHealth, DetectorId, DetectorSet, Directio
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{
-    About, Answer, BAUD, BadFrame, Counters, DETECTORS_MAX, Down, FRAME_MAX, Identity, KEPT_MAX, Last,
-    NetworkState, PIECE_MAX, Raw, Receiver, ResetCause, Restored, SETTINGS_MAX, SETTINGS_PER_ANSWER, Senses,
-    Setting, Slow, TickRecord, Up, WHY_MAX, encode,
+    About, Answer, BAUD, BadFrame, Counters, DETECTORS_MAX, Down, FRAME_MAX, Forces, Identity, KEPT_MAX,
+    Last, NetworkState, PIECE_MAX, Raw, Receiver, ResetCause, Restored, SETTINGS_MAX, SETTINGS_PER_ANSWER,
+    Senses, Setting, Slow, TickRecord, Up, WHY_MAX, encode,
 };
 use tenax_hal_shim::words::{Code, DriveSource, Fault, GripMode, Kept, Line, NoLesson};
 
@@ -186,7 +186,7 @@ fn the_longest_message_fits_a_frame() {
         health: DetectorHealth::Blind,
         raw: i32::MIN,
     };
-    let forces = tenax_hal_shim::wire::Forces {
+    let forces = Forces {
         fn_mn: i32::MIN,
         load_mn: i32::MIN,
         fx_mn: i32::MIN,
@@ -209,10 +209,9 @@ fn the_longest_message_fits_a_frame() {
         line: Line::Armed { left_s: u8::MAX },
         behaviour: Some(Behaviour::Turn { by_ddeg: i16::MIN }),
     };
-    let mut buffer = [0; FRAME_MAX];
-    let length = encode(u16::MAX, &Up::Slow(slow), &mut buffer).unwrap().len();
-    assert!(length < FRAME_MAX, "{length}");
-    let bits_a_second = length * 10 * 80;
+    let slow = length(&Up::Slow(slow));
+    assert!(slow < FRAME_MAX, "{slow}");
+    let bits_a_second = slow * 10 * 80;
     assert!(bits_a_second < 921_600 / 2, "slow frames may use at most half of the line: {bits_a_second}");
     let network = NetworkState {
         frame: u32::MAX,
@@ -222,28 +221,35 @@ fn the_longest_message_fits_a_frame() {
         teacher_age_ms: Some(u16::MAX),
         no_lesson: Some(NoLesson::Disturbed),
     };
-    assert!(encode(u16::MAX, &answer(Answer::Network(network)), &mut buffer).is_some());
-    let settings = [Setting { id: u8::MAX, value: i32::MIN }; SETTINGS_PER_ANSWER].into_iter().collect();
-    assert!(encode(u16::MAX, &answer(Answer::Settings(settings)), &mut buffer).is_some());
-    let settings = [Setting { id: u8::MAX, value: i32::MIN }; SETTINGS_MAX].into_iter().collect();
+    let setting = Setting { id: u8::MAX, value: i32::MIN };
     let identity = Identity { build: u64::MAX, chip: [u32::MAX; 3], reset: ResetCause::Other };
+    let settings = [setting; SETTINGS_MAX].into_iter().collect();
     let about = About { identity, schema: u64::MAX, frames: u32::MAX, settings };
-    assert!(encode(u16::MAX, &answer(Answer::About(about)), &mut buffer).is_some());
     let bytes = [u8::MAX; PIECE_MAX].into_iter().collect();
     let why = [u8::MAX; WHY_MAX].into_iter().collect();
     let last = Last { after: Some(Fault::TooManyRestarts), why, length: u16::MAX, from: u16::MAX, bytes };
-    assert!(encode(u16::MAX, &answer(Answer::Last(last)), &mut buffer).is_some());
-    let restored = Restored::of(Kept::Network, &[0; KEPT_MAX]).unwrap();
-    assert!(encode(u16::MAX, &Up::Restored(restored), &mut buffer).is_some());
+    for fits in [
+        answer(Answer::Network(network)),
+        answer(Answer::Settings([setting; SETTINGS_PER_ANSWER].into_iter().collect())),
+        answer(Answer::About(about)),
+        answer(Answer::Last(last)),
+        Up::Restored(Restored::of(Kept::Network, &[0; KEPT_MAX]).unwrap()),
+    ] {
+        length(&fits);
+    }
     let senses = Senses { frame: u32::MAX, samples: [u16::MAX; COUNT], films: [u16::MAX; PVDF_COUNT] };
-    let senses = encode(u16::MAX, &Up::Senses(senses), &mut buffer).unwrap().len();
     let mut raw = Raw::default();
     raw.put(&Frame { sequence: u32::MAX, ..Frame::lost(0) });
-    let raw = encode(u16::MAX, &Up::Raw(raw), &mut buffer).unwrap().len();
     // In a slow frame: five messages of frames and one of readings leave a quarter of the line to everything else.
-    let part = (5 * raw + senses) as f64 / f64::from(BAUD / 10 / 80);
-    assert!(part < 0.78, "{raw} {senses}: {part}");
+    let bytes = 5 * length(&Up::Raw(raw)) + length(&Up::Senses(senses));
+    let part = bytes as f64 / f64::from(BAUD / 10 / 80);
+    assert!(part < 0.78, "{bytes}: {part}");
     let counters = Counters { frames: u32::MAX, ..Counters::default() };
     assert!(encode(0, &Up::Counters(counters), &mut [0; 40]).is_some());
     assert!(encode(0, &Up::Counters(counters), &mut [0; 8]).is_none(), "too small a buffer is no panic");
+}
+
+/// Length of the longest frame of a message, bytes.
+fn length(message: &Up) -> usize {
+    encode(u16::MAX, message, &mut [0; FRAME_MAX]).expect("it fits a frame").len()
 }

@@ -1,11 +1,9 @@
 //! A fingertip on a bench, with a voltage for every pin: shared by all tests in `tests/`.
 #![forbid(unsafe_code)]
 
-pub mod onsets;
 pub mod teaching;
 
 use std::f64::consts::TAU;
-use std::ops::Range;
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -15,7 +13,7 @@ use tenax_hal_shim::channel::{
 };
 use tenax_hal_shim::frame::{Frame, scan_of_pins};
 use tenax_hal_shim::front_end::{MYO_REST_MV, fsr_mv, fsr_quadrants_n};
-use tenax_hal_shim::motor::MotorDrive;
+use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::wire::{Down, Event, EventKind, Setting, Slow, TickRecord};
 use tenax_hal_shim::words::{Cause, DriveSource, Fault, GripMode, Kept, Reason};
@@ -56,6 +54,11 @@ pub fn set(id: SettingId, value: i32) -> Down {
     Down::Set(Setting { id: id.number(), value })
 }
 
+/// A sum of twelve uniform numbers: mean 0, variance 1.
+pub fn gauss(rng: &mut ChaCha8Rng) -> f64 {
+    (0..12).map(|_| rng.random_range(-0.5..0.5)).sum()
+}
+
 pub fn opens(drives: &[MotorDrive]) -> bool {
     drives.iter().any(|drive| drive.opens())
 }
@@ -72,22 +75,24 @@ pub fn rests(drives: &[MotorDrive]) -> bool {
     drives.iter().all(|drive| *drive == MotorDrive::Coast)
 }
 
+/// Distances by which this frame opens and closes the scenes' hand, mm.
+fn moved_mm(drive: MotorDrive) -> (f64, f64) {
+    let mm = |duty: Duty| FULL_DUTY_MM * f64::from(duty.as_per_mille()) / 1e3;
+    match drive {
+        MotorDrive::Open(duty) => (mm(duty), 0.0),
+        MotorDrive::Close(duty) => (0.0, mm(duty)),
+        MotorDrive::Coast => (0.0, 0.0),
+    }
+}
+
 /// Distance by which these frames open the scenes' hand, mm; closing does not count.
 pub fn opened_mm(drives: &[MotorDrive]) -> f64 {
-    let part = |drive: &MotorDrive| match drive {
-        MotorDrive::Open(duty) => f64::from(duty.as_per_mille()) / 1e3,
-        _ => 0.0,
-    };
-    FULL_DUTY_MM * drives.iter().map(part).sum::<f64>()
+    drives.iter().map(|drive| moved_mm(*drive).0).sum()
 }
 
 /// Distance by which this frame closes the scenes' hand, mm.
 pub fn closed_mm(drive: MotorDrive) -> f64 {
-    if let MotorDrive::Close(duty) = drive {
-        FULL_DUTY_MM * f64::from(duty.as_per_mille()) / 1e3
-    } else {
-        0.0
-    }
+    moved_mm(drive).1
 }
 
 /// A fingertip whose pins are set by the test. The converter's noise is +-2 of a 14-bit sample, from a seed.
@@ -110,8 +115,6 @@ pub struct Bench {
     pub lifted: Option<usize>,
     /// Select lines that are stuck low, and those stuck high: bit n is line Sn.
     pub stuck_lines: [u8; 2],
-    /// The switches' inputs of known voltage are wired; otherwise both are at ground.
-    pub known_inputs: bool,
     pub frames: u32,
     samples: LastSamples,
     muscle_noise: ChaCha8Rng,
@@ -137,7 +140,6 @@ impl Bench {
             lively: 0.06,
             lifted: None,
             stuck_lines: [0; 2],
-            known_inputs: true,
             frames: 0,
             samples: LastSamples::default(),
             muscle_noise: ChaCha8Rng::seed_from_u64(seed ^ 0x0E46),
@@ -210,11 +212,8 @@ impl Bench {
         let shown = frame.select() & !low | high;
         let wired = scan_of_pins(&samples, shown);
         frame.switch_a = wired[RANK_SWITCH_A];
-        frame.switch_b = match shown {
-            HIGH_SELECT if self.known_inputs => SAMPLE_MAX,
-            HIGH_SELECT => 0,
-            _ => wired[RANK_SWITCH_B],
-        };
+        // An input of known voltage.
+        frame.switch_b = if shown == HIGH_SELECT { SAMPLE_MAX } else { wired[RANK_SWITCH_B] };
         frame
     }
 
@@ -225,8 +224,7 @@ impl Bench {
         const HEARS: f64 = 0.05;
         let own = [MYO_FLEXOR, MYO_EXTENSOR].map(|pin| {
             let wander = &mut self.wander[pin - MYO_FLEXOR];
-            let normal: f64 = (0..12).map(|_| self.muscle_noise.random_range(-0.5..0.5)).sum();
-            wander[0] += PART * (normal - wander[0]);
+            wander[0] += PART * (gauss(&mut self.muscle_noise) - wander[0]);
             wander[1] += PART * (wander[0] - wander[1]);
             let above_mv = self.pins_mv[pin] - f64::from(MYO_REST_MV);
             // Two low-passes leave 0.071 of white noise. A broken pin does not fluctuate.
@@ -286,15 +284,10 @@ impl Bench {
         (0..frames).map(give).collect()
     }
 
-    /// Gives many frames in which these films hear mains of 50 Hz, mV.
-    pub fn run_humming(&mut self, films: Range<usize>, mv: f64, frames: u32) {
-        let rest_mv = f64::from(CHANNELS[PVDF].rest_mv);
-        for n in 0..frames {
-            let phase = f64::from(n) * 50.0 / 2_000.0 * TAU;
-            self.pins_mv[films.clone()].fill(rest_mv + mv * phase.sin());
-            self.step();
-        }
-        self.pins_mv[films].fill(rest_mv);
+    /// Voltage of a film that hears mains of 50 Hz, mV.
+    pub fn hum(&mut self, film: usize, mv: f64) {
+        let phase = f64::from(self.frames) * 50.0 / 2_000.0 * TAU;
+        self.pins_mv[film] = f64::from(CHANNELS[PVDF].rest_mv) + mv * phase.sin();
     }
 
     /// Sends a command that must be accepted.

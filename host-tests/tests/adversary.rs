@@ -3,8 +3,6 @@
 //!
 //! `TENAX_STEPS=10000000 TENAX_SEED=5 cargo test --release -p tenax-host-tests --test fingertip adversary -- --nocapture`
 
-use std::f64::consts::TAU;
-
 use rand::rngs::ChaCha8Rng;
 use rand::seq::IndexedRandom;
 use rand::{RngExt, SeedableRng};
@@ -23,7 +21,7 @@ use tenax_host_tests::{Bench, calibrated, opened_mm, set};
 use tenax_logic::config::Config;
 use tenax_logic::setting::SettingId;
 
-const SEED: u32 = 0xAD;
+const SEED: u32 = 7;
 /// An opening of a healthy wearer takes effect within two slow frames.
 const OPEN_WITHIN_FRAMES: u32 = 50;
 /// The shortest hold of a muscle's activity that can be set.
@@ -34,8 +32,9 @@ const STILL_FRAMES: u32 = 2_000;
 const LOST_FRAMES: u32 = 3_000;
 /// A pin below its range is known to be lost after 0.1 s.
 const DEAD_FRAMES: u32 = 200;
-/// A muscle is active above 160 mV, whatever the wearer; 2 mV for rounding.
-const ACTIVE_MV: i32 = 162;
+/// A muscle is active from here on, mV, whatever the wearer; the rounding of other settings takes 2 mV more.
+const ACTIVE_MV: i32 = 160;
+const ROUNDING_MV: i32 = 2;
 /// Extensor above which an opening is the wearer's, mV.
 const OPENS_MV: i32 = 100;
 /// Largest opening by a fault of an electrode while something is held, mm: an unproven contraction opens by 0.7 mm, and again
@@ -82,7 +81,7 @@ struct Muscle {
 }
 
 impl Muscle {
-    fn read(&mut self, step: u32, sample: u16, stillness_counts: bool) {
+    fn read(&mut self, step: u32, sample: u16, electrodes_fail: bool) {
         let channel = CHANNELS[MYO_FLEXOR];
         let mv = mv_from_sample(sample);
         let above = mv as i32 - MYO_REST_MV as i32;
@@ -92,8 +91,9 @@ impl Muscle {
         if (above - at).abs() > at.abs() / part + STILL_MV {
             self.stands = (above, step);
         }
-        let stands_still = stillness_counts && step - self.stands.1 >= STILL_FRAMES;
-        if self.last_mv >= Some(ACTIVE_MV) && !stands_still {
+        let stands_still = electrodes_fail && step - self.stands.1 >= STILL_FRAMES;
+        let active_mv = ACTIVE_MV + if electrodes_fail { ROUNDING_MV } else { 0 };
+        if self.last_mv >= Some(active_mv) && !stands_still {
             self.active_at = Some(step);
         }
     }
@@ -216,54 +216,46 @@ impl Walk {
         self.started_at = step;
     }
 
-    fn any_behaviour(&mut self) -> Behaviour {
-        let by_ddeg = self.rng.random_range(-300..300);
-        let all = [
-            Behaviour::Stroke,
-            Behaviour::GentleGrasp,
-            Behaviour::Hold,
-            Behaviour::HandOver,
-            Behaviour::Turn { by_ddeg },
-        ];
-        if self.electrodes_fail { Behaviour::Stroke } else { self.any_of(&all) }
-    }
-
-    fn any_setting(&mut self) -> Down {
-        let id = match self.electrodes_fail {
-            true => self.any_of(&SettingId::ALL),
-            false => self.any_of(&[SettingId::S1, SettingId::S2, SettingId::HebbianSlip]),
-        };
-        let row = id.row();
-        let within = self.rng.random_range(row.min..=row.max);
-        set(id, self.any_of(&[row.min, row.max, row.default, within]))
-    }
-
-    fn any_view(&mut self) -> CameraView {
+    fn any_command(&mut self) -> Down {
         let rng = &mut self.rng;
-        CameraView {
-            age_ms: rng.random_range(0..250),
-            moving_e4: rng.random_range(0..40),
-            angle_ddeg: rng.random::<bool>().then_some(rng.random_range(-900..900)),
-            normal: std::array::from_fn(|_| rng.random()),
-            shear: std::array::from_fn(|_| rng.random()),
+        let (duty, hold_ms) = (Duty::per_mille(rng.random_range(0..=1_000)), rng.random_range(0..=400));
+        let (drives, settings, behaviours) = (
+            [MotorDrive::Close(duty), MotorDrive::Open(duty), MotorDrive::Coast],
+            [SettingId::S1, SettingId::S2, SettingId::HebbianSlip],
+            [
+                Behaviour::Stroke,
+                Behaviour::GentleGrasp,
+                Behaviour::Hold,
+                Behaviour::HandOver,
+                Behaviour::Turn { by_ddeg: rng.random_range(-300..300) },
+            ],
+        );
+        match rng.random_range(0..13) {
+            0..=2 => Down::Drive { drive: self.any_of(&drives), hold_ms },
+            3..=5 if self.electrodes_fail => Down::Begin(Behaviour::Stroke),
+            3..=5 => Down::Begin(self.any_of(&behaviours)),
+            6 => Down::End,
+            7 => Down::View(CameraView {
+                age_ms: rng.random_range(0..250),
+                moving_e4: rng.random_range(0..40),
+                angle_ddeg: rng.random::<bool>().then_some(rng.random_range(-900..900)),
+                normal: std::array::from_fn(|_| rng.random()),
+                shear: std::array::from_fn(|_| rng.random()),
+            }),
+            8 => Down::Zero,
+            9 => Down::Save,
+            10 => Down::Network,
+            _ => {
+                let id = self.any_of(if self.electrodes_fail { &SettingId::ALL[..] } else { &settings });
+                let row = id.row();
+                let within = self.rng.random_range(row.min..=row.max);
+                set(id, self.any_of(&[row.min, row.max, row.default, within]))
+            }
         }
     }
 
     fn command(&mut self, step: u32) {
-        let duty = Duty::per_mille(self.rng.random_range(0..=1_000));
-        let hold_ms = self.rng.random_range(0..=400);
-        let command = match self.rng.random_range(0..12) {
-            0 => Down::Drive { drive: MotorDrive::Close(duty), hold_ms },
-            1 => Down::Drive { drive: MotorDrive::Open(duty), hold_ms },
-            2 => Down::Drive { drive: MotorDrive::Coast, hold_ms },
-            3 | 4 => Down::Begin(self.any_behaviour()),
-            5 => Down::End,
-            6 => Down::View(self.any_view()),
-            7 => Down::Zero,
-            8 => Down::Save,
-            9 => Down::Network,
-            _ => self.any_setting(),
-        };
+        let command = self.any_command();
         let accepted = self.bench.fingertip.command(&command).is_ok();
         self.no_wearer = self.bench.fingertip.config().no_wearer;
         // Without trust in the line every later command would be refused.
@@ -306,8 +298,7 @@ impl Walk {
             };
         }
         if let Some(film) = self.humming {
-            let phase = f64::from(step) * 50.0 / 2_000.0 * TAU;
-            self.bench.pins_mv[PVDF + film] = f64::from(CHANNELS[PVDF].rest_mv) + 200.0 * phase.sin();
+            self.bench.hum(PVDF + film, 200.0);
         }
     }
 
@@ -352,10 +343,8 @@ struct Seen {
     /// Another muscle changed before or during that opening.
     beside: bool,
     strayed_at: u32,
-    /// The longest of them: of a fault alone, and beside another change of the muscles.
-    longest_stray_mm: [f64; 2],
-    /// Number of those longer than [`SAFE_MM`].
-    long_strays: [u32; 2],
+    /// Number of openings of a fault alone by more than [`SAFE_MM`].
+    unsafe_openings: u32,
     /// Frames closed without a known force, or by the reflex with one electrode lost, since a muscle was active.
     blind: u32,
     most_blind: u32,
@@ -394,10 +383,8 @@ impl Seen {
             self.strayed_at = step;
         }
         self.beside = !self.is_alone(step, walk.pins) || self.stray_mm > 0.0 && self.beside;
-        let kind = usize::from(self.beside);
-        self.longest_stray_mm[kind] = self.longest_stray_mm[kind].max(self.stray_mm);
         if self.stray_mm > SAFE_MM && before_mm <= SAFE_MM {
-            self.long_strays[kind] += 1;
+            self.unsafe_openings += u32::from(!self.beside);
             println!("step {step}: opens {} mm, beside: {}, {:?}", self.stray_mm, self.beside, self.history);
         }
     }
@@ -520,6 +507,6 @@ fn a_million_random_steps() {
 #[test]
 fn no_fault_of_an_electrode_opens_what_is_held_or_closes_without_end() {
     let seen = walk(1_500_000, true);
-    assert_eq!(seen.long_strays[0], 0, "faults that open what is held");
+    assert_eq!(seen.unsafe_openings, 0, "faults that open what is held");
     assert!(seen.half > 0 || !has_chosen_seed(), "an electrode was never lost while the reflex closed");
 }

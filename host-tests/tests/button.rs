@@ -43,22 +43,6 @@ fn a_wearer_whose_electrodes_are_both_dead_lets_go_by_the_button() {
     }
 }
 
-#[test]
-fn a_second_press_or_a_contraction_that_closes_ends_a_release() {
-    let mut bench = Bench::holding(42);
-    bench.press_button(RELEASES);
-    assert!(opens_throughout(&bench.run(100)));
-    bench.fingertip.button(true);
-    bench.run(100);
-    assert!(!opens(&bench.run(4_000)));
-    bench.fingertip.button(false);
-    bench.run(400);
-    bench.press_button(RELEASES);
-    bench.muscles(900.0, 95.0);
-    bench.run(1_000);
-    assert!(!opens(&bench.run(1_000)));
-}
-
 // Shows W8.
 #[test]
 fn a_button_that_is_shorted_tapped_or_held_for_too_long_opens_nothing() {

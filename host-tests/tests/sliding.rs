@@ -1,6 +1,5 @@
 //! Steady sliding far below S1: heard above each film's own floor, answered with small pulses, as long as they help.
 
-use tenax_hal_shim::channel::PVDF;
 use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::words::Cause;
@@ -22,22 +21,6 @@ fn an_object_that_rubs_quietly_is_held_more_firmly_with_small_pulses() {
     assert!(bench.causes().contains(&Cause::Incipient(DetectorId::S1)));
     let fast = |drive: &MotorDrive| matches!(drive, MotorDrive::Close(duty) if duty.as_per_mille() > 500);
     assert!(!drives.iter().any(fast), "no pulse at full speed");
-}
-
-// Shows R4.
-#[test]
-fn films_that_hummed_when_the_grasp_began_slide_no_more_than_quiet_ones() {
-    let mut bench = Bench::new(62);
-    bench.vibration_mv = RUBS_MV;
-    bench.run(800);
-    bench.load(LOAD_N, 0.4);
-    bench.run(20_000);
-    assert_eq!(bench.by_reflex(), 0);
-    // Two films that begin to hum in a grasp are faults of their own.
-    let mut bench = Bench::holding(63);
-    bench.run(2_000);
-    bench.run_humming(PVDF..PVDF + 2, RUBS_MV, 10_000);
-    assert_eq!(bench.by_reflex(), 0);
 }
 
 /// Final force of a hand that hears sliding all the time, N, on an object of so many N/mm under this shear, N.

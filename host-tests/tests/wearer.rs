@@ -3,12 +3,7 @@
 use std::collections::BTreeSet;
 
 use proptest::prelude::*;
-use rand::rngs::ChaCha8Rng;
-use rand::{RngExt, SeedableRng};
-use tenax_hal_shim::behaviour::Behaviour;
-use tenax_hal_shim::channel::{
-    ARRAY, ARRAY_COUNT, CHANNELS, COUNT, FSR, MYO_EXTENSOR, MYO_FLEXOR, MYO_SELECT, SAMPLE_MAX,
-};
+use tenax_hal_shim::channel::{COUNT, FSR, MYO_EXTENSOR, MYO_FLEXOR, MYO_SELECT, SAMPLE_MAX};
 use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::frame::Frame;
 use tenax_hal_shim::front_end::MYO_REST_MV;
@@ -79,30 +74,20 @@ fn an_array_verdict_does_not_outlive_the_frames_that_renew_it() {
 }
 
 #[test]
-fn an_array_that_reports_slip_in_an_empty_hand_closes_no_full_one() {
-    // Noise on every element that changes its size every half second. The control: it is reported as slip.
-    let noisy = |bench: &mut Bench, rng: &mut ChaCha8Rng, seconds: u32| {
+fn a_detector_that_reports_slip_of_an_empty_hand_closes_no_full_one() {
+    for empty in [false, true] {
+        let mut bench = Bench::holding(16);
+        bench.load(if empty { 0.0 } else { 4.0 }, 0.0);
+        bench.run(400);
+        bench.vibration_mv = 400.0;
+        bench.run(12_000);
+        bench.load(4.0, 0.6);
+        bench.run(500);
         bench.slows.clear();
-        for n in 0..80 * seconds {
-            let noise_mv = if n / 40 % 2 == 0 { 0.3 } else { 3.0 };
-            for element in &mut bench.pins_mv[ARRAY..ARRAY + ARRAY_COUNT] {
-                let sum: f64 = (0..12).map(|_| rng.random_range(-0.5..0.5)).sum();
-                *element = f64::from(CHANNELS[ARRAY].rest_mv) + 700.0 + noise_mv * sum;
-            }
-            bench.run(25);
-        }
-    };
-    let mut rng = ChaCha8Rng::seed_from_u64(16);
-    let mut bench = Bench::holding(16);
-    noisy(&mut bench, &mut rng, 5);
-    assert!(bench.by_reflex() > 100);
-    bench.load(0.0, 0.0);
-    noisy(&mut bench, &mut rng, 5);
-    bench.load(4.0, 0.6);
-    bench.run(500);
-    noisy(&mut bench, &mut rng, 10);
-    assert!(bench.ticks().any(|tick| tick.said.contains(DetectorId::Mlp)), "it says so all the same");
-    assert_eq!(bench.by_reflex(), 0);
+        bench.run(2_000);
+        assert!(bench.ticks().any(|tick| tick.said.contains(DetectorId::S1)), "it says so all the same");
+        assert_eq!(bench.by_reflex() > 0, !empty);
+    }
 }
 
 // Shows W5.
@@ -254,33 +239,26 @@ proptest! {
     }
 }
 
-/// The reflex closes, and for no longer than its blind budget.
-fn closes_within_the_budget(bench: &mut Bench) {
-    bench.vibration_mv = 800.0;
-    let closing = closing_frames(&bench.run(40_000));
-    let budget = Config::default().grip.blind_frames as usize;
-    assert!(closing > 20 && closing <= budget + 1, "{closing} frames of closing, {budget} allowed");
-}
-
-// Shows R3.
-#[test]
-fn a_dead_quadrant_leaves_the_films_with_a_budget_that_ends() {
-    let mut bench = Bench::holding(5);
-    bench.pins_mv[FSR + 1] = 0.0;
-    bench.run(200);
-    closes_within_the_budget(&mut bench);
-}
-
 // Shows W5, R3.
 #[test]
-fn a_dead_myosensor_leaves_the_reflex_a_budget_and_the_other_still_commands() {
-    for (dead, moves) in [(MYO_FLEXOR, opens as fn(&[MotorDrive]) -> bool), (MYO_EXTENSOR, closes)] {
+fn a_dead_quadrant_or_myosensor_leaves_the_reflex_a_budget_and_the_other_muscle_still_commands() {
+    type Moves = fn(&[MotorDrive]) -> bool;
+    let all: [(usize, usize, Moves); 4] = [
+        (FSR + 1, MYO_FLEXOR, closes),
+        (FSR + 1, MYO_EXTENSOR, opens),
+        (MYO_FLEXOR, MYO_EXTENSOR, opens),
+        (MYO_EXTENSOR, MYO_FLEXOR, closes),
+    ];
+    for (dead, muscle, moves) in all {
         let mut bench = Bench::holding(6);
         bench.pins_mv[dead] = 0.0;
-        bench.run(100);
-        closes_within_the_budget(&mut bench);
-        bench.pins_mv[MYO_FLEXOR + MYO_EXTENSOR - dead] = f64::from(MYO_REST_MV) + 800.0;
-        assert!(moves(&bench.run(1_000)));
+        bench.run(200);
+        bench.vibration_mv = 800.0;
+        let closing = closing_frames(&bench.run(40_000));
+        let budget = Config::default().grip.blind_frames as usize;
+        assert!(closing > 20 && closing <= budget + 1, "{closing} frames of closing, {budget} allowed");
+        bench.pins_mv[muscle] = f64::from(MYO_REST_MV) + 800.0;
+        assert!(moves(&bench.run(1_000)), "{dead}, {muscle}");
     }
 }
 
@@ -310,17 +288,15 @@ fn a_myosensor_that_stands_still_is_no_muscle_and_one_that_moves_may_be() {
 // Shows W1, R3.
 #[test]
 fn a_myosensor_that_comes_back_to_where_it_hummed_may_be_a_muscle_again() {
-    // A contraction, or no contact, between.
-    for between_mv in [900.0, -f64::from(MYO_REST_MV)] {
-        for pin in [MYO_FLEXOR, MYO_EXTENSOR] {
+    for pin in [MYO_FLEXOR, MYO_EXTENSOR] {
+        // A contraction, or no contact, between.
+        for between_mv in [900.0, -f64::from(MYO_REST_MV)] {
             let mut bench = Bench::holding(7);
-            for (above_mv, frames) in [(400.0, 5_000), (between_mv, 4_000)] {
+            for (above_mv, frames) in [(400.0, 5_000), (between_mv, 4_000), (400.0, 25)] {
                 bench.lift(pin, above_mv);
                 bench.run(frames);
             }
             bench.vibration_mv = 800.0;
-            bench.lift(pin, 400.0);
-            bench.run(25);
             bench.slows.clear();
             for n in 0..18 {
                 bench.lift(pin, [390.0, 410.0][n % 2]);
@@ -359,14 +335,4 @@ fn a_quadrant_pressed_at_boot_closes_nothing_until_it_was_seen_unloaded() {
     bench.run(100);
     bench.load(4.0, 2.0);
     assert!(closes(&bench.run(400)), "S2 is back");
-}
-
-// Shows L4.
-#[test]
-fn a_stroke_that_nobody_ends_gives_the_reflex_back() {
-    let mut bench = Bench::holding(9);
-    bench.accepts(Down::Begin(Behaviour::Stroke));
-    bench.load(4.0, 2.0);
-    assert!(rests(&bench.run(119_000)), "a stroke does not answer slip");
-    assert!(closes(&bench.run(2_000)));
 }

@@ -98,16 +98,4 @@ mod tests {
         assert_eq!(plan.clone().at_most(5.0).target_n(41.99, None), 5.0);
         assert_eq!(plan.at_most(50.0).target_n(41.99, Some(20.0)), 20.0);
     }
-
-    #[test]
-    fn it_knows_pulls() {
-        let plan = Plan::of(&scene("push-gentle")).unwrap();
-        let before_n = plan.target_n(6.0, None);
-        assert!(plan.target_n(13.3, None) > 5.0 * before_n, "{before_n} N");
-    }
-
-    #[test]
-    fn nothing_is_planned_for_a_stroke() {
-        assert_eq!(Plan::of(&scene("explore-wood")), None);
-    }
 }

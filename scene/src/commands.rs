@@ -1,4 +1,4 @@
-//! What somebody types on the serial line during a scene.
+//! Commands of a scene on the serial line.
 
 use std::collections::VecDeque;
 
@@ -85,31 +85,22 @@ mod tests {
     use crate::SceneFile;
     use tenax_logic::setting::SettingId;
 
+    fn scene(line: &str, commands: &str) -> Result<SceneFile, crate::SceneError> {
+        let text = format!(
+            "name = 'n'\ntitle = 't'\nfrom = 'assumed'\nduration_s = 2\nslip_floor_mm_s = 1\n{line}[robot]\n\
+             [contact]\nmu_s = 0.5\nmu_d = 0.4\npad_length_mm = 18\npitch_mm = 1\n{commands}"
+        );
+        SceneFile::parse(&text, "t.toml")
+    }
+
     #[test]
     fn a_held_key_is_repeated_and_let_go_in_time() {
-        let text = r#"
-            name = "n"
-            title = "t"
-            from = "assumed"
-            duration_s = 2
-            slip_floor_mm_s = 1
-            [contact]
-            mu_s = 0.5
-            mu_d = 0.4
-            pad_length_mm = 18
-            pitch_mm = 1
-            [robot]
-            [[command]]
-            at_s = 1
-            kind = "close"
-            duty_permille = 300
-            for_s = 0.32
-            [[command]]
-            at_s = 0.5
-            kind = "set-s2-permille"
-            value = 400
-        "#;
-        let scene = SceneFile::parse(text, "t.toml").unwrap();
+        let scene = scene(
+            "",
+            "[[command]]\nat_s = 1\nkind = 'close'\nduty_permille = 300\nfor_s = 0.32\n\
+             [[command]]\nat_s = 0.5\nkind = 'set-s2-permille'\nvalue = 400\n",
+        )
+        .unwrap();
         assert!(scene.trusts_line(), "a script is a laboratory's");
         let mut script = Script::new(&scene.command, true);
         assert_eq!(script.take(0.499), []);
@@ -123,33 +114,15 @@ mod tests {
 
     #[test]
     fn a_board_that_trusts_nobody_is_asked_for_a_session_and_somebody_presses_its_button() {
-        let text = r#"
-            name = "n"
-            title = "t"
-            from = "assumed"
-            duration_s = 2
-            slip_floor_mm_s = 1
-            line_trusted = false
-            [contact]
-            mu_s = 0.5
-            mu_d = 0.4
-            pad_length_mm = 18
-            pitch_mm = 1
-            [robot]
-            [[command]]
-            at_s = 1
-            kind = "consent"
-            [[command]]
-            at_s = 1.5
-            kind = "zero"
-        "#;
-        let scene = SceneFile::parse(text, "t.toml").unwrap();
+        let line = "line_trusted = false\n";
+        let consent = "[[command]]\nat_s = 1\nkind = 'consent'\n[[command]]\nat_s = 1.5\nkind = ";
+        let wide = scene(line, &format!("{consent}'set-s1-mv'\nvalue = 1500"));
+        assert!(wide.is_err(), "the wider range is a trusted line's");
+        let scene = scene(line, &format!("{consent}'zero'")).unwrap();
         let mut script = Script::new(&scene.command, scene.trusts_line());
         assert_eq!(script.take(0.2), [Down::Hello]);
         assert_eq!(script.take(1.4), []);
         assert_eq!(script.take(1.5), [Down::Zero]);
         assert_eq!([0.9, 1.1, 1.4].map(|t_s| script.button(t_s)), [false, true, false]);
-        let wide = text.replace(r#""zero""#, "\"set-s1-mv\"\nvalue = 1500");
-        assert!(SceneFile::parse(&wide, "t.toml").is_err(), "the wider range is a trusted line's");
     }
 }

@@ -36,23 +36,3 @@ impl LowPass {
         (self.part / (2.0 - self.part)).sqrt()
     }
 }
-
-/// Low-passes side by side, each with an input of its own: the compiler steps several in one instruction.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct LowPasses<const N: usize> {
-    parts: [f64; N],
-    states: [f64; N],
-}
-
-impl<const N: usize> LowPasses<N> {
-    pub(crate) fn new(poles: [LowPass; N]) -> Self {
-        Self { parts: poles.map(|pole| pole.part), states: poles.map(|pole| pole.state) }
-    }
-
-    pub(crate) fn step(&mut self, inputs: &[f64; N]) -> &[f64; N] {
-        for ((state, part), input) in self.states.iter_mut().zip(&self.parts).zip(inputs) {
-            *state += part * (input - *state);
-        }
-        &self.states
-    }
-}

@@ -48,11 +48,10 @@ impl Noise {
         Self(rng)
     }
 
-    /// Normally distributed, mean 0, standard deviation 1, as far as sensors care: within 4.
+    /// Normally distributed, mean 0, standard deviation 1, within 4; excess kurtosis -0.04, ends at 7.
     ///
-    /// Of one draw of 64 bits, 48 are coins, whose heads are binomial, and 16 fill the gaps between the counts evenly.
-    /// The distribution has an excess kurtosis of -0.04 and ends at 7. It takes no function of any platform's, which the
-    /// ziggurat's tail does, and a third of its time: noise was half of what a world cost.
+    /// Of a draw of 64 bits, 48 are coins, whose heads are binomial, and 16 fill the gaps between the counts evenly: no function of any
+    /// platform's.
     pub(crate) fn normal(&mut self) -> f64 {
         let [one] = self.normals();
         one

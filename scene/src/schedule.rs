@@ -1,6 +1,9 @@
 //! Time, and things that happen for a while.
 
 use tenax_hal_shim::channel::{FRAME_HZ, SCAN_HZ};
+use toml::Spanned;
+
+use crate::file::quantity::{Duration, Instant};
 
 pub(crate) const STEP_S: f64 = 1.0 / SCAN_HZ as f64;
 
@@ -13,6 +16,10 @@ pub(crate) struct Span {
 }
 
 impl Span {
+    pub(crate) fn of(at_s: &Spanned<Instant>, for_s: Duration) -> Self {
+        Self::new(at_s.get_ref().get(), for_s.get())
+    }
+
     pub(crate) const fn new(begin_s: f64, for_s: f64) -> Self {
         Self { begin_s, end_s: begin_s + for_s }
     }

@@ -1,4 +1,4 @@
-//! What really happened in a world, exactly: what a report compares the fingertip with. Nothing here reaches a pin.
+//! The exact log of a world, which a report compares the fingertip with. None of it reaches a pin.
 
 mod record;
 
@@ -73,7 +73,7 @@ pub(crate) struct Step<'a> {
     pub(crate) trace: bool,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct State {
     pub(crate) carried: bool,
     pub(crate) dropped: bool,

@@ -101,7 +101,7 @@ impl World {
             wearer: Wearer::new(&scene.muscle),
             gripper: Gripper::new(&scene.gripper),
             vibrator: scene.vibrator.as_ref().map(Vibrator::new),
-            jams: scene.jam.iter().map(|jam| Span::new(jam.at_s.get_ref().get(), jam.for_s.get())).collect(),
+            jams: scene.jam.iter().map(|jam| Span::of(&jam.at_s, jam.for_s)).collect(),
             task,
             touch: Touch::default(),
             films: Films::new(&scene.pvdf, (&scene.knock, &scene.hum), scene.contact.pitch_mm.get(), seeds),
@@ -192,7 +192,7 @@ impl World {
     }
 
     fn moves(&mut self, t_s: f64, drive: MotorDrive) -> State {
-        self.gripper.jam(self.jams.iter().any(|jam| jam.contains(t_s)));
+        self.gripper.is_jammed = self.jams.iter().any(|jam| jam.contains(t_s));
         self.gripper.step(drive, self.touch.normal_n);
         match &mut self.task {
             Task::Grasp { grasp, hand, arm } => {
@@ -205,35 +205,23 @@ impl World {
                 State {
                     carried: carried || *arm == Arm::Robot,
                     dropped: grasp.is_dropped(),
-                    needed_n: if carried { grasp.needed_n() } else { 0.0 },
+                    needed_n: if carried { grasp.needed_n } else { 0.0 },
                     margin_n: if carried { grasp.margin_n(self.touch.normal_n) } else { 0.0 },
-                    mass_kg: grasp.mass_kg(),
+                    mass_kg: grasp.mass_kg,
                     position_mm: grasp.height_m(hand) * 1e3,
-                    hand_mm: hand.height_m() * 1e3,
+                    hand_mm: hand.height_m * 1e3,
                     pitch_rad: grasp.pitch_rad(),
-                    dent_mm: grasp.body().dent_mm(),
-                    broken: grasp.body().is_broken(),
+                    dent_mm: grasp.body.dent_mm,
+                    broken: grasp.body.broken,
                     shared: grasp.is_shared(),
-                    taken: grasp.is_taken(),
+                    taken: grasp.taken,
                 }
             }
             Task::Stroke(stroke) => {
                 self.touch = stroke.step(t_s);
-                State {
-                    carried: true,
-                    dropped: false,
-                    needed_n: 0.0,
-                    margin_n: 0.0,
-                    mass_kg: 0.0,
-                    // The surface lies still; the probe is the hand.
-                    position_mm: stroke.probe_m() * 1e3,
-                    hand_mm: stroke.probe_m() * 1e3,
-                    pitch_rad: 0.0,
-                    dent_mm: 0.0,
-                    broken: false,
-                    shared: false,
-                    taken: false,
-                }
+                // The surface lies still; the probe is the hand.
+                let probe_mm = stroke.probe_m * 1e3;
+                State { carried: true, position_mm: probe_mm, hand_mm: probe_mm, ..State::default() }
             }
         }
     }
@@ -256,7 +244,7 @@ impl Plant for World {
             touch: &self.touch,
             state,
             floor_mm_s: self.floor_mm_s,
-            opens: self.gripper.speed_mm_s() > 0.0,
+            opens: self.gripper.speed_mm_s > 0.0,
             trace: self.scans.is_multiple_of(TRACE_EVERY),
         });
 

@@ -1,6 +1,6 @@
-//! One camera of a fingertip: from a picture to what it says about skin and object. Nothing is allocated after `new`.
+//! One camera of a fingertip: from a picture to what it says about skin and object.
 
-use core::f32::consts::PI;
+use std::f32::consts::PI;
 
 use crate::force::{Forces, MIDDLE};
 use crate::frame::{Frame, HEIGHT, PIXELS, Plane, WIDTH, plane};
@@ -82,7 +82,7 @@ impl Default for Camera {
             markers: None,
             object: Tracker::default(),
             watch: Watch::default(),
-            skin: Skin::new(),
+            skin: Skin::default(),
             heading: Heading::default(),
             frames: 0,
         }
@@ -105,7 +105,7 @@ impl Camera {
     /// Takes a picture that was taken at `taken_ms` and has come at `now_ms`. With `learn`, the object's colours are
     /// learned: until the hand closes.
     pub fn picture(&mut self, frame: &Frame, learn: bool, taken_ms: u32, now_ms: u32) -> Summary {
-        core::mem::swap(&mut self.grey, &mut self.before);
+        std::mem::swap(&mut self.grey, &mut self.before);
         frame.grey(&mut self.grey);
         match &mut self.markers {
             Some(markers) => markers.follow(&self.grey),

@@ -10,7 +10,7 @@ pub mod frame;
 pub mod loads;
 pub mod markers;
 pub mod mask;
-pub mod motion;
+mod motion;
 pub mod object;
 mod plane_fit;
 pub mod quality;

@@ -7,8 +7,9 @@ mod window;
 use crate::frame::{Plane, Point};
 
 pub use self::calibration::{Calibration, FRAMES as CALIBRATION_FRAMES};
-pub use self::outline::{Edge, Fit, Outline, RAYS, irregularity};
-pub use self::window::{Blob, Levels, SIDE, Window};
+pub use self::outline::RAYS;
+use self::outline::{Fit, Outline};
+use self::window::{SIDE, Window};
 
 pub const MARKERS_MAX: usize = 64;
 
@@ -119,38 +120,31 @@ impl Marker {
 
 #[derive(Clone, Debug)]
 pub struct Markers {
-    markers: [Marker; MARKERS_MAX],
-    neighbours: [[u8; NEIGHBOURS]; MARKERS_MAX],
-    count: usize,
+    markers: Vec<Marker>,
+    /// The nearest others of each.
+    neighbours: Vec<Vec<u8>>,
 }
 
 impl Markers {
     pub fn new(calibration: &Calibration) -> Self {
-        let nothing = Shape { at: Point::default(), radii: [0.0; RAYS], area: 0, dark_pixels: 0 };
-        let mut markers = [Marker::new(nothing); MARKERS_MAX];
-        let count = calibration.markers(&mut markers);
-        let mut neighbours = [[0; NEIGHBOURS]; MARKERS_MAX];
-        for (at, near) in neighbours[..count].iter_mut().enumerate() {
-            let mut order: [u8; MARKERS_MAX] = core::array::from_fn(|number| number as u8);
-            let apart = |other: u8| {
-                if usize::from(other) == at {
-                    f32::MAX
-                } else {
-                    markers[usize::from(other)].rest.at.distance(markers[at].rest.at)
-                }
+        let markers = calibration.markers();
+        let nearest = |at: usize| {
+            let apart = |other: u8| match usize::from(other) {
+                other if other == at => f32::MAX,
+                other => markers[other].rest.at.distance(markers[at].rest.at),
             };
-            order[..count].sort_unstable_by(|&a, &b| apart(a).total_cmp(&apart(b)));
-            near.copy_from_slice(&order[..NEIGHBOURS]);
-        }
-        Self { markers, neighbours, count }
+            let mut order: Vec<u8> = (0..markers.len() as u8).collect();
+            order.sort_unstable_by(|&a, &b| apart(a).total_cmp(&apart(b)));
+            order.truncate(NEIGHBOURS);
+            order
+        };
+        Self { neighbours: (0..markers.len()).map(nearest).collect(), markers }
     }
 
+    /// Looks for each in the next picture.
     pub fn follow(&mut self, grey: &Plane) {
-        let count = self.count;
-        for marker in &mut self.markers[..count] {
-            marker.follow(grey);
-        }
-        for at in 0..count {
+        self.markers.iter_mut().for_each(|marker| marker.follow(grey));
+        for at in 0..self.markers.len() {
             if self.markers[at].found.is_ok() && self.apart(at) > APART_MAX_PX {
                 self.markers[at].disown(Failure::Apart);
             }
@@ -160,14 +154,13 @@ impl Markers {
     /// Looks for each in a picture that has nothing to do with the one before: a marker may be anywhere within half a window
     /// of where it was calibrated, and what its neighbours say helps to find it.
     pub fn locate(&mut self, grey: &Plane) {
-        let count = self.count;
-        for marker in &mut self.markers[..count] {
+        for marker in &mut self.markers {
             *marker = Marker::new(marker.rest);
             marker.place(grey, (0.0, 0.0));
         }
         // Those that are apart from their neighbours, or were not found, are looked for where those say.
         for _ in 0..2 {
-            for at in 0..count {
+            for at in 0..self.markers.len() {
                 let Some((x, y)) = self.neighbours_moved(at) else { continue };
                 let (own_x, own_y) = self.markers[at].moved();
                 if self.markers[at].found.is_err() || libm::hypotf(own_x - x, own_y - y) > APART_MAX_PX {
@@ -188,31 +181,25 @@ impl Markers {
 
     /// The median move of a marker's neighbours, px; None if too few of them are known.
     fn neighbours_moved(&self, at: usize) -> Option<(f32, f32)> {
-        let (mut xs, mut ys) = ([0.0; NEIGHBOURS], [0.0; NEIGHBOURS]);
-        let mut known = 0;
-        for &near in &self.neighbours[at] {
-            let near = &self.markers[..self.count].get(usize::from(near));
-            if let Some(near) = near.filter(|near| near.found.is_ok() && near.known()) {
-                (xs[known], ys[known]) = near.moved();
-                known += 1;
-            }
-        }
-        if known < 3 {
+        let near = self.neighbours[at].iter().map(|&near| &self.markers[usize::from(near)]);
+        let known = near.filter(|near| near.found.is_ok() && near.known());
+        let (mut xs, mut ys): (Vec<f32>, Vec<f32>) = known.map(Marker::moved).unzip();
+        if xs.len() < 3 {
             return None;
         }
         let median = |values: &mut [f32]| {
             values.sort_unstable_by(f32::total_cmp);
-            (values[known / 2] + values[(known - 1) / 2]) / 2.0
+            (values[values.len() / 2] + values[(values.len() - 1) / 2]) / 2.0
         };
-        Some((median(&mut xs[..known]), median(&mut ys[..known])))
+        Some((median(&mut xs), median(&mut ys)))
     }
 }
 
-impl core::ops::Deref for Markers {
+impl std::ops::Deref for Markers {
     type Target = [Marker];
 
     fn deref(&self) -> &[Marker] {
-        &self.markers[..self.count]
+        &self.markers
     }
 }
 
@@ -267,9 +254,8 @@ fn blob(grey: &Plane, shape: &Shape, last: Point) -> Result<Point, Failure> {
         if 2 * count < shape.area || count > 2 * shape.dark_pixels + shape.area {
             continue;
         }
-        let mut blobs = [Blob::NONE; 12];
-        let found = window.blobs(&dark, shape.area / 2, &mut blobs);
-        let mut alike = blobs[..found].iter().filter(|blob| {
+        let blobs = window.blobs(&dark, shape.area / 2);
+        let mut alike = blobs.iter().filter(|blob| {
             !blob.cut && blob.area <= 2 * shape.area && blob.at.distance(last) < SIDE as f32 / 2.0
         });
         match (alike.next(), alike.next()) {

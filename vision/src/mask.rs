@@ -3,7 +3,7 @@
 mod grow;
 mod pieces;
 
-use core::ops::Range;
+use std::ops::Range;
 
 use crate::frame::{Frame, HEIGHT, PIXELS, Point, WIDTH};
 
@@ -53,7 +53,7 @@ impl Mask {
     }
 
     pub fn insert_block(&mut self, columns: Range<usize>, rows: Range<usize>) {
-        let row: [Word; WORDS] = core::array::from_fn(|word| {
+        let row: [Word; WORDS] = std::array::from_fn(|word| {
             // Those of its pixels that are in no column from here on.
             let below = |end: usize| match end.saturating_sub(BITS * word) {
                 all if all >= BITS => Word::MAX,
@@ -173,19 +173,9 @@ impl Mask {
         let colours = [frame.red, frame.green, frame.blue].map(|plane| plane.as_chunks::<BITS>().0);
         for (number, word) in self.words_mut().enumerate().filter(|(_, word)| **word != 0) {
             let [red, green, blue] = colours.map(|plane| &plane[number]);
-            let is_kept = |bit: usize| kept(red[bit], green[bit], blue[bit]);
-            if word.count_ones() > Word::BITS / 4 {
-                // All of them at once is faster than one after the other.
-                let bytes: [u8; BITS] = core::array::from_fn(|bit| u8::from(is_kept(bit)));
-                *word &= packed(&bytes);
-            } else {
-                let mut left = *word;
-                while left != 0 {
-                    let bit = left.trailing_zeros();
-                    *word ^= Word::from(!is_kept(bit as usize)) << bit;
-                    left &= left - 1;
-                }
-            }
+            let bytes: [u8; BITS] =
+                std::array::from_fn(|bit| u8::from(kept(red[bit], green[bit], blue[bit])));
+            *word &= packed(&bytes);
         }
     }
 
@@ -202,50 +192,23 @@ impl Mask {
 
     #[inline]
     pub fn for_every(&self, every: u32, mut each: impl FnMut(usize)) {
-        // Pixels until the next.
-        let mut until = every - 1;
-        for (number, &word) in self.rows.iter().flatten().enumerate().filter(|(_, word)| **word != 0) {
-            let (mut left, mut count) = (word, word.count_ones());
-            while until < count {
-                (0..until).for_each(|_| left &= left - 1);
-                each(BITS * number + left.trailing_zeros() as usize);
-                left &= left - 1;
-                (count, until) = (count - until - 1, every - 1);
+        let mut count = 0;
+        self.for_each(|at| {
+            count += 1;
+            if count % every == 0 {
+                each(at);
             }
-            until -= count;
-        }
+        });
     }
 
     /// None of an empty set.
     pub fn moments(&self) -> Option<Moments> {
-        let (mut n, mut sx, mut sy, mut sxx, mut sxy, mut syy) = (0u64, 0, 0, 0, 0, 0);
-        for (y, row) in self.rows.iter().enumerate() {
-            let (mut count, mut sum, mut squares) = (0u64, 0u64, 0u64);
-            for (place, &word) in row.iter().enumerate() {
-                let mut left = word;
-                while left != 0 {
-                    let x = BITS as u64 * place as u64 + u64::from(left.trailing_zeros());
-                    (count, sum, squares) = (count + 1, sum + x, squares + x * x);
-                    left &= left - 1;
-                }
-            }
-            let y = y as u64;
-            (n, sx, sy) = (n + count, sx + sum, sy + count * y);
-            (sxx, sxy, syy) = (sxx + squares, sxy + sum * y, syy + count * y * y);
-        }
-        if n == 0 {
-            return None;
-        }
-        let mean = |sum: u64| sum as f64 / n as f64;
-        let (x, y) = (mean(sx), mean(sy));
-        let (xx, xy, yy) = (mean(sxx) - x * x, mean(sxy) - x * y, mean(syy) - y * y);
-        Some(Moments {
-            area: n as u32,
-            middle: Point { x: x as f32, y: y as f32 },
-            xx: xx as f32,
-            xy: xy as f32,
-            yy: yy as f32,
-        })
+        let mut sums = [0u64; 6];
+        self.for_each(|at| {
+            let (x, y) = ((at % WIDTH) as u64, (at / WIDTH) as u64);
+            sums.iter_mut().zip([1, x, y, x * x, x * y, y * y]).for_each(|(sum, term)| *sum += term);
+        });
+        Moments::of(sums.map(|sum| sum as f64), Point::default())
     }
 }
 
@@ -294,7 +257,7 @@ fn flood(seed: &[Word; WORDS], free: &[Word; WORDS]) -> [Word; WORDS] {
     };
     let right = up(seed, free);
     let left = mirrored(&up(&mirrored(seed), &mirrored(free)));
-    core::array::from_fn(|word| right[word] | left[word])
+    std::array::from_fn(|word| right[word] | left[word])
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -307,6 +270,21 @@ pub struct Moments {
 }
 
 impl Moments {
+    /// From the sums of 1, x, y, x^2, xy and y^2 of places about `origin`. None if the first is 0.
+    pub(crate) fn of([n, sx, sy, sxx, sxy, syy]: [f64; 6], origin: Point) -> Option<Self> {
+        if n == 0.0 {
+            return None;
+        }
+        let (x, y) = (sx / n, sy / n);
+        Some(Self {
+            area: n as u32,
+            middle: Point { x: origin.x + x as f32, y: origin.y + y as f32 },
+            xx: (sxx / n - x * x) as f32,
+            xy: (sxy / n - x * y) as f32,
+            yy: (syy / n - y * y) as f32,
+        })
+    }
+
     /// The direction of its long axis, radians from -pi/2 to pi/2, from x towards y (down).
     pub fn angle_rad(&self) -> f32 {
         0.5 * libm::atan2f(2.0 * self.xy, self.xx - self.yy)

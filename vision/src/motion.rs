@@ -64,7 +64,7 @@ fn around(plane: &Plane, at: usize) -> [i32; 9] {
     else {
         return [0; 9];
     };
-    core::array::from_fn(|place| i32::from(near[place / 3 * WIDTH + place % 3]))
+    std::array::from_fn(|place| i32::from(near[place / 3 * WIDTH + place % 3]))
 }
 
 #[inline]
@@ -96,13 +96,13 @@ impl Samples {
         // Of both pictures: the slope of one alone would be off by half the move. Neighbours count, too: noise in the slope makes a move
         // look small.
         let (now, before) = (around(now, at), around(before, at));
-        let both = core::array::from_fn(|place| now[place] + before[place]);
+        let both = std::array::from_fn(|place| now[place] + before[place]);
         let (gx, gy) = slope(both);
         if gx.abs() + gy.abs() < 8 * SLOPE_MIN {
             return;
         }
         let (gx, gy) = (gx as f32 / 16.0, gy as f32 / 16.0);
-        let change = sum(core::array::from_fn(|place| now[place] - before[place])) as f32 / 16.0;
+        let change = sum(std::array::from_fn(|place| now[place] - before[place])) as f32 / 16.0;
         let (dx, dy) = ((x as f32 - middle.x) / ARM_PX, (y as f32 - middle.y) / ARM_PX);
         let row = [-gx, -gy, gx * dy - gy * dx, both[4] as f32 / 512.0];
         self.rows.iter_mut().zip(row).for_each(|(column, value)| column[self.count] = value);
@@ -119,7 +119,7 @@ impl Samples {
         // What is past the last sample is 0 and adds nothing.
         for first in (0..self.count).step_by(LANES) {
             let lanes = |column: &[f32; SAMPLES_MAX]| -> [f32; LANES] {
-                core::array::from_fn(|lane| column[first + lane])
+                std::array::from_fn(|lane| column[first + lane])
             };
             let (rows, change) = (self.rows.each_ref().map(lanes), lanes(&self.changes));
             let mut weight = [1.0; LANES];
@@ -131,7 +131,7 @@ impl Samples {
                 }
             }
             for i in 0..UNKNOWNS {
-                let own: [f32; LANES] = core::array::from_fn(|lane| weight[lane] * rows[i][lane]);
+                let own: [f32; LANES] = std::array::from_fn(|lane| weight[lane] * rows[i][lane]);
                 let add = |sums: &mut [f32; LANES], of: &[f32; LANES]| {
                     (0..LANES).for_each(|lane| sums[lane] += own[lane] * of[lane]);
                 };

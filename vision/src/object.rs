@@ -1,9 +1,7 @@
 //! The object behind the skin, and whether it slips (FingerVision 2017, section III).
 //!
-//! The paper takes for the object whatever has the colours of what moved. A white card before a white wall has no colour of
-//! its own, so a pixel must also differ from what the camera remembers there (`Scene`), and the colours that are taken
-//! away from the object's are those that it now hides. Either alone is not enough: a person who walks by behind the skin
-//! differs from the scene, and a wall has the colours of a card.
+//! An object has the colours of what moved, less those that it now hides, and differs from the remembered scene. Either alone is not
+//! enough: a person behind the skin differs from the scene, and a wall has the colours of a card.
 
 mod axis;
 mod colour;
@@ -23,11 +21,13 @@ use self::model::{Histogram, ObjectModel};
 use self::movement::Running;
 use self::scene::Scene;
 
+/// Pixels that differ from the scene are believed to be the scene in one frame of so many while an object is seen.
 const DOUBT_FRAMES: u32 = 32;
-/// And while there is none.
+/// The same while no object is seen.
 const DOUBT_FRAMES_EMPTY: u32 = 4;
 /// Every so many pixels of the scene stand for all of it: a prime, so that no column is taken again and again.
 const SAMPLE: usize = 13;
+/// Half the width of what is no part of a larger object, px.
 const SPUR_PX: usize = 5;
 /// Largest move of a held object from one frame to the next, px.
 const LEAP_PX: usize = 3;
@@ -39,14 +39,16 @@ const APART_PX: usize = 32;
 const HELD_HALVED: u32 = 3;
 /// Hysteresis of "seen in part": below the first share of what was seen, until above the second, per cent.
 const WHOLE_PERCENT: (u32, u32) = (60, 90);
+/// Moving pixels below which an object is still.
 const STILL_PX: u32 = 150;
 /// Frames after which what looks like a ghost is one.
 const GHOST_FRAMES: u32 = 3;
 /// Frames in which what comes in front of the scene counts as moving.
 const ARRIVED_FRAMES: u32 = 4;
+/// Reach around moving pixels in which others belong to them, px: to learn colours, and to doubt the scene.
 const INSIDE_PX: usize = 10;
-
 const MOVES_PX: usize = 4;
+/// Reach around an object in which pixels that differ from the scene may be more of it, px.
 const CLOSE_PX: usize = 16;
 
 /// Back projection from which a pixel's colour is the object's, 1 to 255.
@@ -67,6 +69,7 @@ pub struct Sighting {
     pub rims: f32,
     pub area: f32,
     pub slip_px: u32,
+    /// Part of it is beyond the border or has the colours of the wall; middle and angle are those of the rest.
     pub cut: bool,
 }
 

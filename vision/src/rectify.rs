@@ -58,18 +58,7 @@ impl Rectifier {
                 *sum += term * area;
             }
         });
-        let [n, sx, sy, sxx, sxy, syy] = sums;
-        if n == 0.0 {
-            return None;
-        }
-        let (x, y) = (sx / n, sy / n);
-        Some(Moments {
-            area: n as u32,
-            middle: Point { x: MIDDLE.x + x as f32, y: MIDDLE.y + y as f32 },
-            xx: (sxx / n - x * x) as f32,
-            xy: (sxy / n - x * y) as f32,
-            yy: (syy / n - y * y) as f32,
-        })
+        Moments::of(sums, MIDDLE)
     }
 }
 

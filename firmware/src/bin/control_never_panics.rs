@@ -30,8 +30,6 @@ mod last_words;
 mod line;
 #[path = "../mail.rs"]
 mod mail;
-#[path = "../micros.rs"]
-mod micros;
 #[path = "../scan.rs"]
 mod scan;
 #[path = "../supply.rs"]

@@ -34,7 +34,6 @@ pub struct Identity {
     pub reset: ResetCause,
 }
 
-/// What identifies the board: build, chip, schema of the messages, settings.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct About {
     pub identity: Identity,

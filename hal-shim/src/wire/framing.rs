@@ -17,12 +17,11 @@ pub struct Received<T> {
     pub message: T,
 }
 
-/// Why a frame was skipped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BadFrame {
     /// Not COBS, or its CRC is wrong, or it is no message.
     Garbled,
-    /// Of another version of this protocol.
+    /// A frame of this other version of the protocol.
     Version(u8),
     /// Longer than [`FRAME_MAX`].
     TooLong,

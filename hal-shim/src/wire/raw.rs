@@ -98,24 +98,14 @@ mod tests {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             (state >> 16) as u16 & MASK
         };
+        let mut raw = Raw::default();
         for round in 0..1_000 {
-            let mut raw = Raw::default();
-            let frames: [Frame; FRAMES_PER_RAW] = core::array::from_fn(|place| match round {
-                0 => Frame::lost(place as u32),
-                1 => Frame {
-                    pvdf: [MASK; PVDF_COUNT],
-                    switch_a: MASK,
-                    switch_b: MASK,
-                    valid: true,
-                    sequence: place as u32,
-                },
-                _ => Frame {
-                    pvdf: core::array::from_fn(|_| sample()),
-                    switch_a: sample(),
-                    switch_b: sample(),
-                    valid: sample() % 2 == 0,
-                    sequence: round * FRAMES_PER_RAW as u32 + place as u32,
-                },
+            let frames: [Frame; FRAMES_PER_RAW] = core::array::from_fn(|place| Frame {
+                pvdf: core::array::from_fn(|_| if round == 0 { MASK } else { sample() }),
+                switch_a: if round == 0 { MASK } else { sample() },
+                switch_b: if round == 0 { MASK } else { sample() },
+                valid: sample() % 2 == 0,
+                sequence: round * FRAMES_PER_RAW as u32 + place as u32,
             });
             frames.iter().for_each(|frame| raw.put(frame));
             assert_eq!(raw.frames(), frames);

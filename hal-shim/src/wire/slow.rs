@@ -82,6 +82,5 @@ pub struct NetworkState {
     pub updates: u32,
     /// Age of the teacher's newest picture, ms; None before the first.
     pub teacher_age_ms: Option<u16>,
-    /// Why it is not learning, if it is not.
     pub no_lesson: Option<NoLesson>,
 }

@@ -31,7 +31,6 @@ pub struct Counters {
     pub control_permille: u16,
 }
 
-/// What happened at the board (a fault, a change of mode, a consent) and when.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Event {
     /// Sequence number of the frame in which it happened.
@@ -89,7 +88,7 @@ pub enum Up {
     Hello {
         /// Samples a second on every direct pin.
         frame_hz: u16,
-        /// Why it started, if not because it was switched on.
+        /// The fault that ended the run before. None: it was switched on.
         after: Option<Fault>,
     },
     Slow(Slow),
@@ -115,7 +114,7 @@ pub enum Up {
     Restored(Restored),
     /// Frames as they were sampled: see [`Down::Stream`](super::Down::Stream).
     Raw(Raw),
-    /// What every sensor reads: see [`Down::Stream`](super::Down::Stream).
+    /// Readings of every sensor: see [`Down::Stream`](super::Down::Stream).
     Senses(Senses),
     /// A command, before its answer, while frames are streamed.
     Taken {

@@ -21,6 +21,7 @@
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
+use tenax_host_tests::gauss;
 use tenax_logic::hebbian::{Activation, Activations, Code, Codes, RECEPTORS};
 
 /// Vibration receptors come first.
@@ -65,11 +66,6 @@ fn phase(ms: usize) -> (Codes, f64, f64) {
         4_000..5_500 => ([Plus, Minus], 0.8, 0.6),
         _ => ([Minus, Minus], 0.8, -0.7),
     }
-}
-
-fn gauss(rng: &mut ChaCha8Rng) -> f64 {
-    // Twelve uniform numbers: mean 0, variance 1.
-    (0..12).map(|_| rng.random_range(-0.5..0.5)).sum()
 }
 
 impl Finger {

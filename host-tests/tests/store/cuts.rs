@@ -139,21 +139,3 @@ fn bits_that_read_differently_each_time_hide_nothing_that_was_finished() {
         }
     }
 }
-
-/// A control of the test above: a record counts by its commit word alone.
-#[test]
-fn a_record_without_its_last_word_does_not_count() {
-    let mut flash = TestFlash::blank(SECTOR_WORDS);
-    let (mut log, _) = open(&mut flash, Erase::Allowed);
-    let words = save(&mut flash, &mut log, Kept::Zero, 1).expect("power");
-    let payload = super::payload(Kept::Zero, 2);
-    let mut saving = log.begin(Kept::Zero, &payload).expect("room");
-    for (steps, is_last, found_n) in [(words - 1, false, 1), (1, true, 2)] {
-        for _ in 0..steps {
-            assert_eq!(saving.step(&mut flash), Ok(is_last));
-        }
-        let (_, found) = open(&mut flash, Erase::Allowed);
-        assert_eq!(numbers(&flash, &found), [None, Some(found_n), None, None]);
-        assert!(found.is_damaged(Kept::Zero) != is_last && !found.is_damaged(Kept::Network));
-    }
-}

@@ -62,11 +62,14 @@ fn zero_and_settings_survive_and_a_fingertip_without_them_differs() {
     bench.accepts(Down::Zero);
     bench.accepts(set(SettingId::S2, 420));
     assert_eq!(save_all(&mut bench.fingertip, &mut keeper, &mut flash), [Kept::Settings, Kept::Zero]);
+    bench.accepts(Down::Forget);
+    assert_eq!(save_all(&mut bench.fingertip, &mut keeper, &mut flash), [Kept::Network]);
 
     let after = off_zero(booted(&mut flash));
     assert!(fn_mn(&after) < untouched / 4, "{} mN after, {untouched} mN before", fn_mn(&after));
     assert_eq!(after.slows.last().map(|slow| slow.s2_permille), Some(420));
     let mut same = booted(&mut flash);
+    assert_eq!(same.network().weights, [[0; 24]; 2]);
     let mut keeper = same.keeper();
     assert!(same.next_record(&mut keeper).is_none(), "what was restored need not be saved");
 }
@@ -82,14 +85,4 @@ fn a_record_of_something_else_is_told_and_changes_nothing() {
     }
     assert!(fingertip.next_record(&mut keeper).is_none());
     assert_eq!(fingertip.config().get(SettingId::S2), 300);
-}
-
-#[test]
-fn a_forgotten_network_stays_forgotten() {
-    let mut flash = TestFlash::blank(4_096);
-    let mut fingertip = Fingertip::trusting();
-    let mut keeper = fingertip.keeper();
-    fingertip.command(&Down::Forget).unwrap();
-    assert_eq!(save_all(&mut fingertip, &mut keeper, &mut flash), [Kept::Network]);
-    assert_eq!(booted(&mut flash).network().weights, [[0; 24]; 2]);
 }

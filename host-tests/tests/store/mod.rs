@@ -60,35 +60,6 @@ fn booted(flash: &mut TestFlash) -> Numbers {
 }
 
 #[test]
-fn the_newest_of_each_kind_comes_back_from_a_sector_of_the_chip() {
-    let mut flash = TestFlash::blank(128 * 1024 / 4);
-    let (mut log, found) = open(&mut flash, Erase::Allowed);
-    assert_eq!(numbers(&flash, &found), [None; Kept::ALL.len()]);
-    for n in 0..50 {
-        save(&mut flash, &mut log, Kept::ALL[n as usize % 4], n).unwrap();
-    }
-    assert_eq!(booted(&mut flash), [Some(48), Some(49), Some(46), Some(47)]);
-    assert_eq!(flash.erases, [0, 0], "a new chip is blank, and there was room");
-}
-
-/// Saves of the network in 10,000 erases of each sector, with a boot after every save, which leaves a word free.
-#[test]
-fn the_chip_bears_four_million_saves_of_the_network() {
-    const ERASES: usize = 10_000;
-    let snapshot = vec![7; tenax_logic::hebbian::snapshot::length(24, 2)];
-    let mut flash = TestFlash::blank(128 * 1024 / 4);
-    let mut saves = 0;
-    while flash.erases != [3, 3] {
-        let (mut log, _) = open(&mut flash, Erase::Allowed);
-        let mut saving = log.begin(Kept::Network, &snapshot).expect("a boot makes room");
-        while !saving.step(&mut flash).unwrap() {}
-        saves += 1;
-    }
-    assert_eq!(saves / 6, 204, "saves an erase");
-    assert!(saves / 6 * 2 * ERASES > 4_000_000);
-}
-
-#[test]
 fn a_full_sector_refuses_until_the_next_boot_and_erases_nothing_before() {
     let mut flash = TestFlash::blank(128);
     let (mut log, _) = open(&mut flash, Erase::Allowed);

@@ -1,6 +1,6 @@
 //! A lesson on the emulated board, beside the same on the host.
 
-#[path = "../../../host-tests/src/onsets.rs"]
+#[path = "../../../sim/tests/common/onsets.rs"]
 mod onsets;
 
 use std::path::Path;

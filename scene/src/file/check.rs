@@ -1,4 +1,4 @@
-//! What no single number can know: whether the numbers of a scene fit each other.
+//! Checks of the numbers of a scene against each other.
 
 use std::ops::Range;
 
@@ -124,11 +124,8 @@ fn one_story(scene: &SceneFile) -> Checked {
             what: "a scene needs [object] (something to grasp) or [robot] (strokes a surface)".to_owned(),
         }),
         (Some(_), None) => {
-            let foreign = scene
-                .press
-                .iter()
-                .map(|press| &press.at_s)
-                .chain(scene.sweep.iter().map(|sweep| &sweep.at_s));
+            let press = scene.press.iter().map(|press| &press.at_s);
+            let foreign = press.chain(scene.sweep.iter().map(|sweep| &sweep.at_s));
             refuse(foreign, "[[press]] and [[sweep]] are the robot's; this scene has an [object]")
         }
         (None, Some(_)) => {
@@ -136,14 +133,13 @@ fn one_story(scene: &SceneFile) -> Checked {
                 let what = "[pitch] needs an [object]; this scene has a [robot]".to_owned();
                 return Err(Wrong { span: pitch.span(), what });
             }
-            let foreign = scene.fill.iter().map(|fill| &fill.at_s);
-            let foreign = foreign.chain(scene.moves.iter().map(|step| &step.at_s));
-            let foreign = foreign.chain(scene.swing.iter().map(|swing| &swing.at_s));
-            let foreign = foreign.chain(scene.pull.iter().map(|pull| &pull.at_s));
-            refuse(
-                foreign,
-                "[[fill]], [[move]], [[swing]] and [[pull]] need an [object]; this scene has a [robot]",
-            )
+            let what =
+                "[[fill]], [[move]], [[swing]] and [[pull]] need an [object]; this scene has a [robot]";
+            let fill_move =
+                scene.fill.iter().map(|fill| &fill.at_s).chain(scene.moves.iter().map(|go| &go.at_s));
+            let swing_pull =
+                scene.swing.iter().map(|swing| &swing.at_s).chain(scene.pull.iter().map(|pull| &pull.at_s));
+            refuse(fill_move.chain(swing_pull), what)
         }
     }
 }

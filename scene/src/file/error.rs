@@ -1,4 +1,4 @@
-//! What is wrong with a scene file, in one line.
+//! An error of a scene file, in one line.
 
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}:{line}: {what}")]

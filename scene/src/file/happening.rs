@@ -1,4 +1,4 @@
-//! What happens in a scene, as its file says: what scores are counted by.
+//! Events of a scene, as its file says: scores are counted by them.
 
 use super::SceneFile;
 

@@ -1,16 +1,17 @@
 //! Scene files: TOML in, a checked [`SceneFile`] out, or one message that says where and what is allowed.
 
-pub mod base;
-pub mod channel;
+mod base;
+mod channel;
 mod check;
 mod defaults;
 mod error;
 mod happening;
-pub mod quantity;
-pub mod sections;
+pub(crate) mod quantity;
+pub(crate) mod sections;
 mod step;
 
-use base::{Find, Sources};
+pub use base::Find;
+use base::Sources;
 use serde::Deserialize;
 use std::ops::Range;
 use tenax_hal_shim::channel::MYO_FLEXOR;

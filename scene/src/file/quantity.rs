@@ -18,6 +18,7 @@ macro_rules! quantities {
 
         impl $name {
             /// A value known when compiling. Outside the range it does not compile in a constant.
+            #[allow(dead_code, reason = "only kinds of which a section has a default are made so")]
             pub const fn of(value: f64) -> Self {
                 assert!(value >= $low && value <= $high, "outside its range");
                 Self(value)

@@ -1,4 +1,4 @@
-//! Whether one scan is a short enough step for what a scene asks for, twice over (`docs/stepping.md`).
+//! Check that the step of one scan fits twice into each bound (`docs/stepping.md`).
 
 use super::SceneFile;
 use super::check::{Checked, demand};

@@ -45,13 +45,11 @@ pub struct Outcome {
     pub stuck_part: f64,
 }
 
-/// The patch: rings whose pressures are evenly spaced.
+/// A patch of rings whose pressures are evenly spaced.
 ///
 /// With `w = p / p0 = sqrt(1 - (r/a)^2)` a ring between `w1` and `w2` has the area part `w2^2 - w1^2` and the load part
-/// `w2^3 - w1^3`, both exact. So the patch carries its load and its stiffness exactly at every N, each ring that only
-/// sticks or only slides is exact too, and the one that the edge of the stick zone crosses is all of the error: second
-/// order in 1/N. Evenly spaced radii would squeeze the edge, where the pressure falls like a root, into one ring. And the
-/// rings let go at evenly spaced displacements, which is how the events should come.
+/// `w2^3 - w1^3`, both exact. Only the ring that the edge of the stick zone crosses is in error, of second order in 1/N, and the
+/// rings let go at evenly spaced displacements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BrushPatch {
     pad: Pad,
@@ -147,18 +145,5 @@ pub mod closed_form {
     /// The s of its greatest shear: `sqrt(mu_s / (3 mu_s - 2 mu_d))`. Whoever pulls harder than there loses all of it.
     pub fn peak(friction: super::Friction) -> f64 {
         (friction.mu_s / (3.0 * friction.mu_s - 2.0 * friction.mu_d)).sqrt()
-    }
-
-    /// Q / (mu P) of the elastic half-space (Cattaneo 1938, Mindlin 1949): 1 - (1 - s)^1.5.
-    ///
-    /// With the same stiffness at rest (`k pi a^2 = 8 G* a`) both let go altogether at the same displacement, so `s`
-    /// means the same.
-    pub fn half_space_shear(s: f64) -> f64 {
-        1.0 - (1.0 - s) * (1.0 - s).sqrt()
-    }
-
-    /// c / a of the elastic half-space under a shear of `q` = Q / (mu P): (1 - q)^(1/3).
-    pub fn half_space_stick_radius(q: f64) -> f64 {
-        libm::cbrt(1.0 - q)
     }
 }

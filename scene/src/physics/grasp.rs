@@ -26,9 +26,9 @@ pub struct Grasp {
     fills: Vec<(Span, f64)>,
     pulls: Pulls,
     shared: bool,
-    taken: bool,
+    pub(crate) taken: bool,
     surface: Surface,
-    body: Body,
+    pub(crate) body: Body,
     pitch: Option<Pitch>,
     pad_m: f64,
     mat_n_per_m: f64,
@@ -42,9 +42,10 @@ pub struct Grasp {
     lifted: bool,
     slid_m: f64,
     speed_m_s: f64,
-    mass_kg: f64,
+    pub(crate) mass_kg: f64,
     table_n: f64,
-    needed_n: f64,
+    /// The least grip force of each finger that would hold the object at this instant, N.
+    pub(crate) needed_n: f64,
     needs_n: [f64; 2],
     shear_n: f64,
     holds: f64,
@@ -62,7 +63,7 @@ impl Grasp {
         let fills = scene
             .fill
             .iter()
-            .map(|fill| (Span::new(fill.at_s.get_ref().get(), fill.for_s.get()), fill.add_kg.get_ref().get()))
+            .map(|fill| (Span::of(&fill.at_s, fill.for_s), fill.add_kg.get_ref().get()))
             .collect();
         Self {
             empty_kg,
@@ -113,7 +114,7 @@ impl Grasp {
         let grip_n = if self.in_hand { self.body.bears(grip_n) } else { 0.0 };
 
         let depth_m = -self.height_m(hand);
-        let sinking_m_s = -(self.speed_m_s + hand.speed_m_s());
+        let sinking_m_s = -(self.speed_m_s + hand.speed_m_s);
         self.table_n = if depth_m > 0.0 {
             (self.mat_n_per_m * depth_m + self.mat_ns_per_m * sinking_m_s).max(0.0)
         } else {
@@ -121,7 +122,7 @@ impl Grasp {
         };
         self.shared = self.pulls.takes(t_s);
         let free_n =
-            self.table_n + self.pulls.force_n(t_s) - self.mass_kg * (GRAVITY_M_S2 + hand.acceleration_m_s2());
+            self.table_n + self.pulls.force_n(t_s) - self.mass_kg * (GRAVITY_M_S2 + hand.acceleration_m_s2);
         let drag_ns_per_m = self.drag_ns_per_m(dry, grip_n);
         // Backward Euler: no drag turns the motion round.
         let free_m_s =
@@ -147,7 +148,7 @@ impl Grasp {
         self.shear_n = shear_n;
         self.lifted |= grip_n > TOUCH_N && self.table_n == 0.0;
         self.taken |= self.in_hand && self.shared && self.lifted && grip_n == 0.0;
-        self.in_hand &= self.slid_m.abs() <= self.pad_m && !self.body.is_broken() && !self.taken;
+        self.in_hand &= self.slid_m.abs() <= self.pad_m && !self.body.broken && !self.taken;
         // Pulled out of the fingers: they had it in their hand.
         self.taken |= !self.in_hand && self.shared && self.lifted;
         let drop_n = (friction.mu_s - friction.mu_d) * grip_n;
@@ -169,7 +170,7 @@ impl Grasp {
     fn turn(&mut self, friction: Friction, grip_n: f64, drag_ns_per_m: f64, hand: &Hand) -> Turn {
         let Some(pitch) = self.pitch.as_mut().filter(|_| self.in_hand) else { return Turn::default() };
         let hangs = self.table_n == 0.0;
-        let weight_n = if hangs { self.mass_kg * (GRAVITY_M_S2 + hand.acceleration_m_s2()) } else { 0.0 };
+        let weight_n = if hangs { self.mass_kg * (GRAVITY_M_S2 + hand.acceleration_m_s2) } else { 0.0 };
         let slide_m_s = if self.sticks { 0.0 } else { self.speed_m_s };
         let load = Load {
             mass_kg: self.mass_kg,
@@ -198,18 +199,13 @@ impl Grasp {
         self.pitch.as_ref().is_some_and(Pitch::turns)
     }
 
-    /// How the fingers feel it: its width, mm, and the stiffness of pad and object together, N/mm a finger. None once
-    /// it has left the pads: the fingers close on nothing.
+    /// Width, mm, and stiffness of pad and object together, N/mm a finger. None once the object has left the pads.
     pub fn between_the_fingers(&self) -> Option<(f64, f64)> {
-        self.in_hand.then(|| (self.body.width_mm(), self.body.stiffness_n_per_mm()))
+        self.in_hand.then(|| (self.body.width_mm(), self.body.stiffness_n_per_mm))
     }
 
     pub fn height_m(&self, hand: &Hand) -> f64 {
-        self.rest_m + hand.height_m() + self.slid_m
-    }
-
-    pub const fn mass_kg(&self) -> f64 {
-        self.mass_kg
+        self.rest_m + hand.height_m + self.slid_m
     }
 
     pub fn table_part(&self) -> f64 {
@@ -228,28 +224,18 @@ impl Grasp {
         self.shared || self.taken
     }
 
-    pub const fn is_taken(&self) -> bool {
-        self.taken
-    }
-
     pub fn pitch_rad(&self) -> f64 {
-        self.pitch.as_ref().map_or(0.0, Pitch::angle_rad)
+        self.pitch.as_ref().map_or(0.0, |pitch| pitch.angle_rad)
     }
 
-    pub const fn body(&self) -> &Body {
-        &self.body
-    }
-
-    /// What stops it if it slides or turns: what sliding friction needs to carry it, and to take its speed within
-    /// [`STOPS_S`], N of each finger. None while it sticks.
+    /// Grip force of each finger that carries a sliding or turning object and stops it within [`STOPS_S`], N. None while it sticks.
     pub fn stops_n(&self) -> Option<f64> {
         let carries_n = self.needed_n * self.holds / self.slides;
         let brakes_n = self.mass_kg * self.rubs_m_s() / STOPS_S / PADS / self.slides;
         (!self.sticks || self.turns()).then_some(carries_n + brakes_n)
     }
 
-    /// The least grip force of each finger under which all that sticks now would stick, N: what is needed, and what the skin's spring
-    /// takes on top of it as it swings.
+    /// The least grip force of each finger under which all that sticks would stick, the swing of the skin's spring included, N.
     pub fn carries_n(&self) -> f64 {
         let [along_n, turning_n] = self.needs_n;
         along_n.max(self.shear_n.abs() / self.holds).hypot(turning_n)
@@ -257,11 +243,6 @@ impl Grasp {
 
     pub fn margin_n(&self, grip_n: f64) -> f64 {
         self.holds * (grip_n - self.needed_n)
-    }
-
-    /// The least grip force that would hold it at this instant, N.
-    pub const fn needed_n(&self) -> f64 {
-        self.needed_n
     }
 }
 

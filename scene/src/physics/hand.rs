@@ -1,4 +1,4 @@
-//! How the wearer's arm carries the hand: up, down, and swinging.
+//! The wearer's arm, which carries the hand up, down, and swinging.
 
 use crate::file::sections::{Move, Swing};
 use crate::pole::LowPass;
@@ -14,9 +14,10 @@ pub struct Hand {
     swings: Vec<(Span, Swing)>,
     felt: LowPass,
     aim_m: f64,
-    height_m: f64,
-    speed_m_s: f64,
-    acceleration_m_s2: f64,
+    /// Over where it grasps; speed and acceleration are upwards.
+    pub(crate) height_m: f64,
+    pub(crate) speed_m_s: f64,
+    pub(crate) acceleration_m_s2: f64,
 }
 
 impl Hand {
@@ -25,7 +26,7 @@ impl Hand {
         let moves = moves.iter().map(|step| {
             let by_m = step.to_mm.get() / 1e3 - from_m;
             from_m += by_m;
-            (Span::new(step.at_s.get_ref().get(), step.for_s.get()), by_m)
+            (Span::of(&step.at_s, step.for_s), by_m)
         });
         let moves = moves.collect();
         let swings = swings.iter().map(|swing| {
@@ -63,18 +64,6 @@ impl Hand {
         self.acceleration_m_s2 = (speed_m_s - self.speed_m_s) / STEP_S;
         self.speed_m_s = speed_m_s;
         self.height_m += speed_m_s * STEP_S;
-    }
-
-    pub const fn height_m(&self) -> f64 {
-        self.height_m
-    }
-
-    pub const fn speed_m_s(&self) -> f64 {
-        self.speed_m_s
-    }
-
-    pub const fn acceleration_m_s2(&self) -> f64 {
-        self.acceleration_m_s2
     }
 }
 

@@ -1,4 +1,4 @@
-//! How much of a contact a scene needs: rigid (L0), a patch (L1), or friction that falls with speed (L2).
+//! Levels of contact: rigid (L0), a patch (L1), or friction that falls with speed (L2).
 
 use super::brush::{Pad, closed_form};
 use super::contact::RigidCoulomb;

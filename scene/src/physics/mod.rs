@@ -1,20 +1,20 @@
-//! What moves, and what makes it move.
+//! Everything that moves.
 
 pub mod brush;
 pub mod contact;
 pub mod friction;
-pub mod grasp;
-pub mod gripper;
-pub mod hand;
+pub(crate) mod grasp;
+pub(crate) mod gripper;
+pub(crate) mod hand;
 pub mod level;
-pub mod limit;
-pub mod patch;
-pub mod pitch;
+pub(crate) mod limit;
+pub(crate) mod patch;
+pub(crate) mod pitch;
 pub(crate) mod pull;
 pub mod stribeck;
-pub mod stroke;
+pub(crate) mod stroke;
 pub(crate) mod vibrator;
-pub mod wearer;
+pub(crate) mod wearer;
 
 /// Standard gravity, m/s^2.
 pub const GRAVITY_M_S2: f64 = 9.80665;

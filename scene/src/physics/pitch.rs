@@ -21,7 +21,8 @@ pub struct Pitch {
     gyration_m: f64,
     radius_m: f64,
     contact: RigidCoulomb,
-    angle_rad: f64,
+    /// Positive towards the load.
+    pub(crate) angle_rad: f64,
     speed_rad_s: f64,
     used_part: f64,
     turn_part: f64,
@@ -116,11 +117,6 @@ impl Pitch {
     pub const fn turns(&self) -> bool {
         !self.contact.sticks()
     }
-
-    /// How far it has turned, rad, positive towards the load.
-    pub const fn angle_rad(&self) -> f64 {
-        self.angle_rad
-    }
 }
 
 /// The way over which the skin leans into a new direction, m: that over which a pad of 2 N/mm takes up the shear of 1 N
@@ -192,20 +188,6 @@ mod tests {
         alone.step(under(2.0), FRICTION);
         shared.step(Load { shear_part: 0.9, ..under(2.0) }, FRICTION);
         assert!(!alone.turns() && shared.turns());
-    }
-
-    #[test]
-    fn what_turns_gives_up_its_friction_along_the_pad_over_a_way_and_not_at_once() {
-        let mut pitch = pitch(4.0, 0.0);
-        pitch.step(Load { shear_part: 0.9, ..under(2.0) }, FRICTION);
-        assert!(pitch.turns());
-        pitch.step(Load { shear_part: 0.9, ..under(2.0) }, FRICTION);
-        let at_once = pitch.leaves(FRICTION).mu_d / FRICTION.mu_d;
-        while pitch.angle_rad() * TORSION * 0.005 < 5.0 * LEANS_M {
-            pitch.step(Load { shear_part: 0.9, ..under(2.0) }, FRICTION);
-        }
-        let later = pitch.leaves(FRICTION).mu_d / FRICTION.mu_d;
-        assert!(at_once > 0.8 && later <= LEAST + 1e-2, "{at_once}, {later}");
     }
 
     proptest! {

@@ -1,8 +1,7 @@
 //! L2: friction that falls with speed, under a mass on a spring.
 //!
-//! A mass held by a spring on a moving surface vibrates by itself exactly when `c + P dmu/dv < 0` at the sliding speed
-//! (`scene/tests/stribeck.rs`). That vibration is the continuous signal of the photoelastic sensor (Dubey 2006, section 3, "a
-//! negative damping to sustain the vibration"); with L0 and L1, whose sliding friction is constant, it dies away.
+//! The mass vibrates by itself exactly when `c + P dmu/dv < 0` at the sliding speed. That vibration is the continuous signal of the
+//! photoelastic sensor (Dubey 2006, section 3).
 
 use super::GRAVITY_M_S2;
 

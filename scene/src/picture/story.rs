@@ -1,4 +1,4 @@
-//! What happens in front of the camera: an object comes, is grasped, held, slips, is pulled and turned, and goes.
+//! The story in front of the camera: an object comes, is grasped, held, slips, is pulled and turned, and goes.
 
 use crate::random::Noise;
 

@@ -1,4 +1,4 @@
-//! What the sensors make of the world, in volts at the pins.
+//! Sensors: from the world to volts at the pins.
 
 pub(crate) mod array;
 pub mod camera;

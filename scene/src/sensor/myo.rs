@@ -43,7 +43,7 @@ impl Envelopes {
         };
         let lifts = lifts.iter().map(|lift| {
             let side = lift.channel.get_ref().index() - MYO_FLEXOR;
-            (side, Span::new(lift.at_s.get_ref().get(), lift.for_s.get()), lift.pickup_mv.get())
+            (side, Span::of(&lift.at_s, lift.for_s), lift.pickup_mv.get())
         });
         Self {
             parameters: parameters.clone(),

@@ -24,8 +24,7 @@ const TEXTURE_PART: f64 = 0.02;
 const SLIPS_PX: f64 = 0.3;
 /// What is seen to move in a wrong picture, in 1/10,000 of it: from hardly said to be slip to what a fast slip moves.
 const WRONG_E4: (f64, f64) = (30.0, 200.0);
-/// How long an error of the angle lasts, s: where a part of the object has the wall's colours its rims are elsewhere. The crate's errors
-/// on drawn pictures differ by 0.02 degrees in 33 ms, by 0.24 in 1 s and by 0.39 in 3 s (rms; docs/vision.md).
+/// Time constant of an error of the angle, s: where the object has the wall's colours its rims are elsewhere.
 const ANGLE_LASTS_S: f64 = 2.0;
 const PIXEL_MM: f64 = 0.094;
 

@@ -131,20 +131,4 @@ mod tests {
             .fold(0.0, |most: f64, mv| most.max(mv.abs()));
         assert!((1.0..=5.0).contains(&most), "{most} mV in a minute");
     }
-
-    #[test]
-    fn what_begins_to_slide_shifts_the_shear_inwards_and_keeps_its_mean() {
-        let gauges = Gauges::new(&quiet(), 3.into());
-        let (outer, inner) = (0..STRAIN_COUNT).fold((0, 0), |(outer, inner), n| {
-            let is = |other: usize| gauges.gauges[n].pressure < gauges.gauges[other].pressure;
-            (if is(outer) { n } else { outer }, if is(inner) { inner } else { n })
-        });
-        let shear = |n: usize, stuck_part: f64| {
-            let mut gauges = Gauges::new(&quiet(), 3.into());
-            let touch = Touch { shear_n: 1.0, stuck_part, ..Touch::default() };
-            above_rest_mv(&mut gauges, touch)[n].abs()
-        };
-        assert!(shear(outer, 0.2) < shear(outer, 1.0));
-        assert!(shear(inner, 0.2) > shear(inner, 1.0));
-    }
 }

@@ -1,4 +1,4 @@
-//! What the log of a world is made of.
+//! Entries of the log of a world.
 
 use crate::file::sections::Intent;
 

@@ -70,8 +70,10 @@ fn vibrated(run: &Run) -> bool {
     run.feedback.len() >= 4 && run.feedback.last().is_some_and(|last| last.1 == Duty::default())
 }
 
+type Happened = fn(&Run) -> bool;
+
 /// Scenes of which each tick is compared, each with what must happen in it. `TENAX_SCENES=all`: every shipped one besides.
-const SCENES: [(&str, fn(&Run) -> bool); 6] = [
+const SCENES: [(&str, Happened); 6] = [
     ("hand-over-can", did_as_asked),
     ("turn-pen", did_as_asked),
     ("push-hold", did_as_asked),
@@ -85,7 +87,7 @@ const SCENES: [(&str, fn(&Run) -> bool); 6] = [
 fn the_image_decides_every_scene_as_the_host() {
     let mut scenes = SCENES.to_vec();
     if std::env::var("TENAX_SCENES").is_ok_and(|own| own == "all") {
-        scenes.extend(builtin().iter().map(|(name, _)| (*name, (|_| true) as fn(&Run) -> bool)));
+        scenes.extend(builtin().iter().map(|(name, _)| (*name, (|_| true) as Happened)));
     }
     scenes.into_par_iter().for_each(|(name, happened)| {
         let run = run(scene(name), &Options::default());

@@ -9,7 +9,7 @@ mod faults;
 mod hash;
 mod last;
 mod link;
-#[path = "../../../host-tests/src/onsets.rs"]
+#[path = "../common/onsets.rs"]
 mod onsets;
 mod resets;
 mod store;

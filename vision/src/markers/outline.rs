@@ -155,7 +155,7 @@ fn along(grey: &Plane, middle: Point, radius: f32, (cos, sin): (f32, f32)) -> Ed
         let (x, y) = place(k);
         (xs[k], ys[k]) = ((x * 256.0) as i32, (y * 256.0) as i32);
     }
-    let levels: [i32; SAMPLES] = core::array::from_fn(|k| sample(grey, (xs[k], ys[k])));
+    let levels: [i32; SAMPLES] = std::array::from_fn(|k| sample(grey, (xs[k], ys[k])));
     let (mut rise, mut sum, mut weighted) = (0, 0.0, 0.0);
     for k in 1..SAMPLES - 1 {
         // Inside of the middle the ray would see the far edge, which falls; a fall is no edge anyway.

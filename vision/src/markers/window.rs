@@ -7,6 +7,8 @@ use crate::mask::eight_bits;
 
 /// Side of the window, px (FingerVision 2017, section IV).
 pub const SIDE: usize = 30;
+/// Blobs of a window that are told apart.
+const BLOBS_MAX: usize = 12;
 
 #[derive(Clone, Debug)]
 pub struct Window {
@@ -20,10 +22,6 @@ pub struct Blob {
     pub at: Point,
     pub area: u32,
     pub cut: bool,
-}
-
-impl Blob {
-    pub const NONE: Self = Self { at: Point { x: 0.0, y: 0.0 }, area: 0, cut: true };
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,12 +78,12 @@ impl Window {
         rows
     }
 
-    /// The blobs of at least `area_min` pixels in `dark`; at most as many as `into` holds. Returns how many there are.
-    pub fn blobs(&self, dark: &[u32; SIDE], area_min: u32, into: &mut [Blob]) -> usize {
+    /// The first [`BLOBS_MAX`] blobs of at least `area_min` pixels in `dark`.
+    pub fn blobs(&self, dark: &[u32; SIDE], area_min: u32) -> Vec<Blob> {
         let mut rest = *dark;
-        let mut found = 0;
+        let mut found = Vec::new();
         for row in 0..SIDE {
-            while rest[row] != 0 && found < into.len() {
+            while rest[row] != 0 && found.len() < BLOBS_MAX {
                 let piece = flood(&rest, row);
                 let (mut area, mut sum_x, mut sum_y) = (0, 0, 0);
                 let mut cut = (piece[0] | piece[SIDE - 1]) != 0;
@@ -104,8 +102,7 @@ impl Window {
                 if area >= area_min {
                     let middle = |sum: u32, corner: usize| sum as f32 / area as f32 + corner as f32;
                     let at = Point { x: middle(sum_x, self.left), y: middle(sum_y, self.top) };
-                    into[found] = Blob { at, area, cut };
-                    found += 1;
+                    found.push(Blob { at, area, cut });
                 }
             }
         }
@@ -163,9 +160,8 @@ mod tests {
         let grey = picture(&[(100.0, 100.0, 4.0), (109.0, 104.0, 3.0), (113.0, 90.0, 0.5)]);
         let window = Window::around(&grey, Point { x: 103.0, y: 100.0 });
         assert_eq!(window.levels(), Levels { dark: 22, surround: 202 });
-        let mut blobs = [Blob::NONE; 8];
-        let found = window.blobs(&window.below(110), 5, &mut blobs);
-        assert_eq!(found, 2, "{blobs:?}");
+        let blobs = window.blobs(&window.below(110), 5);
+        assert_eq!(blobs.len(), 2, "{blobs:?}");
         assert_eq!((blobs[0].at, blobs[0].area), (Point { x: 100.0, y: 100.0 }, 49));
         assert_eq!((blobs[1].at, blobs[1].area), (Point { x: 109.0, y: 104.0 }, 29));
         assert!(!blobs[0].cut && !blobs[1].cut);
@@ -183,11 +179,10 @@ mod tests {
                 _ => 1 << (SIDE - 1),
             };
         }
-        let mut blobs = [Blob::NONE; 8];
-        assert_eq!(window.blobs(&rows, 1, &mut blobs), 1);
-        assert!(blobs[0].cut);
-        assert_eq!(window.blobs(&[(1 << SIDE) - 1; SIDE], 1, &mut blobs), 1);
-        assert_eq!(blobs[0].area, 900);
-        assert_eq!(window.blobs(&[0; SIDE], 1, &mut blobs), 0);
+        let [spiral] = window.blobs(&rows, 1)[..] else { panic!("one blob") };
+        assert!(spiral.cut);
+        let [full] = window.blobs(&[(1 << SIDE) - 1; SIDE], 1)[..] else { panic!("one blob") };
+        assert_eq!(full.area, 900);
+        assert!(window.blobs(&[0; SIDE], 1).is_empty());
     }
 }

@@ -23,7 +23,7 @@ impl Mask {
         if count < 2 {
             return;
         }
-        let mut rest = core::mem::take(self);
+        let mut rest = std::mem::take(self);
         for &(_, _, area) in &starts[..count] {
             // Pieces come in the same order again.
             let Some((_, piece)) = rest.take_piece() else { break };
@@ -65,7 +65,7 @@ impl Mask {
     }
 
     pub fn keep_at_border(&mut self) {
-        let mut rest = core::mem::take(self);
+        let mut rest = std::mem::take(self);
         for _ in 0..PIECES_MAX {
             let Some((_, piece)) = rest.take_piece() else { break };
             if piece.comes_within(1) {

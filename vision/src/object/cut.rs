@@ -27,7 +27,7 @@ pub fn is_cut(object: &Mask, unknown: Option<&Mask>) -> bool {
 mod tests {
     use super::*;
 
-    fn block(columns: core::ops::Range<usize>, rows: core::ops::Range<usize>) -> Mask {
+    fn block(columns: std::ops::Range<usize>, rows: std::ops::Range<usize>) -> Mask {
         let mut mask = Mask::EMPTY;
         rows.for_each(|y| columns.clone().for_each(|x| mask.insert(x, y)));
         mask

@@ -96,5 +96,6 @@ pub struct SensorFault {
     /// N/s for a quadrant of the force sensor, mV/s at the pin for any other channel.
     pub drift_per_s: Option<Spanned<Drift>>,
     pub with: Option<Spanned<ChannelName>>,
+    #[expect(dead_code, reason = "it explains the file to its reader")]
     pub reason: String,
 }

@@ -1,10 +1,10 @@
-//! What the fingertip feels with.
+//! Sensors of the fingertip, and the cameras.
 
 use serde::Deserialize;
 
 use crate::file::quantity::{
     DeadTime, Degrees, Duration, Gain, Hertz, Instant, Lever, Micrometres, Millimetres, Millinewtons,
-    Milliseconds, Millivolts, Part, Speed,
+    Milliseconds, Millivolts, Mu, Part, Speed,
 };
 
 /// The PVDF films. Voltages are at the film; the front end multiplies them by `gain`.
@@ -114,4 +114,25 @@ pub struct Camera {
     pub jitter_px: Part,
     pub delay_ms: DeadTime,
     pub teaches: bool,
+}
+
+/// A photoelastic head in the place of PVDF film 12 (Dubey 2006). The board has to be told: `head-photoelastic-flag`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Photoelastic {
+    pub strip: bool,
+    pub mu_s: Mu,
+    pub mu_d: Mu,
+    pub stribeck_mm_s: Speed,
+    pub share: Part,
+    pub polariser_deg: Degrees,
+    pub dark_mv: Millivolts,
+    pub span_mv: Millivolts,
+    pub spread: Part,
+    pub drift: Part,
+    /// Ambient light at most.
+    pub ambient_mv: Millivolts,
+    pub knock_mn_per_mv: Gain,
+    /// Noise of a frame's sample, rms.
+    pub noise_mv: Millivolts,
 }

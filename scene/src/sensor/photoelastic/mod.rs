@@ -1,8 +1,7 @@
 //! A photoelastic head in the place of PVDF film 12 (Dubey 2006): one optical channel for slip and normal force.
 //!
-//! Under the metal strip the layer is a spring. What slides over the strip drags it along; where friction falls with speed
-//! the strip vibrates by itself ([`physics::stribeck`](crate::physics::stribeck)), its pull shears the layer, and the light
-//! flickers. Without the strip friction does not fall, and the light changes only where slip begins and ends.
+//! Under the metal strip the layer is a spring. Where friction falls with speed the strip vibrates by itself
+//! ([`physics::stribeck`](crate::physics::stribeck)), its pull shears the layer, and the light flickers.
 
 pub mod curve;
 pub mod optics;
@@ -18,9 +17,8 @@ use crate::random::{Noise, Seeds, Source};
 use crate::schedule::STEP_S;
 use tenax_hal_shim::channel::SCANS_PER_FRAME;
 
-/// The strip on its layer. Stiffness: a block of urethane of 9 mm x 5 mm x 3 mm in shear, E about 9 MPa. Mass (strip,
-/// layer and what of the finger moves with them) and damping are assumed: with them aluminium vibrates by itself up to 4.3
-/// mm/s under 1 N, and amplitude and frequency both rise with the rate, as the paper's figures 12 and 13 do.
+/// The strip on its layer. Stiffness: a block of urethane of 9 mm x 5 mm x 3 mm in shear, E about 9 MPa. Mass and damping are assumed:
+/// amplitude and frequency rise with the rate, as in figures 12 and 13.
 pub const HEAD_STRIP: Slider =
     Slider { mass_kg: 0.010, stiffness_n_per_m: 10_000.0, damping_ns_per_m: 4.0, friction: METAL };
 

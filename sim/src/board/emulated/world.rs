@@ -191,11 +191,7 @@ impl Driver<Nucleo> for World {
             Settled::Hit(hit) if hit.address == self.command_entry => {
                 self.commands.take(self.cost.ticks() as u32)
             }
-            Settled::Hit(hit) => {
-                if self.cost.watched().contains(&hit.address) {
-                    self.cost.hit(hit);
-                }
-            }
+            Settled::Hit(hit) if self.cost.watched().contains(&hit.address) => self.cost.hit(hit),
             Settled::Access { access, .. } => {
                 self.flash.accessed(&access, session, host);
                 self.mishaps.accessed(&access, session);
