@@ -124,9 +124,8 @@ impl ScanPath {
         let (_, left) = self.models.dma.remaining(0);
         let half = self.ring / 2;
         let codes = if left > half { left - half } else { left } / CODE_BYTES;
-        (1..=SCAN_LEN as u64)
-            .contains(&codes)
-            .then_some(VirtualNanos(next.0 + (codes - 1) * self.conversion_ns))
+        let is_in_sequence = (1..=SCAN_LEN as u64).contains(&codes);
+        is_in_sequence.then(|| VirtualNanos(next.0 + (codes - 1) * self.conversion_ns))
     }
 }
 
