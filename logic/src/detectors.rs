@@ -9,7 +9,7 @@ use tenax_hal_shim::detector::{DetectorHealth, DetectorId, DetectorSet, Directio
 use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::wire::{DETECTORS_MAX, Forces};
 
-use crate::array::{MLP_DECIDES, MlpDetector, Reading};
+use crate::array::{MLP_DECIDES, Reading, ShippedDetector};
 use crate::config::Config;
 use crate::force::FrictionDetector;
 use crate::hebbian::HebbianDetector;
@@ -84,31 +84,20 @@ const OTHERS_GUARDED: u8 = slot_of(Job::Think) + 1;
 
 macro_rules! for_each_detector {
     ($self:ident, $config:expr, |$detector:ident, $own:ident| $body:expr) => {{
-        {
-            let ($detector, $own) = (&mut $self.s1, &$config.vibration);
-            $body;
-        }
-        {
-            let ($detector, $own) = (&mut $self.s2, &$config.friction);
-            $body;
-        }
-        {
-            let ($detector, $own) = (&mut $self.hebbian, &$config.hebbian);
-            $body;
-        }
-        {
-            let ($detector, $own) = (&mut $self.mlp, &());
-            $body;
-        }
-        {
-            let ($detector, $own) = (&mut $self.injected, &());
-            $body;
-        }
-        {
-            let ($detector, $own) = (&mut $self.photoelastic, &$config.head);
-            $body;
-        }
+        for_each_detector!(@ $detector, $own, $body;
+            $self.s1, $config.vibration;
+            $self.s2, $config.friction;
+            $self.hebbian, $config.hebbian;
+            $self.mlp, ();
+            $self.injected, ();
+            $self.photoelastic, $config.head)
     }};
+    (@ $detector:ident, $own:ident, $body:expr; $($each:expr, $settings:expr);+) => {
+        {$({
+            let ($detector, $own) = (&mut $each, &$settings);
+            $body;
+        })+}
+    };
 }
 
 #[derive(Clone, Debug, Default)]
@@ -116,7 +105,7 @@ pub struct Detectors {
     s1: S1,
     pub s2: FrictionDetector,
     pub hebbian: HebbianDetector,
-    mlp: MlpDetector,
+    mlp: ShippedDetector,
     pub injected: Injected,
     photoelastic: PhotoelasticDetector,
     record: Record,
@@ -150,7 +139,7 @@ impl Record {
     #[inline(always)]
     fn guard_array(&mut self, sensed: &Sensed<'_>) {
         let id = DetectorId::Mlp;
-        self.guard(id, MlpDetector::IMPLAUSIBLE_AFTER, sensed);
+        self.guard(id, ShippedDetector::IMPLAUSIBLE_AFTER, sensed);
         self.disturbance.step(sensed.vibration.impact, self.slip.contains(id));
         self.ignored = self.ignored.with(id, self.ignored.contains(id) || self.disturbance.explains_it());
     }

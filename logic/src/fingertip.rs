@@ -18,7 +18,7 @@ use tenax_hal_shim::words::{CalibrationRefusal, Cause, DriveSource, Fault, GripM
 
 use self::behave::Eye;
 use self::link::Link;
-use self::verdicts::{Acting, Verdicts};
+use self::verdicts::Verdicts;
 use crate::arbiter::{Wishes, arbitrate};
 use crate::arming::{Arming, STEP_FRAMES};
 use crate::behaviours::Running;
@@ -54,7 +54,8 @@ pub struct Fingertip {
     calibrated: u32,
     senses: Senses,
     detectors: Detectors,
-    acting: Acting,
+    /// Detectors that the reflex does not act on, beside those of `detectors-off-mask`.
+    muted: DetectorSet,
     mode: GripMode,
     reflex: Reflex,
     behaviour: Option<Running>,
@@ -89,7 +90,7 @@ impl Fingertip {
     #[inline(never)]
     pub fn restore(&mut self, kept: Kept, payload: &[u8]) {
         let restored = match kept {
-            Kept::Network => self.detectors.hebbian.restore(payload).is_ok(),
+            Kept::Network => self.detectors.hebbian.restore(payload),
             Kept::Zero => {
                 let zero_uv = payload::zero(payload);
                 zero_uv.map(|zero_uv| self.senses.force_sensor_mut().restore_zero(zero_uv)).is_some()
@@ -178,7 +179,7 @@ impl Fingertip {
     }
 
     pub const fn act_on(&mut self, detectors: DetectorSet) {
-        self.acting = Acting(detectors);
+        self.muted = DetectorSet::ALL.without(detectors);
     }
 
     fn is_at_rest(&self) -> bool {
@@ -226,8 +227,7 @@ impl Fingertip {
                 self.senses.motor.judge(&self.config.motor, &mut self.journal);
             }
         }
-        let acting = self.acting.but(self.config.detectors_off);
-        let verdicts = Verdicts::of(&self.detectors, acting);
+        let verdicts = Verdicts::of(&self.detectors, self.muted.or(self.config.detectors_off));
         if !verdicts.said.is_empty() {
             self.reflex.hear();
         }

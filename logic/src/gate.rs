@@ -184,16 +184,6 @@ mod tests {
     }
 
     #[test]
-    fn what_is_known_is_certain_after_the_hold_time() {
-        let mut gate = says(Wish::Rest, 0);
-        (1..400).for_each(|_| gate.tick(&CONFIG, false));
-        assert!(gate.is_certain(&CONFIG));
-        gate.take(Verdict::default());
-        gate.tick(&CONFIG, false);
-        assert!(!gate.is_certain(&CONFIG) && !gate.is_known());
-    }
-
-    #[test]
     fn an_unproven_opening_is_slow_and_short_until_4_s_of_rest_or_an_empty_hand() {
         let unproven =
             Verdict { wish: Wish::Open, strength_permille: 1_000, active: true, ..Verdict::default() };

@@ -66,6 +66,12 @@ impl SensorHealth {
         self.bad = 0;
     }
 
+    /// [`take`](Self::take), with the usual case inlined.
+    #[inline]
+    pub fn read(&mut self, limits: &Limits, sample: u16) -> (Result<u16, Reason>, Option<Change>) {
+        if self.is_plain(limits, sample) { (Ok(sample), None) } else { self.take(limits, sample) }
+    }
+
     pub fn take(&mut self, limits: &Limits, sample: u16) -> (Result<u16, Reason>, Option<Change>) {
         self.same = if self.last == sample { self.same.saturating_add(1) } else { 0 };
         self.last = sample;

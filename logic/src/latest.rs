@@ -7,15 +7,3 @@ pub fn push<T: Copy, const N: usize>(latest: &mut [T; N], newest: T) {
         carried = core::mem::replace(slot, carried);
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::push;
-
-    #[test]
-    fn the_newest_is_first_and_the_oldest_is_gone() {
-        let mut latest = [3, 2, 1];
-        push(&mut latest, 4);
-        assert_eq!(latest, [4, 3, 2]);
-    }
-}

@@ -93,14 +93,6 @@ mod tests {
     }
 
     #[test]
-    fn without_a_session_nothing_is_admitted() {
-        let mut session = Session::default();
-        assert_eq!(session.admit(0, false), Err(Refusal::NoSession));
-        assert_eq!(session.open(0, 0), Err(Refusal::Replayed), "nothing was offered");
-        assert_eq!(session.admit(1, false), Err(Refusal::NoSession));
-    }
-
-    #[test]
     fn a_recorded_session_is_refused_whole() {
         let mut session = Session::default();
         let nonce = open(&mut session, 10);

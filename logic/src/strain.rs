@@ -35,11 +35,7 @@ impl Gauges {
     /// 14-bit reading of gauge 0 to 11. `unloaded`: the finger is known to touch nothing.
     pub fn read(&mut self, gauge: usize, sample: u16, unloaded: bool) -> Option<Change> {
         let gauge = self.0.get_mut(gauge)?;
-        let (reading, change) = if gauge.health.is_plain(&LIMITS, sample) {
-            (Ok(sample), None)
-        } else {
-            gauge.health.take(&LIMITS, sample)
-        };
+        let (reading, change) = gauge.health.read(&LIMITS, sample);
         gauge.set(reading, unloaded);
         change
     }

@@ -118,19 +118,6 @@ mod tests {
     }
 
     #[test]
-    fn no_reading_is_sent_before_every_channel_was_read_once() {
-        let mut stream = Stream::default();
-        stream.ask(false, true, 1);
-        let due: Vec<u32> = (0..60)
-            .filter(|&sequence| {
-                stream.record(&Frame::lost(sequence));
-                stream.wants_senses()
-            })
-            .collect();
-        assert_eq!(due, [27, 52]);
-    }
-
-    #[test]
     fn it_ends_when_nobody_asks_any_more_unless_it_is_for_ever() {
         let mut stream = Stream::default();
         stream.ask(true, true, 1);

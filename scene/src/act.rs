@@ -52,7 +52,7 @@ impl FromStr for Act {
     }
 }
 
-/// How soon a person does what they are told, s (all here assumed).
+/// Reaction time of a person who is told to do something, s (all here assumed).
 pub(crate) const REACTS_S: f64 = 0.2;
 const TOUCHES_S: f64 = 0.5;
 const RAMP_S: f64 = 0.05;

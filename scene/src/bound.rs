@@ -14,7 +14,7 @@ const EDGE: f64 = 0.02;
 const SPEED_PART: f64 = 0.8;
 const EARLY_FRAMES: usize = 4;
 
-/// What each finger has to press at each frame of a scene, N, once it touches something.
+/// Force of each finger at each frame of a scene, N, once it touches something.
 ///
 /// The demand is what the object needs while it moves with the hand; the plan closes as late as gripper speed and dead time
 /// let it meet every demand to come.
@@ -25,7 +25,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// Of a scene. None where there is nothing to grasp.
+    /// None where there is nothing to grasp.
     pub fn of(scene: &SceneFile) -> Option<Self> {
         let needed_n = needed_n(scene)?;
         let gripper = &scene.gripper;

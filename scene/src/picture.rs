@@ -105,7 +105,7 @@ impl Session {
             own = base.map(|level| level + sign * apart);
         }
         if let Some(colour) = stress.colour {
-            // Of this sum grey is made: half of it is green.
+            // Grey is half green, so the brightness stays.
             let [red, green, blue] = base;
             own = [red - colour, green + colour / 3.0, blue + colour / 3.0];
         }
@@ -221,7 +221,7 @@ impl Session {
         let (sin, cos) = (libm::sin(state.angle_rad), libm::cos(state.angle_rad));
         let (dx, dy) = (x - state.object.0, y - state.object.1);
         let (along, across) = (dx * cos + dy * sin, dy * cos - dx * sin);
-        // How far inside the object, px: its rim is blurred over one.
+        // Distance inside the object, px: its rim is blurred over one.
         let inside = (self.half.0 - along.abs()).min(self.half.1 - across.abs());
         let part = (inside + 0.5).clamp(0.0, 1.0) as f32;
         let mut colour = if part < 1.0 {

@@ -32,7 +32,7 @@ intent = "close"
 level_mv = 500
 "#;
 
-/// What stands in the good file | what stands in its place, with `\n` for a new line | the line that is named | what the message says.
+/// Text of the good file | its replacement, with `\n` for a new line | the line that the message names | its words.
 const MISTAKES: &str = r#"
 mu_s = 0.5 | mu_s = 50 | 7 | mu_s, 50, 0.05..=3
 mu_s = 0.5 | mu_s = nan | 7 | mu_s, NaN, 0.05..=3

@@ -68,7 +68,7 @@ fn every_ring_lets_go_once_at_even_displacements_and_they_release_the_whole_drop
     assert!(patch.is_sliding());
 }
 
-/// Whether L0 and L1 hold a block on a pad that is pulled harder and harder until `part` of the normal load.
+/// True where L0, and L1, hold a block on a pad that is pulled up to `part` of the normal load.
 fn hold(part: f64) -> (bool, bool) {
     const MASS_KG: f64 = 0.1;
     // The rubber's own damping; it brings the block on its patch to rest. Assumed.

@@ -54,7 +54,7 @@ fn within(part: f64, found: f64, right: f64) {
     assert!((found / right - 1.0).abs() < part, "{found} instead of {right}");
 }
 
-/// How far an oscillator swings in the last tenth of 2000 steps, over the first.
+/// Amplitude of an oscillator in the last tenth of 2000 steps over that in the first.
 fn swing(stiffness_n_per_m: f64, damping_ns_per_m: f64, dt_s: f64) -> f64 {
     let (mut first_m, mut last_m, mut n) = (0.0_f64, 0.0_f64, 0);
     let start = State { speed_m_s: 1e-9, ..State::default() };
@@ -71,7 +71,7 @@ fn swing(stiffness_n_per_m: f64, damping_ns_per_m: f64, dt_s: f64) -> f64 {
         } else if n > 1_800 {
             last_m = last_m.max(at_m);
         }
-        // It need not run to infinity.
+        // An unstable run ends here.
         at_m < 1e-6
     });
     if n < 2_000 { f64::INFINITY } else { last_m / first_m }
@@ -135,7 +135,7 @@ fn stick_slip_has_the_amplitude_and_the_period_of_its_limit_cycle() {
     const NORMAL_N: f64 = 2.0;
     let omega_rad_s = (STIFFNESS_N_PER_M / MASS_KG).sqrt();
     let balance_m = FRICTION.mu_d * NORMAL_N / STIFFNESS_N_PER_M;
-    // How far the spring is beyond its sliding balance when the block breaks loose; the arc starts there with the belt's speed.
+    // The spring beyond its sliding balance when the block breaks loose; the arc starts there with the belt's speed.
     let excess_m = (FRICTION.mu_s - FRICTION.mu_d) * NORMAL_N / STIFFNESS_N_PER_M;
     let amplitude_m = excess_m.hypot(BELT_M_S / omega_rad_s);
     // It sticks over twice the excess, and slides the rest of the arc.

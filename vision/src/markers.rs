@@ -210,7 +210,7 @@ fn find(
     grown: f32,
     step_max_px: f32,
 ) -> Result<(Point, f32), Failure> {
-    // Where the blob is not alone, the outline may still stand out: it is looked for where it was last.
+    // The outline may stand out where the blob is not alone: it is looked for where it was last.
     let (near, excuse) = match blob(grey, shape, last) {
         Ok(at) => (at, Failure::Outline),
         Err(failure) => (last, failure),

@@ -93,8 +93,7 @@ impl Samples {
         if x == 0 || y == 0 || x == WIDTH - 1 || y == HEIGHT - 1 || self.count == SAMPLES_MAX {
             return;
         }
-        // Of both pictures: the slope of one alone would be off by half the move. Neighbours count, too: noise in the slope makes a move
-        // look small.
+        // The slope of one picture alone would be off by half the move, and noise in it makes a move look small.
         let (now, before) = (around(now, at), around(before, at));
         let both = std::array::from_fn(|place| now[place] + before[place]);
         let (gx, gy) = slope(both);
@@ -116,7 +115,7 @@ impl Samples {
         found: Option<&[f32; UNKNOWNS]>,
     ) -> ([[f32; UNKNOWNS]; UNKNOWNS], [f32; UNKNOWNS]) {
         let (mut a, mut b) = ([[[0.0f32; LANES]; UNKNOWNS]; UNKNOWNS], [[0.0f32; LANES]; UNKNOWNS]);
-        // What is past the last sample is 0 and adds nothing.
+        // Samples past the last are 0.
         for first in (0..self.count).step_by(LANES) {
             let lanes = |column: &[f32; SAMPLES_MAX]| -> [f32; LANES] {
                 std::array::from_fn(|lane| column[first + lane])

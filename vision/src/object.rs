@@ -177,7 +177,7 @@ impl Tracker {
         differs.erode(5);
         differs.cut_spurs(SPUR_PX);
         if !learn && self.seen {
-            // What is held goes nowhere in a leap: what is new beside it is the background's.
+            // A held object does not leap: new pixels beside it are the background's.
             self.object.dilate(LEAP_PX);
             differs.intersect(&self.object);
         }
@@ -196,8 +196,7 @@ impl Tracker {
         }
 
         let part = |pixels: u32| pixels as f32 / PIXELS as f32;
-        // What was an object a moment ago is one still, if half as much of it is seen; what the hand has closed on is one, however
-        // little of it differs from the wall behind it.
+        // A seen object needs half the area to be seen again, a grasped one an eighth: it may be of the wall's colour.
         if learn || !(self.seen || self.grasped > 0) {
             self.grasped = 0;
         } else {
@@ -247,7 +246,7 @@ impl Tracker {
     }
 
     fn learn(&mut self, frame: &Frame, differs: &Mask) {
-        // What has come in front of the scene moves, too, though it be as bright as the scene.
+        // Pixels that newly differ from the scene count as moving, even of equal brightness.
         let mut new = self.apart.clone();
         new.invert();
         new.unite(&self.moving);
@@ -266,7 +265,7 @@ impl Tracker {
             let (red, green, blue) = self.scene.colour(at);
             count(&mut hidden[self.bins.of(red, green, blue)]);
         });
-        // Where the background moves it hides colours behind other ones of its own: half of its usual share is taken away too.
+        // A moving background hides colours of its own: half of their usual share is taken away too.
         let mut scene: Histogram = [0; BINS];
         (0..PIXELS).step_by(SAMPLE).for_each(|at| {
             let (red, green, blue) = self.scene.colour(at);
@@ -289,7 +288,7 @@ impl Tracker {
         let mut hidden = self.near.clone();
         let doubt = if self.seen { DOUBT_FRAMES } else { DOUBT_FRAMES_EMPTY };
         if !self.frames.is_multiple_of(doubt) {
-            // What stands still far from an object is the scene, changed.
+            // A change that stands still far from an object belongs to the scene.
             let mut doubtful = self.moving.clone();
             doubtful.dilate(MOVES_PX);
             let mut close = self.near.clone();

@@ -1,7 +1,7 @@
 //! Verdicts of the array detector, with and without readings.
 
 use proptest::prelude::*;
-use tenax_logic::array::{ArrayDetector, ArrayVerdict, Judgement, Model, Reading, specimen};
+use tenax_logic::array::{ArrayDetector, ArrayVerdict, Judgement, Model, Reading, shipped};
 
 use super::readings;
 
@@ -14,8 +14,8 @@ proptest! {
         on_frames in 1..6u8,
         off_frames in 1..6u8,
     ) {
-        let judgement = Judgement { on_frames, off_frames, ..specimen::MODEL.judgement };
-        let model = Model { judgement, ..specimen::MODEL.clone() };
+        let judgement = Judgement { on_frames, off_frames, ..shipped::MODEL.judgement };
+        let model = Model { judgement, ..shipped::MODEL.clone() };
         let mut detector = ArrayDetector::new(&model);
         let mut before = ArrayVerdict::NONE;
         let (mut sure, mut unsure) = (0, 0);
@@ -40,7 +40,7 @@ proptest! {
 // Shows R5.
 #[test]
 fn without_readings_it_stands_down_and_says_for_how_long() {
-    let mut detector = ArrayDetector::new(&specimen::MODEL);
+    let mut detector = ArrayDetector::new(&shipped::MODEL);
     assert_eq!(detector.verdict(), ArrayVerdict::NONE);
     let load = |n: u16| -> Reading { std::array::from_fn(|e| Some(2_000 + n % 7 * (e as u16 + 1))) };
     for n in 0..39 {

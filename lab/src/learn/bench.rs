@@ -125,7 +125,7 @@ impl Bench {
         let learned = self.fingertip.learned();
         let kept = learned.write(&mut bytes).context("a snapshot of another length")?;
         let (normaliser, network, more) =
-            snapshot::restore(&hebbian::NORMALISER, kept).map_err(|damaged| anyhow!("{damaged:?}"))?;
+            snapshot::restore(&hebbian::NORMALISER, kept).context("a damaged snapshot")?;
         Ok((normaliser, network.weights(), more))
     }
 

@@ -2,14 +2,11 @@
 
 use anyhow::anyhow;
 use tenax_sim::array::network::{fixed, square};
-use tenax_logic::array::{FEATURES, Layer, LookBack, Mlp};
+use tenax_logic::array::{FEATURES, Features, Layer, Mlp};
 
 use crate::train::features::Sequence;
 use crate::train::network::{H1, H2, Network};
 use crate::train::table::Table;
-
-/// The firmware's network.
-pub type Integer<const L: usize> = Mlp<FEATURES, H1, L, H2>;
 
 /// Weights as integers, and what a logit of theirs is worth.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,44 +82,26 @@ impl Quantised {
     }
 
     /// The firmware's network of these weights. Fails if the sizes are others, or a sum could overflow.
-    pub fn integer<const L: usize>(&self) -> anyhow::Result<Integer<L>> {
+    pub fn integer(&self) -> anyhow::Result<Mlp> {
         let too_large = |_| anyhow!("a sum of the network could overflow");
-        let frame = |frame: usize| -> anyhow::Result<Layer<H1, H2>> {
-            let rows: Vec<Vec<i16>> =
-                self.second.iter().map(|row| row[frame * H1..][..H1].to_vec()).collect();
-            let bias = if frame == 0 { self.second_bias.clone() } else { vec![0; H2] };
-            Layer::new(square(&rows)?, fixed(&bias)?, self.second_shift).map_err(too_large)
-        };
-        let second: Vec<Layer<H1, H2>> = (0..L).map(frame).collect::<Result<_, _>>()?;
-        let second = second.try_into().map_err(|_| anyhow!("look-back"))?;
-        Mlp::new(
-            Layer::new(square(&self.first)?, fixed(&self.first_bias)?, self.first_shift)
+        Ok(Mlp {
+            first: Layer::new(square(&self.first)?, fixed(&self.first_bias)?, self.first_shift)
                 .map_err(too_large)?,
-            second,
-            Layer::new([fixed(&self.last)?], [self.last_bias], 0).map_err(too_large)?,
-        )
-        .map_err(too_large)
+            second: Layer::new(square(&self.second)?, fixed(&self.second_bias)?, self.second_shift)
+                .map_err(too_large)?,
+            last: Layer::new([fixed(&self.last)?], [self.last_bias], 0).map_err(too_large)?,
+        })
     }
 
-    /// Logits of a sequence in units of the float network's: one for each step that can look back far enough.
-    /// Fails if the network is none of the firmware's.
+    /// Logits of a sequence in units of the float network's. Fails if the network is none of the firmware's.
     pub fn logits(&self, sequence: &Sequence) -> anyhow::Result<Vec<f64>> {
-        match self.second.first().map_or(0, Vec::len) / H1 {
-            1 => self.logits_of::<1>(sequence),
-            3 => self.logits_of::<3>(sequence),
-            5 => self.logits_of::<5>(sequence),
-            other => Err(anyhow!("the firmware has no network that sees {other} frames")),
-        }
-    }
-
-    fn logits_of<const L: usize>(&self, sequence: &Sequence) -> anyhow::Result<Vec<f64>> {
-        let network = self.integer::<L>()?;
-        let mut look_back = LookBack::<H1, L>::default();
-        let logits = sequence.features.iter().filter_map(|features| {
-            let seen = look_back.push(network.see(features))?;
-            Some(f64::from(network.judge(seen)) / self.per_logit)
-        });
-        Ok(logits.collect())
+        let network = self.integer()?;
+        let logit = |features: &Features| {
+            let mut seen = [0; H1];
+            network.first.activate(features, 0..H1, &mut seen);
+            f64::from(network.judge(&seen)) / self.per_logit
+        };
+        Ok(sequence.features.iter().map(logit).collect())
     }
 }
 

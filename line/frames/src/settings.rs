@@ -193,10 +193,10 @@ mod tests {
     }
 
     #[test]
-    fn a_setting_is_read_by_either_name_and_a_wrong_one_says_what_is_right() {
+    fn a_setting_is_read_and_a_wrong_one_says_what_is_right() {
         let set = Setting { id: SettingId::EmgOn.number(), value: 200 };
         assert_eq!(parse("emg-on-mv=200").unwrap(), set);
-        assert_eq!(parse("myo-on-mv = 200").unwrap(), set);
+        assert_eq!(parse("emg-on-mv = 200").unwrap(), set);
         for (text, word) in [("emg-on-mv", "NAME=VALUE"), ("emg=1", "emg-on-mv"), ("emg-on-mv=x", "whole")] {
             let wrong = format!("{:#}", parse(text).unwrap_err());
             assert!(wrong.contains(word), "{wrong}");

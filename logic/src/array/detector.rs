@@ -3,16 +3,20 @@
 use core::ops::Range;
 
 use tenax_hal_shim::channel::SLOW_HZ;
+use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
 use tenax_hal_shim::schedule::ARRAY_SHARES;
 
-use super::network::{LookBack, Mlp};
+use super::network::Mlp;
 use super::preprocess::{Features, Preprocessor, PreprocessorConfig};
-use super::{COVARIANCE_WINDOW, FEATURES, Reading, SPECTRUM_WINDOW};
+use super::{ARRAY_READ, COVARIANCE_WINDOW, HIDDEN, Reading, ShippedDetector};
+use crate::detectors::{Description, Detector, Said, Sensed};
 
 /// Shares of a slow frame's work, one a tick, about equally long. 0: covariance, spectrum. 1: features of the
 /// spectrum, short lags. 2: long lags, a quarter of the first layer. 3: half of it. 4: the rest, and the
 /// verdict.
 pub const SHARES: usize = ARRAY_SHARES as usize;
+/// Units of the first layer.
+const H1: usize = HIDDEN[0];
 const VERDICT_SHARE: usize = SHARES - 1;
 const _: () = assert!(VERDICT_SHARE == 4);
 
@@ -43,30 +47,16 @@ pub struct Judgement {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct Model<
-    const H1: usize,
-    const L: usize,
-    const H2: usize,
-    const N: usize = COVARIANCE_WINDOW,
-    const M: usize = SPECTRUM_WINDOW,
-> {
+pub struct Model<const N: usize = COVARIANCE_WINDOW> {
     pub preprocessor: PreprocessorConfig,
-    pub network: Mlp<FEATURES, H1, L, H2>,
+    pub network: Mlp,
     pub judgement: Judgement,
 }
 
 #[derive(Clone, Debug)]
-pub struct ArrayDetector<
-    'm,
-    const H1: usize,
-    const L: usize,
-    const H2: usize,
-    const N: usize = COVARIANCE_WINDOW,
-    const M: usize = SPECTRUM_WINDOW,
-> {
-    model: &'m Model<H1, L, H2, N, M>,
-    preprocessor: Preprocessor<N, M>,
-    look_back: LookBack<H1, L>,
+pub struct ArrayDetector<'m, const N: usize = COVARIANCE_WINDOW> {
+    model: &'m Model<N>,
+    preprocessor: Preprocessor<N>,
     contradicted: u8,
     unjudged: u16,
     felt: bool,
@@ -75,14 +65,11 @@ pub struct ArrayDetector<
     verdict: ArrayVerdict,
 }
 
-impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const M: usize>
-    ArrayDetector<'m, H1, L, H2, N, M>
-{
-    pub fn new(model: &'m Model<H1, L, H2, N, M>) -> Self {
+impl<'m, const N: usize> ArrayDetector<'m, N> {
+    pub fn new(model: &'m Model<N>) -> Self {
         Self {
             model,
             preprocessor: Preprocessor::new(model.preprocessor),
-            look_back: LookBack::default(),
             contradicted: 0,
             unjudged: u16::MAX,
             felt: false,
@@ -120,25 +107,17 @@ impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const
 
     fn see(&mut self, units: Range<usize>) {
         if self.felt {
-            self.model.network.see_some(self.preprocessor.features(), units, &mut self.seen);
+            self.model.network.first.activate(self.preprocessor.features(), units, &mut self.seen);
         }
     }
 
     fn decide(&mut self) -> ArrayVerdict {
-        self.logit = self.evidence();
+        self.logit = core::mem::take(&mut self.felt).then(|| self.model.network.judge(&self.seen));
         match self.logit {
             Some(logit) => self.judge(logit),
             None => self.stand_down(),
         }
         self.verdict
-    }
-
-    fn evidence(&mut self) -> Option<i32> {
-        if !core::mem::take(&mut self.felt) {
-            self.look_back.clear();
-            return None;
-        }
-        Some(self.model.network.judge(self.look_back.push(self.seen)?))
     }
 
     /// None without features.
@@ -177,6 +156,32 @@ impl<'m, const H1: usize, const L: usize, const H2: usize, const N: usize, const
         let age_ms =
             if self.unjudged == u16::MAX { u16::MAX } else { age_ms.min(u32::from(u16::MAX)) as u16 };
         self.verdict = ArrayVerdict { slip: false, confidence_permille: 0, age_ms };
+    }
+}
+
+impl Detector for ShippedDetector {
+    const ID: DetectorId = DetectorId::Mlp;
+    type Config = ();
+
+    /// Lost frames do their share too: it needs no sample of theirs, and an old verdict would stand
+    /// meanwhile.
+    fn step(&mut self, _config: &(), sensed: &Sensed<'_>) -> Option<Said> {
+        let share = sensed.slot.checked_sub(ARRAY_READ)?;
+        self.work(share.into(), sensed.taxels).map(|verdict| Said::slip(verdict.slip))
+    }
+
+    fn describe(&self, _config: &()) -> Description {
+        let verdict = self.verdict();
+        Description {
+            confidence_permille: verdict.confidence_permille,
+            direction: Direction::Unknown,
+            health: match verdict.age_ms {
+                0 => DetectorHealth::Working,
+                u16::MAX => DetectorHealth::Starting,
+                _ => DetectorHealth::Blind,
+            },
+            raw: self.logit().unwrap_or(0),
+        }
     }
 }
 

@@ -9,7 +9,6 @@
 //! | features | [`logarithm`]: single precision, no operation fused or reordered | `i16` |
 //! | network | integers, sums that cannot overflow by construction | `i32` |
 
-mod adapter;
 pub mod covariance;
 pub mod detector;
 pub mod logarithm;
@@ -17,7 +16,6 @@ pub mod network;
 pub mod past;
 pub mod preprocess;
 pub mod shipped;
-pub mod specimen;
 pub mod spectrum;
 pub mod structure;
 pub mod taxels;
@@ -25,9 +23,8 @@ pub mod taxels;
 use tenax_hal_shim::channel::ARRAY_COUNT;
 use tenax_hal_shim::schedule::{Job, slot_of};
 
-pub use adapter::MlpDetector;
 pub use detector::{ArrayDetector, ArrayVerdict, Judgement, Model};
-pub use network::{Layer, LookBack, Mlp, TooLarge};
+pub use network::{Layer, Mlp, TooLarge};
 pub use preprocess::{Features, Preprocessor, PreprocessorConfig};
 
 pub const ARRAY_READ: u8 = slot_of(Job::ArrayBegins);
@@ -41,6 +38,8 @@ pub const BINS: usize = SPECTRUM_WINDOW / 2 + 1;
 /// Inputs of the paper's network (Bamshad 2023, section 5.3).
 pub const PAPER_FEATURES: usize = COVARIANCES + BINS;
 pub const FEATURES: usize = PAPER_FEATURES + structure::STRUCTURES;
+/// Units of the network's hidden layers.
+pub const HIDDEN: [usize; 2] = [32, 16];
 /// Differences in the covariance (Bamshad 2023, section 4.2).
 pub const COVARIANCE_WINDOW: usize = 10;
 /// Samples in the spectrum (Bamshad 2023, section 4.3).
@@ -49,7 +48,7 @@ pub const SPECTRUM_WINDOW: usize = 40;
 /// 14-bit samples; None for an element without a valid one.
 pub type Reading = [Option<u16>; ELEMENTS];
 
-pub type ShippedDetector = ArrayDetector<'static, 32, 1, 16>;
+pub type ShippedDetector = ArrayDetector<'static>;
 
 impl Default for ShippedDetector {
     fn default() -> Self {

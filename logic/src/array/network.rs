@@ -1,9 +1,8 @@
-//! Two quantised hidden layers and a logit (Bamshad 2023, section 5.3). The queue holds the first layer's
-//! outputs, where the paper's holds whole features.
+//! Two quantised hidden layers and a logit (Bamshad 2023, section 5.3), of one slow frame.
 //!
 //! ```text
-//! h1 = relu(W1 x + b1) >> shift             x: features of this slow frame
-//! h2 = relu(W2 [h1, h1 of the L - 1 frames before] + b2) >> shift
+//! h1 = relu(W1 x + b1) >> shift
+//! h2 = relu(W2 h1 + b2) >> shift
 //! logit = w3 h2 + b3                         slip is more likely than not above 0
 //! ```
 //!
@@ -11,6 +10,8 @@
 //! shift rounds down.
 
 use core::ops::Range;
+
+use super::{FEATURES, HIDDEN};
 
 pub const ACTIVATION_MAX: i16 = i16::MAX;
 /// Bound of an input's magnitude.
@@ -30,8 +31,6 @@ pub struct Layer<const I: usize, const O: usize> {
 }
 
 impl<const I: usize, const O: usize> Layer<I, O> {
-    pub const ZERO: Self = Self { weights: [[0; I]; O], bias: [0; O], shift: 0 };
-
     /// Fails if `|bias| + 2^15 (sum of |weights|)` of a row is 2^31 or more, or `shift` is above 31. 100
     /// weights of 8 bits always fit.
     pub const fn new(weights: [[i16; I]; O], bias: [i32; O], shift: u32) -> Result<Self, TooLarge> {
@@ -53,11 +52,7 @@ impl<const I: usize, const O: usize> Layer<I, O> {
 
     #[inline]
     pub fn sums(&self, inputs: &[i16; I]) -> [i32; O] {
-        self.add_sums(inputs, self.bias)
-    }
-
-    #[inline]
-    fn add_sums(&self, inputs: &[i16; I], mut sums: [i32; O]) -> [i32; O] {
+        let mut sums = self.bias;
         for (sum, row) in sums.iter_mut().zip(&self.weights) {
             *sum = dot(row, inputs, *sum);
         }
@@ -88,95 +83,18 @@ fn dot<const I: usize>(row: &[i16; I], inputs: &[i16; I], sum: i32) -> i32 {
     row.iter().zip(inputs).fold(sum, |sum, (&w, &x)| sum + i32::from(w) * i32::from(x))
 }
 
-/// `I` inputs, `H1` units in the first hidden layer, `H2` in the second, which sees the last `L` slow frames
-/// (1: the newest only).
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Mlp<const I: usize, const H1: usize, const L: usize, const H2: usize> {
-    first: Layer<I, H1>,
-    /// Newest frame first. Their sums add up; the first one's shift is used.
-    second: [Layer<H1, H2>; L],
-    last: Layer<H2, 1>,
+pub struct Mlp {
+    pub first: Layer<FEATURES, { HIDDEN[0] }>,
+    pub second: Layer<{ HIDDEN[0] }, { HIDDEN[1] }>,
+    pub last: Layer<{ HIDDEN[1] }, 1>,
 }
 
-impl<const I: usize, const H1: usize, const L: usize, const H2: usize> Mlp<I, H1, L, H2> {
-    /// Fails if the sum over the layers of `second` could overflow `i32`.
-    pub const fn new(
-        first: Layer<I, H1>,
-        second: [Layer<H1, H2>; L],
-        last: Layer<H2, 1>,
-    ) -> Result<Self, TooLarge> {
-        const { assert!(L >= 1, "a network sees at least the present") }
-        let mut output = 0;
-        while output < H2 {
-            let (mut size, mut frame) = (0, 0);
-            while frame < L {
-                size += second[frame].bias[output].unsigned_abs() as u64;
-                let mut input = 0;
-                while input < H1 {
-                    size += second[frame].weights[output][input].unsigned_abs() as u64 * INPUT_SIZE as u64;
-                    input += 1;
-                }
-                frame += 1;
-            }
-            if size > i32::MAX as u64 {
-                return Err(TooLarge { output });
-            }
-            output += 1;
-        }
-        Ok(Self { first, second, last })
-    }
-
-    pub fn see(&self, features: &[i16; I]) -> [i16; H1] {
-        let mut seen = [0; H1];
-        self.see_some(features, 0..H1, &mut seen);
-        seen
-    }
-
-    pub fn see_some(&self, features: &[i16; I], units: Range<usize>, seen: &mut [i16; H1]) {
-        self.first.activate(features, units, seen);
-    }
-
-    pub fn judge(&self, seen: &[[i16; H1]; L]) -> i32 {
-        let (mut sums, mut shift) = ([0; H2], 0);
-        for (layer, seen) in self.second.iter().zip(seen).rev() {
-            for (sum, bias) in sums.iter_mut().zip(&layer.bias) {
-                *sum += bias;
-            }
-            sums = layer.add_sums(seen, sums);
-            shift = layer.shift;
-        }
-        let hidden = sums.map(|sum| (sum >> shift).clamp(0, i32::from(ACTIVATION_MAX)) as i16);
+impl Mlp {
+    pub fn judge(&self, seen: &[i16; HIDDEN[0]]) -> i32 {
+        let mut hidden = [0; HIDDEN[1]];
+        self.second.activate(seen, 0..HIDDEN[1], &mut hidden);
         let [logit] = self.last.sums(&hidden);
         logit
-    }
-}
-
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct LookBack<const H1: usize, const L: usize> {
-    seen: [[i16; H1]; L],
-    missing: usize,
-}
-
-impl<const H1: usize, const L: usize> Default for LookBack<H1, L> {
-    fn default() -> Self {
-        Self { seen: [[0; H1]; L], missing: L }
-    }
-}
-
-impl<const H1: usize, const L: usize> LookBack<H1, L> {
-    /// None until `L` have been queued.
-    pub fn push(&mut self, seen: [i16; H1]) -> Option<&[[i16; H1]; L]> {
-        for n in (1..L).rev() {
-            self.seen[n] = self.seen[n - 1];
-        }
-        if let Some(newest) = self.seen.first_mut() {
-            *newest = seen;
-        }
-        self.missing = self.missing.saturating_sub(1);
-        (self.missing == 0).then_some(&self.seen)
-    }
-
-    pub fn clear(&mut self) {
-        self.missing = L;
     }
 }

@@ -40,12 +40,12 @@ impl Default for PreprocessorConfig {
     }
 }
 
-/// Covariance over `N` differences, spectrum over `M` sums and structure functions. Of an element that loses
+/// Covariance over `N` differences, spectrum over 40 sums and structure functions. Of an element that loses
 /// its reading, differences and covariances become 0, the sum keeps its last value, and the structure
 /// functions begin anew. Its return counts as no change: the missed force is added to the spectrum's whole
 /// window, and differences begin with its second reading.
 #[derive(Clone, Debug)]
-pub struct Preprocessor<const N: usize = COVARIANCE_WINDOW, const M: usize = SPECTRUM_WINDOW> {
+pub struct Preprocessor<const N: usize = COVARIANCE_WINDOW> {
     config: PreprocessorConfig,
     covariance_knee: Knee,
     spectrum_knee: Knee,
@@ -56,7 +56,7 @@ pub struct Preprocessor<const N: usize = COVARIANCE_WINDOW, const M: usize = SPE
     /// Force of all elements above rest, samples.
     sum: i32,
     covariance: SlidingCovariance<N>,
-    spectrum: SlidingSpectrum<M>,
+    spectrum: SlidingSpectrum<SPECTRUM_WINDOW>,
     structure: Structure,
     missing: usize,
     features: Features,
@@ -68,7 +68,7 @@ impl Default for Preprocessor {
     }
 }
 
-impl<const N: usize, const M: usize> Preprocessor<N, M> {
+impl<const N: usize> Preprocessor<N> {
     pub fn new(config: PreprocessorConfig) -> Self {
         let lag = usize::from(config.lag).clamp(1, LAG_MAX);
         Self {
@@ -83,7 +83,7 @@ impl<const N: usize, const M: usize> Preprocessor<N, M> {
             covariance: SlidingCovariance::default(),
             spectrum: SlidingSpectrum::default(),
             structure: Structure::default(),
-            missing: (N + lag).max(M).max(structure::READY_AFTER),
+            missing: (N + lag).max(SPECTRUM_WINDOW).max(structure::READY_AFTER),
             features: [0; FEATURES],
         }
     }
@@ -144,7 +144,7 @@ impl<const N: usize, const M: usize> Preprocessor<N, M> {
         &self.covariance
     }
 
-    pub fn spectrum(&self) -> &SlidingSpectrum<M> {
+    pub fn spectrum(&self) -> &SlidingSpectrum<SPECTRUM_WINDOW> {
         &self.spectrum
     }
 }

@@ -101,24 +101,6 @@ mod tests {
     use core::f64::consts::PI;
     use std::vec::Vec;
 
-    #[test]
-    fn twiddles_are_right_and_a_constant_reaches_bin_0_only() {
-        for (n, [cos, minus_sin]) in TWIDDLES.iter().enumerate() {
-            let angle = 2.0 * PI * n as f64 / SPECTRUM_WINDOW as f64;
-            let scale = f64::from(1 << TWIDDLE_Q);
-            assert!((angle.cos() * scale - f64::from(*cos)).abs() <= 0.5, "{n}");
-            assert!((-angle.sin() * scale - f64::from(*minus_sin)).abs() <= 0.5, "{n}");
-        }
-        for bin in 1..BINS {
-            let sum = |part: usize| {
-                (0..SPECTRUM_WINDOW)
-                    .map(|n| i64::from(TWIDDLES[n * bin % SPECTRUM_WINDOW][part]))
-                    .sum::<i64>()
-            };
-            assert_eq!((sum(0), sum(1)), (0, 0), "{bin}");
-        }
-    }
-
     /// The definition, in `f64`.
     fn powers_of(window: &[i32]) -> Vec<f64> {
         let m = window.len();

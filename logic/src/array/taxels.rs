@@ -16,11 +16,7 @@ pub struct Taxels {
 impl Taxels {
     pub fn read(&mut self, element: usize, sample: u16) -> Option<Change> {
         let (health, slot) = (self.health.get_mut(element)?, self.reading.get_mut(element)?);
-        if health.is_plain(&LIMITS, sample) {
-            *slot = Some(sample);
-            return None;
-        }
-        let (reading, change) = health.take(&LIMITS, sample);
+        let (reading, change) = health.read(&LIMITS, sample);
         *slot = reading.ok();
         change
     }
@@ -50,14 +46,6 @@ mod tests {
         assert_eq!(changes, [Change::Lost(Reason::Dead)]);
         assert_eq!(taxels.reading(), &Reading::default());
         assert_eq!(taxels.read(ARRAY_COUNT, 2_000), None);
-    }
-
-    #[test]
-    fn an_element_that_is_stuck_for_two_seconds_has_no_reading() {
-        let mut taxels = Taxels::default();
-        let lost_after = (0..400).position(|_| taxels.read(0, 3_000).is_some());
-        assert_eq!(lost_after, Some(160));
-        assert_eq!(taxels.reading()[0], None);
     }
 
     #[test]

@@ -6,13 +6,10 @@ use crate::setting::settings;
 pub struct BehaviourConfig {
     pub duty_permille: u16,
     pub movement_frames: u32,
-    /// Section II-D: 0.1 s.
     pub wait_frames: u32,
     pub gentle_score: u16,
     pub changed_cells: u16,
-    /// 1/10,000 of the picture.
     pub moving_e4: u16,
-    /// 0: no extrapolation, as in the paper.
     pub turn_lead_frames: u32,
 }
 

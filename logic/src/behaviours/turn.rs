@@ -3,13 +3,12 @@
 //! a closing finger stops the object.
 
 use tenax_hal_shim::behaviour::Ending;
-use tenax_hal_shim::channel::FRAME_HZ;
+use tenax_hal_shim::channel::{FRAME_HZ, frames};
 use tenax_hal_shim::motor::Duty;
 
 use super::{BehaviourConfig, Course, Felt, Movement, Wish};
 use crate::grip::Grip;
 use crate::latest;
-use tenax_hal_shim::channel::frames;
 
 /// Time of tightening after which an object that still slips is falling: the reflex then answers.
 const FALLS_FRAMES: u32 = frames(300);

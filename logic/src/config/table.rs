@@ -39,15 +39,6 @@ static ROWS: [Row; COUNT] = {
     rows
 };
 
-/// Former names that scene files may still use.
-const BEFORE: [(&str, SettingId); 5] = [
-    ("knock-level-mv", SettingId::ImpactLevel),
-    ("knock-ratio-permille", SettingId::ImpactRatio),
-    ("knock-ms", SettingId::ImpactLength),
-    ("network-slip-permille", SettingId::HebbianSlip),
-    ("myo-on-mv", SettingId::EmgOn),
-];
-
 impl SettingId {
     pub const ALL: [Self; COUNT] = {
         let mut all = [ROWS[0].id; COUNT];
@@ -64,8 +55,7 @@ impl SettingId {
     }
 
     pub fn by_name(name: &str) -> Option<Self> {
-        let mut all = ROWS.iter().map(|row| (row.name, row.id)).chain(BEFORE);
-        all.find(|(own, _)| *own == name).map(|(_, id)| id)
+        ROWS.iter().find(|row| row.name == name).map(|row| row.id)
     }
 
     pub fn row(self) -> &'static Row {
@@ -93,19 +83,11 @@ mod tests {
             let row = id.row();
             assert!(names.insert(row.name), "{}", row.name);
             assert!(row.range().contains(&row.default) && row.min < row.max, "{}", row.name);
+            let unit = row.unit.replace(' ', "").to_lowercase();
+            assert!(row.name.ends_with(&std::format!("-{unit}")), "{} in {}", row.name, row.unit);
             assert!(row.min >= 0 && row.max < 1 << 24, "{}: a record keeps 24 bits of it", row.name);
             assert_eq!(SettingId::from_number(id.number()), Some(id));
             assert_eq!(SettingId::by_name(row.name), Some(id));
-            assert!(id.number() != 0, "0 marks a record of the first format");
-        }
-    }
-
-    #[test]
-    fn names_end_with_their_unit() {
-        for id in SettingId::ALL {
-            let row = id.row();
-            let unit = row.unit.replace(' ', "").to_lowercase();
-            assert!(row.name.ends_with(&std::format!("-{unit}")), "{} in {}", row.name, row.unit);
         }
     }
 

@@ -110,10 +110,6 @@ mod tests {
     const CLOSE: [f64; 2] = [450.0, 165.0];
     const OPEN: [f64; 2] = [150.0, 1_400.0];
 
-    fn told(contractions: &[[f64; 2]], count: usize) -> Vec<(usize, Fit)> {
-        told_to([CLOSE, OPEN], contractions, count)
-    }
-
     fn told_to(calibrated: [[f64; 2]; 2], contractions: &[[f64; 2]], count: usize) -> Vec<(usize, Fit)> {
         let uv = |mv: [f64; 2]| mv.map(|mv| (mv * 1e3) as i32);
         let [close, open] = calibrated.map(uv);
@@ -134,15 +130,6 @@ mod tests {
             }
         }
         told
-    }
-
-    // Shows W9.
-    #[test]
-    fn who_does_what_was_calibrated_is_asked_for_nothing() {
-        assert_eq!(told(&[CLOSE, OPEN], 60), []);
-        assert_eq!(told(&[OPEN], 60), [], "nor who only opens");
-        assert_eq!(told(&[CLOSE], 60), [], "nor who only closes");
-        assert_eq!(told(&[CLOSE.map(|mv| 0.7 * mv), OPEN.map(|mv| 1.4 * mv)], 60), []);
     }
 
     #[test]
@@ -180,22 +167,24 @@ mod tests {
 
     // Shows W9.
     #[test]
-    fn exchanged_plugs_are_told_after_twelve_contractions() {
+    fn moved_or_exchanged_electrodes_are_told_after_twelve_contractions_and_sound_ones_never() {
         let swap = |[flexor, extensor]: [f64; 2]| [extensor, flexor];
-        let first = CONTRACTIONS as usize;
-        assert_eq!(told(&[swap(CLOSE), swap(OPEN)], 40), [(first, Fit::Exchanged)]);
-        assert_eq!(told(&[swap(OPEN)], 40), [(first, Fit::Exchanged)], "and by one of them alone");
-    }
-
-    // Shows W9.
-    #[test]
-    fn electrodes_that_moved_are_told_and_told_to_fit_when_they_do() {
-        // Openings that the hand does not answer, and contractions that drive both electrodes alike.
-        for both in [[CLOSE, [150.0, 300.0]], [[450.0, 400.0], [400.0, 450.0]]] {
-            assert_eq!(told(&both, 40), [(CONTRACTIONS as usize, Fit::Moved)], "{both:?}");
+        let twelve = |fit| Vec::from([(CONTRACTIONS as usize, fit)]);
+        // 24 that fit follow twelve that drive both electrodes alike.
+        let fits_again = [[400.0; 2]; 12].into_iter().chain([CLOSE, OPEN].repeat(12));
+        for (contractions, count, expected) in [
+            (&[CLOSE, OPEN][..], 60, Vec::new()),
+            (&[OPEN], 60, Vec::new()),
+            (&[CLOSE], 60, Vec::new()),
+            (&[CLOSE.map(|mv| 0.7 * mv), OPEN.map(|mv| 1.4 * mv)], 60, Vec::new()),
+            (&[swap(CLOSE), swap(OPEN)], 40, twelve(Fit::Exchanged)),
+            (&[swap(OPEN)], 40, twelve(Fit::Exchanged)),
+            // Unanswered openings, and contractions that drive both electrodes alike.
+            (&[CLOSE, [150.0, 300.0]], 40, twelve(Fit::Moved)),
+            (&[[450.0, 400.0], [400.0, 450.0]], 40, twelve(Fit::Moved)),
+            (&Vec::from_iter(fits_again), 37, Vec::from([(12, Fit::Moved), (24, Fit::Fits)])),
+        ] {
+            assert_eq!(told_to([CLOSE, OPEN], contractions, count), expected, "{contractions:?}");
         }
-        let mut all = Vec::from([[400.0, 400.0]; 12]);
-        all.extend([CLOSE, OPEN].iter().cycle().take(24));
-        assert_eq!(told(&all, 37), [(12, Fit::Moved), (24, Fit::Fits)]);
     }
 }

@@ -90,7 +90,7 @@ impl Swings {
     }
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Proof {
     /// Highest level of each block, oldest first, 0 before the first reading; the last is under way.
     blocks: [[i16; BLOCKS]; 2],
@@ -107,27 +107,6 @@ pub struct Proof {
     wary: u8,
     rest: u16,
     swings: [Swings; 2],
-}
-
-impl Default for Proof {
-    fn default() -> Self {
-        Self {
-            blocks: [[0; BLOCKS]; 2],
-            frames: 0,
-            wish: Wish::Rest,
-            age: 0,
-            before: [0; 2],
-            hears: 0,
-            heard: false,
-            apart: false,
-            proven: false,
-            over: 0,
-            last: (Wish::Rest, u16::MAX),
-            wary: 0,
-            rest: 0,
-            swings: Default::default(),
-        }
-    }
 }
 
 impl Proof {

@@ -1,7 +1,7 @@
 //! The behaviour of the fingertip: how it begins, the drive that it may ask for in a tick, how it ends.
 
 use tenax_hal_shim::behaviour::{Behaviour, CameraView, Ending};
-use tenax_hal_shim::channel::FRAMES_PER_SLOW_FRAME;
+use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, frames};
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::wire::{EventKind, Refusal};
@@ -10,7 +10,6 @@ use tenax_hal_shim::words::{GripMode, Line};
 use super::Fingertip;
 use super::verdicts::Verdicts;
 use crate::behaviours::{Course, Felt, Running, Wish, may_answer_slip, may_relax};
-use tenax_hal_shim::channel::frames;
 
 /// Age from which a picture is ignored, its age on arrival included: the camera is lost, frozen or delayed.
 const VIEW_FRAMES_MAX: u32 = frames(200);

@@ -99,16 +99,6 @@ mod tests {
     }
 
     #[test]
-    fn a_drive_lasts_as_long_as_it_says_and_coasting_asks_for_nothing() {
-        let mut link = Link::default();
-        assert_eq!(driven(&mut link, 100, 1_000, 1_000), 100);
-        link.ask(CLOSE, 100);
-        link.ask(MotorDrive::Coast, 500);
-        link.tick(false);
-        assert_eq!(link.drive(), None);
-    }
-
-    #[test]
     fn neither_a_long_hold_nor_many_short_ones_go_on_for_ever() {
         for (on, period) in [(500, 500), (1, 160), (1, PAUSE_FRAMES)] {
             let mut link = Link::default();
@@ -127,13 +117,5 @@ mod tests {
         (0..HOLD_FRAMES_MAX + PAUSE_FRAMES).for_each(|_| link.tick(false));
         assert!(!link.is_exhausted());
         assert_eq!(driven(&mut link, 500, 500, 500), 500);
-    }
-
-    #[test]
-    fn a_behaviour_that_silences_the_reflex_takes_of_the_same_time() {
-        let mut link = Link::default();
-        driven(&mut link, 500, 500, HOLD_FRAMES_MAX / 2);
-        (0..HOLD_FRAMES_MAX / 2).for_each(|_| link.tick(true));
-        assert!(link.is_exhausted());
     }
 }

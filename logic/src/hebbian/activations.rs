@@ -195,20 +195,6 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_beyond_one_and_a_dead_receptor_stays_quiet() {
-        let mut normaliser = Normaliser::new(&CONFIG);
-        assert_eq!(
-            seen(&normaliser, [5, -5]),
-            [0.05, -0.05].map(|t| (t * f64::from(ONE)).round() / f64::from(ONE))
-        );
-        assert_eq!(seen(&normaliser, [i32::MIN, i32::MIN]), [1.0, -1.0]);
-        normaliser.zero(&[i32::MIN, i32::MAX]);
-        normaliser.observe(&CONFIG, &[i32::MAX, i32::MIN]);
-        assert_eq!(normaliser.maxima(), [1 << 30; 2]);
-        assert_eq!(seen(&normaliser, [i32::MAX, i32::MIN]), [1.0, -1.0]);
-    }
-
-    #[test]
     fn a_spike_makes_no_receptor_deaf_and_a_level_is_learned() {
         let config = NormaliserConfig { average_shift: 6, ..CONFIG };
         let mut normaliser = Normaliser::new(&config);

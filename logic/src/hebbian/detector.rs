@@ -11,6 +11,7 @@
 use core::ops::Range;
 
 use tenax_hal_shim::channel::PVDF_COUNT;
+use tenax_hal_shim::detector::{DetectorHealth, DetectorId, Direction};
 use tenax_hal_shim::schedule::{Job, slot_of};
 use tenax_hal_shim::wire::{Forces, NETWORK_OUTPUTS, NetworkState, RECEPTORS};
 use tenax_hal_shim::words::{Code, Codes, NoLesson};
@@ -21,9 +22,9 @@ use super::pvdf_part::PvdfPart;
 use super::{
     Activations, FingertipNetwork, Normaliser, NormaliserConfig, Output, Sense, Situation, Teacher, snapshot,
 };
+use crate::detectors::{Description, Detector, Said, Sensed, confidence};
 use crate::force::Ahead;
 use crate::hebbian::settings::HebbianConfig;
-use crate::strain::Gauges;
 
 pub type Learned = snapshot::Contents<RECEPTORS, NETWORK_OUTPUTS>;
 pub const SNAPSHOT_LENGTH: usize = snapshot::length(RECEPTORS, NETWORK_OUTPUTS);
@@ -53,20 +54,6 @@ pub static NORMALISER: NormaliserConfig<RECEPTORS> = NormaliserConfig {
     average_shift: 8,
 };
 
-#[derive(Clone, Copy, Debug)]
-pub struct Felt<'a> {
-    /// Q16 samples (14 bits).
-    pub envelopes: &'a [i32; PVDF_COUNT],
-    /// Loads, 1/16 of a sample.
-    pub gauges: &'a Gauges,
-    /// Gauge that was read in this tick, 0 to 11; another number: none.
-    pub gauge: usize,
-    /// An impact rings, or the motor runs fast.
-    pub loud: bool,
-    pub unloaded: bool,
-    pub situation: Situation,
-}
-
 const FILMS: Range<usize> = 0..PVDF_COUNT;
 const GAUGES: Range<usize> = PVDF_COUNT..RECEPTORS;
 const ONE: i64 = 1 << 26;
@@ -74,8 +61,10 @@ const ONE: i64 = 1 << 26;
 const SOMEWHERE_MAX: usize = 6;
 
 /// The tick after the forces, which has more room than theirs.
-pub const SHEAR_IS_JUDGED: u8 = slot_of(Job::Forces) + 1;
-const CYCLE_ENDS: usize = 20;
+const SHEAR_IS_JUDGED: u8 = slot_of(Job::Forces) + 1;
+const CYCLE_ENDS: u8 = 20;
+/// Least value of the second output that tells a direction; 128 is 1.
+const DIRECTION_FROM: i8 = 16;
 
 #[derive(Clone, Debug)]
 pub struct HebbianDetector {
@@ -126,15 +115,52 @@ impl Default for HebbianDetector {
     }
 }
 
+impl Detector for HebbianDetector {
+    const ID: DetectorId = DetectorId::Hebbian;
+    type Config = HebbianConfig;
+
+    fn step(&mut self, config: &HebbianConfig, sensed: &Sensed<'_>) -> Option<Said> {
+        if !sensed.valid {
+            self.lose();
+            return Some(Said::NOTHING);
+        }
+        if sensed.slot == SHEAR_IS_JUDGED {
+            self.foretell(config, sensed.forces, sensed.grasp, sensed.unloaded || sensed.wearer);
+        }
+        self.tick(config, sensed);
+        Some(Said { slip: self.slips(), incipient: self.warns() })
+    }
+
+    fn describe(&self, config: &HebbianConfig) -> Description {
+        let raw = (self.by_films * 1_000 / ONE) as i32;
+        let [_, o2] = self.outputs();
+        let direction = match (self.slips() | self.warns(), o2) {
+            (true, o2) if o2 <= -DIRECTION_FROM => Direction::Down,
+            (true, o2) if o2 >= DIRECTION_FROM => Direction::Up,
+            _ => Direction::Unknown,
+        };
+        let health =
+            if self.pvdf_part.is_quiet_known() { DetectorHealth::Working } else { DetectorHealth::Starting };
+        Description {
+            confidence_permille: confidence(-raw, config.slip_permille.into()),
+            direction,
+            health,
+            raw,
+        }
+    }
+}
+
 impl HebbianDetector {
-    pub fn tick(&mut self, config: &HebbianConfig, felt: &Felt<'_>) {
+    fn tick(&mut self, config: &HebbianConfig, sensed: &Sensed<'_>) {
         let learns = self.lesson.is_ok();
         if self.pvdf_part.is_outdated() && !learns {
             self.know_gains();
         }
-        let mut by_films = self.pvdf_part.process(felt);
-        if let Some(load) = felt.gauges.load(felt.gauge) {
-            self.weigh(PVDF_COUNT + felt.gauge, load);
+        let mut by_films = self.pvdf_part.process(sensed);
+        // The first twelve slots read a gauge each.
+        let gauge = usize::from(sensed.slot);
+        if let Some(load) = sensed.strain.load(gauge) {
+            self.weigh(PVDF_COUNT + gauge, load);
         }
         if learns {
             self.feel_films();
@@ -143,19 +169,19 @@ impl HebbianDetector {
         self.by_films = by_films;
         let [o1_by_gauges, o2_by_gauges] = self.by_gauges;
         self.outputs = [output(by_films + o1_by_gauges), output(o2_by_gauges)];
-        self.judge(config, felt, by_films);
+        self.judge(config, sensed, by_films);
         self.noise.add(by_films);
-        if felt.gauge == CYCLE_ENDS {
+        if sensed.slot == CYCLE_ENDS {
             let quiet = self.pvdf_part.is_quiet_known() && self.since_loud_frames >= config.loud_frames;
-            self.noise.end_cycle(felt.unloaded && quiet);
+            self.noise.end_cycle(sensed.unloaded && quiet);
         }
-        self.learn(config, felt, learns);
+        self.learn(config, sensed, learns);
     }
 
     /// Call it in slot [`SHEAR_IS_JUDGED`], before its tick. `anew`: nothing is touched, or a muscle is
     /// active.
     #[inline(never)]
-    pub fn foretell(&mut self, config: &HebbianConfig, forces: Option<&Forces>, grasp: bool, anew: bool) {
+    fn foretell(&mut self, config: &HebbianConfig, forces: Option<&Forces>, grasp: bool, anew: bool) {
         if anew {
             self.shear.renew();
         }
@@ -227,16 +253,6 @@ impl HebbianDetector {
         self.outputs.map(|output| (output.into_bits() >> 19).clamp(-128, 127) as i8)
     }
 
-    /// PVDF part of o1, per mille.
-    pub const fn by_films_permille(&self) -> i32 {
-        (self.by_films * 1_000 / ONE) as i32
-    }
-
-    /// The finger has been seen unloaded, so that hum can be told from slip.
-    pub const fn is_quiet_known(&self) -> bool {
-        self.pvdf_part.is_quiet_known()
-    }
-
     pub const fn lesson(&self) -> Result<Codes, NoLesson> {
         self.lesson
     }
@@ -262,21 +278,24 @@ impl HebbianDetector {
         Learned::of(&self.normaliser, &self.network, self.shear.learned())
     }
 
-    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), snapshot::Damaged> {
-        let slips_at;
-        (self.normaliser, self.network, slips_at) = snapshot::restore(&NORMALISER, bytes)?;
+    /// False if the bytes are no snapshot of this network; nothing has changed then.
+    pub fn restore(&mut self, bytes: &[u8]) -> bool {
+        let Some((normaliser, network, slips_at)) = snapshot::restore(&NORMALISER, bytes) else {
+            return false;
+        };
+        (self.normaliser, self.network) = (normaliser, network);
         self.shear.restore(slips_at);
         self.noise = Noise::default();
         self.weights_changed = true;
         self.pvdf_part.outdate();
-        Ok(())
+        true
     }
 
-    fn judge(&mut self, config: &HebbianConfig, felt: &Felt<'_>, sum: i64) {
-        self.since_loud_frames = if felt.loud { 0 } else { self.since_loud_frames.saturating_add(1) };
+    fn judge(&mut self, config: &HebbianConfig, sensed: &Sensed<'_>, sum: i64) {
+        self.since_loud_frames = if sensed.noisy { 0 } else { self.since_loud_frames.saturating_add(1) };
         // Half the threshold keeps it on: one slip has dips.
         let threshold = i64::from(config.slip_permille) / if self.films_say { 2 } else { 1 };
-        let says = felt.situation.grasp
+        let says = sensed.grasp
             && self.since_loud_frames >= config.loud_frames
             && sum * 1_000 <= -threshold * ONE
             && sum <= -self.noise.floor() / if self.films_say { 2 } else { 1 };
@@ -300,11 +319,12 @@ impl HebbianDetector {
         }
     }
 
-    fn learn(&mut self, config: &HebbianConfig, felt: &Felt<'_>, felt_so: bool) {
-        self.lesson = self.teacher.lesson(&config.teacher, felt.situation);
+    fn learn(&mut self, config: &HebbianConfig, sensed: &Sensed<'_>, felt_so: bool) {
+        let disturbed = sensed.vibration.impact || sensed.moves || !sensed.vibration_known;
+        self.lesson = self.teacher.lesson(&config.teacher, Situation { grasp: sensed.grasp, disturbed });
         if let Ok(codes) = self.lesson {
             self.pvdf_part.outdate();
-            if felt.gauge == usize::from(SHEAR_IS_JUDGED) && codes[0] == Code::Minus {
+            if sensed.slot == SHEAR_IS_JUDGED && codes[0] == Code::Minus {
                 self.shear.learn();
             }
             if !felt_so {
@@ -319,7 +339,7 @@ impl HebbianDetector {
                 let mut readings = [0; RECEPTORS];
                 let (films, gauges) = readings.split_at_mut(PVDF_COUNT);
                 films.copy_from_slice(self.pvdf_part.heard());
-                gauges.copy_from_slice(&felt.gauges.loads());
+                gauges.copy_from_slice(&sensed.strain.loads());
                 self.normaliser.observe(&NORMALISER, &readings);
             }
         }

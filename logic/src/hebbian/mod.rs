@@ -12,7 +12,6 @@
 //! which is every useful one at 1 kHz.
 
 pub mod activations;
-mod adapter;
 mod arithmetic;
 mod balance;
 pub mod detector;
@@ -29,8 +28,7 @@ pub use activations::{Activation, Activations, Normaliser, NormaliserConfig, Sen
 pub use detector::{HebbianDetector, Learned, NORMALISER, SNAPSHOT_LENGTH};
 pub use gains::Gains;
 pub use network::{Network, Output, Weight};
-pub use rule::{Config, Config as LearningConfig, NotAllowed, Rule};
-pub use snapshot::Damaged;
+pub use rule::{Config, Config as LearningConfig, Rule};
 pub use teacher::{Situation, Teacher, TeacherConfig};
 pub use tenax_hal_shim::words::{Code, Codes, NoLesson};
 

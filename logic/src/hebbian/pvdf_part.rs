@@ -5,8 +5,8 @@
 use tenax_hal_shim::channel::PVDF_COUNT;
 
 use super::Gains;
-use super::detector::Felt;
 use super::network::Weight;
+use crate::detectors::Sensed;
 
 /// Fraction bits of an envelope (Q16) below the resolution of a film; 4 are left, as a gauge's load has.
 const ENVELOPE_SHIFT: u32 = 12;
@@ -30,14 +30,14 @@ pub(super) struct PvdfPart {
 impl PvdfPart {
     /// The films' part of o1; 0 while the quiet levels are not known.
     #[inline]
-    pub(super) fn process(&mut self, felt: &Felt<'_>) -> i64 {
-        self.quiet_known |= felt.unloaded;
+    pub(super) fn process(&mut self, sensed: &Sensed<'_>) -> i64 {
+        self.quiet_known |= sensed.unloaded;
         if !self.quiet_known {
             return 0;
         }
         let beyond: [i32; PVDF_COUNT] =
-            core::array::from_fn(|n| (felt.envelopes[n] >> ENVELOPE_SHIFT) - self.quiet[n]);
-        if felt.unloaded {
+            core::array::from_fn(|n| (sensed.envelopes[n] >> ENVELOPE_SHIFT) - self.quiet[n]);
+        if sensed.unloaded {
             for (quiet, beyond) in self.quiet.iter_mut().zip(beyond) {
                 *quiet += beyond.signum() * QUIET_STEP;
             }

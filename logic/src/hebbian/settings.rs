@@ -5,18 +5,11 @@ use crate::setting::settings;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct HebbianConfig {
-    /// Threshold of the films' part of o1, below minus this, per mille.
     pub slip_permille: u16,
-    /// Time below the threshold if only some films show it.
     pub slip_frames: u32,
-    /// Time below the threshold if all films show it: longer than an impact.
     pub everywhere_frames: u32,
-    /// Time after an impact or a run of the motor in which o1 is not evaluated: the envelopes' decay and the
-    /// motor's dead time.
     pub loud_frames: u32,
-    /// Time by which Ft/Fn is extrapolated, ms; 0: no warnings.
     pub ahead_ms: u16,
-    /// Duty from which the motor counts as fast, per mille.
     pub loud_duty_permille: u16,
     pub teacher: TeacherConfig,
     pub learning: LearningConfig,

@@ -168,20 +168,4 @@ mod tests {
         }
         assert_eq!(late.lesson(&CONFIG, HELD), Err(NoLesson::Late));
     }
-
-    #[test]
-    fn a_picture_that_was_overtaken_is_dropped() {
-        let mut teacher = after(&[[Minus, Plus]; 3]);
-        teacher.receive(&CONFIG, [Plus, Plus], 110);
-        assert_eq!(teacher.lesson(&CONFIG, HELD), Ok([Minus, Plus]));
-        assert_eq!(teacher.age_ms(), Some(73));
-    }
-
-    #[test]
-    fn only_an_undisturbed_grasp_is_a_lesson() {
-        let teacher = after(&[[Minus, Zero]; 3]);
-        assert_eq!(teacher.lesson(&CONFIG, HELD), Ok([Minus, Zero]));
-        assert_eq!(teacher.lesson(&CONFIG, Situation { grasp: false, ..HELD }), Err(NoLesson::NoGrasp));
-        assert_eq!(teacher.lesson(&CONFIG, Situation { disturbed: true, ..HELD }), Err(NoLesson::Disturbed));
-    }
 }

@@ -71,7 +71,7 @@ fn asin_of_root(part: i32) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::{FRAC_PI_2, PI};
+    use std::f64::consts::PI;
 
     /// Dubey 2006, figure 14, as `F = 1.7 (2 phase / pi)^1.82`: F in N, phase in rad, the peak at pi / 2.
     pub const FIGURE_14: Curve = Curve {
@@ -99,19 +99,6 @@ mod tests {
         }
         assert_eq!(FIGURE_14.force_mn(PEAK), 1_700);
         assert_eq!((FIGURE_14.force_mn(i32::MAX), FIGURE_14.force_mn(-1)), (6_000, 0));
-    }
-
-    #[test]
-    fn an_intensity_comes_back_as_its_force_on_both_branches() {
-        for hundredths in 5..590 {
-            let force_n = f64::from(hundredths) / 100.0;
-            let phase = FRAC_PI_2 * (force_n / 1.7).powf(1.0 / (6.0_f64 / 1.7).log2());
-            let level = 32_000.0 + 175_000.0 * phase.sin().powi(2);
-            let rising = phase_of(FIGURE_14.part(level.round() as i32));
-            let phase = if force_n < 1.7 { rising } else { HALF_TURN - rising };
-            let error = (f64::from(FIGURE_14.force_mn(phase)) / 1e3 - force_n).abs();
-            assert!(error < 0.04, "{force_n} N: {error}");
-        }
     }
 
     #[test]

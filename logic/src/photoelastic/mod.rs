@@ -43,33 +43,16 @@ pub struct Head {
 impl Head {
     #[inline]
     pub fn process(&mut self, config: &HeadConfig, sample: u16) -> Option<Change> {
-        if self.health.is_plain(&LIMITS, sample) {
-            self.is_usable = true;
+        let (reading, change) = self.health.read(&LIMITS, sample);
+        self.is_usable = reading.is_ok();
+        if self.is_usable {
             self.split.process(sample);
             self.presence.process(config.slip, &self.split);
-            return None;
-        }
-        self.take_odd(config, sample)
-    }
-
-    #[inline(never)]
-    fn take_odd(&mut self, config: &HeadConfig, sample: u16) -> Option<Change> {
-        let (reading, change) = self.health.take(&LIMITS, sample);
-        self.is_usable = reading.is_ok();
-        match reading {
-            Ok(sample) => {
-                self.split.process(sample);
-                self.presence.process(config.slip, &self.split);
-            }
-            Err(_) => self.lose(),
+        } else {
+            // The jump when samples return is no vibration.
+            (self.split, self.presence) = Default::default();
         }
         change
-    }
-
-    /// Resets the filters, so that the jump when samples return is no vibration.
-    fn lose(&mut self) {
-        self.split = Split::default();
-        self.presence = Presence::default();
     }
 
     pub fn miss(&mut self) {

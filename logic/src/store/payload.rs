@@ -10,9 +10,6 @@ use crate::force::sensor::ZERO_LIMIT_UV;
 
 /// Bits of a settings word that hold the value; the setting's number is above them.
 const VALUE_BITS: u32 = 24;
-/// The first format's words have no number, only a place.
-const FIRST_FORMAT: [SettingId; 5] =
-    [SettingId::S1, SettingId::S2, SettingId::EmgOn, SettingId::ForceCeiling, SettingId::HebbianSlip];
 
 pub type SettingsBytes = Vec<u8, { 4 * SettingId::ALL.len() }>;
 /// A word for each quadrant, uV above rest.
@@ -21,21 +18,11 @@ pub type ZeroBytes = [u8; 4 * FSR_COUNT];
 pub type EmgBytes = [u8; 4 * MODEL_WORDS];
 
 pub fn of_emg(model: &EmgModel) -> EmgBytes {
-    let mut bytes = [0; 4 * MODEL_WORDS];
-    let (slots, _) = bytes.as_chunks_mut::<4>();
-    for (slot, word) in slots.iter_mut().zip(model.to_words()) {
-        *slot = word.to_le_bytes();
-    }
-    bytes
+    bytes_of(model.to_words())
 }
 
 pub fn emg(bytes: &[u8]) -> Option<EmgModel> {
-    let mut model = [0; MODEL_WORDS];
-    let mut given = words(bytes);
-    for word in &mut model {
-        *word = given.next()?.cast_signed();
-    }
-    EmgModel::from_words(model).ok()
+    EmgModel::from_words(words_of::<MODEL_WORDS>(bytes)?).ok()
 }
 
 pub fn of_settings(config: &Config) -> SettingsBytes {
@@ -53,35 +40,36 @@ pub fn of_settings(config: &Config) -> SettingsBytes {
 /// False if a setting is unknown or its value not accepted; its default stays.
 pub fn restore_settings(config: &mut Config, bytes: &[u8]) -> bool {
     let mut all = true;
-    for (place, word) in words(bytes).enumerate() {
+    for word in words(bytes) {
         let value = (word & ((1 << VALUE_BITS) - 1)).cast_signed();
-        let id = match (word >> VALUE_BITS) as u8 {
-            0 => FIRST_FORMAT.get(place).copied(),
-            number => SettingId::from_number(number),
-        };
+        let id = SettingId::from_number((word >> VALUE_BITS) as u8);
         all &= id.is_some_and(|id| config.set(id, value).is_ok());
     }
     all
 }
 
 pub fn of_zero(zero_uv: &[i32; FSR_COUNT]) -> ZeroBytes {
-    let mut bytes = [0; 4 * FSR_COUNT];
-    let (slots, _) = bytes.as_chunks_mut::<4>();
-    for (slot, uv) in slots.iter_mut().zip(zero_uv) {
-        *slot = uv.to_le_bytes();
-    }
-    bytes
+    bytes_of(*zero_uv)
 }
 
 /// None if one is no offset of a working sensor.
 pub fn zero(bytes: &[u8]) -> Option<[i32; FSR_COUNT]> {
-    let mut zero_uv = [0; FSR_COUNT];
-    let mut given = words(bytes);
-    for slot in &mut zero_uv {
-        *slot = given.next()?.cast_signed();
-    }
+    let zero_uv = words_of::<FSR_COUNT>(bytes)?;
     let allowed = zero_uv.iter().all(|uv| uv.unsigned_abs() <= ZERO_LIMIT_UV.unsigned_abs());
     allowed.then_some(zero_uv)
+}
+
+fn bytes_of<const WORDS: usize, const BYTES: usize>(words: [i32; WORDS]) -> [u8; BYTES] {
+    let mut bytes = [0; BYTES];
+    let (slots, _) = bytes.as_chunks_mut::<4>();
+    for (slot, word) in slots.iter_mut().zip(words) {
+        *slot = word.to_le_bytes();
+    }
+    bytes
+}
+
+fn words_of<const WORDS: usize>(bytes: &[u8]) -> Option<[i32; WORDS]> {
+    Some(bytes.as_chunks::<4>().0.first_chunk::<WORDS>()?.map(i32::from_le_bytes))
 }
 
 fn words(bytes: &[u8]) -> impl Iterator<Item = u32> {
@@ -91,7 +79,6 @@ fn words(bytes: &[u8]) -> impl Iterator<Item = u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::vec::Vec;
 
     fn word(number: u8, value: u32) -> [u8; 4] {
         (u32::from(number) << 24 | value).to_le_bytes()
@@ -125,18 +112,6 @@ mod tests {
         let mut expected = Config::default();
         assert!(expected.set(SettingId::S1, 140).is_ok() && expected.set(SettingId::Loaded, 700).is_ok());
         assert_eq!(config, expected);
-    }
-
-    #[test]
-    fn a_record_of_the_first_format_is_read_by_place() {
-        let mut config = Config::default();
-        let words = [120u32, 350, 200, 30_000, 45];
-        let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
-        assert!(restore_settings(&mut config, &bytes));
-        assert_eq!(FIRST_FORMAT.map(|id| config.get(id) as u32), words);
-        assert!(restore_settings(&mut config, &98u32.to_le_bytes()), "an even older one has fewer");
-        assert_eq!(config.get(SettingId::S1), 98);
-        assert!(restore_settings(&mut config, &[]));
     }
 
     #[test]

@@ -1,9 +1,7 @@
 //! Masks a PVDF channel that alone reports vibration again and again: hum, a bad contact or a cracked film.
 //! It may close the hand once, and is masked until it has been quiet for a while.
 
-use tenax_hal_shim::channel::PVDF_COUNT;
-
-use tenax_hal_shim::channel::frames;
+use tenax_hal_shim::channel::{PVDF_COUNT, frames};
 
 /// Longest loudness alone before a channel is masked.
 const ALONE_FRAMES: u32 = frames(150);

@@ -165,14 +165,6 @@ mod tests {
     }
 
     #[test]
-    fn noise_since_the_grasp_began_is_a_floor_and_not_sliding() {
-        let mut sliding = Sliding::default();
-        assert!(!after(&mut sliding, 4_000, 12, 60, 30, 4_000));
-        assert!(!after(&mut sliding, 400, 12, 110, 60, 4_000));
-        assert!(after(&mut sliding, 40, 12, 700, 60, 4_000));
-    }
-
-    #[test]
     fn what_closing_does_not_stop_is_not_believed_before_it_was_quiet() {
         let mut sliding = Sliding::default();
         after(&mut sliding, 400, 12, 2, 1, 4_000);

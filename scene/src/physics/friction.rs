@@ -15,7 +15,7 @@ pub struct Friction {
 const SLOWEST_M_S: f64 = 1e-3;
 
 impl Friction {
-    /// What a speed of `speed_m_s` adds to `mu_d` where friction rises by `per_decade` of it with each tenfold speed:
+    /// Rise of `mu_d` at `speed_m_s` where friction rises by `per_decade` of it with each tenfold speed:
     /// `mu_d k log10(1 + v / v_0)`, as rubber's does below its peak (Grosch 1963; that it is a straight line over the
     /// logarithm is assumed).
     pub fn rise(self, per_decade: f64, speed_m_s: f64) -> f64 {
@@ -29,7 +29,7 @@ impl Friction {
     }
 }
 
-/// How long somebody takes to wet or dry it, s (assumed).
+/// Time to wet or dry a surface, s (assumed).
 const WETS_S: f64 = 0.02;
 
 #[derive(Clone, Debug)]

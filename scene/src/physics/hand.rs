@@ -4,7 +4,7 @@ use crate::file::sections::{Move, Swing};
 use crate::pole::LowPass;
 use crate::schedule::{STEP_S, Span};
 
-/// How fast a person notices that the table begins to carry, s (assumed).
+/// Time constant with which a person notices that the table carries, s (assumed).
 const FEEL_S: f64 = 0.030;
 
 /// The hand's height over where it grasps, and how it moves. The arm is strong: what the hand holds does not move it.
@@ -67,7 +67,7 @@ impl Hand {
     }
 }
 
-/// How a person reaches: 10 p^3 - 15 p^4 + 6 p^5 (Flash and Hogan 1985).
+/// Minimum jerk, as a person reaches: 10 p^3 - 15 p^4 + 6 p^5 (Flash and Hogan 1985).
 fn minimum_jerk(p: f64) -> f64 {
     p * p * p * (10.0 + p * (6.0 * p - 15.0))
 }

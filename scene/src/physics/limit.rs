@@ -9,7 +9,7 @@ use crate::file::sections::Object;
 #[derive(Clone, Debug)]
 pub struct Body {
     width_mm: f64,
-    /// Of pad and object together, N/mm a finger.
+    /// Pad and object together, N/mm a finger.
     pub(crate) stiffness_n_per_mm: f64,
     crush_n: f64,
     break_n: f64,

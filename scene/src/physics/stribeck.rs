@@ -43,7 +43,7 @@ pub struct SmallSignal {
 }
 
 impl Slider {
-    /// What the linearised equation says about sliding at `surface_m_s` under `normal_n`.
+    /// Growth and frequency of the linearised equation at `surface_m_s` under `normal_n`.
     pub fn small_signal(&self, normal_n: f64, surface_m_s: f64) -> SmallSignal {
         let net_ns_per_m = self.damping_ns_per_m + normal_n * self.friction.slope_s_m(surface_m_s);
         let growth_per_s = -net_ns_per_m / (2.0 * self.mass_kg);

@@ -26,7 +26,7 @@ struct Contraction {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Effort {
-    /// What they want; None is rest.
+    /// None is rest.
     pub intent: Option<Intent>,
     pub flexor_mv: f64,
     pub extensor_mv: f64,
@@ -44,7 +44,7 @@ impl Wearer {
     }
 
     pub(crate) fn contract(&mut self, at_s: f64, for_s: f64, intent: Intent, until_grip_n: f64) {
-        // What opens and closes a hand that is not calibrated, too.
+        // Enough for a hand that is not calibrated.
         let level_mv = if intent == Intent::Close { 900.0 } else { 2_000.0 };
         let span = Span::new(at_s, for_s);
         self.contractions.push(Contraction { span, intent, level_mv, until_grip_n });

@@ -16,7 +16,7 @@ use crate::schedule::FRAME_S;
 const ROWS: usize = 2;
 /// Elements along the pad.
 const LONG: usize = ARRAY_COUNT / ROWS;
-/// How long the cover takes to forget that an element slipped, s (assumed).
+/// Time in which the cover forgets that an element slipped, s (assumed).
 const FORGETS_S: f64 = 0.030;
 /// The cover spreads the load of the patch to this many times its radius (assumed): no element is ever out of it.
 const SPREADS: f64 = 1.4;

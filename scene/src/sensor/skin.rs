@@ -22,7 +22,7 @@ const SPREADS: f64 = 1.4;
 /// (assumed).
 const TEXTURE_PART: f64 = 0.02;
 const SLIPS_PX: f64 = 0.3;
-/// What is seen to move in a wrong picture, in 1/10,000 of it: from hardly said to be slip to what a fast slip moves.
+/// Range of the motion that is reported in a wrong picture, in 1/10,000 of it.
 const WRONG_E4: (f64, f64) = (30.0, 200.0);
 /// Time constant of an error of the angle, s: where the object has the wall's colours its rims are elsewhere.
 const ANGLE_LASTS_S: f64 = 2.0;

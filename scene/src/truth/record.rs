@@ -21,7 +21,7 @@ pub struct MicroRun {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Phase {
-    /// What they wanted; None is rest.
+    /// None is rest.
     pub intent: Option<Intent>,
     pub begin_s: f64,
     /// To, s. None while it goes on.

@@ -7,8 +7,7 @@ use serde::{Deserialize, Serialize};
 use tenax_hal_shim::channel::{REFERENCE_MV, SAMPLE_MAX};
 use tenax_logic::array::detector::logistic_permille;
 use tenax_logic::array::{
-    ArrayDetector, COVARIANCE_WINDOW, FEATURES, Judgement, Layer, Mlp, Model, PreprocessorConfig, Reading,
-    shipped,
+    ArrayDetector, COVARIANCE_WINDOW, Judgement, Layer, Mlp, Model, PreprocessorConfig, Reading, shipped,
 };
 
 use super::edges::{Confidences, Edges};
@@ -18,8 +17,6 @@ use crate::labelled::Step;
 
 /// The file in a folder of `tenax train`.
 pub const FILE: &str = "network.json";
-const H1: usize = 32;
-const H2: usize = 16;
 
 /// A network as `tenax train` writes it: the firmware's integers, what its features are made with, and on what noise it learned.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -41,7 +38,7 @@ pub struct Saved {
 }
 
 /// The firmware's model, with the covariance's shipped window.
-type OwnModel = Model<H1, 1, H2, COVARIANCE_WINDOW>;
+type OwnModel = Model<COVARIANCE_WINDOW>;
 
 #[derive(Clone, Debug)]
 pub struct Network {
@@ -114,13 +111,11 @@ impl Saved {
                 structure_knee: self.structure_knee,
                 ..PreprocessorConfig::DEFAULT
             },
-            network: Mlp::new(
-                Layer::<FEATURES, H1>::new(square(&first.0)?, fixed(&first.1)?, first.2)
-                    .map_err(too_large)?,
-                [Layer::<H1, H2>::new(square(&second.0)?, fixed(&second.1)?, second.2).map_err(too_large)?],
-                Layer::<H2, 1>::new([fixed(&last.0)?], [last.1], 0).map_err(too_large)?,
-            )
-            .map_err(too_large)?,
+            network: Mlp {
+                first: Layer::new(square(&first.0)?, fixed(&first.1)?, first.2).map_err(too_large)?,
+                second: Layer::new(square(&second.0)?, fixed(&second.1)?, second.2).map_err(too_large)?,
+                last: Layer::new([fixed(&last.0)?], [last.1], 0).map_err(too_large)?,
+            },
             judgement: Judgement {
                 logit_per_nat: self.logit_per_nat,
                 on_permille: self.edges.on_permille,

@@ -22,8 +22,9 @@ const NEAR_PX: f32 = 2.5;
 const SHARE_MIN: f32 = 0.25;
 /// Largest angle between a rim and the moments' direction, radians.
 const OFF_MAX: f32 = 1.0;
+/// Share of the outline on the rims below which something may lean on the object and have turned the moments.
 const SHARE_CLEAR: f32 = 0.75;
-/// ... rims are looked for there, too, radians aside.
+/// Directions in which rims are then looked for too, radians from that of the moments.
 const ASIDE: [f32; 2] = [-0.5, 0.5];
 /// Outermost pixels that are looked at.
 const PLACES_MAX: usize = 2048;

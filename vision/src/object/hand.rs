@@ -40,7 +40,7 @@ pub fn leave_out(object: &mut Mask, frame: &Frame, white: [u8; 3], least: u32) {
     let mut rest = skin;
     rest.invert();
     rest.intersect(object);
-    // What is left of its rim is not the object.
+    // Its rim remains and is not the object.
     rest.erode(4);
     rest.dilate(4);
     rest.intersect(object);

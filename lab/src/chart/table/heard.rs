@@ -268,10 +268,10 @@ impl Ears {
         let damaged = "a snapshot that is damaged";
         let mut controls = Vec::new();
         if let [learned, changed @ ..] = taught {
-            detectors.hebbian.restore(learned).ok().context(damaged)?;
+            detectors.hebbian.restore(learned).then_some(()).context(damaged)?;
             for own in changed {
                 let mut network = HebbianDetector::default();
-                network.restore(own).ok().context(damaged)?;
+                network.restore(own).then_some(()).context(damaged)?;
                 controls.push((network, false));
             }
         }

@@ -77,16 +77,6 @@ fn it_is_certain_as_long_as_no_shear_can_have_brought_the_light_to_its_fold() {
 }
 
 #[test]
-fn a_lift_after_a_grip_over_the_peak_is_never_certain() {
-    let mut tracker = opened();
-    ramp(&mut tracker, (0.0, 0.0), (2.3, 0.0), 80, NOTHING);
-    ramp(&mut tracker, (2.3, 0.0), (2.3, 0.3), 40, NOTHING);
-    assert_eq!(tracker.track(), Track::Either);
-    let force = tracker.force().unwrap();
-    assert!(force.least_mn < 1_700 && force.most_mn > 2_300, "{force:?}");
-}
-
-#[test]
 fn another_sensor_tells_the_branch_where_only_one_agrees() {
     for (force_n, q, branch) in [(0.3, 0.2, Branch::Rising), (4.5, 0.1, Branch::Falling)] {
         let mut tracker = opened();

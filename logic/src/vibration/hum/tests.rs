@@ -85,23 +85,6 @@ fn a_burst_of_slip_is_heard_as_loud_as_without_hum() {
 }
 
 #[test]
-fn films_without_hum_hear_what_they_heard() {
-    // A burst every 0.3 s, for a minute: the control. Nothing is taken off that is not hum.
-    let bursts = |t_s: f64| {
-        let since = t_s % 0.3;
-        if since < 0.025 { 40.0 * (TAU * 40.0 * since).sin() } else { 0.0 }
-    };
-    let all = envelopes(60.0, bursts);
-    let peaks = |part: &[f64]| {
-        let peaks: Vec<f64> =
-            part.chunks_exact(600).map(|one| one.iter().copied().fold(0.0, f64::max)).collect();
-        mean(&peaks)
-    };
-    let (first, later) = (peaks(&all[..1_200]), peaks(&all[60_000..]));
-    assert!((later / first - 1.0).abs() < 0.05, "{first} at first, {later} later");
-}
-
-#[test]
 fn the_oscillator_neither_grows_nor_dies() {
     let mut hum = Mains::default();
     // An hour of a frequency that is pushed to both ends.

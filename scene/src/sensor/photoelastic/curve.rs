@@ -82,7 +82,7 @@ impl Day {
     }
 }
 
-/// What the receiver's amplifier gives, mV, before it clips. Orientation and the share of shear in the principal stresses
+/// Output of the receiver's amplifier, mV, before it clips. Orientation and the share of shear in the principal stresses
 /// are equations 4 to 9; the phase under a normal force alone is the head's own curve.
 pub fn receiver_mv(layer: &Layer, making: &Making, day: &Day, t_s: f64, normal_n: f64, shear_n: f64) -> f64 {
     let normal_n = normal_n.max(0.0);
