@@ -23,7 +23,8 @@ const CODE_BYTES: u64 = 2;
 const CR2_SWSTART: u64 = 1 << 30;
 
 /// Where DMA may write.
-static MEMORY: [Region; 1] = [Region::ram("sram", 0x2000_0000, 128 << 10)];
+const RAM: std::ops::Range<u64> = 0x2000_0000..0x2002_0000;
+static MEMORY: [Region; 1] = [Region::ram("sram", RAM.start, RAM.end - RAM.start)];
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Asked {
@@ -118,12 +119,18 @@ impl ScanPath {
         }
     }
 
-    /// The end of the conversion with which DMA has filled a half of its ring, if the sequence under way has it.
+    /// The end of the conversion with which DMA has filled a half of its ring or fails, if the sequence under way has it.
     fn next_interrupt(&self) -> Option<VirtualNanos> {
         let next = self.models.next_event()?;
         let (_, left) = self.models.dma.remaining(0);
         let half = self.ring / 2;
-        let codes = if left > half { left - half } else { left } / CODE_BYTES;
+        let begins = self.models.bus.slots()[self.models.slots[1]].registers().get(dma2::Register::S0m0ar);
+        let codes = match left {
+            // A ring that is not in memory is an error with the next code.
+            _ if !RAM.contains(&begins) => 1,
+            left if left > half => (left - half) / CODE_BYTES,
+            left => left / CODE_BYTES,
+        };
         let is_in_sequence = (1..=SCAN_LEN as u64).contains(&codes);
         is_in_sequence.then(|| VirtualNanos(next.0 + (codes - 1) * self.conversion_ns))
     }
