@@ -12,7 +12,6 @@ use crate::board::agreement::{host_decides, presses, slow_difference};
 use tenax_frames::link::Inbox;
 use tenax_frames::link::captured::line_of;
 
-/// What a recording holds.
 #[derive(Debug, Default)]
 pub struct Recorded {
     identity: Identity,
@@ -62,7 +61,6 @@ impl Recorded {
         Ok(recorded)
     }
 
-    /// Decides everything once more.
     pub fn replay(&self) -> Outcome {
         let mut device = Device::default();
         for Restored { kept, payload } in &self.restored {
@@ -106,18 +104,12 @@ impl Recorded {
     }
 }
 
-/// What a replay found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Outcome {
-    /// Frames that were decided.
     pub frames: usize,
-    /// Commands that were given in their ticks.
     pub commands: usize,
-    /// Slow frames that were compared.
     pub slows: usize,
-    /// Events that were compared.
     pub events: usize,
-    /// Where the board and the host differ first.
     pub difference: Option<String>,
 }
 

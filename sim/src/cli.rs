@@ -10,7 +10,6 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use tenax_frames::tool::exit;
 
-/// Runs scenes and recordings on boards, and draws them.
 #[derive(Debug, Parser)]
 #[command(name = "tenax", bin_name = "tenax", version)]
 struct Cli {
@@ -20,11 +19,8 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Run a scene or a recording on a board; report and draw it
     Run(run::Args),
-    /// Run scenes with many seeds, in shards
     Sweep(sweep::Args),
-    /// Draw a recording
     Plot(plot::Args),
 }
 

@@ -11,11 +11,10 @@ use rand::{RngExt, SeedableRng};
 /// The scene's name, for `tenax run --scene`.
 pub const NAME: &str = "disturbance-hour";
 
-/// The scene as a text: so many minutes of it, drawn from a seed.
 pub fn text(seed: u64, minutes: u32) -> String {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut text = format!(
-        r#"# Drawn from seed {seed} by bench/src/disturbances.rs.
+        r#"# Drawn from seed {seed} by sim/src/disturbances.rs.
 name = "{NAME}"
 title = "An hour of disturbances in a hand that holds a glass; nothing slips"
 from = "the disturbances that run through every experiment"
@@ -89,7 +88,6 @@ fn one_minute(text: &mut String, rng: &mut ChaCha8Rng, from_s: f64) {
     put(format_args!("[[hum]]\nat_s = {at_s:.3}\nfor_s = 20\npeak_mv = {peak_mv:.3}\nhum_hz = {hum_hz}"));
 }
 
-/// Sensors that wander for the whole hour.
 fn drifts(text: &mut String, rng: &mut ChaCha8Rng) {
     for name in ["fsr_a", "fsr_b", "fsr_c", "fsr_d"] {
         // 0.2 N an hour either way: under 5 % a decade of time for an FSR at 1.3 N a quadrant (Interlink FSR 400, data sheet).
@@ -111,7 +109,6 @@ fn drifts(text: &mut String, rng: &mut ChaCha8Rng) {
     }
 }
 
-/// Drawn evenly over the logarithm.
 fn decades(rng: &mut ChaCha8Rng, from: f64, to: f64) -> f64 {
     from * (to / from).powf(rng.random_range(0.0..1.0))
 }

@@ -4,11 +4,8 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-/// The longest scene or recipe, bytes: fifty times the longest of the repository.
 pub const TEXT_MAX_BYTES: u64 = 1_000_000;
-/// The longest line of a CSV file, bytes.
 pub const LINE_MAX_BYTES: u64 = 100_000;
-/// The longest CSV file, bytes: ten minutes of sixteen columns at 8 kHz.
 pub const CSV_MAX_BYTES: u64 = 1_000_000_000;
 
 /// The text of a scene or a recipe. Fails if it cannot be read, is too long, or is no text.
@@ -32,17 +29,6 @@ fn text_of(source: impl Read) -> io::Result<String> {
     })
 }
 
-/// What a CSV file may not be, and in which line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{what}")]
-pub struct TooLong {
-    /// Line in the file, from 1.
-    pub line: u64,
-    /// What is too long.
-    pub what: &'static str,
-}
-
-/// What is wrong with a CSV file, and where.
 #[derive(Debug, thiserror::Error)]
 pub enum CsvError {
     #[error("{file}: cannot be read")]
@@ -55,16 +41,15 @@ pub enum CsvError {
 }
 
 impl CsvError {
-    /// The csv crate's error as one of ours.
     pub fn of(file: &str, error: csv::Error) -> Self {
         let line = error.position().map_or(1, csv::Position::line);
         let file = file.to_owned();
         let row = |line, what| Self::Row { file: file.clone(), line, what };
         match error.into_kind() {
-            csv::ErrorKind::Io(source) => match too_long(&source) {
-                Some(TooLong { line, what }) => row(line, what.to_owned()),
-                None => Self::Unreadable { file, source },
-            },
+            csv::ErrorKind::Io(source) if source.kind() == io::ErrorKind::FileTooLarge => {
+                Self::File { file, what: source.to_string() }
+            }
+            csv::ErrorKind::Io(source) => Self::Unreadable { file, source },
             csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
                 row(line, format!("{len} cells, but the header has {expected_len}"))
             }
@@ -73,7 +58,6 @@ impl CsvError {
         }
     }
 
-    /// The column that somebody asked for is not in the header.
     pub fn no_column<'a>(file: &str, why: &str, columns: impl IntoIterator<Item = &'a str>) -> Self {
         let quoted: Vec<String> = columns.into_iter().map(|name| format!("`{name}`")).collect();
         Self::Row {
@@ -84,7 +68,6 @@ impl CsvError {
     }
 }
 
-/// A CSV file, opened, and what errors call it.
 pub fn open(path: &Path) -> Result<(File, String), CsvError> {
     let file = path.display().to_string();
     match File::open(path) {
@@ -93,7 +76,6 @@ pub fn open(path: &Path) -> Result<(File, String), CsvError> {
     }
 }
 
-/// Reads CSV with a header, comments and blanks around cells, within bounds.
 pub fn rows<R: Read>(source: R) -> csv::Reader<Rows<R>> {
     csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(Rows::new(source))
 }
@@ -106,7 +88,7 @@ pub fn number(column: &str, cell: &str) -> Result<f64, String> {
     }
 }
 
-/// The source of a CSV file, cut off with [`TooLong`] where it is longer than allowed.
+/// The source of a CSV file, cut off where it is longer than allowed.
 #[derive(Debug)]
 pub struct Rows<R> {
     source: R,
@@ -120,12 +102,13 @@ impl<R: Read> Rows<R> {
         Self { source, line: 1, in_line: 0, in_all: 0 }
     }
 
-    fn count(&mut self, bytes: &[u8]) -> Result<(), TooLong> {
+    fn count(&mut self, bytes: &[u8]) -> io::Result<()> {
+        let too_large = |what| Err(io::Error::new(io::ErrorKind::FileTooLarge, what));
         self.in_all += bytes.len() as u64;
         for piece in bytes.split_inclusive(|&byte| byte == b'\n') {
             self.in_line += piece.len() as u64;
             if self.in_line > LINE_MAX_BYTES {
-                return Err(TooLong { line: self.line, what: "longer than 100 kB: no row of a CSV file" });
+                return too_large(format!("line {} is longer than 100 kB: no row of a CSV file", self.line));
             }
             if piece.ends_with(b"\n") {
                 self.line += 1;
@@ -133,7 +116,7 @@ impl<R: Read> Rows<R> {
             }
         }
         if self.in_all > CSV_MAX_BYTES {
-            return Err(TooLong { line: self.line, what: "the file is longer than 1 GB, the most allowed" });
+            return too_large("the file is longer than 1 GB, the most allowed".to_owned());
         }
         Ok(())
     }
@@ -142,14 +125,9 @@ impl<R: Read> Rows<R> {
 impl<R: Read> Read for Rows<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let length = self.source.read(buffer)?;
-        self.count(&buffer[..length]).map_err(io::Error::other)?;
+        self.count(&buffer[..length])?;
         Ok(length)
     }
-}
-
-/// Whether reading ended because something is [`TooLong`].
-pub fn too_long(error: &io::Error) -> Option<TooLong> {
-    error.get_ref()?.downcast_ref().copied()
 }
 
 #[cfg(test)]
@@ -167,12 +145,8 @@ mod tests {
 
     #[test]
     fn a_line_has_an_end() {
-        let csv = || &b"t,a\n0,1\n"[..];
-        let mut read = Vec::new();
-        Rows::new(csv()).read_to_end(&mut read).unwrap();
-        assert_eq!(read, csv());
-        let error = Rows::new(csv().chain(io::repeat(b'0'))).read_to_end(&mut read).unwrap_err();
-        assert_eq!(too_long(&error).map(|error| error.line), Some(3));
-        assert_eq!(too_long(&io::Error::other("else")), None);
+        let endless = (&b"t,a\n0,1\n"[..]).chain(io::repeat(b'0'));
+        let error = Rows::new(endless).read_to_end(&mut Vec::new()).unwrap_err().to_string();
+        assert_eq!(error, "line 3 is longer than 100 kB: no row of a CSV file");
     }
 }

@@ -5,7 +5,6 @@ use std::sync::{Mutex, PoisonError};
 /// Told how much is done, from 0 to 1.
 pub type Told<'a> = &'a (dyn Fn(f64) + Sync);
 
-/// Jobs of about one length.
 pub struct Jobs<'a> {
     count: usize,
     done: Mutex<f64>,
@@ -13,7 +12,6 @@ pub struct Jobs<'a> {
 }
 
 impl<'a> Jobs<'a> {
-    /// So many, none of them begun.
     pub const fn new(count: usize, told: Told<'a>) -> Self {
         Self { count, done: Mutex::new(0.0), told }
     }
@@ -23,7 +21,6 @@ impl<'a> Jobs<'a> {
     }
 }
 
-/// One job. It is done when it is dropped.
 pub struct Job<'a> {
     jobs: &'a Jobs<'a>,
     part: f64,
@@ -44,24 +41,5 @@ impl Job<'_> {
 impl Drop for Job<'_> {
     fn drop(&mut self) {
         self.at(1.0);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn parts_add_up_and_what_is_over_is_done() {
-        let heard = Mutex::new(Vec::new());
-        let told = |part: f64| heard.lock().unwrap().push(part);
-        let jobs = Jobs::new(2, &told);
-        let mut one = jobs.begin();
-        one.at(0.5);
-        // Backwards is not at all.
-        one.at(0.25);
-        jobs.begin().at(1.0);
-        drop(one);
-        assert_eq!(*heard.lock().unwrap(), [0.25, 0.25, 0.75, 0.75, 1.0]);
     }
 }

@@ -8,18 +8,15 @@ use serde::de::DeserializeOwned;
 use thiserror::Error;
 use toml::Spanned;
 
-/// What is wrong with a recipe, and where.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("{file}:{line}: {what}")]
 pub struct RecipeError {
     pub file: String,
     /// Line in it, from 1.
     pub line: usize,
-    /// What, and what is allowed.
     pub what: String,
 }
 
-/// What a check finds: the place in the text, and what is wrong there.
 pub type Checked = Result<(), (Range<usize>, String)>;
 
 pub trait Kind: DeserializeOwned + 'static {
@@ -45,7 +42,6 @@ pub trait Kind: DeserializeOwned + 'static {
         Ok(recipe)
     }
 
-    /// The one that was asked for, by file or by name.
     fn asked(asked: &str) -> anyhow::Result<Named<Self>> {
         let name = asked.to_owned();
         if let Some((_, text)) = Self::BUILTIN.iter().find(|(name, _)| *name == asked) {
@@ -63,7 +59,6 @@ pub trait Kind: DeserializeOwned + 'static {
         Ok(Named { name, recipe: Self::parse(&text, asked)? })
     }
 
-    /// The built-in one that is for files of this name, if there is one.
     fn for_file(path: &Path) -> Result<Option<Named<Self>>, RecipeError> {
         let file_name = path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
         for (name, text) in Self::BUILTIN {
@@ -75,26 +70,21 @@ pub trait Kind: DeserializeOwned + 'static {
         Ok(None)
     }
 
-    /// Whether it is for files of this name.
     fn is_for(&self, file_name: &str) -> bool {
         matches(self.applies_to(), file_name)
     }
 
-    /// What the built-in ones are called.
     fn names() -> String {
         Self::BUILTIN.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ")
     }
 }
 
-/// A recipe and what it is called.
 #[derive(Clone, Debug)]
 pub struct Named<R> {
-    /// Its name in `recipes/`, or its file.
     pub name: String,
     pub recipe: R,
 }
 
-/// Whether any of these patterns is of this name; `*` and `?` match as in a shell.
 pub fn matches<'p>(patterns: impl IntoIterator<Item = &'p Spanned<String>>, file_name: &str) -> bool {
     let matches = |pattern: &Spanned<String>| {
         glob::Pattern::new(pattern.get_ref()).is_ok_and(|pattern| pattern.matches(file_name))

@@ -27,34 +27,24 @@ const CORE_HZ: f64 = 100e6;
 /// bracket, and a wide one.
 pub const CYCLES_PER_INSTRUCTION: [f64; 2] = [1.0, 3.0];
 
-/// A report. Its keys are stable: `bench/tests/report.rs` lists them. Null where a thing did not happen.
+/// A report. Its keys are stable: `tests/report.rs` lists them. Null where a thing did not happen.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// The scene's name, or the recording's file.
     pub scene: String,
-    /// "emulated" or "host".
     pub board: &'static str,
-    /// Seed of every noise.
     pub seed: u64,
     pub virtual_s: f64,
     pub wall_s: f64,
-    /// Times the converter or its DMA overran.
     pub overruns: u32,
     pub ticks: Ticks,
-    /// What the core executes, in instructions.
     pub load: Load,
     /// The deepest that the stack was, bytes. Null where it cannot be measured.
     pub stack_bytes: Option<u64>,
-    /// The first macro slip, and the object's whole fate.
     pub slip: scores::Slip,
-    /// The least force that holds, planned ahead: the gripper's limit in this scene.
     pub bound: bound::Bound,
-    /// The same scene with other grips (`run --controls`): no reflex, a constant grip of the same mean force, each detector alone,
-    /// all but each.
     pub controls: Vec<bound::Control>,
     pub grip: Grip,
     pub wearer: wearer::Wearer,
-    /// How far from slipping it was.
     pub margin: reflex::Margin,
     pub reflex: reflex::Reflex,
     /// Newtons that it added and took back: the same as below `reflex`.
@@ -64,9 +54,7 @@ pub struct Report {
     /// What the hand did by itself because it was asked to.
     pub behaviours: Vec<behaviours::Ran>,
     pub detectors: scores::Detectors,
-    /// Everything that went wrong, as it was reported.
     pub faults: Vec<FaultLine>,
-    /// Other counts of the line and the board.
     pub line: Line,
     pub replay: Option<replay::Replay>,
 }
@@ -74,13 +62,10 @@ pub struct Report {
 #[derive(Clone, Debug, Serialize)]
 pub struct Ticks {
     pub count: u32,
-    /// Frames that had no tick in time: lost ones and late ones.
     pub dropped: u32,
     pub instructions_mean: Option<f64>,
     pub instructions_max: Option<u64>,
-    /// Part of the core at 100 MHz that the ticks take, per cent, with [`CYCLES_PER_INSTRUCTION`] at its two ends.
     pub load_percent: Option<[f64; 2]>,
-    /// The same for everything that the core does: ticks, interrupts, telemetry.
     pub core_load_percent: Option<[f64; 2]>,
 }
 
@@ -101,7 +86,6 @@ impl Ticks {
 /// What the core executes, in instructions. Null on a board whose instructions are not counted.
 #[derive(Clone, Debug, Serialize)]
 pub struct Load {
-    /// One tick of the logic, mean, what interrupted it included.
     pub tick_instructions_mean: Option<f64>,
     /// A period of 0.5 ms, mean: everything that the core executed, by the number of frames.
     pub period_instructions_mean: Option<f64>,
@@ -117,65 +101,44 @@ impl Load {
     }
 }
 
-/// Per cent of the core at 100 MHz, as a bracket.
 fn load_percent(instructions_per_s: f64) -> [f64; 2] {
     CYCLES_PER_INSTRUCTION.map(|cycles| instructions_per_s * cycles / CORE_HZ * 100.0)
 }
 
-/// Grip force, per finger.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Grip {
     pub peak_force_n: Option<f64>,
-    /// The least that would have held the object at its heaviest, N.
     pub needed_force_n: Option<f64>,
-    /// When it first crushed the object, s.
     pub crushed_at_s: Option<f64>,
-    /// How deep, for good, mm.
     pub dent_mm: Option<f64>,
-    /// When it broke the object, s.
     pub broken_at_s: Option<f64>,
 }
 
-/// A fault and when it was noticed.
 #[derive(Clone, Debug, Serialize)]
 pub struct FaultLine {
     /// When, s. Null for the reason of a restart.
     pub at_s: Option<f64>,
-    /// What, in words.
     pub what: String,
 }
 
-/// What the serial line and the board counted.
 #[derive(Clone, Debug, Serialize)]
 pub struct Line {
-    /// Bytes that came up.
     pub bytes: usize,
-    /// Messages missing by their sequence numbers.
     pub messages_missed: u64,
-    /// Messages that the board dropped so as not to delay control.
     pub telemetry_dropped: u32,
-    /// Frames the board received that were no message.
     pub bad_frames: u32,
 }
 
-/// What a report is made from.
 #[derive(Clone, Copy, Debug)]
 pub struct Subject<'a> {
-    /// The scene's name, or the recording's file.
     pub scene: &'a str,
-    /// "emulated" or "host".
     pub board: &'static str,
-    /// Seed of every noise.
     pub seed: u64,
     pub run: &'a Summary,
     pub timeline: &'a Timeline,
-    /// Who judged whether the wearer came first.
     pub judge: &'a wearer::Judge,
-    /// Who measured what the reflex added.
     pub added: &'a added::Added,
-    /// What really happened, where it is known.
     pub truth: Option<&'a fate::Fate>,
-    /// The bound's run, where there is one.
     pub bound: Option<&'a fate::Fate>,
 }
 
@@ -228,7 +191,6 @@ impl Report {
     }
 }
 
-/// Whether the board last said that nobody wears the hand.
 fn nobody_wears_it(run: &Summary) -> bool {
     let told = run.events.iter().rev().find_map(|event| match event.kind {
         EventKind::NoWearer(none) => Some(none),
@@ -237,7 +199,6 @@ fn nobody_wears_it(run: &Summary) -> bool {
     told.unwrap_or(false)
 }
 
-/// For how long the vibration motor was driven, s. One that a run ends on is not counted to the end.
 fn vibrates_s(run: &Summary) -> f64 {
     let frames = |pair: &[(u32, Duty)]| match pair {
         [(from, duty), (to, _)] if *duty > Duty::default() => to - from,

@@ -20,54 +20,42 @@ use tenax_frames::quantile::not_exceeded;
 
 pub use doing::{Doing, Stretch};
 
-/// How long after macro onset a detection still catches it, s.
 pub const CAUGHT_WITHIN_S: f64 = 0.050;
 
-/// One slip, or a run of micro slips that came to nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlipSpan {
-    /// When some of the contact began to slide, s.
     pub micro_onset_s: f64,
     /// When all of it did, s. None if it never came to that.
     pub macro_onset_s: Option<f64>,
     /// When everything stuck again, s. Infinite if it never did.
     pub end_s: f64,
-    /// How far the object slid, mm.
     pub distance_mm: f64,
-    /// Whether the wearer was letting go, so that it was meant: nothing is to be caught.
     pub meant: bool,
 }
 
 impl SlipSpan {
-    /// Until when a detection belongs to it, s.
     pub fn last_s(&self) -> f64 {
         self.end_s + CAUGHT_WITHIN_S
     }
 
-    /// Whether what begins at this instant belongs to it.
     pub fn owns(&self, t_s: f64) -> bool {
         (self.micro_onset_s..=self.last_s()).contains(&t_s)
     }
 }
 
-/// A verdict of slip: from when to when it stood.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Verdict {
-    /// It began, s: this is the detection.
     pub from_s: f64,
     /// It ended, s. Infinite if it never did.
     pub to_s: f64,
-    /// Whether a muscle was active when it began.
     pub by_wearer: bool,
 }
 
 impl Verdict {
-    /// Nobody's muscles are involved.
     pub const fn new(from_s: f64, to_s: f64) -> Self {
         Self { from_s, to_s, by_wearer: false }
     }
 
-    /// Goes on with a row of verdicts to this instant, at which one stands or none does.
     pub fn go_on(all: &mut Vec<Self>, t_s: f64, stands: bool) {
         let open = all.last_mut().filter(|last| last.to_s == f64::INFINITY);
         match (open, stands) {
@@ -78,16 +66,14 @@ impl Verdict {
     }
 }
 
-/// What became of a macro slip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
     /// A detection began in time, so long after macro onset, s: negative is early.
     Caught(f64),
     /// The first detection began so long after macro onset, s.
     Late(f64),
-    /// Nothing began; a verdict stood when the first place let go.
+    /// Nothing began; a verdict stood at the micro onset.
     SaidBefore,
-    /// Nothing began.
     Missed,
 }
 
@@ -105,13 +91,10 @@ pub fn outcome(slip: &SlipSpan, macro_onset_s: f64, verdicts: &[Verdict]) -> Out
     }
 }
 
-/// Detections that belong to no slip, of one kind of doing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Alarms {
-    /// How long this was going on, h.
     pub hours: f64,
     pub count: usize,
-    /// Those of them in micro slip that came to nothing.
     pub in_micro_slip: usize,
     pub per_hour: f64,
 }
@@ -125,18 +108,14 @@ impl Alarms {
     }
 }
 
-/// Macro slips that were not meant, by what became of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Counts {
     pub count: usize,
     /// Those that a detection began in between micro onset and 50 ms after macro onset.
     pub caught: usize,
-    /// Those of them that it began in before macro onset.
     pub early: usize,
     pub late: usize,
-    /// Nothing began; a verdict stood before.
     pub said_before: usize,
-    /// Nothing was said.
     pub missed: usize,
 }
 
@@ -164,7 +143,6 @@ impl Counts {
     }
 }
 
-/// What a detector made of recordings or scenes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Card {
     #[serde(flatten)]
@@ -172,11 +150,9 @@ pub struct Card {
     /// Detection less macro onset of those caught, ms, in their order.
     #[serde(skip)]
     pub latencies_ms: Vec<f64>,
-    /// The same less micro onset.
     #[serde(skip)]
     pub after_micro_ms: Vec<f64>,
     pub false_alarms: Alarms,
-    /// By what was going on.
     pub false_by: BTreeMap<Doing, Alarms>,
 }
 
@@ -230,7 +206,6 @@ impl Card {
     }
 }
 
-/// When detections began that belong to no slip and not to what the wearer does, s.
 pub fn false_alarms_s(slips: &[SlipSpan], verdicts: &[Verdict]) -> Vec<f64> {
     let is_slip = |t_s: f64| slips.iter().any(|slip| slip.macro_onset_s.is_some() && slip.owns(t_s));
     verdicts
@@ -307,17 +282,5 @@ mod tests {
         // The control: what begins by a muscle catches nothing either.
         verdicts[0].by_wearer = true;
         assert_eq!(Card::of(&[SLIP], &verdicts, &whole()).slips.missed, 1);
-    }
-
-    #[test]
-    fn cards_add_up() {
-        let (one, other) = (card(&[(1.12, 1.2)]), card(&[(0.2, 0.3), (1.2, 1.25)]));
-        let mut both = one;
-        both.add(&other);
-        let Counts { count, caught, late, .. } = both.slips;
-        assert_eq!((count, caught, late, both.false_alarms.count), (2, 1, 1, 1));
-        assert!((both.false_alarms.hours - 0.002).abs() < 1e-12);
-        assert_eq!(both.latency_ms(0.5).map(f64::round), Some(20.0));
-        assert_eq!(both.caught_part(), Some(0.5));
     }
 }

@@ -1,7 +1,7 @@
 //! One run: from what is to be run, on which board, to its report and its figure.
 //!
 //! ```
-//! use crate::session::{self, Board};
+//! use tenax_sim::session::{self, Board};
 //! use tenax_hal_shim::detector::DetectorId;
 //!
 //! let file = session::load_scene("glass")?;
@@ -44,18 +44,13 @@ use crate::report::replay::{ActivePart, Replay};
 use crate::report::{Report, Subject};
 use crate::timeline::Timeline;
 
-/// The scene that is run when none is asked for.
 pub const DEFAULT_SCENE: &str = "glass";
 
-/// Who runs the logic.
 #[derive(Clone, Debug)]
 pub enum Board {
-    /// The host's own build of it.
     Host,
-    /// The real image, instruction by instruction.
     #[cfg(feature = "emulator")]
     Emulated {
-        /// Its ELF file.
         image: PathBuf,
         options: emulated::Options,
     },
@@ -68,7 +63,6 @@ impl Board {
         Ok(Self::Emulated { image: crate::image::build(root)?, options: emulated::Options::default() })
     }
 
-    /// Says how to get an emulated board.
     #[cfg(not(feature = "emulator"))]
     pub fn emulated(_root: &Path) -> anyhow::Result<Self> {
         bail!(
@@ -76,7 +70,6 @@ impl Board {
         )
     }
 
-    /// What it is called in reports.
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Host => "host",
@@ -117,11 +110,9 @@ pub struct Outcome {
     pub run: Summary,
     pub report: Report,
     pub figure: Figure,
-    /// What really happened. Nothing is known of a recording.
     pub truth: Fate,
 }
 
-/// A scene by its name in the repository, or by its file.
 pub fn load_scene(asked: &str) -> anyhow::Result<SceneFile> {
     if let Some((name, text)) = builtin().iter().chain(builtin::parts()).find(|(name, _)| *name == asked) {
         return Ok(SceneFile::parse(text, &format!("scenes/{name}.toml"))?);
@@ -143,7 +134,6 @@ pub fn load_scene(asked: &str) -> anyhow::Result<SceneFile> {
     Ok(SceneFile::parse_upon(&text, asked, &|name| builtin::find(name).or_else(|| beside(name)))?)
 }
 
-/// Runs a scene, and its bound beside it.
 pub fn scene(
     file: &SceneFile,
     seed: u64,
@@ -206,7 +196,6 @@ fn judged(
     Ok(Outcome { run, report, figure, truth })
 }
 
-/// Plays a recording. Without a recipe, the one that its name calls for.
 pub fn replay(
     path: &Path,
     recipe: Option<&str>,
@@ -222,9 +211,7 @@ pub fn replay(
 pub struct ReplayOptions<'a> {
     /// The recipe's name or file. None: the one that the recording's name calls for.
     pub recipe: Option<&'a str>,
-    /// The wearer to whom the board is calibrated.
     pub calibrated: Option<EmgModel>,
-    /// What its board's line is used for.
     pub line: Use,
 }
 
@@ -282,7 +269,6 @@ pub fn recorded(name: &str, line: &[u8]) -> anyhow::Result<Outcome> {
     Ok(Outcome { run, report, figure, truth: Fate::default() })
 }
 
-/// Report and figure of what was witnessed, beside what truly happened and the bound.
 fn told(
     scene: &str,
     board: &'static str,
@@ -297,7 +283,6 @@ fn told(
     (Report::new(&subject), panels::figure(&subject, sketch), timeline)
 }
 
-/// What a recording is called: its file's name.
 pub fn name_of(recording: &Path) -> String {
     recording
         .file_name()

@@ -19,9 +19,7 @@ use tenax_scene::{SceneFile, builtin};
 
 use tenax_frames::quantile::middle;
 
-/// What of a run's report is kept: nothing that differs when it is run again.
 const KEPT: [&str; 8] = ["scene", "seed", "object", "slip", "grip", "bound", "reflex", "margin"];
-/// A force above the bound's by more is too much.
 const OVER: f64 = 1.5;
 
 /// Seeds: `7`, or `1..5` for 1, 2, 3, 4 and 5.
@@ -56,7 +54,6 @@ impl FromStr for Shard {
     }
 }
 
-/// Which runs, and by which program: results of two programs are never merged.
 #[derive(Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Plan {
     made_by: String,
@@ -83,14 +80,13 @@ fn file_of(folder: &Path, (scene, seed): (&str, u64)) -> PathBuf {
     folder.join(format!("{scene}.{seed}.json"))
 }
 
-/// Whoever reads it finds all of it or nothing.
+/// Written aside and renamed, so that a reader finds all of it or nothing.
 fn write(path: &Path, text: &str) -> anyhow::Result<()> {
     let part = path.with_extension("part");
     let written = fs::write(&part, text).and_then(|()| fs::rename(&part, path));
     written.with_context(|| format!("cannot write {}", path.display()))
 }
 
-/// A run's line, if its file is there and whole.
 fn whole(folder: &Path, run: (&str, u64)) -> Option<(String, Value)> {
     let line = fs::read_to_string(file_of(folder, run)).ok().filter(|line| line.ends_with("}\n"))?;
     let row: Value = serde_json::from_str(&line).ok()?;
@@ -184,7 +180,6 @@ pub fn merge(folders: &[PathBuf]) -> anyhow::Result<Summary> {
     Ok(summary)
 }
 
-/// A run that is not as good as it should be.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Case {
     pub scene: String,
@@ -192,16 +187,13 @@ pub struct Case {
     pub value: Option<f64>,
 }
 
-/// What all runs show.
 #[derive(Debug, PartialEq, Serialize)]
 pub struct Summary {
     pub runs: usize,
-    /// The hand lost what the bound keeps; and how far it slid, mm.
     pub lost_mm: Vec<Case>,
     /// The hand pressed more than 1.5 times as hard as the bound; and how many times, the worst first.
     pub above_1_5_times: Vec<Case>,
     pub force_ratio_median: Option<f64>,
-    /// Of the runs in which the bound's object slides, too, or neither does.
     pub distance_ratio_median: Option<f64>,
 }
 

@@ -8,7 +8,6 @@ use tenax_hal_shim::words::Cause;
 use crate::board::Recorder;
 use crate::scorer::Verdict;
 
-/// When each detector began to speak in a run, gathered while it goes.
 #[derive(Clone, Debug, Default)]
 pub struct Timeline {
     zero_s: f64,
@@ -37,7 +36,6 @@ fn push(all: &mut [Edges; DetectorId::COUNT], set: DetectorSet, frame: u32, by_w
 }
 
 impl Timeline {
-    /// Of a run that has not begun; `zero_s` is added to virtual time (a recording has a time of its own).
     pub fn new(zero_s: f64) -> Self {
         Self { zero_s, ..Self::default() }
     }
@@ -47,7 +45,6 @@ impl Timeline {
         self.zero_s
     }
 
-    /// When the tick of this frame ran, s: when the frame's last scan had been taken.
     pub fn time_s(&self, frame: u32) -> f64 {
         self.zero_s + frame_end_s(frame)
     }
@@ -67,7 +64,6 @@ impl Timeline {
         self.stretches(&self.believed[id as usize])
     }
 
-    /// The stretches in which it said so, believed or not.
     pub fn verdicts_said(&self, id: DetectorId) -> Vec<Verdict> {
         self.stretches(&self.said[id as usize])
     }
@@ -101,25 +97,20 @@ impl Timeline {
     }
 }
 
-/// When the tick of a frame ran, s of virtual time.
 pub(crate) fn frame_end_s(frame: u32) -> f64 {
     (f64::from(frame) + 1.0) / f64::from(FRAME_HZ)
 }
 
-/// A slow frame's ticks, each with its frame.
 pub(crate) fn ticks(slow: &Slow) -> impl Iterator<Item = (u32, &TickRecord)> {
     let first = slow.frame.saturating_sub(u32::from(FRAMES_PER_SLOW_FRAME) - 1);
     (first..).zip(&slow.ticks)
 }
 
-/// The frames in which something becomes true, the first one included if it is true then.
 #[derive(Clone, Debug, Default)]
 struct Edges {
     before: bool,
     frames: Vec<u32>,
-    /// The frames in which it becomes false again.
     ends: Vec<u32>,
-    /// Whether the wearer moved the hand in each.
     by_wearer: Vec<bool>,
 }
 
@@ -133,20 +124,5 @@ impl Edges {
             self.ends.push(frame);
         }
         self.before = now;
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_edge_is_where_it_becomes_true() {
-        let mut edges = Edges::default();
-        for (frame, on) in (0..).zip([true, true, false, true, false]) {
-            edges.push(frame, on, false);
-        }
-        assert_eq!((edges.frames.as_slice(), edges.ends.as_slice()), (&[0, 3][..], &[2, 4][..]));
-        assert!(Edges::default().frames.is_empty());
     }
 }

@@ -52,12 +52,6 @@ fn keys_grip_lift_pull_wet_and_put_down() {
         let (run, world) = typed(&keys, 23.0, seed);
         let truth = world.truth();
         let height_mm = |at_s: f64| truth.trace.iter().find(|row| row.t_s >= at_s).unwrap().position_mm;
-        println!(
-            "seed {seed}: {:.1} mm, {:.1} mm, slips at {:?}",
-            height_mm(6.5),
-            height_mm(22.9),
-            slips(&run)
-        );
         assert!(height_mm(1.9).abs() < 5.0 && height_mm(6.5) > 80.0, "gripped and lifted");
         assert!(slips(&run).iter().any(|at_s| (7.2..8.0).contains(at_s)), "wetted: {:?}", slips(&run));
         assert!(!truth.dropped && height_mm(22.9) < 5.0, "held until it is put down");

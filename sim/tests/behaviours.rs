@@ -10,7 +10,6 @@ fn seeds() -> std::ops::RangeInclusive<u64> {
     1..=asked("TENAX_SEEDS").unwrap_or(8)
 }
 
-/// What really happened in each seed, with `more` added to the scene's file.
 fn fates(name: &str, more: &str) -> Vec<Truth> {
     run(&format!("{}\n{more}", text(name)))
 }
@@ -22,7 +21,6 @@ fn run(text: &str) -> Vec<Truth> {
     seeds().map(run).collect()
 }
 
-/// Wrong pictures in bursts, some twenty times as many as the vision crate has.
 const BURSTS: &str = "[skin]\nwrong_part = 0.05\nwrong_pictures = 3";
 
 /// With the camera's own errors nothing is lost or crushed. With bursts nothing is lost, and at most one seed in eight is crushed: of 100
@@ -31,14 +29,6 @@ fn unharmed(name: &str) -> Vec<Truth> {
     let harmed = |more: &str| {
         let fates = fates(name, more);
         let crushed: Vec<_> = seeds().zip(&fates).filter(|(_, truth)| truth.dent_mm > 0.0).collect();
-        println!(
-            "{name}: slid {:.2} mm, {:.2} mm at worst, pressed by {:.2} N, {} crushed of {}, {more:?}",
-            slid_mm(&fates),
-            fates.iter().map(|truth| truth.slip_distance_mm).fold(0.0, f64::max),
-            pressed_n(&fates),
-            crushed.len(),
-            fates.len()
-        );
         for (seed, truth) in seeds().zip(&fates) {
             assert!(!truth.dropped && !truth.left_behind, "{name}, seed {seed}: lost, {more}");
             assert!(truth.broken_at_s.is_none(), "{name}, seed {seed}: broken, {more}");
@@ -57,13 +47,7 @@ fn unharmed(name: &str) -> Vec<Truth> {
 fn fails(name: &str, fates: &[Truth]) {
     let fail = |truth: &&Truth| truth.dropped || truth.dent_mm > 0.0 || truth.slip_distance_mm > 5.0;
     let failed = fates.iter().filter(fail).count();
-    println!("{name}, the control: fails in {failed} of {}", fates.len());
     assert!(2 * failed >= fates.len(), "{name}: the control fails in {failed} of {} only", fates.len());
-}
-
-/// The scene with nobody who holds.
-fn not_held(name: &str, more: &str) -> Vec<Truth> {
-    run(&format!("{}\n{more}", text(name).replace("kind = \"hold\"", "kind = \"end\"")))
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> f64 {
@@ -73,10 +57,6 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
 
 fn slid_mm(fates: &[Truth]) -> f64 {
     mean(fates.iter().map(|truth| truth.slip_distance_mm))
-}
-
-fn pressed_n(fates: &[Truth]) -> f64 {
-    fates.iter().map(|truth| truth.peak_grip_n).fold(0.0, f64::max)
 }
 
 #[test]
@@ -90,10 +70,13 @@ fn a_can_and_a_card_are_taken_and_none_is_crushed() {
 }
 
 #[test]
-fn a_crane_is_held_against_a_pull_and_a_swing() {
-    let held = unharmed("hold-crane");
-    assert!(slid_mm(&held) < 0.5, "{} mm", slid_mm(&held));
-    fails("hold-crane", &not_held("hold-crane", ""));
+fn what_is_soft_is_held_against_a_pull_and_a_swing() {
+    for name in ["hold-crane", "hold-marshmallow", "hold-toy"] {
+        let held = unharmed(name);
+        assert!(name != "hold-crane" || slid_mm(&held) < 0.5, "{} mm", slid_mm(&held));
+        // The control: nobody holds.
+        fails(name, &run(&text(name).replace("kind = \"hold\"", "kind = \"end\"")));
+    }
 }
 
 #[test]
@@ -104,21 +87,11 @@ fn holding_slips_less_than_a_gentle_grasp() {
 }
 
 #[test]
-fn what_is_soft_is_held_against_a_pull_and_a_swing() {
-    for name in ["hold-marshmallow", "hold-toy"] {
-        unharmed(name);
-        fails(name, &not_held(name, ""));
-    }
-}
-
-/// Twenty times what the cup weighs comes in, and the hand follows.
-#[test]
 fn water_is_poured_into_a_cup_that_stays_where_it_is() {
     // The control: nobody holds it, and the reflex acts on no detector.
     let nobody = "[[command]]\nat_s = 0.1\nkind = \"set-detectors-off-mask\"\nvalue = 31\n\
         [[command]]\nat_s = 4.2\nkind = \"end\"\n";
     let (ours, theirs) = (unharmed("fill-cup"), fates("fill-cup", nobody));
-    println!("slid {:.2} mm, the control {:.2} mm", slid_mm(&ours), slid_mm(&theirs));
     assert!(slid_mm(&ours) < 0.2 * slid_mm(&theirs), "{} mm of {}", slid_mm(&ours), slid_mm(&theirs));
     fails("fill-cup", &theirs);
 }
@@ -142,14 +115,11 @@ fn a_turn_comes_within_two_degrees_and_foresight_takes_the_overshoot_away() {
     let paper = "[[command]]\nat_s = 0.2\nkind = \"set-turn-lead-ms\"\nvalue = 0\n";
     let error_deg = |truth: &Truth| truth.turned_rad.to_degrees() - 20.0;
     let off_deg = |fates: &[Truth]| mean(fates.iter().map(|truth| error_deg(truth).abs()));
-    let worst_deg = |fates: &[Truth]| fates.iter().map(|truth| error_deg(truth).abs()).fold(0.0, f64::max);
     let (ours, papers) = (unharmed("turn-pen"), fates("turn-pen", paper));
     for fates in [&ours, &fates("turn-pen", BURSTS)] {
-        println!("off by {:.2} degrees on average, {:.2} at worst", off_deg(fates), worst_deg(fates));
         assert!(off_deg(fates) <= 2.0, "{} degrees", off_deg(fates));
     }
     let over = |fates: &[Truth]| fates.iter().filter(|truth| error_deg(truth) > 0.0).count();
-    println!("too far in {} of {}, without foresight in {}", over(&ours), ours.len(), over(&papers));
     assert!(2 * over(&papers) >= papers.len() && over(&ours) < over(&papers));
     let (ours, papers) = (mean(ours.iter().map(error_deg)), mean(papers.iter().map(error_deg)));
     assert!(papers > 0.0 && ours < papers, "{ours}, {papers}");

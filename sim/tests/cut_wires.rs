@@ -12,17 +12,10 @@ use tenax_sim::session::Board;
 
 const BENCH: &str = include_str!("../../scenes/parts/bench.toml");
 
-/// When the wire is cut, and how soon that has to be noticed, s.
 const CUT_S: u32 = 3;
 const WITHIN_S: f64 = 0.5;
-/// The same of a film, whose bias falls first.
 const FILM_WITHIN_S: f64 = 0.6;
 
-fn run(channel: usize, kind: &str) -> Run {
-    run_of(BENCH, 5, CUT_S, channel, kind)
-}
-
-/// So many seconds of a scene in which this channel's wire is cut.
 fn run_of(text: &str, seconds: u32, at_s: u32, channel: usize, kind: &str) -> Run {
     let text = text.replace("= 3600", &format!("= {seconds}"));
     let name = CHANNELS[channel].name;
@@ -34,10 +27,6 @@ fn run_of(text: &str, seconds: u32, at_s: u32, channel: usize, kind: &str) -> Ru
 
 /// How long after the cut a channel is reported, s, and why.
 type Noticed = Option<(f64, Reason)>;
-
-fn noticed(channel: usize, kind: &str) -> Noticed {
-    noticed_in(&run(channel, kind), channel)
-}
 
 fn noticed_in(run: &Run, channel: usize) -> Noticed {
     run.events.iter().find_map(|event| match event.kind {
@@ -53,11 +42,13 @@ fn noticed_in(run: &Run, channel: usize) -> Noticed {
 fn each_of_the_thirty_is_noticed_with_its_resistor_and_hardly_one_without() {
     let all: Vec<(usize, [Noticed; 2])> = (STRAIN..COUNT)
         .into_par_iter()
-        .map(|channel| (channel, ["cut", "open"].map(|kind| noticed(channel, kind))))
+        .map(|channel| {
+            (
+                channel,
+                ["cut", "open"].map(|kind| noticed_in(&run_of(BENCH, 5, CUT_S, channel, kind), channel)),
+            )
+        })
         .collect();
-    for (channel, [cut, open]) in &all {
-        println!("{:<14} with resistor {cut:?}, without {open:?}", CHANNELS[*channel].name);
-    }
     let late: Vec<_> = all
         .iter()
         .filter(|(_, [cut, _])| !cut.is_some_and(|(after_s, _)| (0.0..WITHIN_S).contains(&after_s)))
@@ -71,11 +62,12 @@ fn each_of_the_thirty_is_noticed_with_its_resistor_and_hardly_one_without() {
 // Shows R5.
 #[test]
 fn each_film_that_is_cut_before_its_amplifier_is_noticed() {
-    let films: Vec<(usize, Run)> =
-        (PVDF..PVDF + PVDF_COUNT).into_par_iter().map(|channel| (channel, run(channel, "cut"))).collect();
+    let films: Vec<(usize, Run)> = (PVDF..PVDF + PVDF_COUNT)
+        .into_par_iter()
+        .map(|channel| (channel, run_of(BENCH, 5, CUT_S, channel, "cut")))
+        .collect();
     for (channel, run) in &films {
         let noticed = noticed_in(run, *channel);
-        println!("{:<14} {noticed:?}", CHANNELS[*channel].name);
         let in_time =
             matches!(noticed, Some((after_s, Reason::Dead)) if (0.0..FILM_WITHIN_S).contains(&after_s));
         assert!(in_time, "{}: {noticed:?}", CHANNELS[*channel].name);

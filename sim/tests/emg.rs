@@ -23,14 +23,6 @@ fn a_replayed_fist_never_opens_the_hand_and_rest_never_moves_it() {
                 let report = outcome.expect("a shared recording is good").report;
                 let (wearer, replay) = (report.wearer, report.replay.expect("it is a replay"));
                 let meant = replay.meant.expect("the recipe says what it means");
-                println!(
-                    "  {prefix}{name:16} {}: closing {:5.2} s, opening {:5.2} s, longest open {:4.0} ms, close {:4.0} ms",
-                    if calibrated.is_some() { "calibrated" } else { "not       " },
-                    wearer.closing_s,
-                    wearer.opening_s,
-                    wearer.longest_open_ms,
-                    wearer.longest_close_ms
-                );
                 assert_eq!(wearer.faults, 0, "{name}: each is a muscle");
                 assert!(meant.wrong_ms <= 50.0, "{name}: {meant:?}");
                 assert!(meant.wrong_ms == 0.0 || !meant.never.contains(&Motion::Close), "{name}: {meant:?}");

@@ -1,5 +1,4 @@
 //! Scenes in which a reflex of many guards failed, beside their bound: what has to be kept, and with how much.
-//! `cargo test -p tenax-bench --test all failures -- --nocapture` prints the table of docs/scenes.md.
 
 use std::sync::OnceLock;
 
@@ -25,7 +24,6 @@ const SCENES: [(&str, bool, f64); 10] = [
     ("dead-extensor", true, f64::INFINITY),
 ];
 
-/// What became of one of them, which is played once, whichever tests look at it.
 fn ran(name: &str) -> &'static Report {
     static RAN: [OnceLock<Report>; SCENES.len()] = [const { OnceLock::new() }; SCENES.len()];
     let at = SCENES.iter().position(|(own, ..)| *own == name).expect("a scene of the table");
@@ -37,16 +35,6 @@ fn the_bound_keeps_every_one_of_them_with_little_more_than_is_needed() {
     for (name, slips, bears_n) in SCENES {
         let report = ran(name);
         let (bound, grip) = (&report.bound, &report.grip);
-        println!(
-            "| `{name}` | {} | {:.1} | {:.2} | {:.2} | {:.2} | {} | {:.2} |",
-            if report.object.kept == Some(true) { "kept" } else { "LOST" },
-            report.slip.distance_mm.unwrap(),
-            grip.peak_force_n.unwrap(),
-            bound.peak_force_n.unwrap(),
-            grip.needed_force_n.unwrap_or_default(),
-            report.reflex.pulses,
-            report.added.added_without_need_n.unwrap()
-        );
         assert_eq!(bound.kept, Some(true), "{name}");
         assert!(bound.distance_mm.unwrap() < SAME_MM, "{name}: {bound:?}");
         assert!(bound.peak_force_n.unwrap() < bears_n, "{name}: {bound:?}");
@@ -73,7 +61,6 @@ fn cells_that_drift_add_nothing() {
 fn hum_that_closing_does_not_change_is_not_answered_for_long() {
     let report = ran("hum-after-slip");
     let without_n = report.added.added_without_need_n.unwrap();
-    // 9.0 N while only half as much force again ended it, 3.2 while one kind of sensor was believed from an Ft/Fn of 0.07.
     assert!(without_n < 1.5, "{without_n} N without need in {} pulses", report.reflex.pulses);
     let peak_n = report.grip.peak_force_n.unwrap();
     assert!(peak_n < 14.0, "{peak_n} N");
@@ -94,7 +81,6 @@ fn one_sound_electrode_is_enough_to_save_a_glass() {
 fn a_pulse_breaks_no_egg() {
     let report = ran("egg-filled");
     assert_eq!((report.object.kept, report.grip.broken_at_s), (Some(true), None), "{:?}", report.grip);
-    // 25 N, and broken, by a pulse of 30 ms.
     let [peak_n, bound_n] = [report.grip.peak_force_n, report.bound.peak_force_n].map(Option::unwrap);
     assert!(report.reflex.pulses > 0 && peak_n < 2.0 * bound_n, "{peak_n} N, the bound {bound_n} N");
 }
@@ -120,13 +106,6 @@ fn minutes_of_disturbances_slip_nowhere_and_drop_nothing() {
     // TENAX_MINUTES=60 is the hour.
     let minutes = asked("TENAX_MINUTES").unwrap_or(1);
     let report = crate::common::ran(&parsed(&disturbances::text(1, minutes)), 1).report;
-    println!(
-        "{minutes} min: {} pulses, {:.2} N added, {:.2} N of them without need; {:?}",
-        report.reflex.pulses,
-        report.added.added_n,
-        report.added.added_without_need_n.unwrap(),
-        report.bound
-    );
     assert_eq!((report.object.kept, report.slip.macro_slips), (Some(true), Some(0)));
     assert!(report.added.added_without_need_n.unwrap() < 0.5, "{:?}", report.reflex);
     assert_eq!(

@@ -1,6 +1,6 @@
 //! The vibration motor that tells the wearer, and films that hear it.
 
-use crate::common::{asked, loaded, parsed};
+use crate::common::{asked, parsed};
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_hal_shim::wire::{Event, EventKind, Slow};
 use tenax_hal_shim::words::GripMode;
@@ -8,10 +8,8 @@ use tenax_scene::plant::{Pins, Plant};
 use tenax_scene::{SceneFile, World};
 use tenax_sim::board::{Run, simulated};
 
-/// Where a wearer closes the hand, or a line does while a camera teaches, and things slip.
 const SCENES: [&str; 5] = ["glass", "wearer-control", "knocks", "pick-up-reflex", "gripper"];
 
-/// What is not known of a motor on a socket.
 #[derive(Clone, Copy, Debug)]
 struct Drawn {
     film_mv: f64,
@@ -20,7 +18,6 @@ struct Drawn {
     choice: u32,
 }
 
-/// One of evenly spread draws, by the golden ratio and two numbers like it.
 fn drawn(n: usize, least_mv: f64) -> Drawn {
     let part = |step: f64| (0.5 + n as f64 * step).fract();
     Drawn {
@@ -44,8 +41,6 @@ fn ran(base: &str, drawn: Drawn, seed: u64) -> Run {
     simulated::run(World::new(&with(base, drawn), seed), &mut |_| {}).0
 }
 
-/// Where two runs first differ in what moves the hand, or in what is said while the reflex listens. The detectors may say what they
-/// hear while nobody asks them.
 fn differs(one: &Run, other: &Run) -> Option<String> {
     let listens = |slow: &Slow| matches!(slow.mode, GripMode::Watch | GripMode::Incipient);
     let mut before = false;
@@ -61,13 +56,11 @@ fn differs(one: &Run, other: &Run) -> Option<String> {
     events.map(|(a, b)| format!("{a:?} and {b:?}"))
 }
 
-/// How often the reflex began to answer slip.
 fn answers(run: &Run) -> usize {
     let slips = |event: &&Event| matches!(event.kind, EventKind::Mode { to: GripMode::Slip, .. });
     run.events.iter().filter(slips).count()
 }
 
-/// The films that hear a motor whose board drives it without a look at what the reflex does.
 struct Naive {
     world: World,
     scans: u32,
@@ -107,7 +100,6 @@ fn no_slip_is_heard_of_it_and_the_hand_does_as_without_it() {
             let (draw, seed) = (drawn(n, 1.0), 1 + n as u64 / 2);
             let deaf = ran(base, Drawn { film_mv: 0.0, ..draw }, seed);
             let vibrates = ran(base, draw, seed);
-            println!("{base}, seed {seed}, {draw:?}: {} steps", vibrates.feedback.len());
             assert_eq!(differs(&deaf, &vibrates), None, "{base}, seed {seed}, {draw:?}");
             assert_eq!(deaf.feedback, vibrates.feedback);
             assert!(!vibrates.feedback.is_empty(), "{base} tells nothing");
@@ -146,21 +138,5 @@ fn far_louder_it_is_answered_once_or_twice_and_bursts_at_any_time_again_and_agai
             }
         }
     }
-    let runs = 2 * SCENES.len() * draws();
-    println!(
-        "{once} more answers in {runs} runs; in a tenth of them {there}, and {naively} of bursts at any time"
-    );
     assert!(once > 0 && there <= 2 && naively >= 2 * draws(), "{once}, {there}, {naively}");
-}
-
-#[test]
-fn a_glass_is_told_by_three_bursts_of_force_and_one_of_slip() {
-    let (run, _) = simulated::run(World::new(&loaded("feedback"), 1), &mut |_| {});
-    let duties: Vec<u16> = run.feedback.iter().map(|(_, duty)| duty.as_per_mille()).collect();
-    assert_eq!(duties, [750, 800, 850, 0, 1_000, 0]);
-    let frames: Vec<u32> = run.feedback.iter().map(|(frame, _)| *frame).collect();
-    assert_eq!([frames[3] - frames[2], frames[5] - frames[4]], [125, 125], "62.5 ms");
-    let slip =
-        run.events.iter().find(|event| matches!(event.kind, EventKind::Mode { to: GripMode::Slip, .. }));
-    assert!((0..=25).contains(&(frames[4] - slip.expect("it slips").frame)), "within a slow frame");
 }

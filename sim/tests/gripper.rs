@@ -14,7 +14,6 @@ fn a_gripper_keeps_what_it_lifts_and_one_that_waits_for_a_wearer_leaves_it_behin
     for seed in 1..=4 {
         let gripper = report("gripper", seed);
         let slid_mm = gripper["slip"]["distance_mm"].as_f64().unwrap();
-        println!("seed {seed}: slid {slid_mm} mm, {}", gripper["reflex"]);
         assert_eq!(gripper["wearer"]["none"], true, "told at the start");
         assert_eq!(gripper["object"]["kept"], true, "seed {seed}");
         assert!(slid_mm < 10.0, "seed {seed}: {slid_mm} mm");
@@ -39,7 +38,6 @@ fn what_slips_while_a_robot_closes_is_answered() {
             let report = ran(&parsed(text), seed).report;
             (report.object.kept, report.slip.distance_mm.unwrap())
         });
-        println!("seed {seed}: {quiet:?} {loud:?}");
         assert!(quiet.0 == Some(true) && quiet.1 < 10.0, "seed {seed}: {quiet:?}");
         assert!(loud.0 == Some(false) && loud.1 > 60.0, "seed {seed}: {loud:?}");
     }

@@ -59,7 +59,7 @@ fn a_recipe_is_for_the_names_that_it_says() {
 
 #[test]
 fn every_recipe_in_the_folder_is_built_in_and_good() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../recipes");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("recipes");
     let files: BTreeSet<String> = fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().path().file_stem().unwrap().to_string_lossy().into_owned())

@@ -1,7 +1,7 @@
 //! The reflex on loads and disturbances that its scenes were not built with: a weight that comes at once, knocks of every
 //! ringing, and how much force a warning adds.
 //!
-//! `TENAX_SEEDS=12 cargo test --release -p tenax-bench --test all reflex -- --nocapture`
+//! `TENAX_SEEDS=12 cargo test --release -p tenax-sim --test all reflex -- --nocapture`
 
 use crate::common::{asked, parsed, text};
 use rand::rngs::ChaCha8Rng;
@@ -40,7 +40,6 @@ fn ringing_knocks(seed: u64) -> String {
     text("knocks").lines().map(line).collect()
 }
 
-/// Pulses that answered slip where none was: not those of a warning, which is no word of slip. The report counts both.
 fn answered_without_slip(outcome: &Outcome) -> usize {
     let slips = |t_s: f64| {
         let mut slips = outcome.truth.slips.iter().filter(|slip| slip.macro_onset_s.is_some());
@@ -65,15 +64,9 @@ fn what_is_no_slip_is_answered_once_in_84_runs_at_most() {
             assert_eq!(outcome.report.object.kept, Some(true), "{name}, seed {seed}");
             let answered = answered_without_slip(&outcome);
             assert!(answered <= 1, "{name}, seed {seed}: {reflex:?}");
-            if answered > 0 {
-                let acted = [DetectorId::S1, DetectorId::S2, DetectorId::Mlp]
-                    .map(|id| (id, outcome.report.detectors.of_id(id).acted));
-                println!("{name}, seed {seed}: {reflex:?}, {acted:?}");
-            }
             (runs, without) = (runs + 1, without + answered);
         }
     }
-    println!("{without} pulses without slip in {runs} runs");
     assert!(without <= 1 + runs / 85);
 }
 
@@ -115,7 +108,6 @@ fn a_warning_restores_a_margin_and_no_more() {
     for seed in seeds(3) {
         for name in ["arm-swing", "glass-quiet"] {
             let answers = answers_of_s2(&run(&text(name), seed));
-            println!("{name}, seed {seed}: {answers:.2?}");
             all += answers.len();
             least = answers.iter().copied().fold(least, f64::min);
             most = answers.into_iter().fold(most, f64::max);
@@ -128,7 +120,6 @@ fn a_warning_restores_a_margin_and_no_more() {
     );
 }
 
-/// Whether the reflex has answered slip before this frame.
 fn closes_before(outcome: &Outcome, frame: u32) -> bool {
     let slips = |kind: &EventKind| matches!(kind, EventKind::Mode { to: GripMode::Slip, .. });
     outcome.run.events.iter().any(|event| event.frame < frame && slips(&event.kind))
@@ -150,7 +141,6 @@ fn a_load_that_comes_at_once_is_kept_and_slides_no_further_than_without_s2() {
                 let slid_mm = report.slip.distance_mm.expect("a scene knows how far it slid");
                 (slid_mm, closes_before(&outcome, 10 * FRAME_HZ))
             });
-            println!("seed {seed}, {add_kg} kg: slid {with:.1} mm, without S2 {without:.1}");
             // Without S2 some slip as they are lifted, and are held firmly when the load comes: no control.
             assert!(
                 closed_before || with <= 1.5 * without,

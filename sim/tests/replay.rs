@@ -1,15 +1,13 @@
-//! A recording at the pins: on the right channel, at the right time, through the right front end; and the shared
-//! recordings through their recipes and the host's logic.
+//! A recording at the pins: on the right channel, at the right time, through the right front end. What the shared recordings
+//! must and must not set off is judged by `tenax check`.
 
-use crate::common::{played, recipe, recording};
+use crate::common::{recipe, recording};
 use tenax_hal_shim::channel::{self, COUNT, SCAN_HZ};
-use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::front_end::fsr_mv;
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_scene::plant::Plant;
 use tenax_sim::replay::ReplayPlant;
 
-/// The converter's noise never reaches so far, V.
 const NOISE_V: f64 = 0.003;
 
 fn pins(mut plant: ReplayPlant) -> Vec<[f64; COUNT]> {
@@ -103,51 +101,4 @@ fn the_same_seed_gives_the_same_codes() {
     let codes = |seed| pins(ReplayPlant::plain(&recording, seed).unwrap());
     assert_eq!(codes(7), codes(7));
     assert_ne!(codes(7), codes(8));
-}
-
-#[test]
-#[cfg_attr(not(recordings), ignore = "no recordings in ../shared/data")]
-fn the_rig_warns_before_the_peak_and_not_before_it_moves() {
-    let outcome = played("friction_rig_10khz.csv");
-    let force = outcome.report.replay.unwrap().force.unwrap();
-    // README of the recordings: the peak is 0.69 at 1.569 s.
-    assert!((force.peak_s.unwrap() - 1.569).abs() < 0.001, "{force:?}");
-    assert!((force.peak_ratio.unwrap() - 0.69).abs() < 0.01, "{force:?}");
-    // From first motion to macro slip there are about 25 ms: a warning much earlier would be luck, not S2.
-    let before_ms = force.s2_before_peak_ms.unwrap();
-    assert!((0.0..25.0).contains(&before_ms), "{before_ms} ms before the peak");
-    assert!(force.s1_first_s.is_none_or(|t| t > 1.5), "{force:?}");
-}
-
-#[test]
-#[cfg_attr(not(recordings), ignore = "no recordings in ../shared/data")]
-fn s1_sees_the_onset_of_slip_and_neither_quiet_nor_contact() {
-    for (name, speaks) in
-        [("pvdf_slip_onset.csv", true), ("pvdf_quiet.csv", false), ("pvdf_contact.csv", false)]
-    {
-        let outcome = played(name);
-        assert_eq!(outcome.report.detectors.of_id(DetectorId::S1).detections > 0, speaks, "{name}");
-    }
-}
-
-#[test]
-#[cfg_attr(not(recordings), ignore = "no recordings in ../shared/data")]
-fn muscles_are_noticed_when_they_work_and_the_reflex_is_silent() {
-    for (name, works) in [
-        ("emg_two_channel_rest0.csv", false),
-        ("emg_two_channel_fist0.csv", true),
-        ("emg_two_channel_fingerextension0.csv", true),
-        ("emg_bursts_1khz.csv", true),
-    ] {
-        let outcome = played(name);
-        let muscle = outcome.report.replay.unwrap().muscle.unwrap();
-        assert_eq!(muscle.noticed_s.is_some(), works, "{name}: {muscle:?}");
-        assert_eq!(muscle.reflex_while_active, 0, "{name}");
-        // The recipes give the hand a grasp that is about to slip: silence is the muscles' doing, not the grasp's.
-        assert!(works || outcome.report.wearer.reflex_ticks > 0, "{name}: nothing to be silent about");
-        // A 4 Hz low-pass takes tens of milliseconds to pass the threshold: none at all would be no low-pass.
-        if let Some(delay_ms) = muscle.onset_delay_ms {
-            assert!((5.0..150.0).contains(&delay_ms), "{name}: {delay_ms} ms");
-        }
-    }
 }

@@ -3,9 +3,10 @@
 use crate::common::{parsed, ran, text};
 use serde_json::Value;
 use tenax_hal_shim::detector::DetectorId;
+use tenax_sim::plot::draw;
 use tenax_sim::report::bound::{Bound, SAME_MM};
 use tenax_sim::report::fate::Fate;
-use tenax_sim::session::{self, Board, controls};
+use tenax_sim::session::{self, Board, Outcome, controls};
 
 /// The keys of a scene's report before those of its detectors, in order, as paths. None may go; new ones are added here.
 const KEYS: &str = "
@@ -25,19 +26,15 @@ const KEYS: &str = "
     object.handed_over object.turned_deg behaviours
 ";
 
-/// Of each detector, below its name.
 const DETECTOR_KEYS: [&str; 6] = ["first_s", "detections", "false_alarms", "said", "acted", "events"];
 
-/// Of its event scores, which a recording has not; behind them, false alarms by what the scene was doing.
 const EVENT_KEYS: [&str; 6] = ["count", "caught", "early", "late", "said_before", "missed"];
 
-/// Those behind them.
 const LAST_KEYS: &str = "
     detectors.wearer.first_s detectors.wearer.detections detectors.wearer.false_alarms
     faults line.bytes line.messages_missed line.telemetry_dropped line.bad_frames
 ";
 
-/// What a recording's report has below `replay`.
 const REPLAY_KEYS: &str = "
     replay.recording replay.recipe replay.first_s replay.duration_s replay.lead_in_s replay.longest_gap_ms
     replay.unused_columns replay.assumed replay.doubts
@@ -72,7 +69,7 @@ fn expected(replay: &'static str) -> Vec<String> {
     words(KEYS).chain(detectors).chain(words(LAST_KEYS)).chain(words(replay)).collect()
 }
 
-fn played(csv: &str, recipe: Option<&str>) -> Value {
+fn replayed(csv: &str, recipe: Option<&str>) -> Outcome {
     let recording = tempfile::Builder::new().suffix(".csv").tempfile().unwrap();
     std::fs::write(recording.path(), csv).unwrap();
     let file = recipe.map(|text| {
@@ -81,8 +78,11 @@ fn played(csv: &str, recipe: Option<&str>) -> Value {
         file
     });
     let recipe = file.as_ref().map(|file| file.path().to_str().unwrap());
-    let outcome = session::replay(recording.path(), recipe, 1, &Board::Host, &mut |_| {}).unwrap();
-    serde_json::to_value(&outcome.report).unwrap()
+    session::replay(recording.path(), recipe, 1, &Board::Host, &mut |_| {}).unwrap()
+}
+
+fn played(csv: &str, recipe: Option<&str>) -> Value {
+    serde_json::to_value(&replayed(csv, recipe).report).unwrap()
 }
 
 #[test]
@@ -140,7 +140,6 @@ fn a_push_is_planned_for() {
     assert!((1.0..1.3).contains(&(bound.peak_grip_n.unwrap() / least_n)), "{bound:?}");
 }
 
-/// Its search would not end: no plan, however small, makes this grip worse.
 #[test]
 fn a_grip_that_is_enough_by_itself_is_its_own_bound() {
     let outcome = ran(&parsed(&text("swung")), 1);
@@ -195,4 +194,18 @@ fn what_did_not_happen_or_is_not_known_is_null() {
     }
     assert_eq!(report["board"], "host");
     assert!(report["faults"].is_array());
+}
+
+#[test]
+fn a_run_is_drawn_and_a_recording_of_two_rows_at_one_instant_too() {
+    for (csv, words) in [
+        (
+            "t,pvdf_1,fsr_a\n0,1.65,0.2\n0.5,1.8,0.9\n",
+            &["force, N", "Ft/Fn", "S1", "S2", "gate", "time, s"][..],
+        ),
+        ("t,pvdf_1\n0,1.65\n0,1.7\n", &["</svg>\n"]),
+    ] {
+        let svg = draw::svg(&replayed(csv, None).figure).unwrap();
+        assert!(words.iter().all(|word| svg.contains(word)), "{words:?}");
+    }
 }

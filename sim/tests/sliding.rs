@@ -8,7 +8,6 @@ use tenax_hal_shim::wire::Slow;
 use tenax_sim::board::Recorder;
 use tenax_sim::session::{self, Board, ReplayOptions};
 
-/// The recording begins after a second of rest; it slides from 1.57 to 4.4 s.
 const SLIDES_S: (f64, f64) = (2.60, 5.40);
 const STILL_S: (f64, f64) = (1.0, 2.50);
 
@@ -40,7 +39,6 @@ fn the_rigs_sliding_is_heard_and_its_disturbance_is_not() {
         let plain = ReplayOptions::default();
         session::replay_served(&file, plain, seed, &Board::Host, &mut listener, &mut |_| {}).unwrap();
         let part = f64::from(listener.sliding.0) / f64::from(listener.sliding.1);
-        println!("seed {seed}: heard in {:.1} % of the sliding", 100.0 * part);
         // By its threshold in millivolts alone: 7 %.
         assert!(part > 0.6, "seed {seed}: {part}");
         assert_eq!(listener.still.0, 0, "seed {seed}");

@@ -13,9 +13,7 @@ use tenax_sim::session::controls::gripped;
 
 use crate::common::{asked, parsed, text};
 
-/// A wet wall and a pour; sudden ice; a light thing that breaks; shear that the array feels first.
 const SCENES: [&str; 4] = ["glass", "slippery", "egg-filled", "array-pick"];
-/// What is broken, as a scene says it, from the grasp on: of each detector its input, and of all of them the noise.
 const FAULTS: [&str; 6] = [
     "",
     "[[fault]]\nat_s = 3\nchannel = \"pvdf_4\"\nkind = \"stuck\"\nreason = \"drawn\"\n",
@@ -26,7 +24,6 @@ const FAULTS: [&str; 6] = [
 ];
 const MEMBERS: [DetectorId; 4] = [DetectorId::S1, DetectorId::S2, DetectorId::Hebbian, DetectorId::Mlp];
 
-/// A scene with this fault, its drift drawn.
 fn drawn(name: &str, fault: &str, seed: u64) -> SceneFile {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let drift = rng.random_range(0.02..0.1) * if rng.random_bool(0.5) { 1.0 } else { -1.0 };
@@ -67,11 +64,6 @@ fn all_detectors_keep_whole_what_any_subset_keeps() {
                 .collect();
             let better: Vec<_> =
                 (0..kept.len()).filter(|&bits| kept[bits]).map(|bits| subset(bits as u32)).collect();
-            println!(
-                "{name}, seed {seed}, {fault:?}: {} of 16 subsets keep it, all {}",
-                better.len(),
-                kept[15]
-            );
             (!kept[15] && !better.is_empty()).then(|| format!("{name}, seed {seed}, {fault}: {better:?}"))
         })
         .collect();

@@ -9,7 +9,6 @@ use crate::scorer::{Card, Stretch, Verdict};
 
 const STEP_S: f64 = 1.0 / SLOW_HZ as f64;
 
-/// From the end of the frame that reads a step's last element to the end of the frame whose tick decides about it, s.
 fn decided_after_s() -> f64 {
     // The array begins in the slot behind the last reading.
     f64::from(slot_of(Job::MlpDecides) + 1 - slot_of(Job::ArrayBegins)) / f64::from(FRAME_HZ)
@@ -23,7 +22,6 @@ pub fn stretches(first_s: f64, said: &[bool]) -> Vec<Verdict> {
     all
 }
 
-/// The event scores of one recording.
 pub fn card(recording: &Recording, said: &Verdicts) -> Card {
     let from_s = recording.first_s;
     let whole =

@@ -9,47 +9,35 @@ use serde::Serialize;
 
 pub type Ends = [f64; 2];
 
-/// One material under the array's silicone cover.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Material {
-    /// What it is called in the data.
     pub name: &'static str,
     pub mu_s: Ends,
-    /// Dynamic friction of slow sliding over static friction.
     pub mu_ratio: Ends,
-    /// How much dynamic friction rises with each decade of speed, as a part.
     pub mu_per_decade: Ends,
     /// Pitch of its texture or of the cover's grooves, the coarser, mm.
     pub pitch_mm: Ends,
-    /// Unevenness, as a part of an element's load.
     pub uneven: Ends,
     /// Stiffness of cover and wall together, a finger, N/mm.
     pub stiffness_n_per_mm: Ends,
-    /// What every surface has in its own measure.
     pub contact: Contact,
 }
 
-/// What a contact does to an array: nobody has measured it, so it is the same decade for every material but one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Contact {
     /// The way over which all contacts under an element are new ones, um: single contacts on polymers are some micrometres to
     /// some tens wide (Dieterich and Kilgore 1994).
     pub renews_um: Ends,
-    /// How much of the shear that lets go comes off an element's load.
     pub slip_part: Ends,
-    /// The part of it that goes to the cover's rim.
     pub rim_part: Ends,
     /// Sensitivity of the array, mV/N: 14.7 N over 3 V is 200 (Bamshad 2023, section 2.1); a skin spreads the load.
     pub mv_per_n: Ends,
-    /// How unlike its elements are.
     pub spread: Ends,
     /// Noise of a reading, mV: a tenth of the converter's step to a real BioTac's (3 counts, 2.4 mV here).
     pub noise_mv: Ends,
     /// What a knock presses on the pad, mN for each mV at a film.
     pub knock_mn_per_mv: Ends,
-    /// What the gear's teeth press on it, as a part of the load.
     pub motor_part: Ends,
-    /// How much of the load a shear as large as it moves to the pad's end: a stiff finger's pads hardly tilt, a soft one's lose half.
     pub tilt: Ends,
 }
 
@@ -65,56 +53,32 @@ const DECADES: Contact = Contact {
     tilt: [0.08, 0.8],
 };
 
+const fn seen(name: &'static str, mu_s: Ends, mu_ratio: Ends, pitch_mm: Ends, uneven: Ends) -> Material {
+    let (mu_per_decade, stiffness_n_per_mm) = ([0.02, 0.10], [2.0, 8.0]);
+    Material { name, mu_s, mu_ratio, mu_per_decade, pitch_mm, uneven, stiffness_n_per_mm, contact: DECADES }
+}
+
 /// The four that a detector may learn from.
 pub const SEEN: [Material; 4] = [
     // A drawn wall: it slides evenly, and the cover's own grooves are its texture.
-    Material {
-        name: "plastic",
-        mu_s: [0.30, 1.0],
-        mu_ratio: [0.75, 0.95],
-        mu_per_decade: [0.02, 0.10],
-        pitch_mm: [0.2, 1.2],
-        uneven: [0.006, 0.03],
-        stiffness_n_per_mm: [2.0, 8.0],
-        contact: DECADES,
-    },
+    seen("plastic", [0.30, 1.0], [0.75, 0.95], [0.2, 1.2], [0.006, 0.03]),
     // Fibres: it lets go with a jerk. A wall of paper gives.
     Material {
-        name: "paper",
-        mu_s: [0.25, 0.8],
-        mu_ratio: [0.70, 0.92],
-        mu_per_decade: [0.02, 0.10],
-        pitch_mm: [0.2, 0.8],
-        uneven: [0.01, 0.05],
         stiffness_n_per_mm: [1.5, 4.0],
-        contact: DECADES,
+        ..seen("paper", [0.25, 0.8], [0.70, 0.92], [0.2, 0.8], [0.01, 0.05])
     },
     // Ra 0.8 um: smooth and hard, and the one that Bamshad's detector was weakest on (figure 9).
     Material {
-        name: "aluminium",
-        mu_s: [0.25, 0.9],
-        mu_ratio: [0.75, 0.95],
-        mu_per_decade: [0.02, 0.10],
-        pitch_mm: [0.2, 0.6],
-        uneven: [0.006, 0.02],
         stiffness_n_per_mm: [5.0, 15.0],
-        contact: DECADES,
+        ..seen("aluminium", [0.25, 0.9], [0.75, 0.95], [0.2, 0.6], [0.006, 0.02])
     },
     // Grain.
     Material {
-        name: "wood",
-        mu_s: [0.30, 1.1],
-        mu_ratio: [0.66, 0.90],
-        mu_per_decade: [0.02, 0.10],
-        pitch_mm: [0.5, 2.0],
-        uneven: [0.02, 0.06],
         stiffness_n_per_mm: [3.0, 12.0],
-        contact: DECADES,
+        ..seen("wood", [0.30, 1.1], [0.66, 0.90], [0.5, 2.0], [0.02, 0.06])
     },
 ];
 
-/// The one that no detector sees before it is tested, outside the hull of the others in everything: soft ribbed rubber, on an
-/// array that is less sensitive and noisier. It slips with a jerk, which is easy, and hides it under a thick cover, which is not.
 pub const HELD_OUT: Material = Material {
     name: "rubber",
     mu_s: [1.12, 1.2],
@@ -161,13 +125,6 @@ mod tests {
             let low = others.iter().map(|ends| ends[0]).fold(f64::INFINITY, f64::min);
             let high = others.iter().map(|ends| ends[1]).fold(0.0, f64::max);
             assert!(own[1] < low || own[0] > high, "quantity {n}: {own:?} in {low} to {high}");
-        }
-    }
-
-    #[test]
-    fn what_nobody_has_measured_is_drawn_over_a_decade() {
-        for ends in ranges(&SEEN[0].contact) {
-            assert!(ends[1] / ends[0] > 9.99, "{ends:?}");
         }
     }
 }

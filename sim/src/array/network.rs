@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
-use anyhow::{Context, anyhow, bail, ensure};
+use anyhow::{Context, anyhow, ensure};
 use serde::{Deserialize, Serialize};
 use tenax_hal_shim::channel::{REFERENCE_MV, SAMPLE_MAX};
 use tenax_logic::array::detector::logistic_permille;
-use tenax_logic::array::{ArrayDetector, Judgement, Layer, Mlp, Model, PreprocessorConfig, Reading, shipped};
+use tenax_logic::array::{
+    ArrayDetector, COVARIANCE_WINDOW, Judgement, Layer, Mlp, Model, PreprocessorConfig, Reading, shipped,
+};
 
 use super::edges::{Confidences, Edges};
 use super::material::SEEN;
@@ -19,49 +21,34 @@ pub const FILE: &str = "network.json";
 /// A network as `tenax train` writes it: the firmware's integers, what its features are made with, and on what noise it learned.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Saved {
-    /// Of the data that it learned from.
     pub sha256: String,
-    /// A difference is to the reading so many slow frames before.
     pub lag: u8,
-    /// Differences in the covariance.
     pub window: usize,
     /// See [`PreprocessorConfig`].
     pub covariance_knee: u32,
     pub spectrum_knee: u32,
     pub structure_knee: u32,
-    /// First layer's rows, biases and shift.
     pub first: (Vec<Vec<i16>>, Vec<i32>, u32),
-    /// Second layer's.
     pub second: (Vec<Vec<i16>>, Vec<i32>, u32),
-    /// Last layer's weights and bias.
     pub last: (Vec<i16>, i32),
-    /// How much a logit has to grow for the odds of slip to grow e-fold.
     pub logit_per_nat: i32,
-    /// Confidence at which slip begins, and below which it is over.
     #[serde(flatten)]
     pub edges: Edges,
-    /// The least and the greatest [noise](super::adapt::noise_samples) of the recordings that it learned from, samples.
     pub noise_samples: [f64; 2],
 }
 
-/// The firmware's model with one of its windows.
-#[derive(Clone, Debug)]
-enum Windows {
-    Ten(Box<Model<10>>),
-    Forty(Box<Model<40>>),
-}
+/// The firmware's model, with the covariance's shipped window.
+type OwnModel = Model<COVARIANCE_WINDOW>;
 
-/// A network, ready to judge.
 #[derive(Clone, Debug)]
 pub struct Network {
-    windows: Windows,
-    /// What it learned on.
+    model: Box<OwnModel>,
     pub noise_samples: [f64; 2],
 }
 
 impl Network {
     /// Differences in a covariance that can be judged.
-    pub const WINDOWS: [usize; 2] = [10, 40];
+    pub const WINDOWS: [usize; 1] = [COVARIANCE_WINDOW];
 
     pub fn shipped() -> Self {
         let ends = |end: usize| SEEN.map(|material| material.contact.noise_mv[end]);
@@ -69,10 +56,7 @@ impl Network {
             |mv: f64| mv * f64::from(SAMPLE_MAX) / f64::from(REFERENCE_MV) * std::f64::consts::SQRT_2;
         let low = ends(0).into_iter().fold(f64::INFINITY, f64::min);
         let high = ends(1).into_iter().fold(0.0, f64::max);
-        Self {
-            windows: Windows::Ten(Box::new(shipped::MODEL.clone())),
-            noise_samples: [samples(low), samples(high)],
-        }
+        Self { model: Box::new(shipped::MODEL.clone()), noise_samples: [samples(low), samples(high)] }
     }
 
     /// One from a folder that `tenax train` has written. Fails if there is none, or it is none of the firmware's.
@@ -84,60 +68,39 @@ impl Network {
         Self::of(&saved).with_context(|| file.display().to_string())
     }
 
-    /// One that was written. Fails if it is none of the firmware's.
+    /// Fails if it is none of the firmware's.
     pub fn of(saved: &Saved) -> anyhow::Result<Self> {
         ensure!(saved.noise_samples[0] <= saved.noise_samples[1], "its noise is no range");
-        let windows = match saved.window {
-            10 => Windows::Ten(Box::new(saved.model()?)),
-            40 => Windows::Forty(Box::new(saved.model()?)),
-            other => bail!("it has a covariance of {other} differences; 10 and 40 can be judged"),
-        };
-        Ok(Self { windows, noise_samples: saved.noise_samples })
+        ensure!(
+            Self::WINDOWS.contains(&saved.window),
+            "it has a covariance of {} differences; {COVARIANCE_WINDOW} can be judged",
+            saved.window
+        );
+        Ok(Self { model: Box::new(saved.model()?), noise_samples: saved.noise_samples })
     }
 
-    const fn judgement(&self) -> &Judgement {
-        match &self.windows {
-            Windows::Ten(model) => &model.judgement,
-            Windows::Forty(model) => &model.judgement,
-        }
-    }
-
-    /// The logit at which it says slip.
-    pub fn on(&self) -> i32 {
-        let Judgement { on_permille, logit_per_nat, .. } = *self.judgement();
-        let on = f64::from(on_permille.clamp(1, 999)) / 1e3;
-        (f64::from(logit_per_nat) * (on / (1.0 - on)).ln()).round() as i32
-    }
-
-    /// How confident it is in each step of one recording.
+    /// Confidence in each step of one recording.
     pub fn confidences(&self, steps: &[Step]) -> Confidences {
-        let per_nat = self.judgement().logit_per_nat;
+        let per_nat = self.model.judgement.logit_per_nat;
         let (logits, _) = self.judge(&super::readings(steps));
         logits.into_iter().map(|logit| logit.map(|logit| logistic_permille(logit, per_nat))).collect()
     }
 
     /// The logit of each reading of one recording, and whether it says slip.
     pub fn judge(&self, readings: &[Reading]) -> (Logits, Vec<bool>) {
-        match &self.windows {
-            Windows::Ten(model) => judge(model, readings),
-            Windows::Forty(model) => judge(model, readings),
-        }
+        let mut detector = ArrayDetector::new(&self.model);
+        readings
+            .iter()
+            .map(|reading| {
+                let slip = detector.push(reading).slip;
+                (detector.logit(), slip)
+            })
+            .unzip()
     }
 }
 
-fn judge<const N: usize>(model: &Model<N>, readings: &[Reading]) -> (Logits, Vec<bool>) {
-    let mut detector = ArrayDetector::new(model);
-    readings
-        .iter()
-        .map(|reading| {
-            let slip = detector.push(reading).slip;
-            (detector.logit(), slip)
-        })
-        .unzip()
-}
-
 impl Saved {
-    fn model<const N: usize>(&self) -> anyhow::Result<Model<N>> {
+    fn model(&self) -> anyhow::Result<OwnModel> {
         let too_large = |_| anyhow!("a sum of the network could overflow");
         let (first, second, last) = (&self.first, &self.second, &self.last);
         Ok(Model {

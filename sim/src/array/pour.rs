@@ -10,24 +10,19 @@ use crate::scorer::Card;
 /// Pours alone: the paper's task.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Pour {
-    /// Mean of the part of slipping steps that was called slip and the part of the others that was not.
     pub balanced: f64,
-    /// Part of the steps that is right.
     pub accuracy: f64,
     /// Part of the steps that slipped; 1 less this is the accuracy of who always says 'never'.
     pub prevalence: f64,
     /// Part of the macro slips that a detection began in by 50 ms after macro onset. Null if nothing slipped.
     pub caught_50ms: Option<f64>,
-    /// Detections that belong to no slip, an hour.
     pub false_per_hour: f64,
     /// Missed steps in 2800.
     pub missed_2800: f64,
     /// False ones in 2800.
     pub false_2800: f64,
     pub steps: usize,
-    /// Macro slips.
     pub slips: usize,
-    /// Those steps by material, the worst first.
     pub by_material: By,
 }
 

@@ -10,16 +10,13 @@ use crate::labelled::{Recording, Step};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Steps {
     pub steps: usize,
-    /// Slipped, and were not called slip.
+    /// Slipping steps that were not called slip.
     pub missed: usize,
-    /// Did not slip, and were called slip.
     #[serde(rename = "false")]
     pub false_steps: usize,
-    /// Part of them that is right.
     pub accuracy: f64,
-    /// Mean of the part of slipping steps that was called slip and the part of the others that was not.
+    /// Mean of the parts of the slipping and of the other steps that are right.
     pub balanced: f64,
-    /// Part of them that slipped: who always says 'never' has all the others right.
     pub prevalence: f64,
     #[serde(skip)]
     slipped: usize,
@@ -45,12 +42,10 @@ impl Steps {
     }
 }
 
-/// Scores by what their recordings share, the worst first.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct By(pub Vec<(String, Steps)>);
 
 impl By {
-    /// Of what was said of recordings, each under its name.
     pub fn of<'a>(judged: impl Iterator<Item = (&'a str, &'a Recording, &'a Verdicts)>) -> Self {
         let mut all: BTreeMap<&str, Steps> = BTreeMap::new();
         for (name, recording, verdicts) in judged {

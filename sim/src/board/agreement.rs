@@ -16,17 +16,12 @@ use tenax_logic::device::Device;
 use super::Run;
 use super::kept::device;
 
-/// What the host's build says to a run's codes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Said {
-    /// Slow frames: every detector output and every command of every tick.
     pub slows: Vec<Slow>,
     pub events: Vec<Event>,
-    /// The answer to each command.
     pub answers: Vec<Answer>,
-    /// How the vibration motor is driven from which frame on.
     pub feedback: Vec<(u32, Duty)>,
-    /// The detectors that say slip, and those that warn of it, tick for tick: the line tells both in one.
     pub slip_and_warning: Vec<[DetectorSet; 2]>,
 }
 
@@ -57,7 +52,6 @@ pub fn host_says(
     host_decides(frames, device, pressed, commands)
 }
 
-/// The same of frames, from the first on.
 pub fn host_decides(
     frames: impl Iterator<Item = Frame>,
     mut device: Device,
@@ -87,13 +81,11 @@ pub fn host_decides(
     said
 }
 
-/// The frames in which a board took a press of its button, as it says.
 pub fn presses(events: &[Event]) -> Vec<u32> {
     let of_button = |event: &&Event| event.kind == EventKind::Armed(Consent::Button);
     events.iter().filter(of_button).map(|event| event.frame).collect()
 }
 
-/// How much was compared, and where it first differs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Agreement {
     slows: usize,
@@ -110,7 +102,6 @@ impl Agreement {
         Self::with_host(run).0
     }
 
-    /// The same, and what the host's logic said.
     pub fn with_host(run: &Run) -> (Self, Said) {
         let host = host_says(
             &run.scans,
@@ -129,7 +120,6 @@ impl Agreement {
         (agreement, host)
     }
 
-    /// Whether nothing differs.
     pub const fn holds(&self) -> bool {
         self.difference.is_none()
     }
@@ -188,7 +178,6 @@ fn first<T: PartialEq + fmt::Debug>(what: &str, image: &[T], host: &[T], due: us
     (image < due || image > host).then(|| format!("{what}s: image {image}, host {host}"))
 }
 
-/// Where two slow frames begin to differ.
 pub fn slow_difference(image: &Slow, host: &Slow) -> String {
     let first = image.frame.saturating_sub(u32::from(FRAMES_PER_SLOW_FRAME) - 1);
     match (first..).zip(image.ticks.iter().zip(&host.ticks)).find(|(_, (image, host))| image != host) {

@@ -50,9 +50,7 @@ pub struct Options {
     pub word_us: u64,
     /// What the bridge's edges leave in the films' codes. None: nothing.
     pub coupling: Option<Coupling>,
-    /// Which models the chip is made of.
     pub models: Models,
-    /// Who is told when each tick of the logic begins.
     pub ticks: Option<mpsc::Sender<Tick>>,
 }
 
@@ -70,52 +68,41 @@ impl Default for Options {
     }
 }
 
-/// A tick of the logic begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tick {
-    /// When, virtual ns.
     pub at_ns: u64,
-    /// Instructions that the core has executed by then.
     pub instruction_count: u64,
 }
 
 /// Something that a board must survive.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Mishap {
-    /// The DMA stream of the converter switches off: the converter overruns.
+    /// The converter's DMA stream switches off: the converter overruns.
     DmaStalls,
-    /// Bytes that are no message come down the line.
     Garbage(Vec<u8>),
-    /// The core executes nothing more until something resets it.
     CoreHangs,
-    /// The DMA stream of the converter is sent to an address where nothing is: its driver panics.
+    /// The converter's DMA stream is sent where nothing is: its driver panics.
     DmaFails,
     /// The power goes for an instant while the flash programs the word after the next `words`.
     PowerFails {
-        /// Words that are still programmed whole.
         words: u32,
     },
-    /// The supply falls below the brown-out level for an instant: the chip is reset, RAM keeps what it held.
     BrownsOut,
     /// From now on the supply is so high, mV: the voltage detector says if it is too low. A brown-out's reset is not drawn by it.
     SupplyIs(u32),
-    /// The crystal stops, which the clock security system says if it is on. It is there again (true) or not at the next start.
+    /// The clock security system reports it if it is on. True: the crystal is there again at the next start.
     CrystalStops(bool),
-    /// Somebody presses the board's reset button.
     ResetByPin,
-    /// The motor's bridge pulls its nFAULT low (true), or lets it go.
+    /// The bridge's nFAULT: true is low.
     BridgeIsOff(bool),
 }
 
-/// Why a run has no result.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Broken {
-    /// The image drove both sides of the motor bridge.
     #[error(
         "the image drove both sides of the motor bridge at {at_s} s: on a real board this shorts the supply"
     )]
     BothSides { at_s: f64 },
-    /// The image never triggered a scan.
     #[error("the image had not begun to scan three seconds after its start")]
     NeverScanned,
 }
@@ -152,7 +139,6 @@ pub fn record<P: Plant + 'static>(
     Ok((summary, plant.into_inner().unwrap_or_else(PoisonError::into_inner)))
 }
 
-/// The same for every plant, or the emulator would be compiled once for each.
 fn closed_loop(
     image: &Path,
     plant: Arc<Mutex<dyn Plant>>,

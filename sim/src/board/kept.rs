@@ -11,9 +11,7 @@ use tenax_logic::setting::SettingId;
 use tenax_logic::store::{Erase, open, payload};
 use tenax_scene::plant::{Calibrated, Plant};
 
-/// Where `memory.x` puts the log.
 pub const STORE: u64 = 0x0804_0000;
-/// Words in each of its two sectors.
 pub const SECTOR_WORDS: usize = 128 * 1024 / 4;
 
 /// The model of a wearer. Fails if there can be no such wearer.
@@ -29,15 +27,11 @@ pub fn model_of(calibrated: &Calibrated) -> anyhow::Result<EmgModel> {
     .context("the wearer's calibration")
 }
 
-/// What somebody has set up before the start.
 #[derive(Clone, Debug, Default)]
 pub struct Provision {
     pub trusts_line: bool,
-    /// It streams its frames from the start.
     pub streams_at_start: bool,
-    /// The wearer it was calibrated to.
     pub calibrated: Option<EmgModel>,
-    /// What it has saved by itself since.
     pub kept: Vec<(Kept, Vec<u8>)>,
 }
 
@@ -52,7 +46,6 @@ impl Provision {
         })
     }
 
-    /// What is kept of it, as it lies in flash.
     pub fn records(&self) -> Vec<(Kept, Vec<u8>)> {
         let mut config = Config::default();
         // Both are in every range.
@@ -66,7 +59,6 @@ impl Provision {
         before.chain(self.kept.iter().cloned()).collect()
     }
 
-    /// The host's device, set up the same way.
     pub fn device(&self) -> Device {
         let mut device = Device::default();
         for (kept, payload) in self.records() {
@@ -76,12 +68,10 @@ impl Provision {
     }
 }
 
-/// The host's device of a board that was set up so.
 pub fn device(trusts_line: bool, calibrated: Option<&EmgModel>) -> Device {
     Provision { trusts_line, calibrated: calibrated.copied(), ..Provision::default() }.device()
 }
 
-/// The two sectors as a file would hold them, written by the host's own build of the log.
 #[derive(Clone, Debug)]
 pub struct Sectors(pub Vec<u32>);
 
@@ -98,17 +88,10 @@ impl Sectors {
         self
     }
 
-    /// The address of the log and its bytes.
     pub fn image(&self) -> (u64, Vec<u8>) {
         (STORE, self.0.iter().flat_map(|word| word.to_le_bytes()).collect())
     }
 
-    /// Of a board whose line is trusted.
-    pub fn trusting() -> Self {
-        Self::provisioned(&Provision { trusts_line: true, ..Provision::default() })
-    }
-
-    /// Of a board that somebody has set up.
     pub fn provisioned(provision: &Provision) -> Self {
         provision
             .records()

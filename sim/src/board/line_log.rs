@@ -5,15 +5,12 @@ use tenax_hal_shim::wire::Up;
 use super::{Recorder, Summary};
 use tenax_frames::link::Inbox;
 
-/// Reads a line, byte by byte.
 pub struct LineLog {
     inbox: Inbox,
-    /// Frames that are part of the run; what is said of later ones is not.
     frames: u32,
 }
 
 impl LineLog {
-    /// The line of a run of so many frames.
     pub fn new(frames: u32) -> Self {
         Self { inbox: Inbox::default(), frames }
     }

@@ -9,16 +9,11 @@ use tenax_frames::serve::Server;
 
 use super::Run;
 
-/// Takes in what a board does, in order. A frame's scans come before the slow frame that tells of its tick.
 pub trait Recorder {
-    /// One scan: the codes at the converter's inputs, how the motor was driven meanwhile, and whether the object moved
-    /// relative to the finger.
     fn scan(&mut self, _codes: &Scan, _drive: MotorDrive, _slipping: bool) {}
 
-    /// A slow frame, as it came up the line.
     fn slow(&mut self, _slow: &Slow) {}
 
-    /// Bytes that came up the line.
     fn line(&mut self, _bytes: &[u8]) {}
 }
 
@@ -77,14 +72,12 @@ impl Recorder for Run {
     }
 }
 
-/// Takes what comes up a run's line.
 impl Recorder for Recording {
     fn line(&mut self, bytes: &[u8]) {
         Self::line(self, bytes);
     }
 }
 
-/// Serves what comes up a run's line.
 impl Recorder for Server {
     fn line(&mut self, bytes: &[u8]) {
         Self::line(self, bytes);

@@ -25,12 +25,9 @@ use self::uplink::Uplink;
 use super::kept::{Provision, Sectors};
 use super::{Recorder, Run, Summary};
 
-/// Who closes the hand besides wearer and line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Grips {
-    /// The fingertip's reflex, which acts on these detectors; on none of them it never acts.
     Reflex(DetectorSet),
-    /// The bound: no detector, and the plant's own plan wherever nothing opens the hand. Only the gripper limits it.
     Bound,
     /// Nobody who feels: whatever is touched is pressed with so much, N.
     Constant(f64),
@@ -56,7 +53,6 @@ pub fn record<P: Plant>(
     (summary, plant)
 }
 
-/// Runs the plant to its end with somebody else's grip.
 pub fn run_with<P: Plant>(mut plant: P, grips: Grips, progress: &mut dyn FnMut(f64)) -> P {
     let _kept_by_the_plant = closed_loop(&mut plant, grips, &mut (), progress);
     plant

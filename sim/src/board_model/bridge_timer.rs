@@ -8,7 +8,6 @@ use rigless::time::{EventId, VirtualNanos};
 /// A tick of its counter: APB2's timers count at 100 MHz.
 const TICK_NS: u64 = 10;
 
-/// Its counter, as it was when somebody last wrote to it.
 #[derive(Debug, Default)]
 pub struct BridgeTimer {
     since_ns: u64,

@@ -5,6 +5,7 @@
 //! (RM0383, section 3.5). The chip's memories are the F411's, not the F427's.
 
 use std::collections::VecDeque;
+use std::iter::repeat_n;
 use std::num::{NonZeroU32, NonZeroU64};
 
 use rigless::device::{ErasedDevice, ResetCause};
@@ -19,7 +20,6 @@ use rigless::time::VirtualNanos;
 use super::nucleo::Nucleo;
 use super::part::Part;
 
-/// The instance that the array's words are programmed through.
 const INTERFACE: &str = "FLASH";
 const FLASH_CR: u64 = 0x4002_3C10;
 const FLASH_SR: u64 = 0x4002_3C0C;
@@ -34,7 +34,6 @@ const CR_LOCK: u64 = 1 << 31;
 const SR_PGSERR: u64 = 1 << 7;
 const SR_BSY: u64 = 1 << 16;
 
-/// Where the array begins.
 const BASE: u64 = 0x0800_0000;
 const SIZE: u64 = 512 << 10;
 
@@ -55,19 +54,13 @@ static MEMORY: [Region; 3] = [
     Region::ram("sram", 0x2000_0000, 128 << 10),
 ];
 
-/// The same beside the largest RAM of a chip with a camera port (STM32H743: RM0433, section 2.4), for what is only counted.
-static WITH_AXI: [Region; 4] =
-    [MEMORY[0], MEMORY[1], MEMORY[2], Region::ram("axi_sram", 0x2400_0000, 512 << 10)];
-
-/// The chip's memories as the emulator is to lay them out. It looks at nothing else of it.
 #[derive(Debug)]
 pub struct MemoryMap(Bus);
 
 impl MemoryMap {
-    /// The F411's, beside the peripherals of `mcu`; `axi`: and a larger chip's RAM.
-    pub fn new(mcu: &Part, axi: bool) -> Result<Self, Error> {
+    pub fn new(mcu: &Part) -> Result<Self, Error> {
         let peripherals: Vec<_> = mcu.bus().peripherals().copied().collect();
-        Ok(Self(Bus::builder(CPU, if axi { &WITH_AXI } else { &MEMORY[..] }, peripherals).build()?))
+        Ok(Self(Bus::builder(CPU, &MEMORY, peripherals).build()?))
     }
 }
 
@@ -91,17 +84,12 @@ impl Mcu for MemoryMap {
     }
 }
 
-/// What the array is doing, and what it did.
 #[derive(Debug, Default)]
 pub struct FlashArray {
     doing: Option<Doing>,
-    /// How long a word takes to program, ns.
     word_ns: u64,
-    /// Words programmed.
     pub words: u64,
-    /// Sectors erased.
     pub erases: u64,
-    /// Power cuts that are to come, one after the other: the words before each.
     power: VecDeque<u32>,
 }
 
@@ -123,7 +111,6 @@ impl FlashArray {
         self.power.push_back(words);
     }
 
-    /// The core made an access.
     pub fn accessed(&mut self, access: &Access, session: &mut Session<Nucleo>, host: &mut dyn Host) {
         if access.kind != AccessKind::Write {
             return;
@@ -171,7 +158,6 @@ impl FlashArray {
         host.hold(true);
     }
 
-    /// The emulator stopped: what is over now lets the core go on.
     pub fn stopped(&mut self, stop: Stop, session: &mut Session<Nucleo>, host: &mut dyn Host) {
         let over = match self.doing {
             None => false,
@@ -192,7 +178,6 @@ impl FlashArray {
         }
     }
 
-    /// The chip was reset: it stops what it was doing.
     pub fn reset(&mut self) {
         self.doing = None;
     }
@@ -202,7 +187,6 @@ fn peek(mcu: &mut Part, now: VirtualNanos, address: u64) -> u64 {
     mcu.peek(now, address, Width::W32).unwrap_or(0)
 }
 
-/// Programming in any other way than a word at a time with PG set is a sequence error.
 fn fail(mcu: &mut Part) {
     let bus = mcu.bus_mut();
     if let Some(slot) = bus.slot_of(INTERFACE) {
@@ -213,19 +197,11 @@ fn fail(mcu: &mut Part) {
 }
 
 fn erase(sector: u64, host: &mut dyn Host) {
-    let mut begins = BASE;
-    let mut left = sector;
-    for run in &SECTORS {
-        let count = u64::from(run.count.get());
-        if left < count {
-            begins += left * run.size.get();
-            for word in (begins..begins + run.size.get()).step_by(8) {
-                let landed = host.program(word, Width::W64, u64::MAX);
-                debug_assert!(landed.is_ok(), "{word:#x} is in the flash");
-            }
-            return;
-        }
-        left -= count;
-        begins += count * run.size.get();
+    let mut sizes = SECTORS.iter().flat_map(|run| repeat_n(run.size.get(), run.count.get() as usize));
+    let begins = BASE + sizes.by_ref().take(sector as usize).sum::<u64>();
+    let ends = begins + sizes.next().unwrap_or(0);
+    for word in (begins..ends).step_by(8) {
+        let landed = host.program(word, Width::W64, u64::MAX);
+        debug_assert!(landed.is_ok(), "{word:#x} is in the flash");
     }
 }

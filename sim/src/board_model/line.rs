@@ -8,19 +8,12 @@ use rigless::snapshot::Store;
 use rigless::time::VirtualNanos;
 use tenax_hal_shim::wire::{Answer, Receiver, Up};
 
-/// What a PC would have read, and what it has yet to send.
 #[derive(Debug, Default)]
 pub struct Line {
-    /// Every byte that came up.
     pub up: Vec<u8>,
-    /// Bytes on their way down; the model takes each when the one before has arrived.
     pub down: VecDeque<u8>,
-    /// Listens for the number that a session opens with, once it was asked for.
     pub listener: Option<Receiver>,
-    /// That number.
     pub offered: Option<u32>,
-    /// When the last byte set out on its way down.
-    pub last_down: Option<VirtualNanos>,
 }
 
 impl Store for Line {}
@@ -37,9 +30,7 @@ impl Peer for Line {
         }
     }
 
-    fn transmit(&mut self, now: VirtualNanos) -> Option<u16> {
-        let byte = self.down.pop_front()?;
-        self.last_down = Some(now);
-        Some(u16::from(byte))
+    fn transmit(&mut self, _now: VirtualNanos) -> Option<u16> {
+        self.down.pop_front().map(u16::from)
     }
 }

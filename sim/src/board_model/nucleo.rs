@@ -18,11 +18,9 @@ use super::flash::MemoryMap;
 use super::line::Line;
 use super::part::Part;
 
-/// The ST-LINK's clock on OSC_IN, Hz.
 pub const HSE_HZ: u64 = 8_000_000;
 const SUPPLY_MV: u32 = 3_300;
 const CLOCK_HZ: NonZeroU64 = NonZeroU64::new(100_000_000).expect("not zero");
-/// SysTick's reference is the core's clock over eight.
 const REFCLK_DIVIDER: NonZeroU32 = NonZeroU32::new(8).expect("not zero");
 /// Interrupt priority bits (RM0383, section 10.1).
 const PRIORITY_BITS: u8 = 4;
@@ -38,7 +36,7 @@ impl Nucleo {
     /// The board out of its box, its serial line in the hands of `line`.
     pub fn new(models: Models, instructions_per_second: NonZeroU64, line: Line) -> Result<Self, Error> {
         let mut mcu = Part::new(models, line)?;
-        let memory = MemoryMap::new(&mcu, false)?;
+        let memory = MemoryMap::new(&mcu)?;
         mcu.chip.rcc.attach_crystals(HSE_HZ, 0);
         mcu.chip.set_supply(SUPPLY_MV);
         // The model's word is `input * 4095 / reference`: with this reference, an input is a code and nothing is rounded.
@@ -50,14 +48,8 @@ impl Nucleo {
         };
         Ok(Self { mcu, memory, instructions_per_second, mpu })
     }
-
-    /// The same with 512 KiB more of RAM at 0x2400_0000.
-    pub fn with_axi(self) -> Result<Self, Error> {
-        Ok(Self { memory: MemoryMap::new(&self.mcu, true)?, ..self })
-    }
 }
 
-/// A run is never stopped half-way and taken up again, so nothing of it is kept.
 impl Store for Nucleo {}
 
 impl Board for Nucleo {

@@ -12,8 +12,6 @@ use super::Models;
 use super::bridge_timer::BridgeTimer;
 use super::line::Line;
 use super::scan_path::{self, ScanPath};
-use super::serial_path::{self, SerialPath};
-use super::unwatched::UnwatchedTimer;
 
 const ADC1_CR2: u64 = 0x4001_2008;
 const CR2_SWSTART: u64 = 1 << 30;
@@ -31,50 +29,31 @@ pub struct Part {
     own: Option<Own>,
 }
 
-/// What takes the place of some of them.
 #[derive(Debug)]
 struct Own {
     scan: ScanPath,
-    timer: UnwatchedTimer,
     bridge: BridgeTimer,
-    serial: SerialPath,
     scan_controller: usize,
-    port: usize,
     answers: Box<[Answers]>,
 }
 
-/// Who answers for a slot of the bus.
 #[derive(Clone, Copy, Debug)]
 enum Answers {
     Chip,
     Scan(scan_path::Asked),
-    ScanTimer,
     BridgeTimer,
-    Serial(serial_path::Asked),
-    /// The vibration motor's timer: the registers hold what is written to them, and nothing happens.
     RegistersAlone,
 }
 
 impl Own {
-    fn new(bus: &Bus, line: Line) -> Result<Self, Error> {
+    fn new(bus: &Bus) -> Result<Self, Error> {
         let mut answers = vec![Answers::Chip; bus.slots().len()].into_boxed_slice();
-        let [scan_controller, port] = [bus.slot("DMA2")?, bus.slot("USART2")?];
+        let scan_controller = bus.slot("DMA2")?;
         answers[scan_controller] = Answers::Scan(scan_path::Asked::Controller);
         answers[bus.slot("ADC1")?] = Answers::Scan(scan_path::Asked::Converter);
-        answers[bus.slot("TIM3")?] = Answers::ScanTimer;
-        answers[port] = Answers::Serial(serial_path::Asked::Port);
-        answers[bus.slot("DMA1")?] = Answers::Serial(serial_path::Asked::Controller);
         answers[bus.slot("TIM1")?] = Answers::BridgeTimer;
         answers[bus.slot("TIM4")?] = Answers::RegistersAlone;
-        Ok(Self {
-            scan: ScanPath::new(),
-            timer: UnwatchedTimer::new(TIM3)?,
-            bridge: BridgeTimer::default(),
-            serial: SerialPath::new(Some(line))?,
-            scan_controller,
-            port,
-            answers,
-        })
+        Ok(Self { scan: ScanPath::new()?, bridge: BridgeTimer::default(), scan_controller, answers })
     }
 }
 
@@ -82,17 +61,14 @@ impl Part {
     /// A chip out of reset, `line` at the far end of its serial port.
     pub fn new(models: Models, line: Line) -> Result<Self, Error> {
         let mut chip = Stm32f427::new()?;
+        chip.usart[USART2].attach(line);
         let own = match models {
-            Models::Quick => Some(Own::new(chip.bus(), line)?),
-            Models::Rigless => {
-                chip.usart[USART2].attach(line);
-                None
-            }
+            Models::Quick => Some(Own::new(chip.bus())?),
+            Models::Rigless => None,
         };
         Ok(Self { chip, own })
     }
 
-    /// Puts codes on pins of the converter, from now on.
     pub fn put(&mut self, now: VirtualNanos, codes: impl IntoIterator<Item = (u8, u16)>) {
         let Self { chip, own } = self;
         match own {
@@ -109,36 +85,19 @@ impl Part {
         }
     }
 
-    /// The far end of the serial line, as it is now.
-    pub fn line(&mut self, now: VirtualNanos) -> Option<&mut Line> {
-        let Self { chip, own } = self;
-        match own {
-            Some(own) => {
-                let (_, mut context) = chip.bus_mut().drive(now, own.port);
-                own.serial.line(&mut context)
-            }
-            None => chip.usart[USART2].chip_mut::<Line>(),
-        }
+    pub fn line(&mut self) -> Option<&mut Line> {
+        self.chip.usart[USART2].chip_mut::<Line>()
     }
 
     /// How many pulses the scan's timer, TIM3, has sent on its TRGO.
     pub fn trigger_pulses(&mut self, now: VirtualNanos) -> u64 {
-        match &mut self.own {
-            Some(own) => own.timer.trigger_pulses(now),
-            None => {
-                // The timer's model catches up on what is due when it is read.
-                let _ = self.chip.read(now, TIM3_CNT, Width::W32);
-                self.chip.tim[TIM3].trigger_output().1
-            }
-        }
+        // The timer's model catches up on what is due when it is read.
+        let _ = self.chip.read(now, TIM3_CNT, Width::W32);
+        self.chip.tim[TIM3].trigger_output().1
     }
 
-    /// How long ago the last of them was, ns.
     pub fn since_pulse_ns(&mut self, now: VirtualNanos) -> u64 {
-        match &mut self.own {
-            Some(own) => own.timer.since_pulse_ns(now),
-            None => self.chip.peek(now, TIM3_CNT, Width::W32).unwrap_or(0) * 10,
-        }
+        self.chip.peek(now, TIM3_CNT, Width::W32).unwrap_or(0) * 10
     }
 
     /// The reset that was the pin's was a brown-out's: its flag stands beside (RM0383, section 6.3.20). `rigless` draws no supply.
@@ -149,13 +108,12 @@ impl Part {
         }
     }
 
-    /// A trigger that the converter listens to arrives.
     pub fn trigger(&mut self, now: VirtualNanos) {
         let Self { chip, own } = self;
         match own {
             Some(own) => {
-                let (registers, mut context) = chip.bus_mut().drive(now, own.scan_controller);
-                own.scan.trigger(registers, &mut context);
+                let (_, mut context) = chip.bus_mut().drive(now, own.scan_controller);
+                own.scan.trigger(&mut context);
             }
             None => {
                 let started = chip
@@ -180,22 +138,12 @@ impl Mcu for Part {
         self.chip.reset(at, cause);
         if let Some(own) = &mut self.own {
             own.scan.restarted();
-            own.timer.restarted();
             own.bridge = BridgeTimer::default();
-            own.serial.restarted(at);
         }
     }
 
-    /// Only the serial port has a far end.
     fn poll(&mut self, now: VirtualNanos) {
-        let Self { chip, own } = self;
-        match own {
-            Some(own) => {
-                let (_, mut context) = chip.bus_mut().drive(now, own.port);
-                own.serial.look(&mut context);
-            }
-            None => chip.poll(now),
-        }
+        self.chip.poll(now);
     }
 
     fn split(&mut self, slot: usize) -> (&mut Bus, Option<&mut dyn ErasedDevice>) {
@@ -207,8 +155,6 @@ impl Mcu for Part {
         match own.answers.get(slot).copied().unwrap_or(Answers::Chip) {
             Answers::Chip => chip.split(slot),
             Answers::Scan(asked) => (chip.bus_mut(), Some(own.scan.of(asked))),
-            Answers::Serial(asked) => (chip.bus_mut(), Some(own.serial.of(asked))),
-            Answers::ScanTimer => (chip.bus_mut(), Some(&mut own.timer)),
             Answers::BridgeTimer => (chip.bus_mut(), Some(&mut own.bridge)),
             Answers::RegistersAlone => (chip.bus_mut(), None),
         }

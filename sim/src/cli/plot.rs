@@ -10,8 +10,14 @@ use crate::session;
 use tenax_frames::link::captured::line_of;
 use tenax_frames::tool::out;
 
+const EXAMPLES: &str = "\
+Examples:
+  tenax plot grasp.mcap                     grasp.svg beside the recording
+  tenax plot out/glass.line.bin --out glass.svg";
+
 /// Draw a recording.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// A recording (MCAP) or a captured line
     file: PathBuf,

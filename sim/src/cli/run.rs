@@ -9,8 +9,8 @@ use std::thread;
 
 use anyhow::Context;
 use clap::ArgGroup;
-use tenax_scene::SceneFile;
 use tenax_scene::act::KEYS;
+use tenax_scene::{SceneFile, builtin};
 
 use super::line_file::LineFile;
 use crate::again;
@@ -28,14 +28,31 @@ use tenax_frames::tool::out;
 use tenax_frames::tool::progress::Progress;
 use tenax_frames::tool::workspace;
 
+const EXAMPLES: &str = "\
+Examples:
+  tenax run                                 the default scene on the emulated board, with the flashed image
+  tenax run --list                          what there is to run
+  tenax run --host --scene knocks           another scene, on the host's build of the logic
+  tenax run --host --controls               beside no reflex, a constant grip and each detector alone
+  tenax run --replay touch.csv              a recording, with the recipe that its name calls for
+  tenax run --replay my.csv --recipe my.toml
+  tenax run --report json > report.json     for programs
+  tenax run --serve                         at real time, with its serial line on a pseudo-terminal
+  tenax run --host --serve-tcp 7777         on TCP port 7777 of this machine only
+  tenax run --record grasp.mcap             its line, for `run --replay grasp.mcap`";
+
 /// Run a scene or a recording on a board; report and draw it.
 #[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
 #[command(group(ArgGroup::new("served").args(["serve", "serve_tcp"]).multiple(true)))]
 pub struct Args {
     /// Run the PC's own build of the logic: no image, no emulator
     #[arg(long)]
     host: bool,
-    /// A scene file, or the name of one that `tenax scenes` lists
+    /// List the scenes and end
+    #[arg(long)]
+    list: bool,
+    /// A scene file, or the name of one that `--list` shows
     #[arg(long, value_name = "FILE.toml|NAME", default_value = session::DEFAULT_SCENE, conflicts_with = "replay")]
     scene: String,
     /// Play a recording instead of a scene: voltages at the pins (CSV), or a recorded line (MCAP) into the PC's logic
@@ -82,6 +99,9 @@ pub struct Args {
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
+    if args.list {
+        return list();
+    }
     if let Some(recording) = args.replay.as_deref().filter(|path| is_recording(path)) {
         let outcome = again::replay(recording)?;
         out::say!("{outcome}")?;
@@ -104,7 +124,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let stem = Path::new(&name).file_stem().map_or("run".into(), |stem| stem.to_string_lossy());
     let path = |extension: &str| folder.join(format!("{stem}.{extension}"));
     let board = if args.host { Board::Host } else { Board::emulated(&workspace::root()?)? };
-    let mut line = LineFile::new(path("line.bin"));
+    let mut line = LineFile::create(path("line.bin"));
     let (mut server, down) = served(args)?.unzip();
     let person = Person::default();
     if let Some(server) = &mut server {
@@ -144,11 +164,20 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         recording.finish().with_context(|| format!("cannot write {}", path.display()))?;
         files.push(path.clone());
     }
-    files.extend(line.close()?);
+    files.push(line.close()?);
     args.report.print(&Text(&outcome.report), &outcome.report)?;
     // On stderr, so that a program that reads the report reads nothing else.
     for file in files {
         out::note!("  {:<14}{}", "written", file.display());
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn list() -> anyhow::Result<ExitCode> {
+    for (name, text) in builtin() {
+        let scene = SceneFile::parse(text, &format!("scenes/{name}.toml"))?;
+        let (duration_s, title, from) = (scene.duration_s(), &scene.title, &scene.from);
+        out::say!("{name:<20} {duration_s:>4.0} s  {title}\n{:<28} from {from}", "")?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -27,7 +27,7 @@ Examples:
 pub struct Args {
     #[command(subcommand)]
     what: Option<What>,
-    /// Scenes by name or file, or all of `tenax scenes`
+    /// Scenes by name or file, or all of `tenax run --list`
     #[arg(long, value_name = "all|NAME|FILE.toml,...", value_delimiter = ',', default_value = "all")]
     scenes: Vec<String>,
     /// Seeds of every noise: one, several, or the first and the last

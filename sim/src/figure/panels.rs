@@ -4,16 +4,15 @@
 use plotters::style::RGBColor;
 use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::wire::{Down, EventKind};
-use tenax_hal_shim::words::GripMode;
+use tenax_hal_shim::words::{DriveSource, GripMode};
 use tenax_logic::config::Config;
 use tenax_logic::setting::SettingId;
 
-use super::sketch::{Drives, Needs, Sketch};
+use super::sketch::{Drive, Needs, Sketch};
 use crate::plot::figure::{Curve, Figure, Level, Panel, Stretch, colour};
 use crate::plot::thin::{Thin, thin};
 use crate::report::Subject;
 
-/// The figure of a run: what was drawn of it while it went.
 pub fn figure(subject: &Subject, sketch: Sketch) -> Figure {
     let span_s = sketch.span_s();
     let slips = subject.truth.map_or_else(Vec::new, |truth| {
@@ -54,10 +53,8 @@ pub fn figure(subject: &Subject, sketch: Sketch) -> Figure {
     }
 }
 
-/// More slips, or modes, than this are more than the columns of pixels that they would stand in.
 const MANY: usize = 2_000;
 
-/// Stretches of time in order, those of them that are many made one where no pixel is between them.
 fn joined(stretches: impl Iterator<Item = (f64, f64)>, (from_s, to_s): (f64, f64)) -> Vec<(f64, f64)> {
     let all: Vec<(f64, f64)> = stretches.collect();
     if all.len() <= MANY {
@@ -151,16 +148,16 @@ fn muscles([flexor, extensor]: [Thin; 2], gate: Level) -> Panel {
     }
 }
 
-fn motor(drives: Drives, strip: Vec<Stretch>) -> Panel {
-    let Drives { wearer, reflex, link, by_link, behaviour, by_behaviour } = drives;
-    let mut curves =
-        vec![curve("by the wearer", colour::GREEN, wearer), curve("by the reflex", colour::BLUE, reflex)];
-    if by_link {
-        curves.push(curve("by the line", colour::ORANGE, link));
-    }
-    if by_behaviour {
-        curves.push(curve("by a behaviour", colour::PURPLE, behaviour));
-    }
+fn motor(drives: [Drive; 4], strip: Vec<Stretch>) -> Panel {
+    let look = |source| match source {
+        DriveSource::Wearer => ("by the wearer", colour::GREEN),
+        DriveSource::Reflex => ("by the reflex", colour::BLUE),
+        DriveSource::Link => ("by the line", colour::ORANGE),
+        _ => ("by a behaviour", colour::PURPLE),
+    };
+    let always = |source| matches!(source, DriveSource::Wearer | DriveSource::Reflex);
+    let shown = drives.into_iter().filter(|own| own.drove || always(own.source));
+    let curves = shown.map(|own| curve(look(own.source).0, look(own.source).1, own.percent)).collect();
     Panel {
         label: "motor, % (close > 0)".to_owned(),
         curves,
@@ -236,14 +233,5 @@ mod tests {
         let mlp = &rows[mlp];
         let said = outcome.report.detectors.of_id(DetectorId::Mlp).said;
         assert_eq!(highest(mlp).fract() > 0.5, said > 0, "said {said} times");
-    }
-
-    #[test]
-    fn a_few_slips_are_drawn_as_they_are_and_many_in_no_more_than_the_pixels() {
-        let slips = |count: u32| (0..count).map(move |n| (f64::from(n), f64::from(n) + 0.1));
-        assert_eq!(joined(slips(3), (0.0, 3.0)).len(), 3);
-        let many = joined(slips(1_000_000), (0.0, 1e6));
-        assert!(many.len() <= MANY && many.first().map(|slip| slip.0) == Some(0.0));
-        assert!(many.last().is_some_and(|slip| slip.1 > 999_999.0));
     }
 }

@@ -10,30 +10,25 @@ use crate::board::Recorder;
 use crate::plot::thin::Thin;
 use crate::timeline::{frame_end_s, ticks};
 
-/// Everything that the panels of a run show, in a few thousand points however long the run is.
 #[derive(Clone, Debug)]
 pub struct Sketch {
     span_s: (f64, f64),
     zero_s: f64,
     end_s: Option<f64>,
-    /// The mode when it was first told: a recording may begin in the middle.
     pub first_mode: Option<GripMode>,
     /// Fn and Ft as measured, N.
     pub forces: [Thin; 2],
-    /// What is true of the grip, where it is known.
     pub needs: Option<Needs>,
-    /// Ft/Fn.
     pub ratio: Thin,
     /// S2. A stroke changes it.
-    pub s2: Steps,
+    pub s2: Thin,
     /// The PVDF envelope, mV.
     pub vibration: Thin,
     /// Flexor and extensor, mV.
     pub muscles: [Thin; 2],
-    pub motor: Drives,
+    pub motor: [Drive; 4],
 }
 
-/// The true grip force and the least that holds the object.
 #[derive(Clone, Debug)]
 pub struct Needs {
     /// Grip force, N.
@@ -42,18 +37,12 @@ pub struct Needs {
     pub needed: Thin,
 }
 
-/// The motor's drive, %, by who drove it.
+/// The motor's drive, %, closing above 0, by one source.
 #[derive(Clone, Debug)]
-pub struct Drives {
-    pub wearer: Thin,
-    pub reflex: Thin,
-    /// Somebody over the serial line.
-    pub link: Thin,
-    /// Whether they ever did.
-    pub by_link: bool,
-    pub behaviour: Thin,
-    /// Whether one ever did.
-    pub by_behaviour: bool,
+pub struct Drive {
+    pub source: DriveSource,
+    pub percent: Thin,
+    pub drove: bool,
 }
 
 impl Sketch {
@@ -68,17 +57,11 @@ impl Sketch {
             forces: [thin(), thin()],
             needs: None,
             ratio: thin(),
-            s2: Steps::new(span_s),
+            s2: thin(),
             vibration: thin(),
             muscles: [thin(), thin()],
-            motor: Drives {
-                wearer: thin(),
-                reflex: thin(),
-                link: thin(),
-                by_link: false,
-                behaviour: thin(),
-                by_behaviour: false,
-            },
+            motor: [DriveSource::Wearer, DriveSource::Reflex, DriveSource::Link, DriveSource::Behaviour]
+                .map(|source| Drive { source, percent: thin(), drove: false }),
         }
     }
 
@@ -93,13 +76,11 @@ impl Sketch {
 
     fn tick(&mut self, t_s: f64, tick: &TickRecord) {
         self.vibration.push((t_s, mv(tick.vibration)));
-        let by = |source| if tick.source == source { duty_percent(tick.drive) } else { 0.0 };
-        self.motor.wearer.push((t_s, by(DriveSource::Wearer)));
-        self.motor.reflex.push((t_s, by(DriveSource::Reflex)));
-        self.motor.link.push((t_s, by(DriveSource::Link)));
-        self.motor.by_link |= tick.source == DriveSource::Link;
-        self.motor.behaviour.push((t_s, by(DriveSource::Behaviour)));
-        self.motor.by_behaviour |= tick.source == DriveSource::Behaviour;
+        for own in &mut self.motor {
+            let drives = tick.source == own.source;
+            own.percent.push((t_s, if drives { duty_percent(tick.drive) } else { 0.0 }));
+            own.drove |= drives;
+        }
     }
 }
 
@@ -132,48 +113,10 @@ impl Needs {
         Self { grip: Thin::new(span_s), needed: Thin::new(span_s) }
     }
 
-    /// The next row of a world's trace.
     pub fn push(&mut self, row: &Row) {
         self.grip.push((row.t_s, row.grip_n));
         // While the hand carries nothing, nothing is needed: a gap in the curve.
         self.needed.push((row.t_s, if row.needed_n > 0.0 { row.needed_n } else { f64::NAN }));
-    }
-}
-
-/// A value that changes rarely: only the points where it does, from one end of the span to the other.
-#[derive(Clone, Debug)]
-pub struct Steps {
-    span_s: (f64, f64),
-    last: Option<f64>,
-    corners: Thin,
-}
-
-impl Steps {
-    fn new(span_s: (f64, f64)) -> Self {
-        Self { span_s, last: None, corners: Thin::new(span_s) }
-    }
-
-    fn push(&mut self, (t_s, value): (f64, f64)) {
-        let (from_s, to_s) = self.span_s;
-        if t_s > to_s {
-            return;
-        }
-        match self.last.replace(value) {
-            Some(before) if before == value => {}
-            Some(before) => {
-                self.corners.push((t_s.max(from_s), before));
-                self.corners.push((t_s.max(from_s), value));
-            }
-            None => self.corners.push((from_s, value)),
-        }
-    }
-
-    /// The corners, in order of time.
-    pub fn points(self) -> Vec<(f64, f64)> {
-        let (_, to_s) = self.span_s;
-        let mut points = self.corners.points();
-        points.extend(self.last.map(|value| (to_s, value)));
-        points
     }
 }
 

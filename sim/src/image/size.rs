@@ -8,21 +8,17 @@ use object::{File, Object, ObjectSection, SectionFlags, SectionKind, elf};
 /// The chip's flash for an image, bytes: all but the last two sectors, which outlive it. The image's build fails if it
 /// does not fit, so this is only for shares.
 pub const FLASH_BYTES: u64 = 256 * 1024;
-/// The chip's RAM, bytes.
 pub const RAM_BYTES: u64 = 128 * 1024;
 
 /// Bytes that an image takes before it runs. Its stack is measured by running it: see
 /// [`Run::stack_bytes`](crate::board::Run::stack_bytes).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Size {
-    /// Code, constants and the first values of variables.
     pub flash: u64,
-    /// Variables.
     pub ram: u64,
 }
 
 impl Size {
-    /// Adds up an ELF file's sections that are loaded or kept free.
     pub fn read(path: &Path) -> Result<Self> {
         let bytes = std::fs::read(path).with_context(|| format!("reading the image {}", path.display()))?;
         let file = File::parse(&*bytes).with_context(|| format!("{} is not an ELF file", path.display()))?;

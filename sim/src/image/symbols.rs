@@ -6,73 +6,43 @@ use std::path::Path;
 use anyhow::{Context, Result, bail, ensure};
 use object::{File, Object, ObjectSection, ObjectSymbol};
 
-/// The name of the tick of the logic in the image.
-pub(crate) const TICK: &str = "tenax_control_tick";
-/// The name of what gives the logic a command.
+const TICK: &str = "tenax_control_tick";
 const COMMAND: &str = "tenax_control_command";
-/// Addresses in an image.
+
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Symbols {
-    /// The first instruction of a tick.
     pub tick: u64,
-    /// The instruction that the tick returns to.
     pub after_tick: u64,
-    /// The first instruction of taking a command.
     pub command: u64,
-    /// RAM above the image's variables: the stack grows down into it.
     pub stack: Range<u64>,
 }
 
-fn read<T>(elf: &Path, of: impl FnOnce(&File<'_>) -> Result<T>) -> Result<T> {
-    let bytes = std::fs::read(elf).with_context(|| format!("reading the image {}", elf.display()))?;
-    let symbols = File::parse(&*bytes).context("not an ELF file").and_then(|file| of(&file));
-    symbols.with_context(|| format!("the image {}", elf.display()))
-}
-
-/// RAM above an image's variables.
-fn stack(file: &File<'_>) -> Result<Range<u64>> {
-    let stack = address_of(file, "__sheap")?..address_of(file, "_stack_start")?;
-    ensure!(stack.start < stack.end, "leaves no RAM for the stack");
-    Ok(stack)
-}
-
 impl Symbols {
-    /// Reads them from an ELF file.
     pub fn read(elf: &Path) -> Result<Self> {
-        read(elf, Self::of)
+        let bytes = std::fs::read(elf).with_context(|| format!("reading the image {}", elf.display()))?;
+        let symbols = File::parse(&*bytes).context("not an ELF file").and_then(|file| Self::of(&file));
+        symbols.with_context(|| format!("the image {}", elf.display()))
     }
 
     fn of(file: &File<'_>) -> Result<Self> {
-        let (tick, after_tick) = entry_and_return(file, TICK)?;
-        let command = entry(file, COMMAND)?;
-        Ok(Self { tick, after_tick, command, stack: stack(file)? })
+        let stack = address_of(file, "__sheap")?..address_of(file, "_stack_start")?;
+        ensure!(stack.start < stack.end, "leaves no RAM for the stack");
+        let (tick, command) = (entry(file, TICK)?, entry(file, COMMAND)?);
+        let text = file.section_by_name(".text").context("has no .text section")?;
+        match return_addresses(text.data()?, text.address(), tick)[..] {
+            [after_tick] => Ok(Self { tick, after_tick, command, stack }),
+            [] => bail!("{TICK} is never called"),
+            _ => bail!("{TICK} is called from more than one place: its cost cannot be told"),
+        }
     }
 }
 
-/// Where a function begins, and the instruction that it returns to. It must be called from one place only.
-pub(super) fn entry_and_return(file: &File<'_>, name: &str) -> Result<(u64, u64)> {
-    let (entry, after) = entry_and_returns(file, name)?;
-    match after[..] {
-        [after] => Ok((entry, after)),
-        [] => bail!("{name} is never called"),
-        _ => bail!("{name} is called from more than one place: its cost cannot be told"),
-    }
-}
-
-/// Where a function begins, and every instruction that it returns to.
-pub(super) fn entry_and_returns(file: &File<'_>, name: &str) -> Result<(u64, Vec<u64>)> {
-    let entry = entry(file, name)?;
-    let text = file.section_by_name(".text").context("has no .text section")?;
-    Ok((entry, return_addresses(text.data()?, text.address(), entry)))
-}
-
-/// Where a function begins.
 fn entry(file: &File<'_>, name: &str) -> Result<u64> {
     // Bit 0 of a function's address says that it is Thumb code.
     Ok(address_of(file, name)? & !1)
 }
 
-pub(super) fn address_of(file: &File<'_>, name: &str) -> Result<u64> {
+fn address_of(file: &File<'_>, name: &str) -> Result<u64> {
     file.symbols()
         .find(|symbol| symbol.name() == Ok(name))
         .map(|symbol| symbol.address())

@@ -20,21 +20,17 @@ use crate::scorer::{Doing, SlipSpan, onsets};
 pub use read::{parse, read};
 pub use recipe::ArrayRecipe;
 
-/// What a recording is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Part {
     Train,
-    /// To choose by: when to stop, and the threshold.
     Validation,
-    /// To score, once.
     Test,
 }
 
 impl Part {
     pub const ALL: [Self; 3] = [Self::Train, Self::Validation, Self::Test];
 
-    /// What it is called in a file.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Train => "train",
@@ -61,30 +57,22 @@ pub struct Step {
     pub slip: bool,
 }
 
-/// A recording without a gap.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     pub name: String,
     /// What it shares with others that it must not be told apart from: a session or an object. Never in two parts.
     pub session: String,
-    /// What scores are reported by beside the session.
     pub material: String,
-    /// What it is for, if the file says so.
     pub part: Option<Part>,
-    /// What was done in it, for false alarms to be counted by.
     pub doing: Doing,
-    /// Its time at the first step, s.
     pub first_s: f64,
     /// Its steps, 80 a second.
     pub steps: Vec<Step>,
-    /// Its slips, by micro onset: exact where the file has onsets, else [made of its labels](crate::scorer::onsets::of_labels).
     pub slips: Vec<SlipSpan>,
-    /// Whether the file has onsets.
     pub exact: bool,
 }
 
 impl Recording {
-    /// One whose labels are all that is known of its slips: a session of its own, for nothing in particular.
     pub fn of_steps(name: &str, steps: Vec<Step>) -> Self {
         Self {
             name: name.to_owned(),

@@ -13,10 +13,8 @@ use super::{Part, Recording, Step};
 use crate::input::{CsvError, number, open, rows};
 use crate::scorer::{Doing, SlipSpan, onsets};
 
-/// The longest time between two rows of a recording, s: over a longer one a straight line is an invention.
 const GAP_MAX_S: f64 = 0.5;
 
-/// Reads a file. An error says which row is wrong, and what is allowed.
 pub fn read(path: &Path, recipe: &ArrayRecipe) -> Result<Vec<Recording>, CsvError> {
     let (source, file) = open(path)?;
     parse(source, recipe, &file)
@@ -59,7 +57,6 @@ struct Columns {
     onsets: Option<usize>,
 }
 
-/// Which recording a row is of, and what its file says of that.
 #[derive(Clone, PartialEq)]
 struct About {
     name: String,
@@ -147,7 +144,6 @@ impl Columns {
     }
 }
 
-/// A recording whose rows are still coming.
 struct Open {
     about: About,
     t_s: Vec<f64>,

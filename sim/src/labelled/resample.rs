@@ -31,14 +31,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_at_80_hz_already_stays() {
-        let t_s: Vec<f64> = (0..100).map(|n| 7.0 + f64::from(n) * 0.0125).collect();
-        let places: Vec<f64> = instants(&t_s).into_iter().map(|(row, part)| row as f64 + part).collect();
-        assert_eq!(places.len(), 100);
-        assert!(places.iter().enumerate().all(|(n, place)| (place - n as f64).abs() < 1e-6));
-    }
-
-    #[test]
     fn a_straight_line_at_another_rate_stays_one() {
         let t_s = [0.0, 0.01, 0.02, 0.02, 0.045, 0.1];
         for (n, (row, part)) in instants(&t_s).into_iter().enumerate() {

@@ -9,7 +9,6 @@ use super::figure::{Figure, Panel};
 
 /// Size, pixels.
 pub const SIZE: (u32, u32) = (1_200, 1_180);
-/// The font of every word; the first is the one that the PNG is drawn with.
 pub const FONTS: &str = "DejaVu Sans, Verdana, sans-serif";
 
 const TITLE_HEIGHT: i32 = 62;
@@ -17,14 +16,12 @@ const FOOT_HEIGHT: i32 = 46;
 const LEFT: i32 = 84;
 const RIGHT: i32 = 170;
 const GAP: i32 = 14;
-/// Height of a strip of states, in parts of its panel.
 const STRIP: f64 = 0.09;
 const SLIP: RGBColor = super::figure::colour::PURPLE;
 const LEVEL: RGBColor = super::figure::colour::VERMILLION;
-/// What words and axes are drawn in.
 pub const INK: RGBColor = RGBColor(40, 40, 40);
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 pub fn svg(figure: &Figure) -> anyhow::Result<String> {
     let mut svg = String::new();
@@ -84,9 +81,8 @@ fn draw_panel(area: &Area, figure: &Figure, panel: &Panel, foot: i32) -> anyhow:
     }
     drawn(mesh.draw())?;
     for (at, name) in &panel.names {
-        let style = (FONTS, 13).into_font().color(&INK).pos(Pos::new(HPos::Right, VPos::Center));
         let y = chart.backend_coord(&(from_s, *at)).1 - area.get_base_pixel().1;
-        drawn(area.draw(&Text::new(name.clone(), (LEFT - 8, y), style)))?;
+        words(area, name, (LEFT - 8, y), 13, (HPos::Right, VPos::Center))?;
     }
     let strip_top = low + (high - low) * STRIP;
     for stretch in &panel.strip {
@@ -113,7 +109,6 @@ fn draw_panel(area: &Area, figure: &Figure, panel: &Panel, foot: i32) -> anyhow:
     legend(area, panel)
 }
 
-/// A number on an axis, without zeros that say nothing.
 fn plain(value: &f64) -> String {
     // Adding zero turns -0 into 0.
     format!("{}", (value * 1e6).round() / 1e6 + 0.0)
@@ -122,18 +117,16 @@ fn plain(value: &f64) -> String {
 /// Names at the panel's right, each beside what it names.
 fn legend(area: &Area, panel: &Panel) -> anyhow::Result<()> {
     let left = SIZE.0 as i32 - RIGHT + 14;
+    let side = (HPos::Left, VPos::Center);
     let mut y = GAP + 10;
     if !panel.names.is_empty() {
         // On the axis they have its place.
-        let style = (FONTS, 14).into_font().color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
-        drawn(area.draw(&Text::new(panel.label.clone(), (left, y), style)))?;
+        words(area, &panel.label, (left, y), 14, side)?;
         y += 19;
     }
     let mut name = |name: &str| {
-        let style = (FONTS, 14).into_font().color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
-        let drew = drawn(area.draw(&Text::new(name.to_owned(), (left + 27, y), style)));
         y += 19;
-        drew.map(|()| y - 19)
+        words(area, name, (left + 27, y - 19), 14, side).map(|()| y - 19)
     };
     for curve in panel.curves.iter().filter(|curve| !curve.name.is_empty()) {
         let y = name(&curve.name)?;
@@ -158,18 +151,17 @@ fn legend(area: &Area, panel: &Panel) -> anyhow::Result<()> {
 }
 
 fn title(root: &Area, figure: &Figure) -> anyhow::Result<()> {
-    let style = |size: i32| (FONTS, size).into_font().color(&INK).pos(Pos::new(HPos::Left, VPos::Top));
-    drawn(root.draw(&Text::new(figure.title.clone(), (LEFT, 10), style(22))))?;
-    drawn(root.draw(&Text::new(figure.subtitle.clone(), (LEFT, 40), style(14))))?;
+    let side = (HPos::Left, VPos::Top);
+    words(root, &figure.title, (LEFT, 10), 22, side)?;
+    words(root, &figure.subtitle, (LEFT, 40), 14, side)?;
     if !figure.slips.is_empty() {
         let left = SIZE.0 as i32 - RIGHT + 14;
         drawn(root.draw(&Rectangle::new([(left, 16), (left + 20, 28)], SLIP.mix(0.35).filled())))?;
-        drawn(root.draw(&Text::new("the object slips".to_owned(), (left + 27, 15), style(14))))?;
+        words(root, "the object slips", (left + 27, 15), 14, side)?;
     }
     Ok(())
 }
 
-/// The axis of a panel: everything in it, with a little air, and room for its strip.
 fn range(panel: &Panel) -> (f64, f64) {
     let values = panel.curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.1));
     let (mut low, mut high) = panel.at_least;
@@ -185,7 +177,18 @@ fn range(panel: &Panel) -> (f64, f64) {
     (low - (high - low) * STRIP * 1.5, high + air)
 }
 
+pub(super) fn words(
+    area: &Area,
+    text: &str,
+    at: (i32, i32),
+    size: i32,
+    (side, height): (HPos, VPos),
+) -> anyhow::Result<()> {
+    let style = (FONTS, size).into_font().color(&INK).pos(Pos::new(side, height));
+    drawn(area.draw(&Text::new(text.to_owned(), at, style)))
+}
+
 /// plotters' error as ours; it does not go through `?` because it borrows.
-pub(crate) fn drawn<T, E: std::fmt::Display>(result: Result<T, E>) -> anyhow::Result<T> {
+pub(super) fn drawn<T, E: std::fmt::Display>(result: Result<T, E>) -> anyhow::Result<T> {
     result.map_err(|error| anyhow!("the plot cannot be drawn: {error}"))
 }

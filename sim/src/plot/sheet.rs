@@ -6,7 +6,6 @@ use plotters::style::RGBColor;
 
 #[derive(Clone, Debug)]
 pub struct Axis {
-    /// What it shows, with the unit.
     pub label: String,
     pub ends: (f64, f64),
     pub log: bool,
@@ -25,7 +24,6 @@ impl Axis {
         if self.log { value.log10() } else { value }
     }
 
-    /// Both ends.
     pub fn places(&self) -> std::ops::Range<f64> {
         self.place(self.ends.0)..self.place(self.ends.1)
     }
@@ -46,11 +44,9 @@ pub enum Mark {
 
 #[derive(Clone, Debug)]
 pub struct Series {
-    /// What they are; equal names share one entry of the legend.
     pub name: String,
     pub colour: RGBColor,
     pub mark: Mark,
-    /// Where they are. What is outside the axes is not drawn.
     pub points: Vec<(f64, f64)>,
 }
 
@@ -65,7 +61,6 @@ impl Series {
     }
 }
 
-/// A cell of a map.
 #[derive(Clone, Copy, Debug)]
 pub struct Cell {
     pub x: (f64, f64),
@@ -79,34 +74,27 @@ pub struct Panel {
     pub title: String,
     pub x: Axis,
     pub y: Axis,
-    /// A map, under everything else.
     pub cells: Vec<Cell>,
     pub series: Vec<Series>,
-    /// Words at points.
     pub words: Vec<(f64, f64, String)>,
 }
 
 impl Panel {
-    /// Curves and points alone.
     pub fn new(title: impl Into<String>, x: Axis, y: Axis, series: Vec<Series>) -> Self {
         Self { title: title.into(), x, y, cells: Vec::new(), series, words: Vec::new() }
     }
 }
 
-/// The sheet: panels from left to right and from top to bottom, a legend at its foot.
 #[derive(Clone, Debug)]
 pub struct Sheet {
     pub title: String,
-    /// One line under it.
     pub subtitle: String,
     pub columns: u32,
     pub panels: Vec<Panel>,
-    /// The ends of the colours of errors, if there is a map.
     pub errors: Option<(f64, f64)>,
 }
 
 impl Sheet {
-    /// Without a map.
     pub fn new(
         title: impl Into<String>,
         subtitle: impl Into<String>,

@@ -1,6 +1,5 @@
 //! Fewer points for the same picture.
 
-/// At most this many columns of pixels matter in one panel.
 const COLUMNS: usize = 1_000;
 
 /// A curve that is thinned as it comes, so that it takes the same memory however long it gets: of each column of pixels
@@ -14,14 +13,12 @@ pub struct Thin {
     column: Option<Column>,
 }
 
-/// All of a curve at once.
 pub fn thin(points: impl IntoIterator<Item = (f64, f64)>, span_s: (f64, f64)) -> Vec<(f64, f64)> {
     let mut thin = Thin::new(span_s);
     points.into_iter().for_each(|point| thin.push(point));
     thin.points()
 }
 
-/// The points of the column that is not yet full, each with its place among all that came.
 #[derive(Clone, Copy, Debug)]
 struct Column {
     at: usize,
@@ -32,7 +29,6 @@ struct Column {
     last: Point,
 }
 
-/// A place in the column, and what stands there.
 type Point = (usize, (f64, f64));
 
 impl Thin {
@@ -42,7 +38,6 @@ impl Thin {
         Self { from_s, to_s, width_s, kept: Vec::new(), column: None }
     }
 
-    /// The next point in order of time. What lies outside the curve's span is left out.
     pub fn push(&mut self, point: (f64, f64)) {
         if !(self.from_s..=self.to_s).contains(&point.0) {
             return;
@@ -58,7 +53,6 @@ impl Thin {
         }
     }
 
-    /// The points that are left.
     pub fn points(mut self) -> Vec<(f64, f64)> {
         self.flush();
         self.kept

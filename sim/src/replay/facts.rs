@@ -8,9 +8,7 @@ use super::filter::{Pass, pass};
 use super::resample::Grid;
 use super::{Recipe, Recording};
 
-/// A crest counts once Ft/Fn has fallen from it by this part: the finger slides.
 const CREST_FALL: f64 = 0.2;
-/// A crest lower than this is not one: the noise of a held finger.
 const CREST_LEAST: f64 = 0.2;
 /// The part of the recording's 95th percentile of normal force above which the finger counts as loaded.
 const LOADED_PART: f64 = 0.5;
@@ -25,16 +23,12 @@ const RATIO_MOST: f64 = 3.0;
 /// of 140 N is at its end.
 const NORMAL_N: [f64; 2] = [0.05, 140.0];
 
-/// The crest of Ft/Fn: where sticking ends.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Crest {
-    /// Ft/Fn there.
     pub peak_ratio: f64,
-    /// When, in the recording's time, s.
     pub peak_s: f64,
 }
 
-/// Forces without the load cell's noise, one a row.
 struct Rows {
     normal: Vec<f64>,
     shear: Vec<f64>,
@@ -64,7 +58,6 @@ fn forces(recording: &Recording, recipe: &Recipe) -> anyhow::Result<Option<Rows>
     Ok(Some(Rows { normal, shear, loaded_n: LOADED_PART * high_n, high_n }))
 }
 
-/// Whether the columns that press the force sensor can be forces of a finger; each sentence is a reason why not.
 pub fn doubts(recording: &Recording, recipe: &Recipe) -> anyhow::Result<Vec<String>> {
     let (Some(rows), Some(map)) = (forces(recording, recipe)?, &recipe.force) else {
         return Ok(Vec::new());
@@ -148,7 +141,6 @@ pub fn muscle_onset_s(recording: &Recording, recipe: &Recipe) -> anyhow::Result<
     Ok(first)
 }
 
-/// Mean over a window around each value, shorter at the ends.
 fn centred_mean(values: &[f64], width: usize) -> Vec<f64> {
     let mut sums = Vec::with_capacity(values.len() + 1);
     let mut sum = 0.0;
@@ -217,12 +209,5 @@ mod tests {
     fn a_finger_that_never_slides_has_no_crest() {
         let (recording, recipe) = rig(|t| 0.1 + 0.05 * (40.0 * t).sin());
         assert_eq!(crest(&recording, &recipe).unwrap(), None);
-    }
-
-    #[test]
-    fn a_centred_mean_keeps_a_constant_and_halves_a_step() {
-        assert_eq!(centred_mean(&[2.0; 9], 4), [2.0; 9]);
-        let step = centred_mean(&[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0], 4);
-        assert_eq!(step[3], 0.4);
     }
 }

@@ -8,8 +8,6 @@ use super::recipe::Time;
 use super::{Recipe, Recording};
 use crate::recipe::{Kind, Named};
 
-/// Reads a recording, and gives the recipe to play it with: the one that was asked for, by file or by name; else the one that its name
-/// calls for, unless its columns already are channels.
 pub fn read(path: &Path, asked: Option<&str>) -> Result<(Recording, Option<Named<Recipe>>)> {
     let named = match asked {
         Some(asked) => Some(Recipe::asked(asked)?),

@@ -9,14 +9,12 @@ use crate::recipe;
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Motion {
-    /// It stays as it is.
     Rest,
     Close,
     Open,
 }
 
 impl Motion {
-    /// What reports call it.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Rest => "rest",
@@ -26,20 +24,17 @@ impl Motion {
     }
 }
 
-/// A row of a recipe: recordings of this name mean this.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Meaning {
     /// Names of the recordings; `*` and `?` match as in a shell. The first row that matches counts.
     pub named: Spanned<String>,
-    /// What the wearer wants of the hand.
     pub wants: Motion,
     /// What the hand must not do meanwhile.
     pub never: Vec<Motion>,
 }
 
 impl Meaning {
-    /// Whether it is for recordings of this name.
     pub fn is_for(&self, file_name: &str) -> bool {
         recipe::matches([&self.named], file_name)
     }

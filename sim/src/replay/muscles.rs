@@ -12,10 +12,8 @@ use tenax_scene::plant::Plant;
 
 use super::{ReplayPlant, library};
 
-/// Both envelopes above the live zero.
 #[derive(Clone, Debug)]
 pub struct Muscles {
-    /// From the recording's first to its last row, s.
     pub duration_s: f64,
     /// Time since the recording's first row, s, negative while the front end settles; and both, uV, flexor first, none where a
     /// sensor gives no number.
@@ -54,7 +52,6 @@ impl Muscles {
         Ok(Self { duration_s: recording.duration_s(), pairs })
     }
 
-    /// What is within the recording: not the front end's settling, nor what follows its last row.
     pub fn within(&self) -> impl Iterator<Item = (f64, [Option<i32>; 2])> {
         self.pairs.iter().copied().filter(|(t_s, _)| (0.0..self.duration_s).contains(t_s))
     }

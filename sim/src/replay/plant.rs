@@ -19,11 +19,9 @@ use super::{Recipe, Recording};
 /// recording lacks would read one code for ever, as only a broken sensor does.
 const PIN_NOISE_MV: f64 = 0.4;
 
-/// Lead-in and lead-out of a recording that is played without a recipe, s.
 const PLAIN_LEAD_IN_S: f64 = 1.0;
 const PLAIN_LEAD_OUT_S: f64 = 0.2;
 
-/// What one series does to its pins: volts above each pin's offset, one a scan.
 #[derive(Clone, Debug)]
 struct Track {
     volts: Vec<f64>,
@@ -32,12 +30,9 @@ struct Track {
     clip_v: [f64; 2],
 }
 
-/// The greatest voltage at a pin, V.
 const PIN_MAX_V: f64 = 3.3;
-/// A front end rings over its supply by this part and no more.
 const OVER: f64 = 0.02;
 
-/// Refuses what no pin can have, and says in which unit it likely is.
 fn in_volts(rows: &[f64]) -> Result<(), String> {
     let known = || rows.iter().copied().filter(|value| value.is_finite());
     let (low, high) =
@@ -63,7 +58,6 @@ fn in_volts(rows: &[f64]) -> Result<(), String> {
     ))
 }
 
-/// A recording, seen from the board.
 #[derive(Debug)]
 pub struct ReplayPlant {
     grid: Grid,
@@ -73,12 +67,10 @@ pub struct ReplayPlant {
     next: usize,
     rng: ChaCha8Rng,
     noise_v: Normal<f64>,
-    /// The wearer to whom the board was calibrated.
     pub calibrated: Option<EmgModel>,
 }
 
 impl ReplayPlant {
-    /// A recording through a recipe's front end.
     pub fn new(recording: &Recording, recipe: &Recipe, seed: u64) -> anyhow::Result<Self> {
         let mut plant =
             Self::empty(recording, *recipe.lead_in_s.get_ref(), *recipe.lead_out_s.get_ref(), seed);
@@ -108,7 +100,6 @@ impl ReplayPlant {
         Ok(plant)
     }
 
-    /// A recording whose columns are channels, in volts at the pin.
     pub fn plain(recording: &Recording, seed: u64) -> anyhow::Result<Self> {
         let mut plant = Self::empty(recording, PLAIN_LEAD_IN_S, PLAIN_LEAD_OUT_S, seed);
         for column in recording.signals() {
@@ -151,12 +142,10 @@ impl ReplayPlant {
         }
     }
 
-    /// What to add to virtual time to get the recording's own time, s.
     pub fn time_zero_s(&self) -> f64 {
         self.grid.from_s
     }
 
-    /// A column, drawn, filtered and thinned to scans, in volts above its offset.
     fn front_end(&self, recording: &Recording, map: &Map) -> anyhow::Result<Vec<f64>> {
         let mut rows = recording.series(&map.column)?;
         let offset = match map.remove_offset {
@@ -225,7 +214,6 @@ impl ReplayPlant {
         (0..self.grid.scans).map(load).collect()
     }
 
-    /// Puts forces on the quadrants.
     fn press(&mut self, loads: Vec<[f64; 4]>) {
         for quadrant in 0..channel::FSR_COUNT {
             self.tracks.push(Track {

@@ -9,13 +9,10 @@ use toml::Spanned;
 use super::meaning::Meaning;
 use crate::recipe::{self, Checked, Kind};
 
-/// A recipe, checked.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Recipe {
-    /// One line about it.
     pub title: String,
-    /// What the recording is, and what the front end assumes.
     pub description: String,
     /// Names of the recordings that it is taken for when no recipe is given; `*` and `?` match as in a shell.
     #[serde(default)]
@@ -28,7 +25,6 @@ pub struct Recipe {
     /// How long the last row is held after the recording ends, s.
     #[serde(default = "default_lead_out_s")]
     pub lead_out_s: Spanned<f64>,
-    /// Columns that go to pins.
     #[serde(default)]
     pub map: Vec<Map>,
     /// Columns in newtons that press the force sensor.
@@ -36,12 +32,10 @@ pub struct Recipe {
     /// What is assumed of signals that the recording lacks.
     #[serde(default)]
     pub hold: Hold,
-    /// What recordings mean for the hand.
     #[serde(default)]
     pub meaning: Vec<Meaning>,
 }
 
-/// The column that holds the time.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Time {
@@ -51,7 +45,6 @@ pub struct Time {
     pub unit: TimeUnit,
 }
 
-/// What the time column counts.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
 pub enum TimeUnit {
     #[default]
@@ -64,7 +57,6 @@ pub enum TimeUnit {
 }
 
 impl TimeUnit {
-    /// How many of it are a second.
     pub const fn in_a_second(self) -> f64 {
         match self {
             Self::Seconds => 1.0,
@@ -74,40 +66,30 @@ impl TimeUnit {
     }
 }
 
-/// A column and the front end that brings it to pins. The stages act in the order of the fields.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Map {
     pub column: String,
-    /// The channels that hear it.
     pub channels: Vec<Spanned<String>>,
-    /// What is taken away first.
     pub remove_offset: Option<RemoveOffset>,
     /// Corner of a second-order Butterworth high-pass, Hz.
     pub high_pass_hz: Option<Spanned<f64>>,
     /// Corner of a second-order Butterworth low-pass, Hz.
     pub low_pass_hz: Option<Spanned<f64>>,
-    /// Full-wave rectifier.
     #[serde(default)]
     pub rectify: bool,
     /// Corner of a second-order Butterworth low-pass behind the rectifier, Hz.
     pub envelope_hz: Option<Spanned<f64>>,
-    /// Volts at the pin for one unit of the column.
     pub gain: Spanned<f64>,
-    /// Volts at the pin for zero. If not given, what the channel has at rest.
     pub offset_v: Option<Spanned<f64>>,
-    /// Between which voltages the front end can go.
     #[serde(default = "default_clip_v")]
     pub clip_v: Spanned<[f64; 2]>,
 }
 
-/// What is taken away from a column first.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(rename_all = "snake_case")]
 pub enum RemoveOffset {
-    /// Its mean over the whole recording.
     Mean,
-    /// Its mean over the first seconds.
     MeanOfFirstS(f64),
     Value(f64),
 }
@@ -117,13 +99,9 @@ pub enum RemoveOffset {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ForceMap {
-    /// The normal force's column.
     pub normal: String,
-    /// The shear's column, along x.
     pub shear_x: String,
-    /// The shear's column along y, if it was measured.
     pub shear_y: Option<String>,
-    /// Newtons on the force sensor for one unit of the columns. It changes no ratio.
     #[serde(default = "default_scale")]
     pub scale: Spanned<f64>,
     /// Corner of a second-order Butterworth low-pass, Hz: the rubber of the tilting element.
@@ -134,13 +112,11 @@ pub struct ForceMap {
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Hold {
-    /// A constant load on the force sensor.
     pub force: Option<Spanned<HoldForce>>,
     #[serde(default)]
     pub pins: Vec<HoldPins>,
 }
 
-/// A constant load on the force sensor.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HoldForce {
@@ -158,7 +134,6 @@ pub struct HoldForce {
     pub why: String,
 }
 
-/// Constant voltages at pins.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HoldPins {
@@ -186,12 +161,10 @@ fn default_clip_v() -> Spanned<[f64; 2]> {
 }
 
 impl Recipe {
-    /// What a recording of this name means for the hand.
     pub fn meaning_of(&self, file_name: &str) -> Option<&Meaning> {
         self.meaning.iter().find(|meaning| meaning.is_for(file_name))
     }
 
-    /// Whether anything listens to this column.
     pub fn uses(&self, column: &str) -> bool {
         let mapped = self.map.iter().any(|map| map.column == column);
         let pressed = self.force.as_ref().is_some_and(|force| {
@@ -200,7 +173,6 @@ impl Recipe {
         mapped || pressed
     }
 
-    /// Whether a column is a muscle.
     pub fn maps_a_muscle(&self) -> bool {
         self.map.iter().any(Map::is_muscle)
     }
@@ -252,7 +224,6 @@ impl Kind for Recipe {
 }
 
 impl Map {
-    /// Whether it brings a column to a myosensor's pin.
     pub fn is_muscle(&self) -> bool {
         let muscles = [channel::MYO_FLEXOR, channel::MYO_EXTENSOR];
         let indices = self.channels.iter().filter_map(|name| channel::by_name(name.get_ref()));

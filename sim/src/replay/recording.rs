@@ -8,17 +8,13 @@ use csv::StringRecord;
 use super::recipe::Time;
 use crate::input::{CsvError, number, open, rows};
 
-/// Names under which the time column is looked for where no recipe names it.
 const TIME_COLUMNS: [&str; 2] = ["t", "t_s"];
-/// The longest recording that is played, s. A longer one is nearly always one whose time is in milliseconds.
 const LONGEST_S: f64 = 600.0;
 
-/// A recording. Its rows are read one by one, and only numbers are kept.
 #[derive(Clone, Debug)]
 pub struct Recording {
     file: String,
     columns: Vec<String>,
-    /// Which of them is the time.
     time: usize,
     t_s: Vec<f64>,
     signals: Vec<Signal>,
@@ -28,7 +24,6 @@ pub struct Recording {
 #[derive(Clone, Debug, Default)]
 struct Signal {
     values: Vec<f64>,
-    /// The first cell that is no finite number: its line, and what is wrong.
     wrong: Option<(u64, String)>,
 }
 
@@ -48,7 +43,6 @@ impl Signal {
 }
 
 impl Recording {
-    /// Reads a file, with this clock.
     pub fn read(path: &Path, time: &Time) -> Result<Self, CsvError> {
         let (source, file) = open(path)?;
         Self::timed(source, &file, time)
@@ -59,7 +53,6 @@ impl Recording {
         Self::timed(source, file, &Time::default())
     }
 
-    /// Reads from anything, with this clock.
     pub fn timed(source: impl Read, file: &str, time: &Time) -> Result<Self, CsvError> {
         let too_short = |rows| {
             let what = format!("{rows} rows of samples; a recording has a header line and at least two rows");
@@ -119,7 +112,6 @@ impl Recording {
         }
     }
 
-    /// The time stamp of the next row, which may not be earlier than the last one's.
     fn time_s(&self, cell: &str, line: u64, time: &Time) -> Result<f64, CsvError> {
         let wrong = |what| CsvError::Row { file: self.file.clone(), line, what };
         let t_s = number(&self.columns[self.time], cell).map_err(wrong)? / time.unit.in_a_second();
@@ -131,33 +123,27 @@ impl Recording {
         }
     }
 
-    /// The file, as errors call it.
     pub fn file(&self) -> &str {
         &self.file
     }
 
-    /// The columns, the time column not among them.
     pub fn signals(&self) -> impl Iterator<Item = &str> {
         let of_signals = self.columns.iter().enumerate().filter(|&(place, _)| place != self.time);
         of_signals.map(|(_, column)| column.as_str())
     }
 
-    /// Time stamps, s, never decreasing, at least two.
     pub fn t_s(&self) -> &[f64] {
         &self.t_s
     }
 
-    /// The first time stamp, s.
     pub fn first_s(&self) -> f64 {
         self.t_s[0]
     }
 
-    /// From the first to the last row, s.
     pub fn duration_s(&self) -> f64 {
         self.t_s[self.t_s.len() - 1] - self.t_s[0]
     }
 
-    /// The longest time between two rows, s. Between rows a signal is a straight line, so a long one is worth saying.
     pub fn longest_gap_s(&self) -> f64 {
         self.t_s.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max)
     }
@@ -167,7 +153,6 @@ impl Recording {
         (self.t_s.len() - 1) as f64 / self.duration_s()
     }
 
-    /// The values of a column, one a row.
     pub fn series(&self, column: &str) -> Result<Vec<f64>, CsvError> {
         let Some(place) = self.place(column) else {
             return Err(self.no_column(&format!("no column `{column}`")));

@@ -6,12 +6,9 @@
 
 use tenax_hal_shim::channel::SCAN_HZ;
 
-/// The even grid that a recording is worked on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
-    /// Instants a scan.
     pub per_scan: usize,
-    /// When the first instant is, in the recording's time, s.
     pub from_s: f64,
     pub scans: usize,
 }
@@ -56,7 +53,6 @@ impl Grid {
             .collect()
     }
 
-    /// Every instant that is a scan.
     pub fn thin(&self, values: &[f64]) -> Vec<f64> {
         values.iter().step_by(self.per_scan).copied().collect()
     }

@@ -16,20 +16,16 @@ const SETTLED_FRAMES: u32 = FRAME_HZ * 15 / 100;
 /// A pulse that begins this long before a micro onset answers that slip, s: a warning sees it come. What a pulse adds this long
 /// after a slip's end was still meant for it: the motor's dead time.
 pub(super) const BEFORE_S: f64 = 0.050;
-/// An object is about to slip where the grip is below this times what it needs...
+/// Safety ratio: a grip up to 1.1 times the largest need within [`ABOUT_S`] counts as needed.
 const ABOUT_PART: f64 = 1.1;
-/// ... at any time within so long, s.
 const ABOUT_S: f64 = 1.0;
 
-/// Newtons on a finger.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Sums {
-    /// Added by the reflex: true ones, or its force sensor's where the truth is not known.
     pub added_n: f64,
     /// Those of them that were added while nothing slipped or was about to: no slip within 50 ms, and the grip at 1.1 times what is
     /// needed within a second or above it. Null where nobody knows when it slipped.
     pub added_without_need_n: Option<f64>,
-    /// Taken back by it.
     pub relaxed_n: f64,
 }
 
@@ -50,7 +46,6 @@ impl Stretch {
     }
 }
 
-/// Hears when the reflex moves the fingers, and what their force sensor says meanwhile.
 #[derive(Clone, Debug, Default)]
 pub struct Added {
     load_n: Option<f64>,
@@ -96,12 +91,10 @@ impl Recorder for Added {
     }
 }
 
-/// The true grip force and what was needed, row by row of a world's trace.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Grips(Vec<[f32; 2]>);
 
 impl Grips {
-    /// The next row of a world's trace.
     pub fn push(&mut self, row: &Row) {
         self.0.push([row.grip_n as f32, row.needed_n as f32]);
     }
@@ -110,11 +103,15 @@ impl Grips {
         (t_s * f64::from(TRACE_HZ)) as usize
     }
 
-    /// What the grip gained in a stretch, and how much of it without need.
-    fn gained(&self, stretch: &Stretch, truth: &Fate) -> [f64; 2] {
+    /// The rows of a stretch with its settling, and the place of the first.
+    fn rows(&self, stretch: &Stretch) -> (usize, &[[f32; 2]]) {
         let (from, to) =
             (Self::row(frame_end_s(stretch.from)), Self::row(frame_end_s(stretch.to + SETTLED_FRAMES)));
-        let rows = self.0.get(from..self.0.len().min(to + 1)).unwrap_or_default();
+        (from, self.0.get(from..self.0.len().min(to + 1)).unwrap_or_default())
+    }
+
+    fn gained(&self, stretch: &Stretch, truth: &Fate) -> [f64; 2] {
+        let (from, rows) = self.rows(stretch);
         let mut most_n = rows.first().map_or(0.0, |[grip_n, _]| *grip_n);
         let (mut gained_n, mut without_n) = (0.0, 0.0);
         for (n, &[grip_n, _]) in rows.iter().enumerate().filter(|(_, [grip_n, _])| *grip_n > 0.0) {
@@ -133,11 +130,8 @@ impl Grips {
         [gained_n, without_n]
     }
 
-    /// What the grip lost in a stretch.
     fn lost(&self, stretch: &Stretch) -> f64 {
-        let (from, to) =
-            (Self::row(frame_end_s(stretch.from)), Self::row(frame_end_s(stretch.to + SETTLED_FRAMES)));
-        let rows = self.0.get(from..self.0.len().min(to + 1)).unwrap_or_default();
+        let (_, rows) = self.rows(stretch);
         let least_n = rows.iter().map(|[grip_n, _]| *grip_n).fold(f32::INFINITY, f32::min);
         rows.first().map_or(0.0, |[grip_n, _]| f64::from(grip_n - least_n))
     }
@@ -148,13 +142,11 @@ impl Grips {
     }
 }
 
-/// Whether it slipped, or was to slip at once, or had just.
 fn slips(truth: &Fate, t_s: f64) -> bool {
     truth.slips.iter().any(|slip| (slip.micro_onset_s - BEFORE_S..=slip.end_s + BEFORE_S).contains(&t_s))
 }
 
 impl Added {
-    /// The newtons of a run: true ones of a scene, those of the force sensor where nobody knows the truth.
     pub fn sums(&self, truth: Option<&Fate>) -> Sums {
         let mut sums = Sums { added_without_need_n: truth.map(|_| 0.0), ..Sums::default() };
         for stretch in self.stretches.iter().chain(&self.open) {

@@ -11,7 +11,6 @@ pub struct Ran {
     pub begin_s: f64,
     /// Until when, s. Null if it still went on.
     pub end_s: Option<f64>,
-    /// How it ended, in words.
     pub ending: Option<&'static str>,
 }
 

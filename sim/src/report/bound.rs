@@ -5,7 +5,6 @@ use serde::Serialize;
 
 use super::fate::Fate;
 
-/// Slides nearer than this are the same, mm.
 pub const SAME_MM: f64 = 0.02;
 
 /// The bound's run, and how the real one compares. No ratio is below 0.98 (the plan's part above the edge of sliding) unless the
@@ -13,7 +12,6 @@ pub const SAME_MM: f64 = 0.02;
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Bound {
     pub kept: Option<bool>,
-    /// How far the object slid, mm.
     pub distance_mm: Option<f64>,
     /// The greatest grip force, N: the least with which any grip of this gripper keeps the object from sliding, or, where the
     /// run pressed less, from sliding further than it did.
@@ -45,19 +43,16 @@ impl Bound {
     }
 }
 
-/// One of the runs beside which a run says something.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Control {
     /// What it is: `no reflex`, `constant grip`, `s1 alone`, `without s1`.
     pub name: String,
-    /// How far the object slid, mm.
     pub distance_mm: f64,
     pub peak_force_n: Option<f64>,
     /// The mean grip force while the hand carried the object, N.
     pub mean_force_n: Option<f64>,
     /// The mean of what it pressed beyond the need meanwhile, N.
     pub beyond_need_n: Option<f64>,
-    /// Whether the hand still had it, or let it go on purpose.
     pub kept: bool,
 }
 

@@ -5,43 +5,31 @@ use tenax_scene::{SceneFile, Truth};
 use super::added::Grips;
 use crate::scorer::{SlipSpan, Stretch, doing};
 
-/// What really happened.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Fate {
-    /// Every slip and every run of micro slips that came to nothing, by micro onset.
     pub slips: Vec<SlipSpan>,
-    /// What was going on when.
     pub doing: Vec<Stretch>,
     /// How far the object slid altogether when it was not meant to, mm.
     pub distance_mm: f64,
     pub dropped: bool,
-    /// Whether the hand rose without it.
     pub left_behind: bool,
-    /// Whether another hand has taken it.
     pub handed_over: bool,
-    /// How far it had turned about the pads at the end, rad.
     pub turned_rad: f64,
     /// The greatest grip force, N. None where nothing was held.
     pub peak_grip_n: Option<f64>,
     /// The mean grip force while the hand carried it, N. None if it never did.
     pub mean_grip_n: Option<f64>,
-    /// When the fingers first crushed it, s.
     pub crushed_at_s: Option<f64>,
-    /// How deep, for good, mm.
     pub dent_mm: f64,
     pub broken_at_s: Option<f64>,
-    /// The least force that would have held it at its heaviest, N.
     pub needed_force_n: Option<f64>,
     /// The mean of the grip force beyond the need while the hand carried it, N.
     pub beyond_need_n: Option<f64>,
-    /// The least margin while the hand carried it, and the last, N.
     pub margin_n: Option<[f64; 2]>,
-    /// The grip force and the need, row by row. Empty where nobody asked for them.
     pub grips: Grips,
 }
 
 impl Fate {
-    /// A world's log, as far as it goes, of this scene.
     pub fn of(truth: &Truth, scene: &SceneFile) -> Self {
         let held = truth.needed_grip_n > 0.0;
         Self {
@@ -64,13 +52,11 @@ impl Fate {
         }
     }
 
-    /// Whether the hand still had it, or let it go on purpose.
     pub const fn kept(&self) -> bool {
         !self.dropped && !self.left_behind && self.broken_at_s.is_none()
     }
 }
 
-/// Every slip of a world and every run of micro slips that came to nothing, by micro onset.
 pub fn spans(truth: &Truth) -> Vec<SlipSpan> {
     let slips = truth.slips.iter().map(|slip| SlipSpan {
         micro_onset_s: slip.micro_onset_s,

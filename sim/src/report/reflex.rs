@@ -9,14 +9,11 @@ use super::fate::Fate;
 use crate::scorer::SlipSpan;
 use crate::timeline::Timeline;
 
-/// The reflex's part of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Reflex {
-    /// Closing pulses that answered slip or a warning of it.
     pub pulses: usize,
     /// Those of them that began where nothing slipped, a warning's too. Null where nobody knows when it slipped.
     pub without_slip: Option<usize>,
-    /// Newtons that it added and took back.
     #[serde(flatten)]
     pub sums: Sums,
 }
@@ -59,11 +56,8 @@ impl Margin {
 pub struct Object {
     /// Whether the hand still had it, or let it go on purpose. Null where nobody knows.
     pub kept: Option<bool>,
-    /// Whether the hand rose without it.
     pub left_behind: Option<bool>,
-    /// Whether another hand has taken it.
     pub handed_over: Option<bool>,
-    /// How far it had turned in the hand at the end, degrees.
     pub turned_deg: Option<f64>,
 }
 

@@ -15,44 +15,31 @@ use crate::replay::meaning::{Meaning, Motion};
 use crate::replay::{Recipe, Recording};
 use crate::timeline::{Timeline, frame_end_s};
 
-/// The recording's part of a report. Times are the recording's own.
 #[derive(Clone, Debug, Serialize)]
 pub struct Replay {
     pub recording: String,
     /// The recipe's name or file. Null where the columns were channels already.
     pub recipe: Option<String>,
-    /// Time stamp of the first row, s.
     pub first_s: f64,
-    /// From the first to the last row, s.
     pub duration_s: f64,
-    /// How long the first row was held before, s.
     pub lead_in_s: f64,
-    /// The longest time between two rows, ms: within it the signal is a straight line.
     pub longest_gap_ms: f64,
-    /// Columns that nothing listens to.
     pub unused_columns: Vec<String>,
-    /// What was assumed of signals that the recording lacks, and why.
     pub assumed: Vec<String>,
-    /// Why the columns that press the force sensor can hardly be forces.
     pub doubts: Vec<String>,
-    /// Force recordings: the crest of Ft/Fn and who saw it coming.
     pub force: Option<Force>,
-    /// Myoelectric recordings: the muscle and when the gate noticed.
     pub muscle: Option<Muscle>,
     /// What the hand did against what the recording means. Null where the recipe does not say.
     pub meant: Option<Meant>,
 }
 
-/// What a recording means for the hand, and what the muscles made it do.
 #[derive(Clone, Debug, Serialize)]
 pub struct Meant {
-    /// What the wearer wants of it.
     pub wants: Motion,
     /// What it must not do.
     pub never: Vec<Motion>,
     /// For how long it did what the wearer wants, s. Null where they want it to rest.
     pub wanted_s: Option<f64>,
-    /// The longest time for which it did what it must not, ms.
     pub wrong_ms: f64,
 }
 
@@ -76,39 +63,28 @@ impl Meant {
     }
 }
 
-/// A force recording's crest of Ft/Fn, where sticking ends, and the detectors before it.
 #[derive(Clone, Debug, Serialize)]
 pub struct Force {
     /// Ft/Fn at the crest. Null where it has none.
     pub peak_ratio: Option<f64>,
     pub peak_s: Option<f64>,
-    /// When S2 first spoke, s.
     pub s2_first_s: Option<f64>,
-    /// How long before the crest, ms: negative is after it.
     pub s2_before_peak_ms: Option<f64>,
-    /// When S1 first spoke, s.
     pub s1_first_s: Option<f64>,
-    /// How long before the crest, ms.
     pub s1_before_peak_ms: Option<f64>,
 }
 
-/// A myoelectric recording's activity.
 #[derive(Clone, Debug, Serialize)]
 pub struct Muscle {
     /// When the muscle became active in the recording itself, s: the 50 ms centred mean of the rectified signal, at the
     /// recipe's gain, passes the gate's threshold.
     pub onset_s: Option<f64>,
-    /// When the gate first noticed activity, s.
     pub noticed_s: Option<f64>,
-    /// Noticed minus onset, ms: the front end's low-pass and the gate together.
     pub onset_delay_ms: Option<f64>,
-    /// Part of the recording in which the gate was active, hold time included.
     pub active_part: f64,
-    /// Ticks in which the reflex drove the motor while a muscle was active.
     pub reflex_while_active: u64,
 }
 
-/// How much of a recording a muscle was active in, counted while it plays.
 #[derive(Clone, Debug)]
 pub struct ActivePart {
     zero_s: f64,
@@ -118,7 +94,6 @@ pub struct ActivePart {
 }
 
 impl ActivePart {
-    /// Of a recording that is to be played; `zero_s` is added to virtual time.
     pub fn new(recording: &Recording, zero_s: f64) -> Self {
         let first_s = recording.first_s();
         Self { zero_s, within_s: first_s..=first_s + recording.duration_s(), all: 0, active: 0 }
@@ -135,7 +110,6 @@ impl Recorder for ActivePart {
 }
 
 impl Replay {
-    /// Holds a run's detections against its recording.
     pub fn new(
         recording: &Recording,
         named: Option<&Named<Recipe>>,

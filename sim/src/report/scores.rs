@@ -10,25 +10,19 @@ use super::fate::Fate;
 use crate::scorer::{Card, Outcome, SlipSpan, Verdict, false_alarms_s, outcome};
 use crate::timeline::Timeline;
 
-/// The first macro slip, and the object's fate over the whole run.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Slip {
-    /// When some of the contact began to slide, s.
     pub micro_onset_s: Option<f64>,
-    /// When all of it did, s.
     pub macro_onset_s: Option<f64>,
     pub caught: Option<bool>,
     /// Detection minus macro onset, ms: negative is early.
     pub latency_ms: Option<f64>,
-    /// How far the object slid in the whole run, mm.
     pub distance_mm: Option<f64>,
     pub dropped: Option<bool>,
-    /// Macro slips in the whole run that the wearer did not mean.
     pub macro_slips: Option<usize>,
     pub macro_slips_caught: Option<usize>,
 }
 
-/// What it says is a warning: it has a row of its own and catches no slip.
 const WARNS: [DetectorId; 1] = [DetectorId::S2];
 
 impl Slip {
@@ -66,35 +60,27 @@ impl Slip {
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Detector {
-    /// When it was first believed, s.
     pub first_s: Option<f64>,
-    /// How often it began to speak and was believed.
     pub detections: usize,
     /// How often that was outside every slip, and not while the wearer moved the hand. Null where nobody knows when it
     /// slipped.
     pub false_alarms: Option<usize>,
-    /// How often it began to speak, believed or not.
     pub said: usize,
-    /// How often the reflex began to act on it.
     pub acted: usize,
     /// Its event scores: slips caught, early, late, said before, missed; false alarms by what was going on. Null where nobody
     /// knows when it slipped.
     pub events: Option<Card>,
 }
 
-/// The myoelectric gate's part; it has no false alarms here, since its truth is not slip.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Gate {
-    /// When a muscle first became active, s.
     pub first_s: Option<f64>,
     pub detections: usize,
-    /// Never known.
     pub false_alarms: Option<usize>,
 }
 
 #[derive(Clone, Debug, Default)]
 pub struct Detectors {
-    /// Those of slip.
     pub all: Vec<(DetectorId, Detector)>,
     pub wearer: Gate,
 }

@@ -20,35 +20,22 @@ use tenax_logic::emg::model::EmgModel;
 use crate::board::Recorder;
 use crate::timeline::ticks;
 
-/// Above rest, mV: what is activity of any muscle.
 const ON_MV: i64 = 160;
 
-/// The wearer's part of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Wearer {
-    /// Whether the board said that nobody wears the hand: its reflex works without myosensors.
     pub none: bool,
-    /// Ticks in which the reflex drove the motor while a myosensor's last reading at the pin was above its threshold, and
-    /// its electrode not known to be off.
     pub reflex_while_active: u64,
     /// The longest time from an opening wish at the pins to the motor opening, ms: from the first reading that is a fifth
     /// above the calibrated opening, in its direction. Null where nobody wished to open, or nobody is calibrated.
     pub open_latency_ms: Option<f64>,
-    /// When a myosensor first became active, s.
     pub active_first_s: Option<f64>,
-    /// Part of the run in which a myosensor was active, hold time included, per mille.
     pub active_permille: u64,
-    /// Ticks in which the reflex drove the motor at all: a silence means something only beside this.
     pub reflex_ticks: u64,
-    /// For how long the muscles closed the hand, s.
     pub closing_s: f64,
-    /// For how long they opened it, s.
     pub opening_s: f64,
-    /// The longest time for which they opened it without a pause, ms.
     pub longest_open_ms: f64,
-    /// The longest for which they closed it, ms.
     pub longest_close_ms: f64,
-    /// How often a myosensor was lost, for whatever reason.
     pub faults: usize,
     /// How often the vibration motor changed its drive, and for how long it ran, s.
     pub vibration_steps: usize,
@@ -60,7 +47,6 @@ pub struct Wearer {
 struct Muscles([i64; 2]);
 
 impl Muscles {
-    /// Takes a frame's scans in.
     fn take(&mut self, frame: usize, scans: &[Scan]) {
         let place = frame % usize::from(FRAMES_PER_SLOW_FRAME);
         let channel = SCHEDULE[place].switch_b.map(usize::from);
@@ -75,7 +61,6 @@ impl Muscles {
         (0..2).any(|n| self.0[n] >= on_mv[n] && hears(n))
     }
 
-    /// Whether a pin is out of range: what it says is no wish.
     fn is_shorted(self) -> bool {
         let high_mv = i64::from(CHANNELS[MYO_EXTENSOR].high_mv) - i64::from(MYO_REST_MV);
         self.0.iter().any(|&mv| mv > high_mv)
@@ -87,12 +72,10 @@ fn mv_of(level: i32) -> f64 {
     ((f64::from(level) / 1_024.0).exp2() - f64::from(FLOOR_UV)) / 1e3
 }
 
-/// What opens the hand at once: the contraction that the wearer has shown and a fifth more, in its own direction.
 #[derive(Clone, Copy, Debug)]
 struct Opening {
     site: usize,
     from_mv: f64,
-    /// Least ratio of this electrode to the other one.
     ratio: f64,
 }
 
@@ -115,20 +98,17 @@ impl Opening {
     }
 }
 
-/// Judges a run while it goes.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Judge {
     on_mv: [i64; 2],
     opening: Option<Opening>,
     muscles: Muscles,
     /// When which electrode is known to be off, s: what it gives is no activity.
     pub deaf: Vec<(usize, Range<f64>)>,
-    /// The scans of the frame that is not yet whole.
     scans: Vec<Scan>,
     frames: usize,
     active: Frames,
     wish_since: Option<usize>,
-    /// Whether the wish of now has been answered.
     opened: bool,
     slowest: Option<usize>,
     reflex_ticks: u64,
@@ -139,7 +119,6 @@ pub struct Judge {
     opened_by_muscle: Stretch,
 }
 
-/// Ticks in which something was so.
 #[derive(Clone, Copy, Debug, Default)]
 struct Stretch {
     now: u64,
@@ -155,38 +134,14 @@ impl Stretch {
     }
 }
 
-impl Default for Judge {
-    fn default() -> Self {
-        Self::new(None)
-    }
-}
-
 impl Judge {
-    /// Of a hand that was calibrated to this wearer.
     pub fn new(calibrated: Option<&EmgModel>) -> Self {
         // Whoever contracts with less than any muscle does is active all the same; a wearer whose rest is strong, later.
         let on_mv = calibrated.map_or([ON_MV; 2], |model| {
             let decide = Decide::new(Some(model));
             [0, 1].map(|n| ON_MV.max(i64::from(decide.active_uv(n)[0]) / 1_000 + 2))
         });
-        Self {
-            on_mv,
-            opening: calibrated.map(Opening::of),
-            opened: false,
-            muscles: Muscles::default(),
-            deaf: Vec::new(),
-            scans: Vec::with_capacity(SCANS_PER_FRAME),
-            frames: 0,
-            active: Frames::default(),
-            wish_since: None,
-            slowest: None,
-            reflex_ticks: 0,
-            reflex_while_active: 0,
-            slow_frames: 0,
-            active_slow_frames: 0,
-            closed: Stretch::default(),
-            opened_by_muscle: Stretch::default(),
-        }
+        Self { on_mv, opening: calibrated.map(Opening::of), ..Self::default() }
     }
 }
 
@@ -262,12 +217,10 @@ impl Judge {
     }
 }
 
-/// Frames in which something was so: from the first to before the last of each stretch.
 #[derive(Clone, Debug, Default)]
 struct Frames(Vec<Range<usize>>);
 
 impl Frames {
-    /// The next one, later than all before.
     fn push(&mut self, frame: usize) {
         match self.0.last_mut() {
             Some(stretch) if stretch.end == frame => stretch.end += 1,
@@ -278,19 +231,5 @@ impl Frames {
     fn contains(&self, frame: usize) -> bool {
         let begun = self.0.partition_point(|stretch| stretch.start <= frame);
         begun.checked_sub(1).is_some_and(|last| self.0[last].contains(&frame))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn frames_are_found_in_their_stretches() {
-        let mut frames = Frames::default();
-        [3, 4, 5, 9, 20].into_iter().for_each(|frame| frames.push(frame));
-        assert_eq!(frames.0, [3..6, 9..10, 20..21]);
-        let found: Vec<usize> = (0..25).filter(|&frame| frames.contains(frame)).collect();
-        assert_eq!(found, [3, 4, 5, 9, 20]);
     }
 }

@@ -4,23 +4,16 @@ use serde::{Serialize, Serializer};
 use tenax_scene::SceneFile;
 use tenax_scene::file::Happening;
 
-/// What was going on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Doing {
-    /// Nothing of what follows.
     Hold,
-    /// It was poured into, or got lighter; of a data set, a whole recording of that.
     Pour,
-    /// The hand moved, or a surface was stroked; of a data set, a recording of a pick and place.
     Move,
-    /// It was knocked, swung or shaken; of a data set, a recording of that.
     Disturb,
-    /// Nobody says.
     Unknown,
 }
 
 impl Doing {
-    /// As in data and reports.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Hold => "hold",
@@ -31,7 +24,6 @@ impl Doing {
         }
     }
 
-    /// By its name in a data set's column.
     pub fn named(name: &str) -> Self {
         match name {
             "pick" => Self::Move,
@@ -56,7 +48,6 @@ pub struct Stretch {
     pub doing: Doing,
 }
 
-/// What goes on in a scene, without a gap. Of several things at once, the one that disturbs most.
 pub fn in_scene(scene: &SceneFile) -> Vec<Stretch> {
     let happenings = scene.happenings();
     let end_s = scene.duration_s();

@@ -12,7 +12,6 @@ use super::SlipSpan;
 
 const STEP_S: f64 = 1.0 / SLOW_HZ as f64;
 
-/// Slips as text; nothing for none.
 pub fn text<'a>(slips: impl IntoIterator<Item = &'a SlipSpan>) -> String {
     let mut text = String::new();
     for slip in slips {
@@ -33,7 +32,6 @@ pub fn text<'a>(slips: impl IntoIterator<Item = &'a SlipSpan>) -> String {
     text
 }
 
-/// The slips of a cell. An error says what is wrong with it.
 pub fn parse(cell: &str) -> Result<Vec<SlipSpan>, String> {
     cell.split(';').filter(|slip| !slip.trim().is_empty()).map(one).collect()
 }
@@ -103,13 +101,6 @@ mod tests {
         ];
         assert_eq!(parse(&text(&all)), Ok(all.to_vec()));
         assert_eq!((text(&[]), parse("")), (String::new(), Ok(Vec::new())));
-    }
-
-    #[test]
-    fn what_is_no_slip_is_refused() {
-        for wrong in ["1/2/3", "a/2/3/4", "2/1/3/4", "1/2/1.5/4", "1/2/nan/4"] {
-            assert!(parse(wrong).is_err(), "{wrong}");
-        }
     }
 
     #[test]

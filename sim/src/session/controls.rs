@@ -10,10 +10,8 @@ use crate::board::simulated::{self, Grips, frames_in, seconds_of};
 use crate::report::bound::{Control, SAME_MM};
 use crate::report::fate::Fate;
 
-/// The bound's least force is found to this part of it.
 const WITHIN: f64 = 0.01;
 
-/// What becomes of a scene's object in this grip.
 pub fn gripped(file: &SceneFile, seed: u64, grips: Grips) -> Fate {
     fate(file, World::new(file, seed), grips)
 }
@@ -64,8 +62,6 @@ pub fn bound(file: &SceneFile, seed: u64, run: &Fate) -> Fate {
     best
 }
 
-/// What becomes of a scene's object without the reflex, in a constant grip of the same mean force as `truth`'s run had, with each
-/// detector alone, and with all but each.
 pub fn runs(file: &SceneFile, seed: u64, truth: &Fate) -> Vec<(String, Fate)> {
     let each = || {
         DetectorId::ALL.into_iter().filter(|&id| match id {
@@ -83,7 +79,6 @@ pub fn runs(file: &SceneFile, seed: u64, truth: &Fate) -> Vec<(String, Fate)> {
     all.into_par_iter().map(|(name, grips)| (name, gripped(file, seed, grips))).collect()
 }
 
-/// The controls of a scene, as a report has them.
 pub fn controls(file: &SceneFile, seed: u64, truth: &Fate) -> Vec<Control> {
     runs(file, seed, truth).iter().map(|(name, fate)| Control::of(name, fate)).collect()
 }

@@ -16,7 +16,6 @@ use crate::timeline::Timeline;
 use tenax_frames::serve::Teller;
 use tenax_frames::truth::{self, Truth};
 
-/// What a report and a figure are made from, gathered while the run goes.
 pub(super) struct Witness {
     pub(super) timeline: Timeline,
     pub(super) judge: Judge,
@@ -49,7 +48,6 @@ impl Recorder for Witness {
     }
 }
 
-/// A world whose trace is drawn while it goes, and not kept.
 pub(super) struct Drawn {
     pub(super) world: World,
     pub(super) needs: Needs,
@@ -63,7 +61,6 @@ impl Drawn {
         Self::telling(world, span_s, Teller::default())
     }
 
-    /// One whose truth is told while it goes.
     pub(super) fn telling(world: World, span_s: (f64, f64), teller: Teller) -> Self {
         Self { world, needs: Needs::new(span_s), grips: Grips::default(), teller, rows: 0 }
     }
@@ -83,7 +80,6 @@ impl Drawn {
     }
 }
 
-/// What is true in a world at the instant of this row of its trace.
 fn truth_of(world: &World, row: &Row) -> Truth {
     let truth = world.truth();
     Truth {

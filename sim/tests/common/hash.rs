@@ -33,7 +33,6 @@ impl fmt::Display for Hash {
     }
 }
 
-/// Of slow frames (every tick's decisions), events, answers and the motor's drive in each scan.
 pub fn of_run(run: &Run) -> Hash {
     let mut hash = Hash(0xcbf2_9ce4_8422_2325);
     run.slows.iter().for_each(|slow| hash.message(slow));

@@ -12,7 +12,6 @@ use tenax_sim::recipe::Kind;
 use tenax_sim::replay::{Recipe, Recording};
 use tenax_sim::session::{self, Board, Outcome};
 
-/// A number that is asked for by an environment variable.
 pub fn asked<N: FromStr>(name: &str) -> Option<N> {
     std::env::var(name).ok().and_then(|text| text.parse().ok())
 }
@@ -24,40 +23,28 @@ pub fn text(name: &str) -> String {
     builtin::find(name).map_or_else(read, |(_, text)| text.into_owned())
 }
 
-/// The same, read: it may be based on another one of `tests/scenes/`.
 pub fn loaded(name: &str) -> SceneFile {
     let own = format!("{}/tests/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let asked = if Path::new(&own).exists() { &own } else { name };
     session::load_scene(asked).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A scene from its text.
 pub fn parsed(text: &str) -> SceneFile {
     SceneFile::parse(text, "scene").unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// What became of a scene and its bound on the host's logic.
 pub fn ran(scene: &SceneFile, seed: u64) -> Outcome {
     session::scene(scene, seed, &Board::Host, &mut |_| {}).expect("it runs")
 }
 
-/// A shared recording. They are never part of the project: where they are not, their tests are ignored.
 pub fn shared(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data").join(name)
 }
 
-/// Plays a shared recording on the host's logic with the recipe that its name calls for.
-pub fn played(name: &str) -> Outcome {
-    session::replay(&shared(name), None, 1, &Board::Host, &mut |_| {})
-        .expect("the recording is here, it and its recipe are good")
-}
-
-/// A recording from text.
 pub fn recording(csv: &str) -> Recording {
     Recording::parse(csv.as_bytes(), "r.csv").expect("the recording is good")
 }
 
-/// A recipe from text, with the head that every recipe has.
 pub fn recipe(body: &str) -> Recipe {
     Recipe::parse(&with_head(body), "r.toml").expect("the recipe is good")
 }

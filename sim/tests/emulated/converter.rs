@@ -10,8 +10,6 @@ use tenax_sim::board::emulated::{Mishap, Models, Options, Tick};
 
 use crate::{Swing, run};
 
-/// All that can happen to a scan: overruns, a ring that DMA cannot reach, a core that stands still while flash programs,
-/// resets in the middle of one, commands that shift the ticks.
 fn eventful(models: Models) -> (Run, Vec<Tick>) {
     let mut plant = Swing::new(1.9);
     for n in 0..40 {

@@ -7,9 +7,8 @@ use tenax_hal_shim::words::Fault;
 use tenax_sim::board::Run;
 use tenax_sim::board::emulated::{Mishap, Options};
 
-use crate::{Rest, Swing, drives, run};
+use crate::{Swing, drives, run};
 
-/// Asks for pieces one after the other, no faster than they are earned.
 fn asking(mut swing: Swing, from_s: f64, pieces: u16) -> Swing {
     for piece in 0..pieces {
         swing = swing.sending(from_s + 0.013 * f64::from(piece), Down::Last(piece * PIECE_MAX as u16));
@@ -25,7 +24,6 @@ fn pieces(run: &Run) -> Vec<Last> {
     run.answers.iter().filter_map(last).collect()
 }
 
-/// What is kept of a line: not what was sampled, nor answers.
 fn kept(line: &[u8]) -> Vec<Received<Up>> {
     let mut inbox = Inbox::default();
     line.iter()
@@ -36,7 +34,6 @@ fn kept(line: &[u8]) -> Vec<Received<Up>> {
         .collect()
 }
 
-/// Checks that these bytes are the end of what was said before start number `start`; gives how long they last, s.
 fn lasted_s(run: &Run, start: usize, bytes: &[u8]) -> f64 {
     let (line, own) = (kept(&run.line), kept(bytes));
     let starts: Vec<usize> =
@@ -57,7 +54,7 @@ fn lasted_s(run: &Run, start: usize, bytes: &[u8]) -> f64 {
 fn the_seconds_before_a_hang_and_before_a_panic_are_there_at_the_next_start() {
     let swing =
         asking(Swing::new(9.9), 4.2, 192).sending(6.8, Down::Last(u16::MAX)).sending(6.9, Down::Last(0));
-    let plant = Rest::new(asking(swing, 8.4, 100));
+    let plant = asking(swing, 8.4, 100).at_rest();
     let mishaps = vec![(3.7, Mishap::CoreHangs), (8.0, Mishap::DmaFails)];
     let run = run(plant, &Options { mishaps, ..Options::default() });
     assert_eq!(run.starts, [None, Some(Fault::WatchdogReset), Some(Fault::PanicReset)]);
@@ -90,14 +87,13 @@ fn the_seconds_before_a_hang_and_before_a_panic_are_there_at_the_next_start() {
     assert_eq!((run.counters.ticks_late, run.counters.frames_lost), (0, 0), "{:?}", run.counters);
 }
 
-/// RAM outlives a brown-out, which the chip tells from its reset button and from being switched on.
 // Shows B2.
 #[test]
 fn a_brown_out_is_told_and_keeps_what_was_said() {
     let drive = MotorDrive::Close(Duty::per_mille(400));
     let swing = asking(Swing::new(2.0).sending(0.5, Down::Drive { drive, hold_ms: 250 }), 1.2, 1);
     let options = Options { mishaps: vec![(0.6, Mishap::BrownsOut)], ..Options::default() };
-    let run_of = run(Rest::new(swing), &options);
+    let run_of = run(swing.at_rest(), &options);
     assert_eq!(run_of.starts, [None, Some(Fault::SupplySagged)]);
     assert!(drives(&run_of, 0.55, 0.6).iter().all(|now| *now == drive), "it was driven before");
     assert!(drives(&run_of, 0.601, 2.0).iter().all(|now| *now == MotorDrive::Coast));

@@ -2,17 +2,13 @@
 #![cfg(feature = "emulator")]
 
 mod agreement;
-mod behaviours;
 mod converter;
 mod coupling;
 mod faults;
-mod feedback;
 #[path = "../common/hash.rs"]
 mod hash;
-mod head;
 mod last;
 mod link;
-mod motor;
 #[path = "../common/onsets.rs"]
 mod onsets;
 mod resets;
@@ -22,14 +18,17 @@ mod streams;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use tenax_hal_shim::channel::{FSR, FSR_COUNT, SCAN_HZ};
+use tenax_hal_shim::channel::SCAN_HZ;
 use tenax_hal_shim::motor::MotorDrive;
-use tenax_hal_shim::wire::Down;
+use tenax_hal_shim::wire::{Down, Event, EventKind};
+use tenax_hal_shim::words::MotorStop;
+use tenax_scene::World;
 use tenax_scene::plant::{Pins, Plant};
 use tenax_sim::board::Run;
+use tenax_sim::board::agreement::Agreement;
 use tenax_sim::board::emulated::{self, Options};
+use tenax_sim::session;
 
-/// The image of this checkout.
 fn image() -> &'static Path {
     static IMAGE: OnceLock<PathBuf> = OnceLock::new();
     IMAGE.get_or_init(|| tenax_sim::image::build(root()).expect("the image"))
@@ -43,10 +42,12 @@ fn root() -> &'static Path {
 /// sends commands.
 struct Swing {
     pins: Pins,
+    swings: bool,
     scans: u32,
     duration_s: f64,
     commands: Vec<(f64, Down)>,
-    /// What is sent is carried out, whoever sends it. The tests of arming say otherwise.
+    /// Sent down as they are, 0.2 s after the start.
+    bytes: Vec<u8>,
     trusts_line: bool,
     pressed_s: Option<std::ops::Range<f64>>,
 }
@@ -55,12 +56,19 @@ impl Swing {
     fn new(duration_s: f64) -> Self {
         Self {
             pins: Pins::default(),
+            swings: true,
             scans: 0,
             duration_s,
             commands: Vec::new(),
+            bytes: Vec::new(),
             trusts_line: true,
             pressed_s: None,
         }
+    }
+
+    /// Every pin at rest.
+    fn at_rest(self) -> Self {
+        Self { swings: false, ..self }
     }
 
     fn sending(mut self, at_s: f64, command: Down) -> Self {
@@ -68,18 +76,11 @@ impl Swing {
         self
     }
 
-    /// On a line that needs consent.
     fn stranger(mut self) -> Self {
         self.trusts_line = false;
         self
     }
 
-    /// Somebody at the hand presses the button.
-    fn pressing(self, at_s: f64) -> Self {
-        self.holding(at_s, 0.1)
-    }
-
-    /// For so long.
     fn holding(mut self, at_s: f64, for_s: f64) -> Self {
         self.pressed_s = Some(at_s..at_s + for_s);
         self
@@ -93,7 +94,7 @@ impl Swing {
 impl Plant for Swing {
     fn scan(&mut self, _drive: MotorDrive) -> &Pins {
         self.scans += 1;
-        for (index, volts) in self.pins.0.iter_mut().enumerate() {
+        for (index, volts) in self.pins.0.iter_mut().enumerate().filter(|_| self.swings) {
             *volts = 1.65 + 1.8 * (0.013 * f64::from(self.scans) + index as f64).sin();
         }
         &self.pins
@@ -102,6 +103,10 @@ impl Plant for Swing {
     fn commands(&mut self) -> Vec<Down> {
         let now_s = self.t_s();
         self.commands.extract_if(.., |(at_s, _)| *at_s <= now_s).map(|(_, command)| command).collect()
+    }
+
+    fn line_bytes(&mut self) -> Vec<u8> {
+        if self.t_s() < 0.2 { Vec::new() } else { std::mem::take(&mut self.bytes) }
     }
 
     fn trusts_line(&self) -> bool {
@@ -117,60 +122,35 @@ impl Plant for Swing {
     }
 }
 
-/// Every pin at rest, and somebody sends commands.
-struct Rest(Swing, Pins);
-
-impl Rest {
-    fn new(swing: Swing) -> Self {
-        Self(swing, Pins::default())
-    }
-}
-
-impl Plant for Rest {
-    fn within(&self) -> Option<&dyn Plant> {
-        Some(&self.0)
-    }
-
-    fn within_mut(&mut self) -> Option<&mut dyn Plant> {
-        Some(&mut self.0)
-    }
-
-    fn scan(&mut self, drive: MotorDrive) -> &Pins {
-        self.0.scan(drive);
-        &self.1
-    }
-}
-
-/// A finger that holds something from the start: that it was switched on is no consent.
-struct Loaded(Rest);
-
-impl Plant for Loaded {
-    fn within(&self) -> Option<&dyn Plant> {
-        Some(&self.0)
-    }
-
-    fn within_mut(&mut self) -> Option<&mut dyn Plant> {
-        Some(&mut self.0)
-    }
-
-    fn scan(&mut self, drive: MotorDrive) -> &Pins {
-        self.0.1.0[FSR..FSR + FSR_COUNT].fill(1.2);
-        self.0.scan(drive)
-    }
+/// A shipped scene, or one of `tests/scenes/`, with seed 1.
+fn scene(name: &str) -> World {
+    let own = format!("{}/tests/scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let asked = if Path::new(&own).exists() { &own } else { name };
+    World::new(&session::load_scene(asked).expect("a scene"), 1)
 }
 
 fn run(plant: impl Plant + 'static, options: &Options) -> Run {
     emulated::run(image(), plant, options, &mut |_| {}).expect("the run").0
 }
 
-/// Ten seconds in which nothing happens but codes. Several tests look at them: a boot is dear.
 fn plain() -> &'static Run {
     static PLAIN: OnceLock<Run> = OnceLock::new();
     PLAIN.get_or_init(|| run(Swing::new(10.0), &Options::default()))
 }
 
-/// The motor's drives between two instants.
 fn drives(run: &Run, from_s: f64, to_s: f64) -> &[MotorDrive] {
     let scan = |t_s: f64| (t_s * f64::from(SCAN_HZ)) as usize;
     &run.drives[scan(from_s)..scan(to_s).min(run.drives.len())]
+}
+
+/// Checks that the host's logic says the same of a run's codes and commands, bit for bit.
+fn agrees(name: &str, run: &Run) {
+    let agreement = Agreement::of(run);
+    assert!(agreement.holds(), "{name}: {agreement}");
+}
+
+/// The motor's stops, None where it was freed.
+fn stops(events: &[Event]) -> Vec<Option<MotorStop>> {
+    let stop = |event: &Event| if let EventKind::Motor(stop) = event.kind { Some(stop) } else { None };
+    events.iter().filter_map(stop).collect()
 }

@@ -2,18 +2,15 @@
 
 use tenax_hal_shim::motor::MotorDrive;
 use tenax_hal_shim::wire::{Down, Event, EventKind, Setting};
-use tenax_hal_shim::words::{Code, Fault, Kept};
+use tenax_hal_shim::words::{Fault, Kept};
 use tenax_logic::config::Config;
-use tenax_logic::hebbian::{Activation, Activations, FingertipNetwork, Normaliser, Rule, snapshot};
 use tenax_logic::setting::SettingId;
 use tenax_logic::store::payload;
-use tenax_sim::board::agreement::Agreement;
 use tenax_sim::board::emulated::{Mishap, Options};
 use tenax_sim::board::kept::Sectors;
 
-use crate::{Rest, Run, Swing, run};
+use crate::{Run, Swing, agrees, run};
 
-/// The board that starts with this in its flash.
 fn at_start(sectors: &Sectors) -> Options {
     Options { flash: Some(sectors.image()), ..Options::default() }
 }
@@ -33,7 +30,6 @@ fn s2_at_end(run: &Run) -> Option<u16> {
     run.slows.last().map(|slow| slow.s2_permille)
 }
 
-/// What it said about its store; pins at rest have other faults.
 fn faults(run: &Run) -> Vec<Fault> {
     let of_store = |event: &Event| match event.kind {
         EventKind::Fault(fault @ (Fault::RecordDamaged(_) | Fault::StoreFull(_) | Fault::StoreFailed(_))) => {
@@ -48,22 +44,10 @@ fn kept(run: &Run) -> Vec<Kept> {
     run.saved.iter().map(|&(_, kept)| kept).collect()
 }
 
-#[test]
-fn a_setting_is_saved_by_itself_and_survives_a_reset() {
-    let plant = Rest::new(Swing::new(1.5).sending(0.2, s2(400)));
-    let options = Options { mishaps: vec![(0.6, Mishap::CoreHangs)], ..Options::default() };
-    let run = run(plant, &options);
-    assert_eq!(run.starts, [None, Some(Fault::WatchdogReset)]);
-    assert_eq!(kept(&run), [Kept::Settings]);
-    assert_eq!(s2_at_end(&run), Some(400));
-    assert_eq!(faults(&run), []);
-    assert_eq!(run.flash.erases, 0, "a new chip is blank");
-}
-
 // Shows B4.
 #[test]
 fn power_lost_in_the_middle_of_a_save_leaves_the_setting_before() {
-    let plant = |duration_s| Rest::new(Swing::new(duration_s).sending(0.2, s2(500)));
+    let plant = |duration_s| Swing::new(duration_s).sending(0.2, s2(500)).at_rest();
     let start = || at_start(&Sectors::blank().saving(Kept::Settings, &settings(400)));
     // A mark, a tag, a number, two settings, a checksum and a commit. Each cut is tried on the host (host-tests/tests/store/cuts.rs); a
     // start of the emulated board takes 3 s.
@@ -83,7 +67,6 @@ fn power_lost_in_the_middle_of_a_save_leaves_the_setting_before() {
     assert_eq!((kept(&run), faults(&run)), (vec![Kept::Settings], vec![]));
 }
 
-/// The longest that a word may take, and the longest record: no frame is lost, no tick is late, no code is wrong.
 // Shows B7.
 #[test]
 fn sampling_loses_nothing_while_the_network_is_saved() {
@@ -98,14 +81,12 @@ fn sampling_loses_nothing_while_the_network_is_saved() {
     let counters = slow_flash.counters;
     assert_eq!((counters.overruns, counters.frames_lost, counters.ticks_late), (0, 0, 0), "{counters:?}");
     assert_eq!((counters.telemetry_dropped, slow_flash.messages_missed), (0, 0));
-    let agreement = Agreement::of(&slow_flash);
-    assert!(agreement.holds(), "{agreement}");
+    agrees("slow flash", &slow_flash);
     // The control: the core does stand still meanwhile. A flash twenty times as slow as any costs frames.
     let hopeless = run_with(2_000);
     assert!(hopeless.counters.frames_lost > 0, "{:?}", hopeless.counters);
 }
 
-/// The same with everything on the line: the store's turn may come long after a tick's end, and then waits for another.
 // Shows B7.
 #[test]
 fn a_word_is_not_begun_just_before_a_frame_whatever_the_line_carries() {
@@ -114,50 +95,8 @@ fn a_word_is_not_begun_just_before_a_frame_whatever_the_line_carries() {
     let run = run(plant, &Options { word_us: 100, ..Options::default() });
     assert_eq!(kept(&run), [Kept::Network]);
     let counters = run.counters;
-    println!("{counters:?}");
     assert_eq!((counters.overruns, counters.frames_lost, counters.ticks_late), (0, 0, 0), "{counters:?}");
-    assert!(Agreement::of(&run).holds());
-}
-
-#[test]
-fn what_the_network_learned_is_used_and_saved_again() {
-    let mut network = FingertipNetwork::default();
-    let rule = Rule::default();
-    let felt = Activations::new(std::array::from_fn(|n| Activation::from_f64(n as f64 / 24.0)));
-    for _ in 0..500 {
-        network.learn(&rule, &felt, &[Code::Minus, Code::Plus]);
-    }
-    let mut bytes = [0; tenax_logic::hebbian::SNAPSHOT_LENGTH];
-    let known = snapshot::save(&Normaliser::new(&tenax_logic::hebbian::NORMALISER), &network, 0, &mut bytes);
-    let learned = network.weights().map(|row| row.map(|weight| weight.into_bits()));
-    assert!(learned[0][23] < -1_000_000, "{learned:?}");
-
-    let mut options = at_start(&Sectors::trusting().saving(Kept::Network, known.expect("it fits")));
-    options.mishaps = vec![(0.9, Mishap::CoreHangs), (2.3, Mishap::CoreHangs)];
-    let plant = Swing::new(3.0)
-        .sending(0.3, Down::Network)
-        .sending(0.4, Down::Save)
-        .sending(1.3, Down::Network)
-        .sending(1.4, Down::Forget)
-        .sending(2.8, Down::Network);
-    let run = run(Rest::new(plant), &options);
-    let seen: Vec<_> = run.networks().map(|network| network.weights).collect();
-    assert_eq!(seen, [learned, learned, [[0; 24]; 2]], "restored, saved and restored, forgotten for good");
-    assert_eq!(kept(&run), [Kept::Network, Kept::Network]);
-    assert_eq!(faults(&run), []);
-}
-
-// Shows B5.
-#[test]
-fn a_damaged_record_is_told_and_the_one_before_is_used() {
-    let mut sectors =
-        Sectors::blank().saving(Kept::Settings, &settings(350)).saving(Kept::Settings, &settings(450));
-    let damaged =
-        sectors.0.iter().rposition(|&word| word & 0xFF_FFFF == 450).expect("S2 is a word of its own");
-    sectors.0[damaged] ^= 1 << 9;
-    let run = run(Rest::new(Swing::new(0.3)), &at_start(&sectors));
-    assert_eq!(faults(&run), [Fault::RecordDamaged(Kept::Settings)]);
-    assert_eq!(s2_at_end(&run), Some(350));
+    agrees("stream and save", &run);
 }
 
 // Shows B6.
@@ -167,7 +106,7 @@ fn a_boot_with_a_half_full_sector_erases_the_other_and_goes_on() {
     for n in 0..208u8 {
         sectors = sectors.saving(Kept::Network, &[n; 296]);
     }
-    let plant = Rest::new(Swing::new(1.0).sending(0.3, s2(470)));
+    let plant = Swing::new(1.0).sending(0.3, s2(470)).at_rest();
     let options = Options { mishaps: vec![(0.6, Mishap::CoreHangs)], ..at_start(&sectors) };
     let run = run(plant, &options);
     assert_eq!(run.flash.erases, 1);
@@ -179,7 +118,6 @@ fn a_boot_with_a_half_full_sector_erases_the_other_and_goes_on() {
     assert_eq!(faults(&run), [Fault::RecordDamaged(Kept::Network); 2]);
 }
 
-/// The control is the test above: switched on, it does erase.
 // Shows B6.
 #[test]
 fn a_boot_after_a_reset_erases_nothing_for_something_may_be_held() {
@@ -188,7 +126,7 @@ fn a_boot_after_a_reset_erases_nothing_for_something_may_be_held() {
         sectors = sectors.saving(Kept::Network, &[n; 296]);
     }
     // The save makes the sector half full; the core hangs afterwards.
-    let plant = Rest::new(Swing::new(1.3).sending(0.2, Down::Save).sending(1.0, s2(470)));
+    let plant = Swing::new(1.3).sending(0.2, Down::Save).sending(1.0, s2(470)).at_rest();
     let options = Options { mishaps: vec![(0.6, Mishap::CoreHangs)], ..at_start(&sectors) };
     let run = run(plant, &options);
     assert_eq!(run.starts, [None, Some(Fault::WatchdogReset)]);

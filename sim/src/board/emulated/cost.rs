@@ -12,7 +12,6 @@ use super::Tick;
 use crate::board::TickCost;
 use crate::image::symbols::Symbols;
 
-/// Counts ticks by their first instruction and the one that they return to.
 #[derive(Debug)]
 pub struct CostMeter {
     tick: u64,
@@ -37,12 +36,10 @@ impl CostMeter {
         }
     }
 
-    /// The instructions to be told about.
     pub fn watched(&self) -> [u64; 2] {
         [self.tick, self.after_tick]
     }
 
-    /// The core is about to run a watched instruction.
     pub fn hit(&mut self, hit: Hit) {
         if hit.address == self.tick {
             self.entered = Some(hit.instruction_count);
@@ -73,10 +70,8 @@ impl CostMeter {
     }
 }
 
-/// What the stack's memory is filled with before the image starts.
 const PAINT: u32 = 0xA5C3_3C5A;
 
-/// An image that paints the stack's memory: what is gone at the end of a run has been used.
 pub fn paint(stack: &Range<u64>) -> Result<Image, rigless::image::Error> {
     let words = (stack.end - stack.start) / 4;
     let bytes = (0..words).flat_map(|_| PAINT.to_le_bytes()).collect();

@@ -11,7 +11,6 @@ const SAMPLED_US: f64 = 2.24;
 /// The bridge's period, us.
 const PERIOD_US: f64 = 50.0;
 
-/// An edge's effect, and when edges come.
 #[derive(Clone, Copy, Debug)]
 pub struct Coupling {
     /// What an edge is worth at once, codes; a falling one as much the other way.
@@ -23,7 +22,6 @@ pub struct Coupling {
 }
 
 impl Coupling {
-    /// Adds what the edges leave to a scan's films.
     pub fn add(&self, scan: &mut Scan, drive: MotorDrive, begins_us: f64) {
         let (MotorDrive::Close(duty) | MotorDrive::Open(duty)) = drive else { return };
         // Driven all the time, it has no edges.

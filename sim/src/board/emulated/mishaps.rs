@@ -32,16 +32,12 @@ const PVDO: u64 = 1 << 2;
 const RCC_CR: u64 = 0x4002_3800;
 const CSSON: u64 = 1 << 19;
 const HSEON: u64 = 1 << 16;
-/// Where the image has the addresses of the handlers of its non-maskable interrupt and of the voltage detector's.
 const NMI_VECTOR: u64 = 0x0800_0008;
 const PVD_VECTOR: u64 = 0x0800_0044;
-/// No chip of the family has anything there.
 const NOWHERE: u64 = 0x6000_0000;
 
-/// What is still to happen, each with the scan at which it does.
 pub struct Mishaps {
     due: Vec<(usize, Mishap)>,
-    /// The voltage detector's own handler, while its vector leads to another.
     lent: Option<u64>,
     has_no_crystal: bool,
 }
@@ -125,7 +121,7 @@ impl Mishaps {
                     set(mcu, now, DMA2_S0CR, control);
                 }
                 Mishap::Garbage(bytes) => {
-                    if let Some(line) = mcu.line(now) {
+                    if let Some(line) = mcu.line() {
                         line.down.extend(bytes);
                     }
                 }
@@ -137,7 +133,6 @@ impl Mishaps {
     }
 }
 
-/// Switches the converter's stream off; gives its configuration before.
 fn stop_stream(mcu: &mut Part, now: VirtualNanos) -> u64 {
     let control = mcu.peek(now, DMA2_S0CR, Width::W32).unwrap_or(0);
     set(mcu, now, DMA2_S0CR, control & !1);

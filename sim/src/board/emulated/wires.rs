@@ -39,7 +39,6 @@ const PULL_DOWN: u32 = 0b10;
 const MODER_ALTERNATE: u32 = 0b10;
 const AF_TIM4: u32 = 2;
 
-/// The chip at one instant.
 pub struct Wires<'a> {
     mcu: &'a mut Part,
     now: VirtualNanos,
@@ -51,7 +50,6 @@ impl<'a> Wires<'a> {
         Self { mcu, now }
     }
 
-    /// Reads a register as a debugger does. An unmapped address is a mistake in this file; it reads as reset.
     fn peek(&mut self, address: u64) -> u32 {
         self.mcu.peek(self.now, address, Width::W32).unwrap_or(0) as u32
     }
@@ -61,7 +59,6 @@ impl<'a> Wires<'a> {
         (self.peek(GPIOB_ODR) >> 12 & 0xF) as u8
     }
 
-    /// How the bridge drives the motor. Both sides at once is a short of the supply, so it is an answer of its own.
     pub fn motor(&mut self) -> Result<MotorDrive, BothSides> {
         let (close, open) = (self.side(8, TIM1_CCR1, CCER_CC1E), self.side(9, TIM1_CCR2, CCER_CC2E));
         match (close, open) {
@@ -72,13 +69,11 @@ impl<'a> Wires<'a> {
         }
     }
 
-    /// When a period of the bridge's timer begins after the pulse that started the last scan, us.
     pub fn bridge_begins_us(&mut self) -> f64 {
         let since_us = self.mcu.since_pulse_ns(self.now) as f64 / 1e3;
         since_us - f64::from(self.peek(TIM1_CNT)) / 100.0
     }
 
-    /// How one side is driven: its pin belongs to the timer, the timer's outputs are on, and its pulse is not empty.
     fn side(&mut self, pin: u32, compare: u64, enable: u32) -> Option<Duty> {
         // Most of the time the pulse is empty, and one look is enough.
         let compare = Some(self.peek(compare)).filter(|&compare| compare > 0)?;
@@ -100,7 +95,6 @@ impl<'a> Wires<'a> {
         if wired { Duty::per_mille(per_mille as u16) } else { Duty::default() }
     }
 
-    /// Puts codes on the converter's pins.
     pub fn put(&mut self, scan: &Scan) {
         self.mcu.put(self.now, SCAN.iter().zip(scan).map(|(rank, &code)| (rank.adc, code)));
     }
@@ -137,6 +131,5 @@ impl<'a> Wires<'a> {
     }
 }
 
-/// Both sides of the bridge are driven.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BothSides;

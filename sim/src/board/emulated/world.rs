@@ -27,41 +27,28 @@ use crate::image::symbols::Symbols;
 use tenax_frames::link::Encoder;
 
 const SCAN_NS: u64 = 1_000_000_000 / SCAN_HZ as u64;
-/// While the timer's phase is not known, every this often it is looked for.
 const SEEK_NS: u64 = 5_000;
-/// An image that has not begun to scan by now never will. It may erase a sector first, which takes a second or two.
 const BOOT_NS: u64 = 3_000_000_000;
 /// Scans after the plant's last, so that what they led to comes up the line.
 const DRAIN_SCANS: u32 = 64;
 /// Scans between two reports, so that a line that is served live is late by no more than a slow frame.
 const REPORT_SCANS: usize = SCANS_PER_FRAME * FRAMES_PER_SLOW_FRAME as usize;
 
-/// What happened since the last report.
 #[derive(Debug, Default)]
 pub struct Stretch {
-    /// Of each scan: its codes, how the motor was driven, and whether the object moved relative to the finger.
     pub scans: Vec<(Scan, MotorDrive, bool)>,
-    /// What came up the line.
     pub line: Vec<u8>,
 }
 
-/// The world, and what goes out of it.
 pub struct World {
-    /// The plant. Nobody else looks at it while the run lasts.
     plant: Arc<Mutex<dyn Plant>>,
-    /// What the ticks took, once the run is over.
     pub tick_cost: Option<TickCost>,
-    /// How deep the stack was, once the run is over, bytes.
     pub stack_bytes: Option<u64>,
-    /// Why the run ended early, if it did.
     pub broken: Option<Broken>,
     pub cost: CostMeter,
-    /// What the bridge's edges leave in the films' codes.
     pub coupling: Option<Coupling>,
-    /// What was sent, and when it was taken.
     pub commands: Commands,
     pub flash: FlashArray,
-    /// Whole scans that the plant lasts.
     scans: usize,
     scanned: usize,
     drained: u32,
@@ -69,9 +56,7 @@ pub struct World {
     stepped_at: Option<VirtualNanos>,
     codes: Scan,
     encoder: Encoder,
-    /// Finds the commands among the bytes that are sent down as they are.
     sent: Receiver,
-    /// How the vibration motor was driven in each scan in which that had changed.
     pub feedback: Vec<(usize, Duty)>,
     mishaps: Mishaps,
     resets: usize,
@@ -79,12 +64,10 @@ pub struct World {
     stack: Range<u64>,
     command_entry: u64,
     stretch: Stretch,
-    /// Who is told what happened. Given up when the run is over.
     pub reports: Option<Sender<Stretch>>,
 }
 
 impl World {
-    /// A world that has not begun.
     pub fn new(
         plant: Arc<Mutex<dyn Plant>>,
         frames: u32,
@@ -158,7 +141,7 @@ impl World {
             wires.trigger();
         }
         let scan = self.scanned;
-        if let Some(line) = session.board_mut().mcu.line(stop.at) {
+        if let Some(line) = session.board_mut().mcu.line() {
             let opening = line.offered.take().map(|nonce| Down::Open { nonce });
             for command in opening.into_iter().chain(plant.commands()) {
                 if command == Down::Hello {
@@ -178,14 +161,13 @@ impl World {
         drop(plant);
         self.mishaps.happen(scan, session, stop, &mut self.flash, host);
         if scan.is_multiple_of(REPORT_SCANS) {
-            self.report(session, stop.at);
+            self.report(session);
         }
         (self.drained < DRAIN_SCANS).then_some(())
     }
 
-    /// Hands on what happened since the last report.
-    fn report(&mut self, session: &mut Session<Nucleo>, at: VirtualNanos) {
-        if let Some(line) = session.board_mut().mcu.line(at) {
+    fn report(&mut self, session: &mut Session<Nucleo>) {
+        if let Some(line) = session.board_mut().mcu.line() {
             self.stretch.line = std::mem::take(&mut line.up);
         }
         if let Some(reports) = &self.reports {
@@ -199,7 +181,7 @@ impl World {
         let lasted_s = seconds(stop.at) - seconds(began);
         self.tick_cost = self.cost.cost((stop.instruction_count - executed) as f64 / lasted_s);
         self.stack_bytes = Some(stack_used(&self.stack, host));
-        self.report(session, stop.at);
+        self.report(session);
     }
 }
 
@@ -209,11 +191,7 @@ impl Driver<Nucleo> for World {
             Settled::Hit(hit) if hit.address == self.command_entry => {
                 self.commands.take(self.cost.ticks() as u32)
             }
-            Settled::Hit(hit) => {
-                if self.cost.watched().contains(&hit.address) {
-                    self.cost.hit(hit);
-                }
-            }
+            Settled::Hit(hit) if self.cost.watched().contains(&hit.address) => self.cost.hit(hit),
             Settled::Access { access, .. } => {
                 self.flash.accessed(&access, session, host);
                 self.mishaps.accessed(&access, session);

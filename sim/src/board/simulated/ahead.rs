@@ -4,18 +4,13 @@ use tenax_hal_shim::behaviour::Behaviour;
 use tenax_hal_shim::motor::{Duty, MotorDrive};
 use tenax_logic::fingertip::Fingertip;
 
-/// A plan beside what the hand does by itself: the fingers are where the further of the two has closed them. It stands aside
-/// while the hand is opened and where a behaviour expects slip.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Ahead {
-    /// How much further the plan has closed, per mille of full duty times frames.
     by: u32,
-    /// Whether the wearer is opening the hand.
     opens: bool,
 }
 
 impl Ahead {
-    /// Of what the hand does in a frame, and what is planned for it.
     pub fn drive(
         &mut self,
         own: MotorDrive,
@@ -49,32 +44,5 @@ impl Ahead {
                 MotorDrive::Close(Duty::per_mille(closes as u16))
             }
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_fingers_are_where_the_further_of_the_two_has_closed_them() {
-        let (mut ahead, fingertip) = (Ahead::default(), Fingertip::trusting());
-        let close = |duty| MotorDrive::Close(Duty::per_mille(duty));
-        let mut drive = |own, plan: Option<u16>| ahead.drive(own, &fingertip, plan.map(close));
-        assert_eq!(drive(MotorDrive::Coast, Some(300)), close(300));
-        // What the hand closes itself was closed already, ...
-        assert_eq!(drive(close(200), None), close(0));
-        assert_eq!(drive(close(200), None), close(100));
-        assert_eq!(drive(close(200), None), close(200));
-        // ... and opening makes up for what the plan closed; it never closes against it.
-        assert_eq!(drive(MotorDrive::Coast, Some(300)), close(300));
-        assert_eq!(
-            drive(MotorDrive::Open(Duty::per_mille(500)), Some(900)),
-            MotorDrive::Open(Duty::per_mille(800))
-        );
-        assert_eq!(
-            drive(MotorDrive::Open(Duty::per_mille(500)), None),
-            MotorDrive::Open(Duty::per_mille(500))
-        );
     }
 }

@@ -14,15 +14,12 @@ pub struct Downlink {
     waiting: VecDeque<Received<Down>>,
     bad_frames: u32,
     skipped: u32,
-    /// Number of the plant's next command.
     number: u16,
-    /// The plant asked for a session with the command of this number.
     hello: Option<u16>,
     opening: Option<u32>,
 }
 
 impl Downlink {
-    /// A command of the plant's, numbered.
     pub fn number(&mut self, message: Down) -> Received<Down> {
         let sequence = self.number;
         self.number = sequence.wrapping_add(1);
@@ -32,7 +29,6 @@ impl Downlink {
         Received { sequence, message }
     }
 
-    /// The board answered a command with this number. If the plant had asked for it, it gives it back in the next frame.
     pub fn offered(&mut self, of: u16, nonce: u32) {
         if self.hello == Some(of) {
             self.hello = None;
@@ -40,7 +36,6 @@ impl Downlink {
         }
     }
 
-    /// What the plant gives back at once.
     pub fn opening(&mut self) -> Vec<Received<Down>> {
         self.opening.take().map(|nonce| self.number(Down::Open { nonce })).into_iter().collect()
     }
@@ -61,13 +56,11 @@ impl Downlink {
         }
     }
 
-    /// The command that is taken before the tick of this frame: one at most.
     pub fn command(&mut self, frame: u32) -> Option<Received<Down>> {
         self.frame = frame;
         self.waiting.pop_front()
     }
 
-    /// What a board that loses nothing has counted after so many frames.
     pub fn counters(&self, frames: u32) -> Counters {
         Counters {
             frames,
@@ -82,26 +75,6 @@ impl Downlink {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use tenax_frames::link::Encoder;
-
-    #[test]
-    fn a_flood_is_taken_one_command_a_tick_and_no_more_than_is_earned() {
-        let (mut encoder, mut down) = (Encoder::default(), Downlink::default());
-        (0..100).for_each(|_| down.take(encoder.frame(&Down::Ping).1));
-        let taken = (0..200).filter_map(|frame| down.command(frame));
-        let numbers: Vec<u16> = taken.map(|command| command.sequence).collect();
-        assert_eq!(numbers, (0..BURST as u16).collect::<Vec<_>>());
-        assert_eq!(down.counters(200).commands_skipped, 100 - BURST);
-    }
-
-    #[test]
-    fn what_is_no_command_is_counted() {
-        let mut down = Downlink::default();
-        down.take(&[1, 2, 3, 0]);
-        down.take(&[7; 100_000]);
-        down.take(&[0]);
-        assert_eq!((down.command(0), down.counters(1).bad_frames), (None, 2));
-    }
 
     #[test]
     fn only_who_asked_for_a_session_gives_its_number_back() {

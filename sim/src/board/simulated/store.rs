@@ -20,13 +20,11 @@ pub struct Store {
 }
 
 impl Store {
-    /// One whose flash holds this at the start.
     pub fn new(mut flash: Sectors) -> Self {
         let (log, _) = open(&mut flash, Erase::Allowed);
         Self { flash, log, saving: None, saved: None }
     }
 
-    /// Whether it would take a record.
     pub fn is_free(&self) -> bool {
         self.saving.is_none()
     }
@@ -37,7 +35,6 @@ impl Store {
         self.saving = Some((record, TICKS_PER_WORD * words as u32));
     }
 
-    /// The tick of a frame has ended: what there is to say of what was saved.
     pub fn end_tick(&mut self, frame: u32) -> Option<Up> {
         let (_, left) = self.saving.as_mut()?;
         *left = left.saturating_sub(1);
@@ -59,7 +56,6 @@ impl Store {
         })
     }
 
-    /// What was saved since this was last asked.
     pub fn saved(&mut self) -> Option<(Kept, Vec<u8>)> {
         self.saved.take()
     }

@@ -10,7 +10,6 @@ use tenax_hal_shim::wire::{Counters, Up};
 use crate::board::{Recorder, Summary};
 use tenax_frames::link::Encoder;
 
-/// Frames between two messages with the counters: ten a second.
 const COUNTERS_FRAMES: u32 = FRAME_HZ / 10;
 
 pub struct Uplink<'a> {
@@ -20,7 +19,6 @@ pub struct Uplink<'a> {
 }
 
 impl<'a> Uplink<'a> {
-    /// A line on which the board says hello.
     pub fn new(summary: &'a mut Summary, recorder: &'a mut dyn Recorder) -> Self {
         let mut uplink = Self { encoder: Encoder::default(), summary, recorder };
         // The image ends whatever frame a reset may have cut short.
@@ -29,7 +27,6 @@ impl<'a> Uplink<'a> {
         uplink
     }
 
-    /// Posts a message: its bytes first, as they come first on a real line.
     pub fn post(&mut self, message: Up) {
         let (_, frame) = self.encoder.frame(&message);
         self.summary.line_bytes += frame.len();
@@ -37,19 +34,16 @@ impl<'a> Uplink<'a> {
         self.summary.take(message, self.recorder);
     }
 
-    /// Posts the counters when they are due. Call it before each frame.
     pub fn count(&mut self, counters: Counters) {
         if counters.frames > 0 && counters.frames.is_multiple_of(COUNTERS_FRAMES) {
             self.post(Up::Counters(counters));
         }
     }
 
-    /// What is told of the run.
     pub fn recorder(&mut self) -> &mut dyn Recorder {
         self.recorder
     }
 
-    /// What is rare in the run.
     pub fn summary(&mut self) -> &mut Summary {
         self.summary
     }

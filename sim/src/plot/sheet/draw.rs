@@ -1,23 +1,20 @@
 //! Draws a sheet as SVG.
 
-use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::{Axis, Cell, Mark, Panel, Series, Sheet};
-use crate::plot::draw::{FONTS, INK, drawn};
+use crate::plot::draw::{Area, FONTS, INK, drawn, words};
 
 const WIDTH: u32 = 1_200;
 const PANEL_HEIGHT: u32 = 340;
-/// Height of the names that are one panel's alone.
 const OWN_HEIGHT: i32 = 20;
 const TITLE_HEIGHT: u32 = 72;
 const FOOT_HEIGHT: u32 = 74;
 const MARGIN: i32 = 26;
 const FAILED: RGBColor = RGBColor(225, 225, 225);
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 pub fn svg(sheet: &Sheet) -> anyhow::Result<String> {
@@ -27,8 +24,8 @@ pub fn svg(sheet: &Sheet) -> anyhow::Result<String> {
     {
         let root = SVGBackend::with_string(&mut svg, (WIDTH, height)).into_drawing_area();
         drawn(root.fill(&WHITE))?;
-        words(&root, &sheet.title, (MARGIN, 12), 22, HPos::Left)?;
-        words(&root, &sheet.subtitle, (MARGIN, 44), 14, HPos::Left)?;
+        words(&root, &sheet.title, (MARGIN, 12), 22, (HPos::Left, VPos::Top))?;
+        words(&root, &sheet.subtitle, (MARGIN, 44), 14, (HPos::Left, VPos::Top))?;
         let (_, below) = root.split_vertically(TITLE_HEIGHT);
         let (panels, foot) = below.split_vertically(rows * PANEL_HEIGHT);
         let areas = panels.split_evenly((rows as usize, sheet.columns as usize));
@@ -59,7 +56,7 @@ fn draw_panel(area: &Area, panel: &Panel, own: &[&Series], errors: Option<(f64, 
             .set_label_area_size(LabelAreaPosition::Bottom, 44)
             .build_cartesian_2d(panel.x.places(), panel.y.places()),
     )?;
-    words(area, &panel.title, (70, 12), 16, HPos::Left)?;
+    words(area, &panel.title, (70, 12), 16, (HPos::Left, VPos::Top))?;
     for cell in &panel.cells {
         draw_cell(&mut chart, panel, cell, errors.unwrap_or((1e-6, 1.0)))?;
     }
@@ -116,30 +113,22 @@ fn draw_series(chart: &mut Chart, panel: &Panel, series: &Series) -> anyhow::Res
     let shown = series.points.iter().filter(|(x, y)| panel.x.shows(*x) && panel.y.shows(*y));
     let points: Vec<(f64, f64)> = shown.map(|(x, y)| (panel.x.place(*x), panel.y.place(*y))).collect();
     let line = series.colour.stroke_width(2);
+    let marks = points.iter().copied();
     match series.mark {
-        Mark::Line => drawn(chart.draw_series(LineSeries::new(points, line))).map(drop),
-        Mark::Dashes => drawn(chart.draw_series(DashedLineSeries::new(points, 7, 5, line))).map(drop),
-        Mark::Dots => {
-            drawn(chart.draw_series(points.into_iter().map(|at| Circle::new(at, 3, series.colour.filled()))))
-                .map(drop)
-        }
-        Mark::Rings => {
-            drawn(chart.draw_series(points.into_iter().map(|at| Circle::new(at, 7, line)))).map(drop)
-        }
-        Mark::Crosses => {
-            drawn(chart.draw_series(points.into_iter().map(|at| Cross::new(at, 4, line)))).map(drop)
-        }
-    }
+        Mark::Line => drawn(chart.draw_series(LineSeries::new(points, line)))?,
+        Mark::Dashes => drawn(chart.draw_series(DashedLineSeries::new(points, 7, 5, line)))?,
+        Mark::Dots => drawn(chart.draw_series(marks.map(|at| Circle::new(at, 3, series.colour.filled()))))?,
+        Mark::Rings => drawn(chart.draw_series(marks.map(|at| Circle::new(at, 7, line))))?,
+        Mark::Crosses => drawn(chart.draw_series(marks.map(|at| Cross::new(at, 4, line))))?,
+    };
+    Ok(())
 }
 
-/// From the least error, dark, to the greatest, bright.
 fn colour(error: f64, (least, most): (f64, f64)) -> RGBColor {
     let part = (error.max(least).log10() - least.log10()) / (most.log10() - least.log10());
     ViridisRGB.get_color(part.clamp(0.0, 1.0))
 }
 
-/// What more than one panel shows, for the foot, and what each alone shows, for the panel. A sheet of one panel, or whose panels
-/// have no look in common, needs no names twice.
 fn names(sheet: &Sheet) -> (Vec<&Series>, Vec<Vec<&Series>>) {
     let shown = |panel: &Panel, series: &Series| panel.series.iter().any(|other| other.name == series.name);
     let (mut common, mut own): (Vec<&Series>, Vec<Vec<&Series>>) = (Vec::new(), Vec::new());
@@ -182,16 +171,15 @@ fn legend(
             Mark::Crosses => area.draw(&Cross::new((left + 13, y), 4, line)),
         };
         drawn(drew)?;
-        words(area, &series.name, (x + 34, y - letters / 2 + 1), letters, HPos::Left)?;
+        words(area, &series.name, (x + 34, y - letters / 2 + 1), letters, (HPos::Left, VPos::Top))?;
         x += width;
     }
     Ok(if named.is_empty() { 0 } else { (y - top) / row + 1 })
 }
 
-/// The colours of errors, and failure; how far they reach.
 fn scale(area: &Area, errors: (f64, f64), (left, y): (i32, i32)) -> anyhow::Result<i32> {
     const LENGTH: i32 = 180;
-    words(area, "error", (left, y - 6), 14, HPos::Left)?;
+    words(area, "error", (left, y - 6), 14, (HPos::Left, VPos::Top))?;
     let from = left + 100;
     for pixel in 0..LENGTH {
         let share = f64::from(pixel) / f64::from(LENGTH);
@@ -199,21 +187,15 @@ fn scale(area: &Area, errors: (f64, f64), (left, y): (i32, i32)) -> anyhow::Resu
         let corners = [(from + pixel, y - 7), ((from + pixel + 2).min(from + LENGTH), y + 8)];
         drawn(area.draw(&Rectangle::new(corners, colour(error, errors).filled())))?;
     }
-    words(area, &power(errors.0.log10()), (from - 6, y - 6), 13, HPos::Right)?;
-    words(area, &power(errors.1.log10()), (from + LENGTH + 6, y - 6), 13, HPos::Left)?;
+    words(area, &power(errors.0.log10()), (from - 6, y - 6), 13, (HPos::Right, VPos::Top))?;
+    words(area, &power(errors.1.log10()), (from + LENGTH + 6, y - 6), 13, (HPos::Left, VPos::Top))?;
     let right = from + LENGTH + 46;
     drawn(area.draw(&Rectangle::new([(right, y - 7), (right + 22, y + 8)], FAILED.filled())))?;
     drawn(area.draw(&Cross::new((right + 11, y), 3, INK.mix(0.7).stroke_width(1))))?;
-    words(area, "failed", (right + 30, y - 6), 14, HPos::Left)?;
+    words(area, "failed", (right + 30, y - 6), 14, (HPos::Left, VPos::Top))?;
     Ok(right + 100)
 }
 
-fn words(area: &Area, text: &str, at: (i32, i32), size: i32, side: HPos) -> anyhow::Result<()> {
-    let style = (FONTS, size).into_font().color(&INK).pos(Pos::new(side, VPos::Top));
-    drawn(area.draw(&Text::new(text.to_owned(), at, style)))
-}
-
-/// One label a decade, or about six.
 fn labels(axis: &Axis) -> usize {
     let places = axis.places();
     if axis.log { (places.end - places.start).ceil() as usize + 1 } else { 6 }
@@ -235,14 +217,9 @@ fn power(place: f64) -> String {
         1 => "10".to_owned(),
         n => {
             let sign = if n < 0 { "⁻" } else { "" };
-            format!(
-                "10{sign}{}",
-                n.abs()
-                    .to_string()
-                    .chars()
-                    .filter_map(|c| RAISED.get(c.to_digit(10)? as usize))
-                    .collect::<String>()
-            )
+            let digits = n.abs().to_string();
+            let raised = digits.bytes().map(|digit| RAISED[usize::from(digit - b'0')]);
+            format!("10{sign}{}", raised.collect::<String>())
         }
     }
 }

@@ -1,0 +1,43 @@
+//! No folder is longer than `budgets.toml` allows.
+
+use std::collections::BTreeMap;
+use std::ffi::OsStr;
+use std::path::Path;
+
+use tenax_sim::budgets::Budgets;
+
+/// Lines of the files with this extension below a folder, but for those that Cargo builds.
+fn lines(folder: &Path, extension: &str) -> u64 {
+    let mut sum = 0;
+    for entry in std::fs::read_dir(folder).expect("a folder of the checkout") {
+        let path = entry.expect("an entry").path();
+        let name = path.file_name().unwrap_or_default();
+        if path.is_dir() && name != "target" && !name.as_encoded_bytes().starts_with(b".") {
+            sum += lines(&path, extension);
+        } else if path.extension() == Some(OsStr::new(extension)) {
+            sum += std::fs::read_to_string(&path).expect("source is text").lines().count() as u64;
+        }
+    }
+    sum
+}
+
+#[test]
+fn every_folder_is_within_its_lines() {
+    let budgets = Budgets::of_checkout().unwrap().lines;
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut found = BTreeMap::new();
+    for entry in std::fs::read_dir(&root).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        if path.is_dir() && name != "target" && !name.starts_with('.') {
+            let extension = if name == "python" { "py" } else { "rs" };
+            found.insert(name, lines(&path, extension));
+        }
+    }
+    let over: Vec<_> = found
+        .iter()
+        .filter(|(name, lines)| **lines > budgets.get(*name).copied().unwrap_or(0))
+        .map(|(name, lines)| format!("{name}: {lines} lines, {:?} are allowed", budgets.get(name)))
+        .collect();
+    assert!(over.is_empty(), "{over:#?}");
+}
