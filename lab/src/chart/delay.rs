@@ -1,14 +1,14 @@
 //! The second half of `tenax chart front`: decision delay by stiffness by gain, where the object is lost and where the loop swings.
 
 use rayon::prelude::*;
-use tenax_sim::board::simulated;
-use tenax_sim::jobs::Jobs;
-use tenax_sim::report::fate::Fate;
 use tenax_hal_shim::wire::{Event, EventKind};
 use tenax_hal_shim::words::GripMode;
+use tenax_scene::{SceneFile, World};
+use tenax_sim::board::simulated;
+use tenax_sim::jobs::Jobs;
 use tenax_sim::plot::figure::colour;
 use tenax_sim::plot::sheet::{Axis, Cell, Mark, Panel, Series, Sheet, draw};
-use tenax_scene::{SceneFile, World};
+use tenax_sim::report::fate::Fate;
 
 use super::{Chart, Progress, csv};
 

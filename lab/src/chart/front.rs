@@ -2,13 +2,13 @@
 
 use plotters::style::RGBColor;
 use rayon::prelude::*;
+use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_sim::board::simulated::Grips;
 use tenax_sim::jobs::Jobs;
-use tenax_sim::report::fate::Fate;
-use tenax_sim::session::{self, controls};
-use tenax_hal_shim::detector::{DetectorId, DetectorSet};
 use tenax_sim::plot::figure::colour;
 use tenax_sim::plot::sheet::{Axis, Mark, Panel, Series, Sheet};
+use tenax_sim::report::fate::Fate;
+use tenax_sim::session::{self, controls};
 
 use super::{Chart, Progress, csv};
 

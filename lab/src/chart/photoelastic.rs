@@ -11,9 +11,9 @@ use crate::photoelastic::balance;
 use crate::photoelastic::force::{self, Point, Score, Session, Story};
 use crate::photoelastic::rate::{self, Material, Rig, Seen};
 use crate::photoelastic::region::{self, Region};
+use tenax_frames::quantile::middle;
 use tenax_sim::plot::figure::colour;
 use tenax_sim::plot::sheet::{Axis, Mark, Panel, Series, Sheet};
-use tenax_frames::quantile::middle;
 
 /// Heads on whose days the rate is fitted, and their first days.
 const HEADS: [u64; 4] = [1, 2, 3, 4];
@@ -273,56 +273,4 @@ fn table(runs: &[Vec<Point>], curves: &[(Material, Vec<Seen>)], region: &Region)
         rows.push(row("seen", format!("{:.3} s/m", point.steepness_s_m), point.rate_mm_s, seen));
     }
     csv("what,which,x,y", rows.into_iter().map(Vec::from))
-}
-
-/// A calibration: its weights and curve, and what is left between them. Fails if it cannot be drawn.
-pub fn residuals(calibration: &balance::Calibration) -> anyhow::Result<Chart> {
-    let weighed = &calibration.weighed;
-    let end_n = weighed.last().map_or(6.0, |last| last.force_n.ceil());
-    let high_mv = weighed.iter().map(|w| w.level_mv).fold(0.0, f64::max);
-    let most_mn = weighed.iter().map(|w| 1e3 * (w.read_n - w.force_n).abs()).fold(10.0, f64::max).ceil();
-    let force = || Axis::even("force, N", 0.0, end_n);
-    let off = |w: &balance::Weighed| 1e3 * (w.read_n - w.force_n);
-    let sheet = Sheet::new(
-        "Calibration of a photoelastic head from known weights",
-        format!("Residuals {:.2} % of full scale at most.", calibration.worst_percent()),
-        2,
-        vec![
-            Panel::new(
-                "light against force",
-                force(),
-                Axis::even("mV", 0.0, (high_mv / 500.0).ceil() * 500.0),
-                vec![
-                    Series::new(
-                        "known weights",
-                        colour::VERMILLION,
-                        Mark::Crosses,
-                        weighed.iter().map(|w| (w.force_n, w.level_mv)),
-                    ),
-                    Series::new(
-                        "calibrated curve",
-                        colour::BLUE,
-                        Mark::Line,
-                        weighed.iter().map(|w| (w.read_n, w.level_mv)),
-                    ),
-                ],
-            ),
-            Panel::new(
-                "residuals",
-                force(),
-                Axis::even("read less true, mN", -most_mn, most_mn),
-                vec![Series::new(
-                    "known weights",
-                    colour::VERMILLION,
-                    Mark::Crosses,
-                    weighed.iter().map(|w| (w.force_n, off(w))),
-                )],
-            ),
-        ],
-    );
-    let rows = weighed
-        .iter()
-        .map(|w| [w.force_n, w.level_mv, w.read_n].map(|number| format!("{number:.4}")).to_vec());
-    let csv = csv("force_n,level_mv,read_n", rows)?;
-    Chart::new("photoelastic-calibration", &sheet, csv)
 }

@@ -2,8 +2,8 @@
 
 use anyhow::Result;
 use rayon::prelude::*;
-use tenax_sim::jobs::Jobs;
 use tenax_scene::picture::Stress;
+use tenax_sim::jobs::Jobs;
 
 use super::{Chart, Progress, csv};
 use crate::vision::scored::{self, Report};

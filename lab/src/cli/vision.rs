@@ -13,16 +13,16 @@ use tenax_hal_shim::wire::{Answer, Down, Event, EventKind, Up};
 use tenax_scene::picture::Stress;
 use tenax_vision::quality::Blind;
 
-use tenax_frames::tool::folder;
-use tenax_frames::tool::format::Format;
-use tenax_frames::tool::out;
-use tenax_frames::link::{Client, Outbox, Target};
 use crate::vision::calibrate::{self, Skin};
 use crate::vision::feed::Fault;
 use crate::vision::film::{self, Plan, Told};
 use crate::vision::source::Source;
 use crate::vision::told::Gains;
 use crate::vision::{scored, told};
+use tenax_frames::link::{Client, Outbox, Target};
+use tenax_frames::tool::folder;
+use tenax_frames::tool::format::Format;
+use tenax_frames::tool::out;
 
 /// The load from which on a hand holds something, mN.
 const HOLDS_MN: i32 = 200;
@@ -31,8 +31,7 @@ const EXAMPLES: &str = "\
 Examples:
   tenax vision                                         drawn sessions, scored against their truth
   tenax vision --report json                           for programs
-  tenax vision --video skin.m4v --out seen --overlay-every 50
-                                                       markers.csv, object.csv and overlays of a video
+  tenax vision --video skin.m4v --out seen             markers.csv and object.csv of a video
   tenax vision --device /dev/video0 --port /dev/ttyACM0
                                                        a board's behaviours feel with a camera; --teach: it learns slip from it
   tenax vision --device /dev/video0 --port /dev/ttyACM0 --begin hold
@@ -67,12 +66,9 @@ pub struct Args {
     /// Pictures a second if the source does not tell it, Hz [default: 30]
     #[arg(long, value_name = "HZ", requires = "source")]
     rate_hz: Option<f64>,
-    /// Folder for markers.csv, object.csv and overlays
+    /// Folder for markers.csv and object.csv
     #[arg(long, value_name = "FOLDER", requires = "source")]
     out: Option<PathBuf>,
-    /// Write an overlay of every Nth picture; 0: none
-    #[arg(long, value_name = "N", default_value_t = 0, requires = "out")]
-    overlay_every: usize,
     /// Send the camera's results to this board for its behaviours: /dev/ttyACM0 or tcp:127.0.0.1:7777
     #[arg(long, value_name = "PORT", requires = "source")]
     port: Option<Target>,
@@ -148,7 +144,6 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         source,
         rate_hz: args.rate_hz,
         folder,
-        overlay_every: args.overlay_every,
         live: args.port.is_some() || args.device.is_some(),
         fault: args.fault,
         holds: None,

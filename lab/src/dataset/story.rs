@@ -8,7 +8,6 @@ use toml::{Table, Value};
 
 use super::session::Session;
 
-/// What is recorded of every session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Story {
     /// Bamshad 2023, section 3.2: balls are poured in until it slips, again and again.
@@ -20,10 +19,8 @@ pub enum Story {
 }
 
 impl Story {
-    /// All of them, in the order of the data.
     pub const ALL: [Self; 3] = [Self::Pour, Self::Pick, Self::Disturb];
 
-    /// As in the data.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Pour => "pour",
@@ -40,13 +37,8 @@ impl Story {
         }
     }
 
-    /// The scene of this story in this session. Fails if a drawn number is none that a scene may have.
-    pub fn scene_in(self, session: &Session, rng: &mut ChaCha8Rng) -> anyhow::Result<SceneFile> {
-        self.edited_in(session, rng, |_| ())
-    }
-
-    /// The same, and whatever else `edit` does to the file. Fails if a number is none that a scene may have.
-    pub fn edited_in(
+    /// The scene of this story in this session, edited. Fails if a number is none that a scene may have.
+    pub fn scene_in(
         self,
         session: &Session,
         rng: &mut ChaCha8Rng,

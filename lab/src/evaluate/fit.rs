@@ -210,10 +210,8 @@ fn splits(count: usize) -> Vec<Vec<usize>> {
     all
 }
 
-/// Searches for `rounds`, once with everybody and once for each way to hold people apart; `part` hears which part is done.
-///
-/// # Errors
-/// If there are not at least two people, or a recording cannot be read.
+/// Searches for `rounds`, once with everybody and once for each way to hold people apart; `part` gets the part that is done. Fails if
+/// there are not at least two people, or a recording cannot be read.
 pub fn fit(folder: &Path, rounds: u32, seed: u64, part: &(dyn Fn(f64) + Sync)) -> anyhow::Result<Report> {
     let Recordings { people, sessions } = Recordings::read(folder, None)?;
     ensure!(people.len() > 1, "{}: one person is not enough to hold one apart", folder.display());
@@ -275,9 +273,9 @@ fn file(
 ) -> String {
     let persons: Vec<String> = all.iter().map(|wearer| wearer.number.to_string()).collect();
     let rows = [
-        row("same session", held.same_session, held.intervals.same_session),
-        row("other posture", held.other_posture, held.intervals.other_posture),
-        row("first day's calibration kept", held.first_day_kept, held.intervals.first_day_kept),
+        row("same session", held.scores.same_session, held.intervals.same_session),
+        row("other posture", held.scores.other_posture, held.intervals.other_posture),
+        row("first day's calibration kept", held.scores.first_day_kept, held.intervals.first_day_kept),
     ];
     format!(
         "//! The constants of the wearer's model. Written by `cargo tenax train emg --ship`; do not edit.\n//!\n\

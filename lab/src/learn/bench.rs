@@ -115,7 +115,7 @@ impl Bench {
         let world = self.run_for(for_s, setup.world, Judge::Touch, &mut |n, slow, bench| {
             trial.hear(n, slow, &bench.said);
         });
-        trial.end(world.truth().clone());
+        trial.truth = world.truth().clone();
         trial
     }
 

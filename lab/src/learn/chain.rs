@@ -48,7 +48,7 @@ impl Chain {
                 let said: Vec<_> = ticks.map(|&sets| by_network(sets)).collect();
                 trial.hear(place(slow.frame) - begins, slow, &said);
             }
-            trial.end(setup.world.truth().clone());
+            trial.truth = setup.world.truth().clone();
             begins = ends;
             trial
         };

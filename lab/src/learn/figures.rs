@@ -37,7 +37,7 @@ impl Felt {
             let activations = bench.network().activations.map(|t| f64::from(t) / f64::from(1 << 14));
             felt.receptors.push((t_s, activations));
         });
-        trial.end(world.truth().clone());
+        trial.truth = world.truth().clone();
         felt.codes = trial.truth.camera.iter().map(|seen| (seen.arrives_s, [seen.v1, seen.v2])).collect();
         (trial, felt)
     }

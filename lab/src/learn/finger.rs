@@ -93,14 +93,9 @@ impl Finger {
         self.mu_d / self.mu_s
     }
 
-    /// The scene of this name with this finger and its object, which differs by chance from one time to the next: friction
-    /// and mass by up to 3 %, the first grip by 5 %. Fails if the scene does not become one with these numbers.
-    pub fn scene(&self, name: &str, seed: u64, more: &[Change]) -> anyhow::Result<SceneFile> {
-        self.edited_scene(name, seed, more, |_| ())
-    }
-
-    /// The same, and whatever else `edit` does to the file. Fails if the scene does not become one with these numbers.
-    pub fn edited_scene(
+    /// The scene of this name with this finger and its object, edited. Friction and mass differ by up to 3 %, the first grip by 5 %, from
+    /// one seed to the next. Fails if the scene does not become one with these numbers.
+    pub fn scene(
         &self,
         name: &str,
         seed: u64,

@@ -92,7 +92,7 @@ fn one(finger: &Finger, learned: &Bench, seed: u64) -> anyhow::Result<Holding> {
     let mut trial = Trial::default();
     let world = World::seeded(&scene, Seeds { making: finger.making, noise: seed });
     let world = bench.run(world, Judge::Touch, &mut |n, slow, bench| trial.hear(n, slow, bench.said()));
-    trial.end(world.truth().clone());
+    trial.truth = world.truth().clone();
     let held = Stretch { from_s: FROM_S, to_s: scene.duration_s(), doing: Doing::Hold };
     let false_of = |word| False::of(word, &trial, held);
     let slips = &trial.truth.slips;
@@ -145,20 +145,15 @@ pub fn minute(finger: &Finger, seed: u64, disturbed: bool) -> anyhow::Result<Sce
         run.insert("duty_permille".to_owned(), (between(100.0, 300.0) as i64).into());
         runs.push(run);
     }
-    finger.edited_scene(
-        SCENE,
-        seed,
-        &[("command.grip.for_s", (2.0 + 16.7 * finger.force()) / 24.0)],
-        |scene| {
-            edited(scene, "knock", if disturbed { knocks } else { Vec::new() });
-            edited(scene, "swing", if disturbed { swings } else { Vec::new() });
-            let commands = scene.get_mut("command").and_then(toml::Value::as_array_mut);
-            if let Some(commands) = commands {
-                commands.truncate(2);
-                commands.extend(runs.into_iter().filter(|_| disturbed).map(Into::into));
-            }
-        },
-    )
+    finger.scene(SCENE, seed, &[("command.grip.for_s", (2.0 + 16.7 * finger.force()) / 24.0)], |scene| {
+        edited(scene, "knock", if disturbed { knocks } else { Vec::new() });
+        edited(scene, "swing", if disturbed { swings } else { Vec::new() });
+        let commands = scene.get_mut("command").and_then(toml::Value::as_array_mut);
+        if let Some(commands) = commands {
+            commands.truncate(2);
+            commands.extend(runs.into_iter().filter(|_| disturbed).map(Into::into));
+        }
+    })
 }
 
 fn table(numbers: &[(&str, f64)]) -> toml::Table {

@@ -73,7 +73,7 @@ fn three(
     changes: &[Change],
     from_s: f64,
 ) -> anyhow::Result<Three> {
-    let scene = finger.scene(scene, seed, changes)?;
+    let scene = finger.scene(scene, seed, changes, |_| ())?;
     let run = |judge| {
         let world = World::seeded(&scene, Seeds { making: finger.making, noise: seed });
         let world = if judge == Judge::Bound { world.planning(Plan::of(&scene)) } else { world };

@@ -2,6 +2,7 @@
 
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
+use tenax_frames::quantile::middle;
 use tenax_logic::photoelastic::rate::RateFit;
 use tenax_logic::photoelastic::split::Q;
 use tenax_logic::photoelastic::track::Hints;
@@ -11,7 +12,6 @@ use tenax_scene::physics::stribeck::{METAL, PLASTIC, Slider, Stribeck};
 use tenax_scene::sensor::photoelastic::curve::{Day, Making};
 use tenax_scene::sensor::photoelastic::optics::Layer;
 use tenax_scene::sensor::photoelastic::{Head, drawn_strip};
-use tenax_frames::quantile::middle;
 
 use super::balance;
 use super::bench::{Bench, between, over_decades};

@@ -1,10 +1,10 @@
-//! The network as Rust for the firmware.
+//! The network as Rust for the firmware, and as JSON for `tenax evaluate --network`.
 
 use std::fmt::Write;
 
+use tenax_logic::array::{COVARIANCE_WINDOW, FEATURES, SPECTRUM_WINDOW};
 use tenax_sim::array::edges::Edges;
 use tenax_sim::array::network::Saved;
-use tenax_logic::array::{COVARIANCE_WINDOW, FEATURES, SPECTRUM_WINDOW};
 
 use crate::train::features::Recipe;
 use crate::train::fit::Choice;
@@ -12,21 +12,8 @@ use crate::train::network::{H1, H2};
 use crate::train::quantise::Quantised;
 
 /// The source of a module with one `pub static MODEL`.
-pub fn rust(quantised: &Quantised, recipe: &Recipe, choice: &Choice, edges: Edges, about: &str) -> String {
-    let back = choice.candidate.look_back;
-    let (slope, intercept) = choice.calibration;
-    let per_nat = quantised.per_logit / slope;
-    let Edges { on_permille, off_permille } = edges;
-    // The calibration's intercept is part of the bias: a logit of 0 is even odds.
-    let last_bias = f64::from(quantised.last_bias) + intercept * per_nat;
-    let frames: Vec<String> = (0..back)
-        .map(|frame| {
-            let rows: Vec<Vec<i16>> =
-                quantised.second.iter().map(|row| row[frame * H1..][..H1].to_vec()).collect();
-            let bias = if frame == 0 { quantised.second_bias.clone() } else { vec![0; H2] };
-            format!("layer({}, {:?}, {})", matrix(&rows), bias, quantised.second_shift)
-        })
-        .collect();
+pub fn rust(saved: &Saved, recipe: &Recipe, about: &str) -> String {
+    let Saved { first, second, last, logit_per_nat, edges: Edges { on_permille, off_permille }, .. } = saved;
     // The firmware's windows are the type's defaults.
     let windows = if (recipe.window, recipe.spectrum) == (COVARIANCE_WINDOW, SPECTRUM_WINDOW) {
         String::new()
@@ -53,7 +40,7 @@ const fn layer<const I: usize, const O: usize>(weights: [[i16; I]; O], bias: [i3
 }}
 
 /// Settings of the features, weights and thresholds of the shipped detector.
-pub static MODEL: Model<{H1}, {back}, {H2}{windows}> = Model {{
+pub static MODEL: Model<{H1}, 1, {H2}{windows}> = Model {{
     preprocessor: PreprocessorConfig {{
         covariance_knee: {covariance},
         spectrum_knee: {spectrum},
@@ -61,15 +48,15 @@ pub static MODEL: Model<{H1}, {back}, {H2}{windows}> = Model {{
         {lag}..PreprocessorConfig::DEFAULT
     }},
     network: match Mlp::new(
-        layer::<{FEATURES}, {H1}>({first}, {first_bias:?}, {first_shift}),
-        [{second}],
-        layer::<{H2}, 1>({last}, [{last_bias:.0}], 0),
+        layer::<{FEATURES}, {H1}>({:?}, {:?}, {}),
+        [layer({:?}, {:?}, {})],
+        layer::<{H2}, 1>([{:?}], [{}], 0),
     ) {{
         Ok(network) => network,
         Err(_) => panic!(\"a sum could overflow\"),
     }},
     judgement: Judgement {{
-        logit_per_nat: {per_nat:.0},
+        logit_per_nat: {logit_per_nat},
         on_permille: {on_permille},
         off_permille: {off_permille},
         on_frames: 1,
@@ -77,20 +64,23 @@ pub static MODEL: Model<{H1}, {back}, {H2}{windows}> = Model {{
     }},
 }};
 ",
+        first.0,
+        first.1,
+        first.2,
+        second.0,
+        second.1,
+        second.2,
+        last.0,
+        last.1,
         covariance = recipe.covariance_knee,
         spectrum = recipe.spectrum_knee,
         structure = recipe.structure_knee,
         lag = if recipe.lag == 1 { String::new() } else { format!("lag: {},\n        ", recipe.lag) },
-        first = matrix(&quantised.first),
-        first_bias = quantised.first_bias,
-        first_shift = quantised.first_shift,
-        second = frames.join(", "),
-        last = matrix(std::slice::from_ref(&quantised.last)),
     );
     text
 }
 
-/// The network as `tenax evaluate --network` reads it, with the choice's threshold for both edges.
+/// The network for `tenax evaluate --network`, with the choice's threshold for both edges.
 pub fn saved(
     quantised: &Quantised,
     recipe: &Recipe,
@@ -98,9 +88,10 @@ pub fn saved(
     sha256: &str,
     noise_samples: [f64; 2],
 ) -> Saved {
+    let own = quantised.clone();
     let (slope, intercept) = choice.calibration;
-    let per_nat = quantised.per_logit / slope;
-    let last_bias = f64::from(quantised.last_bias) + intercept * per_nat;
+    let per_nat = own.per_logit / slope;
+    let permille = permille(choice);
     Saved {
         sha256: sha256.to_owned(),
         lag: recipe.lag as u8,
@@ -108,11 +99,12 @@ pub fn saved(
         covariance_knee: recipe.covariance_knee,
         spectrum_knee: recipe.spectrum_knee,
         structure_knee: recipe.structure_knee,
-        first: (quantised.first.clone(), quantised.first_bias.clone(), quantised.first_shift),
-        second: (quantised.second.clone(), quantised.second_bias.clone(), quantised.second_shift),
-        last: (quantised.last.clone(), last_bias.round() as i32),
+        first: (own.first, own.first_bias, own.first_shift),
+        second: (own.second, own.second_bias, own.second_shift),
+        // The calibration's intercept is part of the bias: a logit of 0 is even odds.
+        last: (own.last, (f64::from(own.last_bias) + intercept * per_nat).round() as i32),
         logit_per_nat: per_nat.round() as i32,
-        edges: Edges { on_permille: permille(choice), off_permille: permille(choice) },
+        edges: Edges { on_permille: permille, off_permille: permille },
         noise_samples,
     }
 }
@@ -122,9 +114,4 @@ pub fn permille(choice: &Choice) -> u16 {
     let (slope, intercept) = choice.calibration;
     let odds = slope * choice.threshold + intercept;
     (1_000.0 / (1.0 + (-odds).exp())).round() as u16
-}
-
-fn matrix(rows: &[Vec<i16>]) -> String {
-    let rows: Vec<String> = rows.iter().map(|row| format!("{row:?}")).collect();
-    format!("[{}]", rows.join(", "))
 }

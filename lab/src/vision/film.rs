@@ -16,7 +16,6 @@ use tenax_vision::rectify::Rectifier;
 use tenax_vision::{Camera, Summary};
 
 use super::feed::{Fault, Feed, Next};
-use super::overlay;
 use super::source::Source;
 
 /// What to do with the pictures.
@@ -25,10 +24,8 @@ pub struct Plan {
     pub source: Source,
     /// Pictures a second, unless the video says it.
     pub rate_hz: Option<f64>,
-    /// Where tables and overlays go.
+    /// Folder of the tables.
     pub folder: Option<PathBuf>,
-    /// An overlay of every so many pictures; 0: none.
-    pub overlay_every: usize,
     /// Whether they come as a camera's do and not as fast as they are decoded.
     pub live: bool,
     /// What is wrong with a drawn camera for two seconds.
@@ -140,9 +137,6 @@ pub fn follow(plan: &Plan, mut feed: Feed, mut told: impl FnMut(Told<'_>) -> Res
         }
         if let Some(tables) = &mut tables {
             tables.write(&camera, &summary)?;
-            if plan.overlay_every > 0 && report.frames.is_multiple_of(plan.overlay_every) {
-                tables.overlay(&overlay::png(&frame, &camera, &summary)?, report.frames)?;
-            }
         }
         let age_ms = now_ms.saturating_sub(taken_ms).try_into().unwrap_or(u16::MAX);
         told(Told::Picture(&camera, &summary, age_ms))?;
@@ -159,7 +153,6 @@ pub fn follow(plan: &Plan, mut feed: Feed, mut told: impl FnMut(Told<'_>) -> Res
 
 /// markers.csv and object.csv.
 struct Tables {
-    folder: PathBuf,
     markers: BufWriter<File>,
     object: BufWriter<File>,
 }
@@ -178,7 +171,7 @@ impl Tables {
             object,
             "frame,area,x,y,angle_rad,cut,slip_px,moving_px,slips,flow_x,flow_y,shear_x_px,shear_y_px,normal_px,twist_px2,blind"
         )?;
-        Ok(Self { folder: folder.to_owned(), markers, object })
+        Ok(Self { markers, object })
     }
 
     fn write(&mut self, camera: &Camera, summary: &Summary) -> Result<()> {
@@ -224,10 +217,5 @@ impl Tables {
         let blind = summary.blind.map_or(String::new(), |blind| format!("{blind:?}"));
         writeln!(self.object, ",{blind}")?;
         Ok(())
-    }
-
-    fn overlay(&self, png: &[u8], frame: usize) -> Result<()> {
-        let path = self.folder.join(format!("overlay_{frame:05}.png"));
-        std::fs::write(&path, png).with_context(|| format!("cannot write {}", path.display()))
     }
 }

@@ -1,17 +1,17 @@
 //! The photoelastic head on its bench and in a hand. Seeds are those of no calibration.
 
-use tenax_sim::board::Run;
-use tenax_sim::live::Use;
-use tenax_sim::session::{self, Board, Outcome};
+use tenax_frames::quantile::middle;
 use tenax_hal_shim::detector::DetectorId;
 use tenax_hal_shim::wire::Slow;
 use tenax_hal_shim::words::{Cause, GripMode};
-use tenax_scene::SceneFile;
-use tenax_scene::sensor::photoelastic::curve::{Day, Making};
-use tenax_frames::quantile::middle;
 use tenax_lab::photoelastic::force::{self, Score};
 use tenax_lab::photoelastic::rate::{self, Material, Seen};
 use tenax_lab::photoelastic::{balance, region};
+use tenax_scene::SceneFile;
+use tenax_scene::sensor::photoelastic::curve::{Day, Making};
+use tenax_sim::board::Run;
+use tenax_sim::live::Use;
+use tenax_sim::session::{self, Board, Outcome};
 
 const SEEDS: [u64; 3] = [2_001, 2_002, 2_003];
 

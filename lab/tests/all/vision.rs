@@ -6,7 +6,7 @@ use serde_json::Value;
 
 fn vision(args: &[&str]) -> Value {
     let output =
-        Command::new(env!("CARGO_BIN_EXE_tenax-host")).arg("vision").args(args).output().expect("it starts");
+        Command::new(env!("CARGO_BIN_EXE_tenax-lab")).arg("vision").args(args).output().expect("it starts");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).expect("JSON")
 }

@@ -136,6 +136,11 @@ impl Plan {
 }
 
 impl Fingertip {
+    /// The taught network. Fails if it was not taught.
+    pub fn network(&self) -> anyhow::Result<HebbianDetector> {
+        network(self.taught.first().context("nothing was taught")?)
+    }
+
     /// Its recordings, one after the other; `rows` gives fresh judges for each. `steps` hears of each step of the array: its features,
     /// and whether the object slides. Fails if a scene cannot be made.
     pub fn record(
@@ -151,7 +156,7 @@ impl Fingertip {
             let seed = self.number.wrapping_mul(1_000) + 100 * story as u64 + n;
             let session = Session { seed, ..self.session.clone() };
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
-            let scene = story.edited_in(&session, &mut rng, |scene| self.finger.put_on(scene))?;
+            let scene = story.scene_in(&session, &mut rng, |scene| self.finger.put_on(scene))?;
             let mut operator = Operator::new(story, &session, ChaCha8Rng::seed_from_u64(rng.random()));
             let mut drive = |world: &World, slips: bool, _: Vec<Down>| operator.drive(world, slips);
             let end_s = if story == Story::Pick { LETS_GO_S } else { scene.duration_s() };
@@ -231,6 +236,13 @@ impl Fingertip {
     }
 }
 
+/// A network from its snapshot. Fails if that is damaged.
+fn network(snapshot: &[u8]) -> anyhow::Result<HebbianDetector> {
+    let mut network = HebbianDetector::default();
+    network.restore(snapshot).ok().context("a snapshot that is damaged")?;
+    Ok(network)
+}
+
 /// Drives as the scene's commands on the line ask.
 #[derive(Default)]
 struct Line {
@@ -251,7 +263,7 @@ impl Line {
 }
 
 /// The image's senses and detectors, without its reflex: it would change what the others hear.
-struct Ears {
+pub struct Ears {
     config: Config,
     senses: Senses,
     samples: LastSamples,
@@ -263,23 +275,20 @@ struct Ears {
 }
 
 impl Ears {
-    fn new(taught: &[Vec<u8>]) -> anyhow::Result<Self> {
+    pub fn new(taught: &[Vec<u8>]) -> anyhow::Result<Self> {
         let mut detectors = Detectors::default();
-        let damaged = "a snapshot that is damaged";
         let mut controls = Vec::new();
         if let [learned, changed @ ..] = taught {
-            detectors.hebbian.restore(learned).ok().context(damaged)?;
+            detectors.hebbian = network(learned)?;
             for own in changed {
-                let mut network = HebbianDetector::default();
-                network.restore(own).ok().context(damaged)?;
-                controls.push((network, false));
+                controls.push((network(own)?, false));
             }
         }
         let (config, senses, samples, journal, taxels, features) = Default::default();
         Ok(Self { config, senses, samples, detectors, controls, journal, taxels, features })
     }
 
-    fn take(&mut self, frame: &Frame, drive: MotorDrive, hear: &mut dyn FnMut(&Felt<'_>)) {
+    pub fn take(&mut self, frame: &Frame, drive: MotorDrive, hear: &mut dyn FnMut(&Felt<'_>)) {
         let Self { config, senses, samples, detectors, controls, journal, taxels, features } = self;
         if frame.sequence == ZEROED_AT {
             // Refused while something is held, and then it follows by itself.
@@ -317,34 +326,4 @@ impl Ears {
         }
         while journal.next_event().is_some() {}
     }
-}
-
-/// The last so many frames of a pour of the table's kind.
-#[cfg(feature = "emulator")]
-pub fn sampled(count: usize) -> anyhow::Result<Vec<Frame>> {
-    use std::sync::{Arc, Mutex, PoisonError};
-
-    struct Keeps(Arc<Mutex<Vec<Frame>>>);
-    impl Judge for Keeps {
-        fn hear(&mut self, felt: &Felt<'_>) -> bool {
-            self.0.lock().unwrap_or_else(PoisonError::into_inner).push(*felt.frame);
-            false
-        }
-    }
-    let plan = Plan { seed: 25_001, fingers: 1, pours: 1, picks: 0, minutes: 0 };
-    let kept = Arc::new(Mutex::new(Vec::new()));
-    let rows = || -> Vec<Box<dyn Judge>> { vec![Box::new(Keeps(Arc::clone(&kept)))] };
-    plan.fingertip(0, false)?.record(&plan, &rows, &mut |_, _| (), &mut || ())?;
-    let mut kept = std::mem::take(&mut *kept.lock().unwrap_or_else(PoisonError::into_inner));
-    // From the beginning of a cycle on: the image counts frames from 0.
-    let cycle = usize::from(FRAMES_PER_SLOW_FRAME);
-    let from = kept.len().saturating_sub(count) / cycle * cycle;
-    Ok(kept.split_off(from))
-}
-
-/// The array's readings in frames that begin with a cycle.
-#[cfg(feature = "emulator")]
-pub fn readings(frames: &[Frame]) -> Vec<Reading> {
-    let cycles = frames.chunks_exact(usize::from(FRAMES_PER_SLOW_FRAME));
-    cycles.map(|cycle| std::array::from_fn(|n| Some(cycle[n].switch_b))).collect()
 }

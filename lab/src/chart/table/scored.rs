@@ -5,8 +5,8 @@ use std::ops::Range;
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use serde::Serialize;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
-use tenax_sim::scorer::{CAUGHT_WITHIN_S, Outcome, false_alarms_s, outcome};
 use tenax_frames::quantile::not_exceeded;
+use tenax_sim::scorer::{CAUGHT_WITHIN_S, Outcome, false_alarms_s, outcome};
 
 use super::heard::{Heard, Kind};
 

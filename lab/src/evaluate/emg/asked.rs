@@ -1,8 +1,7 @@
 //! Whether the hand asks for a new calibration where one would help: each recording of a person is played with the calibration of
 //! each of their days.
 //!
-//! The recordings have all repetitions of a movement in a row. A wearer closes and opens in turn, so the repetitions are played in
-//! turn, each with the rest around it.
+//! The recordings have all repetitions of a movement in a row. They are played in turn, closing and opening, each with the rest around it.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -64,16 +63,8 @@ pub struct Asked {
     /// A new calibration makes at least a fifth more of the windows right, and less.
     pub helps: Row,
     pub does_not: Row,
-    /// The same, by a wearer who also makes the recording's other movements, in its own order.
-    pub helps_busy: Row,
-    pub does_not_busy: Row,
-    /// With exchanged plugs, on the calibration of the same day; by a wearer who does both, only closes, only opens.
+    /// With exchanged plugs, on the calibration of the same day.
     pub exchanged: Row,
-    pub exchanged_closes: Row,
-    pub exchanged_opens: Row,
-    /// Calibrated in the session, by a wearer who only closes, only opens.
-    pub closes: Row,
-    pub opens: Row,
 }
 
 /// A recording on a calibration.
@@ -102,15 +93,16 @@ impl Session<'_> {
         judged
     }
 
-    /// Repetitions of these labels in turn.
-    fn in_turn(&self, labels: &[u8]) -> Vec<Range<usize>> {
-        let around = |rows: Range<usize>| {
+    /// Repetitions of closing and opening in turn.
+    fn in_turn(&self) -> Vec<Range<usize>> {
+        let around = |rows: &Range<usize>| {
             rows.start.saturating_sub(AROUND[0])..(rows.end + AROUND[1]).min(self.recording.rows())
         };
-        let all = labels.iter().map(|label| self.recording.contractions(*label)).collect::<Vec<_>>();
-        let all = all.into_iter().filter(|own| !own.is_empty()).collect::<Vec<_>>();
+        let mut all = [CLOSE, OPEN].map(|label| self.recording.contractions(label)).to_vec();
+        all.retain(|own| !own.is_empty());
         let turn = |n: usize| {
-            Some(around(all.get(n % all.len().max(1))?[n / all.len() % all[n % all.len()].len()].clone()))
+            let own = all.get(n % all.len().max(1))?;
+            Some(around(&own[n / all.len() % own.len()]))
         };
         (0..PLAYED).filter_map(turn).collect()
     }
@@ -126,7 +118,7 @@ impl Session<'_> {
     }
 }
 
-/// All that a person recorded on each calibration of theirs.
+/// All recordings of a person on each calibration of theirs.
 pub(super) fn asked(fitted: &'static Fitted, days: &Days) -> Option<Asked> {
     let sites = days.values().next()?.values().next()?.best_sites();
     let recordings: Vec<(u32, u32, &Recording)> = days
@@ -147,31 +139,15 @@ pub(super) fn asked(fitted: &'static Fitted, days: &Days) -> Option<Asked> {
         .map(|&(&(from, _), &model, &(day, posture, recording))| {
             let session = Session { recording, sites, model, fitted };
             let gain = own.get(&(day, posture)).map(|new| session.right(*new) - session.right(model));
-            let both = session.judge(&session.in_turn(&[CLOSE, OPEN]), false);
-            let busy = session.judge(std::slice::from_ref(&(0..recording.rows())), false);
+            let turns = session.in_turn();
             let is_own = from == day && first(day) == Some(posture);
-            let only = |label: u8, exchanged: bool| session.judge(&session.in_turn(&[label]), exchanged);
-            let others = is_own.then(|| {
-                let exchanged = session.judge(&session.in_turn(&[CLOSE, OPEN]), true);
-                [exchanged, only(CLOSE, true), only(OPEN, true), only(CLOSE, false), only(OPEN, false)]
-            });
-            (gain, both, busy, others)
+            (gain, session.judge(&turns, false), is_own.then(|| session.judge(&turns, true)))
         })
         .collect();
-    let by_gain = |helps: bool, busy: bool| {
+    let by_gain = |helps: bool| {
         let kind = played.iter().filter(|own| own.0.is_some_and(|gain| (gain >= HELPS) == helps));
-        Row::of(kind.map(|own| if busy { &own.2[..] } else { &own.1[..] }))
+        Row::of(kind.map(|own| &own.1[..]))
     };
-    let other = |n: usize| Row::of(played.iter().filter_map(|own| own.3.as_ref().map(|all| &all[n][..])));
-    Some(Asked {
-        helps: by_gain(true, false),
-        does_not: by_gain(false, false),
-        helps_busy: by_gain(true, true),
-        does_not_busy: by_gain(false, true),
-        exchanged: other(0),
-        exchanged_closes: other(1),
-        exchanged_opens: other(2),
-        closes: other(3),
-        opens: other(4),
-    })
+    let exchanged = Row::of(played.iter().filter_map(|own| own.2.as_deref()));
+    Some(Asked { helps: by_gain(true), does_not: by_gain(false), exchanged })
 }

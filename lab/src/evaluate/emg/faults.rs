@@ -39,15 +39,15 @@ const FRONT_END_S: f64 = 0.027;
 /// Pins that give a number, mV above the live zero.
 const RANGE_MV: [f64; 2] = [-200.0, 2_950.0];
 
-/// What an electrode gives instead of its muscle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+/// Signal of an electrode instead of its muscle's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Fault {
     /// Off the skin: mains, rectified and smoothed.
     Lifted,
     /// A bad contact: another level every now and then.
     Loose,
-    /// It climbs.
+    /// A rising level.
     Creeping,
     /// Hum beside the muscle.
     Humming,
@@ -59,29 +59,15 @@ pub enum Fault {
     Broken,
 }
 
-impl Fault {
-    pub const ALL: [Self; 7] = [
-        Self::Lifted,
-        Self::Loose,
-        Self::Creeping,
-        Self::Humming,
-        Self::Swinging,
-        Self::Saturated,
-        Self::Broken,
-    ];
-
-    const fn name(self) -> &'static str {
-        match self {
-            Self::Lifted => "lifted",
-            Self::Loose => "loose",
-            Self::Creeping => "creeping",
-            Self::Humming => "humming",
-            Self::Swinging => "swinging hum",
-            Self::Saturated => "saturated",
-            Self::Broken => "broken",
-        }
-    }
-}
+const FAULTS: [Fault; 7] = [
+    Fault::Lifted,
+    Fault::Loose,
+    Fault::Creeping,
+    Fault::Humming,
+    Fault::Swinging,
+    Fault::Saturated,
+    Fault::Broken,
+];
 
 /// Which electrodes it has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -108,7 +94,7 @@ struct Drawn {
 
 impl Drawn {
     fn of(rng: &mut ChaCha8Rng) -> Self {
-        let fault = Fault::ALL[rng.random_range(0..Fault::ALL.len())];
+        let fault = FAULTS[rng.random_range(0..FAULTS.len())];
         let place = [Where::Closing, Where::Opening, Where::Opening, Where::Both][rng.random_range(0..4)];
         let level =
             |rng: &mut ChaCha8Rng, low: f64, high: f64| low * (high / low).powf(rng.random_range(0.0..1.0));
@@ -296,14 +282,12 @@ impl Row {
 
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Of what they were drawn.
     pub seed: u64,
-    /// All, those of one electrode, and those of both.
     pub all: Row,
+    /// Faults of one electrode, of both, and of one by kind.
     pub one: Row,
     pub both: Row,
-    /// By kind of fault, of one electrode; and by kind of wearer.
-    pub faults: BTreeMap<&'static str, Row>,
+    pub faults: BTreeMap<Fault, Row>,
     pub wearers: BTreeMap<&'static str, Row>,
 }
 
@@ -328,19 +312,14 @@ pub(in crate::evaluate) fn draw(fitted: &'static Fitted, trials: &[&Trial], case
         })
         .collect();
     let one = || outcomes.iter().filter(|own| !own.both);
+    let of_wearer = |wearer| Row::of(outcomes.iter().filter(|own| own.wearer == wearer));
+    let of_fault = |fault| Row::of(one().filter(|own| own.fault == fault));
     Report {
         seed,
         all: Row::of(outcomes.iter()),
         one: Row::of(one()),
         both: Row::of(outcomes.iter().filter(|own| own.both)),
-        faults: Fault::ALL
-            .into_iter()
-            .map(|fault| (fault.name(), Row::of(one().filter(|own| own.fault == fault))))
-            .collect(),
-        wearers: WEARERS
-            .into_iter()
-            .enumerate()
-            .map(|(wearer, name)| (name, Row::of(outcomes.iter().filter(|own| own.wearer == wearer))))
-            .collect(),
+        faults: FAULTS.into_iter().map(|fault| (fault, of_fault(fault))).collect(),
+        wearers: WEARERS.into_iter().enumerate().map(|(n, name)| (name, of_wearer(n))).collect(),
     }
 }

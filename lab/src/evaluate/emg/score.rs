@@ -1,8 +1,8 @@
 //! What a hand said of a recording, counted as `baseline.py` of that data set counts, so that figures compare.
 
 use serde::Serialize;
-use tenax_logic::emg::decide::Wish;
 use tenax_frames::quantile::between_ranks;
+use tenax_logic::emg::decide::Wish;
 
 use super::recordings::{CLOSE, HZ, OPEN, Recording};
 
@@ -139,19 +139,22 @@ pub struct Score {
 impl Score {
     /// The quantile of each number by itself.
     pub(super) fn quantile(scores: &[Self], part: f64) -> Option<Self> {
-        let of = |value: fn(&Self) -> f64| between_ranks(scores.iter().map(value), part);
+        if scores.is_empty() {
+            return None;
+        }
+        let of = |value: fn(&Self) -> f64| quantile(&scores.iter().map(value).collect::<Vec<_>>(), part);
         Some(Self {
-            close_right: of(|score| score.close_right)?,
-            close_wrong_way: of(|score| score.close_wrong_way)?,
-            open_right: of(|score| score.open_right)?,
-            open_wrong_way: of(|score| score.open_wrong_way)?,
-            missed: of(|score| score.missed)?,
-            false_per_hour: of(|score| score.false_per_hour)?,
-            latency_s_p50: of(|score| score.latency_s_p50)?,
-            latency_s_p95: of(|score| score.latency_s_p95)?,
-            full_s_p50: of(|score| score.full_s_p50)?,
-            full_s_p95: of(|score| score.full_s_p95)?,
-            doubted_part: of(|score| score.doubted_part)?,
+            close_right: of(|score| score.close_right),
+            close_wrong_way: of(|score| score.close_wrong_way),
+            open_right: of(|score| score.open_right),
+            open_wrong_way: of(|score| score.open_wrong_way),
+            missed: of(|score| score.missed),
+            false_per_hour: of(|score| score.false_per_hour),
+            latency_s_p50: of(|score| score.latency_s_p50),
+            latency_s_p95: of(|score| score.latency_s_p95),
+            full_s_p50: of(|score| score.full_s_p50),
+            full_s_p95: of(|score| score.full_s_p95),
+            doubted_part: of(|score| score.doubted_part),
         })
     }
 }

@@ -7,10 +7,6 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use serde::Serialize;
-use tenax_sim::recipe::Kind;
-use tenax_sim::replay::Recipe;
-use tenax_sim::replay::meaning::Motion;
-use tenax_sim::replay::muscles::{Muscles, calibrate};
 use tenax_logic::emg::constants::Fitted;
 use tenax_logic::emg::decide::{Decide, Wish};
 use tenax_logic::emg::level::level_of;
@@ -18,6 +14,10 @@ use tenax_logic::emg::mains::mains_of;
 use tenax_logic::emg::model::{EmgModel, Refusal};
 use tenax_logic::emg::trust::Quality;
 use tenax_logic::emg::{Emg, Verdict};
+use tenax_sim::recipe::Kind;
+use tenax_sim::replay::Recipe;
+use tenax_sim::replay::meaning::Motion;
+use tenax_sim::replay::muscles::{Muscles, calibrate};
 
 /// How their names begin.
 pub(super) const PREFIX: &str = "emg_two_channel_";
