@@ -54,10 +54,6 @@ pub struct Options {
     pub lifts: u64,
     /// Fingers made by chance.
     pub fingertips: u64,
-    /// Whether their films lie in directions of their own, as the paper's do.
-    pub turned_films: bool,
-    /// Whether their controls are tried, too.
-    pub controls: bool,
 }
 
 impl Default for Options {
@@ -69,8 +65,6 @@ impl Default for Options {
             minutes: 200,
             lifts: 20,
             fingertips: 20,
-            turned_films: false,
-            controls: true,
         }
     }
 }
@@ -85,7 +79,6 @@ pub struct Outcome {
     pub agreement: Option<Agreement>,
     /// A trial of the finger before it learned: the largest output, 128 would be 1.
     pub untaught: u8,
-    pub lessons: Vec<Trial>,
     pub trials: Vec<Trial>,
     pub score: Score,
     /// The score of the same trials with equal weights in place of learned ones, on the host.
@@ -96,8 +89,6 @@ pub struct Outcome {
     pub pours: Vec<Three>,
     /// The other fingers.
     pub others: Vec<Other>,
-    /// What the receptors felt in the last three lessons.
-    pub felt: Vec<figures::Felt>,
 }
 
 /// Told what is being done, and how much of it is over, 0 to 1.
@@ -110,8 +101,12 @@ pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Resu
     let silent = untaught.trial(Setup::new(&finger, held_out(options.seed, 0), false)?);
     let loudest = silent.outputs.iter().flatten().map(|output| output.unsigned_abs()).max();
 
-    let (learned, lessons, felt) = lessons_on_host(&finger, options, progress)?;
-    let equal = learned.controlled(Some(Control::EqualWeights))?;
+    let mut learned = Bench::default();
+    for n in 0..LESSONS {
+        learned.trial(Setup::new(&finger, lesson(options.seed, n), true)?);
+        progress("learning", n as f64 / LESSONS as f64);
+    }
+    let equal = learned.controlled(Control::EqualWeights)?;
     let equal = Score::of(&trials_on_host(&finger, equal, options, progress)?);
     let (trials, agreement) = if matches!(board, Board::Host) {
         (trials_on_host(&finger, learned.clone(), options, progress)?, None)
@@ -143,34 +138,12 @@ pub fn run(options: &Options, board: &Board, progress: Progress) -> anyhow::Resu
         untaught: loudest.unwrap_or(0),
         score: Score::of(&trials),
         equal,
-        lessons,
         trials,
         holding,
         lifts,
         pours,
         others,
-        felt,
     })
-}
-
-/// A finger that has learned, on the host; its lessons, and what it felt in the last three.
-type Learned = (Bench, Vec<Trial>, Vec<figures::Felt>);
-
-fn lessons_on_host(finger: &Finger, options: &Options, progress: Progress) -> anyhow::Result<Learned> {
-    let mut bench = Bench::default();
-    let (mut lessons, mut felt) = (Vec::new(), Vec::new());
-    for n in 0..LESSONS {
-        let setup = Setup::new(finger, lesson(options.seed, n), true)?;
-        if n + 3 >= LESSONS {
-            let (trial, receptors) = figures::Felt::record(&mut bench, setup);
-            lessons.push(trial);
-            felt.push(receptors);
-        } else {
-            lessons.push(bench.trial(setup));
-        }
-        progress("learning", n as f64 / LESSONS as f64);
-    }
-    Ok((bench, lessons, felt))
 }
 
 fn trials_on_host(
@@ -215,10 +188,6 @@ pub struct Other {
     pub ratio: f64,
     /// Its held-out trials.
     pub score: Score,
-    /// The same, each from what the lessons left and until the slip up: as the controls are tried.
-    pub apart: Score,
-    /// The same of each control, in the order of [`Control::ALL`].
-    pub controls: [Score; Control::ALL.len()],
     /// Lifts with more force than the object needs.
     pub safe: Safe,
 }
@@ -226,28 +195,11 @@ pub struct Other {
 /// The same lessons, and some held-out trials.
 fn other(options: &Options, n: u64) -> anyhow::Result<Other> {
     let own = seed(options.seed, 6, n);
-    let mut finger = Finger::random(own);
-    if options.turned_films {
-        finger = finger.with(("pvdf.film_directions", 1.0));
-    }
+    let finger = Finger::random(own);
     let mut bench = Bench::default();
     for n in 0..LESSONS {
         bench.trial(Setup::new(&finger, lesson(own, n), true)?);
     }
-    let apart = |bench: &Bench| -> anyhow::Result<Score> {
-        let mut trials = Vec::new();
-        for n in 0..TRIALS_OF_OTHERS {
-            // Each from the end of the lessons: a trial that is cut short is no beginning for the next.
-            let setup = Setup::new(&finger, held_out(own, n), false)?;
-            trials.push(bench.clone().trial_for(SLIP_UP_S, setup));
-        }
-        Ok(Score::of(&trials))
-    };
-    let mut controls: [Score; Control::ALL.len()] = Default::default();
-    for (score, control) in controls.iter_mut().zip(Control::ALL).filter(|_| options.controls) {
-        *score = apart(&bench.controlled(Some(control))?)?;
-    }
-    let learned_apart = if options.controls { apart(&bench.controlled(None)?)? } else { Score::default() };
     let mut safe = Safe::default();
     for n in 0..SAFE_LIFTS {
         let setup = Setup::held(&finger, seed(own, 7, n))?;
@@ -266,7 +218,7 @@ fn other(options: &Options, n: u64) -> anyhow::Result<Other> {
         trials.push(bench.trial(Setup::new(&finger, held_out(own, n), false)?));
     }
     let score = Score::of(&trials);
-    Ok(Other { ratio: finger.ratio(), score, apart: learned_apart, controls, safe })
+    Ok(Other { ratio: finger.ratio(), score, safe })
 }
 
 fn lesson(all: u64, n: u64) -> u64 {

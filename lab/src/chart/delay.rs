@@ -7,7 +7,7 @@ use tenax_scene::{SceneFile, World};
 use tenax_sim::board::simulated;
 use tenax_sim::jobs::Jobs;
 use tenax_sim::plot::figure::colour;
-use tenax_sim::plot::sheet::{Axis, Cell, Mark, Panel, Series, Sheet, draw};
+use tenax_sim::plot::sheet::{Axis, Cell, Mark, Panel, Series, Sheet};
 use tenax_sim::report::fate::Fate;
 
 use super::{Chart, Progress, csv};
@@ -169,7 +169,7 @@ pub fn map(progress: Progress) -> anyhow::Result<Chart> {
         panels,
         errors: Some((1e-3, 1.0)),
     };
-    Ok(Chart { name: "front-delay", svg: draw::svg(&sheet)?, csv })
+    Chart::new("front-delay", &sheet, csv)
 }
 
 fn panel(pulse_ms: u32, cells: &[Point]) -> Panel {

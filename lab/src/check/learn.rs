@@ -15,7 +15,7 @@ const MINUTES: u64 = 40;
 
 /// Fails if a scene cannot be made.
 pub fn bars() -> anyhow::Result<Vec<Bar>> {
-    let options = Options { controls: false, minutes: MINUTES, ..Options::default() };
+    let options = Options { minutes: MINUTES, ..Options::default() };
     let outcome = learn::run(&options, &Board::Host, &|_, _| ())?;
     let (score, lead) = (&outcome.score, outcome.score.first.lead());
     let (slip, holding) = (&score.slip, &outcome.holding);

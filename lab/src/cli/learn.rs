@@ -38,9 +38,6 @@ pub struct Args {
     /// Number of random fingertips that learn the same way
     #[arg(long, value_name = "N", default_value_t = Options::default().fingertips)]
     fingertips: u64,
-    /// Random directions of the random fingertips' films: some hear the grip more than slip
-    #[arg(long)]
-    turned_films: bool,
     /// Seed of all random numbers
     #[arg(long, default_value_t = Options::default().seed)]
     seed: u64,
@@ -54,14 +51,14 @@ pub struct Args {
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     const MOST: u64 = 1_000;
-    let &Args { seed, trials, minutes, lifts, fingertips, turned_films, .. } = args;
+    let &Args { seed, trials, minutes, lifts, fingertips, .. } = args;
     ensure!(trials >= 1, "--trials 0: at least one held-out trial is needed");
     for (name, count) in
         [("trials", trials), ("minutes", minutes), ("lifts", lifts), ("fingertips", fingertips)]
     {
         ensure!(count <= MOST, "--{name} {count}: at most {MOST} are allowed");
     }
-    let options = Options { seed, trials, minutes, lifts, fingertips, turned_films, controls: true };
+    let options = Options { seed, trials, minutes, lifts, fingertips };
     let folder = folder::made(&args.out)?;
     let outcome = run(&options, &super::board(args.host)?)?;
     let report = Report::of(&outcome);
@@ -70,9 +67,7 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         out::note!("  {:<26}{agreement}", "image and host's logic");
     }
     super::write(&folder.join("learn.json"), &serde_json::to_vec_pretty(&report)?)?;
-    for (name, svg) in figures::draw_all(&outcome)? {
-        super::write(&folder.join(name).with_extension("svg"), svg.as_bytes())?;
-    }
+    super::write(&folder.join("learn-worth.svg"), figures::draw(&outcome)?.as_bytes())?;
     let agrees = outcome.agreement.as_ref().is_none_or(Agreement::holds);
     Ok(if agrees { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

@@ -91,7 +91,8 @@ fn one(finger: &Finger, learned: &Bench, seed: u64) -> anyhow::Result<Holding> {
     let mut bench = learned.clone();
     let mut trial = Trial::default();
     let world = World::seeded(&scene, Seeds { making: finger.making, noise: seed });
-    let world = bench.run(world, Judge::Touch, &mut |n, slow, bench| trial.hear(n, slow, bench.said()));
+    let world = bench
+        .run(f64::INFINITY, world, Judge::Touch, &mut |n, slow, bench| trial.hear(n, slow, bench.said()));
     trial.truth = world.truth().clone();
     let held = Stretch { from_s: FROM_S, to_s: scene.duration_s(), doing: Doing::Hold };
     let false_of = |word| False::of(word, &trial, held);

@@ -77,7 +77,7 @@ fn three(
     let run = |judge| {
         let world = World::seeded(&scene, Seeds { making: finger.making, noise: seed });
         let world = if judge == Judge::Bound { world.planning(Plan::of(&scene)) } else { world };
-        reflexed(&learned.clone().run(world, judge, &mut |_, _, _| ()), from_s)
+        reflexed(&learned.clone().run(f64::INFINITY, world, judge, &mut |_, _, _| ()), from_s)
     };
     Ok(JUDGES.map(run))
 }

@@ -1,10 +1,7 @@
 //! The figures of a fingertip's learning: for programs the keys of [`Report`].
 
-use std::collections::BTreeMap;
-
 use serde::Serialize;
 
-use super::control::Control;
 use super::reflex::{Reflexed, Three};
 use super::trial::{Trial, Word};
 use super::{Other, Outcome};
@@ -226,17 +223,6 @@ pub struct Group {
     pub count: usize,
     pub first: Lead,
     pub slip: Lead,
-    pub controls: BTreeMap<&'static str, Controlled>,
-}
-
-#[derive(Clone, Copy, Debug, Default, Serialize)]
-pub struct Controlled {
-    pub first_lead_s: f64,
-    pub first_missed: u64,
-    pub slip_lead_s: f64,
-    pub slip_missed: u64,
-    /// Lead of what was learned in the word of slip, s, mean.
-    pub learned_sooner_s: f64,
 }
 
 /// Lifts with more force than the object needs, in which every report is false.
@@ -254,24 +240,10 @@ const SLIPPERY: f64 = 0.75;
 impl Group {
     fn of<'a>(others: impl Iterator<Item = &'a Other>) -> Self {
         let others: Vec<&Other> = others.collect();
-        let controlled = |(n, control): (usize, Control)| {
-            let own = || others.iter().map(|other| &other.controls[n]);
-            let (first, slip) = (Lead::of(own().map(|own| &own.first)), Lead::of(own().map(|own| &own.slip)));
-            let sooner = others.iter().flat_map(|other| other.apart.slip.sooner_s(&other.controls[n].slip));
-            let controlled = Controlled {
-                first_lead_s: first.lead_s,
-                first_missed: first.missed,
-                slip_lead_s: slip.lead_s,
-                slip_missed: slip.missed,
-                learned_sooner_s: Spread::of(&sooner.collect::<Vec<_>>()).mean,
-            };
-            (control.key(), controlled)
-        };
         Self {
             count: others.len(),
             first: Lead::of(others.iter().map(|other| &other.score.first)),
             slip: Lead::of(others.iter().map(|other| &other.score.slip)),
-            controls: Control::ALL.into_iter().enumerate().map(controlled).collect(),
         }
     }
 }

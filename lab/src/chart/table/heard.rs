@@ -33,10 +33,6 @@ const LETS_GO_S: f64 = 7.3;
 /// The empty hand's forces are zeroed at this frame.
 const ZEROED_AT: u32 = frames(100);
 
-/// What of the network's learning is changed, for rows that say what it is worth.
-pub const CONTROLS: [Control; 4] =
-    [Control::EqualWeights, Control::ShuffledWeights, Control::ShearAlone, Control::Untaught];
-
 /// What a row judges by, in one frame (0.5 ms).
 pub struct Felt<'a> {
     /// As it was sampled.
@@ -45,8 +41,8 @@ pub struct Felt<'a> {
     pub sensed: &'a Sensed<'a>,
     /// The detectors of the image that say slip or warn of it, and are believed.
     pub believed: DetectorSet,
-    /// What the network with something of its learning changed says, in the order of [`CONTROLS`].
-    pub controls: [bool; CONTROLS.len()],
+    /// What the network with something of its learning changed says, in the order of [`Control::ALL`].
+    pub controls: [bool; Control::ALL.len()],
     /// The array's features, in the frames that bring new ones.
     pub features: Option<&'a Features>,
 }
@@ -118,8 +114,8 @@ impl Plan {
         let mut kept = Vec::new();
         if taught {
             kept.push(bench.snapshot()?);
-            for control in CONTROLS {
-                kept.push(bench.controlled(Some(control))?.snapshot()?);
+            for control in Control::ALL {
+                kept.push(bench.controlled(control)?.snapshot()?);
             }
         }
         Ok(Fingertip { number, finger, session, taught: kept })

@@ -8,7 +8,7 @@ use tenax_hal_shim::channel::{PVDF_COUNT, frames};
 use tenax_hal_shim::detector::DetectorId;
 use tenax_logic::array::{FEATURES, Features};
 
-use super::heard::{CONTROLS, Felt, Judge};
+use super::heard::{Felt, Judge};
 use crate::equations;
 use crate::learn::control::Control;
 
@@ -219,9 +219,9 @@ pub fn rows() -> Vec<Row> {
         Row { name: name.to_owned(), parts, threshold: None, make }
     };
     let fixed: Make = Box::new(|| vec![above(FIXED_PERMILLE, Ratio)]);
-    let control = |(n, what): (usize, &Control)| {
+    let control = |(n, what): (usize, Control)| {
         let make: Make = Box::new(move || vec![Box::new(Changed(n))]);
-        let name = format!("hebbian, {}", what.key().replace('_', " "));
+        let name = format!("hebbian, {}", what.name());
         Row { name, parts: &["hebbian"], threshold: None, make }
     };
     let mut rows = vec![
@@ -241,7 +241,7 @@ pub fn rows() -> Vec<Row> {
             make: fixed,
         },
     ];
-    rows.splice(3..3, CONTROLS.iter().enumerate().map(control));
+    rows.splice(3..3, Control::ALL.into_iter().enumerate().map(control));
     rows
 }
 
