@@ -52,7 +52,6 @@ impl Dataset {
         Ok(Self { sessions: recorded.collect::<anyhow::Result<_>>()?, plan })
     }
 
-    /// The data as CSV.
     pub fn csv(&self) -> anyhow::Result<Vec<u8>> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         let elements = (1..=ARRAY_COUNT).map(|n| format!("a{n}"));
@@ -85,7 +84,6 @@ impl Dataset {
         Ok(labelled::parse(self.csv()?.as_slice(), &library::choose(name.as_ref(), None)?, name)?)
     }
 
-    /// The manifest of the data that is `csv` in `file`.
     pub fn manifest(&self, file: &str, csv: &[u8]) -> Manifest {
         Manifest::new(&self.plan, file, csv, &self.sessions)
     }

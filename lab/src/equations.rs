@@ -23,7 +23,6 @@ impl Equations {
         }
     }
 
-    /// The same for one unknown alone: a ridge.
     pub fn add_to(&mut self, unknown: usize, weight: f64, pull: f64) {
         self.matrix[unknown][unknown] += weight;
         self.right[unknown] += pull;

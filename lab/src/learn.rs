@@ -42,13 +42,10 @@ const SAFE_LIFTS: u64 = 5;
 /// Held-out trials of each finger made by chance.
 const TRIALS_OF_OTHERS: u64 = 10;
 
-/// What is tried.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Seed of everything.
     pub seed: u64,
     pub trials: u64,
-    /// Minutes of holding.
     pub minutes: u64,
     /// Lifts, and pours, with the reflex.
     pub lifts: u64,
@@ -72,7 +69,6 @@ impl Default for Options {
 #[derive(Clone, Debug)]
 pub struct Outcome {
     pub options: Options,
-    /// Who ran the trials.
     pub board: &'static str,
     /// Whether the board said what the host's logic says to the same codes and commands, tick for tick. None if the host
     /// ran the trials.
@@ -84,10 +80,8 @@ pub struct Outcome {
     /// The score of the same trials with equal weights in place of learned ones, on the host.
     pub equal: Score,
     pub holding: Holding,
-    /// Lifts with the reflex.
     pub lifts: Vec<Three>,
     pub pours: Vec<Three>,
-    /// The other fingers.
     pub others: Vec<Other>,
 }
 
@@ -184,15 +178,12 @@ fn on_board(
 /// A finger made by chance.
 #[derive(Clone, Debug, Default)]
 pub struct Other {
-    /// What sliding keeps of its static friction.
     pub ratio: f64,
-    /// Its held-out trials.
     pub score: Score,
     /// Lifts with more force than the object needs.
     pub safe: Safe,
 }
 
-/// The same lessons, and some held-out trials.
 fn other(options: &Options, n: u64) -> anyhow::Result<Other> {
     let own = seed(options.seed, 6, n);
     let finger = Finger::random(own);

@@ -18,7 +18,6 @@ const DELAYS_MS: [f64; 8] = [10.0, 20.0, 30.0, 45.0, 65.0, 90.0, 130.0, 190.0];
 const STIFFNESS_N_PER_MM: [f64; 8] = [0.3, 0.5, 0.9, 1.6, 3.0, 5.0, 9.0, 16.0];
 /// Lengths of the pulse that answers slip, ms: the gain, a third of the default, the default, and twice that.
 const PULSES_MS: [u32; 3] = [10, 30, 60];
-/// The default.
 const PULSE_MS: u32 = 30;
 /// The scenes' dead time, and their glass: where the defaults stand.
 const DEFAULT: (f64, f64) = (30.0, 3.0);

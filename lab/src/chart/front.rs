@@ -12,7 +12,6 @@ use tenax_sim::session::{self, controls};
 
 use super::{Chart, Progress, csv};
 
-/// Every scene is run with these.
 const SEEDS: [u64; 2] = [1, 2];
 /// A lost object, and one that slid further, counts as this, mm: the pad's length.
 const LOST_MM: f64 = 18.0;
@@ -90,7 +89,6 @@ fn in_every_grip(scene: &str, seed: u64) -> anyhow::Result<Vec<Run>> {
     Ok(runs.map(|(grip, fate)| Run { scene: scene.to_owned(), seed, grip, fate }).collect())
 }
 
-/// How a grip is drawn: a detector has its colour, alone it is a ring, all but it a cross.
 fn look(grip: &str) -> (RGBColor, Mark) {
     let of = |id: DetectorId| match id {
         DetectorId::S1 => colour::BLUE,

@@ -14,7 +14,6 @@ pub use tenax_sim::plot::sheet::draw::svg;
 /// A chart and the numbers in it.
 #[derive(Clone, Debug)]
 pub struct Chart {
-    /// Its file name, without extension.
     pub name: &'static str,
     pub svg: String,
     pub csv: String,

@@ -21,21 +21,16 @@ const HEADS: [u64; 4] = [1, 2, 3, 4];
 const VALIDATION: std::ops::Range<u64> = 2_001..2_061;
 /// Heads whose slowest visible slip is looked for.
 const FLOORS: usize = 20;
-/// Stories of each session.
 const STORIES: usize = 6;
-/// Slips of each day.
 const SLIPS: usize = 10;
 /// Rates of the curves, mm/s.
 const RATES_MM_S: [f64; 9] = [0.05, 0.1, 0.2, 0.4, 0.6, 1.0, 1.6, 2.3, 3.0];
 
-/// What it measures, for programs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Report {
-    /// How well the force is followed where nothing shears.
     pub force: Score,
     /// The same with the shear of a lift: none to half of the force.
     pub force_sheared: Score,
-    /// How well the rate is told.
     pub rate: Rate,
     /// How far the boundary of vibration is from theory, %.
     pub boundary_pct: f64,
@@ -43,7 +38,6 @@ pub struct Report {
     pub slip_floor_mm_s: f64,
 }
 
-/// Of the slip rate.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Rate {
     /// Median error on days that were not calibrated on, %.
@@ -82,7 +76,6 @@ pub fn chart(progress: Progress) -> anyhow::Result<(Chart, Report)> {
             intensity(),
             followed("ramps without shear, three of them turning at the peak", &ramps),
             followed("grips, then lifts with a shear of 0.3 and 0.5 of the force", &lift),
-            by_shear(&lifts),
             against_rate("ac part, mean size", Axis::log("mV", 0.5, 100.0), &curves, |seen| {
                 seen.amplitude_mv
             }),
@@ -90,7 +83,7 @@ pub fn chart(progress: Progress) -> anyhow::Result<(Chart, Report)> {
             map(&region),
         ],
     );
-    let csv = table(&runs, &curves, &region)?;
+    let csv = table(&curves, &region)?;
     progress(1.0);
     Ok((Chart::new("photoelastic", &sheet, csv)?, report))
 }
@@ -110,7 +103,6 @@ fn rates(progress: Progress) -> (f64, f64) {
     [errors, others].map(|errors| middle(errors).unwrap_or(f64::NAN)).into()
 }
 
-/// What the mean head sees of each rate.
 fn curve(material: Material) -> Vec<Seen> {
     let slider = Slider { friction: material.friction(), ..HEAD_STRIP };
     RATES_MM_S.map(|rate| Rig::mean(slider, 1).slide(region::LOAD_N, rate, 0.8 + 0.1 / rate)).to_vec()
@@ -145,24 +137,6 @@ fn stories() -> (Vec<Point>, Vec<Point>) {
     ];
     let shears = vec![0.0, 0.5, 0.0, 0.0, 0.3, 0.3, 0.0, 0.5, 0.0];
     (ramps, session.run(&Story { steps: grips.to_vec(), shears }))
-}
-
-/// Where the head says that it is certain: what it says, and by how much it is off, against the shear.
-fn by_shear(runs: &[Vec<Point>]) -> Panel {
-    let certain = || runs.iter().flatten().filter(|point| point.is_certain);
-    let some = || certain().step_by((certain().count() / 1_500).max(1));
-    let off = some().filter_map(|point| Some((point.shear, point.read_n? - point.true_n)));
-    let says = |sign: f64| some().map(move |point| (point.shear, sign * point.uncertainty_n));
-    Panel::new(
-        "certain: off by, and may be off by, against shear",
-        Axis::even("shear, of the force", 0.0, 0.5),
-        Axis::even("N", -0.3, 0.3),
-        vec![
-            Series::new("may be off by", colour::GREY, Mark::Dots, says(1.0)),
-            Series::new("or so", colour::GREY, Mark::Dots, says(-1.0)),
-            Series::new("off by", colour::BLUE, Mark::Dots, off),
-        ],
-    )
 }
 
 fn intensity() -> Panel {
@@ -240,30 +214,17 @@ fn map(region: &Region) -> Panel {
     )
 }
 
-/// Everything that was drawn and measured, one row each.
-fn table(runs: &[Vec<Point>], curves: &[(Material, Vec<Seen>)], region: &Region) -> anyhow::Result<String> {
-    let mut rows: Vec<[String; 4]> = Vec::new();
+/// Slips and boundary, one row each.
+fn table(curves: &[(Material, Vec<Seen>)], region: &Region) -> anyhow::Result<String> {
+    let mut rows: Vec<Vec<String>> = Vec::new();
     let row = |what: &str, which: String, x: f64, y: f64| {
-        [what.to_owned(), which, format!("{x:.5}"), format!("{y:.5}")]
+        vec![what.to_owned(), which, format!("{x:.5}"), format!("{y:.5}")]
     };
-    for seed in VALIDATION {
-        let session = Session::new(seed);
-        let drawn = serde_json::to_value((session.making(), session.day()))?;
-        for part in drawn.as_array().into_iter().flatten().filter_map(|part| part.as_object()) {
-            let numbers = part.iter().filter_map(|(key, value)| Some((key, value.as_f64()?)));
-            rows.extend(numbers.map(|(key, value)| row("drawn", key.clone(), seed as f64, value)));
-        }
-    }
-    for (n, run) in runs.iter().enumerate() {
-        let score = Score::of([run.as_slice()]);
-        rows.push(row("story_rms_pct_fs", n.to_string(), score.cycles as f64, score.rms_pct_fs));
-        rows.push(row("story_certain_part", n.to_string(), score.cycles as f64, score.certain_part));
-    }
-    for (material, seen) in curves {
-        for seen in seen {
-            rows.push(row("ac_mv", material.name().to_owned(), seen.rate_mm_s, seen.amplitude_mv));
-            rows.push(row("ac_hz", material.name().to_owned(), seen.rate_mm_s, seen.hz));
-        }
+    for (material, seen) in
+        curves.iter().flat_map(|(material, seen)| seen.iter().map(move |own| (material, own)))
+    {
+        rows.push(row("ac_mv", material.name().to_owned(), seen.rate_mm_s, seen.amplitude_mv));
+        rows.push(row("ac_hz", material.name().to_owned(), seen.rate_mm_s, seen.hz));
     }
     for (steepness, theory, measured) in &region.boundary {
         rows.push(row("boundary_mm_s", format!("{steepness:.3} s/m"), *theory, *measured));
@@ -272,5 +233,5 @@ fn table(runs: &[Vec<Point>], curves: &[(Material, Vec<Seen>)], region: &Region)
         let seen = f64::from(u8::from(point.seen));
         rows.push(row("seen", format!("{:.3} s/m", point.steepness_s_m), point.rate_mm_s, seen));
     }
-    csv("what,which,x,y", rows.into_iter().map(Vec::from))
+    csv("what,which,x,y", rows)
 }

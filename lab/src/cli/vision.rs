@@ -136,14 +136,14 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if args.drawn && args.rate_hz.is_some_and(|rate| !(1.0..=60.0).contains(&rate) || rate.fract() != 0.0) {
         bail!("a drawn camera takes 1 to 60 pictures a second, a whole number");
     }
-    if args.teach && args.port.is_none() && matches!(args.report, Format::Json) {
+    let prints_codes = args.teach && args.port.is_none();
+    if prints_codes && args.report == Format::Json {
         bail!("--teach without --port prints the teacher's words and no report");
     }
-    let folder = args.out.as_deref().map(folder::made).transpose()?;
     let mut plan = Plan {
         source,
         rate_hz: args.rate_hz,
-        folder,
+        folder: args.out.as_deref().map(folder::made).transpose()?,
         live: args.port.is_some() || args.device.is_some(),
         fault: args.fault,
         holds: None,
@@ -157,26 +157,23 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         let blind = match told {
             Told::Silence(blind) => Some(blind),
             Told::Picture(camera, summary, age_ms) => {
-                let words = told::teach(summary, age_ms).filter(|_| args.teach);
-                match &mut board {
-                    Some(board) => {
-                        let view = told::view(camera, summary, gains, age_ms).map(Down::View);
-                        let begins = begin.take_if(|_| view.is_some() && summary.forces.is_some());
-                        for command in view.into_iter().chain(words).chain(begins.map(Down::Begin)) {
-                            board.line.send(&command).context("cannot write to the line")?;
-                        }
+                if let Some(board) = &mut board {
+                    let view = told::view(camera, summary, gains, age_ms).map(Down::View);
+                    let begins = begin.take_if(|_| view.is_some() && summary.forces.is_some());
+                    let words = told::teach(summary, age_ms).filter(|_| args.teach);
+                    for command in view.into_iter().chain(words).chain(begins.map(Down::Begin)) {
+                        board.line.send(&command).context("cannot write to the line")?;
                     }
-                    None if words.is_some() => {
-                        out::say!("{}", told::teaching(summary, age_ms).unwrap_or_default())?;
-                    }
-                    None => {}
+                } else if let Some((v1, v2)) = summary.codes().filter(|_| prints_codes) {
+                    // A line of `tenax monitor --teach`.
+                    out::say!("{v1} {v2} {age_ms}")?;
                 }
                 summary.blind
             }
         };
         if blind.map(name) != was_blind.map(name) {
             match blind {
-                Some(blind) => out::note!("tenax: the camera is {}; nothing is told", name(blind)),
+                Some(blind) => out::note!("tenax: the camera is {}; nothing is sent", name(blind)),
                 None => out::note!("tenax: the camera sees again"),
             }
             was_blind = blind;
@@ -184,35 +181,35 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
         Ok(())
     })?;
     if let Some(board) = board {
-        let (done, refused) = board.answers();
+        // The last answers are under way.
+        std::thread::sleep(Duration::from_millis(100));
+        let [done, refused] = [0, 1].map(|n: usize| board.answers[n].load(Ordering::Relaxed));
         out::note!("tenax: the board took {done} messages of the camera and refused {refused}");
     }
-    if args.teach && args.port.is_none() {
-        return Ok(ExitCode::SUCCESS);
+    if !prints_codes {
+        args.report.show(&report)?;
     }
-    args.report.show(&report)?;
     Ok(ExitCode::SUCCESS)
 }
 
 fn behaviour(text: &str) -> Result<Behaviour, String> {
-    match text.split_once(':') {
-        None => match text {
-            "gentle-grasp" => Ok(Behaviour::GentleGrasp),
-            "hold" => Ok(Behaviour::Hold),
-            "hand-over" => Ok(Behaviour::HandOver),
-            _ => Err("gentle-grasp, hold, hand-over or turn:DEGREES".to_owned()),
-        },
-        Some(("turn", degrees)) => match degrees.parse::<f64>() {
-            Ok(degrees) if degrees.abs() <= 90.0 => {
+    let wrong = || "gentle-grasp, hold, hand-over or turn:DEGREES, of -90 to 90 degrees".to_owned();
+    match text {
+        "gentle-grasp" => Ok(Behaviour::GentleGrasp),
+        "hold" => Ok(Behaviour::Hold),
+        "hand-over" => Ok(Behaviour::HandOver),
+        _ => {
+            let degrees: f64 =
+                text.strip_prefix("turn:").and_then(|own| own.parse().ok()).ok_or_else(wrong)?;
+            if degrees.abs() > 90.0 {
+                Err(wrong())
+            } else {
                 Ok(Behaviour::Turn { by_ddeg: (10.0 * degrees).round() as i16 })
             }
-            _ => Err("a turn is by -90 to 90 degrees".to_owned()),
-        },
-        Some(_) => Err("gentle-grasp, hold, hand-over or turn:DEGREES".to_owned()),
+        }
     }
 }
 
-/// What a person reads of a camera that is not believed.
 const fn name(blind: Blind) -> &'static str {
     match blind {
         Blind::Lost(_) => "lost",
@@ -222,26 +219,25 @@ const fn name(blind: Blind) -> &'static str {
     }
 }
 
-/// A board that listens.
 struct Board {
     line: Outbox<Box<dyn Write + Send>>,
     /// Whether its hand holds something.
     holds: Arc<AtomicBool>,
-    /// Commands that it carried out, and that it refused.
+    /// Commands carried out, and refused.
     answers: Arc<[AtomicUsize; 2]>,
 }
 
 impl Board {
-    /// What the board says is read as it comes, so that its line does not fill.
+    /// Opens a line and reads it from now on, so that it does not fill. Fails if it cannot be opened or is a captured one.
     fn open(target: &Target) -> anyhow::Result<Self> {
         let mut client = Client::open(target)?;
         if !client.open_session(Duration::from_secs(1))? {
             out::note!("tenax: the board offered no session; it will not listen to the camera");
         }
-        let line = client.take_outbox().context("a captured line cannot be told anything")?;
+        let line = client.take_outbox().context("nothing can be sent to a captured line")?;
         let holds = Arc::new(AtomicBool::new(false));
         let answers = Arc::new([AtomicUsize::new(0), AtomicUsize::new(0)]);
-        let (told, counts) = (holds.clone(), answers.clone());
+        let board = Self { line, holds: holds.clone(), answers: answers.clone() };
         std::thread::spawn(move || {
             let mut was_open = false;
             while let Ok(frame) = client.next_frame() {
@@ -250,30 +246,22 @@ impl Board {
                     Up::Slow(slow) => {
                         let held = slow.forces.is_some_and(|forces| forces.load_mn > HOLDS_MN);
                         was_open |= slow.forces.is_some() && !held;
-                        // What was held before anybody looked has to be learned in the hand.
-                        told.store(held && was_open, Ordering::Relaxed);
+                        // An object that is held from the start has to be learned in the hand.
+                        holds.store(held && was_open, Ordering::Relaxed);
                     }
-                    Up::Event(Event { kind: EventKind::Behaviour(what, ending), .. }) => match ending {
-                        None => out::note!("tenax: the board begins: {}", what.name()),
-                        Some(ending) => {
-                            out::note!("tenax: the board ends: {}: {}", what.name(), ending.name())
-                        }
-                    },
+                    Up::Event(Event { kind: EventKind::Behaviour(what, ending), .. }) => {
+                        let ending = ending.map_or("begun", |ending| ending.name());
+                        out::note!("tenax: the board's {}: {ending}", what.name());
+                    }
                     Up::Answer { answer, .. } => {
                         let refused = matches!(answer, Answer::Refused(_));
-                        counts[usize::from(refused)].fetch_add(1, Ordering::Relaxed);
+                        answers[usize::from(refused)].fetch_add(1, Ordering::Relaxed);
                     }
                     _ => (),
                 }
             }
         });
-        Ok(Self { line, holds, answers })
-    }
-
-    fn answers(&self) -> (usize, usize) {
-        // The last ones are under way.
-        std::thread::sleep(Duration::from_millis(100));
-        (self.answers[0].load(Ordering::Relaxed), self.answers[1].load(Ordering::Relaxed))
+        Ok(board)
     }
 }
 
@@ -293,36 +281,15 @@ fn calibrated(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
         bail!("no load of {} has one of the masses to leave out", args.loads.display());
     }
     let loads = skin.fit(&learned)?;
-    let mut scores = vec![("learned", calibrate::score(&loads, &learned))];
     let mut tried = out_of_it;
     if let Some(table) = &args.try_loads {
         tried.extend(skin.samples(table)?);
     }
-    if !tried.is_empty() {
-        scores.push(("tried", calibrate::score(&loads, &tried)));
-    }
-    let scores: serde_json::Map<_, _> = scores
-        .iter()
-        .map(|(name, score)| Ok(((*name).to_owned(), serde_json::to_value(score)?)))
-        .collect::<anyhow::Result<_>>()?;
-    args.report.show(&scores)?;
-    if args.report == Format::Json {
-        return Ok(ExitCode::SUCCESS);
-    }
-    out::say!("{} markers", skin.markers())?;
-    if !tried.is_empty() {
-        out::say!("tried, a load a row, N:   mass_g   truth x   normal   z      estimate x   normal   z")?;
-        for (mass, truth, estimate) in calibrate::table(&loads, &tried) {
-            out::say!(
-                "{mass:34.1}{:10.2}{:9.2}{:7.2}{:16.2}{:9.2}{:7.2}",
-                truth[0],
-                truth[1],
-                truth[2],
-                estimate[0],
-                estimate[1],
-                estimate[2]
-            )?;
-        }
-    }
+    args.report.show(&calibrate::Report {
+        markers: skin.markers(),
+        learned: calibrate::score(&loads, &learned),
+        tried: (!tried.is_empty()).then(|| calibrate::score(&loads, &tried)),
+        loads: calibrate::table(&loads, &tried),
+    })?;
     Ok(ExitCode::SUCCESS)
 }

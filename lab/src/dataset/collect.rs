@@ -30,7 +30,6 @@ pub struct Step {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     pub story: Story,
-    /// 80 a second.
     pub steps: Vec<Step>,
     /// Slips that the world counted, and micro slip that came to nothing.
     pub spans: Vec<SlipSpan>,

@@ -14,7 +14,6 @@ use super::session::Session;
 /// Written as TOML beside the data.
 #[derive(Clone, Debug, Serialize)]
 pub struct Manifest {
-    /// The tool and its version.
     pub tool: String,
     pub seed: u64,
     /// Sessions to learn from, of each seen material.

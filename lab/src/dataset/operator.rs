@@ -14,7 +14,6 @@ use super::story::Story;
 
 /// The gripper opens so fast when they let go of everything.
 const LET_GO: MotorDrive = MotorDrive::Open(Duty::per_mille(500));
-/// They ease the grip slowly.
 const EASE: MotorDrive = MotorDrive::Open(Duty::per_mille(40));
 /// Force at which a finger stalls under the whole supply, N, and its speed without a load, mm/s: as in the three scenes.
 const STALL_N: f64 = 80.0;
@@ -29,10 +28,8 @@ const TAKEN_S: f64 = 1.9;
 /// How they close on something that they do not touch yet, per mille.
 const COMES: f64 = 600.0;
 
-/// What they are about to do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Wish {
-    /// Leave it.
     Hold,
     /// Close until each finger presses so hard, N, and nothing slips.
     Tighten(f64),
@@ -100,13 +97,11 @@ impl Operator {
         operator
     }
 
-    /// Draws how long they let it slip the next time.
     fn wait(&mut self) {
         self.patience = (self.rng.random_range(1.0..9.0), self.rng.random_range(0.3..2.5));
         self.slipped = (0.0, 0.0);
     }
 
-    /// What they do with the motor for the next frame. `slips` and the world are what they see.
     pub fn drive(&mut self, world: &World, slips: bool) -> MotorDrive {
         let (touch, t_s) = (world.touch(), world.now_s());
         let grip_n = touch.normal_n;

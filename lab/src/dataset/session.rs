@@ -6,7 +6,6 @@ use serde::Serialize;
 use tenax_sim::array::material::{Ends, HELD_OUT, Material, SEEN};
 use tenax_sim::labelled::Part;
 
-/// How many sessions of each material there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sizes {
     /// To learn from, of each seen material.
@@ -31,7 +30,6 @@ pub struct Session {
     pub name: String,
     pub split: Part,
     pub material: &'static str,
-    /// Seed of all its noise.
     pub seed: u64,
     pub specimen: u32,
     pub mu_s: f64,
@@ -58,7 +56,6 @@ pub struct Session {
     pub hang_mm: f64,
     /// Sensitivity of the array, mV/N an element.
     pub mv_per_n: f64,
-    /// How unlike its elements are, as a part.
     pub spread: f64,
     /// Noise of a reading, rms, mV.
     pub noise_mv: f64,

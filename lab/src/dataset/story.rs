@@ -153,7 +153,6 @@ impl Story {
     }
 }
 
-/// As often in one part of a decade as in another.
 fn over_decades(rng: &mut ChaCha8Rng, ends: std::ops::Range<f64>) -> f64 {
     rng.random_range(ends.start.ln()..ends.end.ln()).exp()
 }
@@ -165,7 +164,6 @@ const PICK_S: f64 = 9.0;
 /// How long the disturbances last, s; in the last 3 s the grip changes.
 const DISTURB_S: f64 = 13.0;
 
-/// How much more noise than its session a disturbed recording has.
 const NOISIER: std::ops::Range<f64> = 1.0..5.0;
 
 /// How somebody closes on the box, and opens, per mille.

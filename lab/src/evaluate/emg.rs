@@ -2,7 +2,6 @@
 //!
 //! Two kinds of [recordings]: sessions of minutes with labels, and [short ones](two_channel) that are named by their movement.
 
-pub mod asked;
 pub mod curves;
 pub mod faults;
 pub mod interval;
@@ -57,8 +56,6 @@ pub struct Person {
     pub refused: BTreeMap<u32, String>,
     /// Calibrations that were tried.
     pub sessions: usize,
-    /// Requests for a new calibration; not while constants are fitted.
-    pub asked: Option<asked::Asked>,
 }
 
 /// The whole folder.
@@ -161,10 +158,7 @@ pub fn evaluate(folder: &Path, only: Option<u32>, faults: u32, seed: u64) -> any
     let trials: Vec<Trial> = all.people.values().flat_map(|days| Trials::of(days).all).collect();
     let faults =
         (faults > 0).then(|| faults::draw(&FITTED, &trials.iter().collect::<Vec<_>>(), faults, seed));
-    let score = |(&number, days)| {
-        let (person, sessions) = person(&FITTED, number, days);
-        (Person { asked: asked::asked(&FITTED, days), ..person }, sessions)
-    };
+    let score = |(&number, days)| person(&FITTED, number, days);
     let persons = all.people.par_iter().map(score).collect();
     let two_channel = all.sessions.par_iter().map(|session| session.score(&FITTED)).collect();
     Ok(Report { two_channel, faults, ..Report::of(persons) })
@@ -175,7 +169,7 @@ pub(super) fn person(fitted: &'static Fitted, number: u32, days: &Days) -> (Pers
     let counted = all.iter().map(|trial| (trial.kind, trial.counted(&trial.play(fitted))));
     let sessions = Sessions(counted.collect());
     let scores = Kinds::of(|kind| sessions.score(kind));
-    (Person { person: number, scores, refused, sessions: days.len(), asked: None }, sessions)
+    (Person { person: number, scores, refused, sessions: days.len() }, sessions)
 }
 
 #[cfg(test)]

@@ -98,7 +98,6 @@ const OPENS: f64 = 20.0;
 /// Fitted without some people, and what it is worth on them.
 #[derive(Clone, Debug, Serialize)]
 pub struct Held {
-    /// Whom the constants were fitted on.
     pub fitted_on: Vec<u32>,
     /// Mean cost of the others: of the round figures, of what ships (which has seen them), and of what was fitted.
     pub plain_cost: f64,
@@ -108,13 +107,10 @@ pub struct Held {
 
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Of what ships and of what was found: mean cost of a person, of the promises and of faults.
     pub cost: [f64; 2],
     /// Each way to hold people apart.
     pub held: Vec<Held>,
-    /// What was fitted on all others, on each person.
     pub held_one: emg::Report,
-    /// What was fitted on a half, on each person of the other: medians over those.
     pub held_half: emg::Report,
     /// The file, `logic/src/emg/fitted.rs`.
     pub file: String,
@@ -198,7 +194,6 @@ fn search(
     ([first, sum(&least)], best)
 }
 
-/// Whom to fit on while the others are held apart: all but one, and each half.
 fn splits(count: usize) -> Vec<Vec<usize>> {
     let of = |size: usize| {
         let chosen = (0..1u32 << count).filter(move |own| own.count_ones() as usize == size);

@@ -55,7 +55,6 @@ pub struct Report {
 }
 
 impl Report {
-    /// Scores verdicts and logits of recordings.
     pub fn new(recordings: &[Recording], said: &[Verdicts], logits: &[Logits]) -> Self {
         let mut all = Steps::default();
         let judged = || recordings.iter().zip(said);

@@ -34,7 +34,6 @@ pub struct Roc {
     pub auc: f64,
     /// Mean precision over all recalls; guessing has the prevalence.
     pub average_precision: f64,
-    /// The point with the best balanced accuracy.
     pub best_balanced: Point,
     /// By rising false steps.
     pub points: Vec<Point>,

@@ -18,7 +18,6 @@ use super::control::Control;
 use super::trial::{Setup, Trial, by_network};
 use tenax_sim::board::simulated::Ahead;
 
-/// Who says that the object slips, for the reflex to answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Judge {
     /// The fingertip's own detectors; the scenes silence all but the network.
@@ -34,7 +33,6 @@ pub enum Judge {
 pub struct Bench {
     fingertip: Fingertip,
     frame: u32,
-    /// What the network said in the ticks of the last slow frame.
     said: Vec<Said>,
 }
 
@@ -133,7 +131,6 @@ impl Bench {
         Ok(other)
     }
 
-    /// What the network said in the ticks of the last slow frame.
     pub fn said(&self) -> &[Said] {
         &self.said
     }

@@ -88,7 +88,6 @@ impl Finger {
         }
     }
 
-    /// What sliding keeps of static friction.
     pub fn ratio(&self) -> f64 {
         self.mu_d / self.mu_s
     }
@@ -124,7 +123,6 @@ impl Finger {
         Ok(SceneFile::parse(&toml::to_string(&scene)?, name)?)
     }
 
-    /// Its friction, static and dynamic.
     pub const fn friction(&self) -> [f64; 2] {
         [self.mu_s, self.mu_d]
     }
@@ -138,7 +136,6 @@ impl Finger {
         }
     }
 
-    /// The same finger with one more number of its scenes changed.
     pub fn with(mut self, change: Change) -> Self {
         self.changes.retain(|(place, _)| *place != change.0);
         self.changes.push(change);
@@ -156,7 +153,6 @@ impl Finger {
         (2.0 + times * self.force * NEEDED_N / 0.3) / 36.0
     }
 
-    /// What the object needs, over what that of the scene files does.
     pub const fn force(&self) -> f64 {
         self.force
     }

@@ -16,7 +16,6 @@ use tenax_sim::scorer::{Card, Doing, Stretch};
 const SCENE: &str = "hold";
 /// The block is in the air and the hand still, s.
 pub const FROM_S: f64 = 4.0;
-/// What happens in a minute, and how often.
 const KNOCKS: u32 = 6;
 const SWINGS: u32 = 2;
 const RUNS: u32 = 2;
@@ -37,7 +36,6 @@ pub struct Holding {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct False {
     pub count: u32,
-    /// Those of them in micro slip that came to nothing: right about the contact, wrong about the object.
     pub in_micro_slip: u32,
 }
 

@@ -8,7 +8,6 @@ use tenax_scene::{Seeds, World};
 use super::bench::{Bench, Judge};
 use super::finger::{Change, Finger};
 
-/// Who is tried, in this order wherever there are three.
 pub const JUDGES: [Judge; 3] = [Judge::Touch, Judge::Vision, Judge::Bound];
 
 /// When the lift begins, s, without what chance adds.

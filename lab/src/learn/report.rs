@@ -77,7 +77,6 @@ pub struct Score {
     pub macro_s: Vec<f64>,
     /// The network's first word, slip or a warning of it.
     pub first: Words,
-    /// Its word of slip, which the films alone give.
     pub slip: Words,
     /// Slips, up or down, with the wrong direction of o2.
     pub direction_wrong: u64,
@@ -134,7 +133,6 @@ pub struct Said {
     pub missed: u64,
     /// False alarms an hour of holding.
     pub false_per_hour: f64,
-    /// The same trials with equal weights.
     pub equal_weights: Lead,
     /// Lead of learned over equal weights, s, mean.
     pub sooner_than_equal_s: f64,
@@ -210,7 +208,6 @@ pub struct Fingertips {
     pub count: u64,
     /// The mean lead of the worst of them, s. Null if one missed a slip or reported a direction wrongly, or there are none.
     pub worst_lead_s: Option<f64>,
-    /// Trials of theirs.
     pub trials: u64,
     /// Sliding keeps at most 0.75 of static friction, and more.
     pub slippery: Group,

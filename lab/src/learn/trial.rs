@@ -73,7 +73,6 @@ impl Setup {
     }
 }
 
-/// How much more than it needs an object is lifted with: what people (1.2 to 2) and those with a prosthesis do.
 const SAFE_FORCE: Range<f64> = 1.5..3.0;
 
 /// Which words of the network's are listened to.
@@ -97,7 +96,6 @@ impl Word {
     }
 }
 
-/// What the network said in a tick, of the detectors that say slip and of those that warn.
 pub const fn by_network([slip, warning]: [DetectorSet; 2]) -> Said {
     Said { slip: slip.contains(DetectorId::Hebbian), incipient: warning.contains(DetectorId::Hebbian) }
 }
@@ -107,11 +105,9 @@ pub const fn by_network([slip, warning]: [DetectorSet; 2]) -> Said {
 pub struct Trial {
     /// When the arm began to lift, s.
     pub lift_s: f64,
-    /// What the network said in each tick, from the first.
     pub outputs: Vec<[i8; 2]>,
     /// Whether that meant slip, and whether it was warned of.
     pub said: Vec<Said>,
-    /// What was true, and what the camera said.
     pub truth: Truth,
 }
 

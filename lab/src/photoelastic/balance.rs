@@ -20,7 +20,6 @@ const FINE: (f64, f64) = (20.0, 2.0);
 const STEP: f64 = 10.0;
 /// The ac part of slip is so many times the largest that was read while nothing slipped.
 const SLIP_TIMES: i32 = 2;
-/// Cycles that are read of each.
 const CYCLES: usize = 40;
 
 /// One weight, and what was read under it.
@@ -36,7 +35,6 @@ pub struct Weighed {
 /// A calibration, and how well it fits.
 #[derive(Clone, Debug)]
 pub struct Calibration {
-    /// For the head.
     pub curve: Curve,
     /// Every weight up to the curve's end.
     pub weighed: Vec<Weighed>,

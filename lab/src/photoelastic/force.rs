@@ -3,7 +3,6 @@
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use tenax_logic::photoelastic::Head;
 use tenax_logic::photoelastic::track::{Branch, Hints, SHEAR_MAX_PERMILLE, Track};
 use tenax_scene::Seeds;
 use tenax_scene::sensor::photoelastic::curve::{Day, Making, receiver_mv};
@@ -48,7 +47,6 @@ pub struct Story {
 
 /// Part of the way in which the shear changes with the force; the rest comes while the force stays, as in a lift.
 const SHEARED_ON_THE_WAY: f64 = 0.5;
-/// How long a lift takes, cycles: shortest and longest.
 const LIFT_CYCLES: (f64, f64) = (8.0, 80.0);
 
 impl Story {
@@ -71,7 +69,6 @@ impl Story {
         Self { steps, shears: Vec::new() }
     }
 
-    /// The same, of an object that is lifted, swung and set down meanwhile: at each target its shear is another one.
     pub fn sheared(mut self, random: &mut ChaCha8Rng) -> Self {
         let most = f64::from(SHEAR_MAX_PERMILLE) / 1e3;
         self.shears = self.steps.iter().map(|_| between(random, 0.0, most)).collect();
@@ -144,22 +141,9 @@ impl Session {
         session
     }
 
-    pub const fn making(&self) -> &Making {
-        &self.making
-    }
-
     /// Where its light is brightest today, N.
     pub const fn peak_n(&self) -> f64 {
         self.peak_n
-    }
-
-    /// The logic that reads it.
-    pub const fn head(&self) -> &Head {
-        &self.bench.head
-    }
-
-    pub const fn day(&self) -> &Day {
-        &self.day
     }
 
     /// A second in an open hand.
@@ -223,7 +207,6 @@ impl Session {
 
 const FULL_SCALE_N: f64 = 6.0;
 
-/// What many runs come to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Score {
     /// Root mean square of the error where the head says that it is certain, % of 6 N.
@@ -271,7 +254,6 @@ impl Score {
     }
 }
 
-/// As many sessions as there are seeds, each with as many stories, sheared or not.
 pub fn sessions(seeds: impl IntoIterator<Item = u64>, stories: usize, sheared: bool) -> Vec<Vec<Point>> {
     let mut runs = Vec::new();
     for seed in seeds {

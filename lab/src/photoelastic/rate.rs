@@ -33,7 +33,6 @@ pub enum Material {
 impl Material {
     pub const ALL: [Self; 2] = [Self::Aluminium, Self::Plastic];
 
-    /// For a person.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Aluminium => "aluminium",
@@ -41,7 +40,6 @@ impl Material {
         }
     }
 
-    /// Of the material on the strip.
     pub const fn friction(self) -> Stribeck {
         match self {
             Self::Aluminium => METAL,
@@ -57,7 +55,6 @@ pub struct Rig {
     pub bench: Bench,
 }
 
-/// What is seen of a slip that goes on.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen {
     /// How fast it is drawn, mm/s.
@@ -124,7 +121,6 @@ impl Rig {
         }
     }
 
-    /// Nothing slides.
     fn still(&mut self, normal_n: f64, cycles: usize, hints: Hints) {
         let touch = Touch { normal_n, sticks: true, ..Touch::default() };
         for _ in 0..cycles {

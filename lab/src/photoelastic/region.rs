@@ -8,7 +8,6 @@ use super::rate::{Material, Rig, rig_of};
 
 /// The load: the weight of the aluminium block, N.
 pub const LOAD_N: f64 = BLOCK_N;
-/// How much friction falls altogether, as coefficients.
 const DROPS: [f64; 9] = [0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.07, 0.1];
 /// Slip rates of the map, mm/s.
 const RATES_MM_S: [f64; 11] = [0.05, 0.1, 0.2, 0.4, 0.7, 1.0, 1.5, 2.5, 4.0, 6.0, 9.0];

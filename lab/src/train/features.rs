@@ -22,7 +22,6 @@ pub struct Recipe {
     pub covariance_knee: u32,
     /// The same for a bin's power.
     pub spectrum_knee: u32,
-    /// The same for a frame of a structure function.
     pub structure_knee: u32,
 }
 

@@ -18,7 +18,6 @@ const FOLDS_MAX: usize = 5;
 /// A way to learn.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Candidate {
-    /// See [`Standard::of`].
     pub shyness: f32,
     /// Penalty of a squared weight of the logistic regression, a row.
     pub ridge: f64,
@@ -74,7 +73,6 @@ pub struct Choice {
     pub passes: usize,
     /// Accuracy or balanced accuracy on sessions it had not seen.
     pub unseen: f64,
-    /// The threshold of that score.
     pub threshold: f64,
     /// Slope and intercept that turn its logit into log-odds.
     pub calibration: (f64, f64),
@@ -147,7 +145,6 @@ pub fn fit(
     Ok(Trained { network, choice })
 }
 
-/// What it is chosen by: where the aim is pours, those of them that are.
 fn judged_by<'a>(sequences: &'a [Sequence], judge: &[usize], aim: Aim) -> Vec<&'a Sequence> {
     let all = || judge.iter().map(|&n| &sequences[n]);
     let pours: Vec<&Sequence> = all().filter(|sequence| sequence.doing == Doing::Pour).collect();

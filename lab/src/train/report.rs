@@ -20,10 +20,8 @@ pub struct Data {
     pub file: String,
     pub sha256: String,
     pub recordings: usize,
-    /// Steps with features.
     pub steps: usize,
     pub slip_steps: usize,
-    /// Sessions or objects.
     pub sessions: usize,
 }
 

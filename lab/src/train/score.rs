@@ -29,7 +29,6 @@ pub enum Aim {
     Accuracy,
     /// The mean of sensitivity and specificity.
     Balanced,
-    /// The same on pours alone, with at most [`FALSE_MAX`] of the steps called slip falsely.
     Pours,
 }
 

@@ -7,7 +7,6 @@ use crate::train::features::{Sequence, is_believed_first, kind_of};
 /// Rows, one a time step.
 #[derive(Clone, Debug, Default)]
 pub struct Table {
-    /// [`FEATURES`] a row.
     pub features: Vec<f32>,
     pub slips: Vec<bool>,
 }

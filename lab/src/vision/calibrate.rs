@@ -165,8 +165,6 @@ impl Skin {
 }
 
 impl Skin {
-    /// What shear along x, and along y, is in a skin that is alike to the left and to the right: how far the markers move that
-    /// way in the middle, how that changes along the finger, and how they move aside. Weights of the features.
     fn smooth(&self) -> [[OfEach; SMOOTH]; 2] {
         let place = |marker: &Marker| {
             let at = marker.rest.at;
@@ -215,7 +213,6 @@ impl Skin {
     }
 }
 
-/// How much a sample counts.
 fn weight(sample: &Sample) -> f64 {
     1.0 / (0.5 + 0.1 * sample.force_n.iter().map(|force| force * force).sum::<f64>().sqrt())
 }
@@ -281,23 +278,48 @@ pub fn score(loads: &Loads, samples: &[Sample]) -> Score {
     }
 }
 
-/// A load's mass, truth, sum of the estimates, and pictures.
-type Sum = (f64, [f64; 3], [f64; 3], f64);
+/// A load: truth and the mean estimate over its pictures, N.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Load {
+    pub mass_g: f64,
+    pub x_n: f64,
+    pub normal_n: f64,
+    pub z_n: f64,
+    pub told_x_n: f64,
+    pub told_normal_n: f64,
+    pub told_z_n: f64,
+}
 
-/// Each load's truth and estimate: mean over its pictures, N.
-pub fn table(loads: &Loads, samples: &[Sample]) -> Vec<(f64, [f64; 3], [f64; 3])> {
-    let mut sums: BTreeMap<[i64; 4], Sum> = BTreeMap::new();
-    for sample in samples {
-        let key = [sample.mass_g, sample.force_n[0], sample.force_n[1], sample.force_n[2]];
-        let force = loads.newtons(&sample.features);
-        let entry = sums.entry(key.map(|value| (value * 1e4).round() as i64));
-        let entry = entry.or_insert((sample.mass_g, sample.force_n, [0.0; 3], 0.0));
-        for (sum, value) in entry.2.iter_mut().zip([force.x, force.normal, force.y]) {
-            *sum += f64::from(value);
-        }
-        entry.3 += 1.0;
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    pub markers: usize,
+    pub learned: Score,
+    /// Loads that nothing was learned from.
+    pub tried: Option<Score>,
+    pub loads: Vec<Load>,
+}
+
+/// The places of each load's samples.
+pub fn by_load(samples: &[Sample]) -> Vec<Vec<usize>> {
+    let mut loads: BTreeMap<[i64; 4], Vec<usize>> = BTreeMap::new();
+    for (at, sample) in samples.iter().enumerate() {
+        let [x, y, z] = sample.force_n;
+        let key = [sample.mass_g, x, y, z].map(|value| (value * 1e4).round() as i64);
+        loads.entry(key).or_default().push(at);
     }
-    sums.into_values().map(|(mass, truth, sum, count)| (mass, truth, sum.map(|sum| sum / count))).collect()
+    loads.into_values().collect()
+}
+
+/// Each load's truth and estimate.
+pub fn table(loads: &Loads, samples: &[Sample]) -> Vec<Load> {
+    let load = |own: Vec<usize>| {
+        let told = |axis: usize| {
+            own.iter().map(|&at| samples[at].estimate_n(loads)[axis]).sum::<f64>() / own.len() as f64
+        };
+        let Sample { mass_g, force_n: [x_n, normal_n, z_n], .. } = samples[own[0]];
+        Load { mass_g, x_n, normal_n, z_n, told_x_n: told(0), told_normal_n: told(1), told_z_n: told(2) }
+    };
+    by_load(samples).into_iter().map(load).collect()
 }
 
 /// Samples whose mass is within 2 % of one of `masses_g`, and the others.

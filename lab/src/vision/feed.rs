@@ -12,10 +12,8 @@ use tenax_vision::quality::LOST_MS;
 
 use super::source::{Pictures, Source};
 
-/// Planes of one picture.
 pub type Planes = Box<[u8; FRAME_BYTES]>;
 
-/// What a drawn camera does wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Fault {
     /// No picture comes.
@@ -37,12 +35,10 @@ const DRAWN_MAX: usize = 1_000;
 /// A covered lens lets this much through.
 const DARK: u8 = 3;
 
-/// What comes next.
 #[derive(Debug)]
 pub enum Next {
     /// A picture, with the instants at which it was taken and came, ms.
     Picture(Planes, u32, u32),
-    /// Nothing has come for too long: the instant.
     Silence(u32),
     End,
 }

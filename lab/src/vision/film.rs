@@ -18,17 +18,14 @@ use tenax_vision::{Camera, Summary};
 use super::feed::{Fault, Feed, Next};
 use super::source::Source;
 
-/// What to do with the pictures.
 #[derive(Clone, Debug)]
 pub struct Plan {
     pub source: Source,
     /// Pictures a second, unless the video says it.
     pub rate_hz: Option<f64>,
-    /// Folder of the tables.
     pub folder: Option<PathBuf>,
     /// Whether they come as a camera's do and not as fast as they are decoded.
     pub live: bool,
-    /// What is wrong with a drawn camera for two seconds.
     pub fault: Option<Fault>,
     /// Whether a hand holds something, where somebody knows: from then on the object's colours are known.
     pub holds: Option<Arc<AtomicBool>>,
@@ -36,17 +33,14 @@ pub struct Plan {
 
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Report {
-    /// Pictures.
     pub frames: usize,
     /// Pictures a second that one core follows.
     pub fps_per_core: f64,
-    /// Markers of the skin.
     pub markers: usize,
     /// Share of a marker's updates that failed.
     pub failed_share: f64,
     /// The longest way that a known marker went from one picture to the next, px.
     pub longest_jump_px: f64,
-    /// Share of the pictures with an object.
     pub object_share: f64,
     /// Share of the pictures in which it slips.
     pub slip_share: f64,
@@ -54,20 +48,16 @@ pub struct Report {
     pub blind: Blindness,
 }
 
-/// How often a camera was blind, pictures.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Blindness {
     /// None came for too long: times.
     pub lost: usize,
     /// The picture was too old.
     pub late: usize,
-    /// The same one came again and again.
     pub frozen: usize,
-    /// Nothing is seen in it.
     pub covered: usize,
 }
 
-/// What whoever is told hears.
 #[derive(Debug)]
 pub enum Told<'a> {
     /// A picture, and its age, ms.

@@ -17,9 +17,7 @@ pub enum Source {
     Device(PathBuf),
     /// Pictures, one after the other.
     Pictures(Vec<PathBuf>),
-    /// A drawn scene.
     Drawn {
-        /// What draws it.
         seed: u64,
         rate_hz: u32,
     },
@@ -32,7 +30,6 @@ pub enum Pictures {
     Drawn(Box<Session>),
 }
 
-/// What `ffmpeg` decodes.
 #[derive(Debug)]
 pub struct Decoded {
     ffmpeg: Child,

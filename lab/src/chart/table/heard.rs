@@ -35,39 +35,31 @@ const ZEROED_AT: u32 = frames(100);
 
 /// What a row judges by, in one frame (0.5 ms).
 pub struct Felt<'a> {
-    /// As it was sampled.
     pub frame: &'a Frame,
-    /// As the image conditions it.
     pub sensed: &'a Sensed<'a>,
     /// The detectors of the image that say slip or warn of it, and are believed.
     pub believed: DetectorSet,
-    /// What the network with something of its learning changed says, in the order of [`Control::ALL`].
     pub controls: [bool; Control::ALL.len()],
     /// The array's features, in the frames that bring new ones.
     pub features: Option<&'a Features>,
 }
 
-/// Something that says slip, a row of the table. Its state is of one recording.
 pub trait Judge {
     /// Takes a frame: whether it says slip now.
     fn hear(&mut self, felt: &Felt<'_>) -> bool;
 }
 
-/// What a recording is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Balls are poured into a box until it slips, again and again; a box is picked up, too loosely as often as not.
     Slips,
     /// A minute of firm holding.
     Quiet,
-    /// The same minute with knocks, swings and runs of the motor.
     Disturbed,
 }
 
-/// What was heard of one recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Heard {
-    /// Whose: recordings of one fingertip are not independent of each other.
     pub finger: u64,
     pub kind: Kind,
     /// What is scored: from when to when, s.
@@ -76,10 +68,8 @@ pub struct Heard {
     pub said: Vec<Vec<Verdict>>,
 }
 
-/// How much is recorded of each fingertip.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
-    /// Of everything that is drawn.
     pub seed: u64,
     /// Fingertips with each of four kinds of surface.
     pub fingers: usize,
@@ -94,7 +84,6 @@ pub struct Fingertip {
     number: u64,
     finger: Finger,
     session: Session,
-    /// What was learned, and then each control of it. Empty if nothing was asked of the network.
     taught: Vec<Vec<u8>>,
 }
 

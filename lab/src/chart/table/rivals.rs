@@ -39,7 +39,6 @@ const FIXED_PERMILLE: i32 = 300;
 /// A row, before it hears anything.
 pub struct Row {
     pub name: String,
-    /// See [`super::costs`].
     pub parts: &'static [&'static str],
     /// The threshold that was chosen, on fingertips that are not scored.
     pub threshold: Option<i32>,
@@ -180,7 +179,6 @@ impl Rival {
         (self.make)(threshold)
     }
 
-    /// Its row with a threshold that was chosen within a cap.
     pub fn row(&self, threshold: i32, cap: &Cap) -> Row {
         let make = Arc::clone(&self.make);
         Row {

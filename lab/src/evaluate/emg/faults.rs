@@ -74,7 +74,6 @@ const FAULTS: [Fault; 7] = [
 enum Where {
     Closing,
     Opening,
-    /// Both, in proportion.
     Both,
 }
 
@@ -160,7 +159,6 @@ impl Drawn {
     }
 }
 
-/// What came of a case.
 #[derive(Clone, Copy, Debug)]
 struct Outcome {
     fault: Fault,
@@ -261,7 +259,6 @@ pub struct Row {
     /// Those that opened by more than is safe, and the most that one did, mm.
     pub dropped: usize,
     pub most_mm: f64,
-    /// Those that were activity for so long that they have to be reported, and those that were.
     pub lasting: usize,
     pub reported: usize,
 }
@@ -291,7 +288,6 @@ pub struct Report {
     pub wearers: BTreeMap<&'static str, Row>,
 }
 
-/// Draws so many, on the trials of everybody.
 pub(in crate::evaluate) fn draw(fitted: &'static Fitted, trials: &[&Trial], cases: u32, seed: u64) -> Report {
     let of_kind = |wearer: usize| -> Vec<&&Trial> {
         let kinds = [Kind::SameSession, Kind::OtherPosture, Kind::FirstDayKept];

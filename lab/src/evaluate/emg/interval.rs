@@ -7,12 +7,10 @@ use serde::Serialize;
 use super::score::{Count, Score};
 use super::trial::Kind;
 
-/// How often all is drawn.
 const DRAWS: usize = 1_000;
 /// Between which parts of the draws an interval lies.
 const PARTS: [f64; 2] = [0.025, 0.975];
 
-/// What was counted of a person, session by session.
 #[derive(Clone, Debug)]
 pub(in crate::evaluate) struct Sessions(pub Vec<(Kind, Count)>);
 
@@ -21,7 +19,6 @@ impl Sessions {
         self.0.iter().filter(|own| own.0 == kind).map(|own| &own.1).collect()
     }
 
-    /// All of a kind together.
     pub fn score(&self, kind: Kind) -> Option<Score> {
         Count::sum(self.of(kind)).score()
     }

@@ -139,7 +139,6 @@ impl Recording {
         all
     }
 
-    /// What was said of each pair of the whole recording, in each row.
     pub(super) fn by_row<S: Copy + Default>(&self, mut said: impl Iterator<Item = S>) -> Vec<S> {
         let mut rows = Vec::with_capacity(self.uv.len());
         let mut last = S::default();
@@ -253,7 +252,6 @@ pub(super) mod tests {
         Recording { uv, labels }
     }
 
-    /// The same with closing called opening and the other way round.
     pub fn swapped(mut recording: Recording) -> Recording {
         for label in &mut recording.labels {
             *label = match *label {

@@ -6,7 +6,6 @@ use tenax_logic::emg::decide::Wish;
 
 use super::recordings::{CLOSE, HZ, OPEN, Recording};
 
-/// What the hand says in a row.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::evaluate) struct Said {
     pub wish: Wish,
@@ -20,12 +19,10 @@ pub(in crate::evaluate) struct Said {
 pub(in crate::evaluate) struct Count {
     rest_h: f64,
     false_motions: u32,
-    /// Of closing and of opening: windows, those right, those the wrong way.
     windows: [[u32; 3]; 2],
     repetitions: u32,
     missed: u32,
     latencies_s: Vec<f64>,
-    /// The same to the wish that is proven.
     full_s: Vec<f64>,
     rows: usize,
     doubted: usize,
@@ -114,11 +111,9 @@ impl Count {
 pub struct Score {
     /// Windows of 0.25 s of held closing that close.
     pub close_right: f64,
-    /// And that open.
     pub close_wrong_way: f64,
     /// Windows of held opening that open.
     pub open_right: f64,
-    /// And that close.
     pub open_wrong_way: f64,
     /// Repetitions that were never answered.
     pub missed: f64,
@@ -159,7 +154,6 @@ impl Score {
     }
 }
 
-/// 0 of nothing.
 pub(super) fn quantile(values: &[f64], part: f64) -> f64 {
     between_ranks(values.iter().copied(), part).unwrap_or_default()
 }
