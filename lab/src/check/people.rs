@@ -12,7 +12,7 @@ pub fn bars(folder: &Path) -> anyhow::Result<Vec<Bar>> {
     if !folder.exists() {
         return Ok(vec![Bar::unjudged(promise, "recordings not present", Verdict::Skipped)]);
     }
-    let report = emg::evaluate(folder, None, 0, 1)?;
+    let report = emg::evaluate(folder, 0, 1)?;
     let measured = report.scores.same_session.map_or("every calibration was refused".to_owned(), |score| {
         format!(
             "{} people: closing {:.3} of the windows right, {:.3} the wrong way; opening {:.3} right, {:.3} the wrong way; {:.1} false \

@@ -1,6 +1,5 @@
 //! `tenax check`: every promise, measured, one line each.
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use rayon::prelude::*;
@@ -15,9 +14,6 @@ use crate::check::{
 /// Measure every promise of the project, one line each; fails if one is not kept
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Folder of the recordings [default: shared/data beside the checkout]
-    #[arg(long, value_name = "DIR")]
-    data: Option<PathBuf>,
     /// Run the host's build of the logic: no image, no emulator, fewer promises
     #[arg(long)]
     host: bool,
@@ -28,7 +24,7 @@ pub struct Args {
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let root = workspace::root()?;
-    let data = args.data.clone().unwrap_or_else(|| root.join("../shared/data"));
+    let data = root.join("../shared/data");
     let board = super::board(args.host)?;
     let image = if args.host { None } else { Some(image::build(&root)?) };
     let mut groups: Vec<Group> = vec![

@@ -71,17 +71,14 @@ enum What {
 struct EmgArgs {
     #[command(flatten)]
     people: People,
-    /// Only this person
-    #[arg(long, value_name = "N")]
-    person: Option<u32>,
     /// Also score this many random electrode faults over people at rest
     #[arg(long, value_name = "N", default_value_t = 0)]
     faults: u32,
 }
 
 pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
-    let shown = if let Some(What::Emg(EmgArgs { people, person, faults })) = &args.what {
-        people.report.show(&emg::evaluate(&people.recordings, *person, *faults, people.seed)?)
+    let shown = if let Some(What::Emg(EmgArgs { people, faults })) = &args.what {
+        people.report.show(&emg::evaluate(&people.recordings, *faults, people.seed)?)
     } else if args.online {
         let board = super::board(args.host)?;
         let tries = with_bar("tasks", |progress| online::tasks(args.seed, args.times, &board, progress))?;

@@ -17,7 +17,6 @@ use crate::vision::calibrate::{self, Skin};
 use crate::vision::feed::Fault;
 use crate::vision::film::{self, Plan, Told};
 use crate::vision::source::Source;
-use crate::vision::told::Gains;
 use crate::vision::{scored, told};
 use tenax_frames::link::{Client, Outbox, Target};
 use tenax_frames::tool::folder;
@@ -39,8 +38,7 @@ Examples:
   tenax vision --drawn --port tcp:127.0.0.1:7777 --fault lost
                                                        the same with a drawn camera, which is lost from 4 s to 6 s
   tenax vision calibrate --loads loads.csv --leave-out 584
-                                                       force from marker moves, tried on a mass that was left out
-  tenax vision calibrate --loads loads.csv --try-loads others.csv";
+                                                       force from marker moves, tried on a mass that was left out";
 
 /// Follow skin and object with a camera behind a clear skin.
 #[derive(Debug, clap::Args)]
@@ -51,9 +49,6 @@ pub struct Args {
     /// A video file, which ffmpeg decodes
     #[arg(long, value_name = "FILE", group = "source")]
     video: Option<PathBuf>,
-    /// A folder of pictures, in the order of their names
-    #[arg(long, value_name = "FOLDER", group = "source")]
-    folder: Option<PathBuf>,
     /// A camera of Video4Linux, such as /dev/video0
     #[arg(long, value_name = "DEVICE", group = "source")]
     device: Option<PathBuf>,
@@ -79,12 +74,6 @@ pub struct Args {
     /// Also send the teacher's codes; without --port only print them, one line a picture, for `tenax monitor --teach`
     #[arg(long, requires = "source")]
     teach: bool,
-    /// Normal force on the board for each px of a marker's motion, mN/px
-    #[arg(long, value_name = "MN", default_value_t = 100.0, requires = "port")]
-    normal_mn_per_px: f32,
-    /// Shear on the board for each px of a marker's motion along the finger, mN/px
-    #[arg(long, value_name = "MN", default_value_t = 40.0, requires = "port")]
-    shear_mn_per_px: f32,
     /// Seed of the drawn scenes
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -111,9 +100,6 @@ struct CalibrateArgs {
     /// Mass in g that is left out and used to test the calibration; may be given more than once
     #[arg(long, value_name = "G")]
     leave_out: Vec<f64>,
-    /// Second table of loads on the same skin, to test the calibration
-    #[arg(long, value_name = "FILE.csv")]
-    try_loads: Option<PathBuf>,
     /// How to report
     #[arg(long, value_enum, default_value = "text")]
     report: Format,
@@ -123,10 +109,9 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     if let Some(Command::Calibrate(args)) = &args.command {
         return calibrated(args);
     }
-    let source = match (&args.video, &args.folder, &args.device) {
-        (Some(file), ..) => Source::Video(file.clone()),
-        (_, Some(folder), _) => Source::Folder(folder.clone()),
-        (.., Some(device)) => Source::Device(device.clone()),
+    let source = match (&args.video, &args.device) {
+        (Some(file), _) => Source::Video(file.clone()),
+        (_, Some(device)) => Source::Device(device.clone()),
         _ if args.drawn => Source::Drawn { seed: args.seed, rate_hz: args.rate_hz.unwrap_or(30.0) as u32 },
         _ => return drawn(args),
     };
@@ -151,14 +136,13 @@ pub fn main(args: &Args) -> anyhow::Result<ExitCode> {
     let feed = plan.open()?;
     let mut board = args.port.as_ref().map(Board::open).transpose()?;
     plan.holds = board.as_ref().map(|board| board.holds.clone());
-    let gains = Gains { normal_mn: args.normal_mn_per_px, shear_mn: args.shear_mn_per_px };
     let (mut was_blind, mut begin) = (None, args.begin);
     let report = film::follow(&plan, feed, |told| {
         let blind = match told {
             Told::Silence(blind) => Some(blind),
             Told::Picture(camera, summary, age_ms) => {
                 if let Some(board) = &mut board {
-                    let view = told::view(camera, summary, gains, age_ms).map(Down::View);
+                    let view = told::view(camera, summary, told::GAINS, age_ms).map(Down::View);
                     let begins = begin.take_if(|_| view.is_some() && summary.forces.is_some());
                     let words = told::teach(summary, age_ms).filter(|_| args.teach);
                     for command in view.into_iter().chain(words).chain(begins.map(Down::Begin)) {
@@ -276,15 +260,11 @@ fn drawn(args: &Args) -> anyhow::Result<ExitCode> {
 fn calibrated(args: &CalibrateArgs) -> anyhow::Result<ExitCode> {
     let skin = Skin::at_rest(&args.loads)?;
     let samples = skin.samples(&args.loads)?;
-    let (out_of_it, learned) = calibrate::left_out(&samples, &args.leave_out);
-    if !args.leave_out.is_empty() && out_of_it.is_empty() {
+    let (tried, learned) = calibrate::left_out(&samples, &args.leave_out);
+    if !args.leave_out.is_empty() && tried.is_empty() {
         bail!("no load of {} has one of the masses to leave out", args.loads.display());
     }
     let loads = skin.fit(&learned)?;
-    let mut tried = out_of_it;
-    if let Some(table) = &args.try_loads {
-        tried.extend(skin.samples(table)?);
-    }
     args.report.show(&calibrate::Report {
         markers: skin.markers(),
         learned: calibrate::score(&loads, &learned),

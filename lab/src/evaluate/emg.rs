@@ -102,7 +102,7 @@ pub(super) struct Recordings {
 
 impl Recordings {
     /// Reads everything, or one person.
-    pub fn read(folder: &Path, only: Option<u32>) -> anyhow::Result<Self> {
+    pub fn read(folder: &Path) -> anyhow::Result<Self> {
         let mut files = csv_files(folder)?;
         files.sort();
         let mut all = Self::default();
@@ -110,18 +110,16 @@ impl Recordings {
         for path in files {
             let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
             if let Some([person, day, posture]) = numbers(stem) {
-                if only.is_none_or(|only| only == person) {
-                    let recording = Recording::read(&path)?;
-                    all.people.entry(person).or_default().entry(day).or_default().insert(posture, recording);
-                }
-            } else if only.is_none() && stem.starts_with(two_channel::PREFIX) {
+                let days = all.people.entry(person).or_default();
+                days.entry(day).or_default().insert(posture, Recording::read(&path)?);
+            } else if stem.starts_with(two_channel::PREFIX) {
                 short.push(path);
             }
         }
         all.sessions = two_channel::sessions(&short)?;
         if all.people.is_empty() && all.sessions.is_empty() {
             bail!(
-                "{}: no recording is called personP_dayD_postureQ.csv, with P as asked for, or {}*.csv",
+                "{}: no recording is called personP_dayD_postureQ.csv or {}*.csv",
                 folder.display(),
                 two_channel::PREFIX
             );
@@ -149,12 +147,12 @@ fn csv_files(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
 
 /// The two-channel sessions of a folder and its own folders. Fails if there is no recording, or one cannot be read.
 pub fn sessions(folder: &Path) -> anyhow::Result<Vec<Session>> {
-    Ok(Recordings::read(folder, None)?.sessions)
+    Ok(Recordings::read(folder)?.sessions)
 }
 
-/// Scores everybody in a folder, or one person; and so many faults drawn over them. Fails if there is no recording, or one cannot be read.
-pub fn evaluate(folder: &Path, only: Option<u32>, faults: u32, seed: u64) -> anyhow::Result<Report> {
-    let all = Recordings::read(folder, only)?;
+/// Scores everybody in a folder, and so many faults drawn over them. Fails if there is no recording, or one cannot be read.
+pub fn evaluate(folder: &Path, faults: u32, seed: u64) -> anyhow::Result<Report> {
+    let all = Recordings::read(folder)?;
     let trials: Vec<Trial> = all.people.values().flat_map(|days| Trials::of(days).all).collect();
     let faults =
         (faults > 0).then(|| faults::draw(&FITTED, &trials.iter().collect::<Vec<_>>(), faults, seed));

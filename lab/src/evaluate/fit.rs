@@ -208,7 +208,7 @@ fn splits(count: usize) -> Vec<Vec<usize>> {
 /// Searches for `rounds`, once with everybody and once for each way to hold people apart; `part` gets the part that is done. Fails if
 /// there are not at least two people, or a recording cannot be read.
 pub fn fit(folder: &Path, rounds: u32, seed: u64, part: &(dyn Fn(f64) + Sync)) -> anyhow::Result<Report> {
-    let Recordings { people, sessions } = Recordings::read(folder, None)?;
+    let Recordings { people, sessions } = Recordings::read(folder)?;
     ensure!(people.len() > 1, "{}: one person is not enough to hold one apart", folder.display());
     let promises = Promises::of(&sessions);
     let wearers: Vec<Wearer> = people.iter().map(|(&number, days)| Wearer::of(number, days)).collect();

@@ -5,7 +5,6 @@ use tenax_hal_shim::channel::{FRAMES_PER_SLOW_FRAME, mv_from_sample, sample_from
 use tenax_logic::photoelastic::HeadConfig;
 use tenax_logic::photoelastic::curve::{Curve, HALF_TURN, KNOTS, phase_of};
 use tenax_logic::photoelastic::split::Q;
-use tenax_logic::setting::SettingId;
 use tenax_scene::Seeds;
 use tenax_scene::sensor::photoelastic::curve::{Day, Making, receiver_mv};
 use tenax_scene::sensor::photoelastic::optics::Layer;
@@ -43,25 +42,6 @@ pub struct Calibration {
 }
 
 impl Calibration {
-    /// The settings that bring it to a board, with their values.
-    pub fn settings(&self) -> Vec<(SettingId, i32)> {
-        use SettingId as Id;
-        let mv = |level_q4: i32| mv_from_sample((level_q4 >> 4) as u16) as i32;
-        let forces = [
-            Id::HeadForce1,
-            Id::HeadForce2,
-            Id::HeadForce3,
-            Id::HeadForce4,
-            Id::HeadForce5,
-            Id::HeadForce6,
-            Id::HeadForce7,
-            Id::HeadForce8,
-        ];
-        let levels = [(Id::HeadDark, mv(self.curve.dark_q4)), (Id::HeadBright, mv(self.curve.bright_q4))];
-        let slip = self.slip_mv.map(|mv| (Id::HeadSlip, mv.into()));
-        levels.into_iter().chain(forces.into_iter().zip(self.curve.force_mn)).chain(slip).collect()
-    }
-
     /// The configuration of a head with this calibration.
     pub fn config(&self) -> HeadConfig {
         let mean = mean_head();

@@ -18,6 +18,9 @@ pub struct Gains {
     pub shear_mn: f32,
 }
 
+/// Of the drawn skin.
+pub const GAINS: Gains = Gains { normal_mn: 100.0, shear_mn: 40.0 };
+
 /// What the board's behaviours feel with. None of a camera that is not to be believed: its silence tells the board.
 pub fn view(camera: &Camera, summary: &Summary, gains: Gains, age_ms: u16) -> Option<CameraView> {
     if summary.blind.is_some() {
@@ -70,8 +73,6 @@ mod tests {
     use tenax_scene::picture::{Options, Session};
     use tenax_vision::frame::{FRAME_BYTES, Frame};
     use tenax_vision::object::Config;
-
-    const GAINS: Gains = Gains { normal_mn: 100.0, shear_mn: 100.0 };
 
     #[test]
     fn a_drawn_slip_reaches_the_board_and_a_late_picture_does_not() {

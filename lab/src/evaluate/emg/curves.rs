@@ -93,7 +93,7 @@ fn asking(times: f64) -> &'static Fitted {
 
 /// Both curves of everybody in a folder. Fails if there is nobody, or a recording cannot be read.
 pub fn curves(folder: &Path) -> anyhow::Result<Vec<Point>> {
-    let Recordings { people, .. } = Recordings::read(folder, None)?;
+    let Recordings { people, .. } = Recordings::read(folder)?;
     let trials: Vec<Trial> = people.values().flat_map(|days| Trials::of(days).all).collect();
     let heard: Vec<_> = trials.par_iter().map(Trial::hear).collect();
     let kinds = [(Kind::SameSession, "same session"), (Kind::OtherPosture, "other posture")];
