@@ -5,7 +5,7 @@
 //! the hand moves half a millisecond later, and no code is quite what it would have been. So the two are compared by giving
 //! the host's logic the image's own codes, and each command in the tick in which the image took it ([`Agreement`]).
 //!
-//! What the same lessons teach on the host is then tried there: in an hour of [`holding`], in a lift and a pour with the
+//! The fingertip that learned on the host is then tried there: in an hour of [`holding`], in a lift and a pour with the
 //! [`reflex`], and on fingers made by chance.
 
 pub mod bench;
@@ -35,7 +35,7 @@ use trial::{Setup, Trial, Word};
 
 /// Trials of a lesson (Tada 2006, section III-C).
 pub const LESSONS: u64 = 7;
-/// How long a trial is that ends with the slip up, s from the lift on.
+/// Duration of a trial that ends with the slip up, s from the lift on.
 const SLIP_UP_S: f64 = 1.5;
 /// Lifts of each finger made by chance with more force than the object needs.
 const SAFE_LIFTS: u64 = 5;

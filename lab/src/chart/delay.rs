@@ -30,7 +30,7 @@ const GRAVITY_M_S2: f64 = 9.81;
 const MU_S: [f64; 2] = [0.5, 0.25];
 const MU_D: [f64; 2] = [0.44, 0.22];
 const PAD_MM: f64 = 18.0;
-/// What each finger holds the dry glass with, N: 1.35 times what it needs.
+/// Force of each finger on the dry glass, N: 1.35 times its need.
 const HELD_N: f64 = 1.35 * MASS_KG * GRAVITY_M_S2 / 2.0 / MU_S[0];
 const SPEED_MM_S: f64 = 120.0;
 const FORCE_N: f64 = 140.0;

@@ -15,7 +15,7 @@ use super::{Chart, Progress, csv};
 const SEEDS: [u64; 2] = [1, 2];
 /// A lost object, and one that slid further, counts as this, mm: the pad's length.
 const LOST_MM: f64 = 18.0;
-/// What slid less is drawn here, mm.
+/// Least way in the chart, mm.
 const LEAST_MM: f64 = 0.01;
 /// Scenes with a panel of their own: a wet patch, a pour with the array, a pour, a toy, balls off the middle.
 const OWN: [&str; 5] = ["glass", "array-pour", "pour", "hold-toy", "steel-balls"];

@@ -29,10 +29,10 @@ const RATES_MM_S: [f64; 9] = [0.05, 0.1, 0.2, 0.4, 0.6, 1.0, 1.6, 2.3, 3.0];
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Report {
     pub force: Score,
-    /// The same with the shear of a lift: none to half of the force.
+    /// With the shear of a lift: none to half of the force.
     pub force_sheared: Score,
     pub rate: Rate,
-    /// How far the boundary of vibration is from theory, %.
+    /// Deviation of the boundary of vibration from theory, %.
     pub boundary_pct: f64,
     /// The slowest slip of aluminium that every head sees, mm/s.
     pub slip_floor_mm_s: f64,

@@ -33,7 +33,7 @@ pub struct Recording {
     pub steps: Vec<Step>,
     /// Slips that the world counted, and micro slip that came to nothing.
     pub spans: Vec<SlipSpan>,
-    /// How far the box slid in all of them, mm.
+    /// Way of the box in all of them, mm.
     pub slid_mm: f64,
     /// Whether it fell; then the recording ends there.
     pub dropped: bool,

@@ -44,26 +44,26 @@ pub struct Session {
     pub stiffness_n_per_mm: f64,
     /// The way over which contacts are new ones, um.
     pub renews_um: f64,
-    /// How much of the shear that lets go comes off an element's load.
+    /// Part of the released shear that comes off an element's load.
     pub slip_part: f64,
     /// The part of it that goes to the cover's rim.
     pub rim_part: f64,
-    /// Where the box lies along the array, mm from its middle.
+    /// Place of the box along the array, mm from its middle.
     pub place_mm: f64,
-    /// How far beside the pads the mass of the box lies, mm.
+    /// Offset of the box's mass beside the pads, mm.
     pub offset_mm: f64,
-    /// How far under them, mm.
+    /// Offset below them, mm.
     pub hang_mm: f64,
     /// Sensitivity of the array, mV/N an element.
     pub mv_per_n: f64,
     pub spread: f64,
     /// Noise of a reading, rms, mV.
     pub noise_mv: f64,
-    /// What a knock presses on the pad, mN for each mV at a film.
+    /// Force of a knock on the pad, mN for each mV at a film.
     pub knock_mn_per_mv: f64,
-    /// What the gear's teeth press on it, as a part of the load.
+    /// Force of the gear's teeth on it, as a part of the load.
     pub motor_part: f64,
-    /// How much of the load a shear as large as it moves to the pad's end.
+    /// Part of the load that a shear as large as it moves to the pad's end.
     pub tilt: f64,
 }
 

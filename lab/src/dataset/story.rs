@@ -1,4 +1,4 @@
-//! What happens in a session: three scenes of the repository, with the session's numbers in place of theirs.
+//! The stories of a session: three scenes of the repository, with the session's numbers in place of theirs.
 
 use anyhow::Context;
 use rand::{RngExt, rngs::ChaCha8Rng};
@@ -84,7 +84,7 @@ impl Story {
         Ok((scene, duration_s))
     }
 
-    /// The same story for a fingertip that has to hold the box itself, once somebody has closed the hand on it with about
+    /// The story for a fingertip that has to hold the box itself, once somebody has closed the hand on it with about
     /// what holds it: nobody tightens the grip but the fingertip. Fails if a drawn number is none that a scene may have.
     pub fn task_in(self, session: &Session, rng: &mut ChaCha8Rng) -> anyhow::Result<SceneFile> {
         let (mut scene, duration_s) = self.told(session, rng)?;
@@ -157,16 +157,16 @@ fn over_decades(rng: &mut ChaCha8Rng, ends: std::ops::Range<f64>) -> f64 {
     rng.random_range(ends.start.ln()..ends.end.ln()).exp()
 }
 
-/// How long a pour lasts, s.
+/// Duration of a pour, s.
 const POUR_S: f64 = 26.0;
-/// How long a pick and place lasts, s.
+/// Duration of a pick and place, s.
 const PICK_S: f64 = 9.0;
-/// How long the disturbances last, s; in the last 3 s the grip changes.
+/// Duration of the disturbances, s; in the last 3 s the grip changes.
 const DISTURB_S: f64 = 13.0;
 
 const NOISIER: std::ops::Range<f64> = 1.0..5.0;
 
-/// How somebody closes on the box, and opens, per mille.
+/// Duty of closing on the box and of opening, per mille.
 const DUTY: i64 = 300;
 
 fn finish(mut scene: Table, duration_s: f64, called: &str) -> anyhow::Result<SceneFile> {
@@ -183,7 +183,7 @@ fn drive(kind: &str, at_s: f64, for_s: f64) -> Value {
     drive
 }
 
-/// How long the hand has to close until each finger presses with `grip_n`, s: over the gap, and then against a spring
+/// Time of closing until each finger presses with `grip_n`, s: over the gap, and then against a spring
 /// that slows it.
 fn closing_s(scene: &Table, grip_n: f64, session: &Session) -> f64 {
     let of = |section: &str, key: &str| number(scene, section, key);

@@ -43,7 +43,7 @@ impl<'a> Wearer<'a> {
         Self { number, days, trials: Trials::of(days).all.into_iter().map(heard).collect() }
     }
 
-    /// What this wearer's scores cost: windows that are not right, and those the wrong way, unanswered and false motions, which annoy
+    /// Cost of this wearer's scores: windows that are not right, and those the wrong way, unanswered and false motions, which annoy
     /// more than their share, and what is late.
     fn cost(&self, fitted: &'static Fitted) -> f64 {
         let of = |kind: Kind, false_motion: f64| {
@@ -138,7 +138,7 @@ fn changed(from: &Fitted, steps: &[f64; Fitted::COUNT], rng: &mut ChaCha8Rng) ->
     (fitted, which)
 }
 
-/// What people cost, each by itself, then the promises and faults. None as soon as one of them is worse than before.
+/// Costs of the people, each by itself, then of the promises and faults. None as soon as one of them is worse than before.
 fn costs(
     folk: &[&Wearer],
     promises: &Promises,

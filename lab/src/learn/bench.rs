@@ -24,7 +24,7 @@ pub enum Judge {
     Touch,
     /// The camera's v1, as it comes over the line, and nothing else.
     Vision,
-    /// Nobody: the world's plan holds with the least force. The same gripper cannot do better.
+    /// The world's plan holds with the least force.
     Bound,
 }
 
@@ -107,14 +107,14 @@ impl Bench {
         trial
     }
 
-    /// What it has learned, as the board keeps it. Fails by a bug alone.
+    /// The learned state, as the board keeps it. Fails by a bug alone.
     pub fn snapshot(&self) -> anyhow::Result<Vec<u8>> {
         let mut bytes = [0; hebbian::SNAPSHOT_LENGTH];
         let kept = self.fingertip.learned();
         Ok(kept.write(&mut bytes).context("a snapshot of another length")?.to_vec())
     }
 
-    /// The same fingertip with something of its learning changed, and switched off and on. Fails by a bug alone.
+    /// A copy with something of its learning changed, switched off and on. Fails by a bug alone.
     pub fn controlled(&self, control: Control) -> anyhow::Result<Self> {
         let kept = self.snapshot()?;
         let (normaliser, network, more) =

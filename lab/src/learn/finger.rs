@@ -7,7 +7,7 @@ use tenax_scene::{SceneFile, builtin};
 
 /// Standard gravity, m/s^2.
 const GRAVITY_M_S2: f64 = 9.80665;
-/// What the fingers must press the block of the scene file with, so that it stops sliding, N: `m g / (2 mu_d)`.
+/// Force at which the block of the scene file stops sliding, N: `m g / (2 mu_d)`.
 const NEEDED_N: f64 = 0.2 * GRAVITY_M_S2 / (2.0 * 0.46);
 
 /// Friction of the plain finger: sliding keeps 0.65 of it, and a patch of it holds 0.69 of its load, both as the recorded finger
@@ -17,7 +17,7 @@ const PLAIN_MU_D: f64 = 0.65 * PLAIN_MU_S;
 /// Its block: as heavy as needs the force of the scene file's.
 const PLAIN_KG: f64 = NEEDED_N * 2.0 * PLAIN_MU_D / GRAVITY_M_S2;
 
-/// How far the mains may be from its frequency, Hz: what EN 50160 allows 99.5 % of the year.
+/// Deviation of the mains' frequency, Hz: EN 50160's limit for 99.5 % of the year.
 const OFF_HZ: f64 = 0.5;
 
 /// A change of a number of a scene file: where (`contact.mu_s`, `move.0.at_s`), and to what.
@@ -31,7 +31,7 @@ pub struct Finger {
     mu_s: f64,
     mu_d: f64,
     mass_kg: f64,
-    /// What it needs to be pressed with over what the scene file's block does.
+    /// Force that its object needs, times that of the scene file's block.
     force: f64,
     changes: Vec<Change>,
 }
@@ -147,7 +147,7 @@ impl Finger {
         self.mass_kg
     }
 
-    /// How long the fingers close at 36 mm/s until they press the object with so many times what it needs, s: they have 1 mm
+    /// Time of closing at 36 mm/s until the fingers press the object with so many times its need, s: they have 1 mm
     /// each to go, and press 0.3 N for each mm after that.
     pub fn closing_s(&self, times: f64) -> f64 {
         (2.0 + times * self.force * NEEDED_N / 0.3) / 36.0

@@ -22,7 +22,7 @@ const RUNS: u32 = 2;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Holding {
-    /// How long nothing slipped, h.
+    /// Time without slip, h.
     pub hours: f64,
     /// False alarms of slip, or of a warning.
     pub any: False,

@@ -25,9 +25,9 @@ const CYCLES: usize = 40;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Weighed {
     pub force_n: f64,
-    /// What the pin has, mV.
+    /// Voltage at the pin, mV.
     pub level_mv: f64,
-    /// What the calibrated curve makes of that, N.
+    /// Reading by the calibrated curve, N.
     pub read_n: f64,
 }
 

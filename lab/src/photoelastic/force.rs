@@ -1,4 +1,4 @@
-//! How well the force is followed: ramps of up to 6 N/s that turn anywhere, the peak of the curve included, without shear and with the
+//! Errors of the followed force: ramps of up to 6 N/s that turn anywhere, the peak of the curve included, without shear and with the
 //! shear that a held object has.
 
 use rand::rngs::ChaCha8Rng;
@@ -23,9 +23,9 @@ const AT_THE_PEAK_N: f64 = 0.06;
 pub struct Point {
     pub t_s: f64,
     pub true_n: f64,
-    /// What was read, None while nothing is known.
+    /// The reading, None while there is none.
     pub read_n: Option<f64>,
-    /// How far off it may be, N.
+    /// Its uncertainty, N.
     pub uncertainty_n: f64,
     /// The least and the most that it can be, N: what stands in for a force sensor's normal force, and for its load.
     pub range_n: (f64, f64),
@@ -105,16 +105,16 @@ impl Story {
 pub struct Session {
     making: Making,
     day: Day,
-    /// Where its light is brightest today, N: frozen birefringence moves it.
+    /// Force of the brightest light today, N: frozen birefringence moves it.
     peak_n: f64,
-    /// Where it is back at its first value, N.
+    /// Force at which the light is back at its first value, N.
     end_n: f64,
     bench: Bench,
     noise: ChaCha8Rng,
 }
 
 impl Session {
-    /// Of a head and a day drawn with this seed. A hand has gripped once over the peak with it since it was switched on.
+    /// A head and a day drawn with this seed, after one grip over the peak.
     pub fn new(seed: u64) -> Self {
         let seeds = Seeds { making: seed, noise: seed };
         let making = Making::drawn(seeds, 0.2);
@@ -141,7 +141,6 @@ impl Session {
         session
     }
 
-    /// Where its light is brightest today, N.
     pub const fn peak_n(&self) -> f64 {
         self.peak_n
     }

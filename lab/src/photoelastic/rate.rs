@@ -1,4 +1,4 @@
-//! How fast it slips: amplitude and frequency of a block that is drawn over the head, and the fit of both.
+//! Slip rate: amplitude and frequency of a block that is drawn over the head, and the fit of both.
 
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
@@ -57,13 +57,13 @@ pub struct Rig {
 
 #[derive(Clone, Copy, Debug)]
 pub struct Seen {
-    /// How fast it is drawn, mm/s.
+    /// True rate, mm/s.
     pub rate_mm_s: f64,
     /// Mean size of the ac part, mV.
     pub amplitude_mv: f64,
     /// Its frequency, Hz; 0 if nothing swings.
     pub hz: f64,
-    /// What a rate is told by (amplitude, period, force), None if nothing swings.
+    /// Amplitude, period and force, None if nothing swings.
     pub swing: Option<(i32, u16, i32)>,
     /// The part of the cycles in which slip was said.
     pub said: f64,
@@ -175,7 +175,7 @@ pub fn fit<'a>(slips: impl IntoIterator<Item = &'a Seen>) -> RateFit {
     RateFit { constant, amplitude, frequency, force }
 }
 
-/// How far off each rate is, %.
+/// Error of each rate, %.
 pub fn errors_percent(fit: &RateFit, slips: &[Seen]) -> Vec<f64> {
     let error = |seen: &Seen| {
         let (amplitude, period_q4, force_mn) = seen.swing?;

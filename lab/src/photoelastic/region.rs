@@ -1,4 +1,4 @@
-//! Where the strip vibrates by itself, by theory and by measurement, and where the head says slip.
+//! The region of self-excited vibration, by theory and by measurement, and that of reported slip.
 
 use tenax_scene::physics::stribeck::{BLOCK_N, METAL, Slider, Stribeck};
 use tenax_scene::sensor::photoelastic::HEAD_STRIP;
@@ -56,9 +56,9 @@ pub fn measured_mm_s(drop: f64) -> Option<f64> {
 
 #[derive(Clone, Copy, Debug)]
 pub struct Point {
-    /// How fast it slides, mm/s.
+    /// Slip rate, mm/s.
     pub rate_mm_s: f64,
-    /// How steeply friction falls at rest, s/m.
+    /// Fall of friction at rest, s/m.
     pub steepness_s_m: f64,
     /// Whether the head says slip.
     pub seen: bool,

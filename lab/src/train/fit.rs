@@ -94,7 +94,7 @@ struct Fold {
 /// Trains every candidate on some sessions, judges it on others, and trains the best one on all of them.
 ///
 /// If the file says what is for training and what for validation, that is kept to. If not, sessions are left out in turn.
-/// Nothing of the test part is looked at. `progress` is told which part of the work is done.
+/// The test part is not used. `progress` gets the part of the work that is done.
 /// Fails if there is too little to choose by, or the optimiser fails.
 pub fn fit(
     sequences: &[Sequence],

@@ -18,7 +18,7 @@ use crate::equations::Equations;
 
 /// Ridge of the shear's weights, px^2.
 const SHEAR_RIDGE: f64 = 1.0;
-/// How freely each marker's weight may differ from what a plane through all of them says. Both were chosen by leaving out loads,
+/// Freedom of each marker's weight from a plane through all of them. Both were chosen by leaving out loads,
 /// and all loads of a mass: what is learned under light loads then holds under heavy ones.
 const FREE: f64 = 0.1;
 /// Ridge of the normal force's.
@@ -43,7 +43,7 @@ struct Row {
 /// A picture under a known load.
 #[derive(Clone, Debug)]
 pub struct Sample {
-    /// What hangs or stands on the skin, g.
+    /// Load on the skin, g.
     pub mass_g: f64,
     /// Force: x, into the skin, z; N.
     pub force_n: [f64; 3],
@@ -51,7 +51,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// How far the markers are spread about their mean move, px rms.
+    /// Spread of the markers about their mean move, px rms.
     pub fn spread_px(&self) -> f64 {
         self.features.normal[0].into()
     }
@@ -63,7 +63,7 @@ impl Sample {
     }
 }
 
-/// How a calibration does on samples.
+/// Errors of a calibration on samples.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Score {
     pub pictures: usize,
@@ -227,7 +227,7 @@ fn weighted(samples: &[Sample], axis: usize, by: f64, row: impl Fn(&Sample) -> V
     ridge(&rows, &targets, by)
 }
 
-/// The same, made so much larger that what it tells of the samples is as large as their forces. A regression tells less: the loads are
+/// A ridge regression, scaled so that its estimates of the samples are as large as their forces. A regression tells less: the loads are
 /// known, and what scatters are the moves, since a block is never set down twice alike. Under heavier loads than it has learned
 /// that would be missing.
 fn unshrunk(samples: &[Sample], axis: usize, by: f64, row: impl Fn(&Sample) -> Vec<f64>) -> Vec<f64> {
@@ -253,7 +253,6 @@ fn ridge(rows: &[Vec<f64>], targets: &[f64], ridge: f64) -> Vec<f64> {
     equations.solve()
 }
 
-/// How weights do on samples.
 pub fn score(loads: &Loads, samples: &[Sample]) -> Score {
     let forces: Vec<_> =
         samples.iter().map(|sample| (loads.newtons(&sample.features), sample.force_n)).collect();

@@ -209,7 +209,7 @@ fn far(at: tenax_vision::Point, (x, y): (f64, f64)) -> f64 {
     (f64::from(at.x) - x).hypot(f64::from(at.y) - y)
 }
 
-/// How far the object moved against the skin from one picture to the next, px; of a turn, 60 px from the middle.
+/// Move of the object against the skin from one picture to the next, px; of a turn, 60 px from the middle.
 fn moved(before: &State, now: &State) -> f64 {
     let on_skin = |state: &State| (state.object.0 - state.shear_px.0, state.object.1 - state.shear_px.1);
     let ((ax, ay), (bx, by)) = (on_skin(before), on_skin(now));

@@ -1,4 +1,4 @@
-//! What a camera's summaries say, in words for a board.
+//! A camera's summaries as messages for a board.
 
 use tenax_hal_shim::behaviour::{CameraView, MARKERS, NORMAL_STEP_MN, SHEAR_STEP_MN, UNTRACKED};
 use tenax_hal_shim::wire::Down;
@@ -10,18 +10,18 @@ use tenax_vision::{Camera, Summary};
 /// points have an edge.
 const MOVING_E4_PER_PX: f32 = 200.0;
 
-/// What a marker's move means, mN a px.
+/// Force of a marker's move, mN/px.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gains {
     pub normal_mn: f32,
-    /// Of its shear along the finger, which is the picture's y.
+    /// Shear along the finger, which is the picture's y.
     pub shear_mn: f32,
 }
 
-/// Of the drawn skin.
+/// Gains of the drawn skin.
 pub const GAINS: Gains = Gains { normal_mn: 100.0, shear_mn: 40.0 };
 
-/// What the board's behaviours feel with. None of a camera that is not to be believed: its silence tells the board.
+/// The camera's view for the board's behaviours. None while the camera is blind: its silence tells the board.
 pub fn view(camera: &Camera, summary: &Summary, gains: Gains, age_ms: u16) -> Option<CameraView> {
     if summary.blind.is_some() {
         return None;

@@ -31,7 +31,7 @@ pub struct Costs(pub BTreeMap<&'static str, f64>);
 type Step = Box<dyn FnMut(&Felt<'_>)>;
 
 impl Costs {
-    /// Of these parts together. None if one was not measured.
+    /// The sum of these parts. None if one was not measured.
     pub fn of(&self, parts: &[&str]) -> Option<f64> {
         parts.iter().map(|part| self.0.get(part)).sum()
     }

@@ -1,4 +1,4 @@
-//! What every row of the table hears: the same fingertips, scenes and noise, sample by sample, while nobody's reflex moves the hand.
+//! The input of every row of the table: the same fingertips, scenes and noise, sample by sample, while nobody's reflex moves the hand.
 
 use anyhow::Context;
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
@@ -33,7 +33,7 @@ const LETS_GO_S: f64 = 7.3;
 /// The empty hand's forces are zeroed at this frame.
 const ZEROED_AT: u32 = frames(100);
 
-/// What a row judges by, in one frame (0.5 ms).
+/// A row's input in one frame (0.5 ms).
 pub struct Felt<'a> {
     pub frame: &'a Frame,
     pub sensed: &'a Sensed<'a>,
@@ -62,7 +62,7 @@ pub enum Kind {
 pub struct Heard {
     pub finger: u64,
     pub kind: Kind,
-    /// What is scored: from when to when, s.
+    /// The scored span, s.
     pub span_s: (f64, f64),
     pub slips: Vec<SlipSpan>,
     pub said: Vec<Vec<Verdict>>,
@@ -114,7 +114,6 @@ impl Plan {
         4 * self.fingers
     }
 
-    /// How long all of it lasts, lessons included, virtual s.
     pub fn recordings(&self) -> u64 {
         self.pours + self.picks + 2 * self.minutes
     }

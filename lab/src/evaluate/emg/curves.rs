@@ -31,7 +31,7 @@ pub struct Point {
     pub score: Score,
 }
 
-/// What plain control knows of a wearer: levels of both sites, Q10 octaves.
+/// Plain control's calibration: levels of both sites, Q10 octaves.
 struct Plain {
     begins: [f64; 2],
     /// The ratio between closing and opening.

@@ -26,7 +26,7 @@ use tenax_logic::gate::Gate;
 use super::recordings::{HZ, PAIRS_HZ};
 use super::trial::{Kind, Trial};
 
-/// What a fault may open while something is held, mm of the scenes' hand, 120 mm/s at full duty (docs/emg.md).
+/// Safe opening by a fault while something is held, mm of the scenes' hand, 120 mm/s at full duty (docs/emg.md).
 const SAFE_MM: f64 = 0.75;
 /// Before the fault, s; how long a fault lasts; and what follows.
 const BEFORE_S: f64 = 8.0;
@@ -128,7 +128,7 @@ impl Drawn {
         }
     }
 
-    /// What a site's electrode gives `t_s` after it began, mV.
+    /// Signal of a site's electrode `t_s` after the fault began, mV.
     fn read(&mut self, site: usize, muscle_mv: f64, t_s: f64, rng: &mut ChaCha8Rng) -> f64 {
         if !self.has(site) {
             return muscle_mv;

@@ -1,4 +1,4 @@
-//! How sure a median over a few people is: people are drawn again, and of each as many sessions, 1,000 times.
+//! Bootstrap intervals of a median over a few people: people are drawn again, and of each as many sessions, 1,000 times.
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -32,7 +32,7 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// Of the median over these people; none of nobody.
+    /// The interval of the median over these people; None without people.
     pub(in crate::evaluate) fn of(people: &[Sessions], kind: Kind) -> Option<Self> {
         let people: Vec<Vec<&Count>> =
             people.iter().map(|own| own.of(kind)).filter(|own| !own.is_empty()).collect();

@@ -111,7 +111,7 @@ impl Recording {
         self.repetitions(label).into_iter().filter(|rows| rows.len() > 100).collect()
     }
 
-    /// Where the wearer surely rests: from 1 s after the label's start to 0.3 s before its end.
+    /// Rows of certain rest: from 1 s after the label's start to 0.3 s before its end.
     pub(super) fn rests(&self) -> Vec<Range<usize>> {
         let inner = |rows: Range<usize>| rows.start + 100..rows.end.saturating_sub(30);
         self.repetitions(REST).into_iter().map(inner).filter(|rows| !rows.is_empty()).collect()

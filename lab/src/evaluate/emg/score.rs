@@ -1,4 +1,4 @@
-//! What a hand said of a recording, counted as `baseline.py` of that data set counts, so that figures compare.
+//! Scores of a recording, counted as in `baseline.py` of that data set, so that figures compare.
 
 use serde::Serialize;
 use tenax_frames::quantile::between_ranks;
@@ -106,7 +106,7 @@ impl Count {
     }
 }
 
-/// How well the wearer's wish was understood.
+/// Rates and latencies of intent recognition.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Score {
     /// Windows of 0.25 s of held closing that close.
@@ -121,11 +121,9 @@ pub struct Score {
     pub false_per_hour: f64,
     /// From the label's start to the wish, s: negative where the wearer was earlier.
     pub latency_s_p50: f64,
-    /// The same of the slowest 5 %.
     pub latency_s_p95: f64,
     /// From the label's start until the wish moves the hand at its speed, s: until then it moves gently and by little.
     pub full_s_p50: f64,
-    /// The same of the slowest 5 %.
     pub full_s_p95: f64,
     /// Part of the time in which a sensor was doubted.
     pub doubted_part: f64,

@@ -135,7 +135,7 @@ impl Movement {
         self.windows().filter(is_right).count() as u32
     }
 
-    /// Where its windows begin, s.
+    /// Begins of its windows, s.
     fn windows(&self) -> impl Iterator<Item = f64> + Clone {
         let count = (self.muscles.duration_s / WINDOW_S + 0.01) as u32;
         (0..count).map(|n| FRONT_END_S + f64::from(n) * WINDOW_S)

@@ -1,4 +1,4 @@
-//! What the hand has promised its wearer, as a cost: none of it may be paid for with better figures on people.
+//! The promises to the wearer, as a cost: none may be paid for with better figures on people.
 //!
 //! Short recordings of other people ([`two_channel`](super::super::emg::two_channel)); made-up muscles that contract both, open, and hold tone; and faults
 //! of one electrode, with what the hand then opens. The tests of `host-tests` hold the whole of it.
