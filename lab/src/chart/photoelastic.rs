@@ -8,7 +8,7 @@ use tenax_scene::sensor::photoelastic::optics::Layer;
 
 use super::{Chart, Progress, csv};
 use crate::photoelastic::balance;
-use crate::photoelastic::force::{self, Point, Score, Session, Story};
+use crate::photoelastic::force::{self, Point, Score};
 use crate::photoelastic::rate::{self, Material, Rig, Seen};
 use crate::photoelastic::region::{self, Region};
 use tenax_frames::quantile::middle;
@@ -63,7 +63,6 @@ pub fn chart(progress: Progress) -> anyhow::Result<(Chart, Report)> {
         boundary_pct: region.boundary_pct,
         slip_floor_mm_s,
     };
-    let (ramps, lift) = stories();
     let sheet = Sheet::new(
         "A photoelastic head: force from its light, slip from its flicker",
         format!(
@@ -74,8 +73,8 @@ pub fn chart(progress: Progress) -> anyhow::Result<(Chart, Report)> {
         2,
         vec![
             intensity(),
-            followed("ramps without shear, three of them turning at the peak", &ramps),
-            followed("grips, then lifts with a shear of 0.3 and 0.5 of the force", &lift),
+            followed("ramps without shear", &runs[0]),
+            followed("ramps with the shear of a lift", &lifts[0]),
             against_rate("ac part, mean size", Axis::log("mV", 0.5, 100.0), &curves, |seen| {
                 seen.amplitude_mv
             }),
@@ -106,37 +105,6 @@ fn rates(progress: Progress) -> (f64, f64) {
 fn curve(material: Material) -> Vec<Seen> {
     let slider = Slider { friction: material.friction(), ..HEAD_STRIP };
     RATES_MM_S.map(|rate| Rig::mean(slider, 1).slide(region::LOAD_N, rate, 0.8 + 0.1 / rate)).to_vec()
-}
-
-/// Two stories on one head: ramps that turn at the peak, and lifts.
-fn stories() -> (Vec<Point>, Vec<Point>) {
-    let mut session = Session::new(VALIDATION.start);
-    let peak_n = session.peak_n();
-    let targets = [
-        (5.5, 3.0),
-        (peak_n, 3.0),
-        (4.0, 2.0),
-        (0.6, 4.0),
-        (peak_n, 1.5),
-        (0.3, 3.0),
-        (3.0, 6.0),
-        (0.0, 6.0),
-    ];
-    let ramps = session.run(&Story { steps: targets.to_vec(), shears: Vec::new() });
-    session.rest();
-    let grips = [
-        (0.5, 2.0),
-        (0.5, 2.0),
-        (0.0, 2.0),
-        (2.3, 4.0),
-        (2.3, 4.0),
-        (0.3, 4.0),
-        (4.0, 4.0),
-        (4.0, 4.0),
-        (0.0, 4.0),
-    ];
-    let shears = vec![0.0, 0.5, 0.0, 0.0, 0.3, 0.3, 0.0, 0.5, 0.0];
-    (ramps, session.run(&Story { steps: grips.to_vec(), shears }))
 }
 
 fn intensity() -> Panel {

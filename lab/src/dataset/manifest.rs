@@ -71,6 +71,10 @@ pub struct SessionEntry {
     pub setup: Session,
 }
 
+pub fn sha256(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
 impl Manifest {
     /// The manifest of data that is `bytes` in `file`.
     pub fn new(plan: &Plan, file: &str, bytes: &[u8], all: &[(Session, Vec<Recording>)]) -> Self {
@@ -93,7 +97,7 @@ impl Manifest {
             seed: plan.seed,
             sessions: plan.sessions,
             file: file.to_owned(),
-            sha256: Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect(),
+            sha256: sha256(bytes),
             columns: COLUMNS,
             rate_hz: tenax_hal_shim::channel::SLOW_HZ,
             held_out: HELD_OUT.name,

@@ -109,11 +109,11 @@ impl Story {
                 let (mut fills, mut at_s) = (Vec::new(), 4.0);
                 while at_s < POUR_S - 3.0 {
                     let for_s = rng.random_range(1.0..3.0);
-                    fills.push(entry(&[
+                    fills.push(Value::Table(entry(&[
                         ("at_s", at_s),
                         ("for_s", for_s),
                         ("add_kg", rng.random_range(0.05..0.13)),
-                    ]));
+                    ])));
                     at_s += for_s + rng.random_range(0.3..1.5);
                 }
                 scene.insert("fill".to_owned(), Value::Array(fills));
@@ -126,23 +126,21 @@ impl Story {
             Self::Disturb => {
                 put(scene, "object", "mass_kg", Value::from(rng.random_range(0.10..0.30)));
                 let knock = |rng: &mut ChaCha8Rng, at_s: f64| {
-                    entry(&[
+                    Value::Table(entry(&[
                         ("at_s", at_s + rng.random_range(0.0..0.5)),
                         ("peak_mv", over_decades(rng, 30.0..300.0)),
                         // Frames and tools ring from 50 Hz to 2 kHz, for 1 to 30 ms.
                         ("ring_hz", over_decades(rng, 50.0..2_000.0)),
                         ("decay_ms", over_decades(rng, 1.0..30.0)),
                         ("uneven", rng.random_range(0.0..1.0)),
-                    ])
+                    ]))
                 };
                 let knocks = (0..5).map(|n| knock(rng, 3.3 + 0.6 * f64::from(n))).collect();
                 let mut swing = |at_s: f64, cycles: i64, rate_hz: f64, peak: std::ops::Range<f64>| {
                     let mut swing =
                         entry(&[("at_s", at_s), ("rate_hz", rate_hz), ("peak_m_s2", rng.random_range(peak))]);
-                    if let Value::Table(swing) = &mut swing {
-                        swing.insert("cycles".to_owned(), Value::from(cycles));
-                    }
-                    swing
+                    swing.insert("cycles".to_owned(), Value::from(cycles));
+                    Value::Table(swing)
                 };
                 let swings = vec![swing(6.4, 3, 1.5, 1.0..6.0), swing(8.6, 12, 9.0, 0.3..1.5)];
                 scene.insert("knock".to_owned(), Value::Array(knocks));
@@ -176,11 +174,9 @@ fn finish(mut scene: Table, duration_s: f64, called: &str) -> anyhow::Result<Sce
 
 fn drive(kind: &str, at_s: f64, for_s: f64) -> Value {
     let mut drive = entry(&[("at_s", at_s), ("for_s", for_s)]);
-    if let Value::Table(drive) = &mut drive {
-        drive.insert("kind".to_owned(), Value::from(kind));
-        drive.insert("duty_permille".to_owned(), Value::from(DUTY));
-    }
-    drive
+    drive.insert("kind".to_owned(), Value::from(kind));
+    drive.insert("duty_permille".to_owned(), Value::from(DUTY));
+    Value::Table(drive)
 }
 
 /// Time of closing until each finger presses with `grip_n`, s: over the gap, and then against a spring
@@ -203,8 +199,9 @@ fn number(scene: &Table, section: &str, key: &str) -> f64 {
     value.map_or(0.0, |value| value.as_float().or(value.as_integer().map(|n| n as f64)).unwrap_or(0.0))
 }
 
-fn entry(keys: &[(&str, f64)]) -> Value {
-    Value::Table(keys.iter().map(|&(key, value)| (key.to_owned(), Value::from(value))).collect())
+/// An entry of a scene's list.
+pub fn entry(keys: &[(&str, f64)]) -> Table {
+    keys.iter().map(|&(key, value)| (key.to_owned(), Value::from(value))).collect()
 }
 
 fn put(scene: &mut Table, section: &str, key: &str, value: Value) {

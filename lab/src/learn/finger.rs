@@ -158,12 +158,6 @@ impl Finger {
     }
 }
 
-/// Puts these in the place of all entries of one kind.
-pub fn edited(scene: &mut toml::Table, kind: &str, entries: Vec<toml::Table>) {
-    let entries: Vec<toml::Value> = entries.into_iter().map(Into::into).collect();
-    scene.insert(kind.to_owned(), entries.into());
-}
-
 /// Sets a number: of a table (`contact.mu_s`), of an entry of a list (`move.0.at_s`), or of the first or second command
 /// that closes the fingers (`command.grip.for_s`, `command.more.for_s`), if there is one.
 fn set(scene: &mut toml::Table, place: &str, value: f64) -> Option<()> {

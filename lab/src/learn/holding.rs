@@ -8,8 +8,9 @@ use rayon::prelude::*;
 use tenax_scene::{SceneFile, Seeds, World};
 
 use super::bench::{Bench, Judge};
-use super::finger::{Finger, edited};
+use super::finger::Finger;
 use super::trial::{Trial, Word};
+use crate::dataset::story::entry;
 use tenax_sim::report::fate;
 use tenax_sim::scorer::{Card, Doing, Stretch};
 
@@ -118,7 +119,7 @@ pub fn minute(finger: &Finger, seed: u64, disturbed: bool) -> anyhow::Result<Sce
     let at_s = |n: u32, within: f64| FROM_S + 1.0 + slot_s * (f64::from(places[n as usize]) + within);
     let mut knocks = Vec::new();
     for n in 0..KNOCKS {
-        knocks.push(table(&[
+        knocks.push(entry(&[
             ("at_s", at_s(n, between(0.0, 0.5))),
             ("peak_mv", 2.0 * (between(0.0, 40.0_f64.ln())).exp()),
             // Frames and tools ring from 50 Hz to 2 kHz for 1 to 30 ms; where it comes from decides which films hear it.
@@ -129,7 +130,7 @@ pub fn minute(finger: &Finger, seed: u64, disturbed: bool) -> anyhow::Result<Sce
     }
     let mut swings = Vec::new();
     for n in KNOCKS..KNOCKS + SWINGS {
-        let mut swing = table(&[
+        let mut swing = entry(&[
             ("at_s", at_s(n, 0.0)),
             ("rate_hz", between(0.8, 1.5)),
             ("peak_m_s2", between(1.0, 3.0)),
@@ -139,22 +140,23 @@ pub fn minute(finger: &Finger, seed: u64, disturbed: bool) -> anyhow::Result<Sce
     }
     let mut runs = Vec::new();
     for n in KNOCKS + SWINGS..count {
-        let mut run = table(&[("at_s", at_s(n, between(0.0, 0.5))), ("for_s", between(0.02, 0.1))]);
+        let mut run = entry(&[("at_s", at_s(n, between(0.0, 0.5))), ("for_s", between(0.02, 0.1))]);
         run.insert("kind".to_owned(), "close".into());
         run.insert("duty_permille".to_owned(), (between(100.0, 300.0) as i64).into());
         runs.push(run);
     }
     finger.scene(SCENE, seed, &[("command.grip.for_s", (2.0 + 16.7 * finger.force()) / 24.0)], |scene| {
-        edited(scene, "knock", if disturbed { knocks } else { Vec::new() });
-        edited(scene, "swing", if disturbed { swings } else { Vec::new() });
+        for (kind, mut entries) in [("knock", knocks), ("swing", swings)] {
+            entries.retain(|_| disturbed);
+            scene.insert(
+                kind.to_owned(),
+                entries.into_iter().map(toml::Value::from).collect::<Vec<_>>().into(),
+            );
+        }
         let commands = scene.get_mut("command").and_then(toml::Value::as_array_mut);
         if let Some(commands) = commands {
             commands.truncate(2);
             commands.extend(runs.into_iter().filter(|_| disturbed).map(Into::into));
         }
     })
-}
-
-fn table(numbers: &[(&str, f64)]) -> toml::Table {
-    numbers.iter().map(|(key, value)| ((*key).to_owned(), (*value).into())).collect()
 }

@@ -141,10 +141,6 @@ impl Session {
         session
     }
 
-    pub const fn peak_n(&self) -> f64 {
-        self.peak_n
-    }
-
     /// A second in an open hand.
     pub fn rest(&mut self) {
         for _ in 0..80 {

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use serde::Serialize;
-use sha2::{Digest, Sha256};
 use tenax_logic::array::FEATURES;
 use tenax_logic::array::structure::STRUCTURES;
 use tenax_sim::array::edges::{Chosen, FALSE_2800_MAX, FALSE_PER_HOUR_MAX};
 
+use crate::dataset::manifest::sha256;
 use crate::train::features::{Recipe, Sequence};
 use crate::train::fit::Choice;
 use crate::train::network::{H1, H2};
@@ -31,7 +31,7 @@ impl Data {
         let sessions: std::collections::BTreeSet<_> = sequences.iter().map(|own| &own.session).collect();
         Self {
             file: file.into(),
-            sha256: Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect(),
+            sha256: sha256(bytes),
             recordings: sequences.len(),
             steps: slips().count(),
             slip_steps: slips().filter(|&&slip| slip).count(),
